@@ -1,0 +1,34 @@
+// How an implementation describes itself to the harness.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mbs/simulation.hpp"
+
+namespace mbs {
+
+/// One way of running an implementation, named "folder/name".
+struct Variant {
+  std::string name;         ///< lower case, for instance "refactor"
+  std::string description;  ///< one line
+  /// Sets a simulation up (timed apart from stepping). `model` outlives the simulation.
+  /// Throws Unsupported if this implementation cannot simulate `model`.
+  std::unique_ptr<Simulation> (*create)(const Model& model, const StepSettings& settings) = nullptr;
+};
+
+/// What the folder `implementations/<folder>/` offers. The folder defines
+///
+///   namespace mbs::<folder> { Implementation implementation(); }
+///
+/// and its line in implementations/CMakeLists.txt puts it into the registry.
+struct Implementation {
+  std::string description;  ///< one line: storage, algorithm
+  std::string library;      ///< for instance "KLU"
+  std::string version;      ///< as the library itself reports it, for instance "1.3.9"
+  std::string licence;      ///< of the library, SPDX, for instance "LGPL-2.1-or-later"
+  std::vector<Variant> variants;
+};
+
+}  // namespace mbs

@@ -1,0 +1,85 @@
+// The one interface that every implementation fulfils: set up once, then step.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "mbs/model.hpp"
+#include "mbs/phase_clock.hpp"
+
+namespace mbs {
+
+/// Settings of the time stepping, fixed for the lifetime of a Simulation.
+struct StepSettings {
+  double step = 1.25e-3;    ///< Delta t, s
+  double penalty = 1e8;     ///< alpha
+  double tolerance = 1e-9;  ///< converged once max |Delta q| <= tolerance, m
+  int max_passes = 20;      ///< passes a step at most; the last state is kept and stepping goes on
+};
+
+/// The full dynamic state at one instant.
+struct State {
+  std::vector<double> q;       ///< n, m
+  std::vector<double> v;       ///< n, m/s
+  std::vector<double> a;       ///< n, m/s^2
+  std::vector<double> lambda;  ///< constraints(), lambda* of Eq. (1)
+};
+
+enum class StepStatus {
+  converged,             ///< max |Delta q| <= tolerance within max_passes
+  pass_limit,            ///< max_passes done; the state is the last iterate, projected as usual
+  factorization_failed,  ///< the solver refused the tangent matrix; the state is not meaningful
+};
+
+struct StepOutcome {
+  StepStatus status = StepStatus::converged;
+  int passes = 0;  ///< passes done in this step, >= 1
+};
+
+/// Thrown by a factory when the implementation cannot simulate this model; `what()` says why.
+class Unsupported : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// One simulation of one model. Construction (the factory in mbs::Variant) does everything that can
+/// be done once: storage, patterns, symbolic analysis. step() allocates nothing where the library
+/// allows that, and prints nothing.
+///
+///   auto simulation = variant.create(model, settings);
+///   simulation->set_state(state);                   // checked once
+///   StepOutcome outcome = simulation->step();       // Delta t further; the hot path
+///   simulation->get_state(state);                   // sizes adapted
+class Simulation {
+ public:
+  Simulation(int variables, int constraints) : variables_(variables), constraints_(constraints) {}
+  virtual ~Simulation() = default;
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  /// Starts from `state`. Throws std::invalid_argument on a wrong size or a non-finite number.
+  void set_state(const State& state);
+
+  /// Advances by one time step as paper/README.md, "The step", states it.
+  [[nodiscard]] StepOutcome step() { return do_step(); }
+
+  /// Copies the current state out: q, v, a after the projections, and lambda*.
+  void get_state(State& state) const;
+
+  /// The phase clock that step() marks; off unless the harness profiles.
+  PhaseClock& phases() { return phases_; }
+
+ protected:
+  virtual void do_set_state(const State& state) = 0;
+  virtual StepOutcome do_step() = 0;
+  /// `state` arrives with the right sizes.
+  virtual void do_get_state(State& state) const = 0;
+
+  PhaseClock phases_;
+
+ private:
+  int variables_;
+  int constraints_;
+};
+
+}  // namespace mbs
