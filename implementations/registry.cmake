@@ -48,6 +48,7 @@ function(mbs_registry)
   set(MBS_REGISTRY_DECLARATIONS "${declarations}")
   set(MBS_REGISTRY_ENTRIES "${entries}")
   configure_file(registry.cpp.in ${CMAKE_CURRENT_BINARY_DIR}/registry.cpp @ONLY)
-  add_library(mbs_registry STATIC ${CMAKE_CURRENT_BINARY_DIR}/registry.cpp)
+  # An object library: the harness asks for registry(), so its definition must not depend on link order.
+  add_library(mbs_registry OBJECT ${CMAKE_CURRENT_BINARY_DIR}/registry.cpp)
   target_link_libraries(mbs_registry PUBLIC mbs_harness PRIVATE ${libraries})
 endfunction()

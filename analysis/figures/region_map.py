@@ -1,0 +1,88 @@
+# Which implementation is fastest over variables and fill: winner, margin, undecided and unreached.
+import matplotlib.pyplot as plt
+from matplotlib.patches import Patch, Rectangle
+
+from analysis.style import GREY, Look, figure_main
+from analysis.loader import FAILURES, NULL
+from analysis.statistics import rank
+
+UNREACHED = "#e9e9e9"
+
+
+def draw(results):
+    look, tidy = Look(results), results.tidy
+    tidy = tidy[(tidy.kind == "timing") & (tidy.implementation != NULL)]
+    sizes = sorted(tidy.variables.dropna().unique())
+    figure, axes = plt.subplots(figsize=(max(6.4, 1.1 + 1.0 * len(sizes)), 5.6))
+    shown = []
+    for column, size in enumerate(sizes):
+        shown += _column(axes, column, tidy[tidy.variables == size], look)
+    axes.set(xlim=(-0.5, len(sizes) - 0.5), ylim=(0, 100), xlabel="variables n",
+             ylabel="non-zeros in the tangent matrix, %",
+             title="Fastest implementation over size and fill")
+    axes.set_xticks(range(len(sizes)), [f"{size:g}" for size in sizes])
+    axes.tick_params(axis="x", length=0)
+    _legend(axes, [name for name in results.implementations if name in shown], look)
+    return figure
+
+
+def _column(axes, column, rows, look):
+    """Cells of one size between the midpoints of the measured fills; winners in order."""
+    reached = rows[rows.status != "not-reached"]
+    fills = reached.groupby("scene").fill_percent.median().dropna().sort_values()
+    edges = [(low + high) / 2 for low, high in zip(fills, fills[1:])]
+    bounds = [fills.iloc[0], *edges, 100] if len(fills) else [100]
+    axes.add_patch(Rectangle((column - 0.5, 0), 1, bounds[0], facecolor=UNREACHED, linewidth=0))
+    if bounds[0] > 6:
+        axes.text(column, bounds[0] / 2, "not\nreached" if bounds[0] > 12 else "not reached",
+                  ha="center", va="center", fontsize=8, color=GREY)
+    winners = []
+    for scene, low, high in zip(fills.index, bounds, bounds[1:]):
+        cell = reached[reached.scene == scene]
+        winners += _cell(axes, (column - 0.5, low), high - low, cell, look)
+    return winners
+
+
+def _cell(axes, corner, height, rows, look):
+    ranking = rank(rows[rows.status == "ok"])
+    colour = look.colour(ranking.winner) if ranking else "white"
+    decided = ranking is not None and ranking.decided
+    axes.add_patch(Rectangle(corner, 1, height, facecolor=colour, edgecolor="white", linewidth=1.2,
+                             alpha=0.85 if decided else 0.35))
+    if not decided:
+        axes.add_patch(Rectangle(corner, 1, height, facecolor="none", edgecolor="#555555",
+                                 linewidth=0, hatch="////"))
+    if ranking is None:
+        text = "none"
+    elif ranking.second is None:
+        text = "alone"
+    else:
+        text = f"{ranking.margin:.2f}×" if ranking.margin < 9.95 else f"{ranking.margin:.0f}×"
+    marks = _marks(rows)
+    centre = (corner[0] + 0.5, corner[1] + height / 2)
+    axes.text(*centre, text + (f"  {marks}" if marks else ""), ha="center", va="center",
+              fontsize=8.5 if height > 5 else 7, color="black",
+              bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "alpha": 0.72,
+                    "linewidth": 0} if height > 3.5 else None)
+    return [ranking.winner] if ranking else []
+
+
+def _marks(rows):
+    excluded = rows[rows.status == "excluded"].implementation.nunique()
+    failed = rows[rows.status.isin(FAILURES)].implementation.nunique()
+    return " ".join([f"▲{excluded}"] * bool(excluded) + [f"✕{failed}"] * bool(failed))
+
+
+def _legend(axes, names, look):
+    handles = [Patch(facecolor=look.colour(name), alpha=0.85, label=name) for name in names]
+    handles += [Patch(facecolor="#eeeeee", hatch="////", edgecolor="#555555", linewidth=0,
+                      label="undecided (colour: lower median)"),
+                Patch(facecolor=UNREACHED, label="below the mechanism's own fill")]
+    axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=9)
+    axes.text(1.03, 0.0, "1.32×  second / winner, medians\n▲k  k excluded as too slow\n"
+              "✕k  k failed or disagree", transform=axes.transAxes, fontsize=8, color=GREY,
+              va="bottom")
+
+
+if __name__ == "__main__":
+    figure_main(draw)

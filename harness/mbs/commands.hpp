@@ -1,0 +1,34 @@
+// The subcommands of `mbs`, each adding itself to the program's command line.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "mbs/simulation.hpp"
+
+namespace mbs {
+
+/// Each adds one subcommand whose callback stores the exit status in `status`.
+void add_list_command(CLI::App& app, int& status);
+void add_describe_command(CLI::App& app, int& status);
+void add_simulate_command(CLI::App& app, int& status);
+void add_check_command(CLI::App& app, int& status);
+
+/// Time-stepping options as typed; "auto" needs the model.
+struct StepOptions {
+  double step = 1.25e-3;
+  std::string penalty = "auto";
+  std::string tolerance = "auto";
+  int max_passes = 20;
+
+  /// Adds --step, --penalty, --tolerance and --max-passes to `command`.
+  void add_to(CLI::App& command);
+  /// Throws UsageError if a value is out of range.
+  [[nodiscard]] StepSettings resolve(const Model& model) const;
+};
+
+/// Parses the command line and runs it; the exit status: 0 done, 1 a result that is not right,
+/// 2 bad input.
+int run_program(int argc, char** argv);
+
+}  // namespace mbs

@@ -1,0 +1,82 @@
+// The command line as a whole.
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "environment/build_info.hpp"
+#include "mbs/bench_command.hpp"
+#include "mbs/commands.hpp"
+#include "run/settings.hpp"
+#include "usage_error.hpp"
+
+namespace mbs {
+namespace {
+
+constexpr const char* kScenes =
+    "A SCENE is four-bar:N (the N-loop four-bar mechanism), four-bar:N,fill=F (with artificial\n"
+    "non-zeros in M until a share F of the tangent is filled, 0 < F <= 1), or a JSON file.";
+
+/// A positive, finite number from "auto" or text.
+double parse_tolerance(const std::string& text, double step) {
+  if (text == "auto") return automatic_tolerance(step);
+  double value = 0.0;
+  if (!CLI::detail::lexical_cast(text, value) || !(value > 0.0) || !(value < 1e300)) {
+    throw UsageError(fmt::format("--tolerance is '{}': it must be 'auto' or a number above 0 (m)",
+                                 text));
+  }
+  return value;
+}
+
+}  // namespace
+
+void StepOptions::add_to(CLI::App& command) {
+  command.add_option("--step", step, "time step, s")->capture_default_str();
+  command.add_option("--penalty", penalty, "penalty factor alpha, or 'auto'")
+      ->capture_default_str();
+  command
+      .add_option("--tolerance", tolerance, "Newton stops at max |Delta q| below this, m, or 'auto'")
+      ->capture_default_str();
+  command.add_option("--max-passes", max_passes, "passes a step at most, 1 to 1000")
+      ->capture_default_str();
+}
+
+StepSettings StepOptions::resolve(const Model& model) const {
+  if (!(step > 0.0) || !(step < 1e6)) {
+    throw UsageError(fmt::format("--step is {:g} s: it must be a finite number above 0", step));
+  }
+  if (max_passes < 1 || max_passes > 1000) {
+    throw UsageError(fmt::format("--max-passes is {}: it must be 1 to 1000", max_passes));
+  }
+  return {step, parse_penalty(penalty, model, step), parse_tolerance(tolerance, step), max_passes};
+}
+
+int run_program(int argc, char** argv) {
+  if (argc > 1 && std::strcmp(argv[1], "bench") == 0) {
+    std::string name = "mbs bench";
+    argv[1] = name.data();
+    return bench_command(argc - 1, argv + 1);
+  }
+  CLI::App app{"mbs: one multibody simulation on many linear algebra implementations.\n"};
+  app.name("mbs");
+  app.footer(std::string(kScenes) +
+             "\nExit status: 0 done, 1 a result that is not right, 2 bad input.");
+  app.set_version_flag("--version", build_info().version);
+  app.require_subcommand(1);
+  int status = 0;
+  add_list_command(app, status);
+  add_describe_command(app, status);
+  add_simulate_command(app, status);
+  add_check_command(app, status);
+  app.add_subcommand("bench", "time implementations with Google Benchmark (see mbs bench --help)");
+  for (CLI::App* command : app.get_subcommands({})) command->footer(kScenes);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    fmt::print(stderr, "mbs: {} (mbs --help, mbs <subcommand> --help)\n", error.what());
+    return 2;
+  }
+  return status;
+}
+
+}  // namespace mbs

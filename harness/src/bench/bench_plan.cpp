@@ -1,0 +1,110 @@
+// From the command line's wishes to cells.
+#include "bench/bench_plan.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <regex>
+
+#include "bench/null_variant.hpp"
+#include "exact/four_bar_exact.hpp"
+#include "usage_error.hpp"
+
+namespace mbs {
+namespace {
+
+constexpr int kDefaultSteps = 800;
+constexpr const char* kControl = "null/null";
+
+void check(const BenchRequest& request) {
+  constexpr int kMostSteps = 10'000'000;
+  if (request.steps && (*request.steps < 1 || *request.steps > kMostSteps)) {
+    throw UsageError(fmt::format("--steps is {}: it must be 1 to {}", *request.steps, kMostSteps));
+  }
+  constexpr double kLatestStart = 1e6;  // s; later, the elliptic functions' argument loses digits
+  if (request.start && !(*request.start >= 0.0 && *request.start <= kLatestStart)) {
+    throw UsageError(
+        fmt::format("--start is {:g} s: it must be 0 to {:g} s", *request.start, kLatestStart));
+  }
+}
+
+PlannedScene plan_scene(const std::string& name, const BenchRequest& request) {
+  Scene scene = load_scene(name);
+  const StepSettings settings = request.settings(scene.model);
+  const int steps = request.steps.value_or(default_steps(scene, settings.step));
+  Stretch stretch = make_stretch(scene, settings.step, steps, request.start);
+  const double n = scene.model.variables();
+  const double fill = 100.0 * static_cast<double>(tangent_nonzeros(scene.model)) / (n * n);
+  return {std::move(scene), settings, std::move(stretch), fill};
+}
+
+/// The variants asked for; `control` becomes whether the null control is among them.
+std::vector<NamedVariant> choose_variants(std::vector<std::string> names, bool& control) {
+  const bool everything = names.empty();
+  const auto removed = std::erase_if(
+      names, [](const std::string& name) { return name == "null" || name == kControl; });
+  control = everything || removed > 0;
+  if (names.empty() && !everything) return {};
+  return select_variants(names);
+}
+
+}  // namespace
+
+int default_steps(const Scene& scene, double step) {
+  if (!scene.four_bar_loops) return kDefaultSteps;
+  const double centre = FourBarExact(*scene.four_bar_loops).first_singular_time();
+  const double before = std::clamp(std::floor(centre / step), 1.0, 0.5 * kDefaultSteps);
+  return 2 * static_cast<int>(before);
+}
+
+BenchPlan plan_bench(const BenchRequest& request) {
+  check(request);
+  bool control = false;
+  const std::vector<NamedVariant> variants = choose_variants(request.implementations, control);
+  std::vector<std::string> names = request.scenes;
+  if (names.empty()) names = {"four-bar:10", "four-bar:40"};
+  BenchPlan plan;
+  for (const std::string& name : names) {
+    if (std::ranges::count(names, name) > 1) {
+      throw UsageError(fmt::format("scene '{}' is given twice", name));
+    }
+    const PlannedScene* scene = &plan.scenes.emplace_back(plan_scene(name, request));
+    if (control) {
+      plan.cells.push_back({fmt::format("{}/{}", kControl, name), scene, &null_variant(), true});
+    }
+    for (const NamedVariant& variant : variants) {
+      plan.cells.push_back(
+          {fmt::format("{}/{}", variant.name, name), scene, variant.variant, false});
+    }
+  }
+  return plan;
+}
+
+std::vector<PlannedCell> filter_cells(const std::vector<PlannedCell>& cells, std::string filter) {
+  if (filter.empty() || filter == "all") return cells;
+  const std::string given = filter;
+  const bool negative = filter.starts_with('-');
+  if (negative) filter.erase(0, 1);
+  std::vector<PlannedCell> result;
+  try {
+    const std::regex expression(filter, std::regex::extended);
+    std::ranges::copy_if(cells, std::back_inserter(result), [&](const PlannedCell& cell) {
+      return std::regex_search(cell.name, expression) != negative;
+    });
+  } catch (const std::regex_error& error) {
+    throw UsageError(
+        fmt::format("--benchmark_filter={} is no regular expression: {}", given, error.what()));
+  }
+  if (result.empty()) {
+    std::vector<std::string> names;
+    for (const PlannedCell& cell : cells) names.push_back(cell.name);
+    throw UsageError(
+        fmt::format("--benchmark_filter={} selects none of: {}", given, fmt::join(names, ", ")));
+  }
+  return result;
+}
+
+}  // namespace mbs

@@ -1,0 +1,58 @@
+// The cells that `mbs bench` times: scenes with their settings and stretches, times variants.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/measurement.hpp"
+#include "registry/registry.hpp"
+
+namespace mbs {
+
+/// As given on the command line.
+struct BenchRequest {
+  std::vector<std::string> scenes;           ///< empty: four-bar:10 and four-bar:40
+  std::vector<std::string> implementations;  ///< empty: all, and the null control "null/null"
+  /// Settings for a model; "auto" needs the model. Throws UsageError.
+  std::function<StepSettings(const Model&)> settings;
+  std::optional<int> steps;
+  std::optional<double> start;  ///< s
+  bool phases = false;
+};
+
+/// A scene with what is common to all of its cells.
+struct PlannedScene {
+  Scene scene;
+  StepSettings settings;
+  Stretch stretch;
+  double fill_percent = 0.0;  ///< of the tangent's n^2 positions, 100 for all
+};
+
+struct PlannedCell {
+  std::string name;  ///< "folder/variant/scene"
+  const PlannedScene* scene = nullptr;
+  const Variant* variant = nullptr;
+  bool control = false;
+};
+
+struct BenchPlan {
+  std::deque<PlannedScene> scenes;  ///< a deque, so that cells can point into it
+  std::vector<PlannedCell> cells;   ///< scene by scene, the control first
+};
+
+/// Loads the scenes and chooses what was left open. Throws UsageError.
+BenchPlan plan_bench(const BenchRequest& request);
+
+/// Number of steps of a stretch if the user does not say: 800, on the N-four-bar cut to what fits
+/// symmetrically around the first singular position. `step` in s.
+int default_steps(const Scene& scene, double step);
+
+/// The cells whose name the regular expression finds, as Google Benchmark filters: extended POSIX
+/// syntax, a leading '-' for those it does not find, "" or "all" for every one. Throws UsageError
+/// if it is no regular expression or selects nothing.
+std::vector<PlannedCell> filter_cells(const std::vector<PlannedCell>& cells, std::string filter);
+
+}  // namespace mbs

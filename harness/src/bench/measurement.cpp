@@ -1,0 +1,138 @@
+// The timed loop and everything around it.
+#include "bench/measurement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <new>
+#include <vector>
+
+#include "run/judge.hpp"
+
+namespace mbs {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+struct Tally {
+  long passes = 0;
+  long steps_at_limit = 0;
+  long failed_step = 0;  ///< 1 for the first; 0 if none
+};
+
+/// The timed region: steps, and sums of their outcomes.
+Tally run_steps(Simulation& simulation, long steps) {
+  Tally tally;
+  for (long i = 1; i <= steps; ++i) {
+    const StepOutcome outcome = simulation.step();
+    tally.passes += outcome.passes;
+    if (outcome.status == StepStatus::converged) continue;
+    if (outcome.status == StepStatus::factorization_failed) {
+      tally.failed_step = i;
+      break;
+    }
+    ++tally.steps_at_limit;
+  }
+  return tally;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+void Measurement::prepare() {
+  if (failure_) throw CellFailure(*failure_);
+  if (simulation_) return;
+  try {
+    try_to_prepare();
+  } catch (const CellFailure& failure) {
+    failure_ = failure.what();
+  } catch (const Unsupported& reason) {
+    failure_ = fmt::format("unsupported: {}", reason.what());
+  } catch (const std::bad_alloc&) {
+    failure_ = "out-of-memory: an allocation failed";
+  } catch (const std::exception& error) {
+    failure_ = fmt::format("error: {}", error.what());
+  }
+  if (!failure_) return;
+  release();
+  throw CellFailure(*failure_);
+}
+
+void Measurement::try_to_prepare() {
+  constexpr int kSetupSamples = 5;
+  set_up(prepared_before_ ? 1 : kSetupSamples);
+  time_stretch();
+  if (prepared_before_) return;
+  if (!task_.control) judge_end();
+  if (task_.phases) profile();
+  prepared_before_ = true;
+}
+
+void Measurement::set_up(int samples) {
+  std::vector<double> times;
+  for (int i = 0; i < samples; ++i) {
+    simulation_.reset();
+    const auto begin = Clock::now();
+    simulation_ = task_.variant.create(task_.scene.model, task_.settings);
+    simulation_->set_state(task_.stretch.initial);
+    times.push_back(1e6 * seconds_since(begin));
+  }
+  if (!prepared_before_) figures_.setup_us = median(times);
+}
+
+double Measurement::time_stretch() {
+  simulation_->set_state(task_.stretch.initial);
+  const auto begin = Clock::now();
+  const Tally tally = run_steps(*simulation_, task_.stretch.steps);
+  const double seconds = seconds_since(begin);
+  if (tally.failed_step > 0) {
+    failure_ = fmt::format("factorization-failed: the tangent of step {} of {} was refused",
+                           tally.failed_step, task_.stretch.steps);
+    throw CellFailure(*failure_);
+  }
+  figures_.passes = tally.passes;
+  figures_.steps_at_limit = tally.steps_at_limit;
+  return seconds;
+}
+
+void Measurement::judge_end() {
+  const Stretch& stretch = task_.stretch;
+  Judge judge(task_.scene, stretch.initial, stretch.start);
+  State state;
+  simulation_->get_state(state);
+  const double end = stretch.start + static_cast<double>(stretch.steps) * task_.settings.step;
+  const std::string lost = judge.judge(end, state);
+  if (!lost.empty()) {
+    throw CellFailure(fmt::format("diverged: {} at {:g} s, the end of the stretch", lost, end));
+  }
+  figures_.position_error = judge.position_error_max();
+  figures_.constraint_violation = judge.constraint_violation_max();
+  figures_.energy_drift = judge.energy_drift_max();
+}
+
+void Measurement::profile() {
+  simulation_->set_state(task_.stretch.initial);
+  simulation_->phases().start();
+  run_steps(*simulation_, task_.stretch.steps);
+  simulation_->phases().stop();
+  const auto& ticks = simulation_->phases().ticks();
+  double total = 0.0;
+  for (const std::uint64_t phase : ticks) total += static_cast<double>(phase);
+  std::array<double, kPhaseCount> shares{};
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    shares[i] = total > 0.0 ? static_cast<double>(ticks[i]) / total : 0.0;
+  }
+  figures_.phases = shares;
+}
+
+}  // namespace mbs

@@ -1,0 +1,182 @@
+// Each check is one function; the child process runs them in order of growing cost.
+#include "check/gate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "check/exact_checks.hpp"
+
+namespace mbs {
+namespace {
+
+using Values = std::vector<double>;
+
+/// max |x - y|; NaN if either holds one.
+double distance(const Values& x, const Values& y) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double difference = std::abs(x[i] - y[i]);
+    if (!std::isfinite(difference)) return std::numeric_limits<double>::quiet_NaN();
+    worst = std::max(worst, difference);
+  }
+  return worst;
+}
+
+double largest(const Values& x) {
+  double worst = 0.0;
+  for (const double value : x) worst = std::max(worst, std::abs(value));
+  return worst;
+}
+
+/// One step from the state of each probe; value = worst difference in units of its tolerance.
+Check lock_step(const NamedVariant& variant, const Model& model, const StepSettings& settings,
+                const ReferenceRun& reference) {
+  const auto simulation = variant.variant->create(model, settings);
+  double worst = 0.0;
+  std::string detail = "no difference";
+  State state;
+  for (const Probe& probe : reference.probes) {
+    simulation->set_state(probe.before);
+    const StepOutcome outcome = simulation->step();
+    simulation->get_state(state);
+    const LockStepTolerance tolerance = lock_step_tolerance(probe, settings);
+    if (outcome.status == StepStatus::factorization_failed) {
+      return {"lock-step", std::nullopt, 1.0, false,
+              fmt::format("factorization failed in the step from t = {:g} s", probe.t)};
+    }
+    const auto compare = [&](const char* name, const Values& x, const Values& y, double allowed) {
+      const double difference = distance(x, y);
+      const double ratio = difference / allowed;
+      if (ratio <= worst) return;
+      worst = ratio;
+      detail = fmt::format("{} differs by {:.1e} after one step from t = {:g} s (allowed {:.1e})",
+                           name, difference, probe.t, allowed);
+    };
+    compare("q", state.q, probe.after.q, tolerance.q);
+    compare("v", state.v, probe.after.v, tolerance.v);
+    compare("a", state.a, probe.after.a, tolerance.a);
+    compare("lambda", state.lambda, probe.after.lambda, tolerance.lambda);
+    if (std::isnan(worst)) break;
+  }
+  return {"lock-step", worst, 1.0, worst <= 1.0, detail};
+}
+
+/// Runs the stretch; compares positions and passes with the reference's after every step.
+std::vector<Check> free_running(const NamedVariant& variant, const Model& model,
+                                const StepSettings& settings, const ReferenceRun& reference) {
+  // Far above what rounding grows to, far below the method's own error of about 1e-6 m and more.
+  constexpr double kTolerance = 1e-7;
+  const auto simulation = variant.variant->create(model, settings);
+  simulation->set_state(reference.stretch.initial);
+  const double h = settings.step;
+  const auto time = [&](std::size_t i) { return reference.stretch.start + (i + 1.0) * h; };
+  Check positions{"free-running", 0.0, kTolerance, true, ""};
+  Check passes{"passes", 0.0, 0.0, true, ""};
+  long total = 0, expected = 0;
+  State state;
+  for (std::size_t i = 0; i < reference.positions.size(); ++i) {
+    const StepOutcome outcome = simulation->step();
+    simulation->get_state(state);
+    total += outcome.passes;
+    expected += reference.outcomes[i].passes;
+    const double difference = distance(state.q, reference.positions[i]);
+    positions.value = std::isnan(difference) ? difference : std::max(*positions.value, difference);
+    if (!(difference <= kTolerance)) {
+      positions.passed = false;
+      positions.detail =
+          std::isnan(difference)
+              ? fmt::format("q is not finite from step {} (t = {:g} s)", i + 1, time(i))
+              : fmt::format("q differs by {:.1e} m first at step {} (t = {:g} s)", difference,
+                            i + 1, time(i));
+      break;
+    }
+    if (outcome.passes != reference.outcomes[i].passes && passes.detail.empty()) {
+      passes.detail = fmt::format("first at step {} (t = {:g} s): {} instead of {}", i + 1, time(i),
+                                  outcome.passes, reference.outcomes[i].passes);
+    }
+  }
+  if (*positions.passed) {
+    positions.detail = fmt::format("{} steps from t = {:g} s, m", reference.positions.size(),
+                                   reference.stretch.start);
+  }
+  passes.value = static_cast<double>(std::abs(total - expected));
+  passes.passed = total == expected;
+  passes.detail = fmt::format("{} instead of {} passes {}", total, expected, passes.detail);
+  if (*passes.passed) passes.detail = fmt::format("{} passes in total", total);
+  return {positions, passes};
+}
+
+std::vector<Check> run_checks(const Scene& scene, const NamedVariant& variant,
+                              const StepSettings& settings, const ReferenceRun& reference) {
+  std::vector<Check> checks{lock_step(variant, scene.model, settings, reference)};
+  const auto begin = std::chrono::steady_clock::now();
+  std::ranges::copy(free_running(variant, scene.model, settings, reference),
+                    std::back_inserter(checks));
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+  const bool sound = std::ranges::all_of(checks, [](const Check& c) { return c.passed == true; });
+  if (sound && scene.four_bar_loops) {
+    const double step_seconds = spent.count() / reference.positions.size();
+    std::ranges::copy(exact_checks(scene, *variant.variant, settings, step_seconds),
+                      std::back_inserter(checks));
+  }
+  return checks;
+}
+
+Verdict interpret(Verdict verdict, const Isolated& result) {
+  verdict.reason = result.reason;
+  switch (result.fate) {
+    case Fate::finished: break;
+    case Fate::crashed: verdict.verdict = "crashed"; return verdict;
+    case Fate::timeout: verdict.verdict = "timeout"; return verdict;
+    case Fate::out_of_memory: verdict.verdict = "out-of-memory"; return verdict;
+    case Fate::threw: verdict.verdict = "crashed"; return verdict;
+  }
+  const nlohmann::json json = nlohmann::json::parse(result.output);
+  if (json.contains("unsupported")) {
+    verdict.verdict = "unsupported";
+    verdict.reason = json["unsupported"].get<std::string>();
+    return verdict;
+  }
+  verdict.checks = json.at("checks").get<std::vector<Check>>();
+  verdict.verdict = "agrees";
+  for (const Check& check : verdict.checks) {
+    if (check.passed == false) {
+      verdict.verdict = "disagrees";
+      verdict.reason = check.name + ": " + check.detail;
+      break;
+    }
+  }
+  return verdict;
+}
+
+}  // namespace
+
+LockStepTolerance lock_step_tolerance(const Probe& probe, const StepSettings& settings) {
+  constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
+  const double h = settings.step;
+  const double size = std::max(largest(probe.after.q), 1e-300);
+  const double growth = kUnit * probe.outcome.passes * std::sqrt(probe.condition);
+  const double q = growth * size;
+  return {q, 2 / h * q, 4 / (h * h) * q,
+          growth * settings.penalty * size * size + kUnit * largest(probe.after.lambda)};
+}
+
+Verdict check_implementation(const Scene& scene, const NamedVariant& variant,
+                             const StepSettings& settings, const ReferenceRun& reference,
+                             const IsolationLimits& limits) {
+  const auto work = [&]() -> std::string {
+    try {
+      return nlohmann::json{{"checks", run_checks(scene, variant, settings, reference)}}.dump();
+    } catch (const Unsupported& reason) {
+      return nlohmann::json{{"unsupported", reason.what()}}.dump();
+    }
+  };
+  Verdict verdict{scene.name, variant.name, "", "", {}};
+  return interpret(std::move(verdict), run_isolated(work, limits));
+}
+
+}  // namespace mbs

@@ -1,0 +1,24 @@
+// The agreement gate: what an implementation must pass before it may be timed.
+#pragma once
+
+#include "check/reference_run.hpp"
+#include "check/verdict.hpp"
+#include "registry/registry.hpp"
+#include "run/isolate.hpp"
+
+namespace mbs {
+
+/// Checks `variant` on `scene` in a child process under `limits`: lock-step, free-running motion and
+/// number of passes against `reference`, then error and order against the exact solution if there is
+/// one. A dead or hanging child is a verdict, not an error.
+Verdict check_implementation(const Scene& scene, const NamedVariant& variant,
+                             const StepSettings& settings, const ReferenceRun& reference,
+                             const IsolationLimits& limits = {});
+
+/// Tolerances of a lock-step comparison; harness/README.md has their derivation.
+struct LockStepTolerance {
+  double q, v, a, lambda;
+};
+LockStepTolerance lock_step_tolerance(const Probe& probe, const StepSettings& settings);
+
+}  // namespace mbs

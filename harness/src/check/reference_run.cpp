@@ -1,0 +1,51 @@
+// Steps the reference through the stretch and takes the lock-step probes.
+#include "check/reference_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reference/reference_simulation.hpp"
+#include "usage_error.hpp"
+
+namespace mbs {
+
+ReferenceRun run_reference(const Scene& scene, const StepSettings& settings) {
+  constexpr int kSteps = 800;
+  constexpr int kProbes = 5;
+  const int steps = std::clamp(400'000 / std::max(scene.model.variables(), 1), 16, kSteps);
+  ReferenceRun result;
+  result.stretch = make_stretch(scene, settings.step, steps);
+
+  ReferenceSimulation reference(scene.model, settings);
+  reference.set_state(result.stretch.initial);
+  std::vector<State> probed;
+  State state = result.stretch.initial;
+  for (int i = 0; i < steps; ++i) {
+    if (i == (steps - 1) * static_cast<int>(probed.size()) / (kProbes - 1)) {
+      probed.push_back(state);
+      result.probes.push_back({result.stretch.start + i * settings.step, state, {}, {}, 0.0});
+    }
+    result.outcomes.push_back(reference.step());
+    reference.get_state(state);
+    const bool finite = std::ranges::all_of(state.q, [](double x) { return std::isfinite(x); });
+    if (!finite || result.outcomes.back().status == StepStatus::factorization_failed) {
+      throw UsageError(fmt::format(
+          "scene '{}': the reference fails at t = {:g} s with step {:g} s and penalty {:.3g}; "
+          "choose other settings",
+          scene.name, result.stretch.start + (i + 1) * settings.step, settings.step,
+          settings.penalty));
+    }
+    result.positions.push_back(state.q);
+  }
+  for (Probe& probe : result.probes) {
+    reference.set_state(probe.before);
+    probe.outcome = reference.step();
+    reference.get_state(probe.after);
+    probe.condition = reference.tangent_condition();
+  }
+  return result;
+}
+
+}  // namespace mbs

@@ -1,0 +1,32 @@
+// What the long-double reference says of a scene: computed once, compared with every implementation.
+#pragma once
+
+#include <vector>
+
+#include "mbs/simulation.hpp"
+#include "run/stretch.hpp"
+#include "scene/scene.hpp"
+
+namespace mbs {
+
+/// One step of the reference from a state that double precision holds exactly.
+struct Probe {
+  double t = 0.0;          ///< s, before the step
+  State before, after;
+  StepOutcome outcome;
+  double condition = 0.0;  ///< of the tangent, 2-norm
+};
+
+struct ReferenceRun {
+  Stretch stretch;
+  std::vector<std::vector<double>> positions;  ///< q after each step of the stretch
+  std::vector<StepOutcome> outcomes;           ///< of each step
+  std::vector<Probe> probes;                   ///< spread over the stretch, its ends included
+};
+
+/// Runs the reference over the stretch of `scene`: 800 steps, fewer from 500 variables up so that
+/// its cost stays bounded, never fewer than 16. Throws UsageError if the reference itself fails,
+/// since then nothing can be checked with these settings.
+ReferenceRun run_reference(const Scene& scene, const StepSettings& settings);
+
+}  // namespace mbs

@@ -1,0 +1,53 @@
+// Looking variants up by the names that users type.
+#include "registry/registry.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "usage_error.hpp"
+
+namespace mbs {
+
+std::vector<NamedVariant> all_variants() {
+  std::vector<NamedVariant> result;
+  for (const RegistryEntry& entry : registry()) {
+    for (const Variant& variant : entry.implementation.variants) {
+      result.push_back({entry.folder + "/" + variant.name, &entry, &variant});
+    }
+  }
+  return result;
+}
+
+std::vector<NamedVariant> select_variants(const std::vector<std::string>& names) {
+  const std::vector<NamedVariant> all = all_variants();
+  if (names.empty()) return all;
+  std::vector<NamedVariant> result;
+  for (const std::string& name : names) {
+    for (const RegistryEntry& entry : registry()) {
+      if (entry.folder == name.substr(0, name.find('/')) && !entry.unavailable.empty()) {
+        throw UsageError(fmt::format("implementation '{}' is unavailable: {}", name,
+                                     entry.unavailable));
+      }
+    }
+    const auto selected = [&name](const NamedVariant& variant) {
+      return variant.name == name || variant.entry->folder == name;
+    };
+    if (std::ranges::none_of(all, selected)) {
+      std::vector<std::string> known;
+      for (const NamedVariant& variant : all) known.push_back(variant.name);
+      throw UsageError(fmt::format("unknown implementation '{}': there are {}", name,
+                                   fmt::join(known, ", ")));
+    }
+  }
+  for (const NamedVariant& variant : all) {
+    const auto wanted = [&variant](const std::string& name) {
+      return variant.name == name || variant.entry->folder == name;
+    };
+    if (std::ranges::any_of(names, wanted)) result.push_back(variant);
+  }
+  return result;
+}
+
+}  // namespace mbs

@@ -1,0 +1,44 @@
+// The implementations of this build, from the list in implementations/CMakeLists.txt.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mbs/implementation.hpp"
+
+namespace mbs {
+
+/// One folder of the list: available, or kept visible with the reason why not.
+struct RegistryEntry {
+  std::string folder;
+  Implementation implementation;  ///< empty if unavailable
+  std::string unavailable;        ///< the reason, empty if available
+};
+
+/// All entries in the order of the list. Defined by the generated registry.cpp, or by a test's own.
+const std::vector<RegistryEntry>& registry();
+
+/// One runnable variant and the name it goes by everywhere, "folder/variant".
+struct NamedVariant {
+  std::string name;
+  const RegistryEntry* entry = nullptr;
+  const Variant* variant = nullptr;
+};
+
+/// Every available variant, in order.
+std::vector<NamedVariant> all_variants();
+
+/// The variants that `names` select, in order: "folder/variant", or "folder" for all of its
+/// variants; an empty list selects everything available. Throws UsageError with the known names if
+/// one is unknown, or with the reason if it is unavailable.
+std::vector<NamedVariant> select_variants(const std::vector<std::string>& names);
+
+inline RegistryEntry available(std::string folder, Implementation implementation) {
+  return {std::move(folder), std::move(implementation), ""};
+}
+inline RegistryEntry unavailable(std::string folder, std::string reason) {
+  return {std::move(folder), {}, std::move(reason)};
+}
+
+}  // namespace mbs

@@ -1,0 +1,108 @@
+// Sparse saddle-point systems in long double: set-up work, done once a scene.
+#include "run/initial_state.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "model_math/kinematics.hpp"
+
+namespace mbs {
+namespace {
+
+using Real = long double;
+using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+using Sparse = Eigen::SparseMatrix<Real>;
+
+/// [M, J^T; J, -eps]: quasi-definite, so LDL^T without pivoting exists whatever the rank of J.
+class SaddlePoint {
+ public:
+  SaddlePoint(const Model& model, std::span<const double> q)
+      : n_(model.variables()), m_(model.constraints()) {
+    std::vector<Eigen::Triplet<Real>> entries;
+    for (const MassEntry& entry : model.mass()) {
+      if (entry.value != 0.0) entries.emplace_back(entry.row, entry.col, entry.value);
+    }
+    Real largest = 0;
+    for (const JacobianEntry& entry : jacobian(model, q)) {
+      entries.emplace_back(n_ + entry.row, entry.col, entry.value);
+      largest = std::max(largest, std::abs(static_cast<Real>(entry.value)));
+    }
+    Real heaviest = 0;
+    for (const MassEntry& entry : model.mass()) {
+      heaviest = std::max(heaviest, static_cast<Real>(entry.value));
+    }
+    epsilon_ = largest > 0 ? 1e-9L * largest * largest / heaviest : 1e-9L;
+    for (int k = 0; k < m_; ++k) entries.emplace_back(n_ + k, n_ + k, -epsilon_);
+    Sparse matrix(n_ + m_, n_ + m_);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    factors_.compute(matrix);
+  }
+
+  [[nodiscard]] Vector solve(const Vector& right) const { return factors_.solve(right); }
+  [[nodiscard]] Real epsilon() const { return epsilon_; }
+
+ private:
+  int n_, m_;
+  Real epsilon_ = 0;
+  Eigen::SimplicialLDLT<Sparse, Eigen::Lower> factors_;
+};
+
+}  // namespace
+
+State consistent_state(const Model& model, std::span<const double> q, std::span<const double> v) {
+  const int n = model.variables();
+  const int m = model.constraints();
+  const SaddlePoint saddle_point(model, q);
+  std::vector<double> curvature(static_cast<std::size_t>(m));
+  constraint_curvature(model, v, curvature);
+
+  Vector right = Vector::Zero(n + m);
+  for (int i = 0; i < n; ++i) right[i] = model.force()[static_cast<std::size_t>(i)];
+  Vector solution = Vector::Zero(n + m);
+  // Each round removes the error of -eps: lambda_k+1 from Phi_q a - eps (lambda_k+1 - lambda_k).
+  constexpr int kMaxRounds = 100;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    for (int k = 0; k < m; ++k) {
+      right[n + k] = -static_cast<Real>(curvature[static_cast<std::size_t>(k)]) -
+                     saddle_point.epsilon() * solution[n + k];
+    }
+    const Vector next = saddle_point.solve(right);
+    const Real change = (next - solution).cwiseAbs().maxCoeff();
+    solution = next;
+    if (!(change > 1e-17L * solution.cwiseAbs().maxCoeff())) break;
+  }
+  State state{{q.begin(), q.end()}, {v.begin(), v.end()}, {}, {}};
+  for (int i = 0; i < n; ++i) state.a.push_back(static_cast<double>(solution[i]));
+  for (int k = 0; k < m; ++k) state.lambda.push_back(static_cast<double>(solution[n + k]));
+  return state;
+}
+
+State initial_state(const Model& model) {
+  return consistent_state(model, model.initial_position(), model.initial_velocity());
+}
+
+double smallest_constraint_eigenvalue(const Model& model, std::span<const double> q) {
+  const int n = model.variables();
+  const int m = model.constraints();
+  if (m == 0) return std::numeric_limits<double>::infinity();
+  const SaddlePoint saddle_point(model, q);
+  // Inverse iteration: the lower block of the solution is -(Phi_q M^-1 Phi_q^T + eps)^-1 y.
+  Vector y(m);
+  for (int k = 0; k < m; ++k) y[k] = 1.0L + 0.5L * std::sin(1.0L + k);
+  Real inverse = 0;
+  constexpr int kRounds = 30;
+  for (int round = 0; round < kRounds; ++round) {
+    y.normalize();
+    Vector right = Vector::Zero(n + m);
+    right.tail(m) = y;
+    const Vector next = -saddle_point.solve(right).tail(m);
+    inverse = next.dot(y);
+    y = next;
+  }
+  return static_cast<double>(std::max(1 / inverse - saddle_point.epsilon(), Real{0}));
+}
+
+}  // namespace mbs

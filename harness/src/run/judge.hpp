@@ -1,0 +1,52 @@
+// Judges states from outside: constraint violation, energy, distance from the exact solution.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "exact/four_bar_exact.hpp"
+#include "mbs/simulation.hpp"
+#include "scene/scene.hpp"
+
+namespace mbs {
+
+/// Beyond these a run has lost its solution. They are wide on purpose: they separate a motion that is
+/// inaccurate from one that means nothing.
+struct RunBounds {
+  double position_error = 0.1;         ///< m, where an exact solution is known
+  double energy_drift = 0.1;           ///< of the energy scale, see Judge
+  double constraint_violation = 1e-2;  ///< |Phi| relative to the squared length it constrains
+  double pass_limit_share = 0.05;      ///< of the steps; a few near singular positions are normal
+};
+
+/// Figures of one state, and the worst so far; NaN never passes for small.
+class Judge {
+ public:
+  /// `scene` must outlive the judge; `initial` is the state at time `start` (s).
+  Judge(const Scene& scene, const State& initial, double start);
+
+  /// Judges the state at time t. Returns the reason if the solution is lost, empty if not.
+  std::string judge(double t, const State& state);
+
+  /// Largest distance of a point from the exact motion, m; none if no exact solution is known.
+  [[nodiscard]] std::optional<double> position_error_max() const { return position_error_; }
+  /// Largest |E - E_0| over the energy scale: the largest kinetic energy so far, but at least a
+  /// thousandth of the work that the applied forces do over the scene's extent. Dimensionless.
+  [[nodiscard]] double energy_drift_max() const;
+  /// Largest |Phi_k|, m^2 (m for linear constraints).
+  [[nodiscard]] double constraint_violation_max() const { return violation_; }
+
+ private:
+  const Scene& scene_;
+  RunBounds bounds_;
+  std::optional<FourBarExact> exact_;
+  std::vector<double> phi_;
+  std::vector<double> phi_scale_;
+  double initial_energy_ = 0.0;
+  double energy_scale_ = 0.0;
+  double energy_difference_ = 0.0;
+  std::optional<double> position_error_;
+  double violation_ = 0.0;
+};
+
+}  // namespace mbs

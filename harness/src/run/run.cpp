@@ -1,0 +1,134 @@
+// The stepping loop around one implementation, with the harness's clocks and judgement.
+#include "run/run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "run/initial_state.hpp"
+#include "usage_error.hpp"
+
+namespace mbs {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double microseconds(Clock::duration duration) {
+  return std::chrono::duration<double, std::micro>(duration).count();
+}
+
+/// Nearest-rank quantile; reorders `values`.
+double quantile(std::vector<float>& values, double share) {
+  if (values.empty()) return 0.0;
+  const auto rank = static_cast<std::ptrdiff_t>(std::ceil(share * values.size())) - 1;
+  const auto nth = values.begin() + std::max<std::ptrdiff_t>(rank, 0);
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+void fail(RunSummary& summary, RunStatus status, std::string reason, double t) {
+  summary.status = status;
+  summary.reason = std::move(reason);
+  summary.failed_at = t;
+}
+
+/// Steps until the end or the first refused state.
+void step_through(Simulation& simulation, State& state, const RunSettings& settings, Judge& judge,
+                  const Observer& observer, RunSummary& summary, std::vector<float>& times) {
+  const long steps = count_steps(settings);
+  times.reserve(static_cast<std::size_t>(steps));
+  for (long i = 1; i <= steps; ++i) {
+    const double t = i * settings.step.step;
+    const auto begin = Clock::now();
+    const StepOutcome outcome = simulation.step();
+    times.push_back(static_cast<float>(microseconds(Clock::now() - begin)));
+    summary.steps = i;
+    summary.passes += outcome.passes;
+    if (outcome.status == StepStatus::pass_limit) ++summary.steps_at_limit;
+    if (outcome.status == StepStatus::factorization_failed) {
+      return fail(summary, RunStatus::diverged, "the tangent matrix could not be factorized", t);
+    }
+    simulation.get_state(state);
+    const std::string lost = judge.judge(t, state);
+    if (!lost.empty()) return fail(summary, RunStatus::diverged, lost, t);
+    if (observer) observer(i, t, state);
+  }
+  const double share = static_cast<double>(summary.steps_at_limit) / static_cast<double>(steps);
+  if (share > RunBounds{}.pass_limit_share) {
+    summary.status = RunStatus::not_converged;
+    summary.reason = fmt::format("{} of {} steps ended at the limit of {} passes (allowed {:g} %)",
+                                 summary.steps_at_limit, steps, settings.step.max_passes,
+                                 100 * RunBounds{}.pass_limit_share);
+  }
+}
+
+}  // namespace
+
+std::string to_string(RunStatus status) {
+  switch (status) {
+    case RunStatus::ok: return "ok";
+    case RunStatus::not_converged: return "not-converged";
+    case RunStatus::diverged: return "diverged";
+    case RunStatus::unsupported: return "unsupported";
+  }
+  return "unknown";
+}
+
+long count_steps(const RunSettings& settings) {
+  const auto require = [](double value, const char* name, const char* unit) {
+    if (!(value > 0.0) || !std::isfinite(value)) {
+      throw UsageError(fmt::format("{} is {:g}{}: it must be a finite number above 0", name, value,
+                                   unit));
+    }
+  };
+  require(settings.step.step, "--step", " s");
+  require(settings.duration, "--duration", " s");
+  require(settings.step.penalty, "--penalty", "");
+  require(settings.step.tolerance, "--tolerance", " m");
+  if (settings.step.max_passes < 1 || settings.step.max_passes > 1000) {
+    throw UsageError(fmt::format("--max-passes is {}: it must be 1 to 1000",
+                                 settings.step.max_passes));
+  }
+  constexpr double kMostSteps = 1e8;
+  const double steps = std::round(settings.duration / settings.step.step);
+  if (steps < 1.0) {
+    throw UsageError(fmt::format("--duration {:g} s is shorter than half a step of {:g} s",
+                                 settings.duration, settings.step.step));
+  }
+  if (!(steps <= kMostSteps)) {
+    throw UsageError(fmt::format("--duration {:g} s takes {:g} steps of {:g} s: at most {:g}",
+                                 settings.duration, steps, settings.step.step, kMostSteps));
+  }
+  return static_cast<long>(steps);
+}
+
+RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& settings,
+               const Observer& observer) {
+  count_steps(settings);
+  RunSummary summary;
+  State state = initial_state(scene.model);
+  Judge judge(scene, state, 0.0);
+  std::vector<float> times;
+  try {
+    const auto begin = Clock::now();
+    const auto simulation = variant.create(scene.model, settings.step);
+    simulation->set_state(state);
+    summary.setup_us = microseconds(Clock::now() - begin);
+    if (observer) observer(0, 0.0, state);
+    step_through(*simulation, state, settings, judge, observer, summary, times);
+  } catch (const Unsupported& reason) {
+    summary.status = RunStatus::unsupported;
+    summary.reason = reason.what();
+  }
+  summary.step_us_median = quantile(times, 0.5);
+  summary.step_us_p99 = quantile(times, 0.99);
+  summary.step_us_max = quantile(times, 1.0);
+  summary.position_error_max = judge.position_error_max();
+  summary.energy_drift_max = judge.energy_drift_max();
+  summary.constraint_violation_max = judge.constraint_violation_max();
+  return summary;
+}
+
+}  // namespace mbs

@@ -1,0 +1,52 @@
+// Runs one simulation from start to end and reports a typed outcome.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "registry/registry.hpp"
+#include "run/judge.hpp"
+
+namespace mbs {
+
+enum class RunStatus {
+  ok,             ///< the whole duration was simulated within RunBounds
+  not_converged,  ///< more steps than RunBounds allows ended at the pass limit
+  diverged,       ///< the solution was lost: not finite, or beyond RunBounds
+  unsupported,    ///< the implementation cannot simulate this scene
+};
+
+/// "ok", "not-converged", "diverged", "unsupported".
+std::string to_string(RunStatus status);
+
+struct RunSettings {
+  StepSettings step;
+  double duration = 20.0;  ///< s; rounded to a whole number of steps
+};
+
+struct RunSummary {
+  RunStatus status = RunStatus::ok;
+  std::string reason;               ///< one line, empty if ok
+  std::optional<double> failed_at;  ///< s, if not ok and it has an instant
+  long steps = 0;                   ///< done
+  long passes = 0;
+  long steps_at_limit = 0;
+  double setup_us = 0.0;  ///< the factory and the first set_state()
+  double step_us_median = 0.0, step_us_p99 = 0.0, step_us_max = 0.0;
+  std::optional<double> position_error_max;  ///< m
+  double energy_drift_max = 0.0;
+  double constraint_violation_max = 0.0;
+};
+
+/// Called after each step, and once before the first with step 0, outside the clocks.
+using Observer = std::function<void(long step, double t, const State& state)>;
+
+/// Number of steps that `duration` takes. Throws UsageError if settings are out of range.
+long count_steps(const RunSettings& settings);
+
+/// Simulates; stops at the first state that the judge refuses. Never throws for a numeric failure.
+RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& settings,
+               const Observer& observer = {});
+
+}  // namespace mbs

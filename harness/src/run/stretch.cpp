@@ -1,0 +1,36 @@
+// Places a stretch on the motion.
+#include "run/stretch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exact/four_bar_exact.hpp"
+#include "run/initial_state.hpp"
+#include "usage_error.hpp"
+
+namespace mbs {
+
+Stretch make_stretch(const Scene& scene, double step, int steps, std::optional<double> start) {
+  if (!scene.four_bar_loops) {
+    if (start && *start != 0.0) {
+      throw UsageError(fmt::format("--start needs an exact solution: scene '{}' starts at 0",
+                                   scene.name));
+    }
+    return {0.0, steps, initial_state(scene.model)};
+  }
+  if (start && !(*start >= 0.0 && std::isfinite(*start))) {
+    throw UsageError(fmt::format("--start is {:g} s: it must be at least 0", *start));
+  }
+  const FourBarExact exact(*scene.four_bar_loops);
+  const double centred = std::max(0.0, exact.first_singular_time() - steps / 2 * step);
+  Stretch stretch{start.value_or(centred), steps, {}};
+  const auto n = static_cast<std::size_t>(scene.model.variables());
+  std::vector<double> q(n), v(n), a(n);
+  exact.state(stretch.start, q, v, a);
+  stretch.initial = consistent_state(scene.model, q, v);
+  return stretch;
+}
+
+}  // namespace mbs

@@ -1,0 +1,36 @@
+// Generates the N-loop four-bar mechanism of paper/README.md.
+#include <fmt/format.h>
+
+#include "scene/bodies.hpp"
+#include "scene/scene.hpp"
+#include "usage_error.hpp"
+
+namespace mbs {
+
+ModelData four_bar(int loops) {
+  if (loops < 1 || loops > kMostLoops) {
+    throw UsageError(
+        fmt::format("four-bar: found N = {}, allowed are 1 to {} loops", loops, kMostLoops));
+  }
+  const std::array<double, 3> gravity{0.0, -9.81, 0.0};  // m/s^2
+  const int rods = loops + 1;
+  ModelData data;
+  data.points.reserve(static_cast<std::size_t>(2 * rods));
+  for (int i = 0; i < rods; ++i) {
+    data.points.push_back({fmt::format("A{}", i), -1, {static_cast<double>(i), 0.0, 0.0}});
+  }
+  for (int i = 0; i < rods; ++i) {
+    data.points.push_back({fmt::format("B{}", i), 2 * i, {static_cast<double>(i), 1.0, 0.0}});
+    data.initial_velocity.insert(data.initial_velocity.end(), {1.0, 0.0});
+  }
+  start_bodies(data);
+  for (int i = 0; i < rods; ++i) {
+    add_rod(data, {i, rods + i, 1.0, 1.0, fmt::format("A{}-B{}", i, i)}, gravity);
+  }
+  for (int i = 1; i < rods; ++i) {
+    add_rod(data, {rods + i - 1, rods + i, 1.0, 1.0, fmt::format("B{}-B{}", i - 1, i)}, gravity);
+  }
+  return data;
+}
+
+}  // namespace mbs

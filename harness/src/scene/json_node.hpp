@@ -1,0 +1,48 @@
+// A JSON value that knows its file and path, so that every complaint about it can name them.
+#pragma once
+
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mbs {
+
+/// Bound on every number in a scene: products of several of them stay finite.
+inline constexpr double kLargestNumber = 1e50;
+
+/// A view; value and file name must outlive it. Everything throws UsageError where the value is not
+/// what is asked for: "pendulum.json: rods[0].mass: found "heavy", allowed is a number".
+class JsonNode {
+ public:
+  JsonNode(const nlohmann::json& value, const std::string& file, std::string path = "")
+      : value_(&value), file_(&file), path_(std::move(path)) {}
+
+  /// "rods[0].mass"; empty at the top.
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+  /// Throws "FILE: PATH: found FOUND, allowed is ALLOWED".
+  [[noreturn]] void fail(const std::string& found, const std::string& allowed) const;
+  /// The same, with the value itself as what was found.
+  [[noreturn]] void fail(const std::string& allowed) const;
+
+  /// The value must be an object with no other keys than these.
+  void allow_keys(std::initializer_list<std::string_view> known) const;
+  [[nodiscard]] JsonNode get(std::string_view key) const;  ///< must be there
+  [[nodiscard]] std::optional<JsonNode> find(std::string_view key) const;
+
+  [[nodiscard]] std::vector<JsonNode> items() const;  ///< of an array
+  [[nodiscard]] const std::string& text() const;      ///< a string
+  [[nodiscard]] bool boolean() const;
+  [[nodiscard]] double number() const;                         ///< magnitude up to kLargestNumber
+  [[nodiscard]] std::vector<double> numbers(int count) const;  ///< an array of exactly `count`
+
+ private:
+  const nlohmann::json* value_;
+  const std::string* file_;
+  std::string path_;
+};
+
+}  // namespace mbs

@@ -1,0 +1,114 @@
+// From what the user typed to a Scene.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include "scene/printable.hpp"
+#include "scene/scene.hpp"
+#include "usage_error.hpp"
+
+namespace mbs {
+namespace {
+
+constexpr std::string_view kFourBar = "four-bar:";
+constexpr std::size_t kLargestFile = std::size_t{64} << 20;  // bytes; about 300 000 rods
+
+[[noreturn]] void fail(const std::string& scene, const std::string& what) {
+  throw UsageError(fmt::format("scene {}: {}", in_quotes(scene), what));
+}
+
+bool all_digits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+int parse_loops(const std::string& scene, std::string_view text) {
+  int loops = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), loops);
+  if (!all_digits(text) || text[0] == '0' || error != std::errc{} || loops > kMostLoops) {
+    fail(scene,
+         fmt::format(
+             "found {} for N, allowed is a whole number from 1 to {} without sign or leading 0",
+             in_quotes(text), kMostLoops));
+  }
+  return loops;
+}
+
+double parse_fill(const std::string& scene, std::string_view option) {
+  const auto equals = option.find('=');
+  if (option.substr(0, equals) != "fill" || equals == std::string_view::npos) {
+    fail(scene, fmt::format("found the option {}, allowed is fill=F", in_quotes(option)));
+  }
+  const std::string_view text = option.substr(equals + 1);
+  double fill = 0.0;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), fill, std::chars_format::fixed);
+  const bool decimal = text.find_first_not_of("0123456789.") == std::string_view::npos;
+  if (!decimal || error != std::errc{} || end != text.data() + text.size() ||
+      !(fill > 0.0 && fill <= 1.0)) {
+    fail(scene, fmt::format("found {} for F, allowed is a decimal number above 0, up to 1",
+                            in_quotes(text)));
+  }
+  return fill;
+}
+
+Scene load_four_bar(const std::string& scene) {
+  const std::string_view rest = std::string_view(scene).substr(kFourBar.size());
+  const auto comma = rest.find(',');
+  const int loops = parse_loops(scene, rest.substr(0, comma));
+  if (comma == std::string_view::npos) return {scene, Model(four_bar(loops)), loops, {}};
+  const double asked = parse_fill(scene, rest.substr(comma + 1));
+  ModelData data = four_bar(loops);
+  try {
+    const Fill fill = add_fill(data, asked, kFillSeed);
+    return {scene, Model(std::move(data)), loops, fill};
+  } catch (const UsageError& error) {
+    fail(scene, error.what());
+  }
+}
+
+std::string read_file(const std::string& path) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  std::string text;
+  std::string chunk(std::size_t{1} << 16, '\0');
+  while (file) {
+    file.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
+    text.append(chunk, 0, static_cast<std::size_t>(file.gcount()));
+    if (text.size() > kLargestFile) {
+      fail(path, fmt::format("the file is too large, allowed are {} bytes", kLargestFile));
+    }
+  }
+  if (!file.eof()) {
+    fail(path, fmt::format("the file cannot be read: {}",
+                           errno != 0 ? std::strerror(errno) : "unknown reason"));
+  }
+  return text;
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& text) {
+  if (text.starts_with(kFourBar)) return load_four_bar(text);
+  std::error_code error;
+  const auto status = std::filesystem::status(text, error);
+  if (!std::filesystem::exists(status)) {
+    const bool missing = status.type() == std::filesystem::file_type::not_found || text.empty();
+    fail(text,
+         fmt::format("{}; allowed are four-bar:N (N from 1 to {}), four-bar:N,fill=F (F above "
+                     "0, up to 1), or the path of a JSON scene file",
+                     missing ? "no such file and no such kind of scene" : error.message(),
+                     kMostLoops));
+  }
+  if (std::filesystem::is_directory(status)) {
+    fail(text, "this is a directory, allowed is a JSON scene file");
+  }
+  return {text, Model(parse_scene(read_file(text), text)), {}, {}};
+}
+
+}  // namespace mbs

@@ -1,0 +1,37 @@
+// Where the tangent (5) can be non-zero, column by column.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mbs/model.hpp"
+
+namespace mbs {
+
+/// Pattern of M plus Phi_q^T Phi_q without storing it: memory is that of M and Phi_q, and a column
+/// costs the sizes of the constraints that touch it. The diagonal is always in the pattern.
+///
+/// Example: the pendulum (A fixed, B free, one rod) has n = 2 and below(0) = {1}, below(1) = {}.
+class TangentPattern {
+ public:
+  /// `model` must outlive the pattern.
+  explicit TangentPattern(const Model& model);
+
+  /// Rows of the non-zeros below the diagonal of column `col`, unsorted; valid until the next call.
+  std::span<const int> below(int col);
+
+ private:
+  void collect(int col, int row);
+  void read_constraints(const Model& model);
+
+  std::span<const MassEntry> mass_;
+  std::vector<std::size_t> mass_start_;        // of column j in mass_
+  std::vector<std::size_t> constraint_start_;  // of constraint i in constraint_columns_
+  std::vector<int> constraint_columns_;
+  std::vector<std::size_t> column_start_;  // of column j in column_constraints_
+  std::vector<int> column_constraints_;
+  std::vector<int> seen_in_;  // last column whose pattern held this row
+  std::vector<int> rows_;
+};
+
+}  // namespace mbs

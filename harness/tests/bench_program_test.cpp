@@ -1,0 +1,198 @@
+// `mbs bench` from the outside: its JSON, its rows for failures, its errors.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "registry/registry.hpp"
+#include "support/program.hpp"
+
+namespace mbs {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* kShort = " --steps 20 --benchmark_min_time=0 ";
+
+/// Runs `mbs bench` into a file and returns its JSON.
+json bench(const std::string& arguments) {
+  const std::string out = test::temporary_path("bench.json");
+  const auto run = test::run_mbs("bench " + arguments + kShort + "'--benchmark_out=" + out + "'");
+  EXPECT_EQ(run.status, 0) << run.errors;
+  EXPECT_FALSE(fs::exists(out + ".partial"));
+  const std::string text = test::file_text(out);
+  fs::remove(out);
+  return json::parse(text);
+}
+
+TEST(BenchProgram, WritesARowForEveryVariantAndScene) {
+  const json result = bench("four-bar:1 four-bar:2 --phases");
+  std::set<std::string> expected{"null/null/four-bar:1", "null/null/four-bar:2"}, names;
+  for (const NamedVariant& variant : all_variants()) {
+    expected.insert(variant.name + "/four-bar:1");
+    expected.insert(variant.name + "/four-bar:2");
+  }
+  for (const json& row : result["benchmarks"]) {
+    const std::string name = row["name"];
+    SCOPED_TRACE(name);
+    names.insert(name);
+    EXPECT_EQ(row["run_name"], name);
+    EXPECT_EQ(row["time_unit"], "us");
+    ASSERT_FALSE(row.contains("error_occurred")) << row;
+    EXPECT_EQ(row["steps"], 20);
+    EXPECT_GE(row["passes"], 20);
+    EXPECT_EQ(row["finite"], 1);
+    EXPECT_NEAR(row["step_us"], row["real_time"].get<double>() / 20, 1e-9 * 1e6);
+    EXPECT_GT(row["setup_us"], 0.0);
+    for (const char* key : {"steps_at_limit", "variables", "constraints", "fill_percent", "penalty",
+                            "step", "tolerance", "max_passes", "start"}) {
+      EXPECT_TRUE(row.at(key).is_number()) << key;
+    }
+    double shares = 0.0;
+    for (const char* phase :
+         {"evaluation", "assembly", "factorization", "solve", "projection", "other"}) {
+      shares += row.at(std::string("phase_") + phase).get<double>();
+    }
+    EXPECT_NEAR(shares, 1.0, 1e-9);
+    const bool control = name.starts_with("null/");
+    for (const char* key : {"position_error", "constraint_violation", "energy_drift"}) {
+      EXPECT_EQ(row.at(key).is_null(), control) << key;
+    }
+  }
+  EXPECT_EQ(names, expected);
+}
+
+TEST(BenchProgram, HasTheRecordInItsContext) {
+  const json context =
+      bench("four-bar:1 --implementation null --benchmark_context=round=3")["context"];
+  for (const char* key :
+       {"mbs_version", "commit", "dirty", "compiler", "flags", "build_type", "blas_loaded",
+        "libraries", "cpu_model", "machine", "kernel", "threads_environment", "command", "date"}) {
+    EXPECT_TRUE(context.at(key).is_string()) << key;
+  }
+  EXPECT_EQ(context["round"], "3");
+  EXPECT_TRUE(context["command"].get<std::string>().starts_with("mbs bench four-bar:1 "))
+      << context;
+}
+
+TEST(BenchProgram, AgreesWithItselfOnWhatItTimed) {
+  if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
+  const std::string name = all_variants().front().name;
+  const json result = bench("four-bar:3 --implementation " + name + " --benchmark_repetitions=3");
+  std::set<json> passes, errors;
+  for (const json& row : result["benchmarks"]) {
+    if (row["run_type"] != "iteration") continue;
+    passes.insert(row["passes"]);
+    errors.insert(row["position_error"]);
+  }
+  EXPECT_EQ(passes.size(), 1U);
+  EXPECT_EQ(errors.size(), 1U);
+}
+
+TEST(BenchProgram, KeepsTheRowOfACellThatFails) {
+  if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
+  const std::string name = all_variants().front().name;
+  const std::string only = " --implementation " + name + " null --start 0 --steps 700";
+  // A penalty that constrains nothing: the rods fly apart, but the control runs.
+  const std::string out = test::temporary_path("bench.json");
+  const auto run = test::run_mbs("bench four-bar:4 four-bar:1" + only +
+                                 " --penalty 1e-3 --benchmark_min_time=0 --benchmark_out=" + out);
+  EXPECT_EQ(run.status, 0) << run.errors;
+  const json result = json::parse(test::file_text(out));
+  fs::remove(out);
+  ASSERT_EQ(result["benchmarks"].size(), 4U);
+  for (const json& row : result["benchmarks"]) {
+    const bool control = row["name"].get<std::string>().starts_with("null/");
+    EXPECT_EQ(row.contains("error_occurred"), !control) << row;
+    if (!control) {
+      EXPECT_TRUE(row["error_message"].get<std::string>().starts_with("diverged: ")) << row;
+    }
+  }
+}
+
+TEST(BenchProgram, PrintsRowsThatFailInEveryFormat) {
+  for (const char* format : {"console", "csv", "json"}) {
+    const auto run = test::run_mbs(
+        "bench four-bar:4 four-bar:1 --start 0 --steps 700 --penalty 1e-3 --benchmark_min_time=0 "
+        "--benchmark_filter=-null/null/four-bar:4 --benchmark_format=" +
+        std::string(format));
+    EXPECT_EQ(run.status, 0) << format << ": " << run.errors;
+    EXPECT_NE(run.output.find("null/null/four-bar:1"), std::string::npos) << run.output;
+  }
+}
+
+TEST(BenchProgram, HelpShowsBothKindsOfOptions) {
+  for (const char* flag : {"--help", "-h", "four-bar:2 --help"}) {
+    const auto run = test::run_mbs(std::string("bench ") + flag);
+    EXPECT_EQ(run.status, 0);
+    for (const char* option : {"--implementation", "--penalty", "--phases", "--start",
+                               "--benchmark_filter", "--benchmark_out"}) {
+      EXPECT_NE(run.output.find(option), std::string::npos) << option;
+    }
+  }
+}
+
+TEST(BenchProgram, ListsNamesAsTheyAre) {
+  const auto run = test::run_mbs(
+      "bench four-bar:1 --benchmark_list_tests --benchmark_filter='^null/null/four-bar:1$'");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.output, "null/null/four-bar:1\n");
+}
+
+/// One line, status 2, and the word that says what is wrong.
+void expect_refusal(const std::string& arguments, const std::string& word) {
+  const auto run = test::run_mbs("bench " + arguments);
+  EXPECT_EQ(run.status, 2) << arguments;
+  EXPECT_NE(run.errors.find(word), std::string::npos) << run.errors;
+  EXPECT_TRUE(run.errors.starts_with("mbs: ") || arguments.find("abc") != std::string::npos)
+      << run.errors;
+  const auto lines = std::ranges::count(run.errors, '\n');
+  EXPECT_LE(lines, arguments.find("abc") != std::string::npos ? 2 : 1) << run.errors;
+  EXPECT_EQ(run.output, "");
+}
+
+TEST(BenchProgram, RefusesBadInput) {
+  expect_refusal("--benchmark_fliter=x", "--benchmark_fliter");
+  expect_refusal("--benchmark_filter", "--benchmark_filter");
+  expect_refusal("--no-such-option", "--no-such-option");
+  expect_refusal("four-bar:1 --benchmark_filter=zzz", "selects none");
+  expect_refusal("four-bar:1 '--benchmark_filter=('", "regular expression");
+  expect_refusal("four-bar:1 --benchmark_min_time=abc", "--benchmark_min_time");
+  expect_refusal("four-bar:1 --benchmark_min_time=-1", "--benchmark_min_time");
+  expect_refusal("four-bar:1 --benchmark_repetitions=-1", "--benchmark_repetitions");
+  expect_refusal("four-bar:1 --benchmark_format=xml", "--benchmark_format");
+  expect_refusal("four-bar:1 --benchmark_out=x --benchmark_out_format=csv", "json");
+  expect_refusal("four-bar:1 --benchmark_out=/no/such/folder/x.json", "/no/such/folder/x.json");
+  expect_refusal("four-bar:1 --benchmark_out=/proc/version", "cannot be written");
+  expect_refusal("four-bar:1 --benchmark_out=/tmp", "cannot be written");
+  expect_refusal("no-such-scene.json", "no-such-scene.json");
+  expect_refusal("four-bar:1 --implementation no_such", "no_such");
+  expect_refusal("four-bar:1 --step 0", "--step");
+  expect_refusal("four-bar:1 --step nan", "--step");
+  expect_refusal("four-bar:1 --steps 0", "--steps");
+  expect_refusal("four-bar:1 --start -1", "--start");
+  expect_refusal("four-bar:1 --penalty -1", "--penalty");
+  expect_refusal("four-bar:1 --max-passes 0", "--max-passes");
+}
+
+TEST(BenchProgram, LeavesOlderResultsAloneWhenRefusing) {
+  const std::string out = test::temporary_path("old.json");
+  std::ofstream(out) << "precious";
+  expect_refusal("four-bar:1 --benchmark_filter=zzz --benchmark_out=" + out, "selects none");
+  EXPECT_EQ(test::file_text(out), "precious");
+  fs::remove(out);
+}
+
+TEST(BenchProgram, SaysSoWhenTheDiskIsFull) {
+  const auto run = test::run_mbs(std::string("bench four-bar:1 --implementation null") + kShort +
+                                 "--benchmark_out=/dev/full");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.errors.find("could not be written"), std::string::npos) << run.errors;
+}
+
+}  // namespace
+}  // namespace mbs

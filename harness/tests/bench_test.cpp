@@ -1,0 +1,312 @@
+// The parts of `mbs bench`: what is planned, what is timed, and how failures are told.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <numeric>
+#include <thread>
+
+#include "bench/bench_plan.hpp"
+#include "bench/measurement.hpp"
+#include "bench/null_variant.hpp"
+#include "bench/reporters.hpp"
+#include "exact/four_bar_exact.hpp"
+#include "usage_error.hpp"
+
+namespace mbs {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+void wait(milliseconds time) {
+  const auto end = steady_clock::now() + time;
+  while (steady_clock::now() < end) {
+  }
+}
+
+/// Does what a test tells it to, and counts.
+class Scripted final : public Simulation {
+ public:
+  enum class Script { still, slow_setup, not_finite, refuses, at_limit, phases };
+
+  Scripted(const Model& model, Script script)
+      : Simulation(model.variables(), model.constraints()), script_(script) {
+    if (script_ == Script::slow_setup) wait(milliseconds(4));
+  }
+
+  static inline long steps = 0;   ///< of all objects since a test cleared it
+  static inline long starts = 0;  ///< set_state() calls likewise
+
+ protected:
+  void do_set_state(const State& state) override {
+    ++starts;
+    state_ = state;
+    done_ = 0;
+    if (script_ == Script::slow_setup) wait(milliseconds(4));
+  }
+  StepOutcome do_step() override {
+    ++steps;
+    ++done_;
+    if (script_ == Script::not_finite && done_ == 3) {
+      state_.v[0] = std::numeric_limits<double>::quiet_NaN();
+    }
+    if (script_ == Script::refuses && done_ == 4) return {StepStatus::factorization_failed, 1};
+    if (script_ == Script::at_limit && done_ % 2 == 0) return {StepStatus::pass_limit, 20};
+    if (script_ == Script::phases) {
+      phases_.enter(Phase::solve);
+      wait(milliseconds(3));
+      phases_.enter(Phase::projection);
+      wait(milliseconds(1));
+      phases_.enter(Phase::other);
+    }
+    return {StepStatus::converged, 2};
+  }
+  void do_get_state(State& state) const override { state = state_; }
+
+ private:
+  Script script_;
+  State state_;
+  long done_ = 0;
+};
+
+template <Scripted::Script script>
+std::unique_ptr<Simulation> create_scripted(const Model& model, const StepSettings&) {
+  return std::make_unique<Scripted>(model, script);
+}
+
+/// A cell on a four-bar over ten steps that are so short that standing still is no divergence.
+class MeasurementTest : public ::testing::Test {
+ protected:
+  Measurement measurement(decltype(Variant::create) create, bool phases = false) {
+    variant_ = {"scripted", "", create};
+    Scripted::steps = Scripted::starts = 0;
+    return Measurement({scene_, variant_, stretch_, settings_, false, phases});
+  }
+  std::string failure(decltype(Variant::create) create) {
+    Measurement cell = measurement(create);
+    std::string first, second;
+    try {
+      cell.prepare();
+    } catch (const CellFailure& failure) {
+      first = failure.what();
+    }
+    const long steps = Scripted::steps;
+    try {
+      cell.prepare();
+    } catch (const CellFailure& failure) {
+      second = failure.what();
+    }
+    EXPECT_EQ(first, second);
+    EXPECT_EQ(Scripted::steps, steps) << "a failed cell must not be tried again";
+    return first;
+  }
+
+  const Scene scene_ = load_scene("four-bar:2");
+  const StepSettings settings_{1e-7, 1e8, 1e-9, 20};
+  const Stretch stretch_ = make_stretch(scene_, settings_.step, 10, 0.0);
+  Variant variant_;
+};
+
+using Script = Scripted::Script;
+
+TEST_F(MeasurementTest, TimesWholeStretchesFromTheSameState) {
+  Measurement cell = measurement(create_scripted<Script::still>);
+  cell.prepare();
+  EXPECT_EQ(Scripted::steps, 10) << "one warm-up stretch";
+  EXPECT_EQ(Scripted::starts, 6) << "five set-ups and the warm-up";
+  cell.time_stretch();
+  EXPECT_EQ(Scripted::steps, 20);
+  EXPECT_EQ(Scripted::starts, 7);
+  EXPECT_EQ(cell.figures().passes, 20);
+  EXPECT_EQ(cell.figures().steps_at_limit, 0);
+  EXPECT_TRUE(cell.figures().position_error.has_value());
+  EXPECT_FALSE(cell.figures().phases.has_value());
+}
+
+TEST_F(MeasurementTest, KeepsSetUpOutOfTheStretch) {
+  Measurement cell = measurement(create_scripted<Script::slow_setup>);
+  cell.prepare();
+  EXPECT_GE(cell.figures().setup_us, 8000.0);
+  double fastest = 1.0;
+  for (int i = 0; i < 5; ++i) fastest = std::min(fastest, cell.time_stretch());
+  EXPECT_LT(fastest, 2e-3);
+  EXPECT_GT(fastest, 0.0);
+}
+
+TEST_F(MeasurementTest, TimesTheStepsThemselves) {
+  Measurement cell = measurement(create_scripted<Script::phases>);
+  cell.prepare();
+  EXPECT_GE(cell.time_stretch(), 0.040);
+}
+
+TEST_F(MeasurementTest, SharesTimeByPhase) {
+  Measurement cell = measurement(create_scripted<Script::phases>, true);
+  cell.prepare();
+  ASSERT_TRUE(cell.figures().phases.has_value());
+  const auto& shares = *cell.figures().phases;
+  EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0), 1.0, 1e-12);
+  EXPECT_GT(shares[static_cast<std::size_t>(Phase::solve)], 0.5);
+  EXPECT_GT(shares[static_cast<std::size_t>(Phase::projection)], 0.05);
+  EXPECT_EQ(shares[static_cast<std::size_t>(Phase::factorization)], 0.0);
+}
+
+TEST_F(MeasurementTest, CountsStepsAtTheLimit) {
+  Measurement cell = measurement(create_scripted<Script::at_limit>);
+  cell.prepare();
+  EXPECT_EQ(cell.figures().steps_at_limit, 5);
+  EXPECT_EQ(cell.figures().passes, 5 * 2 + 5 * 20);
+}
+
+TEST_F(MeasurementTest, ComesBackAfterRelease) {
+  Measurement cell = measurement(create_scripted<Script::still>);
+  cell.prepare();
+  const double setup = cell.figures().setup_us;
+  cell.release();
+  cell.prepare();
+  EXPECT_EQ(Scripted::steps, 20) << "warmed up again";
+  EXPECT_EQ(cell.figures().setup_us, setup) << "but measured once";
+}
+
+TEST_F(MeasurementTest, NamesEveryKindOfFailure) {
+  EXPECT_EQ(failure([](const Model&, const StepSettings&) -> std::unique_ptr<Simulation> {
+              throw Unsupported("only three dimensions");
+            }),
+            "unsupported: only three dimensions");
+  EXPECT_EQ(failure([](const Model&, const StepSettings&) -> std::unique_ptr<Simulation> {
+              throw std::bad_alloc();
+            }),
+            "out-of-memory: an allocation failed");
+  EXPECT_EQ(failure([](const Model&, const StepSettings&) -> std::unique_ptr<Simulation> {
+              throw std::runtime_error("something else");
+            }),
+            "error: something else");
+  EXPECT_EQ(failure(create_scripted<Script::refuses>),
+            "factorization-failed: the tangent of step 4 of 10 was refused");
+  EXPECT_TRUE(
+      failure(create_scripted<Script::not_finite>).starts_with("diverged: the state is not"))
+      << failure(create_scripted<Script::not_finite>);
+}
+
+TEST_F(MeasurementTest, RefusesAMotionThatIsLost) {
+  const StepSettings settings{1e-3, 1e8, 1e-9, 20};
+  const Stretch stretch = make_stretch(scene_, settings.step, 400, 0.0);
+  Variant variant{"scripted", "", create_scripted<Script::still>};
+  Measurement still({scene_, variant, stretch, settings, false, false});
+  EXPECT_THROW(still.prepare(), CellFailure) << "0.4 s of standing still";
+  Measurement control({scene_, null_variant(), stretch, settings, true, false});
+  EXPECT_NO_THROW(control.prepare());
+  EXPECT_FALSE(control.figures().position_error.has_value());
+  EXPECT_EQ(control.figures().passes, 400);
+}
+
+BenchRequest request() {
+  BenchRequest result;
+  result.settings = [](const Model&) { return StepSettings{}; };
+  return result;
+}
+
+TEST(BenchPlan, DefaultsToTwoScenesAllVariantsAndTheControl) {
+  const BenchPlan plan = plan_bench(request());
+  ASSERT_EQ(plan.cells.size(), 2 * (all_variants().size() + 1));
+  EXPECT_EQ(plan.cells.front().name, "null/null/four-bar:10");
+  EXPECT_TRUE(plan.cells.front().control);
+  for (const PlannedCell& cell : plan.cells) {
+    EXPECT_TRUE(cell.name.ends_with(cell.scene->scene.name));
+    EXPECT_EQ(cell.control, cell.name.starts_with("null/"));
+  }
+}
+
+TEST(BenchPlan, CentresTheStretchOnTheSingularPosition) {
+  for (const int loops : {1, 10, 40, 400}) {
+    BenchRequest one = request();
+    one.scenes = {"four-bar:" + std::to_string(loops)};
+    one.implementations = {"null"};
+    const double singular = FourBarExact(loops).first_singular_time();
+    for (const std::optional<int> steps : {std::optional<int>(), std::optional<int>(60)}) {
+      one.steps = steps;
+      const BenchPlan plan = plan_bench(one);
+      const Stretch& stretch = plan.scenes.front().stretch;
+      EXPECT_GE(stretch.start, 0.0);
+      EXPECT_LE(stretch.steps, 800);
+      EXPECT_EQ(stretch.steps, steps.value_or(stretch.steps));
+      EXPECT_NEAR(stretch.start + 0.5 * stretch.steps * 1.25e-3, singular, 1.25e-3);
+    }
+  }
+}
+
+TEST(BenchPlan, LongStretchesStartAtZero) {
+  BenchRequest one = request();
+  one.scenes = {"four-bar:10"};
+  one.implementations = {"null/null"};
+  one.steps = 16000;
+  EXPECT_EQ(plan_bench(one).scenes.front().stretch.start, 0.0);
+  one.start = 0.125;
+  EXPECT_EQ(plan_bench(one).scenes.front().stretch.start, 0.125);
+  ASSERT_EQ(plan_bench(one).cells.size(), 1U);
+}
+
+TEST(BenchPlan, GivesTheTangentsFill) {
+  BenchRequest filled = request();
+  filled.scenes = {"four-bar:10,fill=1", "four-bar:10"};
+  filled.implementations = {"null"};
+  const BenchPlan plan = plan_bench(filled);
+  EXPECT_DOUBLE_EQ(plan.scenes[0].fill_percent, 100.0);
+  EXPECT_LT(plan.scenes[1].fill_percent, 30.0);
+}
+
+TEST(BenchPlan, RefusesWhatMakesNoSense) {
+  const auto refused = [](auto change) {
+    BenchRequest bad = request();
+    change(bad);
+    EXPECT_THROW(plan_bench(bad), UsageError);
+  };
+  refused([](BenchRequest& r) { r.steps = 0; });
+  refused([](BenchRequest& r) { r.steps = -5; });
+  refused([](BenchRequest& r) { r.start = -1.0; });
+  refused([](BenchRequest& r) { r.start = std::numeric_limits<double>::quiet_NaN(); });
+  refused([](BenchRequest& r) { r.start = std::numeric_limits<double>::infinity(); });
+  refused([](BenchRequest& r) { r.scenes = {"four-bar:2", "four-bar:2"}; });
+  refused([](BenchRequest& r) { r.scenes = {"five-bar:2"}; });
+  refused([](BenchRequest& r) { r.implementations = {"null", "no_such"}; });
+}
+
+TEST(FilterCells, SelectsAsGoogleBenchmarkDoes) {
+  const std::vector<PlannedCell> cells{{"a/b/four-bar:1"}, {"a/b/four-bar:10"}, {"c/d/four-bar:1"}};
+  const auto names = [&cells](const std::string& filter) {
+    std::string result;
+    for (const PlannedCell& cell : filter_cells(cells, filter)) result += cell.name + " ";
+    return result;
+  };
+  EXPECT_EQ(filter_cells(cells, "").size(), 3U);
+  EXPECT_EQ(filter_cells(cells, "all").size(), 3U);
+  EXPECT_EQ(names("^a/b/four-bar:1$"), "a/b/four-bar:1 ");
+  EXPECT_EQ(names("a/b"), "a/b/four-bar:1 a/b/four-bar:10 ");
+  EXPECT_EQ(names("-a/b"), "c/d/four-bar:1 ");
+  EXPECT_EQ(names("^(a|c)/.*:10?$"), "a/b/four-bar:1 a/b/four-bar:10 c/d/four-bar:1 ");
+  EXPECT_THROW(filter_cells(cells, "nothing"), UsageError);
+  EXPECT_THROW(filter_cells(cells, "-."), UsageError);
+  EXPECT_THROW(filter_cells(cells, "("), UsageError);
+}
+
+TEST(Reporters, TurnNumbersThatAreNotFiniteIntoNull) {
+  EXPECT_EQ(without_non_finite("{\n  \"a\": NaN,\n  \"b\": -NaN,\n  \"c\": Infinity,\n"
+                               "  \"d\": -Infinity\n}"),
+            "{\n  \"a\": null,\n  \"b\": null,\n  \"c\": null,\n  \"d\": null\n}");
+  const std::string harmless = "{\n  \"error\": \"x: NaN, y: NaN\",\n  \"n\": 1.0e+00\n}\n";
+  EXPECT_EQ(without_non_finite(harmless), harmless);
+}
+
+TEST(Reporters, DropTheHost) {
+  const std::string opening = without_host(
+      "{\n  \"context\": {\n    \"host_name\": \"h\",\n    \"executable\": \"/x/mbs\",\n"
+      "    \"num_cpus\": 2\n  },\n  \"benchmarks\": [\n");
+  EXPECT_EQ(opening,
+            "{\n  \"context\": {\n    \"executable\": \"mbs\",\n    \"num_cpus\": 2\n  },\n"
+            "  \"benchmarks\": [\n");
+}
+
+}  // namespace
+}  // namespace mbs

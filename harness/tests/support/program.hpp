@@ -1,0 +1,23 @@
+// Runs the program `mbs` as its users do.
+#pragma once
+
+#include <string>
+
+namespace mbs::test {
+
+struct ProgramResult {
+  int status = -1;     ///< exit status, or -1 if it did not exit by itself
+  std::string output;  ///< of stdout
+  std::string errors;  ///< of stderr
+};
+
+/// Runs `mbs <arguments>` through the shell, with `environment` ("NAME=value ...") in front.
+ProgramResult run_mbs(const std::string& arguments, const std::string& environment = "");
+
+/// A path in the tests' temporary folder that no other test of this or another process uses.
+std::string temporary_path(const std::string& name);
+
+/// The whole text of a file; empty if there is none.
+std::string file_text(const std::string& path);
+
+}  // namespace mbs::test

@@ -1,0 +1,28 @@
+// Describes the implementation and creates its simulations.
+#include "mbs/implementation.hpp"
+
+#include <armadillo>
+#include <memory>
+
+#include "simulation.hpp"
+
+namespace mbs::armadillo_dense {
+
+Implementation implementation() {
+  return {
+      .description = "dense column-major storage, Cholesky by LAPACK, products by BLAS",
+      .library = "Armadillo",
+      .version = arma::arma_version::as_string(),
+      .licence = "Apache-2.0",
+      .variants = {{
+          .name = "potrf",
+          .description = "tangent by dsyrk, Cholesky by dpotrf, in place",
+          .create = [](const Model& model,
+                       const StepSettings& settings) -> std::unique_ptr<mbs::Simulation> {
+            return std::make_unique<DenseSimulation>(model, settings);
+          },
+      }},
+  };
+}
+
+}  // namespace mbs::armadillo_dense

@@ -1,0 +1,119 @@
+// The step over dense matrices.
+#include "simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mbs::armadillo_dense {
+
+DenseSimulation::DenseSimulation(const Model& model, const StepSettings& settings)
+    : mbs::Simulation(model.variables(), model.constraints()),
+      settings_(settings),
+      assembly_(model, settings),
+      solver_(model.variables()),
+      n_(model.variables()),
+      m_(model.constraints()),
+      q_(assembly_.initial_positions()),
+      v_(assembly_.zero_velocities()),
+      a_(n_, arma::fill::zeros),
+      lambda_(m_, arma::fill::zeros),
+      mu_(m_, arma::fill::zeros),
+      rhs_(n_, arma::fill::zeros) {
+  std::ranges::copy(model.initial_velocity(), v_.begin());
+}
+
+void DenseSimulation::do_set_state(const State& state) {
+  std::ranges::copy(state.q, q_.begin());
+  std::ranges::copy(state.v, v_.begin());
+  std::ranges::copy(state.a, a_.begin());
+  std::ranges::copy(state.lambda, lambda_.begin());
+}
+
+void DenseSimulation::do_get_state(State& state) const {
+  std::copy_n(q_.begin(), n_, state.q.begin());
+  std::copy_n(v_.begin(), n_, state.v.begin());
+  std::copy_n(a_.begin(), n_, state.a.begin());
+  std::copy_n(lambda_.begin(), m_, state.lambda.begin());
+}
+
+StepOutcome DenseSimulation::do_step() {
+  predict();
+  phases_.enter(Phase::evaluation);
+  assembly_.evaluate(q_);
+  StepOutcome outcome{.status = StepStatus::pass_limit, .passes = 0};
+  while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
+    ++outcome.passes;
+    phases_.enter(Phase::evaluation);
+    mu_ = lambda_ + settings_.penalty * assembly_.phi();
+    assembly_.negative_residual(a_, mu_, rhs_);
+    phases_.enter(Phase::assembly);
+    assembly_.tangent(solver_.matrix());
+    phases_.enter(Phase::factorization);
+    if (!solver_.factorize()) {
+      phases_.enter(Phase::other);
+      return {.status = StepStatus::factorization_failed, .passes = outcome.passes};
+    }
+    phases_.enter(Phase::solve);
+    solver_.solve(rhs_);  // Eq. (4)
+    phases_.enter(Phase::other);
+    if (correct()) outcome.status = StepStatus::converged;
+    phases_.enter(Phase::evaluation);
+    assembly_.evaluate(q_);
+    phases_.enter(Phase::other);
+    lambda_ += settings_.penalty * assembly_.phi();  // Eq. (1)
+  }
+  project();
+  return outcome;
+}
+
+void DenseSimulation::predict() {
+  const double step = settings_.step;
+  const double half_square = step * step / 2.0;
+  const double two = 2.0 / step;
+  const double four = 4.0 / step;
+  const double four_square = 4.0 / (step * step);
+  double* __restrict const q = q_.memptr();
+  double* __restrict const v = v_.memptr();
+  double* __restrict const a = a_.memptr();
+  for (arma::uword i = 0; i < n_; ++i) {
+    const double predicted = q[i] + step * v[i] + half_square * a[i];
+    const double difference = predicted - q[i];
+    q[i] = predicted;
+    a[i] = four_square * difference - four * v[i] - a[i];  // Eq. (2)
+    v[i] = two * difference - v[i];                        // Eq. (2)
+  }
+}
+
+bool DenseSimulation::correct() {
+  const double tolerance = settings_.tolerance;
+  const double two = 2.0 / settings_.step;
+  const double four_square = 4.0 / (settings_.step * settings_.step);
+  double* __restrict const q = q_.memptr();
+  double* __restrict const v = v_.memptr();
+  double* __restrict const a = a_.memptr();
+  const double* __restrict const delta = rhs_.memptr();
+  bool converged = true;
+  for (arma::uword i = 0; i < n_; ++i) {
+    q[i] += delta[i];
+    v[i] += two * delta[i];          // Eq. (2)
+    a[i] += four_square * delta[i];  // Eq. (2)
+    converged &= std::abs(delta[i]) <= tolerance;
+  }
+  return converged;
+}
+
+void DenseSimulation::project() {
+  phases_.enter(Phase::projection);
+  assembly_.velocity_projection(v_, rhs_);
+  phases_.enter(Phase::solve);
+  solver_.solve(rhs_);  // Eq. (6)
+  phases_.enter(Phase::projection);
+  std::copy_n(rhs_.begin(), n_, v_.begin());
+  assembly_.acceleration_projection(v_, a_, rhs_);
+  phases_.enter(Phase::solve);
+  solver_.solve(rhs_);  // Eq. (6)
+  phases_.enter(Phase::other);
+  a_ = rhs_;
+}
+
+}  // namespace mbs::armadillo_dense

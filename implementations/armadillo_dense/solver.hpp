@@ -1,0 +1,31 @@
+// Dense Cholesky factorization of the tangent matrix, in place, by LAPACK and BLAS.
+#pragma once
+
+#include <armadillo>
+
+namespace mbs::armadillo_dense {
+
+/// Factorizes T = L Lᵀ over the memory of T and solves with L. Only the lower triangle is used.
+///
+///   assembly.tangent(solver.matrix());
+///   if (!solver.factorize()) ...
+///   solver.solve(b);                     // b <- T⁻¹ b
+class CholeskySolver {
+ public:
+  /// Storage for an n x n matrix.
+  explicit CholeskySolver(int n) : T_(n, n, arma::fill::zeros) {}
+
+  /// T (n x n), to be filled before factorize(), which overwrites its lower triangle with L.
+  [[nodiscard]] arma::mat& matrix() { return T_; }
+
+  /// False if T is not positive definite or holds a number that is not finite.
+  [[nodiscard]] bool factorize();
+
+  /// Overwrites b (n) by T⁻¹ b with the last factorization.
+  void solve(arma::vec& b) const;
+
+ private:
+  arma::mat T_;
+};
+
+}  // namespace mbs::armadillo_dense

@@ -1,0 +1,196 @@
+// The step of paper/README.md over sparse storage, for any solver of the tangent matrix.
+#include "simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "assembly.hpp"
+
+namespace mbs::csc_klu {
+namespace {
+
+template <int dim, TangentSolver Solver>
+class NewtonSimulation final : public Simulation {
+ public:
+  NewtonSimulation(const Model& model, const StepSettings& settings)
+      : Simulation(model.variables(), model.constraints()),
+        settings_(settings),
+        weight_(settings.step * settings.step / 4.0),
+        n_(model.variables()),
+        m_(model.constraints()),
+        mass_(model),
+        jacobian_pattern_(model),
+        jacobian_(jacobian_pattern_),
+        tangent_pattern_(model, jacobian_pattern_),
+        tangent_(model, jacobian_pattern_, tangent_pattern_, weight_ * settings.penalty),
+        weighted_force_(model.force().begin(), model.force().end()),
+        q_(model.initial_position().begin(), model.initial_position().end()),
+        v_(model.initial_velocity().begin(), model.initial_velocity().end()),
+        a_(n_, 0.0),
+        lambda_(m_, 0.0),
+        phi_(m_, 0.0),
+        reaction_(m_, 0.0),
+        right_a_(n_, 0.0),
+        solver_(tangent_.pattern(), initial_tangent()) {
+    for (double& force : weighted_force_) force *= weight_;
+    v_.resize(q_.size(), 0.0);
+    right_v_.resize(q_.size(), 0.0);
+  }
+
+ private:
+  void do_set_state(const State& state) override {
+    std::ranges::copy(state.q, q_.begin());
+    std::ranges::copy(state.v, v_.begin());
+    std::ranges::copy(state.a, a_.begin());
+    for (int i = 0; i < m_; ++i) lambda_[i] = state.lambda[jacobian_pattern_.model_row[i]];
+  }
+
+  void do_get_state(State& state) const override {
+    std::copy_n(q_.begin(), n_, state.q.begin());
+    std::copy_n(v_.begin(), n_, state.v.begin());
+    std::ranges::copy(a_, state.a.begin());
+    for (int i = 0; i < m_; ++i) state.lambda[jacobian_pattern_.model_row[i]] = lambda_[i];
+  }
+
+  StepOutcome do_step() override {
+    predict();
+    phases_.enter(Phase::evaluation);
+    jacobian_.evaluate(q_.data(), phi_.data());
+    StepOutcome outcome{StepStatus::pass_limit, 0};
+    do {
+      ++outcome.passes;
+      phases_.enter(Phase::evaluation);
+      evaluate_residual();
+      phases_.enter(Phase::assembly);
+      tangent_.assemble(jacobian_);
+      phases_.enter(Phase::factorization);
+      if (!solver_.factorize(tangent_.values())) {
+        phases_.enter(Phase::other);
+        return {StepStatus::factorization_failed, outcome.passes};
+      }
+      phases_.enter(Phase::solve);
+      solver_.solve(right_a_);
+      phases_.enter(Phase::other);
+      if (correct()) outcome.status = StepStatus::converged;
+      phases_.enter(Phase::evaluation);
+      jacobian_.evaluate(q_.data(), phi_.data());
+      phases_.enter(Phase::other);
+      update_multipliers();
+    } while (outcome.status != StepStatus::converged && outcome.passes < settings_.max_passes);
+    project();
+    phases_.enter(Phase::other);
+    return outcome;
+  }
+
+  /// Puts the fixed points behind q and evaluates T there.
+  std::span<const double> initial_tangent() {
+    const std::vector<double>& fixed = jacobian_pattern_.fixed_coordinates;
+    q_.insert(q_.end(), fixed.begin(), fixed.end());
+    jacobian_.evaluate(q_.data(), phi_.data());
+    tangent_.assemble(jacobian_);
+    return tangent_.values();
+  }
+
+  void predict() {
+    const double h = settings_.step;
+    double* __restrict const q = q_.data();
+    double* __restrict const v = v_.data();
+    double* __restrict const a = a_.data();
+    for (int i = 0; i < n_; ++i) {
+      const double end = q[i] + h * v[i] + (h * h / 2.0) * a[i];
+      const double moved = end - q[i];
+      const double start_v = v[i];
+      q[i] = end;
+      v[i] = (2.0 / h) * moved - start_v;                           // Eq. (2)
+      a[i] = (4.0 / (h * h)) * moved - (4.0 / h) * start_v - a[i];  // Eq. (2)
+    }
+  }
+
+  /// The right-hand side -f of Eq. (4), in right_a_.
+  void evaluate_residual() {
+    const double alpha = settings_.penalty;
+    const double* __restrict const phi = phi_.data();
+    const double* __restrict const lambda = lambda_.data();
+    double* __restrict const reaction = reaction_.data();
+    for (int i = 0; i < m_; ++i) reaction[i] = weight_ * (lambda[i] + alpha * phi[i]);  // Eq. (3)
+
+    mass_.multiply(a_.data(), right_a_.data());
+    const double* __restrict const force = weighted_force_.data();
+    double* __restrict const right = right_a_.data();
+    for (int i = 0; i < n_; ++i) right[i] = force[i] - weight_ * right[i];  // Eq. (3)
+    jacobian_.subtract_transposed_product(reaction, right);                 // Eq. (3)
+  }
+
+  void update_multipliers() {
+    const double alpha = settings_.penalty;
+    const double* __restrict const phi = phi_.data();
+    double* __restrict const lambda = lambda_.data();
+    for (int i = 0; i < m_; ++i) lambda[i] += alpha * phi[i];  // Eq. (1)
+  }
+
+  /// Adds the increment in right_a_; true if it is within the tolerance, which no NaN is.
+  bool correct() {
+    const double h = settings_.step;
+    const double tolerance = settings_.tolerance;
+    const double* __restrict const increment = right_a_.data();
+    double* __restrict const q = q_.data();
+    double* __restrict const v = v_.data();
+    double* __restrict const a = a_.data();
+    long long beyond = 0;
+    for (int i = 0; i < n_; ++i) {
+      beyond |= !(std::abs(increment[i]) <= tolerance);
+      q[i] += increment[i];
+      v[i] += (2.0 / h) * increment[i];        // Eq. (2)
+      a[i] += (4.0 / (h * h)) * increment[i];  // Eq. (2)
+    }
+    return beyond == 0;
+  }
+
+  /// Eq. (6) with the last factors; the solutions are solved for in the buffers that become v, a.
+  void project() {
+    phases_.enter(Phase::projection);
+    mass_.multiply(v_.data(), a_.data(), right_v_.data(), right_a_.data());
+    phases_.enter(Phase::solve);
+    solver_.solve({right_v_.data(), static_cast<std::size_t>(n_)});
+    v_.swap(right_v_);
+    phases_.enter(Phase::projection);
+    jacobian_.velocity_term(v_.data(), weight_ * settings_.penalty, reaction_.data());
+    jacobian_.subtract_transposed_dots(reaction_.data(), right_a_.data());
+    phases_.enter(Phase::solve);
+    solver_.solve(right_a_);
+    a_.swap(right_a_);
+  }
+
+  const StepSettings settings_;
+  const double weight_;  ///< dt^2/4, s^2
+  const int n_, m_;
+
+  const MassMatrix mass_;
+  const JacobianPattern<dim> jacobian_pattern_;
+  Jacobian<dim> jacobian_;
+  const TangentPattern<dim> tangent_pattern_;
+  Tangent<dim> tangent_;
+
+  std::vector<double> weighted_force_;  ///< dt^2/4 Q (n)
+  std::vector<double> q_, v_;           ///< extended by the fixed points and their zero velocity
+  std::vector<double> a_;               ///< n
+  std::vector<double> lambda_, phi_;    ///< m, in the order of JacobianPattern
+  std::vector<double> reaction_;        ///< m; what Phi_q^T multiplies
+  std::vector<double> right_v_;         ///< extended; right-hand side and solution for v'
+  std::vector<double> right_a_;         ///< n; the same for Delta q and a'
+  Solver solver_;
+};
+
+}  // namespace
+
+template <TangentSolver Solver>
+std::unique_ptr<Simulation> create_simulation(const Model& model, const StepSettings& settings) {
+  if (model.dimension() == 2) return std::make_unique<NewtonSimulation<2, Solver>>(model, settings);
+  return std::make_unique<NewtonSimulation<3, Solver>>(model, settings);
+}
+
+template std::unique_ptr<Simulation> create_simulation<Refactorization>(const Model&,
+                                                                        const StepSettings&);
+
+}  // namespace mbs::csc_klu

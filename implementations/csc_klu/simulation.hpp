@@ -1,0 +1,19 @@
+// The step of paper/README.md over sparse storage, for any solver of the tangent matrix.
+#pragma once
+
+#include <memory>
+
+#include "mbs/simulation.hpp"
+#include "solver.hpp"
+
+namespace mbs::csc_klu {
+
+/// Sets a simulation up; `model` outlives it. Instantiated in simulation.cpp for every solver.
+template <TangentSolver Solver>
+[[nodiscard]] std::unique_ptr<Simulation> create_simulation(const Model& model,
+                                                            const StepSettings& settings);
+
+extern template std::unique_ptr<Simulation> create_simulation<Refactorization>(const Model&,
+                                                                               const StepSettings&);
+
+}  // namespace mbs::csc_klu

@@ -1,0 +1,1 @@
+# The study: entry points (shell), profiles (data) and the pipeline (Python).

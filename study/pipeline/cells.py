@@ -1,0 +1,128 @@
+# One raw file each: a benchmark of one cell, a gate verdict, an accuracy run. Never overwritten.
+import json
+import os
+
+from study.pipeline import child
+from study.pipeline.errors import StudyError
+from study.pipeline.layout import ROOT, program, read_json, write_json
+
+
+def bench(path, implementation, scene, profile, context, *, steps, repetitions, phases=False):
+    """Raw Google Benchmark JSON of one cell; a dead child leaves the same shape with a "failure"."""
+    if path.exists():
+        return read_json(path)
+    partial = _partial(path)
+    command = [program(), "bench", scene.name, "--implementation", implementation,
+               "--step", f"{profile.step:g}", "--penalty", profile.penalty, "--steps", str(steps),
+               f"--benchmark_repetitions={repetitions}",
+               f"--benchmark_min_time={profile.min_time if repetitions > 1 else 1e-6:g}",
+               f"--benchmark_out={_short(partial)}", "--benchmark_out_format=json"]
+    command += ["--phases"] if phases else []
+    ended = child.run(command, profile.limits["cell_seconds"], profile.limits["memory_mb"])
+    if ended.status == "exited" and _complete(partial):
+        os.replace(partial, path)
+    else:
+        partial.unlink(missing_ok=True)
+        write_json(path, {"context": context, "benchmarks": [], "failure": _failure(ended, command)})
+    return read_json(path)
+
+
+def check(path, implementations, scene, profile, context):
+    """The gate's verdicts on one scene; None if the gate itself died and it can be split further."""
+    if path.exists():
+        return read_json(path)
+    partial = _partial(path)
+    command = [program(), "check", scene.name, "--step", f"{profile.step:g}",
+               "--penalty", profile.penalty, "--json", _short(partial)]
+    for implementation in implementations:
+        command += ["--implementation", implementation]
+    ended = child.run(command, profile.limits["check_seconds"], profile.limits["memory_mb"])
+    if ended.status == "exited" and ended.code in (0, 1) and _complete(partial):
+        os.replace(partial, path)
+        return read_json(path)
+    partial.unlink(missing_ok=True)
+    if len(implementations) > 1:
+        return None
+    status = "crashed" if ended.status == "exited" else ended.status
+    row = {"scene": scene.name, "implementation": implementations[0], "verdict": status,
+           "reason": f"the check {ended.reason}", "checks": []}
+    write_json(path, {"context": context, "rows": [row], "failure": _failure(ended, command)})
+    return read_json(path)
+
+
+def simulate(path, implementation, scene, penalty, profile, context):
+    """Summary of a whole simulation; {"context", "summary" or "failure"}."""
+    if path.exists():
+        return read_json(path)
+    command = [program(), "simulate", scene.name, "--implementation", implementation,
+               "--step", f"{profile.step:g}", "--penalty", penalty,
+               "--duration", f"{profile.accuracy['duration']:g}", "--json"]
+    ended = child.run(command, profile.limits["simulate_seconds"], profile.limits["memory_mb"])
+    record = {"context": context, "penalty_asked": penalty, "command": command}
+    try:
+        if ended.status != "exited":
+            raise ValueError(ended.reason)
+        record["summary"] = json.loads(ended.stdout)
+    except ValueError:
+        record["failure"] = _failure(ended, command)
+    write_json(path, record)
+    return record
+
+
+def context(profile_memory_mb=4096):
+    """The context of this build on this machine, as every raw file has it."""
+    command = [program(), "bench", "four-bar:1", "--implementation", "null/null", "--steps", "1",
+               "--benchmark_min_time=1e-6", "--benchmark_format=json"]
+    ended = child.run(command, 60, profile_memory_mb)
+    try:
+        return json.loads(ended.stdout)["context"]
+    except (ValueError, KeyError) as error:
+        raise StudyError(f"{program()} bench does not work: {ended.reason}") from error
+
+
+def samples(raw):
+    """The single runs in a raw file, without Google Benchmark's own aggregates."""
+    return [row for row in raw["benchmarks"] if row.get("run_type", "iteration") == "iteration"]
+
+
+def failure(raw):
+    """(status, reason) if this raw file holds no usable sample, else None."""
+    if "failure" in raw:
+        return raw["failure"]["status"], raw["failure"]["reason"]
+    rows = samples(raw)
+    if not rows:
+        return "crashed", "no benchmark was run"
+    for row in rows:
+        if row.get("error_occurred"):
+            message = row.get("error_message", "")
+            kind = message.split(":")[0].strip()
+            return kind if kind in ("unsupported", "out-of-memory") else "disagrees", message
+        if row.get("finite", 1) != 1:
+            return "disagrees", "diverged: not finite at the end of the stretch"
+    return None
+
+
+def _partial(path):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(path.name + ".partial")
+    partial.unlink(missing_ok=True)
+    return partial
+
+
+def _short(path):
+    """Relative to the repository where possible: raw files quote their command."""
+    path = path.resolve()
+    return str(path.relative_to(ROOT) if path.is_relative_to(ROOT) else path)
+
+
+def _complete(path):
+    try:
+        json.loads(path.read_text())
+        return True
+    except (OSError, ValueError):
+        return False
+
+
+def _failure(ended, command):
+    status = "crashed" if ended.status == "exited" else ended.status
+    return {"status": status, "reason": ended.reason, "command": command}

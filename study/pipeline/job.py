@@ -1,0 +1,46 @@
+# What every job of the workflow starts with: the study it belongs to, and how it reports errors.
+import signal
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from study.pipeline import profile as profiles
+from study.pipeline.errors import StudyError
+from study.pipeline.layout import Layout, read_json
+from study.pipeline.progress import Progress
+
+
+@dataclass(frozen=True)
+class Study:
+    """One results directory: its profile, the variants that take part, and its build."""
+    layout: Layout
+    profile: profiles.Profile
+    variants: list
+    context: dict
+
+
+def open_study(results):
+    layout = Layout(Path(results).resolve())
+    run = read_json(layout.run)
+    profile = profiles.read(layout.results / "profile.yaml", run["profile"])
+    return Study(layout, profile, run["variants"], run["context"])
+
+
+def column_job(function):
+    """Runs `function(study, variables)` for the command line RESULTS VARIABLES."""
+    return job(function.__name__, sys.argv[1],
+               lambda: function(open_study(sys.argv[1]), int(sys.argv[2])))
+
+
+def job(stage, results, function):
+    """Exit status of a job; a StudyError becomes one line that the front shows."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        function()
+        return 0
+    except StudyError as error:
+        Progress(Layout(results), stage).error(str(error))
+        print(error, file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130

@@ -1,0 +1,77 @@
+# Where everything lies inside one results directory; results/README.md shows the same picture.
+import json
+import os
+from pathlib import Path
+
+from study.pipeline.errors import StudyError
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+NULL = "null/null"  # the harness's control: a simulation that does nothing
+
+
+class Layout:
+    """Paths of one results directory."""
+
+    def __init__(self, results):
+        self.results = Path(results)
+        self.run = self.results / "run.json"                  # profile, selection, build, machine
+        self.registry = self.results / "implementations.json"  # `mbs list --json`
+        self.progress = self.results / ".progress"
+        self.log = self.results / "run.log"
+
+    def column(self, variables):
+        return self.results / "raw" / f"n{variables:04d}"
+
+    def plan(self, variables):
+        return self.results / "plans" / f"n{variables:04d}.json"
+
+    def measured(self, variables):
+        return self.results / "plans" / f"n{variables:04d}.measured"
+
+    def cell(self, kind, implementation, scene):
+        """`kind` is pilot, round1, round2, ... or phases."""
+        name = f"{implementation.replace('/', '.')}@{scene.label}.json"
+        return self.column(scene.variables) / kind / name
+
+    def gate(self, scene, attempt):
+        return self.column(scene.variables) / "gate" / f"{scene.label}-{attempt}.json"
+
+    def accuracy(self, variables, implementation, penalty):
+        name = f"{implementation.replace('/', '.')}@{penalty}.json"
+        return self.column(variables) / "accuracy" / name
+
+    def relative(self, path):
+        return str(Path(path).relative_to(self.results))
+
+
+def program():
+    """The `mbs` to run, relative to ROOT where it can be; MBS_PROGRAM names another for tests."""
+    return os.environ.get("MBS_PROGRAM", "build/mbs")
+
+
+def read_json(path):
+    """The JSON in `path`; StudyError naming the file and the position if it is damaged."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            return json.load(file)
+    except (json.JSONDecodeError, UnicodeDecodeError) as error:
+        raise StudyError(f"{path} is damaged ({error}): remove it and resume to measure it again"
+                         ) from error
+    except OSError as error:
+        raise StudyError(f"cannot read {path}: {error.strerror}") from error
+
+
+def write_json(path, data):
+    """Writes atomically: a reader sees the whole file or none."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(path.name + ".partial")
+    partial.write_text(json.dumps(data, indent=1) + "\n")
+    os.replace(partial, path)
+
+
+def fingerprint(context):
+    """What must be equal for two results to be comparable: the machine and the build."""
+    keys = ("machine", "commit", "dirty", "compiler", "flags", "build_type", "blas_loaded",
+            "libraries")
+    return {key: str(context.get(key, "missing")) for key in keys}

@@ -1,0 +1,43 @@
+# Measures one column: every planned cell in fresh processes, in random order within each round.
+import random
+import sys
+
+from study.pipeline import cells
+from study.pipeline.layout import NULL, read_json, write_json
+from study.pipeline.progress import Progress
+
+
+def measure(study, variables):
+    plan = read_json(study.layout.plan(variables))
+    profile, progress = study.profile, Progress(study.layout, "measure", variables)
+    scenes = [scene for scene in profile.columns[variables] if plan["scenes"][scene.name]["reached"]]
+    timed = [(name, scene) for scene in scenes
+             for name, cell in plan["scenes"][scene.name]["cells"].items()
+             if cell["status"] == "measure"]
+    lost = (len(study.variants) * len(profile.columns[variables])) - len(timed)
+    progress.done(lost * profile.rounds)
+    timed += [(NULL, scenes[0])]
+    orders = []
+    for round_number in range(1, profile.rounds + 1):
+        order = random.Random(f"{plan['seed']}:{variables}:{round_number}")
+        order.shuffle(timed)
+        orders.append([f"{name}/{scene.name}" for name, scene in timed])
+        for name, scene in timed:
+            _bench(study, f"round{round_number}", name, scene, plan)
+            progress.done()
+    for name, scene in sorted(timed, key=lambda cell: cell[0]):
+        if scene.fill is None and name != NULL:
+            _bench(study, "phases", name, scene, plan, phases=True)
+            progress.done()
+    write_json(study.layout.measured(variables), {"seed": plan["seed"], "orders": orders})
+
+
+def _bench(study, kind, name, scene, plan, phases=False):
+    cells.bench(study.layout.cell(kind, name, scene), name, scene, study.profile, study.context,
+                steps=plan["scenes"][scene.name]["stretch_steps"],
+                repetitions=1 if phases else study.profile.repetitions, phases=phases)
+
+
+if __name__ == "__main__":
+    from study.pipeline.job import column_job
+    sys.exit(column_job(measure))

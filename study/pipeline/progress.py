@@ -1,0 +1,38 @@
+# How jobs tell the front what they do: lines of JSON in one file of the results directory.
+import json
+import time
+
+
+class Progress:
+    """Appends events of one stage and column."""
+
+    def __init__(self, layout, stage, variables=None):
+        self.path, self.stage, self.variables = layout.progress, stage, variables
+        self.last = time.monotonic()
+
+    def done(self, cells=1):
+        """`cells` more are finished; seconds since the last call tell fresh from resumed ones."""
+        now = time.monotonic()
+        self._write({"cells": cells, "seconds": round(now - self.last, 4)})
+        self.last = now
+
+    def error(self, line):
+        self._write({"error": line})
+
+    def _write(self, event):
+        with open(self.path, "a", encoding="utf-8") as file:
+            file.write(json.dumps({"stage": self.stage, "variables": self.variables} | event) + "\n")
+
+
+class Reader:
+    """Follows the events that Progress appends."""
+
+    def __init__(self, layout):
+        layout.progress.write_text("")
+        self.file = open(layout.progress, encoding="utf-8")
+        self.rest = ""
+
+    def events(self):
+        self.rest += self.file.read()
+        *lines, self.rest = self.rest.split("\n")
+        return [json.loads(line) for line in lines if line]

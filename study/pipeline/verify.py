@@ -1,0 +1,133 @@
+# Verifies one column: pilots, gate and accuracy runs; writes the plan that says what is timed.
+#
+# A pilot (one short stretch in a child) predicts each cell's cost. What is more than
+# `exclusion_factor` times slower than the best of its scene is excluded: neither checked nor timed.
+# "Best" counts only what the gate has not rejected, so a wrong but fast implementation excludes
+# nobody: after each verdict the rule is applied again, until nobody new has to be checked.
+import sys
+
+from study.pipeline import cells
+from study.pipeline.layout import NULL, write_json
+from study.pipeline.progress import Progress
+
+
+def verify(study, variables):
+    progress = Progress(study.layout, "verify", variables)
+    scenes, natural_fill = {}, None
+    for scene in study.profile.columns[variables]:
+        if scene.fill is not None and 100 * scene.fill <= natural_fill:
+            scenes[scene.name] = _not_reached(scene, natural_fill)
+            progress.done(len(study.variants) + 1)
+            continue
+        pilots = {name: _pilot(study, name, scene, progress) for name in study.variants}
+        if scene.fill is None:
+            null = cells.bench(study.layout.cell("pilot", NULL, scene), NULL, scene, study.profile,
+                               study.context, steps=study.profile.pilot_steps, repetitions=1)
+            natural_fill = _counter(null, "fill_percent")
+        verdicts = _gate(study, scene, pilots)
+        progress.done()
+        scenes[scene.name] = _scene_plan(study.profile, scene, pilots, verdicts)
+    _accuracy(study, variables, scenes, progress)
+    write_json(study.layout.plan(variables), {
+        "variables": variables, "natural_fill_percent": natural_fill, "seed": study.profile.seed,
+        "scenes": scenes})
+
+
+def _pilot(study, implementation, scene, progress):
+    """{"step_us"} predicted, or {"status", "reason"} of the failure."""
+    raw = cells.bench(study.layout.cell("pilot", implementation, scene), implementation, scene,
+                      study.profile, study.context, steps=study.profile.pilot_steps, repetitions=1)
+    progress.done()
+    failed = cells.failure(raw)
+    if failed:
+        return {"status": failed[0], "reason": f"pilot: {failed[1]}"}
+    return {"step_us": cells.samples(raw)[0]["real_time"] / study.profile.pilot_steps}
+
+
+def _counter(raw, name):
+    rows = cells.samples(raw)
+    return rows[0].get(name, 0.0) if rows else 0.0
+
+
+def _gate(study, scene, pilots):
+    """Verdict rows of all that are neither excluded nor dead, by implementation."""
+    verdicts, attempt = {}, 0
+    while True:
+        best = best_cost(pilots, verdicts)
+        todo = [name for name, pilot in pilots.items() if name not in verdicts
+                and "step_us" in pilot
+                and pilot["step_us"] <= study.profile.exclusion_factor * best]
+        if not todo:
+            return verdicts
+        attempt += 1
+        report = _check(study, scene, todo, attempt)
+        # Several at once saves time; if the check itself died, one by one loses only the culprit.
+        reports = [report] if report else [
+            _check(study, scene, [name], f"{attempt}-{name.replace('/', '.')}") for name in todo]
+        found = {row["implementation"]: row for report in reports for row in report["rows"]
+                 if row["scene"] == scene.name}
+        absent = {"verdict": "disagrees", "reason": "the check gave no verdict", "checks": []}
+        verdicts |= {name: found.get(name, absent) for name in todo}
+
+
+def _check(study, scene, names, attempt):
+    return cells.check(study.layout.gate(scene, attempt), names, scene, study.profile, study.context)
+
+
+def best_cost(pilots, verdicts):
+    """Least predicted time per step among those not rejected; infinite if nobody is left."""
+    return min((pilot["step_us"] for name, pilot in pilots.items() if "step_us" in pilot
+                and verdicts.get(name, {"verdict": "agrees"})["verdict"] == "agrees"),
+               default=float("inf"))
+
+
+def _scene_plan(profile, scene, pilots, verdicts):
+    best, plan = best_cost(pilots, verdicts), {}
+    for name, pilot in pilots.items():
+        verdict = verdicts.get(name)
+        cell = {"pilot_step_us": pilot.get("step_us"), "pilot_ratio": None, "checks": []}
+        if "step_us" not in pilot:
+            cell |= {"status": pilot["status"], "reason": pilot["reason"]}
+        elif verdict is None:
+            factor = profile.exclusion_factor
+            cell |= {"status": "excluded", "pilot_ratio": pilot["step_us"] / best,
+                     "reason": f"at least {factor:g} times slower than the best of its scene"}
+        elif verdict["verdict"] == "agrees":
+            cell |= {"status": "measure", "reason": "", "pilot_ratio": pilot["step_us"] / best}
+        else:
+            cell |= {"status": verdict["verdict"], "reason": verdict["reason"]}
+        cell["checks"] = verdict["checks"] if verdict else []
+        plan[name] = cell
+    slowest = max((cell["pilot_step_us"] for cell in plan.values() if cell["status"] == "measure"),
+                  default=0.0)
+    return {"fill_asked": scene.fill, "reached": True, "cells": plan,
+            "stretch_steps": stretch_steps(profile, slowest)}
+
+
+def stretch_steps(profile, slowest_us):
+    """The longest stretch that the slowest implementation of a scene runs within the budget."""
+    lengths = sorted(profile.stretch_lengths, reverse=True)
+    fitting = (steps for steps in lengths if steps * slowest_us * 1e-6 <= profile.stretch_budget)
+    return next(fitting, lengths[-1])
+
+
+def _not_reached(scene, natural_fill):
+    reason = f"the mechanism's own fill is {natural_fill:.3g} %"
+    return {"fill_asked": scene.fill, "reached": False, "reason": reason, "cells": {},
+            "stretch_steps": None}
+
+
+def _accuracy(study, variables, scenes, progress):
+    """Whole simulations of the natural scene by everything that the pilots did not exclude."""
+    scene = study.profile.columns[variables][0]
+    for name, cell in scenes[scene.name]["cells"].items():
+        for penalty in study.profile.accuracy["penalties"]:
+            if cell["status"] in ("measure", "disagrees"):
+                path = study.layout.accuracy(variables, name, penalty)
+                cells.simulate(path, name, scene, str(penalty), study.profile, study.context)
+            progress.done()
+
+
+if __name__ == "__main__":
+    from study.pipeline.job import column_job
+    sys.exit(column_job(verify))

@@ -1,0 +1,15 @@
+# Starts the study's Python with Debian's own interpreter, whatever `python3` on PATH may be.
+system_python() {
+  local here="$1"
+  shift
+  if [[ ! -x /usr/bin/python3 ]]; then
+    if [[ "$1" == figures || " $* " == *" --dry-run "* || " $* " == *" --list "* ]]; then
+      echo "study/$1: Debian's /usr/bin/python3 is missing: run study/setup" >&2
+      exit 1
+    fi
+    "$here/setup" --no-build
+  fi
+  unset PYTHONHOME VIRTUAL_ENV
+  export PYTHONPATH="$here/.." PYTHONNOUSERSITE=1 MPLBACKEND=Agg
+  exec /usr/bin/python3 -m study.pipeline.main "$@"
+}

@@ -1,0 +1,139 @@
+#!/usr/bin/python3
+# Stands in for `mbs` in the pipeline's tests: same command lines and output, invented numbers, and
+# the misbehaviour that its implementation names say. FAKE_MACHINE changes the machine fingerprint.
+import json
+import math
+import os
+import random
+import re
+import signal
+import sys
+import time
+
+GOOD = {"good_dense/first": 3, "good_dense/second": 3.0, "good_sparse/only": 1}
+BAD = ["bad/crash", "bad/hang", "bad/memory", "bad/wrong", "bad/slow", "bad/passes", "bad/nan"]
+
+
+def variants():
+    return list(GOOD) + (BAD if os.environ.get("FAKE_BAD") else [])
+
+
+def context():
+    return {"date": "2024-01-01T00:00:00+00:00", "num_cpus": 2, "mbs_version": "0.1.0",
+            "commit": os.environ.get("FAKE_COMMIT", "abc1234"), "dirty": "false",
+            "compiler": "fake 1.0", "flags": "-O3", "build_type": "Release",
+            "blas_loaded": "/usr/lib/libfake.so", "libraries": "Fake 1.0", "cpu_model": "Fake CPU",
+            "machine": os.environ.get("FAKE_MACHINE", "m1"), "kernel": "Linux", "command": "mbs"}
+
+
+def option(name, default=None):
+    for index, word in enumerate(sys.argv):
+        if word == name:
+            return sys.argv[index + 1]
+        if word.startswith(name + "="):
+            return word.split("=", 1)[1]
+    return default
+
+
+def options(name):
+    return [sys.argv[i + 1] for i, word in enumerate(sys.argv) if word == name]
+
+
+def misbehave(name):
+    if name == "bad/crash":
+        os.kill(os.getpid(), signal.SIGSEGV)
+    if name == "bad/hang":
+        time.sleep(1000)
+    if name == "bad/memory":
+        print("terminate called: std::bad_alloc", file=sys.stderr)
+        os.abort()
+
+
+def step_us(name, n, fill):
+    if name == "null/null":
+        return 0.01
+    if name == "bad/slow":
+        return 1e4 * n
+    sparse = 0.3 * n + 3e-4 * (fill * n * n) ** 1.4
+    dense = 2 + 0.05 * n + 1e-5 * n**3
+    return sparse if "sparse" in name else dense * (1.05 if name.endswith("second") else 1)
+
+
+def bench(scene):
+    name = option("--implementation")
+    misbehave(name)
+    n = 2 * int(re.match(r"four-bar:(\d+)", scene).group(1)) + 2
+    asked = re.search(r"fill=([\d.]+)", scene)
+    fill = float(asked.group(1)) if asked else (6 * n - 8) / n**2
+    steps, rng = int(option("--steps")), random.Random()
+    rows = []
+    for repetition in range(int(option("--benchmark_repetitions", "1"))):
+        one = step_us(name, n, fill) * rng.uniform(0.97, 1.08)
+        row = {"name": f"{name}/{scene}", "run_name": f"{name}/{scene}", "run_type": "iteration",
+               "repetitions": 3, "repetition_index": repetition, "iterations": 5,
+               "real_time": one * steps, "cpu_time": one * steps, "time_unit": "us",
+               "steps": steps, "passes": 2 * steps + (name == "bad/passes"), "steps_at_limit": 1,
+               "step_us": one, "setup_us": 50.0, "variables": n, "constraints": n - 1,
+               "fill_percent": 100 * fill, "penalty": 1e10, "step": 1.25e-3, "tolerance": 1e-9,
+               "max_passes": 20, "start": 0.1, "finite": 1, "position_error": 1e-6,
+               "constraint_violation": 1e-12, "energy_drift": 1e-7, "allocations": 0}
+        if "--phases" in sys.argv:
+            row |= {"phase_evaluation": .2, "phase_assembly": .2, "phase_factorization": .3,
+                    "phase_solve": .1, "phase_projection": .1, "phase_other": .1}
+        if name == "bad/nan":
+            row |= {"finite": 0, "error_occurred": True, "error_message": "diverged: NaN at step 100"}
+        rows.append(row)
+    rows.append({"name": f"{name}/{scene}_median", "run_type": "aggregate", "real_time": 1.0})
+    text = json.dumps({"context": context(), "benchmarks": rows})
+    if option("--benchmark_out"):
+        open(option("--benchmark_out"), "w").write(text)
+    if option("--benchmark_format") == "json":
+        print(text)
+
+
+def check(scene):
+    rows = []
+    for name in options("--implementation"):
+        good = name != "bad/wrong"
+        checks = [{"name": "lock-step", "value": 1e-13 if good else 0.4, "tolerance": 1e-10,
+                   "passed": good, "detail": ""},
+                  {"name": "convergence-order", "value": 2.01, "tolerance": 0.1, "passed": True,
+                   "detail": ""}]
+        rows.append({"scene": scene, "implementation": name,
+                     "verdict": "agrees" if good else "disagrees",
+                     "reason": "" if good else "lock-step: q differs by 0.4 m", "checks": checks})
+    open(option("--json"), "w").write(json.dumps({"context": context(), "rows": rows}))
+    sys.exit(any(row["verdict"] != "agrees" for row in rows))
+
+
+def simulate(scene):
+    n = 2 * int(scene.split(":")[1]) + 2
+    lost = option("--penalty") == "1e8" and n > 50
+    name = option("--implementation")
+    print(json.dumps({
+        "scene": scene, "implementation": name, "variables": n, "constraints": n - 1, "step": 1.25e-3,
+        "duration": float(option("--duration")), "penalty": 1e8 if lost else 1e10,
+        "tolerance": 1e-9, "status": "diverged" if lost else "ok",
+        "status_reason": "NaN in q" if lost else "", "failed_at": 0.71 if lost else None,
+        "steps": 100, "passes_per_step": 2.2, "position_error_max": None if lost else 1e-3,
+        "energy_drift_max": 1e-4, "constraint_violation_max": 1e-11, "setup_us": 40.0,
+        "step_us": {"median": step_us(name, n, 0.1), "p99": 9.0, "max": math.pi}}))
+    sys.exit(lost)
+
+
+def registry():
+    folders = {}
+    for name in variants():
+        folders.setdefault(name.split("/")[0], []).append({"name": name, "description": f"fake {name}"})
+    entries = [{"folder": folder, "description": "a fake", "library": "Fake", "version": "1.0",
+                "licence": "MIT", "available": True, "reason": "", "variants": found}
+               for folder, found in folders.items()]
+    entries.append({"folder": "absent", "description": "", "library": "", "version": "",
+                    "licence": "", "available": False, "reason": "Foo is not installed",
+                    "variants": []})
+    print(json.dumps({"implementations": entries}))
+
+
+if __name__ == "__main__":
+    {"list": lambda _: registry(), "bench": bench, "check": check, "simulate": simulate}[
+        sys.argv[1]](sys.argv[2])
