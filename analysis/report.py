@@ -42,7 +42,6 @@ def figures(folder):
 
 def render(folder):
     results = load(folder)
-    scenes, verdicts = tables.verdicts(results)
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
                                      autoescape=True, trim_blocks=True, lstrip_blocks=True,
                                      undefined=jinja2.StrictUndefined)
@@ -50,7 +49,7 @@ def render(folder):
     return environment.get_template("report.html.j2").render(
         context=results.context, run=results.run, registry=results.registry,
         figures=figures(folder), times=tables.step_times(results), winners=tables.winners(results),
-        overhead=tables.overhead(results), scenes=scenes, verdicts=verdicts,
+        overhead=tables.overhead(results), verdicts=tables.verdicts(results),
         checks=tables.checks(results), accuracy=tables.accuracy(results),
         losses=tables.losses(results), not_reached=tables.not_reached(results),
         must_hold=tables.must_hold(results),
@@ -64,5 +63,5 @@ if __name__ == "__main__":
     try:
         page = render(Path(sys.argv[1]))
     except TableError as error:
-        sys.exit(str(error))
+        sys.exit(f"error: {error}")
     Path(sys.argv[2]).write_text(page, encoding="utf-8")

@@ -45,7 +45,7 @@ def figure_main(draw):
     try:
         figure = draw(load(sys.argv[1]))
     except TableError as error:
-        sys.exit(str(error))
+        sys.exit(f"error: {error}")
     for output in sys.argv[2:]:
         metadata = {"Date": None} if output.endswith(".svg") else None
         figure.savefig(output, bbox_inches="tight", metadata=metadata)

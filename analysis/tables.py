@@ -39,13 +39,20 @@ def overhead(results):
 
 
 def verdicts(results):
-    """(scenes, rows): one row an implementation with its verdict on every scene, "" if none."""
+    """Per implementation: how many scenes agree, and the scenes of every other verdict."""
     table = results.verification.drop_duplicates(["scene", "implementation"])
     scenes = list(dict.fromkeys(table.scene))
     found = {(row.scene, row.implementation): row for row in table.itertuples()}
-    return scenes, [{"implementation": name, "cells": [
-        found[scene, name].verdict if (scene, name) in found else "" for scene in scenes]}
-        for name in results.implementations]
+    rows = []
+    for name in results.implementations:
+        others = {}
+        cells = [(scene, found[scene, name].verdict) for scene in scenes if (scene, name) in found]
+        for scene, verdict in cells:
+            if verdict != "agrees":
+                others.setdefault(verdict, []).append(scene)
+        agreed = len(cells) - sum(map(len, others.values()))
+        rows.append({"implementation": name, "agreed": agreed, "of": len(cells), "others": others})
+    return rows
 
 
 def checks(results):
@@ -54,7 +61,7 @@ def checks(results):
     rows = []
     for (name, check), group in table.groupby(["implementation", "check"], sort=False):
         ran = group[group.passed != ""]
-        share = ((ran.value - 2).abs() if "order" in check else ran.value) / ran.tolerance
+        share = ran.value / ran.tolerance.where(ran.tolerance > 0, 1.0)
         worst = ran.loc[share.idxmax()] if share.notna().any() else None
         rows.append({"implementation": name, "check": check, "ran": len(ran),
                      "passed": int((ran.passed == "True").sum()), "worst": worst})

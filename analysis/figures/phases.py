@@ -18,18 +18,19 @@ def draw(results):
     rows = tidy[(tidy.kind == "phases") & (tidy.status == "ok")]
     sizes = sorted(rows.variables.unique())
     count = max(1, len(sizes))
+    widest = max([1, *rows.groupby("variables").implementation.nunique()])
     figure, panels = plt.subplots(count, 1, sharex=True, squeeze=False,
-                                  figsize=(7.6, 0.9 + count * (0.3 + 0.24 * len(
-                                      results.implementations))))
+                                  figsize=(7.6, 1.0 + count * (0.12 + 0.25 * widest)),
+                                  gridspec_kw={"hspace": 0.5 / widest})
     for size, axes in zip(sizes, panels[:, 0]):
         _panel(axes, size, rows[rows.variables == size], results.implementations)
     bottom = panels[-1, 0]
     bottom.set_xlabel("share of the time of a step, %")
     handles = [plt.Rectangle((0, 0), 1, 1, facecolor=colour, hatch=hatch, edgecolor="white",
                              label=LABELS[phase]) for phase, (colour, hatch) in FILLS.items()]
-    panels[0, 0].legend(handles=handles, ncol=3, loc="lower left", bbox_to_anchor=(-0.01, 1.12),
+    panels[0, 0].legend(handles=handles, ncol=3, loc="lower left", bbox_to_anchor=(-0.01, 1.0),
                         fontsize=8.5, handlelength=1.4, columnspacing=1.4)
-    panels[0, 0].set_title("Share of a step's time by phase, natural fill", pad=52)
+    panels[0, 0].set_title("Share of a step's time by phase, natural fill", pad=48)
     return figure
 
 
@@ -51,6 +52,9 @@ def _panel(axes, size, rows, names):
     axes.set(xlim=(0, 100), ylim=(-0.6, len(present) - 0.4))
     axes.tick_params(axis="y", length=0)
     axes.spines["left"].set_visible(False)
+    if not axes.get_subplotspec().is_last_row():
+        axes.spines["bottom"].set_visible(False)
+        axes.tick_params(axis="x", length=0)
     axes.text(1.01, 0.5, f"n = {size:g}", transform=axes.transAxes, va="center", color=GREY)
 
 

@@ -14,6 +14,8 @@ def draw(results):
     for name in results.implementations:
         mine = samples[samples.implementation == name].groupby("variables").step_us
         if not len(mine):
+            axes.plot([], [], color=look.colour(name), marker=look.marker(name), linestyle="none",
+                      markerfacecolor="white", label=f"{name} (not timed)")
             continue
         middle = mine.agg(median)
         axes.fill_between(middle.index, mine.min(), mine.max(), color=look.colour(name), alpha=0.22,
@@ -58,7 +60,7 @@ def _axes(axes, results):
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.grid(True, which="major")
     axes.margins(x=0.04)
-    axes.legend(loc="upper left", fontsize=9)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=9)
     axes.annotate("median of all samples; band: fastest to slowest sample", (1, -0.16),
                   xycoords="axes fraction", ha="right", fontsize=8, color=GREY)
 

@@ -17,8 +17,8 @@ constexpr const char* kScenes =
     "non-zeros in M until a share F of the tangent is filled, 0 < F <= 1), or a JSON file.";
 
 /// A positive, finite number from "auto" or text.
-double parse_tolerance(const std::string& text, double step) {
-  if (text == "auto") return automatic_tolerance(step);
+double parse_tolerance(const std::string& text, const Model& model, double step, double penalty) {
+  if (text == "auto") return automatic_tolerance(model, step, penalty);
   double value = 0.0;
   if (!CLI::detail::lexical_cast(text, value) || !(value > 0.0) || !(value < 1e300)) {
     throw UsageError(fmt::format("--tolerance is '{}': it must be 'auto' or a number above 0 (m)",
@@ -47,7 +47,8 @@ StepSettings StepOptions::resolve(const Model& model) const {
   if (max_passes < 1 || max_passes > 1000) {
     throw UsageError(fmt::format("--max-passes is {}: it must be 1 to 1000", max_passes));
   }
-  return {step, parse_penalty(penalty, model, step), parse_tolerance(tolerance, step), max_passes};
+  const double alpha = parse_penalty(penalty, model, step);
+  return {step, alpha, parse_tolerance(tolerance, model, step, alpha), max_passes};
 }
 
 int run_program(int argc, char** argv) {

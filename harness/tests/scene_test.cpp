@@ -172,13 +172,26 @@ TEST(LoadScene, FourBarByHandIsTheGeneratedOne) {
   expect_same_model(load_scene((kScenes / "four_bar_2.json").string()).model, Model(four_bar(2)));
 }
 
+/// A file name of its own for each run of the tests.
+std::filesystem::path temporary_path(const std::string& end) {
+  return std::filesystem::temp_directory_path() /
+         ("mbs_scene_test_" + std::to_string(std::random_device{}()) + end);
+}
+
 TEST(LoadScene, RefusesEmptyAndHugeFiles) {
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("mbs_scene_test_" + std::to_string(std::random_device{}()) + ".json");
+  const auto path = temporary_path(".json");
   std::ofstream(path).close();
   expect_parts(error_of(path.string()), {path.filename().string(), "is empty"});
-  std::filesystem::resize_file(path, (std::uintmax_t{64} << 20) + 1);  // sparse
-  expect_parts(error_of(path.string()), {"too large", "67108864 bytes"});
+  std::filesystem::resize_file(path, (std::uintmax_t{32} << 20) + 1);  // sparse
+  expect_parts(error_of(path.string()), {"too large", "33554432 bytes"});
+  std::filesystem::remove(path);
+}
+
+TEST(LoadScene, NamesAreUtf8WhateverThePath) {
+  const auto path = temporary_path("\xff\n.json");
+  std::filesystem::copy_file(kScenes / "pendulum.json", path);
+  const std::string name = load_scene(path.string()).name;
+  EXPECT_TRUE(name.ends_with("\\xFF\\x0A.json")) << name;
   std::filesystem::remove(path);
 }
 
@@ -326,7 +339,8 @@ TEST(BadScene, Physics) {
       {pendulum("3}", "0}"), {"points[1] \"B\": found a free point without mass"}},
       {pendulum("[0, -2]", "[0, 0]"), {"rods[0].between: found a rod of length 0"}},
       {pendulum("[0, -2]", "[1e-200, 0]"), {"rods[0].between: found a rod of length 0"}},
-      {pendulum("3}", "3, \"length\": 2.1}"), {"rods[0].length: found 2.1", "start 2 apart"}},
+      {pendulum("3}", "3, \"length\": 2.1}"),
+       {"rods[0].length: found 2.1", "\"A\" and \"B\" start 2 apart"}},
       {pendulum("3}", "3, \"length\": -2}"), {"rods[0].length: found -2", "above 0"}},
       {pendulum("[\"A\", \"B\"]", "[\"B\", \"B\"]"), {"rods[0].between", "\"B\" twice"}},
       {pendulum("[1, 0]}", "[1, 0], \"fixed\": true}"), {"points[1].velocity", "fixed"}},

@@ -126,8 +126,7 @@ def _fill(raw):
 def _mark_differing_passes(rows):
     """Pass totals of a scene's stretch must be equal: the most common one stands, every other cell
     is marked. Without a most common one (a tie) the whole scene is: nobody can be trusted."""
-    timed = [row for row in rows if row["kind"] == "timing" and row["status"] == "ok"
-             and row["implementation"] != NULL]
+    timed = [row for row in rows if row["status"] == "ok" and row["implementation"] != NULL]
     for scene in {row["scene"] for row in timed}:
         mine = [row for row in timed if row["scene"] == scene]
         passes = {}  # implementation -> set of totals over its samples
@@ -197,4 +196,4 @@ def _accuracy(study, plan):
 
 
 if __name__ == "__main__":
-    sys.exit(job("collect", sys.argv[1], lambda: collect(open_study(sys.argv[1]))))
+    sys.exit(job(lambda: collect(open_study(sys.argv[1]))))

@@ -1,5 +1,6 @@
 # Runs Snakemake in the background and shows stage, cells done of total and the time left.
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -51,14 +52,13 @@ def run_workflow(layout, columns, plan, stored=False):
     """Runs the workflow to its end. Raises StudyError, or KeyboardInterrupt once all children are
     gone; `plan` is estimate.work() (empty for stored results)."""
     for (stage, variables), work in plan.items():
-        path = layout.plan(variables) if stage == "verify" else layout.measured(variables)
-        work.done = work.cells if path.exists() else 0
-    display, reader = Display(), Reader(layout)
+        work.done = work.cells if _finished(layout, stage, variables) else 0
+    display = Display()
     with open(layout.log, "a", encoding="utf-8") as log:
+        follower = _Follower(layout, plan, display)
         process = subprocess.Popen(snakemake_command(layout, columns, stored), stdout=log,
                                    stderr=subprocess.STDOUT, start_new_session=True,
                                    cwd=layout.results)
-        follower = _Follower(layout, plan, display, reader)
         try:
             while process.poll() is None:
                 follower.update()
@@ -69,52 +69,47 @@ def run_workflow(layout, columns, plan, stored=False):
             display.end()
             layout.progress.unlink(missing_ok=True)
     if process.returncode != 0:
-        reason = follower.error or "a stage failed"
-        raise StudyError(f"{reason} (log: {layout.log})")
+        raise StudyError(f"{follower.error or 'a stage failed'} (log: {layout.log})")
+
+
+def _finished(layout, stage, variables):
+    path = layout.plan if stage == "verify" else layout.measured
+    return path(variables).exists()
 
 
 class _Follower:
-    """Turns progress events and new files into what the display shows."""
+    """Turns progress events and Snakemake's log into what the display shows."""
 
-    def __init__(self, layout, plan, display, reader):
-        self.layout, self.plan, self.display, self.reader = layout, plan, display, reader
-        self.begin, self.spent, self.predicted, self.error = time.time(), 0.0, 0.0, None
+    def __init__(self, layout, plan, display):
+        self.layout, self.plan, self.display = layout, plan, display
+        self.events, self.log = Reader(layout), open(layout.log, encoding="utf-8")
+        self.log.seek(0, 2)
+        self.stage, self.error, self.spent, self.predicted = None, None, 0.0, 0.0
 
     def update(self):
-        for event in self.reader.events():
-            self.error = event.get("error", self.error)
-            work = self.plan.get((event["stage"], event["variables"]))
-            if work and "cells" in event:
-                work.done = min(work.cells, work.done + event["cells"])
-                if event["seconds"] > 0.01:  # resumed cells are instant and say nothing
-                    self.spent += event["seconds"]
-                    self.predicted += work.seconds * event["cells"] / work.cells
-        for stage in ("verify", "measure"):
-            of_stage = {key: work for key, work in self.plan.items() if key[0] == stage}
-            if any(work.done < work.cells and not self._complete(*key)
-                   for key, work in of_stage.items()):
-                self._show_cells(stage, of_stage)
-                return
-        self.display.show(self._late_stage())
+        for event in self.events.events():
+            work = self.plan[event["stage"], event["variables"]]
+            work.done = min(work.cells, work.done + event["cells"])
+            if event["seconds"] > 0.01:  # resumed cells are instant and say nothing
+                self.spent += event["seconds"]
+                self.predicted += work.seconds * event["cells"] / work.cells
+        for line in self.log.readlines():
+            rule = re.match(r"rule (\w+):", line)
+            self.stage = rule.group(1).replace("figure", "figures") if rule else self.stage
+            if line.startswith("error: "):
+                self.error = self.error or line.removeprefix("error: ").strip()
+        if self.stage in ("verify", "measure"):
+            self._show_cells()
+        elif self.stage in STAGES:
+            self.display.show(self.stage)
 
-    def _complete(self, stage, variables):
-        path = self.layout.plan if stage == "verify" else self.layout.measured
-        return path(variables).exists()
-
-    def _show_cells(self, stage, of_stage):
-        variables = next(key[1] for key, work in of_stage.items() if work.done < work.cells)
-        done = sum(work.done for work in of_stage.values())
-        total = sum(work.cells for work in of_stage.values())
+    def _show_cells(self):
+        mine = {key: work for key, work in self.plan.items() if key[0] == self.stage}
+        at = next((key[1] for key in mine if not _finished(self.layout, *key)), max(mine)[1])
+        done = sum(work.done for work in mine.values())
+        total = sum(work.cells for work in mine.values())
         left = estimate.duration(estimate.seconds_left(self.plan, self.spent, self.predicted))
-        self.display.show(stage, f"n = {variables}: {done} of {total} cells, about {left} left")
-
-    def _late_stage(self):
-        def fresh(name):
-            path = self.layout.results / name
-            return path.exists() and path.stat().st_mtime >= self.begin
-        if fresh("figures/step_time.svg"):
-            return "report" if fresh("figures/phases.svg") else "figures"
-        return "figures" if fresh("tidy.csv") else "collect"
+        self.display.show(self.stage, f"n = {at}: {done} of {total} cells, about {left} left")
 
 
 def _stop(process):

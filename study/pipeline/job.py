@@ -7,7 +7,6 @@ from pathlib import Path
 from study.pipeline import profile as profiles
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import Layout, read_json
-from study.pipeline.progress import Progress
 
 
 @dataclass(frozen=True)
@@ -28,19 +27,17 @@ def open_study(results):
 
 def column_job(function):
     """Runs `function(study, variables)` for the command line RESULTS VARIABLES."""
-    return job(function.__name__, sys.argv[1],
-               lambda: function(open_study(sys.argv[1]), int(sys.argv[2])))
+    return job(lambda: function(open_study(sys.argv[1]), int(sys.argv[2])))
 
 
-def job(stage, results, function):
-    """Exit status of a job; a StudyError becomes one line that the front shows."""
+def job(function):
+    """Exit status of a job; a StudyError becomes one line "error: ..." that the front shows."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         function()
         return 0
     except StudyError as error:
-        Progress(Layout(results), stage).error(str(error))
-        print(error, file=sys.stderr)
+        print(f"error: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         return 130

@@ -74,4 +74,5 @@ def fingerprint(context):
     """What must be equal for two results to be comparable: the machine and the build."""
     keys = ("machine", "commit", "dirty", "compiler", "flags", "build_type", "blas_loaded",
             "libraries")
-    return {key: str(context.get(key, "missing")) for key in keys}
+    found = {key: str(context.get(key, "missing")) for key in keys}
+    return found | {"blas_loaded": ";".join(sorted(found["blas_loaded"].split(";")))}

@@ -1,6 +1,7 @@
 # The command lines of study/run and study/figures.
 import argparse
 import fcntl
+import hashlib
 import json
 import os
 import re
@@ -144,14 +145,14 @@ def start(layout, profile, only):
     """Records what this results directory is for, or refuses one that is for something else."""
     known = registry()
     run_record = {"profile": profile.name, "only": only, "variants": select(known, only),
-                  "context": cells.context()}
+                  "context": cells.context(), "program": digest(ROOT / program())}
     text = (profiles.FOLDER / f"{profile.name}.yaml").read_text()
     stored_text = layout.results / "profile.yaml"
     if layout.run.exists():
         stored = read_json(layout.run)
         old, new = fingerprint(stored["context"]), fingerprint(run_record["context"])
         differing = [f"{key} '{old[key]}', now '{new[key]}'" for key in old if old[key] != new[key]]
-        differing += [key for key in ("profile", "variants") if stored[key] != run_record[key]]
+        differing += [key for key in ("profile", "variants", "program") if stored[key] != run_record[key]]
         differing += [] if stored_text.read_text() == text else ["the profile's settings"]
         if differing:
             raise StudyError(f"{layout.results} holds results of something else ({differing[0]}); "
@@ -161,6 +162,11 @@ def start(layout, profile, only):
     write_json(layout.registry, known)
     stored_text.write_text(text)
     write_json(layout.run, run_record)
+
+
+def digest(path):
+    """Tells two builds of one commit apart while there are uncommitted changes."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:12]
 
 
 def registry():

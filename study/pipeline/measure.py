@@ -19,13 +19,13 @@ def measure(study, variables):
     timed += [(NULL, scenes[0])]
     orders = []
     for round_number in range(1, profile.rounds + 1):
-        order = random.Random(f"{plan['seed']}:{variables}:{round_number}")
-        order.shuffle(timed)
-        orders.append([f"{name}/{scene.name}" for name, scene in timed])
-        for name, scene in timed:
+        shuffled = random.Random(f"{plan['seed']}:{variables}:{round_number}")
+        order = shuffled.sample(timed, len(timed))
+        orders.append([f"{name}/{scene.name}" for name, scene in order])
+        for name, scene in order:
             _bench(study, f"round{round_number}", name, scene, plan)
             progress.done()
-    for name, scene in sorted(timed, key=lambda cell: cell[0]):
+    for name, scene in timed:
         if scene.fill is None and name != NULL:
             _bench(study, "phases", name, scene, plan, phases=True)
             progress.done()

@@ -6,22 +6,18 @@ import time
 class Progress:
     """Appends events of one stage and column."""
 
-    def __init__(self, layout, stage, variables=None):
+    def __init__(self, layout, stage, variables):
         self.path, self.stage, self.variables = layout.progress, stage, variables
         self.last = time.monotonic()
 
     def done(self, cells=1):
         """`cells` more are finished; seconds since the last call tell fresh from resumed ones."""
         now = time.monotonic()
-        self._write({"cells": cells, "seconds": round(now - self.last, 4)})
-        self.last = now
-
-    def error(self, line):
-        self._write({"error": line})
-
-    def _write(self, event):
+        event = {"stage": self.stage, "variables": self.variables, "cells": cells,
+                 "seconds": round(now - self.last, 4)}
         with open(self.path, "a", encoding="utf-8") as file:
-            file.write(json.dumps({"stage": self.stage, "variables": self.variables} | event) + "\n")
+            file.write(json.dumps(event) + "\n")
+        self.last = now
 
 
 class Reader:

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "model_math/kinematics.hpp"
@@ -14,8 +15,10 @@
 
 namespace mbs {
 
-double automatic_penalty(const Model& model, double step) {
-  if (model.constraints() == 0) return 1.0;
+namespace {
+
+/// s_mean: the mean of the diagonal of Phi_q M^-1 Phi_q^T at the start with M lumped, m^2/kg.
+double mean_constraint_eigenvalue(const Model& model) {
   std::vector<double> lumped(static_cast<std::size_t>(model.variables()));
   for (const MassEntry& entry : model.mass()) {
     if (entry.row == entry.col) lumped[static_cast<std::size_t>(entry.row)] = entry.value;
@@ -24,7 +27,14 @@ double automatic_penalty(const Model& model, double step) {
   for (const JacobianEntry& entry : jacobian(model, model.initial_position())) {
     trace += entry.value * entry.value / lumped[static_cast<std::size_t>(entry.col)];
   }
-  const double mean = trace / model.constraints();
+  return trace / model.constraints();
+}
+
+}  // namespace
+
+double automatic_penalty(const Model& model, double step) {
+  if (model.constraints() == 0) return 1.0;
+  const double mean = mean_constraint_eigenvalue(model);
   const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
   return 4 / (step * step) * std::clamp(30 / smallest, 4e3 / mean, 1e7 / mean);
 }
@@ -40,8 +50,18 @@ double parse_penalty(const std::string& text, const Model& model, double step) {
   return value;
 }
 
-double automatic_tolerance(double step) {
-  return std::clamp(1e-9 * std::pow(step / 1.25e-3, 4), 1e-13, 1e-6);
+double automatic_tolerance(const Model& model, double step, double penalty) {
+  const double wanted = std::min(1e-9 * std::pow(step / 1.25e-3, 4), 1e-6);
+  double size = 0.0;
+  for (const double coordinate : model.initial_position()) {
+    size = std::max(size, std::abs(coordinate));
+  }
+  const double stiffness =
+      model.constraints() == 0
+          ? 0.0
+          : penalty * step * step / 4 * mean_constraint_eigenvalue(model);
+  constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
+  return std::max(wanted, 10 * kUnit * size * std::sqrt(1 + stiffness));
 }
 
 }  // namespace mbs

@@ -19,8 +19,9 @@ double automatic_penalty(const Model& model, double step);
 /// "auto" or a number > 0; `step` in s. Throws UsageError.
 double parse_penalty(const std::string& text, const Model& model, double step);
 
-/// The tolerance `auto`, m: 1e-9 at 1.25e-3 s and proportional to step^4, within 1e-13 ... 1e-6, so
-/// that what Newton leaves stays below the integrator's own error at every step.
-double automatic_tolerance(double step);
+/// The tolerance `auto`, m: 1e-9 at 1.25e-3 s and proportional to step^4, at most 1e-6, so that what
+/// Newton leaves stays below the integrator's own error at every step; but not below ten times the
+/// rounding noise of a Newton step, u max|q| sqrt(alpha dt^2/4 s_mean), which it could not reach.
+double automatic_tolerance(const Model& model, double step, double penalty);
 
 }  // namespace mbs

@@ -17,7 +17,9 @@ namespace mbs {
 namespace {
 
 constexpr std::string_view kFourBar = "four-bar:";
-constexpr std::size_t kLargestFile = std::size_t{64} << 20;  // bytes; about 300 000 rods
+// About 400 000 rods. The worst JSON of this size takes 1 GB to parse.
+constexpr std::size_t kLargestFile = std::size_t{32} << 20;  // bytes
+constexpr std::size_t kLongestName = 4096;                   // bytes; no path is longer
 
 [[noreturn]] void fail(const std::string& scene, const std::string& what) {
   throw UsageError(fmt::format("scene {}: {}", in_quotes(scene), what));
@@ -108,7 +110,8 @@ Scene load_scene(const std::string& text) {
   if (std::filesystem::is_directory(status)) {
     fail(text, "this is a directory, allowed is a JSON scene file");
   }
-  return {text, Model(parse_scene(read_file(text), text)), {}, {}};
+  // Paths may hold any bytes; a scene's name ends up in JSON and must be UTF-8.
+  return {printable(text, kLongestName), Model(parse_scene(read_file(text), text)), {}, {}};
 }
 
 }  // namespace mbs

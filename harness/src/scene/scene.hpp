@@ -19,7 +19,9 @@ struct Fill {
 };
 
 struct Scene {
-  std::string name;  ///< as given: "four-bar:40", "four-bar:40,fill=0.30", "pendulum.json"
+  /// As given: "four-bar:40", "four-bar:40,fill=0.30", "pendulum.json"; UTF-8 without control
+  /// characters, for in a path such bytes become \xNN.
+  std::string name;
   Model model;
   std::optional<int> four_bar_loops;  ///< N, if the scene is the generated N-four-bar
   std::optional<Fill> fill;           ///< if artificial fill was asked for

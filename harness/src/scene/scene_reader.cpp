@@ -109,7 +109,9 @@ void SceneReader::read_rod(const JsonNode& node) {
     const double error = std::abs(length->number() - distance);
     if (!(error <= kLengthTolerance * std::max(length->number(), distance))) {
       length->fail(
-          fmt::format("{}, but its points start {:.17g} apart", length->number(), distance),
+          fmt::format("{}, but {} and {} start {} apart", length->number(),
+                      in_quotes(point(ends.first).name), in_quotes(point(ends.second).name),
+                      distance),
           fmt::format("their distance to {:g} of it (or no \"length\")", kLengthTolerance));
     }
     squared_length = length->number() * length->number();
