@@ -133,6 +133,20 @@ void append_drafts(const Model& model, const DotConstraint& dot, int row,
   add(dot.d, 0.0, -1.0);
 }
 
+/// Gives every draft its place: sorted by point, for a point in the order of constraints.
+/// `block_begin` arrives as zeros, points + 1 of them.
+void place_blocks(std::vector<Draft>& drafts, std::vector<int>& block_begin,
+                  std::vector<int>& block_row) {
+  for (const Draft& draft : drafts) ++block_begin[draft.point + 1];
+  std::partial_sum(block_begin.begin(), block_begin.end(), block_begin.begin());
+  std::vector<int> next = block_begin;
+  block_row.resize(drafts.size());
+  for (Draft& draft : drafts) {
+    draft.block = next[draft.point]++;
+    block_row[draft.block] = draft.row;
+  }
+}
+
 }  // namespace
 
 template <int dim>
@@ -148,15 +162,7 @@ JacobianPattern<dim>::JacobianPattern(const Model& model)
   for (int i = 0; i < std::ssize(dots); ++i) {
     append_drafts<dim>(model, dots[model_row[i]], i, drafts);
   }
-  // A counting sort by point, which keeps the order of constraints, gives every block its place.
-  for (const Draft& draft : drafts) ++block_begin[draft.point + 1];
-  std::partial_sum(block_begin.begin(), block_begin.end(), block_begin.begin());
-  block_row.resize(drafts.size());
-  std::vector<int> next = block_begin;
-  for (Draft& draft : drafts) {
-    draft.block = next[draft.point]++;
-    block_row[draft.block] = draft.row;
-  }
+  place_blocks(drafts, block_begin, block_row);
   const std::vector<int> offset = extended_offsets(model);
   auto draft = drafts.begin();
   for (int i = 0; i < std::ssize(dots); ++i) {
@@ -382,7 +388,7 @@ void Tangent<dim>::assemble(const Jacobian<dim>& jacobian) {
     }
   }
   const auto couple = [&](const auto& coupling, const double* base) {
-    std::array<double, dim> left, right;
+    std::array<double, dim> left, right;  // copied by loops: std::copy_n kept them out of registers
     for (int k = 0; k < dim; ++k) left[k] = jacobian.block(coupling.left)[k];
     for (int k = 0; k < dim; ++k) right[k] = jacobian.block(coupling.right)[k];
     for (int col = 0; col < dim; ++col) {

@@ -84,11 +84,13 @@ class _Follower:
         self.layout, self.plan, self.display = layout, plan, display
         self.events, self.log = Reader(layout), open(layout.log, encoding="utf-8")
         self.log.seek(0, 2)
-        self.stage, self.error, self.spent, self.predicted = None, None, 0.0, 0.0
+        self.stage, self.error, self.column = None, None, None
+        self.spent, self.predicted = 0.0, 0.0
 
     def update(self):
         for event in self.events.events():
-            work = self.plan[event["stage"], event["variables"]]
+            self.column = event["variables"]
+            work = self.plan[event["stage"], self.column]
             work.done = min(work.cells, work.done + event["cells"])
             if event["seconds"] > 0.01:  # resumed cells are instant and say nothing
                 self.spent += event["seconds"]
@@ -105,11 +107,10 @@ class _Follower:
 
     def _show_cells(self):
         mine = {key: work for key, work in self.plan.items() if key[0] == self.stage}
-        at = next((key[1] for key in mine if not _finished(self.layout, *key)), max(mine)[1])
         done = sum(work.done for work in mine.values())
         total = sum(work.cells for work in mine.values())
         left = estimate.duration(estimate.seconds_left(self.plan, self.spent, self.predicted))
-        self.display.show(self.stage, f"n = {at}: {done} of {total} cells, about {left} left")
+        self.display.show(self.stage, f"n = {self.column or '?'}: {done} of {total} cells, about {left} left")
 
 
 def _stop(process):

@@ -24,9 +24,6 @@ Stretch make_stretch(const Scene& scene, double step, int steps, std::optional<d
     throw UsageError(fmt::format("--start is {:g} s: it must be at least 0", *start));
   }
   const FourBarExact exact(*scene.four_bar_loops);
-  // Crossing the singular position multiplies rounding errors, the more so the larger N; above this
-  // size two correct implementations no longer agree beyond it (harness/README.md has the figures).
-  constexpr int kMostLoopsToCross = 300;
   constexpr double kClearance = 0.2;  // s
   const double singular = exact.first_singular_time();
   const double begin = *scene.four_bar_loops <= kMostLoopsToCross
