@@ -14,7 +14,7 @@ CAPTIONS = {
                  "over the same stretch of the motion around its first singular position.",
     "region_map": "Winner of every cell. A winner is declared only if the 95 % interval of its ratio "
                   "to the second excludes 1.",
-    "phases": "Ticks of the processor's counter booked by phase in one extra profiled stretch, apart "
+    "phases": "Ticks of the processor's counter booked by phase in extra profiled stretches, apart "
               "from the timed ones.",
 }
 

@@ -92,6 +92,9 @@ def power_law_exponent(sizes, times):
     return float(numpy.polyfit(numpy.log(sizes), numpy.log(times), 1)[0])
 
 
-def phase_share(phases, names):
-    """Sum of the shares of the phases `names` in one row of kind "phases"."""
-    return float(sum(phases[f"phase_{name}"] for name in names))
+def phase_shares(rows, phases):
+    """{phase: share} of one cell: medians over its profiled runs, scaled so that they add up to 1
+    (a median, because a run that the system interrupts books the interruption on one phase)."""
+    shares = {phase: median(rows[f"phase_{phase}"]) for phase in phases}
+    total = sum(shares.values())
+    return {phase: share / total for phase, share in shares.items()}

@@ -1,8 +1,8 @@
 # The report's tables, as rows of texts and numbers computed from the tidy tables.
 import pandas
 
-from analysis.loader import FAILURES, NULL
-from analysis.statistics import median, phase_share, power_law_exponent, rank
+from analysis.loader import FAILURES, NULL, PHASES
+from analysis.statistics import median, phase_shares, power_law_exponent, rank
 
 
 def step_times(results):
@@ -99,7 +99,7 @@ def must_hold(results):
     rows = []
     for name in results.implementations:
         folder = name.split("/")[0]
-        mine = phases[phases.implementation == name].set_index("variables")
+        mine = phases[phases.implementation == name]
         if folder == "csc_klu":
             rows.append(_share("outside factorization and solves, N = 40", name, mine, 82, 0.40,
                                ("factorization", "solve")))
@@ -111,7 +111,10 @@ def must_hold(results):
 
 
 def _share(claim, name, phases, size, bound, inside):
-    value = 1 - phase_share(phases.loc[size], inside) if size in phases.index else None
+    mine, value = phases[phases.variables == size], None
+    if len(mine):
+        shares = phase_shares(mine, PHASES)
+        value = 1 - sum(shares[phase] for phase in inside)
     return {"claim": claim, "subject": name, "bound": f"{100 * bound:.0f} %",
             "value": None if value is None else f"{100 * value:.1f} %",
             "holds": value is not None and value <= bound}

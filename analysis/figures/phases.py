@@ -3,6 +3,7 @@ import matplotlib.pyplot as plt
 
 from analysis.style import GREY, figure_main
 from analysis.loader import PHASES
+from analysis.statistics import phase_shares
 
 # Light to dark and back, so that neighbours stay apart in black and white; hatches mark algebra.
 FILLS = {"evaluation": ("#cfe3f2", ""), "assembly": ("#6baed6", ""),
@@ -37,10 +38,10 @@ def draw(results):
 def _panel(axes, size, rows, names):
     present = [name for name in names if name in set(rows.implementation)]
     for place, name in enumerate(reversed(present)):
-        row = rows[rows.implementation == name].iloc[0]
+        shares = phase_shares(rows[rows.implementation == name], PHASES)
         left = 0.0
         for phase in PHASES:
-            share = 100 * row[f"phase_{phase}"]
+            share = 100 * shares[phase]
             colour, hatch = FILLS[phase]
             axes.barh(place, share, left=left, height=0.78, color=colour, hatch=hatch,
                       edgecolor="white", linewidth=0.6)

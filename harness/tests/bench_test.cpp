@@ -220,7 +220,7 @@ TEST(BenchPlan, DefaultsToTwoScenesAllVariantsAndTheControl) {
 }
 
 TEST(BenchPlan, CentresTheStretchOnTheSingularPosition) {
-  for (const int loops : {1, 10, 40, 400}) {
+  for (const int loops : {1, 10, 40, kMostLoopsToCross}) {
     BenchRequest one = request();
     one.scenes = {"four-bar:" + std::to_string(loops)};
     one.implementations = {"null"};
@@ -235,6 +235,19 @@ TEST(BenchPlan, CentresTheStretchOnTheSingularPosition) {
       EXPECT_NEAR(stretch.start + 0.5 * stretch.steps * 1.25e-3, singular, 1.25e-3);
     }
   }
+}
+
+TEST(BenchPlan, KeepsAwayFromAPositionThatCannotBeCrossed) {
+  BenchRequest one = request();
+  one.scenes = {"four-bar:" + std::to_string(kMostLoopsToCross + 1)};
+  one.implementations = {"null"};
+  const double singular = FourBarExact(kMostLoopsToCross + 1).first_singular_time();
+  const BenchPlan plan = plan_bench(one);
+  const Stretch& stretch = plan.scenes.front().stretch;
+  EXPECT_GT(stretch.steps, 100);
+  EXPECT_GE(stretch.start, 0.0);
+  EXPECT_LE(stretch.start, 1.25e-3);
+  EXPECT_NEAR(stretch.start + stretch.steps * 1.25e-3, singular - 0.2, 1e-12);
 }
 
 TEST(BenchPlan, LongStretchesStartAtZero) {

@@ -388,7 +388,7 @@ void Tangent<dim>::assemble(const Jacobian<dim>& jacobian) {
     }
   }
   const auto couple = [&](const auto& coupling, const double* base) {
-    std::array<double, dim> left, right;  // copied by loops: std::copy_n kept them out of registers
+    std::array<double, dim> left, right;  // filled by loops: std::copy_n is slower here
     for (int k = 0; k < dim; ++k) left[k] = jacobian.block(coupling.left)[k];
     for (int k = 0; k < dim; ++k) right[k] = jacobian.block(coupling.right)[k];
     for (int col = 0; col < dim; ++col) {

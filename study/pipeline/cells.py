@@ -7,17 +7,16 @@ from study.pipeline.errors import StudyError
 from study.pipeline.layout import ROOT, program, read_json, write_json
 
 
-def bench(path, implementation, scene, profile, context, *, steps, repetitions, phases=False):
+def bench(path, implementation, scene, profile, context, *, steps, repetitions=1, min_time=1e-6,
+          more=()):
     """Raw Google Benchmark JSON of one cell; a dead child leaves the same shape with a "failure"."""
     if path.exists():
         return read_json(path)
     partial = _partial(path)
     command = [program(), "bench", scene.name, "--implementation", implementation,
                "--step", f"{profile.step:g}", "--penalty", profile.penalty, "--steps", str(steps),
-               f"--benchmark_repetitions={repetitions}",
-               f"--benchmark_min_time={profile.min_time if repetitions > 1 else 1e-6:g}",
+               f"--benchmark_repetitions={repetitions}", f"--benchmark_min_time={min_time:g}", *more,
                f"--benchmark_out={_short(partial)}", "--benchmark_out_format=json"]
-    command += ["--phases"] if phases else []
     ended = child.run(command, profile.limits["cell_seconds"], profile.limits["memory_mb"])
     if ended.status == "exited" and _complete(partial):
         os.replace(partial, path)

@@ -2,6 +2,7 @@
 import math
 import sys
 from collections import Counter
+from itertools import product
 
 import pandas
 
@@ -87,17 +88,13 @@ def _column_rows(study, plan):
 
 
 def _measured(study, scene, name, named):
-    kinds = [f"round{number + 1}" for number in range(study.profile.rounds)]
+    kinds = {"round": "timing"}
     if scene.fill is None and name != NULL:
-        kinds.append("phases")
-    for number, kind in enumerate(kinds, start=1):
-        path = study.layout.cell(kind, name, scene)
+        kinds["phases"] = "phases"
+    for (prefix, kind), number in product(kinds.items(), range(1, study.profile.rounds + 1)):
+        path = study.layout.cell(f"{prefix}{number}", name, scene)
         raw = read_json(path)
-        row = named | {"raw_file": study.layout.relative(path)}
-        if kind == "phases":
-            row["kind"] = "phases"
-        else:
-            row["round"] = number
+        row = named | {"kind": kind, "round": number, "raw_file": study.layout.relative(path)}
         failed = cells.failure(raw)
         if failed:
             yield row | {"status": failed[0], "reason": failed[1]}

@@ -42,14 +42,26 @@ def work(profile, variants):
         plan["verify", variables] = Work(
             len(scenes) * (variants + 1) + variants * penalties,
             len(reached) * (pilot + gate) + variants * penalties * simulate)
-        stretch = max(profile.stretch_lengths) * step
-        stretch = max(min(stretch, profile.stretch_budget), min(profile.stretch_lengths) * step)
-        sample = max(2 * profile.min_time, 0.6 * stretch)
-        rounds = profile.rounds * (START_SECONDS + (profile.repetitions + 1) * sample)
+        timing = sum(_cell_seconds(profile, scene, step) for scene in reached)
+        profiling = START_SECONDS + 2 * _stretch_seconds(profile, reached[0], step)
         plan["measure", variables] = Work(
-            (variants * len(scenes) + 1) * profile.rounds + variants,
-            (variants * len(reached) + 1) * rounds + variants * 2 * sample)
+            (variants * (len(scenes) + 1) + 1) * profile.rounds,
+            variants * profile.rounds * (timing + profiling))
     return plan
+
+
+def _cell_seconds(profile, scene, step):
+    """One process that times one cell: a warm-up and the repetitions, each of whole stretches."""
+    stretch = _stretch_seconds(profile, scene, step)
+    sample = max(1.5 * profile.min_time, stretch)
+    return START_SECONDS + (profile.repetitions + 1) * sample
+
+
+def _stretch_seconds(profile, scene, step):
+    """About two thirds of the budget, where the longest stretch does not fit into it."""
+    budget = profile.stretch_budget["natural" if scene.fill is None else "filled"]
+    longest, shortest = max(profile.stretch_lengths) * step, min(profile.stretch_lengths) * step
+    return max(min(longest, 0.67 * budget), 3 * shortest)
 
 
 def seconds_left(plan, spent, predicted):

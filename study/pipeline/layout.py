@@ -29,7 +29,7 @@ class Layout:
         return self.results / "plans" / f"n{variables:04d}.measured"
 
     def cell(self, kind, implementation, scene):
-        """`kind` is pilot, round1, round2, ... or phases."""
+        """`kind` is pilot, round1, round2, ... or phases1, ..."""
         name = f"{implementation.replace('/', '.')}@{scene.label}.json"
         return self.column(scene.variables) / kind / name
 

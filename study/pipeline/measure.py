@@ -23,19 +23,24 @@ def measure(study, variables):
         order = shuffled.sample(timed, len(timed))
         orders.append([f"{name}/{scene.name}" for name, scene in order])
         for name, scene in order:
-            _bench(study, f"round{round_number}", name, scene, plan)
+            _time(study, f"round{round_number}", name, scene, plan)
             progress.done()
-    for name, scene in timed:
-        if scene.fill is None and name != NULL:
-            _bench(study, "phases", name, scene, plan, phases=True)
-            progress.done()
+        for name, scene in order:
+            if scene.fill is None and name != NULL:
+                _profile(study, f"phases{round_number}", name, scene, plan)
+                progress.done()
     write_json(study.layout.measured(variables), {"seed": plan["seed"], "orders": orders})
 
 
-def _bench(study, kind, name, scene, plan, phases=False):
+def _time(study, kind, name, scene, plan):
     cells.bench(study.layout.cell(kind, name, scene), name, scene, study.profile, study.context,
                 steps=plan["scenes"][scene.name]["stretch_steps"],
-                repetitions=1 if phases else study.profile.repetitions, phases=phases)
+                repetitions=study.profile.repetitions, min_time=study.profile.min_time)
+
+
+def _profile(study, kind, name, scene, plan):
+    cells.bench(study.layout.cell(kind, name, scene), name, scene, study.profile, study.context,
+                steps=plan["scenes"][scene.name]["stretch_steps"], more=["--phases"])
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ FOLDER = Path(__file__).resolve().parent.parent / "profiles"
 NATURAL = "natural"
 SETTINGS = {  # key: type; ../README.md and the profiles themselves say what each means
     "title": str, "seed": int, "step": float, "penalty": str, "rounds": int, "repetitions": int,
-    "min_time": float, "stretch_lengths": list, "stretch_budget": float, "pilot_steps": int,
+    "min_time": float, "stretch_lengths": list, "stretch_budget": dict, "pilot_steps": int,
     "exclusion_factor": float, "limits": dict, "accuracy": dict, "columns": list,
 }
 LIMITS = {"cell_seconds", "check_seconds", "simulate_seconds", "memory_mb"}
@@ -73,6 +73,8 @@ def read(path, name):
             raise StudyError(f"{path}: {key} must be positive, is {data[key]!r}")
     if set(data["limits"]) != LIMITS:
         raise StudyError(f"{path}: limits must be exactly {', '.join(sorted(LIMITS))}")
+    if set(data["stretch_budget"]) != {"natural", "filled"}:
+        raise StudyError(f"{path}: stretch_budget must be exactly natural, filled")
     if set(data["accuracy"]) != {"duration", "penalties"}:
         raise StudyError(f"{path}: accuracy must be exactly duration, penalties")
     return Profile(name, data, dict(_column(path, entry) for entry in data["columns"]))

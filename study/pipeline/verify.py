@@ -1,14 +1,17 @@
 # Verifies one column: pilots, gate and accuracy runs; writes the plan that says what is timed.
 #
-# A pilot (one short stretch in a child) predicts each cell's cost. What is more than
-# `exclusion_factor` times slower than the best of its scene is excluded: neither checked nor timed.
+# A pilot (the first steps of the motion, the fastest of PILOT_RUNS) predicts each cell's cost. More than
+# `exclusion_factor` times slower than the best of its scene: excluded, neither checked nor timed.
 # "Best" counts only what the gate has not rejected, so a wrong but fast implementation excludes
 # nobody: after each verdict the rule is applied again, until nobody new has to be checked.
 import sys
 
 from study.pipeline import cells
+from study.pipeline.errors import StudyError
 from study.pipeline.layout import NULL, write_json
 from study.pipeline.progress import Progress
+
+PILOT_RUNS = 3
 
 
 def verify(study, variables):
@@ -21,9 +24,7 @@ def verify(study, variables):
             continue
         pilots = {name: _pilot(study, name, scene, progress) for name in study.variants}
         if scene.fill is None:
-            null = cells.bench(study.layout.cell("pilot", NULL, scene), NULL, scene, study.profile,
-                               study.context, steps=study.profile.pilot_steps, repetitions=1)
-            natural_fill = _counter(null, "fill_percent")
+            natural_fill = _natural_fill(study, scene)
         verdicts = _gate(study, scene, pilots)
         progress.done()
         scenes[scene.name] = _scene_plan(study.profile, scene, pilots, verdicts)
@@ -35,18 +36,28 @@ def verify(study, variables):
 
 def _pilot(study, implementation, scene, progress):
     """{"step_us"} predicted, or {"status", "reason"} of the failure."""
-    raw = cells.bench(study.layout.cell("pilot", implementation, scene), implementation, scene,
-                      study.profile, study.context, steps=study.profile.pilot_steps, repetitions=1)
+    raw = _run_pilot(study, implementation, scene)
     progress.done()
     failed = cells.failure(raw)
     if failed:
         return {"status": failed[0], "reason": f"pilot: {failed[1]}"}
-    return {"step_us": cells.samples(raw)[0]["real_time"] / study.profile.pilot_steps}
+    fastest = min(sample["real_time"] for sample in cells.samples(raw))
+    return {"step_us": fastest / study.profile.pilot_steps}
 
 
-def _counter(raw, name):
-    rows = cells.samples(raw)
-    return rows[0].get(name, 0.0) if rows else 0.0
+def _run_pilot(study, implementation, scene):
+    return cells.bench(study.layout.cell("pilot", implementation, scene), implementation, scene,
+                       study.profile, study.context, steps=study.profile.pilot_steps,
+                       repetitions=PILOT_RUNS, more=["--start", "0"])
+
+
+def _natural_fill(study, scene):
+    """Percent, as the harness's null control reports it."""
+    raw = _run_pilot(study, NULL, scene)
+    failed = cells.failure(raw)
+    if failed:
+        raise StudyError(f"{scene.name} cannot be set up: {failed[1]}")
+    return cells.samples(raw)[0]["fill_percent"]
 
 
 def _gate(study, scene, pilots):
@@ -101,13 +112,14 @@ def _scene_plan(profile, scene, pilots, verdicts):
     slowest = max((cell["pilot_step_us"] for cell in plan.values() if cell["status"] == "measure"),
                   default=0.0)
     return {"fill_asked": scene.fill, "reached": True, "cells": plan,
-            "stretch_steps": stretch_steps(profile, slowest)}
+            "stretch_steps": stretch_steps(profile, scene, slowest)}
 
 
-def stretch_steps(profile, slowest_us):
+def stretch_steps(profile, scene, slowest_us):
     """The longest stretch that the slowest implementation of a scene runs within the budget."""
+    budget = profile.stretch_budget["natural" if scene.fill is None else "filled"]
     lengths = sorted(profile.stretch_lengths, reverse=True)
-    fitting = (steps for steps in lengths if steps * slowest_us * 1e-6 <= profile.stretch_budget)
+    fitting = (steps for steps in lengths if steps * slowest_us * 1e-6 <= budget)
     return next(fitting, lengths[-1])
 
 

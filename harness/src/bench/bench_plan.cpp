@@ -17,6 +17,7 @@ namespace mbs {
 namespace {
 
 constexpr int kDefaultSteps = 800;
+constexpr double kClearance = 0.2;  // s, what make_stretch() keeps from a position it cannot cross
 constexpr const char* kControl = "null/null";
 
 void check(const BenchRequest& request) {
@@ -55,9 +56,11 @@ std::vector<NamedVariant> choose_variants(std::vector<std::string> names, bool& 
 
 int default_steps(const Scene& scene, double step) {
   if (!scene.four_bar_loops) return kDefaultSteps;
-  const double centre = FourBarExact(*scene.four_bar_loops).first_singular_time();
-  const double before = std::clamp(std::floor(centre / step), 1.0, 0.5 * kDefaultSteps);
-  return 2 * static_cast<int>(before);
+  const double singular = FourBarExact(*scene.four_bar_loops).first_singular_time();
+  const bool crosses = *scene.four_bar_loops <= kMostLoopsToCross;
+  const double room =
+      crosses ? 2 * std::floor(singular / step) : std::floor((singular - kClearance) / step);
+  return static_cast<int>(std::clamp<double>(room, crosses ? 2 : 1, kDefaultSteps));
 }
 
 BenchPlan plan_bench(const BenchRequest& request) {

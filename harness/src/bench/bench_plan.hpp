@@ -47,7 +47,7 @@ struct BenchPlan {
 BenchPlan plan_bench(const BenchRequest& request);
 
 /// Number of steps of a stretch if the user does not say: 800, on the N-four-bar cut to what fits
-/// symmetrically around the first singular position. `step` in s.
+/// between t = 0 and where make_stretch() has it end. `step` in s.
 int default_steps(const Scene& scene, double step);
 
 /// The cells whose name the regular expression finds, as Google Benchmark filters: extended POSIX
