@@ -5,6 +5,10 @@ from analysis.loader import FAILURES, NULL, PHASES
 from analysis.statistics import median, phase_shares, power_law_exponent, rank
 
 
+def number_or_none(value):
+    return None if pandas.isna(value) else float(value)
+
+
 def step_times(results):
     """Natural fill: per size the median, spread and set-up time of each implementation."""
     samples = results.samples(natural_only=True)
@@ -19,7 +23,7 @@ def step_times(results):
                     "low": mine.step_us.min(), "high": mine.step_us.max(), "samples": len(mine),
                     "rounds": mine["round"].nunique(), "steps": mine.stretch_steps.iloc[0],
                     "passes": mine.passes.iloc[0] / mine.stretch_steps.iloc[0],
-                    "setup": median(mine.setup_us), "allocations": mine.allocations.max(),
+                    "setup": median(mine.setup_us), "allocations": number_or_none(mine.allocations.max()),
                     "winner": ranking.decided and ranking.winner == name})
     return rows
 

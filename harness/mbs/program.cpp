@@ -70,6 +70,10 @@ int run_program(int argc, char** argv) {
   add_check_command(app, status);
   app.add_subcommand("bench", "time implementations with Google Benchmark (see mbs bench --help)");
   for (CLI::App* command : app.get_subcommands({})) command->footer(kScenes);
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommand_no_throw(argv[1]) == nullptr) {
+    throw UsageError(fmt::format(
+        "unknown subcommand '{}': there are list, describe, simulate, check, bench", argv[1]));
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -34,7 +34,7 @@ def collect(study):
     plans = [read_json(study.layout.plan(variables)) for variables in study.profile.columns]
     machine = _one_fingerprint(study)
     tidy = [row for plan in plans for row in _column_rows(study, plan)]
-    _mark_differing_passes(tidy)
+    mark_differing_passes(tidy)
     tables = {"tidy": (TIDY, tidy + list(_unavailable(study))),
               "verification": (VERIFICATION, [row for plan in plans for row in _checks(plan)]),
               "accuracy": (ACCURACY, [row for plan in plans for row in _accuracy(study, plan)])}
@@ -120,7 +120,7 @@ def _fill(raw):
     return rows[0].get("fill_percent") if rows else None
 
 
-def _mark_differing_passes(rows):
+def mark_differing_passes(rows):
     """Pass totals of a scene's stretch must be equal: the most common one stands, every other cell
     is marked. Without a most common one (a tie) the whole scene is: nobody can be trusted."""
     timed = [row for row in rows if row["status"] == "ok" and row["implementation"] != NULL]

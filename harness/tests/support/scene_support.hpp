@@ -13,8 +13,7 @@
 
 namespace mbs {
 
-inline const std::filesystem::path kScenes =
-    std::filesystem::path(__FILE__).parent_path().parent_path() / "scenes";
+inline const std::filesystem::path kScenes = std::filesystem::path(MBS_ROOT) / "harness/scenes";
 
 /// The message of load_scene's UsageError.
 inline std::string error_of(const std::string& text) {

@@ -1,0 +1,41 @@
+# Every way a child can end is told apart, and nothing of it is left running.
+import os
+import time
+
+import pytest
+
+from study.pipeline import child
+
+
+def shell(text, seconds=10, memory_mb=512):
+    return child.run(["/bin/bash", "-c", text], seconds, memory_mb)
+
+
+@pytest.mark.parametrize("command, status, reason", [
+    ("exit 0", "exited", "exit status 0"),
+    ("echo 'mbs: no such scene' >&2; exit 2", "exited", "mbs: no such scene"),
+    ("kill -SEGV $$", "crashed", "SIGSEGV"),
+    ("kill -KILL $$", "crashed", "SIGKILL"),
+    ("echo std::bad_alloc >&2; kill -ABRT $$", "out-of-memory", "needs more than 512 MB"),
+])
+def test_endings(command, status, reason):
+    ended = shell(command)
+    assert ended.status == status and reason in ended.reason
+
+
+def test_memory_limit_is_real():
+    ended = child.run(["/usr/bin/python3", "-c", "x = bytearray(10**9)"], 20, 256)
+    assert ended.code != 0
+
+
+def test_time_limit_ends_grandchildren_too(tmp_path):
+    pid_file = tmp_path / "pid"
+    begin = time.monotonic()
+    ended = shell(f"sleep 100 & echo $! > {pid_file}; wait", seconds=0.5)
+    assert ended.status == "timeout" and time.monotonic() - begin < 5
+    pid = int(pid_file.read_text())
+    for _ in range(50):  # until init has collected it
+        if not os.path.exists(f"/proc/{pid}") or "Z" in open(f"/proc/{pid}/stat").read().split()[2]:
+            return
+        time.sleep(0.1)
+    pytest.fail("the grandchild lives on")

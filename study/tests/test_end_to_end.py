@@ -1,0 +1,28 @@
+# The smoke profile through the real program: every stage, then again from what is stored.
+import os
+import subprocess
+
+import pandas
+
+from study.tests.conftest import ROOT
+
+
+def test_smoke_on_the_real_program(tmp_path):
+    program = os.environ.get("MBS_PROGRAM", str(ROOT / "build" / "mbs"))
+    assert os.access(program, os.X_OK), f"{program} is missing: run study/setup"
+    results, environment = tmp_path / "results", os.environ | {"MBS_PROGRAM": program}
+
+    def run(*arguments):
+        return subprocess.run([ROOT / "study" / arguments[0], *arguments[1:]], text=True,
+                              capture_output=True, env=environment, timeout=300)
+    first = run("run", "--profile", "smoke", "--results", results)
+    assert first.returncode == 0, first.stderr
+    tidy = pandas.read_csv(results / "tidy.csv")
+    assert set(tidy.status) <= {"ok", "not-reached", "unavailable"}, tidy[tidy.status != "ok"]
+    samples = tidy[(tidy.status == "ok") & (tidy.implementation != "null/null")]
+    assert (samples.groupby("scene").passes.nunique() == 1).all()
+    assert (samples.position_error < 1e-3).all()
+    assert pandas.read_csv(results / "verification.csv").verdict.isin(["agrees"]).all()
+    stored = (results / "tidy.csv").read_bytes()
+    assert run("figures", results).returncode == 0
+    assert (results / "tidy.csv").read_bytes() == stored

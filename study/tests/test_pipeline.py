@@ -1,0 +1,201 @@
+# The whole workflow on a fake `mbs`: failures are kept as data, runs resume, nothing is merged.
+import json
+import os
+import signal
+import subprocess
+import time
+
+import pandas
+import pytest
+
+from study.pipeline import child, collect
+from study.tests.conftest import ROOT, environment, study
+
+
+def tidy(results):
+    return pandas.read_csv(results / "tidy.csv")
+
+
+def run_smoke(results, *more, **variables):
+    return study("run", "--profile", "smoke", "--results", results, *more, **variables)
+
+
+def times(results):
+    return {path: path.stat().st_mtime_ns for path in (results / "raw").rglob("*.json")}
+
+
+def test_a_run_leaves_everything(pristine):
+    table = tidy(pristine)
+    samples = table[(table.status == "ok") & (table.kind == "timing")]
+    # 3 variants and the null control at n = 4; 3 variants x 2 reached fills and null at n = 10
+    assert len(samples) == (3 + 1 + 2 * 3 + 1) * 2 * 2
+    assert set(table.status) == {"ok", "not-reached", "unavailable"}
+    assert all((pristine / name).exists() for name in
+               ("report.html", "figures/region_map.svg", "figures/step_time.png", "accuracy.csv"))
+    assert not list(pristine.rglob("*.partial"))
+
+
+def test_second_run_does_nothing(results):
+    before = times(results)
+    done = run_smoke(results)
+    assert done.returncode == 0 and "report: " in done.stdout and "verify" not in done.stdout
+    assert times(results) == before
+
+
+def test_resume_makes_only_what_is_missing(results):
+    before = times(results)
+    lost = next(results.glob("raw/n0010/round2/good_sparse*"))
+    lost.unlink()
+    (results / "plans" / "n0010.measured").unlink()
+    assert run_smoke(results).returncode == 0
+    after = times(results)
+    assert [path for path in after if after[path] != before[path]] == [lost]
+
+
+def test_misbehaviour_is_kept_as_data(tmp_path, monkeypatch):
+    profile = (ROOT / "study/profiles/smoke.yaml").read_text()
+    quick_limits = profile.replace("cell_seconds: 20", "cell_seconds: 1")
+    assert quick_limits != profile
+    results = tmp_path / "results"
+    assert run_smoke(results, "--only", "good_dense", FAKE_BAD="1").returncode == 0
+    (results / "profile.yaml").write_text(quick_limits)
+    record = json.loads((results / "run.json").read_text())
+    names = [v["name"] for e in json.loads((results / "implementations.json").read_text())[
+        "implementations"] for v in e["variants"]]
+    (results / "run.json").write_text(json.dumps(record | {"variants": names, "only": []}))
+    for path in (results / "plans").iterdir():
+        path.unlink()
+    for name in ("verify", "measure"):
+        for size in ("4", "10"):
+            subprocess.run(["/usr/bin/python3", "-m", f"study.pipeline.{name}", results, size],
+                           cwd=ROOT, env=environment(FAKE_BAD="1", PYTHONPATH=str(ROOT)), check=True)
+    assert study("figures", results).returncode == 0
+    table = tidy(results)
+    found = table[table.variables.notna()].groupby("implementation").status.unique().map(set)
+    assert found["bad/crash"] == {"crashed"} and found["bad/hang"] == {"timeout"}
+    assert found["bad/memory"] == {"out-of-memory"} and found["bad/wrong"] == {"disagrees"}
+    assert found["bad/slow"] == {"excluded"} and found["bad/passes"] == {"passes-differ"}
+    assert found["bad/nan"] == {"disagrees"} and found["good_dense/first"] == {"ok"}
+    reasons = table[table.status != "ok"].reason
+    assert reasons.str.contains("SIGSEGV").any() and reasons.str.contains("q differs by").any()
+    slow = table[table.implementation == "bad/slow"]
+    assert (slow.pilot_ratio > 100).all() and slow.step_us.isna().all()
+    page = (results / "report.html").read_text()
+    assert "SIGSEGV" in page and "at least 100 times slower" in page and "NaN at step 100" in page
+
+
+def test_a_killed_child_loses_its_cell_only(results):
+    path = next(results.glob("raw/n0010/round1/good_dense.first@natural*"))
+    context = json.loads(path.read_text())["context"]
+    ended = child.run(["/bin/sh", "-c", "kill -KILL $$"], 5, 512)
+    path.write_text(json.dumps({"context": context, "benchmarks": [],
+                                "failure": {"status": ended.status, "reason": ended.reason}}))
+    assert study("figures", results).returncode == 0
+    table = tidy(results)
+    lost = table[(table.status == "crashed")]
+    assert len(lost) == 1 and "SIGKILL" in lost.reason.iloc[0]
+    # A cell of which a process died may not be ranked, but its other samples stay visible.
+    cell = table[(table.implementation == "good_dense/first") & (table.scene == "four-bar:4")]
+    assert "ok" not in set(cell[cell.kind == "timing"].status)
+
+
+def test_mixed_machines_are_refused(results):
+    path = next(results.glob("raw/n0004/round1/good_sparse*"))
+    raw = json.loads(path.read_text())
+    raw["context"]["machine"] = "another"
+    path.write_text(json.dumps(raw))
+    done = study("figures", results)
+    assert done.returncode == 2 and "another machine or build" in done.stderr
+    assert path.name in done.stderr and done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("damage", ["{", "", "\x00\x01"])
+def test_a_corrupted_raw_file_is_named(results, damage):
+    path = next(results.glob("raw/n0004/round1/good_sparse*"))
+    path.write_text(damage)
+    done = study("figures", results)
+    assert done.returncode == 2 and f"{path} is damaged" in done.stderr
+
+
+def test_another_build_does_not_continue_old_results(results):
+    done = run_smoke(results, FAKE_COMMIT="fff0000")
+    assert done.returncode == 2 and "results are never merged" in done.stderr
+    assert "commit 'abc1234', now 'fff0000'" in done.stderr
+
+
+def test_ctrl_c_leaves_complete_files_and_says_how_to_resume(tmp_path):
+    results = tmp_path / "results"
+    command = [ROOT / "study/run", "--profile", "smoke", "--results", results]
+    process = subprocess.Popen(command, env=environment(), stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True)
+    while not list(results.glob("raw/*/pilot/*.json")):
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert f"study/run --profile smoke --results {results}" in errors
+    for path in (results / "raw").rglob("*.json"):
+        json.loads(path.read_text())
+    assert run_smoke(results).returncode == 0
+    assert not list(results.rglob("*.partial"))
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (["--profile", "huge"], "unknown profile 'huge'; known: paper, quick, smoke"),
+    (["--profile", "smoke", "--only", "nobody"], "unknown implementation 'nobody'; known: good_"),
+    (["--profile", "smoke", "--only", "absent"], "absent: unavailable: Foo is not installed"),
+    (["--fast"], "unrecognized arguments: --fast"),
+])
+def test_bad_arguments(tmp_path, arguments, message):
+    done = study("run", "--results", tmp_path / "r", *arguments)
+    assert done.returncode == 2 and message in done.stderr and done.stderr.count("\n") == 1
+
+
+def test_unwritable_results(tmp_path):
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    done = run_smoke(blocked / "results")
+    assert done.returncode == 2 and "cannot write to" in done.stderr
+
+
+def test_missing_build_and_missing_results(tmp_path):
+    done = study("run", "--profile", "smoke", "--results", tmp_path, MBS_PROGRAM="/none/mbs")
+    assert done.returncode == 2 and "/none/mbs is missing: build it with study/setup" in done.stderr
+    done = study("figures", tmp_path / "nothing")
+    assert done.returncode == 2 and "holds no results" in done.stderr
+
+
+def test_dry_run_and_list_touch_nothing(tmp_path):
+    done = study("run", "--dry-run", "--results", tmp_path / "new")
+    assert done.returncode == 0 and "estimated: " in done.stdout and "n =  160" in done.stdout
+    assert not (tmp_path / "new").exists()
+    done = study("run", "--list")
+    assert "quick" in done.stdout and "good_sparse/only" in done.stdout
+    assert "absent" in done.stdout and "Foo is not installed" in done.stdout
+
+
+def test_only_selects(tmp_path):
+    assert run_smoke(tmp_path, "--only", "good_sparse").returncode == 0
+    assert set(tidy(tmp_path).implementation.dropna()) == {"good_sparse/only", "null/null"}
+
+
+def test_figures_work_from_tables_alone(results):
+    subprocess.run(["rm", "-r", results / "raw", results / "report.html"], check=True)
+    assert study("figures", results).returncode == 0
+    assert (results / "report.html").exists()
+
+
+def row(name, passes):
+    return {"kind": "timing", "status": "ok", "scene": "s", "implementation": name, "passes": passes}
+
+
+@pytest.mark.parametrize("passes, accused", [
+    ({"a/x": [7, 7], "b/x": [7, 7], "c/x": [8, 8]}, {"c/x"}),
+    ({"a/x": [7, 7], "b/x": [8, 8]}, {"a/x", "b/x"}),           # a tie: nobody can be trusted
+    ({"a/x": [7, 8], "b/x": [7, 7], "c/x": [7, 7]}, {"a/x"}),   # not even itself
+    ({"a/x": [7, 7]}, set()),
+])
+def test_passes_must_agree(passes, accused):
+    rows = [row(name, value) for name, values in passes.items() for value in values]
+    collect.mark_differing_passes(rows)
+    assert {r["implementation"] for r in rows if r["status"] == "passes-differ"} == accused
