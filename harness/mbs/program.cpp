@@ -1,6 +1,7 @@
 // The command line as a whole.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "environment/build_info.hpp"
@@ -25,6 +26,11 @@ double parse_tolerance(const std::string& text, const Model& model, double step,
                                  text));
   }
   return value;
+}
+
+bool is_subcommand(const CLI::App& app, const std::string& name) {
+  return std::ranges::any_of(app.get_subcommands([](const CLI::App*) { return true; }),
+                             [&](const CLI::App* command) { return command->get_name() == name; });
 }
 
 }  // namespace
@@ -70,7 +76,7 @@ int run_program(int argc, char** argv) {
   add_check_command(app, status);
   app.add_subcommand("bench", "time implementations with Google Benchmark (see mbs bench --help)");
   for (CLI::App* command : app.get_subcommands({})) command->footer(kScenes);
-  if (argc > 1 && argv[1][0] != '-' && app.get_subcommand_no_throw(argv[1]) == nullptr) {
+  if (argc > 1 && argv[1][0] != '-' && !is_subcommand(app, argv[1])) {
     throw UsageError(fmt::format(
         "unknown subcommand '{}': there are list, describe, simulate, check, bench", argv[1]));
   }

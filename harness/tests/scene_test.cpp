@@ -101,7 +101,7 @@ TEST(FourBar, RefusesBadNumbers) {
   for (const char* text : {"0", "-1", "+3", "3x", "", "1e3", "2.5", " 3", "3 ", "0x3", "007",
                            "1000001", "99999999999999999999", "x", "3;fill=1"}) {
     expect_parts(error_of(std::string("four-bar:") + text),
-                 {"four-bar:", "for N, allowed is a whole number from 1 to 1000000"});
+                 {"four-bar:", "for N, allowed is a whole number from 1 to 100000"});
   }
   for (const char* text : {"", "0", "0.0", "1.01", "-0.5", "+0.5", "nan", "inf", "1e-1", "30%",
                            "0.5x", " 0.5", "0.5,fill=0.5", "."}) {

@@ -34,6 +34,7 @@ def collect(study):
     plans = [read_json(study.layout.plan(variables)) for variables in study.profile.columns]
     machine = _one_fingerprint(study)
     tidy = [row for plan in plans for row in _column_rows(study, plan)]
+    mark_lost_cells(tidy)
     mark_differing_passes(tidy)
     tables = {"tidy": (TIDY, tidy + list(_unavailable(study))),
               "verification": (VERIFICATION, [row for plan in plans for row in _checks(plan)]),
@@ -118,6 +119,18 @@ def _values(sample):
 def _fill(raw):
     rows = cells.samples(raw)
     return rows[0].get("fill_percent") if rows else None
+
+
+def mark_lost_cells(rows):
+    """A cell of which one process died may not be ranked by its other processes' samples."""
+    dead = {}
+    for row in rows:
+        if row["kind"] == "timing" and row["status"] not in ("ok", "not-reached"):
+            dead.setdefault((row["scene"], row["implementation"]), row)
+    for row in rows:
+        cause = dead.get((row["scene"], row.get("implementation")))
+        if cause and row["status"] == "ok":
+            row |= {"status": cause["status"], "reason": cause["reason"]}
 
 
 def mark_differing_passes(rows):

@@ -29,7 +29,8 @@ def measure(study, variables):
             if scene.fill is None and name != NULL:
                 _profile(study, f"phases{round_number}", name, scene, plan)
                 progress.done()
-    write_json(study.layout.measured(variables), {"seed": plan["seed"], "orders": orders})
+    files = sorted(map(study.layout.relative, study.layout.column(variables).rglob("*.json")))
+    write_json(study.layout.measured(variables), {"orders": orders, "files": files})
 
 
 def _time(study, kind, name, scene, plan):

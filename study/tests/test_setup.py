@@ -1,40 +1,49 @@
 # study/setup asks only for what is missing; apt-get and dpkg-query are stand-ins here.
 import os
 import subprocess
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 
 from study.tests.conftest import ROOT
 
 
-def setup(tmp_path, installed, *, user=None):
+@pytest.fixture
+def stand_ins():
+    """A folder that other users may read, unlike tmp_path."""
+    with TemporaryDirectory() as folder:
+        Path(folder).chmod(0o777)
+        yield Path(folder)
+
+
+def run_setup(stand_ins, installed, *, user=None):
     for name, text in (("dpkg-query", installed), ("apt-get", 'echo "apt-get $*" >> "$0.log"')):
-        (tmp_path / name).write_text(f"#!/bin/bash\n{text}\n")
-        (tmp_path / name).chmod(0o755)
-    tmp_path.chmod(0o777)
+        (stand_ins / name).write_text(f"#!/bin/bash\n{text}\n")
+        (stand_ins / name).chmod(0o755)
     command = ["setpriv", "--reuid", "65534", "--clear-groups"] if user else []
     return subprocess.run([*command, "/bin/bash", ROOT / "study/setup", "--no-build"], text=True,
-                          capture_output=True, env={"PATH": f"{tmp_path}:/usr/bin:/bin"})
+                          capture_output=True, env={"PATH": f"{stand_ins}:/usr/bin:/bin"})
 
 
 ALL_BUT_CMAKE = 'for p in "$@"; do [[ $p == -* || $p == cmake ]] || printf "ii %s " "$p"; done'
 ALL = ALL_BUT_CMAKE.replace(" || $p == cmake", "")
 
 
-def test_nothing_missing_does_not_touch_apt(tmp_path):
-    assert setup(tmp_path, ALL).returncode == 0
-    assert not (tmp_path / "apt-get.log").exists()
+def test_nothing_missing_does_not_touch_apt(stand_ins):
+    assert run_setup(stand_ins, ALL).returncode == 0
+    assert not (stand_ins / "apt-get.log").exists()
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="installing needs root")
-def test_root_installs_what_is_missing(tmp_path):
-    assert setup(tmp_path, ALL_BUT_CMAKE).returncode == 0
-    log = (tmp_path / "apt-get.log").read_text().splitlines()
+def test_root_installs_what_is_missing(stand_ins):
+    assert run_setup(stand_ins, ALL_BUT_CMAKE).returncode == 0
+    log = (stand_ins / "apt-get.log").read_text().splitlines()
     assert log == ["apt-get update -q", "apt-get install -y --no-install-recommends cmake"]
 
 
-def test_others_are_told_the_command(tmp_path):
-    done = setup(tmp_path, ALL_BUT_CMAKE, user="nobody" if os.geteuid() == 0 else None)
+def test_others_are_told_the_command(stand_ins):
+    done = run_setup(stand_ins, ALL_BUT_CMAKE, user="nobody" if os.geteuid() == 0 else None)
     assert done.returncode == 1
     assert "sudo apt-get install -y --no-install-recommends cmake" in done.stderr
 

@@ -9,14 +9,16 @@
 #include <limits>
 
 #include "check/exact_checks.hpp"
+#include "scene/printable.hpp"
 
 namespace mbs {
 namespace {
 
 using Values = std::vector<double>;
 
-/// max |x - y|; NaN if either holds one.
+/// max |x - y|; NaN if either holds one, or if the sizes differ.
 double distance(const Values& x, const Values& y) {
+  if (x.size() != y.size()) return std::numeric_limits<double>::quiet_NaN();
   double worst = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double difference = std::abs(x[i] - y[i]);
@@ -51,7 +53,7 @@ Check lock_step(const NamedVariant& variant, const Model& model, const StepSetti
     const auto compare = [&](const char* name, const Values& x, const Values& y, double allowed) {
       const double difference = distance(x, y);
       const double ratio = difference / allowed;
-      if (ratio <= worst) return;
+      if (std::isnan(worst) || ratio <= worst) return;  // the first NaN stays
       worst = ratio;
       detail = fmt::format("{} differs by {:.1e} after one step from t = {:g} s (allowed {:.1e})",
                            name, difference, probe.t, allowed);
@@ -141,7 +143,10 @@ Verdict interpret(Verdict verdict, const Isolated& result) {
     case Fate::crashed: verdict.verdict = "crashed"; return verdict;
     case Fate::timeout: verdict.verdict = "timeout"; return verdict;
     case Fate::out_of_memory: verdict.verdict = "out-of-memory"; return verdict;
-    case Fate::threw: verdict.verdict = "crashed"; return verdict;
+    case Fate::threw:
+      verdict.verdict = "crashed";
+      verdict.reason = "threw " + result.reason;
+      return verdict;
   }
   const nlohmann::json json = nlohmann::json::parse(result.output);
   if (json.contains("unsupported")) {
@@ -182,7 +187,7 @@ Verdict check_implementation(const Scene& scene, const NamedVariant& variant,
       return nlohmann::json{{"checks", run_checks(scene, variant, settings, reference,
                                                  limits.seconds)}}.dump();
     } catch (const Unsupported& reason) {
-      return nlohmann::json{{"unsupported", reason.what()}}.dump();
+      return nlohmann::json{{"unsupported", printable(reason.what(), 1000)}}.dump();
     }
   };
   Verdict verdict{scene.name, variant.name, "", "", {}};

@@ -27,7 +27,7 @@ struct Scene {
   std::optional<Fill> fill;           ///< if artificial fill was asked for
 };
 
-inline constexpr int kMostLoops = 1'000'000;              ///< of four_bar(): n = 2 000 002
+inline constexpr int kMostLoops = 100'000;                ///< of four_bar(): n = 200 002
 inline constexpr std::uint64_t kFillSeed = 607'615;       ///< of "four-bar:N,fill=F"
 inline constexpr long kMostFilledPositions = 50'000'000;  ///< of a tangent, for add_fill()
 

@@ -12,9 +12,10 @@
 
 namespace mbs::test {
 
-ProgramResult run_mbs(const std::string& arguments, const std::string& environment) {
+ProgramResult run_program(const std::string& program, const std::string& arguments,
+                          const std::string& environment) {
   const std::string out = temporary_path("stdout"), err = temporary_path("stderr");
-  const std::string command = environment + " '" + MBS_PROGRAM + "' " + arguments + " > '" + out +
+  const std::string command = environment + " '" + program + "' " + arguments + " > '" + out +
                               "' 2> '" + err + "' < /dev/null";
   const int status = std::system(command.c_str());
   ProgramResult result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_text(out),
@@ -22,6 +23,10 @@ ProgramResult run_mbs(const std::string& arguments, const std::string& environme
   std::filesystem::remove(out);
   std::filesystem::remove(err);
   return result;
+}
+
+ProgramResult run_mbs(const std::string& arguments, const std::string& environment) {
+  return run_program(MBS_PROGRAM, arguments, environment);
 }
 
 std::string temporary_path(const std::string& name) {

@@ -11,7 +11,11 @@ struct ProgramResult {
   std::string errors;  ///< of stderr
 };
 
-/// Runs `mbs <arguments>` through the shell, with `environment` ("NAME=value ...") in front.
+/// Runs `<program> <arguments>` through the shell, with `environment` ("NAME=value ...") in front.
+ProgramResult run_program(const std::string& program, const std::string& arguments,
+                          const std::string& environment = "");
+
+/// The same with `mbs` as the program.
 ProgramResult run_mbs(const std::string& arguments, const std::string& environment = "");
 
 /// A path in the tests' temporary folder that no other test of this or another process uses.

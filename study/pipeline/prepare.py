@@ -1,0 +1,129 @@
+# What must be in place before the workflow starts: build, modules, a results directory that fits.
+import fcntl
+import hashlib
+import importlib.util
+import json
+import shutil
+import subprocess
+import sys
+
+from study.pipeline import cells, profile as profiles
+from study.pipeline.errors import StudyError
+from study.pipeline.front import Display
+from study.pipeline.layout import ROOT, fingerprint, program, read_json, write_json
+
+MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "scipy": "python3-scipy",
+           "matplotlib": "python3-matplotlib", "jinja2": "python3-jinja2", "snakemake": "snakemake"}
+
+
+def set_up(layout):
+    """Runs study/setup; shows its last line while it works and all of its end if it fails."""
+    display = Display()
+    display.show("set-up")
+    with open(layout.log, "a", encoding="utf-8") as log:
+        process = subprocess.Popen([str(ROOT / "study" / "setup")], stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT, text=True, errors="replace")
+        lines = []
+        for line in process.stdout:
+            lines = lines[-20:] + [line.rstrip()]
+            log.write(line)
+            display.show("set-up", line.strip())
+    display.end()
+    if process.wait() != 0:
+        print("\n".join(lines), file=sys.stderr)
+        raise StudyError(f"set-up failed, see above (log: {layout.log})")
+
+
+def start(layout, profile, only):
+    """Records what this results directory is for, or refuses one that is for something else."""
+    known = registry()
+    run_record = {"profile": profile.name, "only": only, "variants": select(known, only),
+                  "context": cells.context(), "program": digest(ROOT / program())}
+    text = (profiles.FOLDER / f"{profile.name}.yaml").read_text()
+    stored_text = layout.results / "profile.yaml"
+    if layout.run.exists():
+        stored = read_json(layout.run)
+        old, new = fingerprint(stored["context"]), fingerprint(run_record["context"])
+        differing = [f"{key} '{old[key]}', now '{new[key]}'" for key in old if old[key] != new[key]]
+        differing += [key for key in ("profile", "variants", "program") if stored[key] != run_record[key]]
+        differing += [] if stored_text.read_text() == text else ["the profile's settings"]
+        if differing:
+            raise StudyError(f"{layout.results} holds results of something else ({differing[0]}); "
+                             "results are never merged: name another directory with --results, "
+                             "or move this one away")
+        return
+    write_json(layout.registry, known)
+    stored_text.write_text(text)
+    write_json(layout.run, run_record)
+
+
+def reopen_incomplete(layout, profile):
+    """Makes the workflow redo a column of which a raw file was removed; what exists is kept."""
+    for variables in profile.columns:
+        stamp = layout.measured(variables)
+        if stamp.exists() and not all((layout.results / name).exists()
+                                      for name in read_json(stamp)["files"]):
+            derived = (layout.results / name for name in ("tidy.csv", "report.html"))
+            for path in (stamp, layout.plan(variables), *derived):
+                path.unlink(missing_ok=True)
+
+
+def digest(path):
+    """Tells two builds of one commit apart while there are uncommitted changes."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:12]
+
+
+def registry():
+    """`mbs list --json`."""
+    if not (ROOT / program()).exists():
+        raise StudyError(f"{program()} is missing: build it with study/setup")
+    result = subprocess.run([program(), "list", "--json"], cwd=ROOT, capture_output=True, text=True)
+    try:
+        return json.loads(result.stdout)
+    except ValueError as error:
+        raise StudyError(f"`{program()} list --json` does not work: {result.stderr.strip()}"
+                         ) from error
+
+
+def select(known, only):
+    """Names "folder/variant" that `only` selects, in the registry's order; all available if empty."""
+    entries = {entry["folder"]: entry for entry in known["implementations"]}
+    names = [variant["name"] for entry in entries.values() if entry["available"]
+             for variant in entry["variants"]]
+    for name in only:
+        entry = entries.get(name.split("/")[0])
+        if entry and not entry["available"]:
+            raise StudyError(f"--only {name}: unavailable: {entry['reason']}")
+        if name not in entries and name not in names:
+            raise StudyError(f"--only: unknown implementation '{name}'; known: "
+                             f"{', '.join([*entries, *names])}")
+    return [name for name in names if not only or name in only or name.split("/")[0] in only]
+
+
+def need_modules(*modules):
+    for module in modules or MODULES:
+        if importlib.util.find_spec(module) is None:
+            raise StudyError(f"Python module {module} is missing for /usr/bin/python3: run "
+                             f"study/setup, or apt-get install {MODULES[module]}")
+
+
+def writable(results):
+    try:
+        results.mkdir(parents=True, exist_ok=True)
+        probe = results / ".writable"
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise StudyError(f"cannot write to {results}: {error.strerror}") from error
+    if shutil.disk_usage(results).free < 100 * 2**20:
+        raise StudyError(f"less than 100 MB free for {results}")
+
+
+def only_one(layout):
+    """Holds the results directory; the lock vanishes with its process."""
+    file = open(layout.results / ".lock", "w", encoding="utf-8")
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        raise StudyError(f"another study is running in {layout.results}") from error
+    return file
