@@ -14,7 +14,8 @@ NULL = "null/null"
 
 TEXT = {"tidy": ["kind", "scene", "implementation", "folder", "variant", "status", "reason",
                  "machine", "commit", "dirty", "raw_file"],
-        "verification": ["scene", "implementation", "verdict", "reason", "check", "passed", "detail"],
+        "verification": ["scene", "implementation", "verdict", "reason", "check", "passed",
+                         "detail"],
         "accuracy": ["scene", "implementation", "penalty_asked", "status", "status_reason",
                      "raw_file"]}
 NUMBERS = {"tidy": ["variables", "fill_asked", "fill_percent", "round", "repetition",
@@ -24,8 +25,8 @@ NUMBERS = {"tidy": ["variables", "fill_asked", "fill_percent", "round", "repetit
                     "energy_drift", "allocations", "pilot_step_us", "pilot_ratio",
                     *(f"phase_{phase}" for phase in PHASES)],
            "verification": ["variables", "fill_asked", "value", "tolerance"],
-           "accuracy": ["variables", "penalty", "step", "tolerance", "duration", "failed_at", "steps",
-                        "passes_per_step", "position_error_max", "energy_drift_max",
+           "accuracy": ["variables", "penalty", "step", "tolerance", "duration", "failed_at",
+                        "steps", "passes_per_step", "position_error_max", "energy_drift_max",
                         "constraint_violation_max", "setup_us", "step_us_median", "step_us_p99",
                         "step_us_max"]}
 

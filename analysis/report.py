@@ -12,11 +12,12 @@ from analysis.loader import TableError, load
 CAPTIONS = {
     "step_time": "Median time of one step at the mechanism's own fill, all implementations timed "
                  "over the same stretch of the motion around its first singular position.",
-    "region_map": "Winner of every cell. A winner is declared only if the 95 % interval of its ratio "
-                  "to the second excludes 1.",
+    "region_map": "Winner of every cell, declared only if the 95 % interval of its ratio to the "
+                  "second excludes 1.",
     "phases": "Ticks of the processor's counter booked by phase in extra profiled stretches, apart "
               "from the timed ones.",
 }
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def number(value, digits=3):
@@ -29,7 +30,7 @@ def number(value, digits=3):
     mantissa, exponent = text.split("e")
     if -3 <= int(exponent) < digits + 3:
         return f"{float(value):.0f}"
-    return f"{mantissa}·10" + str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return f"{mantissa}·10" + str(int(exponent)).translate(RAISED)
 
 
 def figures(folder):

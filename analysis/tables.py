@@ -23,7 +23,8 @@ def step_times(results):
                     "low": mine.step_us.min(), "high": mine.step_us.max(), "samples": len(mine),
                     "rounds": mine["round"].nunique(), "steps": mine.stretch_steps.iloc[0],
                     "passes": mine.passes.iloc[0] / mine.stretch_steps.iloc[0],
-                    "setup": median(mine.setup_us), "allocations": number_or_none(mine.allocations.max()),
+                    "setup": median(mine.setup_us),
+                    "allocations": number_or_none(mine.allocations.max()),
                     "winner": ranking.decided and ranking.winner == name})
     return rows
 

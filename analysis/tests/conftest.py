@@ -12,8 +12,8 @@ def timing(implementation, round_number, repetition, step_us, **more):
             "folder": implementation.split("/")[0], "variant": implementation.split("/")[1],
             "variables": 10, "fill_percent": 52, "status": "ok", "round": round_number,
             "repetition": repetition, "stretch_steps": 100, "step_us": step_us, "finite": 1,
-            "stretch_us": 100 * step_us, "setup_us": 5, "passes": 220, "machine": "m", "commit": "c",
-            "dirty": "false", "raw_file": "raw/x.json"} | more
+            "stretch_us": 100 * step_us, "setup_us": 5, "passes": 220, "machine": "m",
+            "commit": "c", "dirty": "false", "raw_file": "raw/x.json"} | more
 
 
 def write(path, name, rows):
@@ -36,8 +36,8 @@ def tables(tmp_path):
     variants = [{"name": name, "description": ""} for name in ("a/x", "b/y", "c/z")]
     entry = {"folder": "a", "variants": variants, "available": True, "reason": "", "library": "L",
              "version": "1", "licence": "MIT"}
-    context = dict.fromkeys(("cpu_model", "machine", "kernel", "commit", "dirty", "compiler", "flags",
-                             "build_type", "libraries", "blas_loaded"), "?")
+    context = dict.fromkeys(("cpu_model", "machine", "kernel", "commit", "dirty", "compiler",
+                             "flags", "build_type", "libraries", "blas_loaded"), "?")
     for name, data in (("implementations", {"implementations": [entry]}), ("context", context),
                        ("run", {"profile": "smoke", "only": []})):
         (tmp_path / f"{name}.json").write_text(json.dumps(data))

@@ -47,7 +47,7 @@ def test_only_common_rounds_count():
 
 
 def test_interval_covers_the_truth_about_as_often_as_it_says():
-    """With three rounds the bootstrap is known to be a little narrow; far off would be a mistake."""
+    """With three rounds the bootstrap is known to be slightly narrow; far off would be wrong."""
     random = numpy.random.default_rng(2)
     covered = 0
     for _ in range(200):

@@ -18,10 +18,11 @@
 namespace mbs {
 namespace {
 
+using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-void wait(milliseconds time) {
+void wait(microseconds time) {
   const auto end = steady_clock::now() + time;
   while (steady_clock::now() < end) {
   }
@@ -57,9 +58,9 @@ class Scripted final : public Simulation {
     if (script_ == Script::at_limit && done_ % 2 == 0) return {StepStatus::pass_limit, 20};
     if (script_ == Script::phases) {
       phases_.enter(Phase::solve);
-      wait(milliseconds(3));
+      wait(microseconds(300));
       phases_.enter(Phase::projection);
-      wait(milliseconds(1));
+      wait(microseconds(100));
       phases_.enter(Phase::other);
     }
     return {StepStatus::converged, 2};
@@ -139,18 +140,26 @@ TEST_F(MeasurementTest, KeepsSetUpOutOfTheStretch) {
 TEST_F(MeasurementTest, TimesTheStepsThemselves) {
   Measurement cell = measurement(create_scripted<Script::phases>);
   cell.prepare();
-  EXPECT_GE(cell.time_stretch(), 0.040);
+  EXPECT_GE(cell.time_stretch(), 10 * 400e-6);
 }
 
 TEST_F(MeasurementTest, SharesTimeByPhase) {
-  Measurement cell = measurement(create_scripted<Script::phases>, true);
-  cell.prepare();
-  ASSERT_TRUE(cell.figures().phases.has_value());
-  const auto& shares = *cell.figures().phases;
-  EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0), 1.0, 1e-12);
-  EXPECT_GT(shares[static_cast<std::size_t>(Phase::solve)], 0.5);
-  EXPECT_GT(shares[static_cast<std::size_t>(Phase::projection)], 0.05);
-  EXPECT_EQ(shares[static_cast<std::size_t>(Phase::factorization)], 0.0);
+  // Three parts of four are spent on solving, but another process may take its share: several
+  // tries.
+  bool as_scripted = false;
+  for (int attempt = 0; attempt < 100 && !as_scripted; ++attempt) {
+    Measurement cell = measurement(create_scripted<Script::phases>, true);
+    cell.prepare();
+    ASSERT_TRUE(cell.figures().phases.has_value());
+    const auto& shares = *cell.figures().phases;
+    EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0), 1.0, 1e-12);
+    EXPECT_EQ(shares[static_cast<std::size_t>(Phase::evaluation)], 0.0);
+    EXPECT_EQ(shares[static_cast<std::size_t>(Phase::assembly)], 0.0);
+    EXPECT_EQ(shares[static_cast<std::size_t>(Phase::factorization)], 0.0);
+    as_scripted = std::abs(shares[static_cast<std::size_t>(Phase::solve)] - 0.75) < 0.1 &&
+                  std::abs(shares[static_cast<std::size_t>(Phase::projection)] - 0.25) < 0.1;
+  }
+  EXPECT_TRUE(as_scripted);
 }
 
 TEST_F(MeasurementTest, CountsStepsAtTheLimit) {

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
+#include <string>
 
 #include "check/gate.hpp"
 #include "run/settings.hpp"
@@ -80,11 +83,16 @@ const Bench& bench() {
   return result;
 }
 
+Variant variant_named(const std::string& name) {
+  const std::vector<Variant> variants = test::controls().variants;
+  const auto variant = std::ranges::find(variants, name, &Variant::name);
+  if (variant == variants.end()) throw std::invalid_argument("no control is called " + name);
+  return *variant;
+}
+
 Verdict check_control(const std::string& name, const IsolationLimits& limits) {
-  const Implementation implementation = test::controls();
-  const auto variant = std::ranges::find(implementation.variants, name, &Variant::name);
-  if (variant == implementation.variants.end()) throw std::invalid_argument(name);
-  return check_implementation(bench().scene, {"control/" + name, nullptr, &*variant},
+  const Variant variant = variant_named(name);
+  return check_implementation(bench().scene, {"control/" + name, nullptr, &variant},
                               bench().settings, bench().reference, limits);
 }
 
@@ -121,6 +129,117 @@ TEST(Controls, EachHasAnExpectation) {
     EXPECT_EQ(std::ranges::count(kExpectations, variant.name, &Expectation::control), 1)
         << variant.name;
   }
+}
+
+TEST(Controls, SaysSoWhenThePassLimitIsHidden) {
+  StepSettings settings = bench().settings;
+  settings.max_passes = 2;
+  const ReferenceRun reference = run_reference(bench().scene, settings);
+  const Variant honest = variant_named("reference");
+  const Variant dishonest = variant_named("always_converged");
+  const auto check = [&](const Variant& variant) {
+    return check_implementation(bench().scene, {"control", nullptr, &variant}, settings, reference,
+                                {.seconds = kSeconds});
+  };
+  EXPECT_EQ(check(honest).reason, "");
+  const Verdict verdict = check(dishonest);
+  EXPECT_EQ(verdict.verdict, "disagrees");
+  EXPECT_TRUE(std::regex_match(verdict.reason,
+                               std::regex(R"(passes: 0 instead of \d+ steps at the pass limit)")))
+      << verdict.reason;
+}
+
+/// Number of lines of `text` on which `expression` is found.
+long lines_with(const std::string& text, const std::string& expression) {
+  const std::regex regex(expression);
+  std::istringstream lines(text);
+  long count = 0;
+  for (std::string line; std::getline(lines, line);) count += std::regex_search(line, regex);
+  return count;
+}
+
+TEST(ControlsProgram, GivesEachImplementationItsVerdict) {
+  const std::string file = test::temporary_path("verdicts.json");
+  std::string arguments = "check four-bar:10 --time-limit " + std::to_string(kSeconds) +
+                          " --json '" + file + "'";
+  const std::string controls[] = {"returns_at_once", "crashes", "reference", "exits", "prints",
+                                  "nan_after_100", "throws", "unsupported"};
+  for (const std::string& name : controls) arguments += " --implementation control/" + name;
+  const auto run = test::run_program(MBS_CONTROLS, arguments);
+  EXPECT_EQ(run.status, 1);
+  for (const std::string& name : controls) {
+    const auto expected = std::ranges::find(kExpectations, name, &Expectation::control);
+    const std::string line = "^four-bar:10 +control/" + name + " +" + expected->verdict;
+    EXPECT_EQ(lines_with(run.output, line), 1) << run.output;
+  }
+  EXPECT_EQ(lines_with(run.output, "^2 of 8 agree with the reference$"), 1) << run.output;
+  EXPECT_EQ(lines_with(run.output, "was here"), 0);
+  if (!kSanitized) {
+    EXPECT_EQ(run.errors, "");
+  }
+  const auto rows = nlohmann::json::parse(test::file_text(file)).at("rows");
+  EXPECT_EQ(rows.size(), std::size(controls));
+  std::filesystem::remove(file);
+}
+
+TEST(ControlsProgram, HangingAndHungryOnesDoNotStopTheOthers) {
+  if (kSanitized) GTEST_SKIP() << "sanitizers reserve terabytes: no memory limit is set";
+  const auto run = test::run_program(
+      MBS_CONTROLS,
+      "check four-bar:10 --time-limit 4 --implementation control/hangs --implementation "
+      "control/allocates --implementation control/reference",
+      "ulimit -v 500000;");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(lines_with(run.output, "control/hangs +timeout: did not finish within 4 s$"), 1);
+  EXPECT_EQ(lines_with(run.output, "control/allocates +out-of-memory: needs more than the memory limit of 488 MiB$"), 1);
+  EXPECT_EQ(lines_with(run.output, "control/reference +agrees$"), 1);
+  EXPECT_EQ(run.errors, "");
+}
+
+TEST(ControlsProgram, SucceedsOnlyIfAllAgree) {
+  const std::string check = "check four-bar:10 --time-limit 20 --implementation control/";
+  EXPECT_EQ(test::run_program(MBS_CONTROLS, check + "reference").status, 0);
+  EXPECT_EQ(test::run_program(MBS_CONTROLS, check + "pass_count").status, 1);
+}
+
+TEST(ControlsProgram, BenchKeepsTheRowOfTheOneThatFails) {
+  const std::string file = test::temporary_path("bench.json");
+  const auto run = test::run_program(
+      MBS_CONTROLS,
+      "bench four-bar:2 --implementation control/nan_after_100 --implementation control/reference "
+      "--steps 120 --benchmark_min_time=0 --benchmark_out='" + file + "'");
+  EXPECT_EQ(run.status, 0) << run.errors;
+  const auto rows = nlohmann::json::parse(test::file_text(file)).at("benchmarks");
+  std::filesystem::remove(file);
+  ASSERT_EQ(rows.size(), 2U);  // in any order
+  for (const auto& row : rows) {
+    if (row.at("name") == "control/reference/four-bar:2") {
+      EXPECT_FALSE(row.contains("error_occurred"));
+      EXPECT_EQ(row.at("finite"), 1);
+      continue;
+    }
+    EXPECT_EQ(row.at("name"), "control/nan_after_100/four-bar:2");
+    EXPECT_EQ(row.at("error_occurred"), true);
+    const std::regex message("diverged: the state is not finite at .* s, the end of the stretch");
+    EXPECT_TRUE(std::regex_match(row.at("error_message").get<std::string>(), message)) << row;
+  }
+}
+
+TEST(ControlsProgram, SimulateNeverCallsNanOk) {
+  const auto run = test::run_program(
+      MBS_CONTROLS, "simulate four-bar:2 --implementation control/nan_after_100 --duration 1 --json");
+  EXPECT_EQ(run.status, 1);
+  const auto summary = nlohmann::json::parse(run.output);
+  EXPECT_EQ(summary.at("status"), "diverged");
+  EXPECT_EQ(summary.at("status_reason"), "the state is not finite");
+  EXPECT_EQ(summary.at("steps"), 101);
+  EXPECT_NEAR(summary.at("failed_at").get<double>(), 101 * 1.25e-3, 1e-12);
+  for (const char* figure : {"position_error_max", "energy_drift_max", "constraint_violation_max"}) {
+    EXPECT_TRUE(summary.at(figure).is_null()) << figure;
+  }
+  EXPECT_EQ(run.errors,
+            "mbs: control/nan_after_100 on four-bar:2: diverged at t = 0.12625 s: the state is not "
+            "finite\n");
 }
 
 }  // namespace

@@ -9,25 +9,26 @@ from study.pipeline.layout import ROOT, program, read_json, write_json
 
 def bench(path, implementation, scene, profile, context, *, steps, repetitions=1, min_time=1e-6,
           more=()):
-    """Raw Google Benchmark JSON of one cell; a dead child leaves the same shape with a "failure"."""
+    """Google Benchmark's JSON of one cell; a dead child leaves the same shape with "failure"."""
     if path.exists():
         return read_json(path)
     partial = _partial(path)
     command = [program(), "bench", scene.name, "--implementation", implementation,
                "--step", f"{profile.step:g}", "--penalty", profile.penalty, "--steps", str(steps),
-               f"--benchmark_repetitions={repetitions}", f"--benchmark_min_time={min_time:g}", *more,
-               f"--benchmark_out={_short(partial)}", "--benchmark_out_format=json"]
+               f"--benchmark_repetitions={repetitions}", f"--benchmark_min_time={min_time:g}",
+               f"--benchmark_out={_short(partial)}", "--benchmark_out_format=json", *more]
     ended = child.run(command, profile.limits["cell_seconds"], profile.limits["memory_mb"])
     if ended.status == "exited" and _complete(partial):
         os.replace(partial, path)
     else:
         partial.unlink(missing_ok=True)
-        write_json(path, {"context": context, "benchmarks": [], "failure": _failure(ended, command)})
+        failed = _failure(ended, command)
+        write_json(path, {"context": context, "benchmarks": [], "failure": failed})
     return read_json(path)
 
 
 def check(path, implementations, scene, profile, context):
-    """The gate's verdicts on one scene; None if the gate itself died and it can be split further."""
+    """The gate's verdicts on one scene; None if it died with several implementations at once."""
     if path.exists():
         return read_json(path)
     partial = _partial(path)

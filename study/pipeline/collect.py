@@ -57,8 +57,8 @@ def _one_fingerprint(study):
         differing = [key for key in expected if found[key] != expected[key]]
         if differing:
             key = differing[0]
-            raise StudyError(f"{path} comes from another machine or build ({key} is '{found[key]}', "
-                             f"the study's is '{expected[key]}'): results are never merged; "
+            raise StudyError(f"{path} comes from another machine or build ({key} is '{found[key]}',"
+                             f" the study's is '{expected[key]}'): results are never merged; "
                              "remove the file or keep it in a results directory of its own")
     return expected
 

@@ -1,15 +1,17 @@
 # Predicts how long a run takes, before (for --dry-run) and while it runs (for the time left).
 #
-# The model is deliberately crude: a dense step of n variables takes about
-# SECONDS_A_CUBE n^3 + SECONDS_A_VARIABLE n; a child process costs START_SECONDS besides its work.
-# While a study runs, the time it took so far corrects the prediction.
+# The model is deliberately crude. A dense step of n variables takes about DENSE n^3 + OVERHEAD n
+# seconds; at natural fill, where dense would be excluded as too slow, a sparse one takes SPARSE n;
+# with artificial fill the implementations of a scene take FILLED dense steps on average. A child costs
+# START seconds besides its work. While a study runs, the time it took so far corrects the prediction.
 from dataclasses import dataclass
 
-START_SECONDS = 0.04
-SECONDS_A_VARIABLE = 2e-7
-SECONDS_A_CUBE = 1.5e-10
-GATE_STEPS = 2500  # a gate costs about as much as this many dense steps, plus GATE_SECONDS
-GATE_SECONDS = 0.6
+START = 0.04
+OVERHEAD = 2e-7
+DENSE = 1e-10
+SPARSE = 1.2e-7
+FILLED = 3.0
+GATE_STEPS, GATE_MOST, GATE_START = 2500, 15.0, 0.6  # a gate: steps, at most seconds, reference
 
 
 @dataclass
@@ -32,29 +34,36 @@ def work(profile, variants):
     """{(stage, variables): Work}; `variants` is the number of implementations that take part."""
     plan = {}
     for variables, scenes in profile.columns.items():
-        step = SECONDS_A_VARIABLE * variables + SECONDS_A_CUBE * variables**3
         reached = [s for s in scenes if s.fill is None or s.fill > natural_fill(variables)]
         penalties = len(profile.accuracy["penalties"])
-        pilot = variants * (START_SECONDS + 4 * profile.pilot_steps * step)
-        gate = GATE_SECONDS + min(GATE_STEPS * step, profile.limits["check_seconds"])
-        steps = profile.accuracy["duration"] / profile.step
-        simulate = START_SECONDS + min(steps * step / 2, profile.limits["simulate_seconds"])
+        pilot = START + 4 * profile.pilot_steps * _dense_seconds(variables)
+        steps = [_step_seconds(profile, scene) for scene in reached]
+        gates = sum(GATE_START + variants * min(GATE_STEPS * step, GATE_MOST) for step in steps)
+        simulate = START + min(profile.accuracy["duration"] / profile.step * steps[0] / 2,
+                               profile.limits["simulate_seconds"])
         plan["verify", variables] = Work(
             len(scenes) * (variants + 1) + variants * penalties,
-            len(reached) * (pilot + gate) + variants * penalties * simulate)
-        timing = sum(_cell_seconds(profile, scene, step) for scene in reached)
-        profiling = START_SECONDS + 2 * _stretch_seconds(profile, reached[0], step)
+            variants * (len(reached) * pilot + penalties * simulate) + gates)
+        stretches = [_stretch_seconds(profile, *pair) for pair in zip(reached, steps)]
+        timing = sum(START + (profile.repetitions + 1) * max(1.5 * profile.min_time, stretch)
+                     for stretch in stretches)
+        profiling = START + 2 * stretches[0]
         plan["measure", variables] = Work(
             (variants * (len(scenes) + 1) + 1) * profile.rounds,
             variants * profile.rounds * (timing + profiling))
     return plan
 
 
-def _cell_seconds(profile, scene, step):
-    """One process that times one cell: a warm-up and the repetitions, each of whole stretches."""
-    stretch = _stretch_seconds(profile, scene, step)
-    sample = max(1.5 * profile.min_time, stretch)
-    return START_SECONDS + (profile.repetitions + 1) * sample
+def _dense_seconds(variables):
+    return OVERHEAD * variables + DENSE * variables**3
+
+
+def _step_seconds(profile, scene):
+    """Of the implementations that are not excluded, on average."""
+    dense, sparse = _dense_seconds(scene.variables), SPARSE * scene.variables
+    if scene.fill is not None:
+        return FILLED * dense
+    return sparse if dense > profile.exclusion_factor * sparse else dense
 
 
 def _stretch_seconds(profile, scene, step):
@@ -65,7 +74,7 @@ def _stretch_seconds(profile, scene, step):
 
 
 def seconds_left(plan, spent, predicted):
-    """What is left of `plan`, corrected by what was `spent` on cells `predicted` to take so long."""
+    """What is left of `plan`, corrected by seconds `spent` on cells `predicted` to take as long."""
     correction = spent / predicted if spent > 2 and predicted > 0 else 1.0
     return correction * sum(work.left() for work in plan.values())
 

@@ -67,7 +67,8 @@ def run_workflow(layout, columns, plan, stored=False):
         finally:
             _stop(process)
             display.end()
-            layout.progress.unlink(missing_ok=True)
+            for path in [layout.progress, *(layout.results / "raw").rglob("*.partial*")]:
+                path.unlink(missing_ok=True)
     if process.returncode != 0:
         raise StudyError(f"{follower.error or 'a stage failed'} (log: {layout.log})")
 
@@ -110,11 +111,12 @@ class _Follower:
         done = sum(work.done for work in mine.values())
         total = sum(work.cells for work in mine.values())
         left = estimate.duration(estimate.seconds_left(self.plan, self.spent, self.predicted))
-        self.display.show(self.stage, f"n = {self.column or '?'}: {done} of {total} cells, about {left} left")
+        size = f"n = {self.column}: " if self.column else ""
+        self.display.show(self.stage, f"{size}{done} of {total} cells, about {left} left")
 
 
 def _stop(process):
-    """Ends Snakemake and everything it started; half-written files are only ever *.partial."""
+    """Ends Snakemake and everything it started; half-written files are only ever *.partial*."""
     for sign in (signal.SIGTERM, signal.SIGKILL):
         if process.poll() is not None:
             return

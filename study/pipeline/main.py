@@ -33,14 +33,15 @@ def main(arguments):
 
 
 def run(arguments):
-    parser = Parser(prog="study/run", description="Set-up, verify, measure, collect, figures, report.")
+    parser = Parser(prog="study/run", description="Verifies, measures, draws and reports.")
     parser.add_argument("--profile", default="quick", help=", ".join(profiles.names()) + " (quick)")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
                         help="only these implementations (folder or folder/variant)")
     parser.add_argument("--dry-run", action="store_true",
                         help="say what would run and how long; build and install nothing")
     parser.add_argument("--list", action="store_true", help="list profiles and implementations")
-    parser.add_argument("--results", metavar="DIR", help="results directory (results/local/PROFILE)")
+    parser.add_argument("--results", metavar="DIR",
+                        help="results directory (results/local/PROFILE)")
     options = parser.parse_args(arguments)
     if options.list:
         return list_choices()
@@ -66,7 +67,7 @@ def run(arguments):
 
 
 def figures(arguments):
-    parser = Parser(prog="study/figures", description="Draws figures and report from stored results.")
+    parser = Parser(prog="study/figures", description="Draws all from stored results.")
     parser.add_argument("results", nargs="?", default=str(ROOT / "results" / "reference"))
     layout = Layout(Path(parser.parse_args(arguments).results).absolute())
     if not layout.run.exists():

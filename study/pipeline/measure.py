@@ -10,7 +10,8 @@ from study.pipeline.progress import Progress
 def measure(study, variables):
     plan = read_json(study.layout.plan(variables))
     profile, progress = study.profile, Progress(study.layout, "measure", variables)
-    scenes = [scene for scene in profile.columns[variables] if plan["scenes"][scene.name]["reached"]]
+    scenes = [scene for scene in profile.columns[variables]
+              if plan["scenes"][scene.name]["reached"]]
     timed = [(name, scene) for scene in scenes
              for name, cell in plan["scenes"][scene.name]["cells"].items()
              if cell["status"] == "measure"]

@@ -12,8 +12,8 @@ from study.pipeline.errors import StudyError
 from study.pipeline.front import Display
 from study.pipeline.layout import ROOT, fingerprint, program, read_json, write_json
 
-MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "scipy": "python3-scipy",
-           "matplotlib": "python3-matplotlib", "jinja2": "python3-jinja2", "snakemake": "snakemake"}
+MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
+           "jinja2": "python3-jinja2", "snakemake": "snakemake"}
 
 
 def set_up(layout):
@@ -45,7 +45,8 @@ def start(layout, profile, only):
         stored = read_json(layout.run)
         old, new = fingerprint(stored["context"]), fingerprint(run_record["context"])
         differing = [f"{key} '{old[key]}', now '{new[key]}'" for key in old if old[key] != new[key]]
-        differing += [key for key in ("profile", "variants", "program") if stored[key] != run_record[key]]
+        differing += [key for key in ("profile", "variants", "program")
+                      if stored[key] != run_record[key]]
         differing += [] if stored_text.read_text() == text else ["the profile's settings"]
         if differing:
             raise StudyError(f"{layout.results} holds results of something else ({differing[0]}); "
@@ -86,7 +87,7 @@ def registry():
 
 
 def select(known, only):
-    """Names "folder/variant" that `only` selects, in the registry's order; all available if empty."""
+    """Names "folder/variant" that `only` selects, in the registry's order; empty selects all."""
     entries = {entry["folder"]: entry for entry in known["implementations"]}
     names = [variant["name"] for entry in entries.values() if entry["available"]
              for variant in entry["variants"]]

@@ -1,9 +1,9 @@
 # Verifies one column: pilots, gate and accuracy runs; writes the plan that says what is timed.
 #
-# A pilot (the first steps of the motion, the fastest of PILOT_RUNS) predicts each cell's cost. More than
-# `exclusion_factor` times slower than the best of its scene: excluded, neither checked nor timed.
-# "Best" counts only what the gate has not rejected, so a wrong but fast implementation excludes
-# nobody: after each verdict the rule is applied again, until nobody new has to be checked.
+# A pilot (the first steps of the motion, the fastest of PILOT_RUNS) predicts each cell's cost. Cells
+# more than `exclusion_factor` times slower than the best of their scene are excluded: neither checked
+# nor timed. "Best" counts only what the gate has not rejected, so a wrong but fast implementation
+# excludes nobody: after each verdict the rule is applied again, until nobody new has to be checked.
 import sys
 
 from study.pipeline import cells
@@ -82,7 +82,8 @@ def _gate(study, scene, pilots):
 
 
 def _check(study, scene, names, attempt):
-    return cells.check(study.layout.gate(scene, attempt), names, scene, study.profile, study.context)
+    path = study.layout.gate(scene, attempt)
+    return cells.check(path, names, scene, study.profile, study.context)
 
 
 def best_cost(pilots, verdicts):

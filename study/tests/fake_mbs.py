@@ -81,7 +81,8 @@ def bench(scene):
             row |= {"phase_evaluation": .2, "phase_assembly": .2, "phase_factorization": .3,
                     "phase_solve": .1, "phase_projection": .1, "phase_other": .1}
         if name == "bad/nan":
-            row |= {"finite": 0, "error_occurred": True, "error_message": "diverged: NaN at step 100"}
+            row |= {"finite": 0, "error_occurred": True,
+                    "error_message": "diverged: NaN at step 100"}
         rows.append(row)
     rows.append({"name": f"{name}/{scene}_median", "run_type": "aggregate", "real_time": 1.0})
     text = json.dumps({"context": context(), "benchmarks": rows})
@@ -111,8 +112,8 @@ def simulate(scene):
     lost = option("--penalty") == "1e8" and n > 50
     name = option("--implementation")
     print(json.dumps({
-        "scene": scene, "implementation": name, "variables": n, "constraints": n - 1, "step": 1.25e-3,
-        "duration": float(option("--duration")), "penalty": 1e8 if lost else 1e10,
+        "scene": scene, "implementation": name, "variables": n, "constraints": n - 1,
+        "step": 1.25e-3, "duration": float(option("--duration")), "penalty": 1e8 if lost else 1e10,
         "tolerance": 1e-9, "status": "diverged" if lost else "ok",
         "status_reason": "NaN in q" if lost else "", "failed_at": 0.71 if lost else None,
         "steps": 100, "passes_per_step": 2.2, "position_error_max": None if lost else 1e-3,
@@ -124,7 +125,8 @@ def simulate(scene):
 def registry():
     folders = {}
     for name in variants():
-        folders.setdefault(name.split("/")[0], []).append({"name": name, "description": f"fake {name}"})
+        variant = {"name": name, "description": f"fake {name}"}
+        folders.setdefault(name.split("/")[0], []).append(variant)
     entries = [{"folder": folder, "description": "a fake", "library": "Fake", "version": "1.0",
                 "licence": "MIT", "available": True, "reason": "", "variants": found}
                for folder, found in folders.items()]

@@ -28,7 +28,8 @@ def test_scene_names():
 
 @pytest.mark.parametrize("change, message", [
     ({"rounds": 0}, "rounds must be positive"), ({"rounds": "three"}, "rounds must be of type int"),
-    ({"colour": 1}, "missing or unknown settings: colour"), ({"step": float("nan")}, "step must be"),
+    ({"colour": 1}, "missing or unknown settings: colour"),
+    ({"step": float("nan")}, "step must be"),
     ({"limits": {}}, "limits must be exactly"), ({"columns": [{"variables": 10}]}, "a column has"),
     ({"columns": [{"variables": 11, "fills": ["natural"]}]}, "even number"),
     ({"columns": [{"variables": 10, "fills": [0.5]}]}, "must start with natural"),

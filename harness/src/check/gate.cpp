@@ -81,6 +81,7 @@ std::vector<Check> free_running(const NamedVariant& variant, const Model& model,
   Check positions{"free-running", 0.0, kTolerance, true, ""};
   Check passes{"passes", 0.0, 0.0, true, ""};
   long total = 0, expected = 0;
+  long limited = 0, expected_limited = 0;
   State state;
   std::size_t done = 0;
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
@@ -91,6 +92,8 @@ std::vector<Check> free_running(const NamedVariant& variant, const Model& model,
     simulation->get_state(state);
     total += outcome.passes;
     expected += reference.outcomes[i].passes;
+    limited += outcome.status == StepStatus::pass_limit;
+    expected_limited += reference.outcomes[i].status == StepStatus::pass_limit;
     const double difference = distance(state.q, reference.positions[i]);
     positions.value = std::isnan(difference) ? difference : std::max(*positions.value, difference);
     if (!(difference <= kTolerance)) {
@@ -115,6 +118,10 @@ std::vector<Check> free_running(const NamedVariant& variant, const Model& model,
   passes.passed = total == expected;
   passes.detail = fmt::format("{} instead of {} passes {}", total, expected, passes.detail);
   if (*passes.passed) passes.detail = fmt::format("{} passes in total", total);
+  if (*passes.passed && limited != expected_limited) {
+    passes = {"passes", static_cast<double>(std::abs(limited - expected_limited)), 0.0, false,
+              fmt::format("{} instead of {} steps at the pass limit", limited, expected_limited)};
+  }
   return {positions, passes};
 }
 

@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -37,6 +38,13 @@ constexpr bool kLimitMemory = false;  // the sanitizer reserves terabytes of add
 constexpr bool kLimitMemory = true;
 #endif
 
+/// Bytes that the child may have: never more than this process itself.
+std::size_t memory_limit(const IsolationLimits& limits) {
+  rlimit own{};
+  ::getrlimit(RLIMIT_AS, &own);
+  return std::min<std::size_t>(limits.bytes, own.rlim_cur);
+}
+
 /// Sends and exits; allocates nothing, for there may be nothing left.
 [[noreturn]] void send(int descriptor, char kind, std::string_view text) {
   const auto write_all = [descriptor](std::string_view left) {
@@ -59,7 +67,7 @@ void confine(pid_t parent, const IsolationLimits& limits) {
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO);
   if (kLimitMemory) {
-    const rlimit memory{limits.bytes, limits.bytes};
+    const rlimit memory{memory_limit(limits), memory_limit(limits)};
     ::setrlimit(RLIMIT_AS, &memory);
   }
   const rlimit no_core{0, 0};
@@ -123,7 +131,7 @@ Isolated interpret(int status, const std::string& text, const IsolationLimits& l
     case kFinished: return {Fate::finished, "", text.substr(1)};
     case kOutOfMemory:
       return {Fate::out_of_memory,
-              fmt::format("needs more than the memory limit of {} MiB", limits.bytes >> 20), ""};
+              fmt::format("needs more than the memory limit of {} MiB", memory_limit(limits) >> 20), ""};
     default: return {Fate::threw, printable(std::string_view(text).substr(1), 1000), ""};
   }
 }

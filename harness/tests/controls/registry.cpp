@@ -1,4 +1,5 @@
-// The registry of `mbs_controls`: the controls in place of the implementations.
+// The registry of `mbs_controls`: the controls in place of the implementations, and one
+// that lacks its library.
 #include "registry/registry.hpp"
 
 #include "controls/controls.hpp"
@@ -6,7 +7,9 @@
 namespace mbs {
 
 const std::vector<RegistryEntry>& registry() {
-  static const std::vector<RegistryEntry> entries{available("control", test::controls())};
+  static const std::vector<RegistryEntry> entries{
+      available("control", test::controls()),
+      unavailable("missing", "Missing is not installed: apt-get install libmissing-dev")};
   return entries;
 }
 

@@ -24,7 +24,7 @@ class Hangs final : public WrappedReference {
 class Crashes final : public WrappedReference {
   using WrappedReference::WrappedReference;
   StepOutcome do_step() override {
-    int* volatile nowhere = nullptr;
+    volatile int* volatile nowhere = nullptr;
     *nowhere = 1;
     return {};
   }
@@ -44,7 +44,7 @@ class DividesByZero final : public WrappedReference {
   using WrappedReference::WrappedReference;
   StepOutcome do_step() override {
     volatile int zero = 0;
-    return {StepStatus::converged, 1 / zero};
+    return {StepStatus::converged, 1000 / zero};
   }
 };
 

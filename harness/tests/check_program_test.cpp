@@ -1,0 +1,115 @@
+// `mbs check` from the outside: verdicts of the real implementations, JSON, errors.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "registry/registry.hpp"
+#include "support/program.hpp"
+
+namespace mbs {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+TEST(CheckProgram, AllImplementationsAgree) {
+  if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
+  const std::string file = test::temporary_path("verdicts.json");
+  const std::string pendulum = MBS_ROOT "/harness/scenes/double_pendulum.json";
+  const auto run = test::run_mbs("check four-bar:1 four-bar:10 four-bar:10,fill=0.6 '" + pendulum +
+                                 "' --json '" + file + "'");
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_EQ(run.errors, "");
+  const json verdicts = json::parse(test::file_text(file));
+  fs::remove(file);
+  for (const char* key : {"mbs_version", "commit", "dirty", "compiler", "flags", "build_type",
+                          "blas_loaded", "libraries", "cpu_model", "machine", "kernel",
+                          "threads_environment", "command"}) {
+    EXPECT_TRUE(verdicts.at("context").at(key).is_string()) << key;
+  }
+  EXPECT_EQ(verdicts.at("rows").size(), 4 * all_variants().size());
+  for (const json& row : verdicts.at("rows")) {
+    SCOPED_TRACE(row.at("scene").get<std::string>() + " " +
+                 row.at("implementation").get<std::string>());
+    EXPECT_EQ(row.at("verdict"), "agrees");
+    EXPECT_EQ(row.at("reason"), "");
+    std::set<std::string> names;
+    for (const json& check : row.at("checks")) {
+      names.insert(check.at("name").get<std::string>());
+      EXPECT_EQ(check.at("passed"), true) << check;
+      EXPECT_LE(check.at("value"), check.at("tolerance")) << check;
+      EXPECT_NE(check.at("detail"), "");
+    }
+    std::set<std::string> expected{"lock-step", "free-running", "passes"};
+    if (row.at("scene").get<std::string>().starts_with("four-bar:")) {
+      expected.insert({"exact", "convergence-order"});
+    }
+    EXPECT_EQ(names, expected);
+  }
+}
+
+TEST(CheckProgram, KeepsChecksThatWereNotRun) {
+  if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
+  const std::string file = test::temporary_path("verdicts.json");
+  const auto run = test::run_mbs("check four-bar:1 --step 0.01 --implementation " +
+                                 all_variants().front().name + " --json '" + file + "'");
+  EXPECT_EQ(run.status, 0) << run.output;
+  const json rows = json::parse(test::file_text(file)).at("rows");
+  fs::remove(file);
+  ASSERT_EQ(rows.size(), 1U);
+  for (const json& check : rows[0].at("checks")) {
+    const bool is_exact = check.at("name") == "exact" || check.at("name") == "convergence-order";
+    EXPECT_EQ(check.at("passed").is_null(), is_exact) << check;
+    EXPECT_EQ(check.at("value").is_null(), is_exact) << check;
+  }
+  EXPECT_NE(run.output.find("not run"), std::string::npos);
+}
+
+/// Status 2, nothing on stdout, and one line that has `word` in it on stderr.
+void expect_refusal(const std::string& arguments, const std::string& word) {
+  const auto run = test::run_mbs("check " + arguments);
+  EXPECT_EQ(run.status, 2) << arguments;
+  EXPECT_EQ(run.output, "") << arguments;
+  EXPECT_EQ(std::ranges::count(run.errors, '\n'), 1) << arguments << ": " << run.errors;
+  EXPECT_NE(run.errors.find(word), std::string::npos) << arguments << ": " << run.errors;
+}
+
+TEST(CheckProgram, RefusesBadInput) {
+  if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
+  expect_refusal("no-such-scene", "no-such-scene");
+  expect_refusal("four-bar:0", "four-bar:0");
+  expect_refusal("four-bar:1 --implementation no_such", "no_such");
+  expect_refusal("four-bar:1 --no-such-option", "--no-such-option");
+  expect_refusal("four-bar:1 --step 0", "--step");
+  expect_refusal("four-bar:1 --step nan", "--step");
+  expect_refusal("four-bar:1 --penalty -1", "--penalty");
+  expect_refusal("four-bar:1 --tolerance 0", "--tolerance");
+  expect_refusal("four-bar:1 --max-passes 0", "--max-passes");
+  for (const char* value : {"0", "-1", "nan", "inf", "abc"}) {
+    expect_refusal(std::string("four-bar:1 --time-limit ") + value, "--time-limit");
+  }
+  expect_refusal("four-bar:1 --json /no/such/folder/x.json", "/no/such/folder/x.json");
+}
+
+TEST(CheckProgram, SaysSoIfTheReferenceItselfFails) {
+  if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
+  const std::string file = test::temporary_path("verdicts.json");
+  expect_refusal("four-bar:1 --penalty 1e300 --json '" + file + "'", "the reference fails");
+  EXPECT_FALSE(fs::exists(file));
+  EXPECT_FALSE(fs::exists(file + ".partial"));
+}
+
+TEST(CheckProgram, ARefusedCheckLeavesOlderVerdictsAlone) {
+  const std::string file = test::temporary_path("verdicts.json");
+  std::ofstream(file) << "precious";
+  expect_refusal("no-such-scene --json '" + file + "'", "no-such-scene");
+  EXPECT_EQ(test::file_text(file), "precious");
+  fs::remove(file);
+}
+
+}  // namespace
+}  // namespace mbs

@@ -1,0 +1,274 @@
+// The reference itself: its factorization, its order, its constraints and its energy.
+#include "reference/reference_simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "exact/four_bar_exact.hpp"
+#include "run/initial_state.hpp"
+#include "run/settings.hpp"
+#include "support/dense.hpp"
+#include "support/sample_models.hpp"
+
+namespace mbs {
+namespace {
+
+using Real = long double;
+using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+
+/// A random symmetric matrix with the envelope `first`; diagonally dominant by `dominance`.
+Matrix random_matrix(const std::vector<int>& first, double dominance, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto n = static_cast<Eigen::Index>(first.size());
+  Matrix A = Matrix::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = first[static_cast<std::size_t>(i)]; j < i; ++j) {
+      A(i, j) = A(j, i) = uniform(random);
+    }
+  }
+  for (Eigen::Index i = 0; i < n; ++i) A(i, i) = A.row(i).cwiseAbs().sum() + dominance;
+  return A;
+}
+
+std::vector<int> random_envelope(int n, int width, std::mt19937& random) {
+  std::vector<int> first;
+  for (int i = 0; i < n; ++i) {
+    const int lowest = std::max(0, i - width);
+    first.push_back(std::uniform_int_distribution<int>(lowest, i)(random));
+  }
+  return first;
+}
+
+EnvelopeCholesky stored(const Matrix& A, const std::vector<int>& first) {
+  EnvelopeCholesky result(first);
+  result.set_zero();
+  for (int i = 0; i < static_cast<int>(first.size()); ++i) {
+    for (int j = first[static_cast<std::size_t>(i)]; j <= i; ++j) result.at(i, j) = A(i, j);
+  }
+  return result;
+}
+
+TEST(EnvelopeCholesky, SolvesLikeEigen) {
+  std::mt19937 random(1);
+  for (const int n : {1, 2, 7, 40}) {
+    for (const int width : {0, 1, 3, n}) {
+      const std::vector<int> first = random_envelope(n, width, random);
+      const Matrix A = random_matrix(first, 0.5, random);
+      EnvelopeCholesky factor = stored(A, first);
+      ASSERT_TRUE(factor.factorize());
+      std::vector<Real> b(static_cast<std::size_t>(n));
+      for (Real& value : b) value = std::uniform_real_distribution<double>(-1, 1)(random);
+      const Vector right = Eigen::Map<const Vector>(b.data(), n);
+      const Vector expected = A.llt().solve(right);
+      factor.solve(b);
+      const Vector x = Eigen::Map<const Vector>(b.data(), n);
+      EXPECT_LT(static_cast<double>((x - expected).norm()), 1e-17 * n) << n << ", " << width;
+      EXPECT_LT(static_cast<double>((A * x - right).norm()), 1e-17 * n);
+    }
+  }
+}
+
+TEST(EnvelopeCholesky, CanBeFilledAndFactorizedAgain) {
+  std::mt19937 random(2);
+  const std::vector<int> first = random_envelope(20, 6, random);
+  const Matrix A = random_matrix(first, 0.5, random);
+  EnvelopeCholesky factor = stored(random_matrix(first, 2.0, random), first);
+  ASSERT_TRUE(factor.factorize());
+  factor.set_zero();
+  for (int i = 0; i < 20; ++i) {
+    for (int j = first[static_cast<std::size_t>(i)]; j <= i; ++j) factor.at(i, j) += A(i, j);
+  }
+  ASSERT_TRUE(factor.factorize());
+  std::vector<Real> b(20, 1.0L);
+  factor.solve(b);
+  EXPECT_LT(static_cast<double>(
+                (A * Eigen::Map<const Vector>(b.data(), 20) - Vector::Ones(20)).norm()),
+            1e-17);
+}
+
+TEST(EnvelopeCholesky, RefusesWhatIsNotPositiveDefinite) {
+  std::mt19937 random(3);
+  const std::vector<int> first = random_envelope(30, 8, random);
+  const Matrix A = random_matrix(first, 0.5, random);
+  const Real smallest = Eigen::SelfAdjointEigenSolver<Matrix>(A).eigenvalues()[0];
+  for (const double factor : {0.99, 1.01, 3.0}) {
+    const Matrix shifted = A - factor * smallest * Matrix::Identity(30, 30);
+    EXPECT_EQ(stored(shifted, first).factorize(), factor < 1.0) << factor;
+  }
+  Matrix spoiled = A;
+  spoiled(17, 17) = std::numeric_limits<Real>::quiet_NaN();
+  EXPECT_FALSE(stored(spoiled, first).factorize());
+  EXPECT_FALSE(stored(Matrix::Zero(30, 30), first).factorize());
+}
+
+/// Settings that keep alpha dt^2 fixed and what Newton leaves below the integrator's own error.
+StepSettings refined(const Model& model, double step) {
+  constexpr double kBase = 1e-3;
+  return {step, automatic_penalty(model, kBase) * std::pow(kBase / step, 2),
+          1e-10 * std::pow(step / kBase, 4), 50};
+}
+
+State state_after(const Scene& scene, const StepSettings& settings, double duration) {
+  ReferenceSimulation simulation(scene.model, settings);
+  simulation.set_state(initial_state(scene.model));
+  const long steps = std::lround(duration / settings.step);
+  for (long i = 0; i < steps; ++i) EXPECT_EQ(simulation.step().status, StepStatus::converged);
+  State state;
+  simulation.get_state(state);
+  return state;
+}
+
+double largest_difference(const std::vector<double>& x, const std::vector<double>& y) {
+  return (Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())) -
+          Eigen::Map<const Eigen::VectorXd>(y.data(), static_cast<Eigen::Index>(y.size())))
+      .cwiseAbs()
+      .maxCoeff();
+}
+
+TEST(ReferenceSimulation, IsOfSecondOrderOnTheFourBar) {
+  for (const int loops : {1, 2, 5}) {
+    const Scene scene = load_scene("four-bar:" + std::to_string(loops));
+    const auto n = static_cast<std::size_t>(scene.model.variables());
+    State exact{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n), {}};
+    FourBarExact(loops).state(0.6, exact.q, exact.v, exact.a);
+    const State coarse = state_after(scene, refined(scene.model, 2e-3), 0.6);
+    const State fine = state_after(scene, refined(scene.model, 1e-3), 0.6);
+    for (const auto quantity : {&State::q, &State::v, &State::a}) {
+      const double order = std::log2(largest_difference(coarse.*quantity, exact.*quantity) /
+                                     largest_difference(fine.*quantity, exact.*quantity));
+      EXPECT_NEAR(order, 2.0, 0.1) << loops;
+    }
+  }
+}
+
+/// The motion with Phi'' = 0 instead of the penalties, by the classical Runge-Kutta method.
+State motion_on_constraints(const Model& model, double duration, long steps) {
+  const auto n = static_cast<std::size_t>(model.variables());
+  const double h = duration / static_cast<double>(steps);
+  State x = initial_state(model);
+  const auto moved = [&](double factor, const State& rate) {
+    std::vector<double> q(n), v(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      q[i] = x.q[i] + factor * rate.v[i];
+      v[i] = x.v[i] + factor * rate.a[i];
+    }
+    return consistent_state(model, q, v);
+  };
+  for (long step = 0; step < steps; ++step) {
+    const State k1 = x, k2 = moved(h / 2, k1), k3 = moved(h / 2, k2), k4 = moved(h, k3);
+    State sum = k1;
+    for (std::size_t i = 0; i < n; ++i) {
+      sum.v[i] = (k1.v[i] + 2 * k2.v[i] + 2 * k3.v[i] + k4.v[i]) / 6;
+      sum.a[i] = (k1.a[i] + 2 * k2.a[i] + 2 * k3.a[i] + k4.a[i]) / 6;
+    }
+    x = moved(h, sum);
+  }
+  return x;
+}
+
+TEST(ReferenceSimulation, FollowsASpatialMotion) {
+  const Scene scene = test::spatial_pendulum();
+  const State expected = motion_on_constraints(scene.model, 0.5, 1000);
+  const State coarse = state_after(scene, refined(scene.model, 1e-3), 0.5);
+  const State fine = state_after(scene, refined(scene.model, 5e-4), 0.5);
+  for (const auto quantity : {&State::q, &State::v, &State::a}) {
+    const double coarse_error = largest_difference(coarse.*quantity, expected.*quantity);
+    const double fine_error = largest_difference(fine.*quantity, expected.*quantity);
+    EXPECT_NEAR(std::log2(coarse_error / fine_error), 2.0, 0.1);
+  }
+  EXPECT_LT(largest_difference(fine.q, expected.q), 1e-5);
+  EXPECT_LT(largest_difference(fine.lambda, expected.lambda), 1e-2);
+}
+
+TEST(ReferenceSimulation, KeepsConstraintsAndEnergyOfASpatialMotion) {
+  const Scene scene = test::spatial_pendulum();
+  const Model& model = scene.model;
+  double previous_drift = 0.0;
+  for (const double step : {2e-3, 1e-3}) {
+    ReferenceSimulation simulation(model, refined(model, step));
+    State state = initial_state(model);
+    simulation.set_state(state);
+    const double energy_before = energy(model, state.q, state.v);
+    double drift = 0.0, violation = 0.0;
+    std::vector<double> phi(static_cast<std::size_t>(model.constraints()));
+    for (long i = 0; i < std::lround(2.0 / step); ++i) {
+      ASSERT_NE(simulation.step().status, StepStatus::factorization_failed);
+      simulation.get_state(state);
+      drift = std::max(drift, std::abs(energy(model, state.q, state.v) - energy_before));
+      evaluate_constraints(model, state.q, phi);
+      for (const double value : phi) violation = std::max(violation, std::abs(value));
+    }
+    EXPECT_LT(drift, 0.02) << step;  // of 30 J that change hands
+    EXPECT_LT(violation, 1e-9) << step;
+    if (previous_drift > 0.0) {
+      EXPECT_NEAR(std::log2(previous_drift / drift), 2.0, 0.2);
+    }
+    previous_drift = drift;
+  }
+}
+
+TEST(ReferenceSimulation, FreeFallIsExact) {
+  const Scene scene = test::free_fall();
+  const State start = initial_state(scene.model);
+  StepSettings settings;
+  settings.step = 0.25;
+  ReferenceSimulation simulation(scene.model, settings);
+  simulation.set_state(start);
+  State state;
+  for (int i = 1; i <= 40; ++i) {
+    const StepOutcome outcome = simulation.step();
+    EXPECT_EQ(outcome.status, StepStatus::converged);
+    EXPECT_EQ(outcome.passes, 1);
+    simulation.get_state(state);
+    const double t = 0.25 * i;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double g = k % 2 == 1 ? -9.81 : 0.0;
+      EXPECT_NEAR(state.q[k], start.q[k] + start.v[k] * t + g * t * t / 2, 1e-12);
+      EXPECT_NEAR(state.v[k], start.v[k] + g * t, 1e-13);
+      EXPECT_NEAR(state.a[k], g, 1e-14);
+    }
+  }
+}
+
+TEST(ReferenceSimulation, StopsAtThePassLimit) {
+  const Scene scene = load_scene("four-bar:2");
+  StepSettings settings;
+  settings.tolerance = 1e-30;
+  settings.max_passes = 3;
+  ReferenceSimulation simulation(scene.model, settings);
+  simulation.set_state(initial_state(scene.model));
+  const StepOutcome outcome = simulation.step();
+  EXPECT_EQ(outcome.status, StepStatus::pass_limit);
+  EXPECT_EQ(outcome.passes, 3);
+}
+
+TEST(ReferenceSimulation, TangentConditionIsThatOfTheTangent) {
+  std::vector<Scene> scenes{test::spatial_pendulum(), test::free_fall()};
+  for (const char* name : {"four-bar:1", "four-bar:5", "four-bar:20", "four-bar:10,fill=0.6"}) {
+    scenes.push_back(load_scene(name));
+  }
+  for (const Scene& scene : scenes) {
+    for (const double penalty : {1.0, 1e8, 1e10}) {
+      StepSettings settings;
+      settings.penalty = penalty;
+      ReferenceSimulation simulation(scene.model, settings);
+      State state = initial_state(scene.model);
+      simulation.set_state(state);
+      const auto eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
+                                   test::dense_tangent(scene.model, state.q, settings))
+                                   .eigenvalues();
+      const double expected = eigenvalues.maxCoeff() / eigenvalues.minCoeff();
+      EXPECT_NEAR(simulation.tangent_condition(), expected, 0.05 * expected)
+          << scene.name << ", penalty " << penalty;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mbs

@@ -1,0 +1,220 @@
+// A run's typed outcome: what is ok, what is not, and that NaN never is.
+#include "run/run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "controls/controls.hpp"
+#include "run/settings.hpp"
+#include "run/stretch.hpp"
+#include "support/sample_models.hpp"
+#include "usage_error.hpp"
+
+namespace mbs {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+Variant control(const std::string& name) {
+  const std::vector<Variant> variants = test::controls().variants;
+  return *std::ranges::find(variants, name, &Variant::name);
+}
+
+RunSettings settings_for(const Scene& scene, double duration) {
+  RunSettings settings;
+  settings.step.penalty = automatic_penalty(scene.model, settings.step.step);
+  settings.duration = duration;
+  return settings;
+}
+
+TEST(Run, ReportsASoundRun) {
+  const Scene scene = load_scene("four-bar:2");
+  long calls = 0;
+  double last = -1.0;
+  const RunSummary summary =
+      run(scene, control("reference"), settings_for(scene, 2.0),
+          [&](long step, double t, const State& state) {
+            EXPECT_EQ(step, calls++);
+            EXPECT_NEAR(t, 1.25e-3 * static_cast<double>(step), 1e-15);
+            EXPECT_EQ(state.q.size(), 6U);
+            last = t;
+          });
+  EXPECT_EQ(summary.status, RunStatus::ok) << summary.reason;
+  EXPECT_EQ(summary.reason, "");
+  EXPECT_FALSE(summary.failed_at);
+  EXPECT_EQ(summary.steps, 1600);
+  EXPECT_EQ(calls, 1601);
+  EXPECT_NEAR(last, 2.0, 1e-12);
+  EXPECT_GE(summary.passes, 2 * 1600);
+  EXPECT_GT(summary.setup_us, 0.0);
+  EXPECT_GT(summary.step_us_median, 0.0);
+  EXPECT_LE(summary.step_us_median, summary.step_us_p99);
+  EXPECT_LE(summary.step_us_p99, summary.step_us_max);
+  ASSERT_TRUE(summary.position_error_max);
+  EXPECT_GT(*summary.position_error_max, 1e-8);
+  EXPECT_LT(*summary.position_error_max, 1e-3);
+  EXPECT_LT(summary.energy_drift_max, 1e-4);
+  EXPECT_LT(summary.constraint_violation_max, 1e-6);
+}
+
+TEST(Run, HasNoPositionErrorWithoutAnExactSolution) {
+  const Scene scene = test::spatial_pendulum();
+  const RunSummary summary = run(scene, control("reference"), settings_for(scene, 0.5));
+  EXPECT_EQ(summary.status, RunStatus::ok) << summary.reason;
+  EXPECT_FALSE(summary.position_error_max);
+  EXPECT_LT(summary.energy_drift_max, 1e-3);
+}
+
+TEST(Run, WorksWithoutConstraints) {
+  const Scene scene = test::free_fall();
+  const RunSummary summary = run(scene, control("reference"), settings_for(scene, 0.5));
+  EXPECT_EQ(summary.status, RunStatus::ok) << summary.reason;
+  EXPECT_EQ(summary.constraint_violation_max, 0.0);
+  EXPECT_LT(summary.energy_drift_max, 1e-12);
+}
+
+TEST(Run, TellsThatTooSoftOrTooStiffAPenaltyDiverges) {
+  if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
+  const struct {
+    const char* scene;
+    double penalty;
+  } cases[] = {{"four-bar:5", 1e14}, {"four-bar:40", 1e8}, {"four-bar:3", 1e-3}};
+  for (const NamedVariant& variant : all_variants()) {
+    for (const auto& [name, penalty] : cases) {
+      const Scene scene = load_scene(name);
+      RunSettings settings = settings_for(scene, 20.0);
+      settings.step.penalty = penalty;
+      const RunSummary summary = run(scene, *variant.variant, settings);
+      EXPECT_EQ(summary.status, RunStatus::diverged) << variant.name << " on " << name;
+      EXPECT_NE(summary.reason, "");
+      ASSERT_TRUE(summary.failed_at);
+      EXPECT_GT(*summary.failed_at, 0.0);
+      EXPECT_NEAR(*summary.failed_at, 1.25e-3 * static_cast<double>(summary.steps), 1e-9);
+    }
+  }
+}
+
+TEST(Run, TellsThatStepsDidNotConverge) {
+  const Scene scene = load_scene("four-bar:2");
+  RunSettings settings = settings_for(scene, 0.5);
+  settings.step.max_passes = 1;
+  const RunSummary summary = run(scene, control("reference"), settings);
+  EXPECT_EQ(summary.status, RunStatus::not_converged);
+  EXPECT_EQ(summary.steps, 400);
+  EXPECT_EQ(summary.steps_at_limit, 400);
+  EXPECT_EQ(summary.reason, "400 of 400 steps ended at the limit of 1 passes (allowed 5 %)");
+  EXPECT_FALSE(summary.failed_at);
+}
+
+TEST(Run, NeverCallsNanOk) {
+  const Scene with_exact = load_scene("four-bar:2");
+  const Scene without = test::spatial_pendulum();
+  for (const Scene* scene : {&with_exact, &without}) {
+    for (const auto& [name, step] : {std::pair("nan_after_100", 101L), {"nan_velocity", 1L}}) {
+      const RunSummary summary = run(*scene, control(name), settings_for(*scene, 0.5));
+      EXPECT_EQ(summary.status, RunStatus::diverged) << name;
+      EXPECT_EQ(summary.reason, "the state is not finite");
+      EXPECT_EQ(summary.steps, step);
+      EXPECT_FALSE(std::isfinite(summary.energy_drift_max));
+      EXPECT_FALSE(std::isfinite(summary.constraint_violation_max));
+      if (summary.position_error_max) {
+        EXPECT_FALSE(std::isfinite(*summary.position_error_max));
+      }
+    }
+  }
+}
+
+TEST(Judge, RefusesANanAnywhere) {
+  const Scene scene = load_scene("four-bar:2");
+  const State initial = make_stretch(scene, 1.25e-3, 1, 0.0).initial;
+  EXPECT_EQ(Judge(scene, initial, 0.0).judge(0.0, initial), "");
+  for (const auto quantity : {&State::q, &State::v, &State::a, &State::lambda}) {
+    for (const double bad : {kNaN, HUGE_VAL, -HUGE_VAL}) {
+      for (std::size_t i = 0; i < (initial.*quantity).size(); ++i) {
+        State state = initial;
+        (state.*quantity)[i] = bad;
+        EXPECT_EQ(Judge(scene, initial, 0.0).judge(0.0, state), "the state is not finite");
+      }
+    }
+  }
+}
+
+TEST(Judge, NamesWhatIsLost) {
+  const Scene scene = load_scene("four-bar:2");
+  const State initial = make_stretch(scene, 1.25e-3, 1, 0.0).initial;
+  State state = initial;
+  state.q[0] += 0.2;
+  Judge position(scene, initial, 0.0);
+  EXPECT_TRUE(position.judge(0.0, state).starts_with("position error 2.00e-01 m"));
+  EXPECT_NEAR(*position.position_error_max(), 0.2, 1e-12);
+  state = initial;
+  state.q[1] += 0.05;
+  EXPECT_TRUE(Judge(scene, initial, 0.0).judge(0.0, state).starts_with("constraints violated by"));
+  state = initial;
+  for (double& velocity : state.v) velocity *= 3.0;
+  EXPECT_TRUE(Judge(scene, initial, 0.0).judge(0.0, state).starts_with("energy drifted by"));
+}
+
+TEST(Run, TellsThatAFactorizationFailed) {
+  const Scene scene = load_scene("four-bar:2");
+  const RunSummary summary = run(scene, control("factorization_failed"), settings_for(scene, 0.5));
+  EXPECT_EQ(summary.status, RunStatus::diverged);
+  EXPECT_EQ(summary.reason, "the tangent matrix could not be factorized");
+  EXPECT_EQ(summary.steps, 1);
+}
+
+TEST(Run, TellsThatASceneIsUnsupported) {
+  const Scene scene = load_scene("four-bar:2");
+  const RunSummary summary = run(scene, control("unsupported"), settings_for(scene, 0.5));
+  EXPECT_EQ(summary.status, RunStatus::unsupported);
+  EXPECT_NE(summary.reason, "");
+  EXPECT_EQ(summary.steps, 0);
+  EXPECT_FALSE(summary.failed_at);
+}
+
+TEST(Run, NamesEachStatus) {
+  EXPECT_EQ(to_string(RunStatus::ok), "ok");
+  EXPECT_EQ(to_string(RunStatus::not_converged), "not-converged");
+  EXPECT_EQ(to_string(RunStatus::diverged), "diverged");
+  EXPECT_EQ(to_string(RunStatus::unsupported), "unsupported");
+}
+
+TEST(CountSteps, RoundsToWholeSteps) {
+  RunSettings settings;
+  EXPECT_EQ(count_steps(settings), 16'000);
+  settings.duration = 1.9e-3;
+  EXPECT_EQ(count_steps(settings), 2);
+  settings.duration = 0.63e-3;
+  EXPECT_EQ(count_steps(settings), 1);
+}
+
+TEST(CountSteps, RefusesWhatIsOutOfRange) {
+  const auto expect_refusal = [](auto&& spoil, const std::string& word) {
+    RunSettings settings;
+    spoil(settings);
+    try {
+      count_steps(settings);
+      ADD_FAILURE() << word;
+    } catch (const UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+    }
+  };
+  for (const double bad : {0.0, -1.0, kNaN, HUGE_VAL, -HUGE_VAL}) {
+    expect_refusal([bad](RunSettings& s) { s.step.step = bad; }, "--step");
+    expect_refusal([bad](RunSettings& s) { s.duration = bad; }, "--duration");
+    expect_refusal([bad](RunSettings& s) { s.step.penalty = bad; }, "--penalty");
+    expect_refusal([bad](RunSettings& s) { s.step.tolerance = bad; }, "--tolerance");
+  }
+  for (const int bad : {0, -1, 1001}) {
+    expect_refusal([bad](RunSettings& s) { s.step.max_passes = bad; }, "--max-passes");
+  }
+  expect_refusal([](RunSettings& s) { s.duration = 0.6e-3; }, "shorter than half a step");
+  expect_refusal([](RunSettings& s) { s.duration = 1e6; }, "at most 1e+08");
+  expect_refusal([](RunSettings& s) { s.step.step = 1e-300; }, "at most 1e+08");
+}
+
+}  // namespace
+}  // namespace mbs

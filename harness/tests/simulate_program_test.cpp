@@ -1,0 +1,296 @@
+// `mbs simulate` from the outside: its summary, its trajectories, its errors.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "registry/registry.hpp"
+#include "run/run.hpp"
+#include "support/program.hpp"
+
+namespace mbs {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// An empty folder of its own, removed with everything in it.
+class Folder {
+ public:
+  Folder() : path_(test::temporary_path("folder")) { fs::create_directory(path_); }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
+  [[nodiscard]] bool is_empty() const { return fs::is_empty(path_); }
+
+ private:
+  std::string path_;
+};
+
+class SimulateProgram : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
+    variant_ = all_variants().front().name;
+  }
+  [[nodiscard]] test::ProgramResult simulate(const std::string& arguments) const {
+    return test::run_mbs("simulate --implementation " + variant_ + " " + arguments);
+  }
+  /// Status 2, nothing on stdout, and one line that has `word` in it on stderr.
+  void expect_refusal(const std::string& arguments, const std::string& word) const {
+    expect_one_line(simulate(arguments), arguments, word);
+  }
+  static void expect_one_line(const test::ProgramResult& run, const std::string& arguments,
+                              const std::string& word) {
+    EXPECT_EQ(run.status, 2) << arguments;
+    EXPECT_EQ(run.output, "") << arguments;
+    EXPECT_EQ(std::ranges::count(run.errors, '\n'), 1) << arguments << ": " << run.errors;
+    EXPECT_TRUE(run.errors.starts_with("mbs: ") && run.errors.ends_with('\n')) << run.errors;
+    EXPECT_NE(run.errors.find(word), std::string::npos) << arguments << ": " << run.errors;
+  }
+
+  std::string variant_;
+};
+
+TEST_F(SimulateProgram, SummaryHasEveryField) {
+  const auto run = simulate("four-bar:3 --duration 0.5 --penalty 1e8 --tolerance 1e-8 --json");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.errors, "");
+  const json summary = json::parse(run.output);
+  EXPECT_EQ(summary.at("scene"), "four-bar:3");
+  EXPECT_EQ(summary.at("implementation"), variant_);
+  EXPECT_EQ(summary.at("variables"), 8);
+  EXPECT_EQ(summary.at("constraints"), 7);
+  EXPECT_EQ(summary.at("tangent_nonzeros"), 40);  // four blocks on the diagonal, three beside it
+  EXPECT_EQ(summary.at("step"), 1.25e-3);
+  EXPECT_EQ(summary.at("duration"), 0.5);
+  EXPECT_EQ(summary.at("penalty"), 1e8);
+  EXPECT_EQ(summary.at("tolerance"), 1e-8);
+  EXPECT_EQ(summary.at("status"), "ok");
+  EXPECT_EQ(summary.at("status_reason"), "");
+  EXPECT_TRUE(summary.at("failed_at").is_null());
+  EXPECT_EQ(summary.at("steps"), 400);
+  EXPECT_GE(summary.at("passes_per_step"), 1.0);
+  EXPECT_LE(summary.at("passes_per_step"), 20.0);
+  for (const char* figure : {"position_error_max", "energy_drift_max", "constraint_violation_max",
+                             "setup_us"}) {
+    EXPECT_GT(summary.at(figure), 0.0) << figure;
+  }
+  EXPECT_LT(summary.at("position_error_max"), 1e-4);
+  EXPECT_GT(summary.at("step_us").at("median"), 0.0);
+  EXPECT_GE(summary.at("step_us").at("p99"), summary.at("step_us").at("median"));
+  EXPECT_GE(summary.at("step_us").at("max"), summary.at("step_us").at("p99"));
+}
+
+TEST_F(SimulateProgram, TextNamesTheStatus) {
+  const auto run = simulate("four-bar:1 --duration 0.1");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.errors, "");
+  EXPECT_TRUE(run.output.starts_with(variant_ + " on four-bar:1\n  status                 ok\n"))
+      << run.output;
+}
+
+TEST_F(SimulateProgram, HasNoPositionErrorWithoutAnExactSolution) {
+  const std::string scene = MBS_ROOT "/harness/scenes/double_pendulum.json";
+  const auto run = simulate("'" + scene + "' --duration 0.2 --json");
+  EXPECT_EQ(run.status, 0) << run.errors;
+  EXPECT_TRUE(json::parse(run.output).at("position_error_max").is_null());
+}
+
+TEST_F(SimulateProgram, EveryImplementationRuns) {
+  for (const NamedVariant& variant : all_variants()) {
+    const auto run = test::run_mbs("simulate four-bar:2 --duration 0.5 --json --implementation " +
+                                   variant.name);
+    EXPECT_EQ(run.status, 0) << variant.name << ": " << run.errors;
+    EXPECT_EQ(json::parse(run.output).at("implementation"), variant.name);
+  }
+}
+
+TEST_F(SimulateProgram, ADivergedRunStillHasItsSummary) {
+  const auto run = simulate("four-bar:40 --penalty 1e8 --json");
+  EXPECT_EQ(run.status, 1);
+  const json summary = json::parse(run.output);
+  EXPECT_EQ(summary.at("status"), "diverged");
+  EXPECT_NE(summary.at("status_reason"), "");
+  EXPECT_GT(summary.at("failed_at"), 0.1);
+  EXPECT_LT(summary.at("failed_at"), 20.0);
+  EXPECT_LT(summary.at("steps"), 16'000);
+  EXPECT_TRUE(run.errors.starts_with("mbs: " + variant_ + " on four-bar:40: diverged at t = "));
+  EXPECT_EQ(std::ranges::count(run.errors, '\n'), 1) << run.errors;
+}
+
+TEST_F(SimulateProgram, ARunThatDoesNotConvergeSaysSo) {
+  const auto run = simulate("four-bar:2 --duration 0.2 --max-passes 1 --json");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(json::parse(run.output).at("status"), "not-converged");
+  EXPECT_NE(run.errors.find("160 of 160 steps ended at the limit"), std::string::npos);
+  EXPECT_EQ(std::ranges::count(run.errors, '\n'), 1) << run.errors;
+}
+
+TEST_F(SimulateProgram, AnUnsupportedSceneHasASummaryToo) {
+  const auto run = test::run_program(
+      MBS_CONTROLS, "simulate four-bar:2 --implementation control/unsupported --json");
+  EXPECT_EQ(run.status, 1);
+  const json summary = json::parse(run.output);
+  EXPECT_EQ(summary.at("status"), "unsupported");
+  EXPECT_EQ(summary.at("steps"), 0);
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+TEST_F(SimulateProgram, TrajectoryHasTheStatesToTheLastBit) {
+  const Folder folder;
+  const std::string file = folder.file("out.csv");
+  const std::string options = "four-bar:1 --duration 0.01 --penalty 1e8 --tolerance 1e-9 ";
+  ASSERT_EQ(simulate(options + "--every 3 --trajectory '" + file + "'").status, 0);
+  EXPECT_FALSE(fs::exists(file + ".partial"));
+  const auto lines = split(test::file_text(file), '\n');
+  ASSERT_EQ(lines.size(), 4U);  // the header, and the steps 0, 3 and 6 of 8
+  EXPECT_EQ(lines[0],
+            "t,A0.x,A0.y,A0.vx,A0.vy,A1.x,A1.y,A1.vx,A1.vy,"
+            "B0.x,B0.y,B0.vx,B0.vy,B1.x,B1.y,B1.vx,B1.vy");
+
+  std::vector<std::vector<double>> expected;
+  RunSettings settings;
+  settings.duration = 0.01;
+  run(load_scene("four-bar:1"), *all_variants().front().variant, settings,
+      [&](long step, double t, const State& state) {
+        if (step % 3 != 0) return;
+        const auto &q = state.q, &v = state.v;
+        expected.push_back({t,    0.0,  0.0,  0.0,  0.0,  1.0,  0.0,  0.0,  0.0,
+                            q[0], q[1], v[0], v[1], q[2], q[3], v[2], v[3]});
+      });
+  for (std::size_t row = 0; row < 3; ++row) {
+    std::vector<double> numbers;
+    for (const std::string& text : split(lines[row + 1], ',')) {
+      numbers.push_back(std::strtod(text.c_str(), nullptr));
+    }
+    EXPECT_EQ(numbers, expected[row]) << row;
+  }
+}
+
+TEST_F(SimulateProgram, TrajectoryOfADivergedRunHasWhatCameBefore) {
+  const Folder folder;
+  const std::string file = folder.file("out.csv");
+  EXPECT_EQ(simulate("four-bar:3 --penalty 1e-3 --trajectory '" + file + "'").status, 1);
+  const auto lines = split(test::file_text(file), '\n');
+  EXPECT_GT(lines.size(), 2U);
+  for (const std::string& line : lines) EXPECT_EQ(line.find("nan"), std::string::npos) << line;
+}
+
+TEST_F(SimulateProgram, ARefusedRunLeavesNothingBehind) {
+  const Folder folder;
+  const std::string to_file = " --trajectory '" + folder.file("out.csv") + "'";
+  expect_refusal("four-bar:2 --step 0" + to_file, "--step");
+  expect_refusal("four-bar:2 --every 0" + to_file, "--every");
+  expect_refusal("four-bar:0" + to_file, "four-bar:0");
+  expect_refusal("four-bar:2 --penalty x" + to_file, "--penalty");
+  EXPECT_TRUE(folder.is_empty());
+}
+
+TEST_F(SimulateProgram, ARefusedRunLeavesOlderFilesAlone) {
+  const Folder folder;
+  const std::string file = folder.file("out.csv");
+  std::ofstream(file) << "precious";
+  expect_refusal("four-bar:2 --duration 0 --trajectory '" + file + "'", "--duration");
+  EXPECT_EQ(test::file_text(file), "precious");
+}
+
+TEST_F(SimulateProgram, RefusesUnwritableOutput) {
+  const Folder folder;
+  const std::string missing = folder.file("none/out.csv");
+  expect_refusal("four-bar:2 --trajectory '" + missing + "'", missing);
+  fs::create_directory(folder.file("taken"));
+  expect_refusal("four-bar:2 --trajectory '" + folder.file("taken") + "'", "taken");
+}
+
+TEST_F(SimulateProgram, RefusesBadOptions) {
+  for (const char* option : {"--step", "--duration", "--penalty", "--tolerance"}) {
+    for (const char* value : {"0", "-1", "nan", "inf", "abc", "1e400", "''"}) {
+      expect_refusal(std::string("four-bar:2 ") + option + " " + value, option);
+    }
+  }
+  for (const char* value : {"0", "-1", "1001", "abc", "1.5"}) {
+    expect_refusal(std::string("four-bar:2 --max-passes ") + value, "--max-passes");
+  }
+  for (const char* value : {"0", "-1", "abc"}) {
+    expect_refusal(std::string("four-bar:2 --every ") + value, "--every");
+  }
+  expect_refusal("four-bar:2 --duration 1e300", "--duration");
+  expect_refusal("four-bar:2 --duration 1e-9", "--duration");
+  expect_refusal("four-bar:2 --no-such-option", "--no-such-option");
+  expect_refusal("four-bar:2 four-bar:3", "four-bar:3");
+  expect_refusal("four-bar:2 --step", "--step");
+  expect_refusal("", "scene");
+}
+
+TEST_F(SimulateProgram, RefusesUnknownScenes) {
+  for (const char* scene : {"four-bar:0", "four-bar:-1", "four-bar:99999999999", "four-bar:x",
+                            "four-bar:", "four-bar:2,fill=0", "four-bar:2,fill=1.5",
+                            "four-bar:2,fill=0.01", "four-bar:2,fill=nan", "no-such-scene",
+                            "no/such/scene.json"}) {
+    expect_refusal(std::string("'") + scene + "'", scene);
+  }
+  expect_refusal("'" MBS_ROOT "'", "directory");
+}
+
+TEST_F(SimulateProgram, RefusesUnknownImplementations) {
+  const std::string scene = "simulate four-bar:2 --implementation ";
+  for (const std::string& name : {std::string("no_such"), std::string("no_such/variant"),
+                                  all_variants().front().entry->folder + "/no_such"}) {
+    expect_one_line(test::run_mbs(scene + name), name, "'" + name + "'");
+  }
+  expect_one_line(test::run_mbs("simulate four-bar:2"), "none", "--implementation");
+  for (const char* name : {"missing", "missing/any"}) {
+    expect_one_line(test::run_program(MBS_CONTROLS, scene + name), name,
+                    "Missing is not installed: apt-get install libmissing-dev");
+  }
+  expect_one_line(test::run_program(MBS_CONTROLS, scene + "control"), "control", "variants");
+}
+
+TEST_F(SimulateProgram, RefusesScenesThatCannotBe) {
+  const std::string head = R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
+{"name": "B", "position": [1, 0]})";
+  const std::string rod = R"({"between": ["A", "B"], "mass": 1})";
+  const struct {
+    std::string text, word;
+  } cases[] = {
+      {"{\"points\": [\n  oops]}", "line 2"},
+      {"", "line 1"},
+      {head + R"(], "rods": [{"between": ["A", "B"], "mass": -1}]})", "rods[0].mass"},
+      {head + R"(, {"name": "C", "position": [1, 0]}], "rods": [{"between": ["B", "C"], "mass": 1}]})",
+       "rods[0]"},
+      {head + R"(, {"name": "C", "position": [2, 0]}], "rods": [)" + rod + "]}", "\"C\""},
+      {head + R"(, {"name": "C", "position": [2, 0], "fixed": true}, {"name": "D", "position": [1, 1],
+"fixed": true}], "rods": [)" + rod + R"(, {"between": ["B", "C"], "mass": 1},
+{"between": ["B", "D"], "mass": 1}]})",
+       "over-fixed"},
+      {head + R"(], "gravity": [0, 1e999], "rods": [)" + rod + "]}", "1e999"},
+      {head + R"(], "gravity": [0, NaN], "rods": [)" + rod + "]}", "line 2"},
+      {head + R"(], "rods": [)" + rod + R"(], "springs": []})", "springs"},
+  };
+  const Folder folder;
+  for (const auto& [text, word] : cases) {
+    std::ofstream(folder.file("scene.json")) << text;
+    expect_refusal("'" + folder.file("scene.json") + "'", word);
+  }
+}
+
+TEST_F(SimulateProgram, KnowsNoOtherSubcommands) {
+  expect_one_line(test::run_mbs("frobnicate"), "frobnicate", "frobnicate");
+  expect_one_line(test::run_mbs(""), "none", "subcommand");
+}
+
+}  // namespace
+}  // namespace mbs
