@@ -30,7 +30,8 @@ def number(value, digits=3):
     mantissa, exponent = text.split("e")
     if -3 <= int(exponent) < digits + 3:
         return f"{float(value):.0f}"
-    return f"{mantissa}·10" + str(int(exponent)).translate(RAISED)
+    power = "10" + str(int(exponent)).translate(RAISED)
+    return power if mantissa == "1" else f"{mantissa}·{power}"
 
 
 def figures(folder):

@@ -1,4 +1,5 @@
 # The common look of all figures, and the command line that every figure script has.
+import string
 import sys
 
 import matplotlib
@@ -22,7 +23,7 @@ matplotlib.rcParams.update({
 
 
 class Look:
-    """Colour, marker and dash of each implementation by its place in the registry."""
+    """Colour, marker, dash and letter of each implementation by its place in the registry."""
 
     def __init__(self, results):
         names = [variant["name"] for entry in results.registry for variant in entry["variants"]]
@@ -30,6 +31,9 @@ class Look:
 
     def colour(self, name):
         return COLOURS[self.place[name] % len(COLOURS)]
+
+    def letter(self, name):
+        return string.ascii_uppercase[self.place[name] % 26]
 
     def marker(self, name):
         return MARKERS[self.place[name] % len(MARKERS)]

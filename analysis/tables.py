@@ -69,6 +69,7 @@ def checks(results):
         share = ran.value / ran.tolerance.where(ran.tolerance > 0, 1.0)
         worst = ran.loc[share.idxmax()] if share.notna().any() else None
         rows.append({"implementation": name, "check": check, "ran": len(ran),
+                     "skipped": len(group) - len(ran),
                      "passed": int((ran.passed == "True").sum()), "worst": worst})
     order = {name: place for place, name in enumerate(results.implementations)}
     return sorted(rows, key=lambda row: order.get(row["implementation"], len(order)))

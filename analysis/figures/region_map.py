@@ -58,6 +58,7 @@ def _cell(axes, corner, height, rows, look):
         text = "alone"
     else:
         text = f"{ranking.margin:.2f}×" if ranking.margin < 9.95 else f"{ranking.margin:.0f}×"
+    text = f"{look.letter(ranking.winner)} {text}" if ranking else text
     marks = _marks(rows)
     centre = (corner[0] + 0.5, corner[1] + height / 2)
     axes.text(*centre, text + (f"  {marks}" if marks else ""), ha="center", va="center",
@@ -74,12 +75,13 @@ def _marks(rows):
 
 
 def _legend(axes, names, look):
-    handles = [Patch(facecolor=look.colour(name), alpha=0.85, label=name) for name in names]
+    handles = [Patch(facecolor=look.colour(name), alpha=0.85, label=f"{look.letter(name)}  {name}")
+               for name in names]
     handles += [Patch(facecolor="#eeeeee", hatch="////", edgecolor="#555555", linewidth=0,
                       label="undecided (colour: lower median)"),
                 Patch(facecolor=UNREACHED, label="below the mechanism's own fill")]
     axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=9)
-    axes.text(1.03, 0.0, "1.32×  second / winner, medians\n▲k  k excluded as too slow\n"
+    axes.text(1.03, 0.0, "A 1.32×  winner, and second / winner\n▲k  k excluded as too slow\n"
               "✕k  k failed or disagree", transform=axes.transAxes, fontsize=8, color=GREY,
               va="bottom")
 

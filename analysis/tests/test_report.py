@@ -26,7 +26,7 @@ def test_region_map_shows_margin_failures_and_exclusions(tables):
     folder, rows = tables
     rows.append(timing("c/z", "", "", "", status="excluded", reason="at least 100 times slower"))
     write(folder / "tidy.csv", "tidy", rows)
-    assert "1.98×  ▲1" in texts(region_map.draw(load(folder)))
+    assert "A 1.98×  ▲1" in texts(region_map.draw(load(folder)))
 
 
 def test_failed_cells_are_never_ranked(tables):
@@ -38,7 +38,7 @@ def test_failed_cells_are_never_ranked(tables):
     results = load(folder)
     assert [entry["ranking"].winner for entry in report_tables.winners(results)] == ["b/y"]
     assert report_tables.losses(results)[0]["reason"] == "wrong"
-    assert "alone  ✕1" in texts(region_map.draw(results))
+    assert "B alone  ✕1" in texts(region_map.draw(results))
 
 
 def test_report_is_self_contained_and_escaped(tables):
@@ -52,7 +52,7 @@ def test_report_is_self_contained_and_escaped(tables):
 
 
 @pytest.mark.parametrize("value, text", [
-    (None, "–"), (float("nan"), "–"), (1.2345, "1.23"), (1234.5, "1234"), (1e8, "1·10⁸"),
+    (None, "–"), (float("nan"), "–"), (1.2345, "1.23"), (1234.5, "1234"), (1e8, "10⁸"),
     (2.5e-7, "2.5·10⁻⁷"), (0, "0")])
 def test_number(value, text):
     assert number(value) == text

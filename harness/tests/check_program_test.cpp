@@ -26,9 +26,9 @@ TEST(CheckProgram, AllImplementationsAgree) {
   EXPECT_EQ(run.errors, "");
   const json verdicts = json::parse(test::file_text(file));
   fs::remove(file);
-  for (const char* key : {"mbs_version", "commit", "dirty", "compiler", "flags", "build_type",
-                          "blas_loaded", "libraries", "cpu_model", "machine", "kernel",
-                          "threads_environment", "command"}) {
+  for (const char* key :
+       {"mbs_version", "commit", "dirty", "compiler", "flags", "build_type", "blas_loaded",
+        "libraries", "cpu_model", "machine", "kernel", "threads_environment", "command"}) {
     EXPECT_TRUE(verdicts.at("context").at(key).is_string()) << key;
   }
   EXPECT_EQ(verdicts.at("rows").size(), 4 * all_variants().size());

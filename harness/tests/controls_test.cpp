@@ -160,10 +160,10 @@ long lines_with(const std::string& text, const std::string& expression) {
 
 TEST(ControlsProgram, GivesEachImplementationItsVerdict) {
   const std::string file = test::temporary_path("verdicts.json");
-  std::string arguments = "check four-bar:10 --time-limit " + std::to_string(kSeconds) +
-                          " --json '" + file + "'";
-  const std::string controls[] = {"returns_at_once", "crashes", "reference", "exits", "prints",
-                                  "nan_after_100", "throws", "unsupported"};
+  std::string arguments =
+      "check four-bar:10 --time-limit " + std::to_string(kSeconds) + " --json '" + file + "'";
+  const std::string controls[] = {"returns_at_once", "crashes",       "reference", "exits",
+                                  "prints",          "nan_after_100", "throws",    "unsupported"};
   for (const std::string& name : controls) arguments += " --implementation control/" + name;
   const auto run = test::run_program(MBS_CONTROLS, arguments);
   EXPECT_EQ(run.status, 1);
@@ -191,7 +191,10 @@ TEST(ControlsProgram, HangingAndHungryOnesDoNotStopTheOthers) {
       "ulimit -v 500000;");
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(lines_with(run.output, "control/hangs +timeout: did not finish within 4 s$"), 1);
-  EXPECT_EQ(lines_with(run.output, "control/allocates +out-of-memory: needs more than the memory limit of 488 MiB$"), 1);
+  EXPECT_EQ(
+      lines_with(run.output,
+                 "control/allocates +out-of-memory: needs more than the memory limit of 488 MiB$"),
+      1);
   EXPECT_EQ(lines_with(run.output, "control/reference +agrees$"), 1);
   EXPECT_EQ(run.errors, "");
 }
@@ -207,7 +210,8 @@ TEST(ControlsProgram, BenchKeepsTheRowOfTheOneThatFails) {
   const auto run = test::run_program(
       MBS_CONTROLS,
       "bench four-bar:2 --implementation control/nan_after_100 --implementation control/reference "
-      "--steps 120 --benchmark_min_time=0 --benchmark_out='" + file + "'");
+      "--steps 120 --benchmark_min_time=0 --benchmark_out='" +
+          file + "'");
   EXPECT_EQ(run.status, 0) << run.errors;
   const auto rows = nlohmann::json::parse(test::file_text(file)).at("benchmarks");
   std::filesystem::remove(file);
@@ -227,14 +231,16 @@ TEST(ControlsProgram, BenchKeepsTheRowOfTheOneThatFails) {
 
 TEST(ControlsProgram, SimulateNeverCallsNanOk) {
   const auto run = test::run_program(
-      MBS_CONTROLS, "simulate four-bar:2 --implementation control/nan_after_100 --duration 1 --json");
+      MBS_CONTROLS,
+      "simulate four-bar:2 --implementation control/nan_after_100 --duration 1 --json");
   EXPECT_EQ(run.status, 1);
   const auto summary = nlohmann::json::parse(run.output);
   EXPECT_EQ(summary.at("status"), "diverged");
   EXPECT_EQ(summary.at("status_reason"), "the state is not finite");
   EXPECT_EQ(summary.at("steps"), 101);
   EXPECT_NEAR(summary.at("failed_at").get<double>(), 101 * 1.25e-3, 1e-12);
-  for (const char* figure : {"position_error_max", "energy_drift_max", "constraint_violation_max"}) {
+  for (const char* figure :
+       {"position_error_max", "energy_drift_max", "constraint_violation_max"}) {
     EXPECT_TRUE(summary.at(figure).is_null()) << figure;
   }
   EXPECT_EQ(run.errors,

@@ -53,7 +53,8 @@ bool disappears(pid_t pid) {
 }
 
 TEST(Isolate, ReturnsWhatTheWorkReturns) {
-  for (const std::string& text : {std::string(), std::string("one"), std::string("a\0b\n\xff", 5)}) {
+  for (const std::string& text :
+       {std::string(), std::string("one"), std::string("a\0b\n\xff", 5)}) {
     const Isolated result = run_isolated([&] { return text; });
     EXPECT_EQ(result.fate, Fate::finished) << result.reason;
     EXPECT_EQ(result.output, text);
@@ -77,7 +78,8 @@ TEST(Isolate, ChangesNothingInTheParent) {
 }
 
 TEST(Isolate, TellsWhatWasThrown) {
-  Isolated result = run_isolated([]() -> std::string { throw std::runtime_error("no\nluck \xff"); });
+  Isolated result =
+      run_isolated([]() -> std::string { throw std::runtime_error("no\nluck \xff"); });
   EXPECT_EQ(result.fate, Fate::threw);
   EXPECT_EQ(result.reason, "no\\x0Aluck \\xFF");
   result = run_isolated([]() -> std::string { throw 1; });

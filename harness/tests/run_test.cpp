@@ -34,14 +34,13 @@ TEST(Run, ReportsASoundRun) {
   const Scene scene = load_scene("four-bar:2");
   long calls = 0;
   double last = -1.0;
-  const RunSummary summary =
-      run(scene, control("reference"), settings_for(scene, 2.0),
-          [&](long step, double t, const State& state) {
-            EXPECT_EQ(step, calls++);
-            EXPECT_NEAR(t, 1.25e-3 * static_cast<double>(step), 1e-15);
-            EXPECT_EQ(state.q.size(), 6U);
-            last = t;
-          });
+  const RunSummary summary = run(scene, control("reference"), settings_for(scene, 2.0),
+                                 [&](long step, double t, const State& state) {
+                                   EXPECT_EQ(step, calls++);
+                                   EXPECT_NEAR(t, 1.25e-3 * static_cast<double>(step), 1e-15);
+                                   EXPECT_EQ(state.q.size(), 6U);
+                                   last = t;
+                                 });
   EXPECT_EQ(summary.status, RunStatus::ok) << summary.reason;
   EXPECT_EQ(summary.reason, "");
   EXPECT_FALSE(summary.failed_at);

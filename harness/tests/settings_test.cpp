@@ -83,8 +83,9 @@ TEST(ParsePenalty, TakesNumbersAndAuto) {
 
 TEST(ParsePenalty, RefusesEverythingElse) {
   const Model model(four_bar(2));
-  for (const char* text : {"", " ", "auto ", "Auto", "0", "-0", "-1", "nan", "-nan", "inf", "-inf",
-                           "1e400", "1e-400", "1e8x", " 1e8", "1e8 ", "1,5", "0x10", "--", "e8"}) {
+  for (const char* text :
+       {"",     " ",     "auto ",  "Auto", "0",    "-0",   "-1",  "nan",  "-nan", "inf",
+        "-inf", "1e400", "1e-400", "1e8x", " 1e8", "1e8 ", "1,5", "0x10", "--",   "e8"}) {
     try {
       parse_penalty(text, model, kStep);
       ADD_FAILURE() << '"' << text << "\" was taken";

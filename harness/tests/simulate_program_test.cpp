@@ -78,8 +78,8 @@ TEST_F(SimulateProgram, SummaryHasEveryField) {
   EXPECT_EQ(summary.at("steps"), 400);
   EXPECT_GE(summary.at("passes_per_step"), 1.0);
   EXPECT_LE(summary.at("passes_per_step"), 20.0);
-  for (const char* figure : {"position_error_max", "energy_drift_max", "constraint_violation_max",
-                             "setup_us"}) {
+  for (const char* figure :
+       {"position_error_max", "energy_drift_max", "constraint_violation_max", "setup_us"}) {
     EXPECT_GT(summary.at(figure), 0.0) << figure;
   }
   EXPECT_LT(summary.at("position_error_max"), 1e-4);
@@ -105,8 +105,8 @@ TEST_F(SimulateProgram, HasNoPositionErrorWithoutAnExactSolution) {
 
 TEST_F(SimulateProgram, EveryImplementationRuns) {
   for (const NamedVariant& variant : all_variants()) {
-    const auto run = test::run_mbs("simulate four-bar:2 --duration 0.5 --json --implementation " +
-                                   variant.name);
+    const auto run =
+        test::run_mbs("simulate four-bar:2 --duration 0.5 --json --implementation " + variant.name);
     EXPECT_EQ(run.status, 0) << variant.name << ": " << run.errors;
     EXPECT_EQ(json::parse(run.output).at("implementation"), variant.name);
   }
@@ -168,8 +168,8 @@ TEST_F(SimulateProgram, TrajectoryHasTheStatesToTheLastBit) {
       [&](long step, double t, const State& state) {
         if (step % 3 != 0) return;
         const auto &q = state.q, &v = state.v;
-        expected.push_back({t,    0.0,  0.0,  0.0,  0.0,  1.0,  0.0,  0.0,  0.0,
-                            q[0], q[1], v[0], v[1], q[2], q[3], v[2], v[3]});
+        expected.push_back({t, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, q[0], q[1], v[0], v[1], q[2],
+                            q[3], v[2], v[3]});
       });
   for (std::size_t row = 0; row < 3; ++row) {
     std::vector<double> numbers;
@@ -236,10 +236,10 @@ TEST_F(SimulateProgram, RefusesBadOptions) {
 }
 
 TEST_F(SimulateProgram, RefusesUnknownScenes) {
-  for (const char* scene : {"four-bar:0", "four-bar:-1", "four-bar:99999999999", "four-bar:x",
-                            "four-bar:", "four-bar:2,fill=0", "four-bar:2,fill=1.5",
-                            "four-bar:2,fill=0.01", "four-bar:2,fill=nan", "no-such-scene",
-                            "no/such/scene.json"}) {
+  for (const char* scene :
+       {"four-bar:0", "four-bar:-1", "four-bar:99999999999", "four-bar:x",
+        "four-bar:", "four-bar:2,fill=0", "four-bar:2,fill=1.5", "four-bar:2,fill=0.01",
+        "four-bar:2,fill=nan", "no-such-scene", "no/such/scene.json"}) {
     expect_refusal(std::string("'") + scene + "'", scene);
   }
   expect_refusal("'" MBS_ROOT "'", "directory");
@@ -267,13 +267,16 @@ TEST_F(SimulateProgram, RefusesScenesThatCannotBe) {
     std::string text, word;
   } cases[] = {
       {"{\"points\": [\n  oops]}", "line 2"},
-      {"", "line 1"},
+      {"", "empty"},
       {head + R"(], "rods": [{"between": ["A", "B"], "mass": -1}]})", "rods[0].mass"},
-      {head + R"(, {"name": "C", "position": [1, 0]}], "rods": [{"between": ["B", "C"], "mass": 1}]})",
+      {head +
+           R"(, {"name": "C", "position": [1, 0]}], "rods": [{"between": ["B", "C"], "mass": 1}]})",
        "rods[0]"},
       {head + R"(, {"name": "C", "position": [2, 0]}], "rods": [)" + rod + "]}", "\"C\""},
-      {head + R"(, {"name": "C", "position": [2, 0], "fixed": true}, {"name": "D", "position": [1, 1],
-"fixed": true}], "rods": [)" + rod + R"(, {"between": ["B", "C"], "mass": 1},
+      {head +
+           R"(, {"name": "C", "position": [2, 0], "fixed": true}, {"name": "D", "position": [1, 1],
+"fixed": true}], "rods": [)" +
+           rod + R"(, {"between": ["B", "C"], "mass": 1},
 {"between": ["B", "D"], "mass": 1}]})",
        "over-fixed"},
       {head + R"(], "gravity": [0, 1e999], "rods": [)" + rod + "]}", "1e999"},

@@ -121,18 +121,22 @@ bool read_to_end(pid_t pid, int descriptor, Clock::time_point deadline, std::str
 Isolated interpret(int status, const std::string& text, const IsolationLimits& limits) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
-    return {Fate::crashed, fmt::format("killed by signal {} ({})", signal, ::strsignal(signal)), ""};
+    return {Fate::crashed, fmt::format("killed by signal {} ({})", signal, ::strsignal(signal)),
+            ""};
   }
   if (WEXITSTATUS(status) != 0 || text.empty()) {
     return {Fate::crashed,
             fmt::format("exited with status {} before its result", WEXITSTATUS(status)), ""};
   }
   switch (text[0]) {
-    case kFinished: return {Fate::finished, "", text.substr(1)};
+    case kFinished:
+      return {Fate::finished, "", text.substr(1)};
     case kOutOfMemory:
       return {Fate::out_of_memory,
-              fmt::format("needs more than the memory limit of {} MiB", memory_limit(limits) >> 20), ""};
-    default: return {Fate::threw, printable(std::string_view(text).substr(1), 1000), ""};
+              fmt::format("needs more than the memory limit of {} MiB", memory_limit(limits) >> 20),
+              ""};
+    default:
+      return {Fate::threw, printable(std::string_view(text).substr(1), 1000), ""};
   }
 }
 
