@@ -14,6 +14,8 @@
 namespace mbs {
 
 AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), partial_(path_ + ".partial") {
+  // A rename would replace a device such as /dev/stdout by a file: write to it directly.
+  if (std::filesystem::exists(path_) && !std::filesystem::is_regular_file(path_)) partial_ = path_;
   if (path_.empty() || std::filesystem::is_directory(path_)) {
     throw UsageError(fmt::format("cannot write '{}': it is not a file name", path_));
   }
@@ -24,7 +26,7 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), partial_(path
 }
 
 AtomicFile::~AtomicFile() {
-  if (partial_.empty()) return;
+  if (partial_.empty() || partial_ == path_) return;
   stream_.close();
   std::error_code ignored;
   std::filesystem::remove(partial_, ignored);
@@ -34,7 +36,7 @@ void AtomicFile::commit() {
   stream_.close();
   std::error_code error;
   if (stream_.fail()) error = std::make_error_code(std::errc::no_space_on_device);
-  if (!error) std::filesystem::rename(partial_, path_, error);
+  if (!error && partial_ != path_) std::filesystem::rename(partial_, path_, error);
   if (error) throw UsageError(fmt::format("cannot write '{}': {}", path_, error.message()));
   partial_.clear();
 }

@@ -113,6 +113,7 @@ long allocations_of_steps(const Variant& variant, const Scene& scene) {
 
 class AllocationFreeStep : public ::testing::TestWithParam<NamedVariant> {};
 
+/// Zero on every scene, unless the variant says that its library allocates: then it must be true.
 TEST_P(AllocationFreeStep, OnEveryScene) {
   if (!test::counts_allocations()) GTEST_SKIP() << kNotCounted;
   std::vector<Scene> scenes;
@@ -122,13 +123,21 @@ TEST_P(AllocationFreeStep, OnEveryScene) {
   }
   scenes.push_back(free_fall());
   scenes.push_back(spatial());
+  long most = 0;
   for (const Scene& scene : scenes) {
     SCOPED_TRACE(scene.name);
     try {
-      EXPECT_EQ(allocations_of_steps(*GetParam().variant, scene), 0);
+      const long count = allocations_of_steps(*GetParam().variant, scene);
+      if (GetParam().variant->allocates.empty()) {
+        EXPECT_EQ(count, 0);
+      }
+      most = std::max(most, count);
     } catch (const Unsupported&) {
       continue;  // `mbs check` is where this is reported
     }
+  }
+  if (!GetParam().variant->allocates.empty()) {
+    EXPECT_GT(most, 0);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <ostream>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -31,6 +32,10 @@ struct Expectation {
   std::string verdict;
   std::string reason;  ///< regular expression, to be found in the reason
 };
+
+void PrintTo(const Expectation& expectation, std::ostream* stream) {
+  *stream << expectation.control;
+}
 
 /// A signal; sanitizers turn it into a report and an exit with status 1.
 std::string killed(const std::string& signal) {

@@ -8,7 +8,7 @@ from study.pipeline.layout import ROOT, program, read_json, write_json
 
 
 def bench(path, implementation, scene, profile, context, *, steps, repetitions=1, min_time=1e-6,
-          more=()):
+          limit="cell_seconds", more=()):
     """Google Benchmark's JSON of one cell; a dead child leaves the same shape with "failure"."""
     if path.exists():
         return read_json(path)
@@ -17,7 +17,7 @@ def bench(path, implementation, scene, profile, context, *, steps, repetitions=1
                "--step", f"{profile.step:g}", "--penalty", profile.penalty, "--steps", str(steps),
                f"--benchmark_repetitions={repetitions}", f"--benchmark_min_time={min_time:g}",
                f"--benchmark_out={_short(partial)}", "--benchmark_out_format=json", *more]
-    ended = child.run(command, profile.limits["cell_seconds"], profile.limits["memory_mb"])
+    ended = child.run(command, profile.limits[limit], profile.limits["memory_mb"])
     if ended.status == "exited" and _complete(partial):
         os.replace(partial, path)
     else:

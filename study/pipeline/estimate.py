@@ -36,7 +36,8 @@ def work(profile, variants):
     for variables, scenes in profile.columns.items():
         reached = [s for s in scenes if s.fill is None or s.fill > natural_fill(variables)]
         penalties = len(profile.accuracy["penalties"])
-        pilot = START + 4 * profile.pilot_steps * _dense_seconds(variables)
+        pilot = START + min(4 * profile.pilot_steps * _dense_seconds(variables),
+                            profile.limits["pilot_seconds"])
         steps = [_step_seconds(profile, scene) for scene in reached]
         gates = sum(GATE_START + variants * min(GATE_STEPS * step, GATE_MOST) for step in steps)
         simulate = START + min(profile.accuracy["duration"] / profile.step * steps[0] / 2,

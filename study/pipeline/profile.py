@@ -11,7 +11,7 @@ SETTINGS = {  # key: type; ../README.md and the profiles themselves say what eac
     "min_time": float, "stretch_lengths": list, "stretch_budget": dict, "pilot_steps": int,
     "exclusion_factor": float, "limits": dict, "accuracy": dict, "columns": list,
 }
-LIMITS = {"cell_seconds", "check_seconds", "simulate_seconds", "memory_mb"}
+LIMITS = {"pilot_seconds", "cell_seconds", "check_seconds", "simulate_seconds", "memory_mb"}
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 #
 # A pilot (the first steps of the motion, the fastest of PILOT_RUNS) predicts each cell's cost. Cells
 # more than `exclusion_factor` times slower than the best of their scene are excluded: neither checked
-# nor timed. "Best" counts only what the gate has not rejected, so a wrong but fast implementation
+# nor timed. A pilot that runs out of time proves a least cost, which goes into its reason. "Best" counts only what the gate has not rejected, so a wrong but fast implementation
 # excludes nobody: after each verdict the rule is applied again, until nobody new has to be checked.
 import sys
 
@@ -35,12 +35,16 @@ def verify(study, variables):
 
 
 def _pilot(study, implementation, scene, progress):
-    """{"step_us"} predicted, or {"status", "reason"} of the failure."""
+    """{"step_us"} predicted, or {"status", "reason"} of the failure, perhaps "step_us_at_least"."""
     raw = _run_pilot(study, implementation, scene)
     progress.done()
     failed = cells.failure(raw)
     if failed:
-        return {"status": failed[0], "reason": f"pilot: {failed[1]}"}
+        pilot = {"status": failed[0], "reason": f"pilot: {failed[1]}"}
+        if failed[0] == "timeout":  # a warm-up and PILOT_RUNS stretches were not done in this time
+            steps = study.profile.pilot_steps * (PILOT_RUNS + 1)
+            pilot["step_us_at_least"] = 1e6 * study.profile.limits["pilot_seconds"] / steps
+        return pilot
     fastest = min(sample["real_time"] for sample in cells.samples(raw))
     return {"step_us": fastest / study.profile.pilot_steps}
 
@@ -48,7 +52,7 @@ def _pilot(study, implementation, scene, progress):
 def _run_pilot(study, implementation, scene):
     return cells.bench(study.layout.cell("pilot", implementation, scene), implementation, scene,
                        study.profile, study.context, steps=study.profile.pilot_steps,
-                       repetitions=PILOT_RUNS, more=["--start", "0"])
+                       repetitions=PILOT_RUNS, limit="pilot_seconds", more=["--start", "0"])
 
 
 def _natural_fill(study, scene):
@@ -94,14 +98,17 @@ def best_cost(pilots, verdicts):
 
 
 def _scene_plan(profile, scene, pilots, verdicts):
-    best, plan = best_cost(pilots, verdicts), {}
+    best, plan, factor = best_cost(pilots, verdicts), {}, profile.exclusion_factor
     for name, pilot in pilots.items():
         verdict = verdicts.get(name)
         cell = {"pilot_step_us": pilot.get("step_us"), "pilot_ratio": None, "checks": []}
         if "step_us" not in pilot:
             cell |= {"status": pilot["status"], "reason": pilot["reason"]}
+            if "step_us_at_least" in pilot and best < float("inf"):
+                cell["pilot_ratio"] = pilot["step_us_at_least"] / best
+                cell["reason"] += (f"; at least {cell['pilot_ratio']:.0f} times slower than the "
+                                   "best of its scene")
         elif verdict is None:
-            factor = profile.exclusion_factor
             cell |= {"status": "excluded", "pilot_ratio": pilot["step_us"] / best,
                      "reason": f"at least {factor:g} times slower than the best of its scene"}
         elif verdict["verdict"] == "agrees":

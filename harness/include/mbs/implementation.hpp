@@ -16,6 +16,8 @@ struct Variant {
   /// Sets a simulation up (timed apart from stepping). `model` outlives the simulation.
   /// Throws Unsupported if this implementation cannot simulate `model`.
   std::unique_ptr<Simulation> (*create)(const Model& model, const StepSettings& settings) = nullptr;
+  /// Why step() allocates memory, where the library leaves no choice; empty: it must not.
+  std::string allocates = "";
 };
 
 /// What the folder `implementations/<folder>/` offers. The folder defines

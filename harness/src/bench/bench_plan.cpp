@@ -17,7 +17,6 @@ namespace mbs {
 namespace {
 
 constexpr int kDefaultSteps = 800;
-constexpr double kClearance = 0.2;  // s, what make_stretch() keeps from a position it cannot cross
 constexpr const char* kControl = "null/null";
 
 void check(const BenchRequest& request) {

@@ -14,9 +14,10 @@ namespace mbs {
 ReferenceRun run_reference(const Scene& scene, const StepSettings& settings) {
   constexpr int kSteps = 800;
   constexpr int kProbes = 5;
-  const int steps = std::clamp(400'000 / std::max(scene.model.variables(), 1), 16, kSteps);
+  const int most = std::clamp(400'000 / std::max(scene.model.variables(), 1), 16, kSteps);
   ReferenceRun result;
-  result.stretch = make_stretch(scene, settings.step, steps);
+  result.stretch = make_stretch(scene, settings.step, most);
+  const int steps = result.stretch.steps;
 
   ReferenceSimulation reference(scene.model, settings);
   reference.set_state(result.stretch.initial);

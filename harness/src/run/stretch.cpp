@@ -24,11 +24,13 @@ Stretch make_stretch(const Scene& scene, double step, int steps, std::optional<d
     throw UsageError(fmt::format("--start is {:g} s: it must be at least 0", *start));
   }
   const FourBarExact exact(*scene.four_bar_loops);
-  constexpr double kClearance = 0.2;  // s
   const double singular = exact.first_singular_time();
-  const double begin = *scene.four_bar_loops <= kMostLoopsToCross
-                           ? singular - steps / 2 * step
-                           : singular - kClearance - steps * step;
+  double begin = singular - steps / 2 * step;
+  if (*scene.four_bar_loops > kMostLoopsToCross) {
+    const double room = std::floor((singular - kClearance) / step);
+    if (!start) steps = static_cast<int>(std::clamp<double>(room, 1, steps));
+    begin = singular - kClearance - steps * step;
+  }
   Stretch stretch{start.value_or(std::max(0.0, begin)), steps, {}};
   const auto n = static_cast<std::size_t>(scene.model.variables());
   std::vector<double> q(n), v(n), a(n);
