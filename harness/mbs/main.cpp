@@ -10,6 +10,7 @@
 
 #include "environment/environment.hpp"
 #include "mbs/commands.hpp"
+#include "printable.hpp"
 
 namespace {
 
@@ -36,7 +37,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "mbs: not enough memory for this scene with this implementation\n");
     return 2;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "mbs: {}\n", error.what());
+    fmt::print(stderr, "mbs: {}\n", mbs::printable(error.what(), 2000));
     return 2;
   }
 }

@@ -8,6 +8,7 @@
 #include "mbs/bench_command.hpp"
 #include "mbs/commands.hpp"
 #include "run/settings.hpp"
+#include "printable.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -84,7 +85,8 @@ int run_program(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    fmt::print(stderr, "mbs: {} (mbs --help, mbs <subcommand> --help)\n", error.what());
+    fmt::print(stderr, "mbs: {} (mbs --help, mbs <subcommand> --help)\n",
+               printable(error.what(), 1000));
     return 2;
   }
   return status;

@@ -156,7 +156,10 @@ void add_simulate_command(CLI::App& app, int& status) {
   options->step.add_to(*command);
   command->add_option("--duration", options->duration, "simulated time, s")->capture_default_str();
   command->add_option("--trajectory", options->trajectory,
-                      "write positions and velocities of all points to this CSV file");
+                      "write positions and velocities of all points to this CSV file")
+      ->check([](const std::string& path) {
+        return path.empty() ? std::string("is empty: it must be a file name") : std::string();
+      });
   command->add_option("--every", options->every, "write every K-th step only")
       ->capture_default_str();
   command->add_flag("--json", options->json, "print the summary as JSON");

@@ -21,7 +21,7 @@ namespace {
 
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kSanitized = true;
-constexpr double kSeconds = 15.0;  // everything is ten times slower
+constexpr double kSeconds = 60.0;  // everything is ten times slower and more
 #else
 constexpr bool kSanitized = false;
 constexpr double kSeconds = 3.0;
@@ -120,7 +120,7 @@ TEST_P(Control, GetsItsVerdict) {
   EXPECT_EQ(verdict.reason.find('\n'), std::string::npos);
   EXPECT_EQ(verdict.scene, "four-bar:10");
   EXPECT_EQ(verdict.implementation, "control/" + expected.control);
-  EXPECT_LT(spent.count(), limits.seconds + 1.0);
+  EXPECT_LT(spent.count(), limits.seconds + 5.0);
   const bool compared = expected.verdict == "agrees" || expected.verdict == "disagrees";
   EXPECT_EQ(verdict.checks.empty(), !compared);
 }

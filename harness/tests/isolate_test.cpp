@@ -123,7 +123,7 @@ TEST(Isolate, KillsWhatHangs) {
     EXPECT_EQ(result.reason, "did not finish within 0.3 s");
   });
   EXPECT_GE(seconds, 0.3);
-  EXPECT_LT(seconds, 2.0);
+  EXPECT_LT(seconds, 10.0);
 }
 
 TEST(Isolate, KillsWhatIsStopped) {
@@ -146,7 +146,7 @@ TEST(Isolate, ClosingThePipeDoesNotEscapeTheLimit) {
         kShort);
     EXPECT_EQ(result.fate, Fate::timeout);
   });
-  EXPECT_LT(seconds, 2.0);
+  EXPECT_LT(seconds, 10.0);
 }
 
 /// Starts a process of its own that keeps all descriptors and sleeps; its id is in the output.
@@ -161,7 +161,8 @@ std::string leave_someone_behind() {
 
 TEST(Isolate, LeavesNoGrandchildBehind) {
   Isolated result;
-  EXPECT_LT(seconds_of([&] { result = run_isolated(leave_someone_behind, {.seconds = 20}); }), 5.0);
+  EXPECT_LT(seconds_of([&] { result = run_isolated(leave_someone_behind, {.seconds = 20}); }),
+            15.0);
   ASSERT_EQ(result.fate, Fate::finished) << result.reason;
   EXPECT_TRUE(disappears(std::stoi(result.output)));
 }

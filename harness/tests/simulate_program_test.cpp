@@ -215,6 +215,23 @@ TEST_F(SimulateProgram, RefusesUnwritableOutput) {
   expect_refusal("four-bar:2 --trajectory '" + folder.file("taken") + "'", "taken");
 }
 
+// Through links of our own, so that a defect could only replace those.
+TEST_F(SimulateProgram, WritesToDevicesWithoutReplacingThem) {
+  const Folder folder;
+  const std::string full = folder.file("full"), null = folder.file("null");
+  fs::create_symlink("/dev/full", full);
+  fs::create_symlink("/dev/null", null);
+  const auto run = simulate("four-bar:2 --duration 0.1 --trajectory '" + full + "'");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_EQ(std::ranges::count(run.errors, '\n'), 1) << run.errors;
+  EXPECT_NE(run.errors.find("cannot write '" + full + "'"), std::string::npos) << run.errors;
+  EXPECT_EQ(simulate("four-bar:2 --duration 0.1 --trajectory '" + null + "'").status, 0);
+  EXPECT_TRUE(fs::is_symlink(full) && fs::is_symlink(null));
+  fs::remove(full);
+  fs::remove(null);
+  EXPECT_TRUE(folder.is_empty());
+}
+
 TEST_F(SimulateProgram, RefusesBadOptions) {
   for (const char* option : {"--step", "--duration", "--penalty", "--tolerance"}) {
     for (const char* value : {"0", "-1", "nan", "inf", "abc", "1e400", "''"}) {

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "check/exact_checks.hpp"
-#include "scene/printable.hpp"
+#include "printable.hpp"
 
 namespace mbs {
 namespace {

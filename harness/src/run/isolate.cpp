@@ -20,7 +20,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "scene/printable.hpp"
+#include "printable.hpp"
 
 namespace mbs {
 namespace {

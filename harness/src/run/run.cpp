@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <new>
 
 #include "run/initial_state.hpp"
+#include "printable.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -120,7 +122,12 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
     step_through(*simulation, state, settings, judge, observer, summary, times);
   } catch (const Unsupported& reason) {
     summary.status = RunStatus::unsupported;
-    summary.reason = reason.what();
+    summary.reason = printable(reason.what(), 1000);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    summary.status = RunStatus::diverged;
+    summary.reason = fmt::format("the implementation threw: {}", printable(error.what(), 1000));
   }
   summary.step_us_median = quantile(times, 0.5);
   summary.step_us_p99 = quantile(times, 0.99);

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "scene/json_text.hpp"
-#include "scene/printable.hpp"
+#include "printable.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {

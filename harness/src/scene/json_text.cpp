@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "scene/printable.hpp"
+#include "printable.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {

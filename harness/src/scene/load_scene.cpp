@@ -9,7 +9,7 @@
 #include <fstream>
 #include <utility>
 
-#include "scene/printable.hpp"
+#include "printable.hpp"
 #include "scene/scene.hpp"
 #include "usage_error.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "model_math/jacobian_rank.hpp"
 #include "model_math/kinematics.hpp"
-#include "scene/printable.hpp"
+#include "printable.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {

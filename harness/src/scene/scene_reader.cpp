@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "scene/bodies.hpp"
-#include "scene/printable.hpp"
+#include "printable.hpp"
 
 namespace mbs {
 namespace {

@@ -1,5 +1,5 @@
 // Escapes what would break a line or a terminal.
-#include "scene/printable.hpp"
+#include "printable.hpp"
 
 #include <fmt/format.h>
 
