@@ -10,8 +10,10 @@ from analysis import tables
 from analysis.loader import TableError, load
 
 CAPTIONS = {
-    "step_time": "Median time of one step at the mechanism's own fill, all implementations timed "
-                 "over the same stretch of the motion around its first singular position.",
+    "step_time": "Median time of one step at the mechanism's own fill. All implementations are "
+                 "timed over the same stretch of the motion, centred on its first singular "
+                 f"position up to {tables.LAST_CENTRED} variables, before it above (crossing it "
+                 "multiplies rounding there).",
     "region_map": "Winner of every cell, declared only if the 95 % interval of its ratio to the "
                   "second excludes 1.",
     "phases": "Ticks of the processor's counter booked by phase in extra profiled stretches, apart "
@@ -54,7 +56,7 @@ def render(folder):
         overhead=tables.overhead(results), verdicts=tables.verdicts(results),
         checks=tables.checks(results), accuracy=tables.accuracy(results),
         losses=tables.losses(results), not_reached=tables.not_reached(results),
-        must_hold=tables.must_hold(results),
+        must_hold=tables.must_hold(results), before_singular=tables.BEFORE_SINGULAR,
         samples=len(results.samples()), cells=results.samples().groupby(
             ["scene", "implementation"]).ngroups)
 

@@ -65,24 +65,27 @@ class Ranking:
     margin: float
     low: float
     high: float
+    rivals_failed: bool = False
 
     @property
     def decided(self):
-        """A lone implementation wins; otherwise the interval must exclude 1."""
-        return self.second is None or self.low > 1.0
+        """The interval must exclude 1; alone, one wins only if no rival failed: against those that
+        are excluded as too slow it has won, of those that failed nothing is known."""
+        return not self.rivals_failed if self.second is None else self.low > 1.0
 
 
-def rank(samples):
+def rank(samples, rivals_failed=False):
     """Ranking of one scene's ok samples; None if there are none. Only medians order the cells; a
-    winner is declared only if the interval of its ratio to the second excludes 1."""
+    winner is declared only if the interval of its ratio to the second excludes 1. `rivals_failed`
+    says whether another implementation of the scene failed or disagrees."""
     medians = samples.groupby("implementation").step_us.median().sort_values(kind="stable")
     if medians.empty:
         return None
     if len(medians) == 1:
-        return Ranking(medians.index[0], None, numpy.nan, numpy.nan, numpy.nan)
+        return Ranking(medians.index[0], None, numpy.nan, numpy.nan, numpy.nan, rivals_failed)
     winner, second = medians.index[:2]
     cells = {name: by_round(samples[samples.implementation == name]) for name in (winner, second)}
-    return Ranking(winner, second, *ratio_interval(cells[second], cells[winner]))
+    return Ranking(winner, second, *ratio_interval(cells[second], cells[winner]), rivals_failed)
 
 
 def power_law_exponent(sizes, times):

@@ -7,11 +7,13 @@ from analysis.loader import FAILURES, NULL
 from analysis.statistics import rank
 
 UNREACHED = "#e9e9e9"
+UNMEASURED = {"facecolor": "white", "edgecolor": "#bbbbbb", "hatch": "...", "linewidth": 0}
+BAND = 5.0  # height of a column's cell that is the only one, %
 
 
 def draw(results):
     look, tidy = Look(results), results.tidy
-    tidy = tidy[(tidy.kind == "timing") & (tidy.implementation != NULL)]
+    tidy = tidy[tidy.kind == "timing"]
     sizes = sorted(tidy.variables.dropna().unique())
     figure, axes = plt.subplots(figsize=(max(6.4, 1.1 + 1.0 * len(sizes)), 5.6))
     shown = []
@@ -27,24 +29,44 @@ def draw(results):
 
 
 def _column(axes, column, rows, look):
-    """Cells of one size between the midpoints of the measured fills; winners in order."""
+    """Cells of one size, each around its own fill; winners in order."""
     reached = rows[rows.status != "not-reached"]
-    fills = reached.groupby("scene").fill_percent.median().dropna().sort_values()
-    edges = [(low + high) / 2 for low, high in zip(fills, fills[1:])]
-    bounds = [fills.iloc[0], *edges, 100] if len(fills) else [100]
+    fills = scene_fills(reached)
+    bounds = cell_bounds(list(fills))
+    axes.add_patch(Rectangle((column - 0.5, bounds[-1]), 1, 100 - bounds[-1], **UNMEASURED))
     axes.add_patch(Rectangle((column - 0.5, 0), 1, bounds[0], facecolor=UNREACHED, linewidth=0))
     if bounds[0] > 6:
         axes.text(column, bounds[0] / 2, "not\nreached" if bounds[0] > 12 else "not reached",
                   ha="center", va="center", fontsize=8, color=GREY)
     winners = []
     for scene, low, high in zip(fills.index, bounds, bounds[1:]):
-        cell = reached[reached.scene == scene]
+        cell = reached[(reached.scene == scene) & (reached.implementation != NULL)]
         winners += _cell(axes, (column - 0.5, low), high - low, cell, look)
     return winners
 
 
+def scene_fills(rows):
+    """Percent by scene, ascending: as measured, or as asked where nothing of a scene could run.
+    The null control counts: it has the natural scene's fill even if every pilot failed."""
+    by_scene = rows.groupby("scene")
+    fills = by_scene.fill_percent.median().fillna(100 * by_scene.fill_asked.median())
+    return fills.dropna().sort_values()
+
+
+def cell_bounds(fills):
+    """Lower edge of each cell and the last one's upper edge, for ascending `fills` in percent: the
+    first begins at its own fill, neighbours meet half-way, the last ends half the last gap above
+    its own fill; a fill alone has a thin band. Nothing is claimed of fills beyond."""
+    if not fills:
+        return [0.0]
+    edges = [(low + high) / 2 for low, high in zip(fills, fills[1:])]
+    above = (fills[-1] - fills[-2]) / 2 if edges else BAND
+    return [fills[0], *edges, min(100.0, fills[-1] + above)]
+
+
 def _cell(axes, corner, height, rows, look):
-    ranking = rank(rows[rows.status == "ok"])
+    failed = rows[rows.status.isin(FAILURES)].implementation.nunique()
+    ranking = rank(rows[rows.status == "ok"], rivals_failed=failed > 0)
     colour = look.colour(ranking.winner) if ranking else "white"
     decided = ranking is not None and ranking.decided
     axes.add_patch(Rectangle(corner, 1, height, facecolor=colour, edgecolor="white", linewidth=1.2,
@@ -59,7 +81,7 @@ def _cell(axes, corner, height, rows, look):
     else:
         text = f"{ranking.margin:.2f}×" if ranking.margin < 9.95 else f"{ranking.margin:.0f}×"
     text = f"{look.letter(ranking.winner)} {text}" if ranking else text
-    marks = _marks(rows)
+    marks = _marks(rows, failed)
     centre = (corner[0] + 0.5, corner[1] + height / 2)
     axes.text(*centre, text + (f"  {marks}" if marks else ""), ha="center", va="center",
               fontsize=8.5 if height > 5 else 7, color="black",
@@ -68,9 +90,8 @@ def _cell(axes, corner, height, rows, look):
     return [ranking.winner] if ranking else []
 
 
-def _marks(rows):
+def _marks(rows, failed):
     excluded = rows[rows.status == "excluded"].implementation.nunique()
-    failed = rows[rows.status.isin(FAILURES)].implementation.nunique()
     return " ".join([f"▲{excluded}"] * bool(excluded) + [f"✕{failed}"] * bool(failed))
 
 
@@ -79,7 +100,8 @@ def _legend(axes, names, look):
                for name in names]
     handles += [Patch(facecolor="#eeeeee", hatch="////", edgecolor="#555555", linewidth=0,
                       label="undecided (colour: lower median)"),
-                Patch(facecolor=UNREACHED, label="below the mechanism's own fill")]
+                Patch(facecolor=UNREACHED, label="below the mechanism's own fill"),
+                Patch(**UNMEASURED, label="not measured")]
     axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=9)
     axes.text(1.03, 0.0, "A 1.32×  winner, and second / winner\n▲k  k excluded as too slow\n"
               "✕k  k failed or disagree", transform=axes.transAxes, fontsize=8, color=GREY,

@@ -11,7 +11,7 @@ def timing(implementation, round_number, repetition, step_us, **more):
     return {"kind": "timing", "scene": "four-bar:4", "implementation": implementation,
             "folder": implementation.split("/")[0], "variant": implementation.split("/")[1],
             "variables": 10, "fill_percent": 52, "status": "ok", "round": round_number,
-            "repetition": repetition, "stretch_steps": 100, "step_us": step_us, "finite": 1,
+            "repetition": repetition, "stretch_steps": 100, "step_us": step_us,
             "stretch_us": 100 * step_us, "setup_us": 5, "passes": 220, "machine": "m",
             "commit": "c", "dirty": "false", "raw_file": "raw/x.json"} | more
 

@@ -37,8 +37,54 @@ def test_failed_cells_are_never_ranked(tables):
     write(folder / "tidy.csv", "tidy", rows)
     results = load(folder)
     assert [entry["ranking"].winner for entry in report_tables.winners(results)] == ["b/y"]
+    assert not report_tables.winners(results)[0]["ranking"].decided  # nobody is left to beat
     assert report_tables.losses(results)[0]["reason"] == "wrong"
-    assert "B alone  ✕1" in texts(region_map.draw(results))
+    drawn = region_map.draw(results)
+    assert "B alone  ✕1" in texts(drawn)
+    assert any(patch.get_hatch() == "////" for patch in drawn.axes[0].patches)
+
+
+def test_alone_against_excluded_ones_is_decided(tables):
+    folder, rows = tables
+    kept = [row for row in rows if row["implementation"] == "a/x"]
+    kept.append(timing("b/y", "", "", "", status="excluded", reason="at least 100 times slower"))
+    write(folder / "tidy.csv", "tidy", kept)
+    results = load(folder)
+    assert report_tables.winners(results)[0]["ranking"].decided
+    drawn = region_map.draw(results)
+    assert "A alone  ▲1" in texts(drawn)
+    assert not any(patch.get_hatch() == "////" for patch in drawn.axes[0].patches)
+
+
+@pytest.mark.parametrize("fills, bounds", [
+    ([], [0.0]), ([0.6], [0.6, 5.6]), ([98.0], [98.0, 100.0]),
+    ([10, 20, 40], [10, 15, 30, 50]), ([50, 75, 100], [50, 62.5, 87.5, 100])])
+def test_cells_reach_no_further_than_their_own_fill(fills, bounds):
+    assert region_map.cell_bounds(fills) == pytest.approx(bounds)
+
+
+def test_a_scene_without_any_pilot_stays_on_the_map(tables):
+    folder, rows = tables
+    for name in ("a/x", "b/y"):
+        rows.append(timing(name, "", "", "", status="crashed", reason="SIGSEGV", fill_percent="",
+                           scene="four-bar:4,fill=0.80", fill_asked=0.8))
+    write(folder / "tidy.csv", "tidy", rows)
+    results = load(folder)
+    assert list(region_map.scene_fills(results.tidy)) == [52, 80]
+    assert "none  ✕2" in texts(region_map.draw(results))
+
+
+def test_exponent_names_the_passes_behind_it(tables):
+    folder, rows = tables
+    rows += [timing("csc_klu/refactor", 1, 1, size, variables=size, scene=f"n{size}", passes=200)
+             for size in (100, 200, 1000)]
+    registry = folder / "implementations.json"
+    registry.write_text(registry.read_text().replace("c/z", "csc_klu/refactor"))
+    write(folder / "tidy.csv", "tidy", rows)
+    row = next(row for row in report_tables.must_hold(load(folder)) if "exponent" in row["claim"])
+    assert row["value"] == "1.00" and row["holds"]
+    assert "n = 100: 2.00; n = 200: 2.00; n = 1000: 2.00; sizes above 602" in row["note"]
+    assert row["note"].split("; ")[-1] in render(folder)
 
 
 def test_report_is_self_contained_and_escaped(tables):

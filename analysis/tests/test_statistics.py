@@ -56,6 +56,19 @@ def test_interval_covers_the_truth_about_as_often_as_it_says():
     assert 0.85 <= covered / 200 <= 1.0
 
 
+@pytest.mark.parametrize("rounds, repetitions", [(6, 2), (7, 3)])  # quick, paper
+def test_interval_covers_the_truth_though_processes_differ(rounds, repetitions):
+    """Each process has an effect of its own of 3 %, far above the noise inside it (1 %)."""
+    random = numpy.random.default_rng(5)
+
+    def cell(level):
+        return {r: level * (1 + 0.03 * random.standard_normal())
+                * (1 + 0.01 * random.standard_normal(repetitions)) for r in range(rounds)}
+    intervals = [ratio_interval(cell(1.2), cell(1.0), replicates=500) for _ in range(400)]
+    covered = sum(low <= 1.2 <= high for _, low, high in intervals) / len(intervals)
+    assert 0.9 <= covered <= 0.99
+
+
 def test_clear_difference_is_decided_and_the_same_is_not():
     random = numpy.random.default_rng(3)
     clear = pandas.DataFrame(rows("a", noisy(random, 1.0)) + rows("b", noisy(random, 1.5)))
@@ -69,6 +82,7 @@ def test_clear_difference_is_decided_and_the_same_is_not():
 def test_alone_and_nobody():
     alone = rank(pandas.DataFrame(rows("a", {1: [1.0, 1.1]})))
     assert alone.winner == "a" and alone.second is None and alone.decided
+    assert not rank(pandas.DataFrame(rows("a", {1: [1.0, 1.1]})), rivals_failed=True).decided
     assert rank(pandas.DataFrame(rows("a", {1: [1.0]})).iloc[:0]) is None
 
 

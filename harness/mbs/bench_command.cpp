@@ -117,7 +117,7 @@ int run_cells(const std::vector<PlannedCell>& cells, bool phases) {
   if (!out.empty() && (!file.complete() || error)) {
     throw UsageError(fmt::format("--benchmark_out: {} could not be written to its end", out));
   }
-  return 0;
+  return rows.failed() ? 1 : 0;
 }
 
 }  // namespace

@@ -48,8 +48,9 @@ int check(const Options& options) {
   std::optional<AtomicFile> file;
   if (!options.json.empty()) file.emplace(options.json);
   std::vector<Verdict> verdicts;
-  for (const std::string& name : options.scenes) {
-    const Scene scene = load_scene(name);
+  std::vector<Scene> scenes;  // all of them before the first check, so that a bad one loses nothing
+  for (const std::string& name : options.scenes) scenes.push_back(load_scene(name));
+  for (const Scene& scene : scenes) {
     const StepSettings settings = options.step.resolve(scene.model);
     const ReferenceRun reference = run_reference(scene, settings);
     for (const NamedVariant& variant : variants) {

@@ -1,5 +1,4 @@
 // The program `mbs`: list, describe, simulate, check, bench.
-#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -7,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 
 #include "environment/environment.hpp"
 #include "mbs/commands.hpp"
@@ -26,18 +26,29 @@ void limit_memory() {
 #endif
 }
 
+/// The status to leave with: what was printed must have arrived.
+int finish(int status) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  std::fputs("mbs: cannot write to standard output\n", stderr);
+  return status == 0 ? 2 : status;
+}
+
+/// One line, and never an exception: standard error may be closed.
+int fail(const std::string& message) {
+  std::fputs(("mbs: " + message + "\n").c_str(), stderr);
+  return 2;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
     limit_memory();
     mbs::single_thread_environment(argv);
-    return mbs::run_program(argc, argv);
+    return finish(mbs::run_program(argc, argv));
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "mbs: not enough memory for this scene with this implementation\n");
-    return 2;
+    return fail("not enough memory for this scene with this implementation");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "mbs: {}\n", mbs::printable(error.what(), 2000));
-    return 2;
+    return fail(mbs::printable(error.what(), 2000));
   }
 }

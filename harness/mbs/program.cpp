@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "environment/build_info.hpp"
 #include "mbs/bench_command.hpp"
 #include "mbs/commands.hpp"
 #include "run/settings.hpp"
-#include "printable.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -48,13 +48,17 @@ void StepOptions::add_to(CLI::App& command) {
 }
 
 StepSettings StepOptions::resolve(const Model& model) const {
-  if (!(step > 0.0) || !(step < 1e6)) {
-    throw UsageError(fmt::format("--step is {:g} s: it must be a finite number above 0", step));
+  if (!(step >= 1e-12) || !(step <= 1e6)) {
+    throw UsageError(fmt::format("--step is {:g} s: it must be 1e-12 to 1e6 s", step));
   }
   if (max_passes < 1 || max_passes > 1000) {
     throw UsageError(fmt::format("--max-passes is {}: it must be 1 to 1000", max_passes));
   }
   const double alpha = parse_penalty(penalty, model, step);
+  if (!(alpha > 0.0) || !std::isfinite(alpha)) {
+    throw UsageError(fmt::format("--penalty auto gives {:g} for this scene and step {:g} s: its "
+                                 "lengths or masses are out of range; name a number", alpha, step));
+  }
   return {step, alpha, parse_tolerance(tolerance, model, step, alpha), max_passes};
 }
 
@@ -85,9 +89,7 @@ int run_program(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    fmt::print(stderr, "mbs: {} (mbs --help, mbs <subcommand> --help)\n",
-               printable(error.what(), 1000));
-    return 2;
+    throw UsageError(fmt::format("{} (mbs --help, mbs <subcommand> --help)", error.what()));
   }
   return status;
 }

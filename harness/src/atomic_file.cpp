@@ -1,9 +1,13 @@
 // Write beside, then rename.
 #include "atomic_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -12,33 +16,76 @@
 #include "usage_error.hpp"
 
 namespace mbs {
+namespace {
 
-AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), partial_(path_ + ".partial") {
-  // A rename would replace a device such as /dev/stdout by a file: write to it directly.
-  if (std::filesystem::exists(path_) && !std::filesystem::is_regular_file(path_)) partial_ = path_;
-  if (path_.empty() || std::filesystem::is_directory(path_)) {
-    throw UsageError(fmt::format("cannot write '{}': it is not a file name", path_));
-  }
-  stream_.open(partial_, std::ios::binary);
-  if (!stream_) {
-    throw UsageError(fmt::format("cannot write '{}': {}", path_, std::strerror(errno)));
+namespace fs = std::filesystem;
+
+/// The name that a signal handler removes; one file is written at a time.
+std::array<char, 4096> unfinished{};
+
+void remove_and_die(int signal) {
+  if (unfinished[0] != '\0') ::unlink(unfinished.data());
+  ::signal(signal, SIG_DFL);
+  ::raise(signal);
+}
+
+void remember(const std::string& path) {
+  if (path.size() >= unfinished.size()) return;
+  std::memcpy(unfinished.data(), path.c_str(), path.size() + 1);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    if (::signal(signal, remove_and_die) == SIG_IGN) ::signal(signal, SIG_IGN);  // nohup
   }
 }
 
+/// Creates a file beside `path` that nobody else has, and returns its name; empty on failure.
+std::string create_beside(const std::string& path) {
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    const std::string name = fmt::format("{}.{}-{}.partial", path, ::getpid(), attempt);
+    const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file < 0 && errno == EEXIST) continue;
+    if (file < 0) return "";
+    ::close(file);
+    return name;
+  }
+  return "";
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::string path) : name_(path), path_(std::move(path)) {
+  const auto refuse = [this](const char* why) {
+    throw UsageError(fmt::format("cannot write '{}': {}", name_, why));
+  };
+  std::error_code error;
+  const fs::file_status status = fs::status(path_, error);
+  if (path_.empty() || fs::is_directory(status)) refuse("it is not a file name");
+  if (status.type() == fs::file_type::none) refuse(error.message().c_str());
+  if (fs::is_fifo(status) || fs::is_socket(status)) refuse("it is a pipe or a socket");
+  // A rename would replace a link; and a device such as /dev/stdout must be written to directly.
+  if (fs::exists(status)) path_ = fs::canonical(path_).string();
+  partial_ = fs::exists(status) && !fs::is_regular_file(status) ? path_ : create_beside(path_);
+  if (partial_.empty()) refuse(std::strerror(errno));
+  if (partial_ != path_) remember(partial_);
+  stream_.open(partial_, std::ios::binary);
+  if (!stream_) refuse(std::strerror(errno));
+}
+
 AtomicFile::~AtomicFile() {
+  unfinished[0] = '\0';
   if (partial_.empty() || partial_ == path_) return;
   stream_.close();
   std::error_code ignored;
-  std::filesystem::remove(partial_, ignored);
+  fs::remove(partial_, ignored);
 }
 
 void AtomicFile::commit() {
   stream_.close();
   std::error_code error;
   if (stream_.fail()) error = std::make_error_code(std::errc::no_space_on_device);
-  if (!error && partial_ != path_) std::filesystem::rename(partial_, path_, error);
-  if (error) throw UsageError(fmt::format("cannot write '{}': {}", path_, error.message()));
+  if (!error && partial_ != path_) fs::rename(partial_, path_, error);
+  if (error) throw UsageError(fmt::format("cannot write '{}': {}", name_, error.message()));
   partial_.clear();
+  unfinished[0] = '\0';
 }
 
 }  // namespace mbs

@@ -6,7 +6,9 @@
 
 namespace mbs {
 
-/// Writes to "<path>.partial" and renames it to `path` on commit(); without a commit nothing stays.
+/// Writes to a file of its own beside `path` and renames it on commit(); without a commit nothing
+/// stays, also when SIGINT, SIGTERM or SIGHUP ends the program. Links are followed, devices written
+/// to directly. One at a time.
 ///
 ///   AtomicFile file("summary.json");
 ///   file.stream() << text;
@@ -24,7 +26,8 @@ class AtomicFile {
   void commit();
 
  private:
-  std::string path_;
+  std::string name_;  // as given, for messages
+  std::string path_;  // links resolved
   std::string partial_;
   std::ofstream stream_;
 };

@@ -147,7 +147,7 @@ TEST(BadScene, Constraints) {
       {constrained(linear(R"({"point": "B", "axis": "x", "coefficient": 0})")),
        {"coefficient: found 0"}},
       {constrained(linear(y, R"(, "value": 5)")),
-       {"constraints[0]: the initial position violates it: Phi = -1 m", "1e-08"}},
+       {"constraints[0]: the initial position violates it: Phi = -0.5 m", "1e-08"}},
       {constrained(linear(x)), {"constraints[0]: the initial velocities violate it"}},
   });
 }

@@ -44,7 +44,7 @@ TEST(CheckProgram, AllImplementationsAgree) {
       EXPECT_LE(check.at("value"), check.at("tolerance")) << check;
       EXPECT_NE(check.at("detail"), "");
     }
-    std::set<std::string> expected{"lock-step", "free-running", "passes"};
+    std::set<std::string> expected{"lock-step", "free-running", "passes", "multipliers"};
     if (row.at("scene").get<std::string>().starts_with("four-bar:")) {
       expected.insert({"exact", "convergence-order"});
     }

@@ -85,7 +85,11 @@ TEST(EnvironmentRecord, NamesTheCommitAndTheBuild) {
   EXPECT_EQ(commit != "unknown", known) << commit;
   EXPECT_TRUE(dirty == "true" || dirty == "false" || dirty == "unknown") << dirty;
   EXPECT_NE(std::string(build.flags).find("-std=c++20"), std::string::npos) << build.flags;
-#if defined(__SANITIZE_ADDRESS__)
+#if MBS_SANITIZE
+#if !defined(__SANITIZE_ADDRESS__)
+#error "the sanitize preset was asked for, and the address sanitizer is off"
+#endif
+  EXPECT_NE(std::string(build.flags).find("undefined"), std::string::npos) << build.flags;
   EXPECT_NE(std::string(build.flags).find("-fsanitize="), std::string::npos) << build.flags;
 #endif
   EXPECT_TRUE(std::regex_match(build.compiler, std::regex("\\w+ [0-9.]+"))) << build.compiler;

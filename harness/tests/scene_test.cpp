@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -196,7 +198,7 @@ TEST(ParseScene, SpatialWithEveryMember) {
   EXPECT_EQ(model.dot_constraints()[2].value, 0.0);
   EXPECT_EQ(model.linear_constraints()[0].terms[0].coordinate, 5);
   EXPECT_EQ(model.linear_constraints()[0].terms[1].coordinate, 2);
-  EXPECT_EQ(model.linear_constraints()[0].terms[1].coefficient, -1.0);
+  EXPECT_EQ(model.linear_constraints()[0].terms[1].coefficient, -1.0 / std::sqrt(5.0));
   EXPECT_EQ(mass_at(model, 0, 0), 5.0);
   EXPECT_EQ(mass_at(model, 5, 5), 2.0);
   EXPECT_EQ(mass_at(model, 5, 2), 1.0);
@@ -212,7 +214,7 @@ TEST(ParseScene, ConstraintValuesDefaultToTheStart) {
       {"type": "linear", "terms": [{"point": "B", "axis": "y", "coefficient": 3}]}]})",
                                 "test"));
   EXPECT_EQ(model.dot_constraints()[0].value, 10.0);
-  EXPECT_EQ(model.linear_constraints()[0].value, 6.0);
+  EXPECT_EQ(model.linear_constraints()[0].value, 2.0);  // 3 y = 6, to unit length
 }
 
 TEST(ParseScene, FreeFlightIsAllowed) {

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 from study.pipeline.layout import ROOT
 
-MEMORY_WORDS = re.compile(r"bad_alloc|out of memory|cannot allocate|std::length_error", re.I)
+MEMORY_WORDS = re.compile(r"bad_alloc|(out of|not enough) memory|cannot allocate|std::length_error",
+                          re.I)
 OUTPUT_LIMIT = 256 * 2**20  # bytes a child may write to any file
 
 

@@ -13,8 +13,8 @@ from study.pipeline.layout import NULL, fingerprint, read_json, write_json
 
 PHASES = ("evaluation", "assembly", "factorization", "solve", "projection", "other")
 COUNTERS = ("passes", "steps_at_limit", "setup_us", "constraints", "penalty", "step", "tolerance",
-            "max_passes", "start", "finite", "position_error", "constraint_violation",
-            "energy_drift", "allocations")
+            "max_passes", "start", "fill_seed", "position_error", "constraint_violation",
+            "energy_drift")
 PER_SAMPLE = ("stretch_steps", "iterations", "stretch_us", "step_us") + COUNTERS
 # results/README.md says what each column means.
 TIDY = ("kind", "scene", "implementation", "folder", "variant", "variables", "fill_asked",

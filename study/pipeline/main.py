@@ -10,8 +10,8 @@ from study.pipeline import estimate, profile as profiles
 from study.pipeline.errors import StudyError
 from study.pipeline.front import run_workflow
 from study.pipeline.layout import ROOT, Layout, program, read_json
-from study.pipeline.prepare import (need_modules, only_one, registry, reopen_incomplete, select,
-                                    set_up, start, writable)
+from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, registry,
+                                    reopen_incomplete, select, set_up, start, writable)
 
 
 class Parser(argparse.ArgumentParser):
@@ -53,7 +53,7 @@ def run(arguments):
     if options.dry_run:
         return dry_run(options, layout)
     writable(layout.results)
-    with only_one(layout):
+    with only_one(layout), only_one_measuring():
         if "MBS_PROGRAM" not in os.environ:
             set_up(layout)
         need_modules()

@@ -3,9 +3,12 @@ import fcntl
 import hashlib
 import importlib.util
 import json
+import os
 import shutil
 import subprocess
 import sys
+import tempfile
+from pathlib import Path
 
 from study.pipeline import cells, profile as profiles
 from study.pipeline.errors import StudyError
@@ -122,9 +125,25 @@ def writable(results):
 
 def only_one(layout):
     """Holds the results directory; the lock vanishes with its process."""
-    file = open(layout.results / ".lock", "w", encoding="utf-8")
+    return _lock(layout.results / ".lock", f"another study is running in {layout.results}")
+
+
+def only_one_measuring():
+    """Holds the machine: two studies that measure at once would time each other."""
+    path = Path(tempfile.gettempdir()) / "mbs-study.lock"
+    return _lock(path, "another study/run is measuring on this machine, in other results "
+                       f"({path} is held): wait until it is done")
+
+
+def _lock(path, held):
+    try:
+        # Another user's file in /tmp can be opened for reading only, and not with O_CREAT.
+        file = os.open(path, os.O_RDONLY | (0 if path.exists() else os.O_CREAT), 0o644)
+    except OSError as error:
+        raise StudyError(f"cannot open the lock {path}: {error.strerror}") from error
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError as error:
-        raise StudyError(f"another study is running in {layout.results}") from error
-    return file
+        os.close(file)
+        raise StudyError(held) from error
+    return os.fdopen(file)

@@ -1,9 +1,11 @@
 # Verifies one column: pilots, gate and accuracy runs; writes the plan that says what is timed.
 #
-# A pilot (the first steps of the motion, the fastest of PILOT_RUNS) predicts each cell's cost. Cells
-# more than `exclusion_factor` times slower than the best of their scene are excluded: neither checked
-# nor timed. A pilot that runs out of time proves a least cost, which goes into its reason. "Best" counts only what the gate has not rejected, so a wrong but fast implementation
-# excludes nobody: after each verdict the rule is applied again, until nobody new has to be checked.
+# A pilot (the first steps of the motion, the fastest of PILOT_RUNS) predicts each cell's cost.
+# Cells more than `exclusion_factor` times slower than the best of their scene are excluded: neither
+# checked nor timed. A pilot that runs out of time proves a least cost; that excludes its cell too
+# if a single step does end: without that it may hang. "Best" counts only what the gate has not
+# rejected, so a wrong but fast implementation excludes nobody: after each verdict the rule is
+# applied again, until nobody new has to be checked.
 import sys
 
 from study.pipeline import cells
@@ -39,14 +41,26 @@ def _pilot(study, implementation, scene, progress):
     raw = _run_pilot(study, implementation, scene)
     progress.done()
     failed = cells.failure(raw)
+    if failed and failed[0] == "timeout":
+        return _single_step(study, implementation, scene)
     if failed:
-        pilot = {"status": failed[0], "reason": f"pilot: {failed[1]}"}
-        if failed[0] == "timeout":  # a warm-up and PILOT_RUNS stretches were not done in this time
-            steps = study.profile.pilot_steps * (PILOT_RUNS + 1)
-            pilot["step_us_at_least"] = 1e6 * study.profile.limits["pilot_seconds"] / steps
-        return pilot
+        return {"status": failed[0], "reason": f"pilot: {failed[1]}"}
     fastest = min(sample["real_time"] for sample in cells.samples(raw))
     return {"step_us": fastest / study.profile.pilot_steps}
+
+
+def _single_step(study, implementation, scene):
+    """After a pilot's timeout: a bound on the cost if one step ends at all, else the failure."""
+    raw = cells.bench(study.layout.cell("single", implementation, scene), implementation, scene,
+                      study.profile, study.context, steps=1, more=["--start", "0"])
+    limit = study.profile.limits["pilot_seconds"]
+    pilot = {"status": "timeout", "reason": f"pilot: did not end within {limit:g} s"}
+    failed = cells.failure(raw)
+    if failed:
+        return {"status": failed[0], "reason": f"{pilot['reason']}; a single step: {failed[1]}"}
+    # A warm-up and PILOT_RUNS stretches were not done within the limit.
+    bound = 1e6 * limit / (study.profile.pilot_steps * (PILOT_RUNS + 1))
+    return pilot | {"step_us_at_least": max(bound, cells.samples(raw)[0]["real_time"])}
 
 
 def _run_pilot(study, implementation, scene):
@@ -103,11 +117,7 @@ def _scene_plan(profile, scene, pilots, verdicts):
         verdict = verdicts.get(name)
         cell = {"pilot_step_us": pilot.get("step_us"), "pilot_ratio": None, "checks": []}
         if "step_us" not in pilot:
-            cell |= {"status": pilot["status"], "reason": pilot["reason"]}
-            if "step_us_at_least" in pilot and best < float("inf"):
-                cell["pilot_ratio"] = pilot["step_us_at_least"] / best
-                cell["reason"] += (f"; at least {cell['pilot_ratio']:.0f} times slower than the "
-                                   "best of its scene")
+            cell |= without_pilot(profile, pilot, best)
         elif verdict is None:
             cell |= {"status": "excluded", "pilot_ratio": pilot["step_us"] / best,
                      "reason": f"at least {factor:g} times slower than the best of its scene"}
@@ -121,6 +131,20 @@ def _scene_plan(profile, scene, pilots, verdicts):
                   default=0.0)
     return {"fill_asked": scene.fill, "reached": True, "cells": plan,
             "stretch_steps": stretch_steps(profile, scene, slowest)}
+
+
+def without_pilot(profile, pilot, best):
+    """A cell whose pilot gave no cost: excluded if its least cost is beyond the factor."""
+    if "step_us_at_least" not in pilot or best == float("inf"):
+        return {"status": pilot["status"], "reason": pilot["reason"]}
+    ratio = pilot["step_us_at_least"] / best
+    if ratio <= profile.exclusion_factor:
+        text = f"{pilot['reason']}; at least {ratio:.1f} times slower than the best of its scene"
+        return {"status": pilot["status"], "reason": text, "pilot_ratio": ratio}
+    limit = profile.limits["pilot_seconds"]
+    return {"status": "excluded", "pilot_ratio": ratio,
+            "reason": f"at least {ratio:.0f} times slower than the best of its scene "
+                      f"(its pilot did not end within {limit:g} s)"}
 
 
 def stretch_steps(profile, scene, slowest_us):

@@ -2,18 +2,20 @@
 import os
 import shutil
 import subprocess
+import tempfile
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 FAKE = Path(__file__).with_name("fake_mbs.py")
+TEMPORARY = tempfile.TemporaryDirectory()  # apart from the machine's lock: a real study may run
 
 
 def environment(**more):
     clean = {key: value for key, value in os.environ.items()
              if not key.startswith(("FAKE_", "MBS_"))}
-    return clean | {"MBS_PROGRAM": str(FAKE)} | more
+    return clean | {"MBS_PROGRAM": str(FAKE), "TMPDIR": TEMPORARY.name} | more
 
 
 def study(*arguments, **more):

@@ -17,6 +17,8 @@ def shell(text, seconds=10, memory_mb=512):
     ("kill -SEGV $$", "crashed", "SIGSEGV"),
     ("kill -KILL $$", "crashed", "SIGKILL"),
     ("echo std::bad_alloc >&2; kill -ABRT $$", "out-of-memory", "needs more than 512 MB"),
+    ("echo 'mbs: not enough memory for this scene with this implementation' >&2; exit 2",
+     "out-of-memory", "not enough memory for this scene"),
 ])
 def test_endings(command, status, reason):
     ended = shell(command)

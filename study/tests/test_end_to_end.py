@@ -10,7 +10,8 @@ from study.tests.conftest import ROOT
 def test_smoke_on_the_real_program(tmp_path):
     program = os.environ.get("MBS_PROGRAM", str(ROOT / "build" / "mbs"))
     assert os.access(program, os.X_OK), f"{program} is missing: run study/setup"
-    results, environment = tmp_path / "results", os.environ | {"MBS_PROGRAM": program}
+    results, environment = tmp_path / "results", os.environ | {"MBS_PROGRAM": program,
+                                                              "TMPDIR": str(tmp_path)}
 
     def run(*arguments):
         return subprocess.run([ROOT / "study" / arguments[0], *arguments[1:]], text=True,

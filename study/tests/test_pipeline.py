@@ -1,4 +1,5 @@
 # The whole workflow on a fake `mbs`: failures are kept as data, runs resume, nothing is merged.
+import fcntl
 import json
 import os
 import signal
@@ -12,7 +13,7 @@ from study.pipeline import child, collect, prepare, profile as profiles
 from study.pipeline.job import open_study
 from study.pipeline.layout import Layout
 from study.pipeline.measure import measure
-from study.pipeline.verify import verify
+from study.pipeline.verify import verify, without_pilot
 from study.tests.conftest import FAKE, ROOT, environment, study
 
 
@@ -58,7 +59,7 @@ def test_resume_makes_only_what_is_missing(results):
 
 def test_misbehaviour_is_kept_as_data(tmp_path, monkeypatch):
     text = (profiles.FOLDER / "smoke.yaml").read_text()
-    (tmp_path / "smoke.yaml").write_text(text.replace("cell_seconds: 20", "cell_seconds: 1"))
+    (tmp_path / "smoke.yaml").write_text(text.replace("_seconds: 20", "_seconds: 1"))
     monkeypatch.setattr(profiles, "FOLDER", tmp_path)
     monkeypatch.setenv("MBS_PROGRAM", str(FAKE))
     monkeypatch.setenv("FAKE_BAD", "1")
@@ -73,12 +74,17 @@ def test_misbehaviour_is_kept_as_data(tmp_path, monkeypatch):
     found = table[table.variables.notna()].groupby("implementation").status.unique().map(set)
     assert found["bad/crash"] == {"crashed"} and found["bad/hang"] == {"timeout"}
     assert found["bad/memory"] == {"out-of-memory"} and found["bad/wrong"] == {"disagrees"}
+    assert found["bad/large"] == {"out-of-memory"} and found["bad/crawl"] == {"excluded"}
     assert found["bad/slow"] == {"excluded"} and found["bad/passes"] == {"passes-differ"}
     assert found["bad/nan"] == {"disagrees"} and found["good_dense/first"] == {"ok"}
     reasons = table[table.status != "ok"].reason
     assert reasons.str.contains("SIGSEGV").any() and reasons.str.contains("q differs by").any()
     slow = table[table.implementation == "bad/slow"]
     assert (slow.pilot_ratio > 100).all() and slow.step_us.isna().all()
+    crawl = table[table.implementation == "bad/crawl"]
+    assert (crawl.pilot_ratio > 100).all()
+    assert crawl.reason.str.contains("its pilot did not end within 1 s").all()
+    assert table.fill_seed.notna().any() and table[table.fill_asked.isna()].fill_seed.isna().all()
     page = (results / "report.html").read_text()
     assert "SIGSEGV" in page and "at least 100 times slower" in page and "NaN at step 100" in page
 
@@ -127,7 +133,9 @@ def test_ctrl_c_leaves_complete_files_and_says_how_to_resume(tmp_path):
     results = tmp_path / "results"
     command = [ROOT / "study/run", "--profile", "smoke", "--results", results]
     process = subprocess.Popen(command, env=environment(), stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True)
+                               stderr=subprocess.PIPE, text=True,
+                               # a parent may ignore it (nohup); a terminal's shell does not
+                               preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
     while not list(results.glob("raw/*/pilot/*.json")):
         time.sleep(0.02)
     process.send_signal(signal.SIGINT)
@@ -199,3 +207,24 @@ def test_passes_must_agree(passes, accused):
     rows = [row(name, value) for name, values in passes.items() for value in values]
     collect.mark_differing_passes(rows)
     assert {r["implementation"] for r in rows if r["status"] == "passes-differ"} == accused
+
+
+def test_two_studies_never_measure_at_once(tmp_path):
+    with open(tmp_path / "mbs-study.lock", "w") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        done = run_smoke(tmp_path / "results", TMPDIR=str(tmp_path))
+    assert done.returncode == 2 and done.stderr.count("\n") == 1
+    assert "another study/run is measuring on this machine" in done.stderr
+    assert run_smoke(tmp_path / "results", "--only", "good_sparse",
+                     TMPDIR=str(tmp_path)).returncode == 0
+
+
+@pytest.mark.parametrize("pilot, best, status, ratio", [
+    ({"step_us_at_least": 500.0}, 1.0, "excluded", 500.0),
+    ({"step_us_at_least": 50.0}, 1.0, "timeout", 50.0),
+    ({"step_us_at_least": 500.0}, float("inf"), "timeout", None),  # nobody to compare with
+    ({}, 1.0, "timeout", None),                                    # not even one step ended
+])
+def test_a_pilot_without_time_excludes_only_if_it_proves_a_cost(pilot, best, status, ratio):
+    cell = without_pilot(profiles.load("quick"), {"status": "timeout", "reason": ""} | pilot, best)
+    assert (cell["status"], cell.get("pilot_ratio")) == (status, ratio)

@@ -22,6 +22,7 @@ void count_settings(const PlannedScene& planned, benchmark::UserCounters& counte
   counters["max_passes"] = planned.settings.max_passes;
   counters["start"] = planned.stretch.start;
   counters["steps"] = planned.stretch.steps;
+  if (planned.scene.fill) counters["fill_seed"] = static_cast<double>(planned.scene.fill->seed);
 }
 
 void count_figures(const CellFigures& figures, benchmark::UserCounters& counters) {
@@ -29,7 +30,6 @@ void count_figures(const CellFigures& figures, benchmark::UserCounters& counters
   counters["passes"] = static_cast<double>(figures.passes);
   counters["steps_at_limit"] = static_cast<double>(figures.steps_at_limit);
   counters["setup_us"] = figures.setup_us;
-  counters["finite"] = 1;  // a state that is not finite fails the cell
   counters["position_error"] = figures.position_error.value_or(kNone);
   counters["constraint_violation"] = figures.constraint_violation.value_or(kNone);
   counters["energy_drift"] = figures.energy_drift.value_or(kNone);
@@ -65,11 +65,13 @@ void BenchRows::run(Row& row, benchmark::State& state) {
       state.SetIterationTime(stretch);
       seconds += stretch;
     }
+    row.measurement.require_finite();
     const double steps = static_cast<double>(row.cell.scene->stretch.steps);
     count_settings(*row.cell.scene, state.counters);
     count_figures(row.measurement.figures(), state.counters);
     state.counters["step_us"] = 1e6 * seconds / (static_cast<double>(state.iterations()) * steps);
   } catch (const CellFailure& failure) {
+    failed_ = true;
     state.SkipWithError(failure.what());
   }
 }

@@ -14,7 +14,7 @@ namespace mbs {
 /// Registers one benchmark a cell, with the cell's name, manual time and microseconds: an iteration
 /// is one stretch. Every row that succeeds has the same counters, a number that does not exist
 /// being NaN: steps, passes, steps_at_limit, step_us, setup_us, variables, constraints,
-/// fill_percent, penalty, step, tolerance, max_passes, start, finite, position_error,
+/// fill_percent, penalty, step, tolerance, max_passes, start, position_error,
 /// constraint_violation, energy_drift and, if phases are asked for, phase_evaluation ...
 /// phase_other. A cell that cannot be timed is a row with error_occurred and the CellFailure as
 /// error_message.
@@ -24,6 +24,8 @@ class BenchRows {
  public:
   /// `cells` and what they point to must outlive the object, and the object the benchmarks' run.
   void add(const std::vector<PlannedCell>& cells, bool phases);
+  /// Whether a row that has run failed.
+  [[nodiscard]] bool failed() const { return failed_; }
 
  private:
   struct Row {
@@ -34,6 +36,7 @@ class BenchRows {
 
   std::deque<Row> rows_;
   Row* live_ = nullptr;
+  bool failed_ = false;
 };
 
 }  // namespace mbs

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <new>
 #include <vector>
 
@@ -118,6 +119,19 @@ void Measurement::judge_end() {
   figures_.position_error = judge.position_error_max();
   figures_.constraint_violation = judge.constraint_violation_max();
   figures_.energy_drift = judge.energy_drift_max();
+}
+
+void Measurement::require_finite() {
+  State state;
+  simulation_->get_state(state);
+  const auto finite = [](double x) { return std::isfinite(x); };
+  if (task_.control) return;  // it computes nothing
+  if (std::ranges::all_of(state.q, finite) && std::ranges::all_of(state.v, finite) &&
+      std::ranges::all_of(state.a, finite) && std::ranges::all_of(state.lambda, finite)) {
+    return;
+  }
+  failure_ = "diverged: the state is not finite after a timed stretch";
+  throw CellFailure(*failure_);
 }
 
 void Measurement::profile() {

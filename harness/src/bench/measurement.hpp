@@ -54,6 +54,8 @@ class Measurement {
   /// Runs one stretch from the start state; returns the time of its steps alone, in seconds.
   /// Throws CellFailure if a tangent cannot be factorized.
   double time_stretch();
+  /// After timed stretches: throws CellFailure unless the state is finite.
+  void require_finite();
 
   /// Filled by prepare() and time_stretch().
   [[nodiscard]] const CellFigures& figures() const { return figures_; }

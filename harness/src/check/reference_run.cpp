@@ -6,10 +6,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model_math/kinematics.hpp"
 #include "reference/reference_simulation.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
+
+namespace {
+
+/// Largest absolute row sum of Phi_q at q.
+double row_sum_norm(const Model& model, const std::vector<double>& q) {
+  std::vector<double> sums(static_cast<std::size_t>(model.constraints()) + 1, 0.0);
+  for (const JacobianEntry& entry : jacobian(model, q)) {
+    sums[static_cast<std::size_t>(entry.row)] += std::abs(entry.value);
+  }
+  return *std::ranges::max_element(sums);
+}
+
+}  // namespace
 
 ReferenceRun run_reference(const Scene& scene, const StepSettings& settings) {
   constexpr int kSteps = 800;
@@ -39,12 +53,14 @@ ReferenceRun run_reference(const Scene& scene, const StepSettings& settings) {
           settings.penalty));
     }
     result.positions.push_back(state.q);
+    result.multipliers.push_back(state.lambda);
   }
   for (Probe& probe : result.probes) {
     reference.set_state(probe.before);
     probe.outcome = reference.step();
     reference.get_state(probe.after);
     probe.condition = reference.tangent_condition();
+    probe.jacobian_norm = row_sum_norm(scene.model, probe.before.q);
   }
   return result;
 }

@@ -14,12 +14,14 @@ struct Probe {
   double t = 0.0;          ///< s, before the step
   State before, after;
   StepOutcome outcome;
-  double condition = 0.0;  ///< of the tangent, 2-norm
+  double condition = 0.0;      ///< of the tangent, 2-norm
+  double jacobian_norm = 0.0;  ///< of Phi_q before the step, largest absolute row sum, m
 };
 
 struct ReferenceRun {
   Stretch stretch;
-  std::vector<std::vector<double>> positions;  ///< q after each step of the stretch
+  std::vector<std::vector<double>> positions;    ///< q after each step of the stretch
+  std::vector<std::vector<double>> multipliers;  ///< lambda after each step of the stretch
   std::vector<StepOutcome> outcomes;           ///< of each step
   std::vector<Probe> probes;                   ///< spread over the stretch, its ends included
 };

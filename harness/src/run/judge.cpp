@@ -75,9 +75,16 @@ std::string Judge::judge(double t, const State& state) {
     violation_ = std::max(violation_, std::abs(phi_[k]));
     relative = std::max(relative, std::abs(phi_[k]) / phi_scale_[k]);
   }
-  energy_scale_ = std::max(energy_scale_, kinetic_energy(model, state.v));
-  energy_difference_ =
-      std::max(energy_difference_, std::abs(energy(model, state.q, state.v) - initial_energy_));
+  const double kinetic = kinetic_energy(model, state.v);
+  const double difference = std::abs(energy(model, state.q, state.v) - initial_energy_);
+  // max() would drop a NaN that finite but huge coordinates make.
+  if (!std::isfinite(kinetic) || !std::isfinite(difference) ||
+      !std::ranges::all_of(phi_, [](double x) { return std::isfinite(x); })) {
+    violation_ = energy_difference_ = std::numeric_limits<double>::infinity();
+    return "the state is too large to be judged";
+  }
+  energy_scale_ = std::max(energy_scale_, kinetic);
+  energy_difference_ = std::max(energy_difference_, difference);
   if (exact_) {
     const double error = exact_->position_error(t, state.q);
     position_error_ = std::max(*position_error_, error);

@@ -128,6 +128,7 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
   } catch (const std::exception& error) {
     summary.status = RunStatus::diverged;
     summary.reason = fmt::format("the implementation threw: {}", printable(error.what(), 1000));
+    summary.failed_at = (summary.steps + 1) * settings.step.step;
   }
   summary.step_us_median = quantile(times, 0.5);
   summary.step_us_p99 = quantile(times, 0.99);

@@ -13,7 +13,7 @@ namespace mbs {
 enum class RunStatus {
   ok,             ///< the whole duration was simulated within RunBounds
   not_converged,  ///< more steps than RunBounds allows ended at the pass limit
-  diverged,       ///< the solution was lost: not finite, or beyond RunBounds
+  diverged,       ///< the solution was lost: not finite, beyond RunBounds, or the step threw
   unsupported,    ///< the implementation cannot simulate this scene
 };
 

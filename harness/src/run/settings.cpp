@@ -17,15 +17,15 @@ namespace mbs {
 
 namespace {
 
-/// s_mean: the mean of the diagonal of Phi_q M^-1 Phi_q^T at the start with M lumped, m^2/kg.
+/// s_mean: the mean of the diagonal of Phi_q M^-1 Phi_q^T at the start with the diagonal of M for M, m^2/kg.
 double mean_constraint_eigenvalue(const Model& model) {
-  std::vector<double> lumped(static_cast<std::size_t>(model.variables()));
+  std::vector<double> diagonal(static_cast<std::size_t>(model.variables()));
   for (const MassEntry& entry : model.mass()) {
-    if (entry.row == entry.col) lumped[static_cast<std::size_t>(entry.row)] = entry.value;
+    if (entry.row == entry.col) diagonal[static_cast<std::size_t>(entry.row)] = entry.value;
   }
   double trace = 0.0;
   for (const JacobianEntry& entry : jacobian(model, model.initial_position())) {
-    trace += entry.value * entry.value / lumped[static_cast<std::size_t>(entry.col)];
+    trace += entry.value * entry.value / diagonal[static_cast<std::size_t>(entry.col)];
   }
   return trace / model.constraints();
 }

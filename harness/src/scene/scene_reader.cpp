@@ -181,8 +181,12 @@ void SceneReader::read_linear(const JsonNode& node) {
   }
   refuse_same_linear(node, terms);
   const auto value = node.find("value");
+  // To unit length: the penalty weighs all constraints alike, and violations are judged in metres.
+  double norm = 0.0;
+  for (const LinearConstraint::Term& term : terms) norm = std::hypot(norm, term.coefficient);
+  for (LinearConstraint::Term& term : terms) term.coefficient /= norm;
   data_.linear_constraints.push_back(
-      {std::move(terms), value ? value->number() : initial, label(node)});
+      {std::move(terms), (value ? value->number() : initial) / norm, label(node)});
 }
 
 LinearConstraint::Term SceneReader::read_term(const JsonNode& node) const {
