@@ -39,9 +39,8 @@ void print_verdict(const Verdict& verdict) {
 
 int check(const Options& options) {
   if (!(options.time_limit > 0.0) || !(options.time_limit <= 1e6)) {
-    throw UsageError(
-        fmt::format("--time-limit is {:g} s: it must be above 0 and at most 1e6",
-                    options.time_limit));
+    throw UsageError(fmt::format("--time-limit is {:g} s: it must be above 0 and at most 1e6",
+                                 options.time_limit));
   }
   const std::vector<NamedVariant> variants = select_variants(options.implementations);
   if (variants.empty()) throw UsageError("no implementation is available (see mbs list)");

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -44,6 +45,7 @@ int fail(const std::string& message) {
 int main(int argc, char** argv) {
   try {
     limit_memory();
+    std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is an error like any other full disk
     mbs::single_thread_environment(argv);
     return finish(mbs::run_program(argc, argv));
   } catch (const std::bad_alloc&) {

@@ -23,8 +23,8 @@ double parse_tolerance(const std::string& text, const Model& model, double step,
   if (text == "auto") return automatic_tolerance(model, step, penalty);
   double value = 0.0;
   if (!CLI::detail::lexical_cast(text, value) || !(value > 0.0) || !(value < 1e300)) {
-    throw UsageError(fmt::format("--tolerance is '{}': it must be 'auto' or a number above 0 (m)",
-                                 text));
+    throw UsageError(
+        fmt::format("--tolerance is '{}': it must be 'auto' or a number above 0 (m)", text));
   }
   return value;
 }
@@ -41,7 +41,8 @@ void StepOptions::add_to(CLI::App& command) {
   command.add_option("--penalty", penalty, "penalty factor alpha, or 'auto'")
       ->capture_default_str();
   command
-      .add_option("--tolerance", tolerance, "Newton stops at max |Delta q| below this, m, or 'auto'")
+      .add_option("--tolerance", tolerance,
+                  "Newton stops at max |Delta q| below this, m, or 'auto'")
       ->capture_default_str();
   command.add_option("--max-passes", max_passes, "passes a step at most, 1 to 1000")
       ->capture_default_str();
@@ -56,8 +57,10 @@ StepSettings StepOptions::resolve(const Model& model) const {
   }
   const double alpha = parse_penalty(penalty, model, step);
   if (!(alpha > 0.0) || !std::isfinite(alpha)) {
-    throw UsageError(fmt::format("--penalty auto gives {:g} for this scene and step {:g} s: its "
-                                 "lengths or masses are out of range; name a number", alpha, step));
+    throw UsageError(
+        fmt::format("--penalty auto gives {:g} for this scene and step {:g} s: its "
+                    "lengths or masses are out of range; name a number",
+                    alpha, step));
   }
   return {step, alpha, parse_tolerance(tolerance, model, step, alpha), max_passes};
 }

@@ -124,11 +124,11 @@ int simulate(const Options& options) {
   RunSummary summary;
   {
     Progress progress(steps);
-    summary = run(scene, *variants[0].variant, settings,
-                  [&](long step, double t, const State& state) {
-                    if (trajectory && step % options.every == 0) trajectory->write(t, state);
-                    progress.at(step, t);
-                  });
+    summary =
+        run(scene, *variants[0].variant, settings, [&](long step, double t, const State& state) {
+          if (trajectory && step % options.every == 0) trajectory->write(t, state);
+          progress.at(step, t);
+        });
   }
   if (trajectory) trajectory->commit();
   const nlohmann::json json = summary_json(scene, variants[0], settings, summary);
@@ -155,8 +155,9 @@ void add_simulate_command(CLI::App& app, int& status) {
       ->required();
   options->step.add_to(*command);
   command->add_option("--duration", options->duration, "simulated time, s")->capture_default_str();
-  command->add_option("--trajectory", options->trajectory,
-                      "write positions and velocities of all points to this CSV file")
+  command
+      ->add_option("--trajectory", options->trajectory,
+                   "write positions and velocities of all points to this CSV file")
       ->check([](const std::string& path) {
         return path.empty() ? std::string("is empty: it must be a file name") : std::string();
       });

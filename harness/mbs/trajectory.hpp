@@ -8,8 +8,8 @@
 
 namespace mbs {
 
-/// Writes CSV: t, then NAME.x, NAME.y, NAME.vx, NAME.vy (in 3D also NAME.z, NAME.vz) for each point;
-/// a fixed point keeps its place and velocity 0. Numbers round-trip.
+/// Writes CSV: t, then NAME.x, NAME.y, NAME.vx, NAME.vy (in 3D also NAME.z, NAME.vz) for each
+/// point; a fixed point keeps its place and velocity 0. Numbers round-trip.
 class TrajectoryFile {
  public:
   /// `model` must outlive the file. Throws UsageError if `path` cannot be written.

@@ -9,7 +9,7 @@ import pandas
 from study.pipeline import cells
 from study.pipeline.errors import StudyError
 from study.pipeline.job import job, open_study
-from study.pipeline.layout import NULL, fingerprint, read_json, write_json
+from study.pipeline.layout import NULL, fingerprint, read_json, read_run, write_json
 
 PHASES = ("evaluation", "assembly", "factorization", "solve", "projection", "other")
 COUNTERS = ("passes", "steps_at_limit", "setup_us", "constraints", "penalty", "step", "tolerance",
@@ -161,7 +161,7 @@ def _passes_text(passes, name, tie):
 
 def _unavailable(study):
     registry = read_json(study.layout.registry)
-    selection = read_json(study.layout.run)["only"]
+    selection = read_run(study.layout)["only"]
     for entry in registry["implementations"]:
         folder = entry["folder"]
         if not entry["available"] and (not selection or folder in selection):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from study.pipeline import profile as profiles
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, read_json
+from study.pipeline.layout import Layout, read_run
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Study:
 
 def open_study(results):
     layout = Layout(Path(results).resolve())
-    run = read_json(layout.run)
+    run = read_run(layout)
     profile = profiles.read(layout.results / "profile.yaml", run["profile"])
     return Study(layout, profile, run["variants"], run["context"])
 

@@ -61,6 +61,16 @@ def read_json(path):
         raise StudyError(f"cannot read {path}: {error.strerror}") from error
 
 
+def read_run(layout):
+    """run.json, with everything that it must hold; StudyError if something is missing."""
+    record = read_json(layout.run)
+    needed = {"profile", "only", "variants", "context", "program"}
+    missing = sorted(needed - set(record)) if isinstance(record, dict) else sorted(needed)
+    if missing:
+        raise StudyError(f"{layout.run} is no record of a run: it lacks {', '.join(missing)}")
+    return record
+
+
 def write_json(path, data):
     """Writes atomically: a reader sees the whole file or none."""
     path = Path(path)

@@ -9,7 +9,7 @@ from pathlib import Path
 from study.pipeline import estimate, profile as profiles
 from study.pipeline.errors import StudyError
 from study.pipeline.front import run_workflow
-from study.pipeline.layout import ROOT, Layout, program, read_json
+from study.pipeline.layout import Layout, ROOT, program, read_run
 from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, registry,
                                     reopen_incomplete, select, set_up, start, writable)
 
@@ -47,6 +47,8 @@ def run(arguments):
         return list_choices()
     if options.profile not in profiles.names():
         profiles.load(options.profile)  # raises
+    if options.results == "":
+        raise StudyError("--results is empty: it must be a directory")
     name = "-".join([options.profile, *(only.replace("/", ".") for only in options.only)])
     layout = Layout(Path(options.results).absolute() if options.results
                     else ROOT / "results" / "local" / name)
@@ -60,7 +62,7 @@ def run(arguments):
         profile = profiles.load(options.profile)
         start(layout, profile, options.only)
         reopen_incomplete(layout, profile)
-        variants = read_json(layout.run)["variants"]
+        variants = read_run(layout)["variants"]
         run_workflow(layout, profile.columns, estimate.work(profile, len(variants)))
     print(f"report: {layout.results / 'report.html'}")
     return 0
@@ -74,7 +76,7 @@ def figures(arguments):
         raise StudyError(f"{layout.results} holds no results (no run.json)")
     need_modules()
     writable(layout.results)
-    profile = profiles.read(layout.results / "profile.yaml", read_json(layout.run)["profile"])
+    profile = profiles.read(layout.results / "profile.yaml", read_run(layout)["profile"])
     with only_one(layout):
         run_workflow(layout, profile.columns, {}, stored=True)
     print(f"report: {layout.results / 'report.html'}")

@@ -13,7 +13,7 @@ from pathlib import Path
 from study.pipeline import cells, profile as profiles
 from study.pipeline.errors import StudyError
 from study.pipeline.front import Display
-from study.pipeline.layout import ROOT, fingerprint, program, read_json, write_json
+from study.pipeline.layout import ROOT, fingerprint, program, read_json, read_run, write_json
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
            "jinja2": "python3-jinja2", "snakemake": "snakemake"}
@@ -45,7 +45,7 @@ def start(layout, profile, only):
     text = (profiles.FOLDER / f"{profile.name}.yaml").read_text()
     stored_text = layout.results / "profile.yaml"
     if layout.run.exists():
-        stored = read_json(layout.run)
+        stored = read_run(layout)
         old, new = fingerprint(stored["context"]), fingerprint(run_record["context"])
         differing = [f"{key} '{old[key]}', now '{new[key]}'" for key in old if old[key] != new[key]]
         differing += [key for key in ("profile", "variants", "program")

@@ -228,3 +228,11 @@ def test_two_studies_never_measure_at_once(tmp_path):
 def test_a_pilot_without_time_excludes_only_if_it_proves_a_cost(pilot, best, status, ratio):
     cell = without_pilot(profiles.load("quick"), {"status": "timeout", "reason": ""} | pilot, best)
     assert (cell["status"], cell.get("pilot_ratio")) == (status, ratio)
+
+
+@pytest.mark.parametrize("text", ["{}", "[]", "null", '{"profile": "smoke"}'])
+def test_a_run_record_that_lacks_something_is_one_clear_line(tmp_path, text):
+    (tmp_path / "run.json").write_text(text)
+    result = study("figures", tmp_path)
+    assert result.returncode != 0
+    assert result.stderr.count("\n") == 1 and "is no record of a run" in result.stderr

@@ -42,7 +42,8 @@ struct LinearConstraint {
 };
 
 /// One stored entry of the lower triangle of the symmetric mass matrix M. Entries of value zero are
-/// stored positions too (artificial fill): sparse storage must hold and process them like any other.
+/// stored positions too (artificial fill): sparse storage must hold and process them like any
+/// other.
 struct MassEntry {
   int row = 0, col = 0;  ///< row >= col
   double value = 0.0;    ///< kg
@@ -50,13 +51,13 @@ struct MassEntry {
 
 /// Everything a Model is made from; plain data, filled by whoever builds a scene.
 struct ModelData {
-  int dimension = 2;                         ///< 2 or 3
-  std::vector<Point> points;                 ///< free points tile q in any order
+  int dimension = 2;          ///< 2 or 3
+  std::vector<Point> points;  ///< free points tile q in any order
   std::vector<DotConstraint> dot_constraints;
   std::vector<LinearConstraint> linear_constraints;
-  std::vector<MassEntry> mass;               ///< any order; at most one entry a position
-  std::vector<double> force;                 ///< n, N; the constant applied force Q (gravity)
-  std::vector<double> initial_velocity;      ///< n, m/s
+  std::vector<MassEntry> mass;           ///< any order; at most one entry a position
+  std::vector<double> force;             ///< n, N; the constant applied force Q (gravity)
+  std::vector<double> initial_velocity;  ///< n, m/s
 };
 
 /// The model that an implementation simulates. Immutable and checked at construction:

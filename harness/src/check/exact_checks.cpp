@@ -41,8 +41,7 @@ Check order_check(const std::vector<double>& errors, double step) {
 }  // namespace
 
 std::vector<Check> exact_checks_not_run(const std::string& reason) {
-  return {{"exact", {}, {}, {}, reason},
-          {"convergence-order", {}, {}, {}, reason}};
+  return {{"exact", {}, {}, {}, reason}, {"convergence-order", {}, {}, {}, reason}};
 }
 
 std::vector<Check> exact_checks(const Scene& scene, const Variant& variant,
@@ -50,8 +49,8 @@ std::vector<Check> exact_checks(const Scene& scene, const Variant& variant,
   const double step = settings.step;
   constexpr double kCoarsest = 0.02;  // s; above it second order is not yet visible
   if (4 * step > kCoarsest) {
-    return exact_checks_not_run(fmt::format("four times the step of {:g} s is above {:g} s", step,
-                                            kCoarsest));
+    return exact_checks_not_run(
+        fmt::format("four times the step of {:g} s is above {:g} s", step, kCoarsest));
   }
   constexpr double kFinest = 1e-5;  // s; below it the runs would take too long
   if (step < kFinest) {
@@ -62,8 +61,8 @@ std::vector<Check> exact_checks(const Scene& scene, const Variant& variant,
   for (const double factor : order_visible ? std::vector{4.0, 2.0, 1.0} : std::vector{1.0}) {
     const RunSummary summary = run_with_step(scene, variant, settings, factor);
     if (summary.status != RunStatus::ok) {
-      return {{"exact", {}, {}, false,
-               fmt::format("step {:g} s: {}", factor * step, summary.reason)}};
+      return {
+          {"exact", {}, {}, false, fmt::format("step {:g} s: {}", factor * step, summary.reason)}};
     }
     errors.push_back(*summary.position_error_max);
   }
@@ -72,7 +71,10 @@ std::vector<Check> exact_checks(const Scene& scene, const Variant& variant,
                     fmt::format("position error over {:g} s, m", kDuration)};
   if (!order_visible) {
     return {exact,
-            {"convergence-order", {}, {}, {},
+            {"convergence-order",
+             {},
+             {},
+             {},
              fmt::format("above N = {} no three steps lie in the safe range of (alpha, dt)",
                          kMostLoopsToCross)}};
   }

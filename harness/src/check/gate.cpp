@@ -67,13 +67,13 @@ Check lock_step(const NamedVariant& variant, const Model& model, const StepSetti
   return {"lock-step", worst, 1.0, worst <= 1.0, detail};
 }
 
-/// Processor time of this process, s: unlike the wall clock, it makes no check depend on what else the
-/// machine does.
+/// Processor time of this process, s: unlike the wall clock, it makes no check depend on what else
+/// the machine does.
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// lambda after `steps` steps of the stretch against the reference's: within 5 % of the way that it has
-/// moved since the start, beyond `noise` (N/m), what rounding does to it in one step. Positions hardly
-/// depend on lambda, so they cannot judge it.
+/// lambda after `steps` steps of the stretch against the reference's: within 5 % of the way that it
+/// has moved since the start, beyond `noise` (N/m), what rounding does to it in one step. Positions
+/// hardly depend on lambda, so they cannot judge it.
 Check compare_multipliers(const ReferenceRun& reference, const Values& lambda, std::size_t steps,
                           double noise) {
   if (lambda.empty() || steps == 0) return {"multipliers", {}, {}, {}, "there are none"};
@@ -132,8 +132,9 @@ std::vector<Check> free_running(const NamedVariant& variant, const Model& model,
   constexpr std::size_t kLeast = 16;
   if (*positions.passed) {
     positions.passed = done >= std::min(kLeast, reference.positions.size());
-    multipliers = compare_multipliers(
-        reference, state.lambda, done, lock_step_tolerance(reference.probes.back(), settings).lambda);
+    multipliers =
+        compare_multipliers(reference, state.lambda, done,
+                            lock_step_tolerance(reference.probes.back(), settings).lambda);
     positions.detail = fmt::format("m; {} of {} steps from t = {:g} s", done,
                                    reference.positions.size(), reference.stretch.start);
   }
@@ -157,7 +158,8 @@ std::vector<Check> run_checks(const Scene& scene, const NamedVariant& variant,
                     std::back_inserter(checks));
   const bool sound = std::ranges::all_of(checks, [](const Check& c) { return c.passed != false; });
   if (sound && scene.four_bar_loops) {
-    const bool affordable = processor_seconds() - begin < seconds / 16;  // about twice as much is to come
+    const bool affordable =
+        processor_seconds() - begin < seconds / 16;  // about twice as much is to come
     std::ranges::copy(affordable ? exact_checks(scene, *variant.variant, settings)
                                  : exact_checks_not_run("it would take too long here"),
                       std::back_inserter(checks));
@@ -168,10 +170,17 @@ std::vector<Check> run_checks(const Scene& scene, const NamedVariant& variant,
 Verdict interpret(Verdict verdict, const Isolated& result) {
   verdict.reason = result.reason;
   switch (result.fate) {
-    case Fate::finished: break;
-    case Fate::crashed: verdict.verdict = "crashed"; return verdict;
-    case Fate::timeout: verdict.verdict = "timeout"; return verdict;
-    case Fate::out_of_memory: verdict.verdict = "out-of-memory"; return verdict;
+    case Fate::finished:
+      break;
+    case Fate::crashed:
+      verdict.verdict = "crashed";
+      return verdict;
+    case Fate::timeout:
+      verdict.verdict = "timeout";
+      return verdict;
+    case Fate::out_of_memory:
+      verdict.verdict = "out-of-memory";
+      return verdict;
     case Fate::threw:
       verdict.verdict = "crashed";
       verdict.reason = "threw " + result.reason;
@@ -215,8 +224,9 @@ Verdict check_implementation(const Scene& scene, const NamedVariant& variant,
                              const IsolationLimits& limits) {
   const auto work = [&]() -> std::string {
     try {
-      return nlohmann::json{{"checks", run_checks(scene, variant, settings, reference,
-                                                 limits.seconds)}}.dump();
+      return nlohmann::json{
+          {"checks", run_checks(scene, variant, settings, reference, limits.seconds)}}
+          .dump();
     } catch (const Unsupported& reason) {
       return nlohmann::json{{"unsupported", printable(reason.what(), 1000)}}.dump();
     }

@@ -8,9 +8,9 @@
 
 namespace mbs {
 
-/// Checks `variant` on `scene` in a child process under `limits`: lock-step, free-running motion and
-/// number of passes against `reference`, then error and order against the exact solution if there is
-/// one. A dead or hanging child is a verdict, not an error.
+/// Checks `variant` on `scene` in a child process under `limits`: lock-step, free-running motion
+/// and number of passes against `reference`, then error and order against the exact solution if
+/// there is one. A dead or hanging child is a verdict, not an error.
 Verdict check_implementation(const Scene& scene, const NamedVariant& variant,
                              const StepSettings& settings, const ReferenceRun& reference,
                              const IsolationLimits& limits = {});

@@ -1,4 +1,5 @@
-// What the long-double reference says of a scene: computed once, compared with every implementation.
+// What the long-double reference says of a scene: computed once, compared with every
+// implementation.
 #pragma once
 
 #include <vector>
@@ -11,7 +12,7 @@ namespace mbs {
 
 /// One step of the reference from a state that double precision holds exactly.
 struct Probe {
-  double t = 0.0;          ///< s, before the step
+  double t = 0.0;  ///< s, before the step
   State before, after;
   StepOutcome outcome;
   double condition = 0.0;      ///< of the tangent, 2-norm
@@ -22,8 +23,8 @@ struct ReferenceRun {
   Stretch stretch;
   std::vector<std::vector<double>> positions;    ///< q after each step of the stretch
   std::vector<std::vector<double>> multipliers;  ///< lambda after each step of the stretch
-  std::vector<StepOutcome> outcomes;           ///< of each step
-  std::vector<Probe> probes;                   ///< spread over the stretch, its ends included
+  std::vector<StepOutcome> outcomes;             ///< of each step
+  std::vector<Probe> probes;                     ///< spread over the stretch, its ends included
 };
 
 /// Runs the reference over the stretch of `scene`: 800 steps, fewer from 500 variables up so that

@@ -10,11 +10,11 @@ namespace mbs {
 
 /// One comparison: passed if `value` <= `tolerance` (for an order: within it of 2).
 struct Check {
-  std::string name;                 ///< "lock-step", "free-running", "passes", "exact", ...
-  std::optional<double> value;      ///< measured; none if not run, or not a number
+  std::string name;             ///< "lock-step", "free-running", "passes", "exact", ...
+  std::optional<double> value;  ///< measured; none if not run, or not a number
   std::optional<double> tolerance;
-  std::optional<bool> passed;       ///< none if not run; `detail` says why
-  std::string detail;               ///< one line: where, which quantity, what unit
+  std::optional<bool> passed;  ///< none if not run; `detail` says why
+  std::string detail;          ///< one line: where, which quantity, what unit
 };
 
 /// "agrees", "disagrees", "unsupported", "crashed", "timeout" or "out-of-memory".

@@ -5,17 +5,18 @@
 
 namespace mbs {
 
-/// Closed-form solution of Eqs. (9) and (10) in Jacobi elliptic functions, evaluated in long double.
-/// Valid on the parallelogram branch, on which all rods share one angle phi from the upward vertical.
+/// Closed-form solution of Eqs. (9) and (10) in Jacobi elliptic functions, evaluated in long
+/// double. Valid on the parallelogram branch, on which all rods share one angle phi from the upward
+/// vertical.
 class FourBarExact {
  public:
   /// N = loops >= 1.
   explicit FourBarExact(int loops);
 
   struct Angle {
-    long double sine, cosine;   ///< sin phi, cos phi
-    long double rate;           ///< phi', rad/s
-    long double acceleration;   ///< phi'', rad/s^2
+    long double sine, cosine;  ///< sin phi, cos phi
+    long double rate;          ///< phi', rad/s
+    long double acceleration;  ///< phi'', rad/s^2
   };
   /// The common angle at time t >= 0 (s).
   [[nodiscard]] Angle angle(double t) const;

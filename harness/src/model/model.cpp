@@ -103,8 +103,7 @@ Model::Model(ModelData data) : data_(std::move(data)) {
   initial_position_.resize(n);
   for (const Point& point : data_.points) {
     if (point.is_fixed()) continue;
-    std::copy_n(point.position.begin(), data_.dimension,
-                initial_position_.begin() + point.offset);
+    std::copy_n(point.position.begin(), data_.dimension, initial_position_.begin() + point.offset);
   }
 }
 

@@ -6,8 +6,8 @@
 
 namespace mbs {
 
-/// Row i of the lower triangle holds the columns first[i] ... i. Elimination makes no entries outside
-/// this envelope, which is why the storage is so simple.
+/// Row i of the lower triangle holds the columns first[i] ... i. Elimination makes no entries
+/// outside this envelope, which is why the storage is so simple.
 ///
 /// Example: rows [4], [2 5], [. 1 3] with first = {0, 0, 1} are stored as 4 | 2 5 | 1 3.
 class EnvelopeCholesky {

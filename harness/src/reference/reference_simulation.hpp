@@ -36,9 +36,9 @@ class ReferenceSimulation final : public Simulation {
 
   [[nodiscard]] Real coordinate(const Vector& x, int point, int axis) const;
   [[nodiscard]] Real velocity(const Vector& x, int point, int axis) const;
-  [[nodiscard]] Vector constraints() const;              // Phi(q)
-  [[nodiscard]] std::vector<Row> jacobian() const;       // Phi_q(q)
-  [[nodiscard]] Vector curvature() const;                // (Phi_q)' v
+  [[nodiscard]] Vector constraints() const;         // Phi(q)
+  [[nodiscard]] std::vector<Row> jacobian() const;  // Phi_q(q)
+  [[nodiscard]] Vector curvature() const;           // (Phi_q)' v
   [[nodiscard]] Vector mass_times(const Vector& x) const;
   [[nodiscard]] Vector transpose_times(const std::vector<Row>& rows, const Vector& x) const;
   [[nodiscard]] std::vector<int> envelope() const;

@@ -27,8 +27,8 @@ std::vector<NamedVariant> select_variants(const std::vector<std::string>& names)
   for (const std::string& name : names) {
     for (const RegistryEntry& entry : registry()) {
       if (entry.folder == name.substr(0, name.find('/')) && !entry.unavailable.empty()) {
-        throw UsageError(fmt::format("implementation '{}' is unavailable: {}", name,
-                                     entry.unavailable));
+        throw UsageError(
+            fmt::format("implementation '{}' is unavailable: {}", name, entry.unavailable));
       }
     }
     const auto selected = [&name](const NamedVariant& variant) {
@@ -37,8 +37,8 @@ std::vector<NamedVariant> select_variants(const std::vector<std::string>& names)
     if (std::ranges::none_of(all, selected)) {
       std::vector<std::string> known;
       for (const NamedVariant& variant : all) known.push_back(variant.name);
-      throw UsageError(fmt::format("unknown implementation '{}': there are {}", name,
-                                   fmt::join(known, ", ")));
+      throw UsageError(
+          fmt::format("unknown implementation '{}': there are {}", name, fmt::join(known, ", ")));
     }
   }
   for (const NamedVariant& variant : all) {

@@ -8,8 +8,8 @@
 namespace mbs {
 
 struct IsolationLimits {
-  double seconds = 120.0;                      ///< wall clock
-  std::size_t bytes = std::size_t{4} << 30;    ///< address space; not enforced under sanitizers
+  double seconds = 120.0;                    ///< wall clock
+  std::size_t bytes = std::size_t{4} << 30;  ///< address space; not enforced under sanitizers
 };
 
 enum class Fate {

@@ -10,8 +10,8 @@
 
 namespace mbs {
 
-/// Beyond these a run has lost its solution. They are wide on purpose: they separate a motion that is
-/// inaccurate from one that means nothing.
+/// Beyond these a run has lost its solution. They are wide on purpose: they separate a motion that
+/// is inaccurate from one that means nothing.
 struct RunBounds {
   double position_error = 0.1;         ///< m, where an exact solution is known
   double energy_drift = 0.1;           ///< of the energy scale, see Judge

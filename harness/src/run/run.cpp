@@ -8,8 +8,8 @@
 #include <cmath>
 #include <new>
 
-#include "run/initial_state.hpp"
 #include "printable.hpp"
+#include "run/initial_state.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -70,10 +70,14 @@ void step_through(Simulation& simulation, State& state, const RunSettings& setti
 
 std::string to_string(RunStatus status) {
   switch (status) {
-    case RunStatus::ok: return "ok";
-    case RunStatus::not_converged: return "not-converged";
-    case RunStatus::diverged: return "diverged";
-    case RunStatus::unsupported: return "unsupported";
+    case RunStatus::ok:
+      return "ok";
+    case RunStatus::not_converged:
+      return "not-converged";
+    case RunStatus::diverged:
+      return "diverged";
+    case RunStatus::unsupported:
+      return "unsupported";
   }
   return "unknown";
 }
@@ -81,8 +85,8 @@ std::string to_string(RunStatus status) {
 long count_steps(const RunSettings& settings) {
   const auto require = [](double value, const char* name, const char* unit) {
     if (!(value > 0.0) || !std::isfinite(value)) {
-      throw UsageError(fmt::format("{} is {:g}{}: it must be a finite number above 0", name, value,
-                                   unit));
+      throw UsageError(
+          fmt::format("{} is {:g}{}: it must be a finite number above 0", name, value, unit));
     }
   };
   require(settings.step.step, "--step", " s");
@@ -90,8 +94,8 @@ long count_steps(const RunSettings& settings) {
   require(settings.step.penalty, "--penalty", "");
   require(settings.step.tolerance, "--tolerance", " m");
   if (settings.step.max_passes < 1 || settings.step.max_passes > 1000) {
-    throw UsageError(fmt::format("--max-passes is {}: it must be 1 to 1000",
-                                 settings.step.max_passes));
+    throw UsageError(
+        fmt::format("--max-passes is {}: it must be 1 to 1000", settings.step.max_passes));
   }
   constexpr double kMostSteps = 1e8;
   const double steps = std::round(settings.duration / settings.step.step);

@@ -17,7 +17,8 @@ namespace mbs {
 
 namespace {
 
-/// s_mean: the mean of the diagonal of Phi_q M^-1 Phi_q^T at the start with the diagonal of M for M, m^2/kg.
+/// s_mean: the mean of the diagonal of Phi_q M^-1 Phi_q^T at the start with the diagonal of M for
+/// M, m^2/kg.
 double mean_constraint_eigenvalue(const Model& model) {
   std::vector<double> diagonal(static_cast<std::size_t>(model.variables()));
   for (const MassEntry& entry : model.mass()) {
@@ -56,10 +57,9 @@ double automatic_tolerance(const Model& model, double step, double penalty) {
   for (const double coordinate : model.initial_position()) {
     size = std::max(size, std::abs(coordinate));
   }
-  const double stiffness =
-      model.constraints() == 0
-          ? 0.0
-          : penalty * step * step / 4 * mean_constraint_eigenvalue(model);
+  const double stiffness = model.constraints() == 0
+                               ? 0.0
+                               : penalty * step * step / 4 * mean_constraint_eigenvalue(model);
   constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
   return std::max(wanted, 10 * kUnit * size * std::sqrt(1 + stiffness));
 }

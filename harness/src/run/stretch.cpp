@@ -15,8 +15,8 @@ namespace mbs {
 Stretch make_stretch(const Scene& scene, double step, int steps, std::optional<double> start) {
   if (!scene.four_bar_loops) {
     if (start && *start != 0.0) {
-      throw UsageError(fmt::format("--start needs an exact solution: scene '{}' starts at 0",
-                                   scene.name));
+      throw UsageError(
+          fmt::format("--start needs an exact solution: scene '{}' starts at 0", scene.name));
     }
     return {0.0, steps, initial_state(scene.model)};
   }

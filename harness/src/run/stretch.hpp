@@ -15,8 +15,9 @@ struct Stretch {
   State initial;
 };
 
-/// Largest N up to which two correct implementations still agree beyond a singular position: crossing
-/// one multiplies rounding errors, the more so the larger N (harness/README.md has the figures).
+/// Largest N up to which two correct implementations still agree beyond a singular position:
+/// crossing one multiplies rounding errors, the more so the larger N (harness/README.md has the
+/// figures).
 inline constexpr int kMostLoopsToCross = 300;
 
 /// Above it, a stretch ends this long before the singular position, s.
@@ -24,8 +25,8 @@ inline constexpr double kClearance = 0.2;
 
 /// The stretch of `steps` steps of `step` s. On the N-four-bar it starts on the exact motion with
 /// consistent a and lambda, and is centred on the first singular position, or for N above
-/// kMostLoopsToCross ends kClearance before it, with fewer steps if fewer fit; clipped at t = 0. Other
-/// scenes start at t = 0. `start` (s >= 0, N-four-bar only) overrides. Throws UsageError.
+/// kMostLoopsToCross ends kClearance before it, with fewer steps if fewer fit; clipped at t = 0.
+/// Other scenes start at t = 0. `start` (s >= 0, N-four-bar only) overrides. Throws UsageError.
 Stretch make_stretch(const Scene& scene, double step, int steps,
                      std::optional<double> start = std::nullopt);
 

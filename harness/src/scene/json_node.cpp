@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "scene/json_text.hpp"
 #include "printable.hpp"
+#include "scene/json_text.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {

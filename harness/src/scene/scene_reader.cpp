@@ -7,8 +7,8 @@
 #include <cmath>
 #include <optional>
 
-#include "scene/bodies.hpp"
 #include "printable.hpp"
+#include "scene/bodies.hpp"
 
 namespace mbs {
 namespace {
