@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mbs/operations.hpp"
 #include "mbs/simulation.hpp"
 
 namespace mbs {
@@ -18,6 +19,8 @@ struct Variant {
   std::unique_ptr<Simulation> (*create)(const Model& model, const StepSettings& settings) = nullptr;
   /// Why step() allocates memory, where the library leaves no choice; empty: it must not.
   std::string allocates = "";
+  /// The operations of Table 2 alone, as this variant's step does them; nullptr: not offered.
+  std::unique_ptr<Operations> (*operations)(const Model& model) = nullptr;
 };
 
 /// What the folder `implementations/<folder>/` offers. The folder defines
