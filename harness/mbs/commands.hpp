@@ -14,6 +14,9 @@ void add_describe_command(CLI::App& app, int& status);
 void add_simulate_command(CLI::App& app, int& status);
 void add_check_command(CLI::App& app, int& status);
 
+/// Adds --blas to `command`, for its help; main() has already obeyed it (settle_environment()).
+void add_blas_option(CLI::App& command);
+
 /// Time-stepping options as typed; "auto" needs the model.
 struct StepOptions {
   double step = 1.25e-3;
@@ -21,7 +24,7 @@ struct StepOptions {
   std::string tolerance = "auto";
   int max_passes = 20;
 
-  /// Adds --step, --penalty, --tolerance and --max-passes to `command`.
+  /// Adds --step, --penalty, --tolerance, --max-passes and --blas to `command`.
   void add_to(CLI::App& command);
   /// Throws UsageError if a value is out of range.
   [[nodiscard]] StepSettings resolve(const Model& model) const;

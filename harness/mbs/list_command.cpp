@@ -4,11 +4,25 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "environment/blas.hpp"
 #include "mbs/commands.hpp"
 #include "registry/registry.hpp"
 
 namespace mbs {
 namespace {
+
+nlohmann::json blas_json() {
+  nlohmann::json pairs = nlohmann::json::array();
+  for (const BlasPair& pair : blas_pairs()) {
+    const std::string reason = why_unavailable(pair);
+    pairs.push_back({{"name", pair.name},
+                     {"blas", pair.blas},
+                     {"lapack", pair.lapack},
+                     {"available", reason.empty()},
+                     {"reason", reason}});
+  }
+  return pairs;
+}
 
 nlohmann::json list_json() {
   nlohmann::json implementations = nlohmann::json::array();
@@ -28,7 +42,7 @@ nlohmann::json list_json() {
                                {"reason", entry.unavailable},
                                {"variants", variants}});
   }
-  return {{"implementations", implementations}};
+  return {{"implementations", implementations}, {"blas", blas_json()}};
 }
 
 void print_list() {
@@ -43,6 +57,12 @@ void print_list() {
                  implementation.description, variant.description, implementation.library,
                  implementation.version, implementation.licence);
     }
+  }
+  fmt::print("\nBLAS and LAPACK (--blas NAME):\n");
+  for (const BlasPair& pair : blas_pairs()) {
+    const std::string reason = why_unavailable(pair);
+    fmt::print("{:<24} {} with {}{}{}\n", pair.name, pair.blas, pair.lapack,
+               reason.empty() ? "" : "; unavailable: ", reason);
   }
 }
 

@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
   try {
     limit_memory();
     std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is an error like any other full disk
-    mbs::single_thread_environment(argv);
+    mbs::settle_environment(argc, argv);
     return finish(mbs::run_program(argc, argv));
   } catch (const std::bad_alloc&) {
     return fail("not enough memory for this scene with this implementation");

@@ -1,10 +1,12 @@
 // The command line as a whole.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
+#include "environment/blas.hpp"
 #include "environment/build_info.hpp"
 #include "mbs/bench_command.hpp"
 #include "mbs/commands.hpp"
@@ -36,6 +38,18 @@ bool is_subcommand(const CLI::App& app, const std::string& name) {
 
 }  // namespace
 
+void add_blas_option(CLI::App& command) {
+  std::vector<std::string> names;
+  for (const BlasPair& pair : blas_pairs()) names.push_back(pair.name);
+  command
+      .add_option_function<std::string>(
+          "--blas", [](const std::string&) {},
+          fmt::format("BLAS and LAPACK to run on, one of {} (default: the "
+                      "system's; mbs list tells which are installed)",
+                      fmt::join(names, ", ")))
+      ->type_name("NAME");
+}
+
 void StepOptions::add_to(CLI::App& command) {
   command.add_option("--step", step, "time step, s")->capture_default_str();
   command.add_option("--penalty", penalty, "penalty factor alpha, or 'auto'")
@@ -46,6 +60,7 @@ void StepOptions::add_to(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--max-passes", max_passes, "passes a step at most, 1 to 1000")
       ->capture_default_str();
+  add_blas_option(command);
 }
 
 StepSettings StepOptions::resolve(const Model& model) const {

@@ -72,7 +72,7 @@ TEST(EnvironmentRecord, HasEveryKeyOnceAndNothingEmpty) {
   }
   EXPECT_EQ(keys,
             (std::vector<std::string>{"mbs_version", "commit", "dirty", "compiler", "flags",
-                                      "build_type", "blas_loaded", "libraries", "cpu_model",
+                                      "build_type", "blas", "blas_loaded", "libraries", "cpu_model",
                                       "machine", "kernel", "threads_environment", "command"}));
 }
 

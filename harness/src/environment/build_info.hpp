@@ -10,6 +10,7 @@ struct BuildInfo {
   const char* compiler;    ///< "GNU 12.2.0"
   const char* flags;       ///< of a C++ compilation
   const char* build_type;  ///< "Release"
+  const char* library_folder;  ///< where Debian has its libraries, "/usr/lib/x86_64-linux-gnu"
 };
 
 const BuildInfo& build_info();

@@ -12,6 +12,7 @@
 #include <regex>
 #include <sstream>
 
+#include "environment/blas.hpp"
 #include "environment/build_info.hpp"
 #include "environment/environment.hpp"
 #include "environment/machine.hpp"
@@ -71,6 +72,12 @@ std::string shortened(const std::string& path) {
   return name.empty() ? path : name.string();
 }
 
+std::string blas_asked(const std::vector<std::string>& arguments) {
+  std::vector<const char*> pointers;
+  for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
+  return asked_blas(static_cast<int>(pointers.size()), pointers.data()).value_or("system");
+}
+
 }  // namespace
 
 std::string without_home(std::string text) {
@@ -122,9 +129,11 @@ std::vector<std::string> blas_files(const std::string& maps) {
   return files;
 }
 
+std::vector<std::string> loaded_blas_files() { return blas_files(whole_file("/proc/self/maps")); }
+
 EnvironmentRecord environment_record() {
   const BuildInfo& build = build_info();
-  const std::vector<std::string> blas = blas_files(whole_file("/proc/self/maps"));
+  const std::vector<std::string> arguments = own_arguments();
   return {
       {"mbs_version", build.version},
       {"commit", build.commit},
@@ -132,13 +141,14 @@ EnvironmentRecord environment_record() {
       {"compiler", build.compiler},
       {"flags", without_home(build.flags)},
       {"build_type", build.build_type},
-      {"blas_loaded", without_home(fmt::format("{}", fmt::join(blas, ";")))},
+      {"blas", blas_asked(arguments)},
+      {"blas_loaded", without_home(fmt::format("{}", fmt::join(loaded_blas_files(), ";")))},
       {"libraries", libraries()},
       {"cpu_model", cpu_model()},
       {"machine", machine_fingerprint()},
       {"kernel", kernel()},
       {"threads_environment", threads_environment()},
-      {"command", command_line(own_arguments())},
+      {"command", command_line(arguments)},
   };
 }
 

@@ -1,0 +1,118 @@
+// The table of pairs, and how the dynamic loader is told to take one of them.
+#include "environment/blas.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstring>
+#include <ranges>
+
+#include "environment/build_info.hpp"
+#include "usage_error.hpp"
+
+namespace mbs {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kBlas = "libblas.so.3";
+constexpr const char* kLapack = "liblapack.so.3";
+
+bool starts_path_list(const std::string& list, const std::string& prefix) {
+  return list == prefix || list.starts_with(prefix + ":");
+}
+
+}  // namespace
+
+std::vector<BlasPair> blas_pairs(const fs::path& root) {
+  const fs::path reference_lapack = root / "lapack" / kLapack;
+  const std::string lapack_package = "liblapack3";
+  const std::string openblas = "OpenBLAS (successor of GotoBLAS)";
+  const std::string blis = "BLIS (what AMD's AOCL, once ACML, is built on)";
+  const auto own = [&](const char* folder) { return root / folder / kBlas; };
+  const auto own_lapack = [&](const char* folder) { return root / folder / kLapack; };
+  return {
+      {"reference", "reference BLAS", "reference LAPACK", "libblas3 " + lapack_package, own("blas"),
+       reference_lapack, ""},
+      {"atlas-reference", "ATLAS", "reference LAPACK", "libatlas3-base " + lapack_package,
+       own("atlas"), reference_lapack, ""},
+      {"atlas", "ATLAS", "ATLAS's own LAPACK", "libatlas3-base", own("atlas"), own_lapack("atlas"),
+       ""},
+      {"openblas-reference", openblas, "reference LAPACK", "libopenblas0-serial " + lapack_package,
+       own("openblas-serial"), reference_lapack, ""},
+      {"openblas", openblas, "OpenBLAS's own LAPACK", "libopenblas0-serial", own("openblas-serial"),
+       own_lapack("openblas-serial"), ""},
+      {"blis-reference", blis, "reference LAPACK", "libblis4-serial " + lapack_package,
+       own("blis-serial"), reference_lapack, ""},
+      {"blis-flame", blis, "libflame (AMD's LAPACK), the rest from the reference",
+       "libblis4-serial libflame1 " + lapack_package, own("blis-serial"), reference_lapack,
+       root / "libflame.so.1"},
+  };
+}
+
+const std::vector<BlasPair>& blas_pairs() {
+  static const std::vector<BlasPair> pairs = blas_pairs(build_info().library_folder);
+  return pairs;
+}
+
+std::string why_unavailable(const BlasPair& pair) {
+  std::vector<std::string> missing;
+  for (const fs::path& file : {pair.blas_file, pair.lapack_file, pair.preload}) {
+    std::error_code error;
+    if (!file.empty() && !fs::exists(file, error)) missing.push_back(file.string());
+  }
+  if (missing.empty()) return "";
+  return fmt::format("{} missing: apt-get install {}", fmt::join(missing, ", "), pair.package);
+}
+
+std::optional<std::string> asked_blas(int argc, const char* const* argv) {
+  std::optional<std::string> asked;
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--blas") == 0 && i + 1 < argc) asked = argv[i + 1];
+    if (std::strncmp(argv[i], "--blas=", 7) == 0) asked = argv[i] + 7;
+  }
+  return asked;
+}
+
+const BlasPair& available_pair(const std::string& name) {
+  const auto& pairs = blas_pairs();
+  const auto found = std::ranges::find(pairs, name, &BlasPair::name);
+  if (found == pairs.end()) {
+    throw UsageError(fmt::format("--blas is '{}': there are {}", name,
+                                 fmt::join(pairs | std::views::transform(&BlasPair::name), ", ")));
+  }
+  const std::string reason = why_unavailable(*found);
+  if (!reason.empty()) {
+    throw UsageError(fmt::format("--blas {}: cannot be selected: {}", name, reason));
+  }
+  return *found;
+}
+
+std::vector<std::pair<std::string, std::string>> loader_environment(const BlasPair& pair,
+                                                                    const std::string& library_path,
+                                                                    const std::string& preload) {
+  // The folder of the LAPACK first: those of a BLAS may hold a LAPACK too, never the reverse.
+  const std::string lapack = pair.lapack_file.parent_path(), blas = pair.blas_file.parent_path();
+  const std::string folders = lapack == blas ? blas : lapack + ":" + blas;
+  std::vector<std::pair<std::string, std::string>> changes;
+  const auto prepend = [&](const char* name, const std::string& front, const std::string& present) {
+    if (front.empty() || starts_path_list(present, front)) return;
+    changes.emplace_back(name, present.empty() ? front : front + ":" + present);
+  };
+  prepend("LD_LIBRARY_PATH", folders, library_path);
+  prepend("LD_PRELOAD", pair.preload, preload);
+  return changes;
+}
+
+std::string why_not_in_effect(const BlasPair& pair, const std::vector<std::string>& mapped) {
+  for (const fs::path& file : {pair.blas_file, pair.lapack_file, pair.preload}) {
+    if (file.empty()) continue;
+    std::error_code error;
+    const std::string real = fs::canonical(file, error).string();
+    if (std::ranges::find(mapped, real) == mapped.end()) return file.string() + " is not loaded";
+  }
+  return "";
+}
+
+}  // namespace mbs
