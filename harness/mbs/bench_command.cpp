@@ -14,6 +14,7 @@
 
 #include "bench/bench_plan.hpp"
 #include "bench/bench_rows.hpp"
+#include "bench/operation_rows.hpp"
 #include "bench/reporters.hpp"
 #include "environment/environment.hpp"
 #include "mbs/commands.hpp"
@@ -44,6 +45,9 @@ void add_options(CLI::App& app, BenchRequest& request, StepOptions& step) {
   app.add_option("--start", request.start,
                  "start of the stretch, s (default: centred on the first singular position)");
   app.add_flag("--phases", request.phases, "also give the share of time of each phase");
+  app.add_flag("--operations", request.operations,
+               "instead of steps, time Jacobian evaluation, rank-k update and matrix addition of "
+               "the variants that offer them one by one");
 }
 
 bool asks_for_help(int argc, char** argv) {
@@ -101,11 +105,16 @@ std::string redirect_output() {
   return direct ? "" : given;
 }
 
-int run_cells(const std::vector<PlannedCell>& cells, bool phases) {
+int run_cells(const std::vector<PlannedCell>& cells, const BenchRequest& request) {
   const std::string rename_to = redirect_output();
   const std::string out = benchmark::FLAGS_benchmark_out;
   BenchRows rows;
-  rows.add(cells, phases);
+  OperationRows operations;
+  if (request.operations) {
+    operations.add(cells);
+  } else {
+    rows.add(cells, request.phases);
+  }
   for (const auto& [key, value] : environment_record()) benchmark::AddCustomContext(key, value);
   const auto display = make_display_reporter();
   JsonReporter file;
@@ -117,7 +126,7 @@ int run_cells(const std::vector<PlannedCell>& cells, bool phases) {
   if (!out.empty() && (!file.complete() || error)) {
     throw UsageError(fmt::format("--benchmark_out: {} could not be written to its end", out));
   }
-  return rows.failed() ? 1 : 0;
+  return rows.failed() || operations.failed() ? 1 : 0;
 }
 
 }  // namespace
@@ -144,7 +153,7 @@ int bench_command(int argc, char** argv) {
     for (const PlannedCell& cell : cells) fmt::print("{}\n", cell.name);
     return 0;
   }
-  return run_cells(cells, request.phases);
+  return run_cells(cells, request);
 }
 
 }  // namespace mbs

@@ -21,6 +21,7 @@ Implementation implementation() {
                        const StepSettings& settings) -> std::unique_ptr<mbs::Simulation> {
             return std::make_unique<DenseSimulation>(model, settings);
           },
+          .dense = true,
       }},
   };
 }

@@ -28,7 +28,10 @@ Implementation implementation() {
   description.library = "Eigen";
   description.version = eigen_version();
   description.licence = "MPL-2.0";
-  description.variants = {{"llt", "Cholesky in place on the lower triangle", create}};
+  description.variants = {{.name = "llt",
+                           .description = "Cholesky in place on the lower triangle",
+                           .create = create,
+                           .dense = true}};
   return description;
 }
 

@@ -19,6 +19,9 @@ struct Variant {
   std::unique_ptr<Simulation> (*create)(const Model& model, const StepSettings& settings) = nullptr;
   /// Why step() allocates memory, where the library leaves no choice; empty: it must not.
   std::string allocates = "";
+  bool dense = false;  ///< stores and factorizes all n^2 positions of the tangent
+  /// Its solver takes unsymmetric matrices too, which other formulations than this one give.
+  bool unsymmetric = false;
   /// The operations of Table 2 alone, as this variant's step does them; nullptr: not offered.
   std::unique_ptr<Operations> (*operations)(const Model& model) = nullptr;
 };

@@ -74,13 +74,19 @@ BenchPlan plan_bench(const BenchRequest& request) {
       throw UsageError(fmt::format("scene '{}' is given twice", name));
     }
     const PlannedScene* scene = &plan.scenes.emplace_back(plan_scene(name, request));
-    if (control) {
+    if (control && !request.operations) {
       plan.cells.push_back({fmt::format("{}/{}", kControl, name), scene, &null_variant(), true});
     }
     for (const NamedVariant& variant : variants) {
+      // Asked for by name it becomes a row that says so.
+      const bool offers = !request.operations || variant.variant->operations != nullptr;
+      if (!offers && request.implementations.empty()) continue;
       plan.cells.push_back(
           {fmt::format("{}/{}", variant.name, name), scene, variant.variant, false});
     }
+  }
+  if (plan.cells.empty()) {
+    throw UsageError("--operations: no implementation of this build offers them one by one");
   }
   return plan;
 }

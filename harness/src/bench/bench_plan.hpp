@@ -21,6 +21,7 @@ struct BenchRequest {
   std::optional<int> steps;
   std::optional<double> start;  ///< s
   bool phases = false;
+  bool operations = false;  ///< the operations of Table 2 instead of steps
 };
 
 /// A scene with what is common to all of its cells.
