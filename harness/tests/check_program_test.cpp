@@ -52,6 +52,16 @@ TEST(CheckProgram, AllImplementationsAgree) {
   }
 }
 
+TEST(CheckProgram, AgreesOnScenesWithoutConstraints) {
+  if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
+  const std::string scene = test::temporary_path("fall.json");
+  std::ofstream(scene) << R"({"dimension": 3, "masses": [{"point": "B", "mass": 2.0}],
+    "points": [{"name": "B", "position": [0, 0, 0], "velocity": [1, 2, 0]}]})";
+  const auto run = test::run_mbs("check '" + scene + "'");
+  EXPECT_EQ(run.status, 0) << run.output << run.errors;
+  std::filesystem::remove(scene);
+}
+
 TEST(CheckProgram, KeepsChecksThatWereNotRun) {
   if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
   const std::string file = test::temporary_path("verdicts.json");

@@ -52,6 +52,7 @@ Check lock_step(const NamedVariant& variant, const Model& model, const StepSetti
     }
     const auto compare = [&](const char* name, const Values& x, const Values& y, double allowed) {
       const double difference = distance(x, y);
+      if (difference == 0.0) return;  // nothing is allowed where there is nothing: 0/0
       const double ratio = difference / allowed;
       if (std::isnan(worst) || ratio <= worst) return;  // the first NaN stays
       worst = ratio;

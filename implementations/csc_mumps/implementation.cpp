@@ -1,0 +1,22 @@
+// Registers compressed sparse columns with the multifrontal solver MUMPS.
+#include "mbs/implementation.hpp"
+
+#include "simulation.hpp"
+#include "solver.hpp"
+
+namespace mbs::csc_mumps {
+
+Implementation implementation() {
+  Implementation self;
+  self.description = "hand-rolled compressed sparse columns; multifrontal, positive definite";
+  self.library = "MUMPS";
+  self.version = MultifrontalSolver::version();
+  self.licence = "CECILL-C";
+  self.variants.push_back({.name = "spd",
+                           .description = "SYM = 1: no pivoting, AMD ordering, analysis once",
+                           .create = make_simulation,
+                           .allocates = "MUMPS allocates its workspaces anew in every call"});
+  return self;
+}
+
+}  // namespace mbs::csc_mumps

@@ -1,0 +1,122 @@
+// Prediction, Newton passes with multiplier updates, projections.
+#include "simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mbs::csc_mumps {
+
+std::unique_ptr<Simulation> make_simulation(const Model& model, const StepSettings& settings) {
+  return std::make_unique<CscMumpsSimulation>(model, settings);
+}
+
+CscMumpsSimulation::CscMumpsSimulation(const Model& model, const StepSettings& settings)
+    : Simulation(model.variables(), model.constraints()),
+      variables_(model.variables()),
+      settings_(settings),
+      velocity_factor_(2.0 / settings.step),
+      acceleration_factor_(4.0 / (settings.step * settings.step)),
+      assembly_(model, settings.step * settings.step / 4.0, settings.penalty),
+      solver_(assembly_.pattern(), assembly_.tangent()),
+      a_(variables_, 0.0),
+      lambda_(model.constraints(), 0.0),
+      x_(variables_, 0.0) {
+  const std::span<const double> fixed = assembly_.fixed_coordinates();
+  q_.assign(model.initial_position().begin(), model.initial_position().end());
+  q_.insert(q_.end(), fixed.begin(), fixed.end());
+  v_.assign(model.initial_velocity().begin(), model.initial_velocity().end());
+  v_.resize(q_.size(), 0.0);
+}
+
+void CscMumpsSimulation::do_set_state(const State& state) {
+  std::copy(state.q.begin(), state.q.end(), q_.begin());
+  std::copy(state.v.begin(), state.v.end(), v_.begin());
+  std::copy(state.a.begin(), state.a.end(), a_.begin());
+  std::copy(state.lambda.begin(), state.lambda.end(), lambda_.begin());
+}
+
+void CscMumpsSimulation::do_get_state(State& state) const {
+  std::copy_n(q_.begin(), variables_, state.q.begin());
+  std::copy_n(v_.begin(), variables_, state.v.begin());
+  std::copy(a_.begin(), a_.end(), state.a.begin());
+  std::copy(lambda_.begin(), lambda_.end(), state.lambda.begin());
+}
+
+StepOutcome CscMumpsSimulation::do_step() {
+  predict();
+  int passes = 0;
+  Pass pass = Pass::unconverged;
+  while (pass == Pass::unconverged && passes < settings_.max_passes) {
+    pass = newton_pass();
+    ++passes;
+  }
+  const bool solved = pass != Pass::failed && project();
+  phases_.enter(Phase::other);
+  if (!solved) return {StepStatus::factorization_failed, passes};
+  return {pass == Pass::converged ? StepStatus::converged : StepStatus::pass_limit, passes};
+}
+
+void CscMumpsSimulation::predict() {
+  phases_.enter(Phase::other);
+  const double step = settings_.step;
+  for (int i = 0; i < variables_; ++i) {
+    const double start = q_[i];
+    q_[i] = start + step * (v_[i] + 0.5 * step * a_[i]);
+    const double moved = q_[i] - start;
+    a_[i] = acceleration_factor_ * moved - 2.0 * velocity_factor_ * v_[i] - a_[i];  // Eq. (2)
+    v_[i] = velocity_factor_ * moved - v_[i];                                       // Eq. (2)
+  }
+  phases_.enter(Phase::evaluation);
+  assembly_.evaluate_constraints(q_.data());
+}
+
+CscMumpsSimulation::Pass CscMumpsSimulation::newton_pass() {
+  phases_.enter(Phase::evaluation);
+  assembly_.newton_right(a_.data(), lambda_.data(), x_.data());
+  phases_.enter(Phase::assembly);
+  if (!assembly_.evaluate_tangent()) return Pass::failed;
+  phases_.enter(Phase::factorization);  // with the solution in it: one call does both
+  if (!solver_.factorize_and_solve(x_)) return Pass::failed;  // Eq. (4)
+  phases_.enter(Phase::other);
+  const bool converged = correct();
+  phases_.enter(Phase::evaluation);
+  assembly_.evaluate_constraints(q_.data());
+  phases_.enter(Phase::other);
+  raise_multipliers();
+  return converged ? Pass::converged : Pass::unconverged;
+}
+
+/// Applies Delta q = x_. True if all of it is within the tolerance; a NaN is not.
+bool CscMumpsSimulation::correct() {
+  int outside = 0;
+  for (int i = 0; i < variables_; ++i) {
+    const double change = x_[i];
+    outside += !(std::abs(change) <= settings_.tolerance);
+    q_[i] += change;
+    v_[i] += velocity_factor_ * change;      // Eq. (2)
+    a_[i] += acceleration_factor_ * change;  // Eq. (2)
+  }
+  return outside == 0;
+}
+
+void CscMumpsSimulation::raise_multipliers() {
+  const double* phi = assembly_.phi();
+  for (std::size_t i = 0; i < lambda_.size(); ++i) lambda_[i] += settings_.penalty * phi[i];
+}
+
+/// Eq. (6): v, then a, with the factors of the last pass. False if the solver gave up.
+bool CscMumpsSimulation::project() {
+  phases_.enter(Phase::projection);
+  assembly_.velocity_right(v_.data(), x_.data());
+  phases_.enter(Phase::solve);
+  if (!solver_.solve(x_)) return false;
+  phases_.enter(Phase::projection);
+  std::copy(x_.begin(), x_.end(), v_.begin());
+  assembly_.acceleration_right(a_.data(), v_.data(), x_.data());
+  phases_.enter(Phase::solve);
+  if (!solver_.solve(x_)) return false;
+  a_.swap(x_);
+  return true;
+}
+
+}  // namespace mbs::csc_mumps

@@ -1,0 +1,141 @@
+// The step: prediction, Newton passes with multiplier updates, projections.
+#include "simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace mbs::csc_umfpack {
+
+template <int D>
+CscUmfpack<D>::CscUmfpack(const Model& model, const StepSettings& settings)
+    : Simulation(model.variables(), model.constraints()),
+      settings_(settings),
+      n_(model.variables()),
+      m_(model.constraints()),
+      quarter_(settings.step * settings.step / 4.0),
+      factor_(quarter_ * settings.penalty),
+      mass_(model),
+      jacobian_(model),
+      tangent_(mass_, jacobian_.layout(), factor_),
+      solver_(tangent_.pattern()),
+      force_(model.force().begin(), model.force().end()),
+      q_(n_ + jacobian_.layout().fixed.size(), 0.0),
+      v_(q_.size(), 0.0),
+      a_(n_),
+      lambda_(m_),
+      Phi_(m_),
+      row_factors_(m_),
+      rhs_(n_),
+      rhs_a_(n_),
+      delta_q_(n_) {
+  std::ranges::copy(jacobian_.layout().fixed, q_.begin() + n_);
+}
+
+template <int D>
+void CscUmfpack<D>::do_set_state(const State& state) {
+  std::ranges::copy(state.q, q_.begin());
+  std::ranges::copy(state.v, v_.begin());
+  std::ranges::copy(state.a, a_.begin());
+  const auto& order = jacobian_.layout().order;
+  for (int row = 0; row < m_; ++row) lambda_[row] = state.lambda[order[row]];
+}
+
+template <int D>
+void CscUmfpack<D>::do_get_state(State& state) const {
+  std::copy_n(q_.begin(), n_, state.q.begin());
+  std::copy_n(v_.begin(), n_, state.v.begin());
+  std::ranges::copy(a_, state.a.begin());
+  const auto& order = jacobian_.layout().order;
+  for (int row = 0; row < m_; ++row) state.lambda[order[row]] = lambda_[row];
+}
+
+template <int D>
+StepOutcome CscUmfpack<D>::do_step() {
+  predict();
+  StepOutcome outcome{StepStatus::pass_limit, 0};
+  while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
+    ++outcome.passes;
+    evaluate_residual();
+    phases_.enter(Phase::assembly);
+    tangent_.update(jacobian_);
+    phases_.enter(Phase::factorization);
+    if (!solver_.factorize(tangent_.values())) {
+      phases_.enter(Phase::other);
+      return {StepStatus::factorization_failed, outcome.passes};
+    }
+    phases_.enter(Phase::solve);
+    solver_.solve(rhs_.data(), delta_q_.data());  // Eq. (4)
+    phases_.enter(Phase::other);
+    if (correct()) outcome.status = StepStatus::converged;
+    update_multipliers();
+  }
+  project();
+  return outcome;
+}
+
+template <int D>
+void CscUmfpack<D>::predict() {
+  const double h = settings_.step;
+  double *q = q_.data(), *v = v_.data(), *a = a_.data();
+  for (int i = 0; i < n_; ++i) {
+    const double q_new = q[i] + (h * v[i] + (h * h / 2.0) * a[i]);
+    const double difference = q_new - q[i];
+    a[i] = (4.0 / (h * h)) * difference - (4.0 / h) * v[i] - a[i];  // Eq. (2)
+    v[i] = (2.0 / h) * difference - v[i];                           // Eq. (2)
+    q[i] = q_new;
+  }
+  phases_.enter(Phase::evaluation);
+  jacobian_.evaluate(q, Phi_.data());
+}
+
+template <int D>
+void CscUmfpack<D>::evaluate_residual() {
+  for (int row = 0; row < m_; ++row) {
+    row_factors_[row] = quarter_ * (lambda_[row] + settings_.penalty * Phi_[row]);
+  }
+  mass_.residual(a_.data(), force_.data(), quarter_, rhs_.data());
+  jacobian_.subtract_transpose_product(row_factors_.data(), rhs_.data());  // -f, Eq. (3)
+}
+
+template <int D>
+bool CscUmfpack<D>::correct() {
+  const double to_v = 2.0 / settings_.step, to_a = to_v * to_v;
+  const double tolerance = settings_.tolerance;
+  double *q = q_.data(), *v = v_.data(), *a = a_.data();
+  const double* delta_q = delta_q_.data();
+  int outside = 0;
+  for (int i = 0; i < n_; ++i) {
+    outside += !(std::abs(delta_q[i]) <= tolerance);  // a NaN is outside
+    q[i] += delta_q[i];
+    v[i] += to_v * delta_q[i];  // Eq. (2)
+    a[i] += to_a * delta_q[i];  // Eq. (2)
+  }
+  return outside == 0;
+}
+
+template <int D>
+void CscUmfpack<D>::update_multipliers() {
+  phases_.enter(Phase::evaluation);
+  jacobian_.evaluate(q_.data(), Phi_.data());
+  for (int row = 0; row < m_; ++row) lambda_[row] += settings_.penalty * Phi_[row];  // Eq. (1)
+}
+
+template <int D>
+void CscUmfpack<D>::project() {
+  phases_.enter(Phase::projection);
+  mass_.multiply(v_.data(), a_.data(), rhs_.data(), rhs_a_.data());
+  phases_.enter(Phase::solve);
+  solver_.solve(rhs_.data(), v_.data());  // Eq. (6)
+  phases_.enter(Phase::projection);
+  jacobian_.velocity_term(v_.data(), factor_, row_factors_.data());
+  jacobian_.subtract_transpose_product(row_factors_.data(), rhs_a_.data());
+  phases_.enter(Phase::solve);
+  solver_.solve(rhs_a_.data(), a_.data());  // Eq. (6)
+  phases_.enter(Phase::other);
+}
+
+template class CscUmfpack<2>;
+template class CscUmfpack<3>;
+
+}  // namespace mbs::csc_umfpack

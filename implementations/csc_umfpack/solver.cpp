@@ -1,0 +1,61 @@
+// The calls of UMFPACK, its settings, and what its statuses mean here.
+#include "solver.hpp"
+
+#include <umfpack.h>
+
+#include <string>
+
+#include "mbs/simulation.hpp"
+
+namespace mbs::csc_umfpack {
+
+static_assert(UMFPACK_CONTROL == 20 && UMFPACK_INFO == 90, "sizes of the arrays in solver.hpp");
+
+void Solver::FreeSymbolic::operator()(void* symbolic) const { umfpack_di_free_symbolic(&symbolic); }
+
+void Solver::FreeNumeric::operator()(void* numeric) const {
+  const NumericMemory::Use use(*memory);
+  umfpack_di_free_numeric(&numeric);
+}
+
+Solver::Solver(const SparsityPattern& pattern)
+    : pattern_(pattern), integers_(pattern.variables()), reals_(pattern.variables()) {
+  umfpack_di_defaults(control_.data());
+  control_[UMFPACK_PRL] = 0;
+  control_[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
+  control_[UMFPACK_ORDERING] = UMFPACK_ORDERING_AMD;
+  // T is positive definite: the diagonal will do as pivots, whatever the scale of its rows.
+  control_[UMFPACK_SYM_PIVOT_TOLERANCE] = 0.0;
+  control_[UMFPACK_SCALE] = UMFPACK_SCALE_NONE;
+  control_[UMFPACK_BLOCK_SIZE] = 16;  // columns of a front that are put off; fronts are small here
+  control_[UMFPACK_IRSTEP] = 0;
+
+  const int n = pattern.variables();
+  void* symbolic = nullptr;
+  const int status = umfpack_di_symbolic(n, n, pattern.starts.data(), pattern.rows.data(), nullptr,
+                                         &symbolic, control_.data(), info_.data());
+  symbolic_.reset(symbolic);
+  if (status != UMFPACK_OK) {
+    throw Unsupported("UMFPACK refuses to analyse the tangent matrix, status " +
+                      std::to_string(status));
+  }
+}
+
+bool Solver::factorize(const double* T) {
+  numeric_.reset();
+  memory_.reset();
+  const NumericMemory::Use use(memory_);
+  void* numeric = nullptr;
+  const int status = umfpack_di_numeric(pattern_.starts.data(), pattern_.rows.data(), T,
+                                        symbolic_.get(), &numeric, control_.data(), info_.data());
+  numeric_.reset(numeric);
+  return status == UMFPACK_OK;  // UMFPACK_WARNING_singular_matrix is a failure too
+}
+
+void Solver::solve(const double* b, double* x) {
+  // Without refinement UMFPACK does not look at the matrix again.
+  umfpack_di_wsolve(UMFPACK_A, nullptr, nullptr, nullptr, x, b, numeric_.get(), control_.data(),
+                    info_.data(), integers_.data(), reals_.data());
+}
+
+}  // namespace mbs::csc_umfpack

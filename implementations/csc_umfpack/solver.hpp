@@ -1,0 +1,45 @@
+// UMFPACK for a matrix of constant pattern: one analysis, then a factorization every pass.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "numeric_memory.hpp"
+#include "symbolic.hpp"
+
+namespace mbs::csc_umfpack {
+
+/// Solves T x = b, where T is symmetric positive definite and has the pattern that the solver was
+/// made from, which must outlive it.
+class Solver {
+ public:
+  /// Analyses the pattern. Throws Unsupported if UMFPACK refuses it.
+  explicit Solver(const SparsityPattern& pattern);
+
+  /// `T` are values in the order of the pattern. False if T is singular or not finite, or if memory
+  /// runs out; solve() must not be called then.
+  [[nodiscard]] bool factorize(const double* T);
+  /// x = T^-1 b with the last factorization; x and b (n) do not overlap.
+  void solve(const double* b, double* x);
+
+ private:
+  struct FreeSymbolic {
+    void operator()(void* symbolic) const;
+  };
+  struct FreeNumeric {
+    NumericMemory* memory;
+    void operator()(void* numeric) const;
+  };
+
+  const SparsityPattern& pattern_;
+  std::array<double, 20> control_{};  ///< UMFPACK_CONTROL
+  std::array<double, 90> info_{};     ///< UMFPACK_INFO
+  std::vector<int> integers_;         ///< n, workspace of solve()
+  std::vector<double> reals_;         ///< n, workspace of solve()
+  std::unique_ptr<void, FreeSymbolic> symbolic_;
+  NumericMemory memory_;
+  std::unique_ptr<void, FreeNumeric> numeric_{nullptr, {&memory_}};
+};
+
+}  // namespace mbs::csc_umfpack

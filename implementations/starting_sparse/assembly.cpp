@@ -1,0 +1,122 @@
+// Constraints, residual, tangent and right-hand sides, along the lists made at set-up.
+#include "assembly.hpp"
+
+#include <cmath>
+
+namespace mbs::starting_sparse {
+
+void Assembly::evaluate(const double* q) {
+  dimension_ == 2 ? evaluate_dots<2>(q) : evaluate_dots<3>(q);
+  for (std::size_t i = 0; i < linear_.size(); ++i) {
+    const int row = dot_count_ + static_cast<int>(i);
+    double sum = -linear_[i].value;
+    for (int k = row_start_[row]; k < row_start_[row + 1]; ++k) {
+      sum += jacobian_[nonzero_place_[k]] * q[nonzero_column_[k]];
+    }
+    phi_[row] = sum;  // Eq. (8)
+  }
+}
+
+template <int kDimension>
+void Assembly::evaluate_dots(const double* q) {
+  double* jacobian = jacobian_.data();
+  for (const Distance& distance : distances_) {
+    double square = 0.0;
+    for (int axis = 0; axis < kDimension; ++axis) {
+      const double difference = q[distance.a + axis] - q[distance.b + axis];
+      square += difference * difference;
+      jacobian[distance.to_a + axis] = 2.0 * difference;
+      jacobian[distance.to_b + axis] = -2.0 * difference;
+    }
+    phi_[distance.row] = square - distance.value;  // Eq. (7)
+  }
+  for (const Dot& dot : dots_) {
+    double product = 0.0;
+    for (int axis = 0; axis < kDimension; ++axis) {
+      const double first = q[dot.a + axis] - q[dot.b + axis];
+      const double second = q[dot.c + axis] - q[dot.d + axis];
+      product += first * second;
+      for (int place : {dot.to_a, dot.to_b, dot.to_c, dot.to_d}) jacobian[place + axis] = 0.0;
+      jacobian[dot.to_a + axis] += second;
+      jacobian[dot.to_b + axis] -= second;
+      jacobian[dot.to_c + axis] += first;
+      jacobian[dot.to_d + axis] -= first;
+    }
+    phi_[dot.row] = product - dot.value;  // Eq. (7)
+  }
+}
+
+bool Assembly::is_finite() const {
+  double sum = 0.0;  // what makes Phi_q infinite or undefined does so with Phi
+  for (double value : phi_) sum += std::abs(value);
+  return std::isfinite(sum);
+}
+
+void Assembly::residual(const double* a, const double* lambda, double* right) {
+  for (int i = 0; i < constraints_; ++i) multiplier_[i] = lambda[i] + penalty_ * phi_[i];
+  multiply_mass(a, right);
+  add_transposed_product(constraints_, right);
+  for (int i = 0; i < variables_; ++i) right[i] = weight_ * (force_[i] - right[i]);  // Eq. (3)
+}
+
+void Assembly::assemble() {
+  const double factor = weight_ * penalty_;
+  double* products = values_.data() + mass_count_;
+  for (std::size_t k = 0; k < left_.size(); ++k) {
+    products[k] = factor * jacobian_[left_[k]] * jacobian_[right_[k]];  // Eq. (5)
+  }
+}
+
+void Assembly::project_velocity(const double* v, double* right) const {
+  multiply_mass(v, right);  // Eq. (6)
+}
+
+void Assembly::project_acceleration(const double* a, const double* v, double* right) {
+  dimension_ == 2 ? evaluate_derivative<2>(v) : evaluate_derivative<3>(v);
+  multiply_mass(a, right);
+  add_transposed_product(dot_count_, right);  // Eq. (6)
+}
+
+/// multiplier_ = -weight alpha (dPhi_q/dt v), Eq. (7), for the dot constraints; zero for the
+/// others.
+template <int kDimension>
+void Assembly::evaluate_derivative(const double* v) {
+  const double factor = -2.0 * weight_ * penalty_;
+  for (const Distance& distance : distances_) {
+    double square = 0.0;
+    for (int axis = 0; axis < kDimension; ++axis) {
+      const double difference = v[distance.a + axis] - v[distance.b + axis];
+      square += difference * difference;
+    }
+    multiplier_[distance.row] = factor * square;
+  }
+  for (const Dot& dot : dots_) {
+    double product = 0.0;
+    for (int axis = 0; axis < kDimension; ++axis) {
+      product += (v[dot.a + axis] - v[dot.b + axis]) * (v[dot.c + axis] - v[dot.d + axis]);
+    }
+    multiplier_[dot.row] = factor * product;
+  }
+}
+
+/// y = M x from the mass entries at the head of T's list.
+void Assembly::multiply_mass(const double* x, double* y) const {
+  for (int i = 0; i < variables_; ++i) y[i] = values_[i] * x[i];
+  for (int k = variables_; k < mass_count_; ++k) {
+    const int row = rows_[k] - 1, column = columns_[k] - 1;
+    y[row] += values_[k] * x[column];
+    y[column] += values_[k] * x[row];
+  }
+}
+
+/// y += Phi_q' multiplier_ over the first `row_count` rows and their structural non-zeros.
+void Assembly::add_transposed_product(int row_count, double* y) const {
+  for (int row = 0; row < row_count; ++row) {
+    const double multiplier = multiplier_[row];
+    for (int k = row_start_[row]; k < row_start_[row + 1]; ++k) {
+      y[nonzero_column_[k]] += jacobian_[nonzero_place_[k]] * multiplier;
+    }
+  }
+}
+
+}  // namespace mbs::starting_sparse
