@@ -1,0 +1,41 @@
+// Describes this folder to the harness.
+#include "mbs/implementation.hpp"
+
+#include <memory>
+
+#include "operations.hpp"
+#include "simulation.hpp"
+#include "solver.hpp"
+
+namespace mbs::csc_cholmod {
+namespace {
+
+template <Factorization kFactorization>
+std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
+  return std::make_unique<CholmodSimulation>(model, settings, kFactorization);
+}
+
+std::unique_ptr<Operations> create_operations(const Model& model) {
+  return std::make_unique<CscOperations>(model);
+}
+
+}  // namespace
+
+Implementation implementation() {
+  return {
+      .description = "compressed sparse columns of one half, Cholesky in AMD order",
+      .library = "CHOLMOD",
+      .version = library_version(),
+      .licence = "LGPL-2.1-or-later AND GPL-2.0-or-later",
+      .variants = {{.name = "simplicial",
+                    .description = "entry by entry, LDL', without BLAS (LGPL-2.1-or-later)",
+                    .create = create<Factorization::simplicial>,
+                    .operations = create_operations},
+                   {.name = "supernodal",
+                    .description = "blocks of columns, LL', over BLAS (GPL-2.0-or-later)",
+                    .create = create<Factorization::supernodal>,
+                    .allocates = "cholmod_super_numeric allocates its workspace in every call"}},
+  };
+}
+
+}  // namespace mbs::csc_cholmod

@@ -1,0 +1,136 @@
+// Predict, pass, project.
+#include "simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mbs::csc_cholmod {
+
+CholmodSimulation::CholmodSimulation(const Model& model, const StepSettings& settings,
+                                     Factorization factorization)
+    : CholmodSimulation(model, settings, tangent_pattern(model), factorization) {}
+
+CholmodSimulation::CholmodSimulation(const Model& model, const StepSettings& settings,
+                                     const HalfPattern& pattern, Factorization factorization)
+    : Simulation(model.variables(), model.constraints()),
+      settings_(settings),
+      assembly_(model, settings, pattern, fill_reducing_order(pattern),
+                preferred_half(factorization)),
+      solver_(factorization, assembly_.pattern(), assembly_.tangent()),
+      q_(assembly_.coordinates().all()),
+      v_(model.variables()),
+      a_(model.variables()),
+      u_(assembly_.coordinates().all()),
+      s_(model.variables()),
+      lambda_(model.constraints()),
+      right_(model.variables()),
+      second_right_(model.variables()),
+      delta_(model.variables()) {
+  const std::vector<double>& constants = assembly_.coordinates().constants();
+  std::copy(constants.begin(), constants.end(), q_.begin() + model.variables());
+}
+
+void CholmodSimulation::do_set_state(const State& state) {
+  const std::vector<int>& place = assembly_.coordinates().number();
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    q_[place[i]] = state.q[i];
+    v_[place[i]] = state.v[i];
+    a_[place[i]] = state.a[i];
+  }
+  for (std::size_t k = 0; k < lambda_.size(); ++k) {
+    lambda_[assembly_.constraints().row(static_cast<int>(k))] = state.lambda[k];
+  }
+}
+
+void CholmodSimulation::do_get_state(State& state) const {
+  const std::vector<int>& place = assembly_.coordinates().number();
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    state.q[i] = q_[place[i]];
+    state.v[i] = v_[place[i]];
+    state.a[i] = a_[place[i]];
+  }
+  for (std::size_t k = 0; k < lambda_.size(); ++k) {
+    state.lambda[k] = lambda_[assembly_.constraints().row(static_cast<int>(k))];
+  }
+}
+
+StepOutcome CholmodSimulation::do_step() {
+  predict();
+  phases_.enter(Phase::evaluation);
+  assembly_.evaluate(q_.data());
+  StepOutcome outcome{StepStatus::pass_limit, 0};
+  while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
+    ++outcome.passes;
+    assembly_.residual(s_.data(), lambda_.data(), right_.data());
+    phases_.enter(Phase::assembly);
+    assembly_.refresh_tangent();
+    phases_.enter(Phase::factorization);
+    if (!solver_.factorize()) {
+      phases_.enter(Phase::other);
+      return {StepStatus::factorization_failed, outcome.passes};
+    }
+    phases_.enter(Phase::solve);
+    solver_.solve(right_.data(), delta_.data());  // Eq. (4)
+    phases_.enter(Phase::other);
+    if (update()) outcome.status = StepStatus::converged;
+    phases_.enter(Phase::evaluation);
+    assembly_.evaluate(q_.data());  // serves the multipliers, the next pass and the projections
+    assembly_.update_multipliers(lambda_.data());
+  }
+  project();
+  phases_.enter(Phase::other);
+  return outcome;
+}
+
+void CholmodSimulation::predict() {
+  const double half = settings_.step / 2.0;
+  const double quarter = half * half;
+  double* __restrict q = q_.data();
+  double* __restrict u = u_.data();
+  double* __restrict s = s_.data();
+  for (std::size_t i = 0; i < v_.size(); ++i) {
+    const double old_u = half * v_[i];
+    const double old_s = quarter * a_[i];
+    const double next = q[i] + 2.0 * (old_u + old_s);
+    const double difference = next - q[i];
+    q[i] = next;
+    u[i] = difference - old_u;                // Eq. (2)
+    s[i] = difference - 2.0 * old_u - old_s;  // Eq. (2)
+  }
+}
+
+bool CholmodSimulation::update() {
+  const double tolerance = settings_.tolerance;
+  const double* __restrict delta = delta_.data();
+  double* __restrict q = q_.data();
+  double* __restrict u = u_.data();
+  double* __restrict s = s_.data();
+  long long beyond = 0;
+  for (std::size_t i = 0; i < s_.size(); ++i) {
+    q[i] += delta[i];
+    u[i] += delta[i];  // Eq. (2)
+    s[i] += delta[i];  // Eq. (2)
+    beyond += !(std::abs(delta[i]) <= tolerance);
+  }
+  return beyond == 0;
+}
+
+void CholmodSimulation::project() {
+  phases_.enter(Phase::projection);
+  assembly_.projections(u_.data(), s_.data(), right_.data(), second_right_.data());
+  phases_.enter(Phase::solve);
+  solver_.solve(right_.data(), u_.data());  // Eq. (6)
+  phases_.enter(Phase::projection);
+  assembly_.subtract_velocity_terms(u_.data(), second_right_.data());
+  phases_.enter(Phase::solve);
+  solver_.solve(second_right_.data(), s_.data());  // Eq. (6)
+  phases_.enter(Phase::other);
+  const double per_half = 2.0 / settings_.step;
+  const double per_quarter = per_half * per_half;
+  for (std::size_t i = 0; i < v_.size(); ++i) {
+    v_[i] = per_half * u_[i];
+    a_[i] = per_quarter * s_[i];
+  }
+}
+
+}  // namespace mbs::csc_cholmod

@@ -1,0 +1,45 @@
+// One simulation: the step of paper/README.md over the assembly and the solver of this folder.
+#pragma once
+
+#include <vector>
+
+#include "assembly.hpp"
+#include "mbs/simulation.hpp"
+#include "solver.hpp"
+
+namespace mbs::csc_cholmod {
+
+/// Keeps the state in this folder's order. Within a step velocities and accelerations are the
+/// lengths u = (dt/2) v and s = (dt^2/4) a, which turns Eq. (2) into
+///
+///   u' = (q' - q) - u,  s' = (q' - q) - 2 u - s,   and every pass adds Delta q to q', u' and s'.
+class CholmodSimulation final : public Simulation {
+ public:
+  CholmodSimulation(const Model& model, const StepSettings& settings, Factorization factorization);
+
+ protected:
+  void do_set_state(const State& state) override;
+  StepOutcome do_step() override;
+  void do_get_state(State& state) const override;
+
+ private:
+  CholmodSimulation(const Model& model, const StepSettings& settings, const HalfPattern& pattern,
+                    Factorization factorization);
+
+  void predict();
+  /// q, u, s grow by Delta q. True if max |Delta q| <= tolerance; NaN is false.
+  bool update();
+  void project();
+
+  StepSettings settings_;
+  Assembly assembly_;
+  Solver solver_;
+  // All places for q and u (constants of fixed points behind the unknowns), else n.
+  std::vector<double> q_, v_, a_;
+  std::vector<double> u_, s_;
+  std::vector<double> lambda_;  ///< rows
+  std::vector<double> right_, second_right_;
+  std::vector<double> delta_;
+};
+
+}  // namespace mbs::csc_cholmod

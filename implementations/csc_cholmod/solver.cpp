@@ -1,0 +1,214 @@
+// The only file that knows CHOLMOD.
+#include "solver.hpp"
+
+#include <cholmod.h>
+#include <dlfcn.h>
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace mbs::csc_cholmod {
+namespace {
+
+/// LDL' saves the square roots; its factorization and solves together are the quicker ones.
+constexpr int kSimplicialLl = 0;
+
+/// A quiet cholmod_common for one job at a time.
+struct Common : cholmod_common {
+  Common() {
+    cholmod_start(this);
+    print = 0;
+    error_handler = nullptr;
+    nmethods = 1;
+    quick_return_if_not_posdef = 1;
+    dtype = CHOLMOD_DOUBLE;
+  }
+  ~Common() { cholmod_finish(this); }
+  Common(const Common&) = delete;
+  Common& operator=(const Common&) = delete;
+};
+
+/// While it lives, parallel regions of the OpenMP runtime that CHOLMOD brought along, if any, run
+/// on the calling thread. Its supernodal code asks for four threads by number, which no environment
+/// variable but OMP_THREAD_LIMIT overrides; at these sizes they cost several times what they save.
+class OneThread {
+ public:
+  OneThread() {
+    if (set_levels() != nullptr) {
+      levels_ = get_levels()();
+      set_levels()(0);
+    }
+  }
+  ~OneThread() {
+    if (set_levels() != nullptr) set_levels()(levels_);
+  }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  // Looked up by name: which runtime there is depends on how the library was built.
+  using Get = int (*)();
+  using Set = void (*)(int);
+  static Get get_levels() {
+    static const auto get = reinterpret_cast<Get>(dlsym(RTLD_DEFAULT, "omp_get_max_active_levels"));
+    return get;
+  }
+  static Set set_levels() {
+    static const auto set = reinterpret_cast<Set>(dlsym(RTLD_DEFAULT, "omp_set_max_active_levels"));
+    return get_levels() == nullptr ? nullptr : set;
+  }
+
+  int levels_ = 0;
+};
+
+/// CHOLMOD's header for a matrix whose arrays belong to `pattern` and `values`. Factorizations only
+/// read them, although the header is not const.
+cholmod_sparse view(const HalfPattern& pattern, const double* values) {
+  cholmod_sparse matrix{};
+  matrix.nrow = matrix.ncol = pattern.size();
+  matrix.nzmax = pattern.nonzeros();
+  matrix.p = const_cast<int*>(pattern.column_start().data());
+  matrix.i = const_cast<int*>(pattern.row().data());
+  matrix.x = const_cast<double*>(values);
+  matrix.stype = pattern.half() == Half::lower ? -1 : 1;
+  matrix.itype = CHOLMOD_INT;
+  matrix.xtype = values == nullptr ? CHOLMOD_PATTERN : CHOLMOD_REAL;
+  matrix.dtype = CHOLMOD_DOUBLE;
+  matrix.sorted = matrix.packed = 1;
+  return matrix;
+}
+
+cholmod_dense view(int n, double* values) {
+  cholmod_dense vector{};
+  vector.nrow = vector.nzmax = vector.d = n;
+  vector.ncol = 1;
+  vector.x = values;
+  vector.xtype = CHOLMOD_REAL;
+  vector.dtype = CHOLMOD_DOUBLE;
+  return vector;
+}
+
+cholmod_factor* analyze(cholmod_sparse& matrix, Common& common) {
+  cholmod_factor* factor = cholmod_analyze(&matrix, &common);
+  if (factor != nullptr) return factor;
+  throw std::runtime_error("CHOLMOD cannot analyse this matrix, status " +
+                           std::to_string(common.status));
+}
+
+}  // namespace
+
+Half preferred_half(Factorization factorization) {
+  return factorization == Factorization::simplicial ? Half::upper : Half::lower;
+}
+
+std::vector<int> fill_reducing_order(const HalfPattern& pattern) {
+  Common common;
+  common.supernodal = CHOLMOD_SIMPLICIAL;
+  common.method[0].ordering = CHOLMOD_AMD;
+  cholmod_sparse matrix = view(pattern, nullptr);
+  cholmod_factor* factor = analyze(matrix, common);
+  std::vector<int> number(pattern.size());
+  const int* old = static_cast<const int*>(factor->Perm);
+  for (int k = 0; k < pattern.size(); ++k) number[old[k]] = k;
+  cholmod_free_factor(&factor, &common);
+  return number;
+}
+
+struct Solver::Cholmod {
+  Cholmod(Factorization factorization, const HalfPattern& pattern, const double* values)
+      : matrix(view(pattern, values)) {
+    common.method[0].ordering = CHOLMOD_NATURAL;
+    common.postorder = 0;
+    common.final_asis = 1;
+    common.final_ll = kSimplicialLl;
+    common.grow0 = common.grow1 = 0.0;  // columns of L never outgrow their exact space
+    common.grow2 = 0;
+    const bool supernodal = factorization == Factorization::supernodal;
+    // Supernodes of up to 32 columns whatever the zeros: fewer calls of the BLAS (README.md).
+    common.nrelax[0] = common.nrelax[1] = common.nrelax[2] = 32;
+    common.supernodal = supernodal ? CHOLMOD_SUPERNODAL : CHOLMOD_SIMPLICIAL;
+    factor = analyze(matrix, common);
+    // Numeric space at once, so that no step pays for it: with to_packed = 0 a simplicial column
+    // gets its exact size (by grow2), with 1 only its diagonal, and would move as it grows.
+    if (!cholmod_change_factor(CHOLMOD_REAL, supernodal ? 1 : common.final_ll, supernodal, 0, 1,
+                               factor, &common)) {
+      cholmod_free_factor(&factor, &common);
+      throw std::runtime_error("CHOLMOD has no memory for the factor");
+    }
+    find_diagonal();
+  }
+  ~Cholmod() {
+    cholmod_free_dense(&y, &common);
+    cholmod_free_dense(&e, &common);
+    cholmod_free_factor(&factor, &common);
+  }
+  Cholmod(const Cholmod&) = delete;
+  Cholmod& operator=(const Cholmod&) = delete;
+
+  void find_diagonal() {
+    if (!factor->is_super) {
+      const int* start = static_cast<const int*>(factor->p);
+      diagonal.assign(start, start + factor->n);
+      return;
+    }
+    const int* first_column = static_cast<const int*>(factor->super);
+    const int* rows = static_cast<const int*>(factor->pi);
+    const int* values = static_cast<const int*>(factor->px);
+    for (std::size_t s = 0; s < factor->nsuper; ++s) {
+      const int stride = rows[s + 1] - rows[s] + 1;
+      for (int j = 0; j < first_column[s + 1] - first_column[s]; ++j) {
+        diagonal.push_back(values[s] + j * stride);
+      }
+    }
+  }
+
+  Common common;
+  cholmod_sparse matrix;
+  cholmod_factor* factor = nullptr;
+  std::vector<int> diagonal;   ///< positions of L's or D's diagonal in factor->x
+  cholmod_dense* y = nullptr;  ///< workspace of cholmod_solve2, kept between calls
+  cholmod_dense* e = nullptr;
+};
+
+Solver::Solver(Factorization factorization, const HalfPattern& pattern, const double* values)
+    : cholmod_(std::make_unique<Cholmod>(factorization, pattern, values)) {}
+
+Solver::~Solver() = default;
+
+bool Solver::factorize() {
+  Cholmod& c = *cholmod_;
+  std::optional<OneThread> one_thread;
+  if (c.factor->is_super) one_thread.emplace();
+  if (!cholmod_factorize(&c.matrix, c.factor, &c.common) || c.common.status != CHOLMOD_OK) {
+    return false;
+  }
+  // LDL' does not stop at a negative pivot, and no comparison of CHOLMOD's stops at a NaN.
+  const double* x = static_cast<const double*>(c.factor->x);
+  int positive = 1;
+  for (int d : c.diagonal) positive &= x[d] > 0.0;
+  return positive != 0;
+}
+
+void Solver::solve(const double* b, double* x) {
+  Cholmod& c = *cholmod_;
+  const int n = static_cast<int>(c.factor->n);
+  cholmod_dense right = view(n, const_cast<double*>(b));
+  cholmod_dense solution = view(n, x);
+  cholmod_dense* handle = &solution;  // of the right shape, so solve2 keeps it
+  if (c.y != nullptr && !c.factor->is_super) {
+    // A simplicial solve leaves its workspace as 1 x n and asks for 4 x n again, which would
+    // reallocate; the space is still there.
+    c.y->nrow = c.y->d = c.y->nzmax / n;
+  }
+  cholmod_solve2(CHOLMOD_A, c.factor, &right, nullptr, &handle, nullptr, &c.y, &c.e, &c.common);
+}
+
+std::string library_version() {
+  int version[3];
+  cholmod_version(version);
+  return std::to_string(version[0]) + "." + std::to_string(version[1]) + "." +
+         std::to_string(version[2]);
+}
+
+}  // namespace mbs::csc_cholmod

@@ -1,0 +1,47 @@
+// CHOLMOD: ordering, symbolic analysis, refactorization and solves without allocation.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pattern.hpp"
+
+namespace mbs::csc_cholmod {
+
+enum class Factorization {
+  simplicial,  ///< entry by entry, up-looking, no BLAS
+  supernodal,  ///< blocks of columns, left-looking, BLAS and LAPACK
+};
+
+/// The half that `factorization` reads without transposing it first.
+Half preferred_half(Factorization factorization);
+
+/// Fill-reducing order: unknown i becomes `result[i]`. AMD with a postorder of the elimination
+/// tree.
+std::vector<int> fill_reducing_order(const HalfPattern& pattern);
+
+/// Cholesky factorization of one symmetric positive definite matrix after the other, all of one
+/// pattern, which is expected in fill-reducing order already: CHOLMOD then neither permutes nor
+/// copies the matrix.
+class Solver {
+ public:
+  /// Analyses `pattern`, the preferred half of `factorization`. `pattern` and `values` (which may
+  /// change) must outlive this. Throws std::runtime_error if CHOLMOD cannot hold the factor.
+  Solver(Factorization factorization, const HalfPattern& pattern, const double* values);
+  ~Solver();
+
+  /// Factorizes the current values. False if they are not positive definite or not finite.
+  [[nodiscard]] bool factorize();
+  /// x (n) = the factorized matrix \ b (n). They may be the same.
+  void solve(const double* b, double* x);
+
+ private:
+  struct Cholmod;
+  std::unique_ptr<Cholmod> cholmod_;
+};
+
+/// Version that the loaded library reports.
+std::string library_version();
+
+}  // namespace mbs::csc_cholmod
