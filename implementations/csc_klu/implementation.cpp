@@ -1,6 +1,8 @@
 // Description of the folder's variants and their factory.
 #include "mbs/implementation.hpp"
 
+#include "lu_factors.hpp"
+#include "operations.hpp"
 #include "simulation.hpp"
 #include "solver.hpp"
 
@@ -14,7 +16,18 @@ Implementation implementation() {
       .licence = "LGPL-2.1-or-later",
       .variants = {{.name = "refactor",
                     .description = "AMD ordering and pivots of the initial position, refactorized",
-                    .create = create_simulation<Refactorization>}},
+                    .create = create_simulation<Refactorization>,
+                    .unsymmetric = true,
+                    .operations = create_operations},
+                   {.name = "factor",
+                    .description = "AMD ordering of the pattern, pivots chosen anew in every pass",
+                    .create = create_simulation<Factorization>,
+                    .allocates = "klu_factor makes a new numeric object; KLU cannot reuse one",
+                    .unsymmetric = true},
+                   {.name = "guarded",
+                    .description = "refactorized until a solution's backward error asks for pivots",
+                    .create = create_simulation<GuardedRefactorization>,
+                    .unsymmetric = true}},
   };
 }
 

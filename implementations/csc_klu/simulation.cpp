@@ -5,7 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "assembly.hpp"
+#include "jacobian.hpp"
+#include "storage.hpp"
+#include "tangent.hpp"
 
 namespace mbs::csc_klu {
 namespace {
@@ -23,7 +25,8 @@ class NewtonSimulation final : public Simulation {
         jacobian_pattern_(model),
         jacobian_(jacobian_pattern_),
         tangent_pattern_(model, jacobian_pattern_),
-        tangent_(model, jacobian_pattern_, tangent_pattern_, weight_ * settings.penalty),
+        tangent_(tangent_pattern_, mass_values(model, tangent_pattern_.pattern),
+                 weight_ * settings.penalty),
         weighted_force_(model.force().begin(), model.force().end()),
         q_(model.initial_position().begin(), model.initial_position().end()),
         v_(model.initial_velocity().begin(), model.initial_velocity().end()),
@@ -192,5 +195,9 @@ std::unique_ptr<Simulation> create_simulation(const Model& model, const StepSett
 
 template std::unique_ptr<Simulation> create_simulation<Refactorization>(const Model&,
                                                                         const StepSettings&);
+template std::unique_ptr<Simulation> create_simulation<Factorization>(const Model&,
+                                                                      const StepSettings&);
+template std::unique_ptr<Simulation> create_simulation<GuardedRefactorization>(const Model&,
+                                                                               const StepSettings&);
 
 }  // namespace mbs::csc_klu

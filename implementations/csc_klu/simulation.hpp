@@ -15,5 +15,9 @@ template <TangentSolver Solver>
 
 extern template std::unique_ptr<Simulation> create_simulation<Refactorization>(const Model&,
                                                                                const StepSettings&);
+extern template std::unique_ptr<Simulation> create_simulation<Factorization>(const Model&,
+                                                                             const StepSettings&);
+extern template std::unique_ptr<Simulation> create_simulation<GuardedRefactorization>(
+    const Model&, const StepSettings&);
 
 }  // namespace mbs::csc_klu

@@ -1,93 +1,78 @@
-// KLU behind a small interface: symbolic analysis once, numeric refactorization, solve in place.
+// The solvers of the tangent matrix, one for each variant: what happens to pivots over time.
 #include "solver.hpp"
 
-#include <klu.h>
-
-#include <limits>
-
-#include "mbs/simulation.hpp"
+#include <algorithm>
+#include <cmath>
 
 namespace mbs::csc_klu {
-namespace {
 
-struct SymbolicDeleter {
-  klu_common* common;
-  void operator()(klu_symbolic* symbolic) const { klu_free_symbolic(&symbolic, common); }
-};
-
-struct NumericDeleter {
-  klu_common* common;
-  void operator()(klu_numeric* numeric) const { klu_free_numeric(&numeric, common); }
-};
-
-klu_common settings() {
-  klu_common common;
-  klu_defaults(&common);
-  common.btf = 0;       // T is one block; see README.md
-  common.ordering = 0;  // AMD
-  common.scale = -1;    // no row scaling, and no second look at a pattern that never changes
-  common.tol = 0.0;     // T is positive definite: pivots on the diagonal are stable for any values
-  return common;
-}
-
-/// With all pivots on the diagonal, T is positive definite exactly if they are positive. A NaN or
-/// an infinity anywhere in T reaches a pivot.
-bool is_positive_definite(const klu_numeric& numeric) {
-  const auto* const pivot = static_cast<const double*>(numeric.Udiag);
-  long long bad = 0;  // no early exit: vectorized, this costs next to nothing
-  for (int k = 0; k < numeric.n; ++k) {
-    bad |= !(pivot[k] > 0.0) | !(pivot[k] <= std::numeric_limits<double>::max());
-  }
-  return bad == 0;
-}
-
-}  // namespace
-
-struct Refactorization::Handles {
-  explicit Handles(const Pattern& pattern)
-      : columns(pattern.columns()),
-        column_begin(const_cast<int*>(pattern.column_begin.data())),  // KLU's C interface only
-        row(const_cast<int*>(pattern.row.data())),                    // reads them
-        symbolic(klu_analyze(columns, column_begin, row, &common), {&common}),
-        numeric(nullptr, {&common}) {
-    if (!symbolic) throw Unsupported("klu_analyze refused the tangent matrix");
-  }
-
-  klu_common common = settings();
-  int columns;
-  int* column_begin;
-  int* row;
-  std::unique_ptr<klu_symbolic, SymbolicDeleter> symbolic;
-  std::unique_ptr<klu_numeric, NumericDeleter> numeric;
-};
+// In all constructors: if these values fail, the first step tries again.
 
 Refactorization::Refactorization(const Pattern& pattern, std::span<const double> values)
-    : klu_(std::make_unique<Handles>(pattern)) {
-  (void)factorize(values);  // if these values fail, the first step tries again
+    : factors_(pattern, 0.0) {
+  (void)factors_.factor(values);
 }
-
-Refactorization::~Refactorization() = default;
 
 bool Refactorization::factorize(std::span<const double> values) {
-  Handles& klu = *klu_;
-  auto* const x = const_cast<double*>(values.data());
-  if (klu.numeric) {
-    return klu_refactor(klu.column_begin, klu.row, x, klu.symbolic.get(), klu.numeric.get(),
-                        &klu.common) &&
-           is_positive_definite(*klu.numeric);
+  return factors_.exist() ? factors_.refactor(values) : factors_.factor(values);
+}
+
+Factorization::Factorization(const Pattern& pattern, std::span<const double> values)
+    : factors_(pattern, kPivotTolerance) {
+  (void)factors_.factor(values);
+}
+
+GuardedRefactorization::GuardedRefactorization(const Pattern& pattern,
+                                               std::span<const double> values, Guard guard)
+    : pattern_(pattern),
+      bound_(guard.backward_error),
+      factors_(pattern, guard.pivot_tolerance),
+      values_(values),
+      right_(pattern.columns()),
+      residual_(pattern.columns()) {
+  fresh_ = factors_.factor(values);
+}
+
+bool GuardedRefactorization::factorize(std::span<const double> values) {
+  values_ = values;
+  fresh_ = false;
+  return factors_.refactor(values) || repivot();
+}
+
+void GuardedRefactorization::solve(std::span<double> x) {
+  if (!fresh_) std::ranges::copy(x, right_.begin());
+  factors_.solve(x);
+  if (fresh_ || is_accurate(x)) return;
+  (void)repivot();  // where that fails the matrix is singular: the solution is NaN
+  std::ranges::copy(right_, x.begin());
+  factors_.solve(x);
+}
+
+bool GuardedRefactorization::repivot() {
+  ++repivotings_;
+  fresh_ = true;
+  return factors_.factor(values_);
+}
+
+bool GuardedRefactorization::is_accurate(std::span<const double> x) {
+  const int* const row = pattern_.row.data();
+  const double* const value = values_.data();
+  double scale = 0.0;
+  int k = 0;
+  for (int i = 0; i < pattern_.columns(); ++i) {  // column i of T is its row i
+    double residual = right_[i], size = std::abs(right_[i]);
+    for (const int end = pattern_.column_begin[i + 1]; k < end; ++k) {
+      const double term = value[k] * x[row[k]];
+      residual -= term;
+      size += std::abs(term);
+    }
+    residual_[i] = residual;
+    scale = std::max(scale, size);
   }
-  klu.numeric.reset(klu_factor(klu.column_begin, klu.row, x, klu.symbolic.get(), &klu.common));
-  if (klu.numeric && !is_positive_definite(*klu.numeric)) klu.numeric.reset();
-  return klu.numeric != nullptr;
-}
-
-void Refactorization::solve(std::span<double> x) {
-  klu_solve(klu_->symbolic.get(), klu_->numeric.get(), klu_->columns, 1, x.data(), &klu_->common);
-}
-
-std::string klu_version() {
-  return std::to_string(KLU_MAIN_VERSION) + '.' + std::to_string(KLU_SUB_VERSION) + '.' +
-         std::to_string(KLU_SUBSUB_VERSION);
+  const double allowed = bound_ * scale;
+  long long beyond = 0;
+  for (const double residual : residual_) beyond |= !(std::abs(residual) <= allowed);
+  return beyond == 0;
 }
 
 }  // namespace mbs::csc_klu

@@ -1,16 +1,21 @@
-// KLU behind a small interface: symbolic analysis once, numeric refactorization, solve in place.
+// The solvers of the tangent matrix, one for each variant: what happens to pivots over time.
 #pragma once
 
 #include <concepts>
-#include <memory>
 #include <span>
-#include <string>
+#include <vector>
 
-#include "assembly.hpp"
+#include "lu_factors.hpp"
+#include "storage.hpp"
 
 namespace mbs::csc_klu {
 
 /// What the simulation asks of a solver; every variant is a simulation with another one.
+///
+/// Constructed from a pattern, which has to outlive it, and first values on it. factorize() takes
+/// new values, which have to stay until the last solve() with them; false if the matrix is not
+/// positive definite, singular or not finite (another call may succeed). solve() replaces a
+/// right-hand side (n) by the solution with the factors of the last success.
 template <class Solver>
 concept TangentSolver = std::constructible_from<Solver, const Pattern&, std::span<const double>> &&
     requires(Solver solver, std::span<const double> values, std::span<double> x) {
@@ -18,25 +23,70 @@ concept TangentSolver = std::constructible_from<Solver, const Pattern&, std::spa
   solver.solve(x);
 };
 
-/// LU factors whose ordering and pivots stay as they were found at set-up.
+/// `refactor`: ordering and pivots stay as they were found at set-up. All pivots are diagonal,
+/// which is stable for every positive definite matrix.
 class Refactorization {
  public:
-  /// Orders and analyses `pattern`, which has to outlive this, and factorizes `values` on it.
   Refactorization(const Pattern& pattern, std::span<const double> values);
-  ~Refactorization();
-
-  /// Factorizes new values on the same pattern. False if the matrix is not positive definite or
-  /// not finite; another call may succeed.
   [[nodiscard]] bool factorize(std::span<const double> values);
-  /// Replaces the right-hand side x (n) by the solution with the factors of the last success.
-  void solve(std::span<double> x);
+  void solve(std::span<double> x) { factors_.solve(x); }
 
  private:
-  struct Handles;
-  std::unique_ptr<Handles> klu_;
+  LuFactors factors_;
 };
 
-/// Version of KLU as its header states it.
-[[nodiscard]] std::string klu_version();
+/// KLU's default: the diagonal entry is the pivot unless a thousand times smaller than another.
+inline constexpr double kPivotTolerance = 1e-3;
+
+/// `factor`: new pivots at every call; only the ordering stays.
+class Factorization {
+ public:
+  Factorization(const Pattern& pattern, std::span<const double> values);
+  [[nodiscard]] bool factorize(std::span<const double> values) { return factors_.factor(values); }
+  void solve(std::span<double> x) { factors_.solve(x); }
+
+ private:
+  LuFactors factors_;
+};
+
+/// When stale pivots are given up.
+struct Guard {
+  double pivot_tolerance = kPivotTolerance;
+  /// Largest max|b - T x| / max(|T| |x| + |b|) of a solution; infinity never gives up. Good pivots
+  /// stay below 6e-16 in all scenes, so that this is a growth of about 20; see README.md.
+  double backward_error = 1e-14;
+};
+
+/// `guarded`: pivots stay until a solution has too large a backward error or a factorization is not
+/// valid; then there are new ones, and the system is solved again. T has to be symmetric.
+///
+///   GuardedRefactorization solver(pattern, first);
+///   if (solver.factorize(values)) solver.solve(x);
+///   solver.repivotings();  // 0: the pivots of `first` were good enough for `values`
+class GuardedRefactorization {
+ public:
+  GuardedRefactorization(const Pattern& pattern, std::span<const double> values, Guard guard = {});
+  [[nodiscard]] bool factorize(std::span<const double> values);
+  void solve(std::span<double> x);
+
+  /// How often the guard gave up pivots, each time an allocation by KLU.
+  [[nodiscard]] int repivotings() const { return repivotings_; }
+  /// Pivots off the diagonal at present.
+  [[nodiscard]] int off_diagonal_pivots() const { return factors_.off_diagonal_pivots(); }
+
+ private:
+  bool repivot();
+  /// False if the backward error of x, the solution for right_, is too large or x is not finite.
+  [[nodiscard]] bool is_accurate(std::span<const double> x);
+
+  const Pattern& pattern_;
+  const double bound_;  ///< Guard::backward_error
+  LuFactors factors_;
+  std::span<const double> values_;  ///< of the matrix that is factorized
+  std::vector<double> right_;       ///< n; the right-hand side, as the solution overwrites it
+  std::vector<double> residual_;    ///< n
+  bool fresh_ = false;              ///< the pivots were chosen for this very matrix
+  int repivotings_ = 0;
+};
 
 }  // namespace mbs::csc_klu

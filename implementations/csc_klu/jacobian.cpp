@@ -1,0 +1,83 @@
+// Phi, the Jacobian Phi_q and the products with it, streamed through recorded positions.
+#include "jacobian.hpp"
+
+namespace mbs::csc_klu {
+
+template <int dim>
+Jacobian<dim>::Jacobian(const JacobianPattern<dim>& pattern)
+    : pattern_(pattern), values_(dim * (pattern.blocks() + 1), 0.0) {}
+
+template <int dim>
+void Jacobian<dim>::evaluate(const double* q, double* phi) {
+  for (const auto& distance : pattern_.distances) {
+    const Vector d = difference(q, distance.a, distance.b);
+    *phi++ = dot(d, d) - distance.value;  // Eq. (7)
+    double* const at_a = values_.data() + dim * distance.block_a;
+    double* const at_b = values_.data() + dim * distance.block_b;
+    for (int k = 0; k < dim; ++k) at_a[k] = 2.0 * d[k];   // Eq. (7)
+    for (int k = 0; k < dim; ++k) at_b[k] = -2.0 * d[k];  // Eq. (7)
+  }
+  const auto* term = pattern_.other_terms.data();
+  for (const auto& other : pattern_.others) {
+    const Vector ab = difference(q, other.a, other.b);
+    const Vector cd = difference(q, other.c, other.d);
+    *phi++ = dot(ab, cd) - other.value;  // Eq. (7)
+    const auto* const end = pattern_.other_terms.data() + other.terms_end;
+    for (; term < end; ++term) {
+      double* const value = values_.data() + dim * term->block;
+      for (int k = 0; k < dim; ++k) value[k] = term->first * cd[k] + term->second * ab[k];
+    }
+  }
+  int k = 0;
+  for (const auto& linear : pattern_.linears) {
+    double sum = 0.0;
+    for (; k < linear.terms_end; ++k) {
+      sum += pattern_.linear_terms[k].coefficient * q[pattern_.linear_terms[k].coordinate];
+    }
+    *phi++ = sum - linear.value;  // Eq. (8)
+  }
+}
+
+template <int dim>
+void Jacobian<dim>::subtract_transposed_dots(const double* z, double* y) const {
+  const int* const row = pattern_.block_row.data();
+  const double* value = values_.data();
+  int block = 0;
+  for (int p = 0; p < pattern_.points(); ++p, y += dim) {
+    std::array<double, dim> sum{};
+    for (const int end = pattern_.block_begin[p + 1]; block < end; ++block, value += dim) {
+      for (int k = 0; k < dim; ++k) sum[k] += z[row[block]] * value[k];
+    }
+    for (int k = 0; k < dim; ++k) y[k] -= sum[k];
+  }
+}
+
+template <int dim>
+void Jacobian<dim>::subtract_transposed_product(const double* z, double* y) const {
+  subtract_transposed_dots(z, y);
+  z += pattern_.dots();
+  int k = 0;
+  for (const auto& linear : pattern_.linears) {
+    for (; k < linear.terms_end; ++k) {
+      y[pattern_.linear_terms[k].coordinate] -= pattern_.linear_terms[k].coefficient * *z;
+    }
+    ++z;
+  }
+}
+
+template <int dim>
+void Jacobian<dim>::velocity_term(const double* v, double factor, double* z) const {
+  for (const auto& distance : pattern_.distances) {
+    const Vector d = difference(v, distance.a, distance.b);
+    *z++ = factor * (2.0 * dot(d, d));  // Eq. (7)
+  }
+  for (const auto& other : pattern_.others) {
+    const Vector ab = difference(v, other.a, other.b);
+    *z++ = factor * (2.0 * dot(ab, difference(v, other.c, other.d)));  // Eq. (7)
+  }
+}
+
+template class Jacobian<2>;
+template class Jacobian<3>;
+
+}  // namespace mbs::csc_klu

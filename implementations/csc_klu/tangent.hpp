@@ -1,0 +1,33 @@
+// The tangent matrix T of Eq. (5): rank-k update and matrix addition in one sweep.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "jacobian.hpp"
+#include "tangent_pattern.hpp"
+
+namespace mbs::csc_klu {
+
+/// The tangent matrix T of Eq. (5), both triangles.
+template <int dim>
+class Tangent {
+ public:
+  /// T = base + factor Phi_q^T Phi_q, with base = mass_values() on `pattern`, which has to outlive
+  /// this. Linear constraints are constant and join the base here.
+  Tangent(const TangentPattern<dim>& pattern, std::vector<double> base, double factor);
+
+  /// Updates the values for a new Phi_q.
+  void assemble(const Jacobian<dim>& jacobian);
+
+  [[nodiscard]] const Pattern& pattern() const { return pattern_.pattern; }
+  [[nodiscard]] std::span<const double> values() const { return values_; }
+
+ private:
+  const TangentPattern<dim>& pattern_;
+  double factor_;
+  std::vector<double> constant_;  ///< M and the linear constraints, over the union pattern
+  std::vector<double> values_;
+};
+
+}  // namespace mbs::csc_klu

@@ -1,0 +1,37 @@
+// The step of paper/README.md on dense matrices.
+#pragma once
+
+#include "assembly.hpp"
+#include "mbs/simulation.hpp"
+#include "solver.hpp"
+
+namespace mbs::starting_dense {
+
+/// q_ and v_ are extended by the fixed points, see Assembly; a_ has n entries, lambda_ m.
+class DenseSimulation final : public Simulation {
+ public:
+  DenseSimulation(const Model& model, const StepSettings& settings);
+
+ private:
+  void do_set_state(const State& state) override;
+  StepOutcome do_step() override;
+  void do_get_state(State& state) const override;
+
+  void predict();
+  /// Solves Eq. (4) and updates q', v', a', lambda and, at the new q', Phi and Phi_q. `converged`
+  /// tells whether max |Delta q| <= tolerance. False if the factorization failed.
+  [[nodiscard]] bool pass(bool& converged);
+  void apply_increment(bool& converged);
+  void project();
+
+  const StepSettings settings_;
+  const int n_;
+  Assembly assembly_;
+  Solver solver_;
+
+  Vector q_, v_, a_, lambda_;
+  Vector multipliers_;  ///< lambda + alpha Phi, m
+  Vector solution_;     ///< n; right-hand side, then solution of the system at hand
+};
+
+}  // namespace mbs::starting_dense
