@@ -1,6 +1,6 @@
 # Reads the tables of one results directory and refuses what does not fit their description.
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy
@@ -12,8 +12,8 @@ FAILURES = ("disagrees", "crashed", "timeout", "out-of-memory", "unsupported", "
 PHASES = ("evaluation", "assembly", "factorization", "solve", "projection", "other")
 NULL = "null/null"
 
-TEXT = {"tidy": ["kind", "scene", "implementation", "folder", "variant", "status", "reason",
-                 "machine", "commit", "dirty", "raw_file"],
+TEXT = {"tidy": ["kind", "stage", "scene", "implementation", "folder", "variant", "blas", "build",
+                 "operation", "status", "reason", "machine", "commit", "dirty", "raw_file"],
         "verification": ["scene", "implementation", "verdict", "reason", "check", "passed",
                          "detail"],
         "accuracy": ["scene", "implementation", "penalty_asked", "status", "status_reason",
@@ -22,7 +22,8 @@ NUMBERS = {"tidy": ["variables", "fill_asked", "fill_percent", "round", "repetit
                     "stretch_steps", "iterations", "stretch_us", "step_us", "passes",
                     "steps_at_limit", "setup_us", "constraints", "penalty", "step", "tolerance",
                     "max_passes", "start", "fill_seed", "position_error",
-                    "constraint_violation", "energy_drift", "pilot_step_us", "pilot_ratio",
+                    "constraint_violation", "energy_drift", "operation_us", "pilot_step_us",
+                    "pilot_ratio",
                     *(f"phase_{phase}" for phase in PHASES)],
            "verification": ["variables", "fill_asked", "value", "tolerance"],
            "accuracy": ["variables", "penalty", "step", "tolerance", "duration", "failed_at",
@@ -44,25 +45,39 @@ class Results:
     context: dict      # machine, build and library versions, the same for every raw file
     run: dict          # profile name, selection, variants
     registry: list     # entries of `mbs list --json`, in the order that figures use
+    pairs: list = field(default_factory=list)  # BLAS + LAPACK pairs of `mbs list --json`
+
+    @property
+    def variants(self):
+        """{name: what `mbs list --json` says of it and of its folder}, in the registry's order."""
+        return {variant["name"]: entry | variant
+                for entry in self.registry for variant in entry["variants"]}
 
     @property
     def implementations(self):
-        """Names that take part, in the registry's order."""
-        names = [variant["name"] for entry in self.registry for variant in entry["variants"]]
+        """Names that take part in rankings, in the registry's order."""
         present = set(self.tidy.implementation)
-        return [name for name in names if name in present]
+        return [name for name in self.variants if name in present]
 
     def samples(self, natural_only=False):
-        """Timed samples of verified cells, without the null control."""
+        """Timed samples of verified cells that are ranked: no alternatives, no null control."""
         tidy = self.tidy
-        chosen = (tidy.kind == "timing") & (tidy.status == "ok") & (tidy.implementation != NULL)
+        chosen = ((tidy.kind == "timing") & (tidy.status == "ok")
+                  & tidy.implementation.isin(list(self.variants)))
         return tidy[chosen & tidy.fill_asked.isna()] if natural_only else tidy[chosen]
+
+    def alternatives(self, variant):
+        """Timed samples of `variant` and of it on other BLAS pairs or builds, "variant+name"."""
+        tidy = self.tidy
+        mine = tidy.folder + "/" + tidy.variant == variant
+        return tidy[(tidy.kind == "timing") & (tidy.status == "ok") & mine]
 
     def natural_failures(self, variables):
         """Whether an implementation failed or disagrees on the natural scene of this size."""
         tidy = self.tidy
         scene = (tidy.variables == variables) & tidy.fill_asked.isna() & (tidy.kind == "timing")
-        return bool((scene & tidy.status.isin(FAILURES) & (tidy.implementation != NULL)).any())
+        ranked = tidy.implementation.isin(list(self.variants))
+        return bool((scene & ranked & tidy.status.isin(FAILURES)).any())
 
 
 def load(results):
@@ -70,8 +85,9 @@ def load(results):
     folder = Path(results)
     tables = {name: read_table(folder / f"{name}.csv", name) for name in TEXT}
     _check_tidy(folder / "tidy.csv", tables["tidy"])
+    listed = _json(folder / "implementations.json")
     return Results(**tables, context=_json(folder / "context.json"), run=_json(folder / "run.json"),
-                   registry=_json(folder / "implementations.json")["implementations"])
+                   registry=listed["implementations"], pairs=listed.get("blas", []))
 
 
 def read_table(path, name):
@@ -101,9 +117,11 @@ def _check_tidy(path, tidy):
         if not condition.all():
             raise TableError(f"{path}: line {tidy.index[~condition][0] + 2}: {what}")
     require(tidy.status.isin(STATUSES), f"status is none of {', '.join(sorted(STATUSES))}")
-    require(tidy.kind.isin(["timing", "phases"]), "kind is neither timing nor phases")
+    require(tidy.kind.isin(["timing", "phases", "operations"]),
+            "kind is none of timing, phases, operations")
     ok = tidy.status == "ok"
-    require(~ok | (tidy.step_us > 0), "an ok row needs a positive step_us")
+    timed = tidy.step_us.where(tidy.kind != "operations", tidy.operation_us)
+    require(~ok | (timed > 0), "an ok row needs a positive step_us or operation_us")
     require(ok | (tidy.reason != ""), "a row that is not ok needs a reason")
     timed = tidy[ok & (tidy.kind == "timing")]
     doubled = timed.duplicated(["scene", "implementation", "round", "repetition"])

@@ -38,14 +38,14 @@ def ratio_interval(first, second, replicates=REPLICATES, confidence=CONFIDENCE, 
         return (numpy.nan,) * 3
     random = numpy.random.default_rng(seed)
     drawn = random.integers(len(rounds), size=(replicates, len(rounds)))
-    top = _medians(random, [first[r] for r in rounds], drawn)
-    bottom = _medians(random, [second[r] for r in rounds], drawn)
+    top = resampled_medians(random, [first[r] for r in rounds], drawn)
+    bottom = resampled_medians(random, [second[r] for r in rounds], drawn)
     tail = 50 * (1 - confidence)
     low, high = numpy.percentile(top / bottom, [tail, 100 - tail])
     return ratio, float(low), float(high)
 
 
-def _medians(random, groups, drawn):
+def resampled_medians(random, groups, drawn):
     """Median of each replicate: repetitions drawn anew inside the rounds that `drawn` names."""
     sizes = numpy.array([len(group) for group in groups])
     padded = numpy.full((len(groups), sizes.max()), numpy.nan)

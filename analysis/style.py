@@ -4,14 +4,22 @@ import sys
 
 import matplotlib
 import matplotlib.pyplot as plt
+import numpy
+from matplotlib.colors import to_hex, to_rgb
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 from analysis.loader import TableError, load
 
-# Okabe and Ito (2008), safe for the colour-blind, ordered so that neighbours differ in lightness
-# too; markers and dashes tell the series apart without colour.
-COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#000000", "#8a8a00")
-MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
-DASHES = ("-", "--", "-.", (0, (1, 1)), (0, (5, 1)), (0, (3, 1, 1, 1, 1, 1)))
+# Warm colours are dense implementations, the others sparse: each starts with those of Okabe and Ito
+# (2008), safe for the colour-blind; markers and dashes tell the series apart without colour.
+DENSE = ("#E69F00", "#D55E00", "#8C4A1F", "#F2C14E", "#B03A48")
+SPARSE = ("#0072B2", "#009E73", "#CC79A7", "#56B4E9", "#5B3A9E", "#8A8A00", "#4D4D4D", "#8FBF5A",
+          "#00707A", "#A6A6D9")
+ALTERNATIVES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#8A8A00", "#4D4D4D")
+SHADES = ((None, 0.0), ("white", 0.42), ("black", 0.38), ("white", 0.68), ("black", 0.62))
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", "p", ">", "h", "d")
+DASHES = ("-", (0, (4, 1.5)), (0, (1, 1)), (0, (6, 1.5, 1, 1.5)), (0, (3, 1, 1, 1, 1, 1)))
+LETTERS = string.ascii_uppercase + string.ascii_lowercase
 GREY = "#777777"
 
 matplotlib.rcParams.update({
@@ -23,23 +31,114 @@ matplotlib.rcParams.update({
 
 
 class Look:
-    """Colour, marker, dash and letter of each implementation by its place in the registry."""
+    """How each implementation is drawn, by its place in the registry: a colour a folder and a shade
+    of it a variant; a marker and a letter of its own; a dash a variant. An alternative
+    "folder/variant+gcc-O2" or "…+atlas-reference" has colour and marker by the first word behind
+    the plus, dash and fill by the second."""
 
     def __init__(self, results):
-        names = [variant["name"] for entry in results.registry for variant in entry["variants"]]
-        self.place = {name: index for index, name in enumerate(names)}
+        self.place, self.shade, self.hue = {}, {}, {}
+        palettes = {True: iter(DENSE * 9), False: iter(SPARSE * 9)}
+        for entry in results.registry:
+            for variant in entry["variants"]:
+                name, folder = variant["name"], variant["name"].split("/")[0]
+                if folder not in self.hue:
+                    self.hue[folder] = next(palettes[bool(variant.get("dense"))])
+                self.place[name] = len(self.place)
+                self.shade[name] = sum(other.startswith(f"{folder}/") for other in self.shade)
+        pairs = set(results.tidy.blas) | set(results.tidy.build)
+        self.words = sorted({pair.split("-")[0] for pair in pairs} - {""})
+
+    def _alternative(self, name):
+        """(place of the first word, whether the second is not "reference" or "O2")."""
+        first, _, second = name.partition("+")[2].partition("-")
+        place = self.words.index(first) if first in self.words else len(self.words)
+        return place, second not in ("reference", "O2")
 
     def colour(self, name):
-        return COLOURS[self.place[name] % len(COLOURS)]
+        if "+" in name:
+            return ALTERNATIVES[self._alternative(name)[0] % len(ALTERNATIVES)]
+        base, shade = self.hue[name.split("/")[0]], self.shade[name]
+        towards, share = SHADES[shade % len(SHADES)]
+        mixed = numpy.array(to_rgb(base)) * (1 - share)
+        return to_hex(mixed + share if towards == "white" else mixed)
 
     def letter(self, name):
-        return string.ascii_uppercase[self.place[name] % 26]
+        """One to fifty-two implementations have letters of their own."""
+        return LETTERS[self.place[name.partition("+")[0]] % len(LETTERS)]
 
     def marker(self, name):
-        return MARKERS[self.place[name] % len(MARKERS)]
+        place = self._alternative(name)[0] if "+" in name else self.place[name]
+        return MARKERS[place % len(MARKERS)]
 
     def dash(self, name):
-        return DASHES[self.place[name] % len(DASHES)]
+        if "+" in name:
+            return DASHES[0 if self._alternative(name)[1] else 1]
+        return DASHES[self.shade[name] % len(DASHES)]
+
+    def line(self, name):
+        """Keywords of `plot` for the series of an implementation or alternative."""
+        solid = "+" not in name or self._alternative(name)[1]
+        return {"color": self.colour(name), "linestyle": self.dash(name), "linewidth": 1.4,
+                "marker": self.marker(name),
+                "markersize": 8 if self.marker(name) in "*PX" else 5.5,
+                "markeredgewidth": 0.6 if solid else 1.2,
+                "markerfacecolor": self.colour(name) if solid else "white",
+                "markeredgecolor": "white" if solid else self.colour(name)}
+
+
+def legend(axes, order=None, **more):
+    """A legend right of the axes, entries in the order of their last points, slowest first, as the
+    lines end; or sorted by `order(label)`. Entries without a line's label come last."""
+    handles, labels = axes.get_legend_handles_labels()
+    lines = {id(line): line.get_ydata() for line in axes.get_lines()}
+
+    def last(entry):
+        values = lines.get(id(entry[0]), [])
+        return -values[-1] if len(values) else float("inf")
+    pairs = sorted(zip(handles, labels), key=(lambda e: order(e[1])) if order else last)
+    if pairs:
+        options = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "fontsize": 8.5} | more
+        axes.legend(*zip(*pairs), **options)
+
+
+def missing(axes, text):
+    """Axes that say what is missing instead of showing nothing."""
+    axes.set_axis_off()
+    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=GREY,
+              fontsize=10, wrap=True)
+
+
+def size_ticks(axes, sizes, log=True, label="variables n"):
+    """Ticks at the measured sizes; labels that would touch their left neighbours are left out."""
+    if log:
+        axes.set_xscale("log")
+    place = numpy.log(sizes) if log else numpy.asarray(sizes, dtype=float)
+    gap, last, labels = 0.055 * (max(place, default=0) - min(place, default=0)), -numpy.inf, []
+    for size, at in zip(sizes, place):
+        labels.append(f"{size:g}" if at - last >= gap else "")
+        last = at if labels[-1] else last
+    axes.set_xticks(sizes, labels)
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xlabel(label)
+
+
+def number_axis(axis, unit=""):
+    """Plain numbers on a logarithmic axis that has its data, more a decade if it spans few."""
+    low, high = axis.get_view_interval()
+    decades = numpy.log10(high / low)
+    steps = (1, 1.5, 2, 3, 5, 7) if decades < 0.9 else (1, 2, 5) if decades < 3.3 else (1,)
+    axis.set_major_locator(LogLocator(subs=steps))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: plain(value) + unit))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def plain(value):
+    """A tick's number: 0.5, 20, 10000, and powers of ten from there on."""
+    if value < 1e5:
+        return f"{value:.0f}" if value >= 10 else f"{value:g}"
+    digits, power = f"{value:.0e}".split("e")
+    return f"${'' if digits == '1' else digits + '·'}10^{{{int(power)}}}$"
 
 
 def figure_main(draw):

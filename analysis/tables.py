@@ -1,8 +1,7 @@
 # The report's tables, as rows of texts and numbers computed from the tidy tables.
-import pandas
-
-from analysis.loader import FAILURES, NULL, PHASES
-from analysis.statistics import median, phase_shares, power_law_exponent, rank
+from analysis.loader import FAILURES, NULL
+from analysis.maps import paired_rank
+from analysis.statistics import median
 
 LAST_CENTRED = 602  # variables; the harness centres stretches on the singular position up to here
 BEFORE_SINGULAR = (f"sizes above {LAST_CENTRED} variables are timed before the singular position, "
@@ -14,7 +13,7 @@ def step_times(results):
     samples = results.samples(natural_only=True)
     rows = []
     for size, of_size in samples.groupby("variables"):
-        ranking = rank(of_size, results.natural_failures(size))
+        ranking = paired_rank(of_size, results.natural_failures(size))
         for name in results.implementations:
             mine = of_size[of_size.implementation == name]
             if len(mine):
@@ -31,7 +30,7 @@ def step_times(results):
 def winners(results):
     """Natural fill: the fastest of each size, its margin over the second and the interval."""
     samples = results.samples(natural_only=True)
-    return [{"variables": size, "ranking": rank(of_size, results.natural_failures(size))}
+    return [{"variables": size, "ranking": paired_rank(of_size, results.natural_failures(size))}
             for size, of_size in samples.groupby("variables")]
 
 
@@ -84,11 +83,22 @@ def accuracy(results):
 
 
 def losses(results):
-    """Everything that was not timed or may not be ranked, one row a cell, with its reason."""
+    """What was not timed or may not be ranked, grouped by implementation, status and reason:
+    [{"implementation", "status", "reason", "scenes", "cells", "low", "high"}]. Exclusions of one
+    implementation are one group, as their reasons differ in nothing but the factor `low` to `high`
+    (pilot's time ÷ best of the scene)."""
     tidy = results.tidy
     lost = tidy[tidy.status.isin([*FAILURES, "excluded", "unavailable"])]
-    lost = lost.drop_duplicates(["scene", "implementation", "status", "reason"])
-    return lost.to_dict("records")
+    lost = lost.drop_duplicates(["kind", "scene", "implementation", "status", "reason"])
+    kind = lost.reason.where(lost.status != "excluded", "")
+    rows = []
+    for (name, status, reason), group in lost.groupby(["implementation", "status", kind],
+                                                      sort=False):
+        scenes = list(dict.fromkeys(scene for scene in group.scene if scene))
+        rows.append({"implementation": name, "status": status, "scenes": scenes,
+                     "reason": reason or group.reason.iloc[0], "cells": len(scenes),
+                     "low": group.pilot_ratio.min(), "high": group.pilot_ratio.max()})
+    return sorted(rows, key=lambda row: row["status"] in ("excluded", "unavailable"))
 
 
 def not_reached(results):
@@ -97,41 +107,27 @@ def not_reached(results):
     return tidy[tidy.status == "not-reached"].to_dict("records")
 
 
-def must_hold(results):
-    """The study's own bounds: [{"claim", "subject", "note", "bound", "value", "holds"}]; value None
-    where this profile does not measure it."""
-    phases = results.tidy[(results.tidy.kind == "phases") & (results.tidy.status == "ok")]
+def stages(results):
+    """{stage: (cells, samples)} of the ranked timing: the grid, and what refinement added."""
+    samples = results.samples()
+    return {stage or "grid": (rows.groupby(["scene", "implementation"]).ngroups, len(rows))
+            for stage, rows in samples.groupby("stage")}
+
+
+def builds(results):
+    """[{"build", "compiler", "flags", "blas", "files"}] of run.json's contexts, one row a build
+    and BLAS pair that took part; the study's own build is "own"."""
     rows = []
-    for name in results.implementations:
-        folder = name.split("/")[0]
-        mine = phases[phases.implementation == name]
-        if folder == "csc_klu":
-            rows.append(_share("outside factorization and solves, N = 40", name, mine, 82, 0.40,
-                               ("factorization", "solve")))
-            rows.append(_exponent(results, name))
-        elif folder.endswith("_dense"):
-            rows.append(_share("outside factorization, solves and tangent products, n = 22", name,
-                               mine, 22, 0.30, ("factorization", "solve", "assembly")))
+    for key, context in results.run.get("contexts", {}).items():
+        build, _, pair = key.partition("|")
+        rows.append({"build": build or "own", "blas": pair,
+                     "compiler": context.get("compiler", ""), "flags": context.get("flags", ""),
+                     "files": [path for path in context.get("blas_loaded", "").split(";") if path]})
     return rows
 
 
-def _share(claim, name, phases, size, bound, inside):
-    mine, value = phases[phases.variables == size], None
-    if len(mine):
-        shares = phase_shares(mine, PHASES)
-        value = 1 - sum(shares[phase] for phase in inside)
-    return {"claim": claim, "subject": name, "bound": f"{100 * bound:.0f} %",
-            "note": "", "value": None if value is None else f"{100 * value:.1f} %",
-            "holds": value is not None and value <= bound}
-
-
-def _exponent(results, name):
-    samples = results.samples(natural_only=True)
-    mine = samples[(samples.implementation == name) & (samples.variables >= 100)]
-    medians = mine.groupby("variables").step_us.median()
-    value = power_law_exponent(medians.index, medians)
-    passes = (mine.passes / mine.stretch_steps).groupby(mine.variables).median()
-    note = "; ".join(f"n = {size:g}: {count:.2f}" for size, count in passes.items())
-    return {"claim": "exponent of the step time over n, n ≥ 100", "subject": name, "bound": "1.1",
-            "note": note and f"passes a step at {note}; {BEFORE_SINGULAR}",
-            "value": None if pandas.isna(value) else f"{value:.2f}", "holds": value <= 1.1}
+def blas_pairs(results):
+    """The BLAS + LAPACK pairs of `mbs list --json`, each with the library files that the study's
+    own build loaded for it ([] if it was not used)."""
+    own = {row["blas"]: row["files"] for row in builds(results) if row["build"] == "own"}
+    return [pair | {"files": own.get(pair["name"], [])} for pair in results.pairs]

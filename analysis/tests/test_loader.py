@@ -1,4 +1,6 @@
 # The loader accepts what results/README.md describes and names what does not fit.
+import json
+
 import pytest
 
 from analysis.loader import TableError, load
@@ -23,7 +25,7 @@ def test_valid_tables(tables):
     ({"repetition": 2}, "the same sample twice"),
     ({"machine": "other"}, "several machines or commits"),
     ({"commit": "other"}, "several machines or commits"),
-    ({"kind": "guess"}, "neither timing nor phases"),
+    ({"kind": "guess"}, "kind is none of timing, phases"),
 ])
 def test_damaged_rows_are_refused(tables, change, message):
     folder, rows = tables
@@ -58,3 +60,11 @@ def test_missing_file(tables):
     (tables[0] / "context.json").unlink()
     with pytest.raises(TableError, match="context.json: cannot be read"):
         load(tables[0])
+
+
+def test_pairs_come_from_the_registry(tables):
+    folder, _ = tables
+    assert load(folder).pairs == []
+    path = folder / "implementations.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"blas": [{"name": "atlas"}]}))
+    assert load(folder).pairs == [{"name": "atlas"}]

@@ -1,32 +1,16 @@
-# Figures and report on small tables: what they show, and that they need nothing from outside.
+# The report and its tables on small data: what they show, and that they need nothing from outside.
+import json
 import re
 
-import matplotlib.pyplot as plt
 import pytest
 
+from analysis import bounds
 from analysis import tables as report_tables
-from analysis.figures import phases, region_map, step_time
 from analysis.loader import load
-from analysis.report import number, render
+from analysis.report import render
+from analysis.summary import by_size
 from analysis.tests.conftest import timing, write
-
-
-@pytest.mark.parametrize("figure", [step_time, phases, region_map])
-def test_figures_are_drawn(tables, figure):
-    drawn = figure.draw(load(tables[0]))
-    assert drawn.axes
-    plt.close(drawn)
-
-
-def texts(figure):
-    return [text.get_text() for axes in figure.axes for text in axes.texts]
-
-
-def test_region_map_shows_margin_failures_and_exclusions(tables):
-    folder, rows = tables
-    rows.append(timing("c/z", "", "", "", status="excluded", reason="at least 100 times slower"))
-    write(folder / "tidy.csv", "tidy", rows)
-    assert "A 1.98×  ▲1" in texts(region_map.draw(load(folder)))
+from analysis.text import number
 
 
 def test_failed_cells_are_never_ranked(tables):
@@ -36,42 +20,24 @@ def test_failed_cells_are_never_ranked(tables):
             row |= {"status": "disagrees", "reason": "wrong"}
     write(folder / "tidy.csv", "tidy", rows)
     results = load(folder)
-    assert [entry["ranking"].winner for entry in report_tables.winners(results)] == ["b/y"]
-    assert not report_tables.winners(results)[0]["ranking"].decided  # nobody is left to beat
+    assert [row["implementation"] for row in report_tables.step_times(results)] == ["b/y"]
+    assert not report_tables.step_times(results)[0]["winner"]  # nobody is left to beat
     assert report_tables.losses(results)[0]["reason"] == "wrong"
-    drawn = region_map.draw(results)
-    assert "B alone  ✕1" in texts(drawn)
-    assert any(patch.get_hatch() == "////" for patch in drawn.axes[0].patches)
+    assert "disagrees" in render(folder)
 
 
-def test_alone_against_excluded_ones_is_decided(tables):
+def test_exclusions_are_grouped_and_failures_stand_alone(tables):
     folder, rows = tables
-    kept = [row for row in rows if row["implementation"] == "a/x"]
-    kept.append(timing("b/y", "", "", "", status="excluded", reason="at least 100 times slower"))
-    write(folder / "tidy.csv", "tidy", kept)
-    results = load(folder)
-    assert report_tables.winners(results)[0]["ranking"].decided
-    drawn = region_map.draw(results)
-    assert "A alone  ▲1" in texts(drawn)
-    assert not any(patch.get_hatch() == "////" for patch in drawn.axes[0].patches)
-
-
-@pytest.mark.parametrize("fills, bounds", [
-    ([], [0.0]), ([0.6], [0.6, 5.6]), ([98.0], [98.0, 100.0]),
-    ([10, 20, 40], [10, 15, 30, 50]), ([50, 75, 100], [50, 62.5, 87.5, 100])])
-def test_cells_reach_no_further_than_their_own_fill(fills, bounds):
-    assert region_map.cell_bounds(fills) == pytest.approx(bounds)
-
-
-def test_a_scene_without_any_pilot_stays_on_the_map(tables):
-    folder, rows = tables
-    for name in ("a/x", "b/y"):
-        rows.append(timing(name, "", "", "", status="crashed", reason="SIGSEGV", fill_percent="",
-                           scene="four-bar:4,fill=0.80", fill_asked=0.8))
+    for size, ratio in ((50, 120), (82, 300)):
+        rows.append(timing("c/z", "", "", "", variables=size, scene=f"n{size}", status="excluded",
+                           reason=f"{ratio} times slower", pilot_ratio=ratio))
+    rows.append(timing("c/z", 1, "", "", scene="n160", status="crashed", reason="SIGSEGV"))
+    rows.append(timing("c/z", 1, "", "", scene="n100", status="crashed", reason="SIGBUS"))
     write(folder / "tidy.csv", "tidy", rows)
-    results = load(folder)
-    assert list(region_map.scene_fills(results.tidy)) == [52, 80]
-    assert "none  ✕2" in texts(region_map.draw(results))
+    found = report_tables.losses(load(folder))
+    assert [(row["status"], row["cells"]) for row in found] == [
+        ("crashed", 1), ("crashed", 1), ("excluded", 2)]
+    assert (found[-1]["low"], found[-1]["high"], found[-1]["scenes"]) == (120, 300, ["n50", "n82"])
 
 
 def test_exponent_names_the_passes_behind_it(tables):
@@ -81,10 +47,39 @@ def test_exponent_names_the_passes_behind_it(tables):
     registry = folder / "implementations.json"
     registry.write_text(registry.read_text().replace("c/z", "csc_klu/refactor"))
     write(folder / "tidy.csv", "tidy", rows)
-    row = next(row for row in report_tables.must_hold(load(folder)) if "exponent" in row["claim"])
+    row = next(row for row in bounds.must_hold(load(folder)) if "exponent" in row["claim"])
     assert row["value"] == "1.00" and row["holds"]
     assert "n = 100: 2.00; n = 200: 2.00; n = 1000: 2.00; sizes above 602" in row["note"]
     assert row["note"].split("; ")[-1] in render(folder)
+
+
+def test_blas_pairs_name_the_files_that_were_loaded(tables):
+    folder, _ = tables
+    listed = json.loads((folder / "implementations.json").read_text())
+    names = ("openblas", "atlas", "blis-flame")
+    listed["blas"] = [{"name": name, "blas": name.upper(), "lapack": "own", "reason": reason,
+                       "available": not reason} for name, reason in zip(names, ("", "", "absent"))]
+    (folder / "implementations.json").write_text(json.dumps(listed))
+    contexts = {"|openblas": {"compiler": "GNU", "flags": "-O3", "blas_loaded": "/l/a.so;/l/b.so"},
+                "clang-O2|openblas": {"compiler": "Clang 14", "flags": "-O2", "blas_loaded": "/x"}}
+    (folder / "run.json").write_text(json.dumps({"profile": "p", "only": [],
+                                                 "contexts": contexts}))
+    results = load(folder)
+    assert [pair["files"] for pair in report_tables.blas_pairs(results)] == [
+        ["/l/a.so", "/l/b.so"], [], []]
+    assert [(row["build"], row["flags"]) for row in report_tables.builds(results)] == [
+        ("own", "-O3"), ("clang-O2", "-O2")]
+    page = render(folder)
+    for text in ("/l/a.so", "not used in this run", "absent", "Clang 14"):
+        assert text in page
+
+
+def test_stages_count_what_refinement_added(tables):
+    folder, rows = tables
+    rows.append(timing("a/x", 9, 1, 1.0, stage="refined"))
+    write(folder / "tidy.csv", "tidy", rows)
+    assert report_tables.stages(load(folder)) == {"grid": (2, 18), "refined": (1, 1)}
+    assert "refined:\n1 cells, 1 samples" in render(folder)
 
 
 def test_report_is_self_contained_and_escaped(tables):
@@ -94,7 +89,26 @@ def test_report_is_self_contained_and_escaped(tables):
     page = render(folder)
     assert "&lt;b&gt;SIGSEGV" in page
     assert not re.search(r'(src|href)="(?!data:|#)', page)
-    assert "a/x" in page and "1.98 times" in page
+    assert re.search(r"n = 10: <b>a/x</b>,\s+1.98 times ahead of the second", page)
+    assert page.count("cannot be tested here") >= 12
+
+
+def test_report_of_nothing_timed(tables):
+    folder, _ = tables
+    write(folder / "tidy.csv", "tidy", [timing("a/x", "", "", "", status="timeout", reason="late")])
+    assert by_size(load(folder)) == []
+    page = render(folder)
+    assert "Nothing was timed." in page and "late" in page
+
+
+def test_every_figure_of_the_folder_is_on_the_page_in_order(tables):
+    folder, _ = tables
+    (folder / "figures").mkdir()
+    for name in ("new_one", "t2_operations", "f6_map"):
+        (folder / "figures" / f"{name}.svg").write_text("<svg/>")
+    page = render(folder)
+    places = [page.index(f'id="{name}"') for name in ("f6_map", "t2_operations", "new_one")]
+    assert places == sorted(places)
 
 
 @pytest.mark.parametrize("value, text", [

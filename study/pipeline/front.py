@@ -11,7 +11,7 @@ from study.pipeline.errors import StudyError
 from study.pipeline.layout import ROOT
 from study.pipeline.progress import Reader
 
-STAGES = ("set-up", "verify", "measure", "collect", "figures", "report")
+STAGES = ("set-up", "verify", "measure", "refine", "collect", "figures", "report")
 
 
 class Display:
@@ -74,6 +74,8 @@ def run_workflow(layout, columns, plan, stored=False):
 
 
 def _finished(layout, stage, variables):
+    if stage == "refine":
+        return layout.refined_stamp.exists()
     path = layout.plan if stage == "verify" else layout.measured
     return path(variables).exists()
 
@@ -85,12 +87,12 @@ class _Follower:
         self.layout, self.plan, self.display = layout, plan, display
         self.events, self.log = Reader(layout), open(layout.log, encoding="utf-8")
         self.log.seek(0, 2)
-        self.stage, self.error, self.column = None, None, None
+        self.stage, self.error, self.column, self.text = None, None, None, ""
         self.spent, self.predicted = 0.0, 0.0
 
     def update(self):
         for event in self.events.events():
-            self.column = event["variables"]
+            self.column, self.text = event["variables"], event["text"]
             work = self.plan[event["stage"], self.column]
             work.done = min(work.cells, work.done + event["cells"])
             if event["seconds"] > 0.01:  # resumed cells are instant and say nothing
@@ -103,6 +105,9 @@ class _Follower:
                 self.error = self.error or line.removeprefix("error: ").strip()
         if self.stage in ("verify", "measure"):
             self._show_cells()
+        elif self.stage == "refine":
+            work = self.plan["refine", 0]
+            self.display.show(self.stage, f"{work.done:.0f} of {work.cells:.0f} s; {self.text}")
         elif self.stage in STAGES:
             self.display.show(self.stage)
 
@@ -112,7 +117,7 @@ class _Follower:
         total = sum(work.cells for work in mine.values())
         left = estimate.duration(estimate.seconds_left(self.plan, self.spent, self.predicted))
         size = f"n = {self.column}: " if self.column else ""
-        self.display.show(self.stage, f"{size}{done} of {total} cells, about {left} left")
+        self.display.show(self.stage, f"{size}{done:.0f} of {total:.0f} cells, about {left} left")
 
 
 def _stop(process):

@@ -5,24 +5,42 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from study.pipeline import profile as profiles
+from study.pipeline.contenders import Contender, from_json
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import Layout, read_run
 
 
 @dataclass(frozen=True)
 class Study:
-    """One results directory: its profile, the variants that take part, and its build."""
+    """One results directory: its profile and who takes part, with their builds."""
     layout: Layout
     profile: profiles.Profile
-    variants: list
-    context: dict
+    contenders: dict   # name -> Contender
+    control: Contender
+    contexts: dict     # environment -> context of its raw files
+
+    def context(self, contender):
+        return self.contexts[contender.environment]
+
+    def contender(self, name):
+        return self.control if name == self.control.name else self.contenders[name]
+
+    def at(self, scene):
+        """Those who take part in a scene."""
+        return [contender for contender in self.contenders.values() if contender.at(scene)]
 
 
 def open_study(results):
     layout = Layout(Path(results).resolve())
     run = read_run(layout)
     profile = profiles.read(layout.results / "profile.yaml", run["profile"])
-    return Study(layout, profile, run["variants"], run["context"])
+    [control] = from_json([run["control"]]).values()
+    return Study(layout, profile, from_json(run["contenders"]), control, run["contexts"])
+
+
+def study_job(function):
+    """Runs `function(study)` for the command line RESULTS."""
+    return job(lambda: function(open_study(sys.argv[1])))
 
 
 def column_job(function):

@@ -16,6 +16,8 @@ class Layout:
         self.results = Path(results)
         self.run = self.results / "run.json"                  # profile, selection, build, machine
         self.registry = self.results / "implementations.json"  # `mbs list --json`
+        self.refined = self.results / "plans" / "refined.json"
+        self.refined_stamp = self.results / "plans" / "refined.measured"
         self.progress = self.results / ".progress"
         self.log = self.results / "run.log"
 
@@ -28,25 +30,25 @@ class Layout:
     def measured(self, variables):
         return self.results / "plans" / f"n{variables:04d}.measured"
 
-    def cell(self, kind, implementation, scene):
-        """`kind` is pilot, round1, round2, ... or phases1, ..."""
-        name = f"{implementation.replace('/', '.')}@{scene.label}.json"
-        return self.column(scene.variables) / kind / name
+    def cell(self, kind, contender, scene):
+        """`kind` is pilot, round1, round2, ... phases1, ... or operations1, ..."""
+        return self.column(scene.variables) / kind / f"{contender.file_name}@{scene.label}.json"
 
     def gate(self, scene, attempt):
         return self.column(scene.variables) / "gate" / f"{scene.label}-{attempt}.json"
 
-    def accuracy(self, variables, implementation, penalty):
-        name = f"{implementation.replace('/', '.')}@{penalty}.json"
-        return self.column(variables) / "accuracy" / name
+    def accuracy(self, variables, contender, penalty):
+        return self.column(variables) / "accuracy" / f"{contender.file_name}@{penalty}.json"
 
     def relative(self, path):
         return str(Path(path).relative_to(self.results))
 
 
-def program():
+def program(build=""):
     """The `mbs` to run, relative to ROOT where it can be; MBS_PROGRAM names another for tests."""
-    return os.environ.get("MBS_PROGRAM", "build/mbs")
+    if "MBS_PROGRAM" in os.environ:
+        return os.environ["MBS_PROGRAM"]
+    return f"build-{build}/mbs" if build else "build/mbs"
 
 
 def read_json(path):
@@ -64,7 +66,8 @@ def read_json(path):
 def read_run(layout):
     """run.json, with everything that it must hold; StudyError if something is missing."""
     record = read_json(layout.run)
-    needed = {"profile", "only", "variants", "context", "program"}
+    needed = {"profile", "only", "variants", "contenders", "control", "contexts", "programs",
+              "builds"}
     missing = sorted(needed - set(record)) if isinstance(record, dict) else sorted(needed)
     if missing:
         raise StudyError(f"{layout.run} is no record of a run: it lacks {', '.join(missing)}")
@@ -82,7 +85,7 @@ def write_json(path, data):
 
 def fingerprint(context):
     """What must be equal for two results to be comparable: the machine and the build."""
-    keys = ("machine", "commit", "dirty", "compiler", "flags", "build_type", "blas_loaded",
-            "libraries")
+    keys = ("machine", "commit", "dirty", "compiler", "flags", "build_type", "blas",
+            "blas_loaded", "libraries")
     found = {key: str(context.get(key, "missing")) for key in keys}
     return found | {"blas_loaded": ";".join(sorted(found["blas_loaded"].split(";")))}

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from study.pipeline import estimate, profile as profiles
+from study.pipeline.contenders import Contender, contenders, from_json
 from study.pipeline.errors import StudyError
 from study.pipeline.front import run_workflow
 from study.pipeline.layout import Layout, ROOT, program, read_run
@@ -62,8 +63,8 @@ def run(arguments):
         profile = profiles.load(options.profile)
         start(layout, profile, options.only)
         reopen_incomplete(layout, profile)
-        variants = read_run(layout)["variants"]
-        run_workflow(layout, profile.columns, estimate.work(profile, len(variants)))
+        taking_part = from_json(read_run(layout)["contenders"]).values()
+        run_workflow(layout, profile.columns, estimate.work(profile, taking_part))
     print(f"report: {layout.results / 'report.html'}")
     return 0
 
@@ -101,13 +102,19 @@ def dry_run(options, layout):
     need_modules("yaml")
     profile = profiles.load(options.profile)
     if (ROOT / program()).exists():
-        variants = select(registry(), options.only)
+        known = registry()
+        variants = select(known, options.only)
+        taking_part = contenders(profile, known, variants, {})
     else:
-        variants = options.only or folders_of_list()
+        taking_part = [Contender(name, name) for name in options.only or folders_of_list()]
         print("build/mbs is not built yet: counting one variant for each implementation folder")
-    plan = estimate.work(profile, len(variants))
+    plan = estimate.work(profile, taking_part)
     print(f"profile {profile.name}: {profile.title}\nresults: {layout.results}")
-    print(f"implementations: {', '.join(variants)}")
+    print(f"implementations: {', '.join(one.name for one in taking_part if one.ranked)}")
+    others = [one for one in taking_part if not one.ranked]
+    for one in others:
+        print(f"  beside them {one.name}" + (f": unavailable: {one.missing}" if one.missing else
+              f" at n = {', '.join(map(str, one.columns))}"))
     for variables, scenes in profile.columns.items():
         fills = [s.label if s.fill is None else f"{100 * s.fill:.0f} %" for s in scenes]
         seconds = plan["verify", variables].left() + plan["measure", variables].left()
@@ -116,6 +123,12 @@ def dry_run(options, layout):
               + ("done" if done else f"about {estimate.duration(seconds)}"))
         for stage in ("verify", "measure"):
             plan[stage, variables].done = plan[stage, variables].cells if done else 0
+    if layout.refined_stamp.exists():
+        plan["refine", 0].done = plan["refine", 0].cells
+    print(f"  refinement of the maps: {estimate.duration(profile.refine['seconds'])}")
+    builds = sorted({one.build for one in others if one.build})
+    if builds:
+        print(f"  further builds, by set-up: {', '.join(builds)}")
     minutes = sum(work.left() for work in plan.values()) / 60
     print(f"estimated: {minutes:.1f} minutes, besides set-up and build")
     return 0

@@ -8,9 +8,12 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 from study.pipeline import cells, profile as profiles
+from study.pipeline.builds import build
+from study.pipeline.contenders import contenders, control, to_json, wanted_builds
 from study.pipeline.errors import StudyError
 from study.pipeline.front import Display
 from study.pipeline.layout import ROOT, fingerprint, program, read_json, read_run, write_json
@@ -40,15 +43,14 @@ def set_up(layout):
 def start(layout, profile, only):
     """Records what this results directory is for, or refuses one that is for something else."""
     known = registry()
-    run_record = {"profile": profile.name, "only": only, "variants": select(known, only),
-                  "context": cells.context(), "program": digest(ROOT / program())}
+    run_record = _run_record(layout, profile, only, known)
     text = (profiles.FOLDER / f"{profile.name}.yaml").read_text()
     stored_text = layout.results / "profile.yaml"
     if layout.run.exists():
         stored = read_run(layout)
-        old, new = fingerprint(stored["context"]), fingerprint(run_record["context"])
-        differing = [f"{key} '{old[key]}', now '{new[key]}'" for key in old if old[key] != new[key]]
-        differing += [key for key in ("profile", "variants", "program")
+        differing = [text for environment, context in stored["contexts"].items()
+                     for text in _differing(context, run_record["contexts"].get(environment, {}))]
+        differing += [key for key in ("profile", "variants", "contenders", "programs")
                       if stored[key] != run_record[key]]
         differing += [] if stored_text.read_text() == text else ["the profile's settings"]
         if differing:
@@ -61,14 +63,57 @@ def start(layout, profile, only):
     write_json(layout.run, run_record)
 
 
+def _run_record(layout, profile, only, known):
+    variants = select(known, only)
+    broken = _build_others(layout, wanted_builds(profile, variants))
+    own, found, contexts = control(profile, known), [], {}
+    contexts[own.environment] = cells.context(own)
+    for one in contenders(profile, known, variants, broken):
+        if not one.missing and one.environment not in contexts:
+            try:
+                contexts[one.environment] = cells.context(one)
+            except StudyError as error:
+                if one.ranked:
+                    raise
+                one = replace(one, missing=str(error))
+        found.append(one)
+    builds = {"": ROOT / program()} | {
+        one.build: ROOT / program(one.build) for one in found if not one.missing}
+    return {"profile": profile.name, "only": only, "variants": variants,
+            "contenders": to_json(found), "control": to_json([own])[0], "contexts": contexts,
+            "blas": {one.name: one.blas for one in found if one.ranked},
+            "builds": {one.build: {key: contexts[one.environment][key]
+                                   for key in ("compiler", "flags")}
+                       for one in [own, *found] if not one.missing},
+            "programs": {name: digest(path) for name, path in builds.items()}}
+
+
+def _build_others(layout, builds):
+    """{build: why it failed} of the builds that are not the study's own."""
+    if "MBS_PROGRAM" in os.environ:
+        return {}
+    display = Display()
+    with open(layout.log, "a", encoding="utf-8") as log:
+        broken = {name: build(name, log, lambda line: display.show("set-up", line))
+                  for name in builds}
+    display.end()
+    return {name: reason for name, reason in broken.items() if reason}
+
+
+def _differing(old, new):
+    old, new = fingerprint(old), fingerprint(new)
+    return [f"{key} '{old[key]}', now '{new[key]}'" for key in old if old[key] != new[key]]
+
+
 def reopen_incomplete(layout, profile):
     """Makes the workflow redo a column of which a raw file was removed; what exists is kept."""
-    for variables in profile.columns:
-        stamp = layout.measured(variables)
+    stamps = {layout.measured(variables): [layout.plan(variables)]
+              for variables in profile.columns} | {layout.refined_stamp: []}
+    for stamp, plans in stamps.items():
         if stamp.exists() and not all((layout.results / name).exists()
                                       for name in read_json(stamp)["files"]):
             derived = (layout.results / name for name in ("tidy.csv", "report.html"))
-            for path in (stamp, layout.plan(variables), *derived):
+            for path in (stamp, *plans, layout.refined_stamp, *derived):
                 path.unlink(missing_ok=True)
 
 

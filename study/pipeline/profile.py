@@ -8,10 +8,16 @@ FOLDER = Path(__file__).resolve().parent.parent / "profiles"
 NATURAL = "natural"
 SETTINGS = {  # key: type; ../README.md and the profiles themselves say what each means
     "title": str, "seed": int, "step": float, "penalty": str, "rounds": int, "repetitions": int,
-    "min_time": float, "stretch_lengths": list, "stretch_budget": dict, "pilot_steps": int,
-    "exclusion_factor": float, "limits": dict, "accuracy": dict, "columns": list,
+    "min_time": float, "stretch_lengths": list, "stretch_budget": dict,
+    "pilot_steps": int, "exclusion_factor": dict, "limits": dict, "accuracy": dict, "blas": dict,
+    "alternatives": list, "phases": dict, "operations": dict, "refine": dict, "columns": list,
 }
-LIMITS = {"pilot_seconds", "cell_seconds", "check_seconds", "simulate_seconds", "memory_mb"}
+PARTS = {  # key: exactly these keys below it
+    "limits": {"pilot_seconds", "cell_seconds", "check_seconds", "simulate_seconds", "memory_mb"},
+    "stretch_budget": {"natural", "filled"}, "exclusion_factor": {"natural", "filled"},
+    "accuracy": {"duration", "penalties", "columns"}, "refine": {"seconds", "rounds"},
+    "phases": {"columns", "rounds"}, "operations": {"columns", "rounds"},
+}
 
 
 @dataclass(frozen=True)
@@ -34,13 +40,19 @@ class Scene:
 class Profile:
     name: str
     settings: dict
-    columns: dict = field(default_factory=dict)  # variables -> [Scene], natural first
+    columns: dict = field(default_factory=dict)     # variables -> [Scene], natural first
+    exclusions: dict = field(default_factory=dict)  # variables -> factor, where a column has its own
 
     def __getattr__(self, key):
         try:
             return self.__dict__["settings"][key]
         except KeyError:
             raise AttributeError(key) from None
+
+    def exclusion(self, scene):
+        """A cell predicted slower than this times the best of its scene is not timed."""
+        usual = self.exclusion_factor["natural" if scene.fill is None else "filled"]
+        return self.exclusions.get(scene.variables, usual)
 
 
 def names():
@@ -71,24 +83,57 @@ def read(path, name):
             raise StudyError(f"{path}: {key} must be of type {kind.__name__}, is {data[key]!r}")
         if kind in (int, float) and not 0 < data[key] < float("inf"):
             raise StudyError(f"{path}: {key} must be positive, is {data[key]!r}")
-    if set(data["limits"]) != LIMITS:
-        raise StudyError(f"{path}: limits must be exactly {', '.join(sorted(LIMITS))}")
-    if set(data["stretch_budget"]) != {"natural", "filled"}:
-        raise StudyError(f"{path}: stretch_budget must be exactly natural, filled")
-    if set(data["accuracy"]) != {"duration", "penalties"}:
-        raise StudyError(f"{path}: accuracy must be exactly duration, penalties")
-    return Profile(name, data, dict(_column(path, entry) for entry in data["columns"]))
+    for key, parts in PARTS.items():
+        if set(data[key]) != parts:
+            raise StudyError(f"{path}: {key} must be exactly {', '.join(sorted(parts))}")
+    for key, number in [(key, number) for key in ("refine", "exclusion_factor", "stretch_budget",
+                                                  "phases", "operations", "limits")
+                        for part, number in data[key].items() if part != "columns"]:
+        if not isinstance(number, (int, float)) or isinstance(number, bool) or number < 0:
+            raise StudyError(f"{path}: {key} needs numbers, found {number!r}")
+    if "all" not in data["blas"]:
+        raise StudyError(f"{path}: blas must name a pair for all")
+    columns = dict(_column(path, entry) for entry in data["columns"])
+    exclusions = {entry["variables"]: entry["exclusion"] for entry in data["columns"]
+                  if "exclusion" in entry}
+    for alternative in data["alternatives"]:
+        _check_alternative(path, alternative, columns)
+    for key in ("phases", "operations", "accuracy"):
+        _need_columns(path, key, data[key]["columns"], columns)
+    return Profile(name, data, columns, exclusions)
 
 
 def _column(path, entry):
-    if not isinstance(entry, dict) or set(entry) != {"variables", "fills"}:
-        raise StudyError(f"{path}: a column has exactly variables and fills, found {entry!r}")
-    variables, fills = entry["variables"], entry["fills"]
+    if not isinstance(entry, dict) or set(entry) - {"exclusion"} != {"variables", "fills"}:
+        raise StudyError(f"{path}: a column has exactly variables and fills, perhaps exclusion, "
+                         f"found {entry!r}")
+    variables, fills, exclusion = entry["variables"], entry["fills"], entry.get("exclusion", 2)
     if not isinstance(variables, int) or variables < 4 or variables % 2:
         raise StudyError(f"{path}: variables must be an even number >= 4, is {variables!r}")
+    if not isinstance(exclusion, (int, float)) or exclusion <= 1:
+        raise StudyError(f"{path}: exclusion must be a number above 1, is {exclusion!r}")
     if not fills or fills[0] != NATURAL:
         raise StudyError(f"{path}: fills of {variables} variables must start with {NATURAL}")
     for fill in fills[1:]:
         if not isinstance(fill, (int, float)) or not 0 < fill <= 1:
             raise StudyError(f"{path}: a fill is a share above 0 and up to 1, is {fill!r}")
     return variables, [Scene(variables, None)] + [Scene(variables, fill) for fill in fills[1:]]
+
+
+def _check_alternative(path, entry, columns):
+    kinds = {"blas", "builds"}
+    keys = set(entry) if isinstance(entry, dict) else set()
+    if keys - kinds != {"implementations", "columns"} or len(keys & kinds) != 1:
+        raise StudyError(f"{path}: an alternative has exactly implementations, columns and one of "
+                         f"blas and builds, found {entry!r}")
+    for key in keys:
+        if not isinstance(entry[key], list) or not entry[key]:
+            raise StudyError(f"{path}: {key} of an alternative must be a list, is {entry[key]!r}")
+    _need_columns(path, "alternatives", entry["columns"], columns)
+
+
+def _need_columns(path, key, sizes, columns):
+    unknown = [size for size in sizes if size not in columns]
+    if unknown:
+        raise StudyError(f"{path}: {key} name {unknown[0]!r}, which is no column; columns: "
+                         f"{', '.join(map(str, columns))}")

@@ -10,14 +10,21 @@ class Progress:
         self.path, self.stage, self.variables = layout.progress, stage, variables
         self.last = time.monotonic()
 
-    def done(self, cells=1):
+    def done(self, cells=1, text=""):
         """`cells` more are finished; seconds since the last call tell fresh from resumed ones."""
         now = time.monotonic()
-        event = {"stage": self.stage, "variables": self.variables, "cells": cells,
+        event = {"stage": self.stage, "variables": self.variables, "cells": cells, "text": text,
                  "seconds": round(now - self.last, 4)}
         with open(self.path, "a", encoding="utf-8") as file:
             file.write(json.dumps(event) + "\n")
         self.last = now
+
+
+class Quiet:
+    """Progress that nobody is told."""
+
+    def done(self, cells=1, text=""):
+        pass
 
 
 class Reader:

@@ -1,16 +1,17 @@
 # Verifies one column: pilots, gate and accuracy runs; writes the plan that says what is timed.
 #
 # A pilot (the first steps of the motion, the fastest of PILOT_RUNS) predicts each cell's cost.
-# Cells more than `exclusion_factor` times slower than the best of their scene are excluded: neither
-# checked nor timed. A pilot that runs out of time proves a least cost; that excludes its cell too
-# if a single step does end: without that it may hang. "Best" counts only what the gate has not
+# Cells slower than the best of their scene by more than the profile's factor are excluded: neither
+# checked nor timed. Where a pilot runs out of time, a single step and the least cost that the timeout
+# proves predict; if not even that step ends, it may hang. "Best" counts only what the gate has not
 # rejected, so a wrong but fast implementation excludes nobody: after each verdict the rule is
 # applied again, until nobody new has to be checked.
 import sys
+from itertools import groupby
 
 from study.pipeline import cells
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import NULL, write_json
+from study.pipeline.layout import read_json, write_json
 from study.pipeline.progress import Progress
 
 PILOT_RUNS = 3
@@ -18,60 +19,95 @@ PILOT_RUNS = 3
 
 def verify(study, variables):
     progress = Progress(study.layout, "verify", variables)
-    scenes, natural_fill = {}, None
-    for scene in study.profile.columns[variables]:
-        if scene.fill is not None and 100 * scene.fill <= natural_fill:
+    natural, *filled = study.profile.columns[variables]
+    natural_fill = _natural_fill(study, natural)
+    progress.done()
+    hopeless = _hopeless(study, variables)
+    scenes = {natural.name: verify_scene(study, natural, progress, hopeless)}
+    for scene in filled:
+        if 100 * scene.fill <= natural_fill:
             scenes[scene.name] = _not_reached(scene, natural_fill)
-            progress.done(len(study.variants) + 1)
-            continue
-        pilots = {name: _pilot(study, name, scene, progress) for name in study.variants}
-        if scene.fill is None:
-            natural_fill = _natural_fill(study, scene)
-        verdicts = _gate(study, scene, pilots)
-        progress.done()
-        scenes[scene.name] = _scene_plan(study.profile, scene, pilots, verdicts)
-    _accuracy(study, variables, scenes, progress)
+            progress.done(len(study.at(scene)) + 1)
+        else:
+            scenes[scene.name] = verify_scene(study, scene, progress)
+    _accuracy(study, natural, scenes[natural.name], progress)
     write_json(study.layout.plan(variables), {
         "variables": variables, "natural_fill_percent": natural_fill, "seed": study.profile.seed,
         "scenes": scenes})
 
 
-def _pilot(study, implementation, scene, progress):
-    """{"step_us"} predicted, or {"status", "reason"} of the failure, perhaps "step_us_at_least"."""
-    raw = _run_pilot(study, implementation, scene)
+def verify_scene(study, scene, progress, hopeless=None):
+    """Plan of one scene: status and reason of each cell, and the stretch that is timed.
+    `hopeless`: {contender: reason} of those that are excluded without a pilot."""
+    hopeless = hopeless or {}
+    pilots = {one.name: _pilot(study, one, scene, progress) for one in study.at(scene)
+              if one.name not in hopeless}
+    progress.done(len(hopeless))
+    verdicts = _gate(study, scene, pilots)
+    progress.done()
+    plan = _scene_plan(study, scene, pilots, verdicts)
+    plan["cells"] |= {name: {"status": "excluded", "reason": reason, "pilot_step_us": None,
+                             "pilot_ratio": None, "checks": []}
+                      for name, reason in hopeless.items()}
+    return plan
+
+
+def _hopeless(study, variables):
+    """{contender: reason} of those that the next smaller column excluded already at natural fill:
+    there all of them fall behind further as the size grows."""
+    smaller = max((size for size in study.profile.columns if size < variables), default=None)
+    if smaller is None:
+        return {}
+    plan = read_json(study.layout.plan(smaller))
+    cells_there = plan["scenes"][study.profile.columns[smaller][0].name]["cells"]
+    natural, reasons = study.profile.columns[variables][0], {}
+    for one in study.at(natural):
+        cell = cells_there.get(one.name, {"status": ""})
+        if cell["status"] == "excluded":
+            text = cell["reason"].removeprefix("not tried: ")
+            where = "" if "at n = " in text else f"at n = {smaller} "
+            ratio = f"{cell['pilot_ratio']:.0f} times slower than the best of its scene" if (
+                cell["pilot_ratio"]) else text
+            reasons[one.name] = f"not tried: {where}{ratio}"
+    return reasons
+
+
+def _pilot(study, contender, scene, progress):
+    """{"step_us"} predicted, perhaps with a "note", or {"status", "reason"} of the failure."""
+    raw = _run_pilot(study, contender, scene)
     progress.done()
     failed = cells.failure(raw)
     if failed and failed[0] == "timeout":
-        return _single_step(study, implementation, scene)
+        return _single_step(study, contender, scene)
     if failed:
         return {"status": failed[0], "reason": f"pilot: {failed[1]}"}
     fastest = min(sample["real_time"] for sample in cells.samples(raw))
     return {"step_us": fastest / study.profile.pilot_steps}
 
 
-def _single_step(study, implementation, scene):
-    """After a pilot's timeout: a bound on the cost if one step ends at all, else the failure."""
-    raw = cells.bench(study.layout.cell("single", implementation, scene), implementation, scene,
-                      study.profile, study.context, steps=1, more=["--start", "0"])
+def _single_step(study, contender, scene):
+    """A pilot after a timeout."""
+    raw = cells.bench(study.layout.cell("single", contender, scene), contender, scene, study,
+                      more=["--steps", "1", "--start", "0"])
     limit = study.profile.limits["pilot_seconds"]
-    pilot = {"status": "timeout", "reason": f"pilot: did not end within {limit:g} s"}
+    note = f"its pilot did not end within {limit:g} s"
     failed = cells.failure(raw)
     if failed:
-        return {"status": failed[0], "reason": f"{pilot['reason']}; a single step: {failed[1]}"}
+        return {"status": failed[0], "reason": f"{note}; a single step: {failed[1]}"}
     # A warm-up and PILOT_RUNS stretches were not done within the limit.
     bound = 1e6 * limit / (study.profile.pilot_steps * (PILOT_RUNS + 1))
-    return pilot | {"step_us_at_least": max(bound, cells.samples(raw)[0]["real_time"])}
+    return {"step_us": max(bound, cells.samples(raw)[0]["real_time"]), "note": note}
 
 
-def _run_pilot(study, implementation, scene):
-    return cells.bench(study.layout.cell("pilot", implementation, scene), implementation, scene,
-                       study.profile, study.context, steps=study.profile.pilot_steps,
-                       repetitions=PILOT_RUNS, limit="pilot_seconds", more=["--start", "0"])
+def _run_pilot(study, contender, scene):
+    return cells.bench(study.layout.cell("pilot", contender, scene), contender, scene, study,
+                       more=["--steps", str(study.profile.pilot_steps), "--start", "0"],
+                       repetitions=PILOT_RUNS, limit="pilot_seconds")
 
 
 def _natural_fill(study, scene):
     """Percent, as the harness's null control reports it."""
-    raw = _run_pilot(study, NULL, scene)
+    raw = _run_pilot(study, study.control, scene)
     failed = cells.failure(raw)
     if failed:
         raise StudyError(f"{scene.name} cannot be set up: {failed[1]}")
@@ -79,48 +115,55 @@ def _natural_fill(study, scene):
 
 
 def _gate(study, scene, pilots):
-    """Verdict rows of all that are neither excluded nor dead, by implementation."""
+    """Verdict rows of all that are neither excluded nor dead, by contender."""
     verdicts, attempt = {}, 0
     while True:
-        best = best_cost(pilots, verdicts)
-        todo = [name for name, pilot in pilots.items() if name not in verdicts
-                and "step_us" in pilot
-                and pilot["step_us"] <= study.profile.exclusion_factor * best]
+        limit = study.profile.exclusion(scene) * best_cost(study, pilots, verdicts)
+        todo = [study.contenders[name] for name, pilot in pilots.items() if name not in verdicts
+                and "step_us" in pilot and pilot["step_us"] <= limit]
         if not todo:
             return verdicts
         attempt += 1
-        report = _check(study, scene, todo, attempt)
-        # Several at once saves time; if the check itself died, one by one loses only the culprit.
-        reports = [report] if report else [
-            _check(study, scene, [name], f"{attempt}-{name.replace('/', '.')}") for name in todo]
-        found = {row["implementation"]: row for report in reports for row in report["rows"]
-                 if row["scene"] == scene.name}
-        absent = {"verdict": "disagrees", "reason": "the check gave no verdict", "checks": []}
-        verdicts |= {name: found.get(name, absent) for name in todo}
+        todo.sort(key=lambda one: one.environment)  # stable: a process is one build on one pair
+        for environment, group in groupby(todo, lambda one: one.environment):
+            verdicts |= _check(study, scene, list(group), f"{attempt}-{_file_name(environment)}")
 
 
-def _check(study, scene, names, attempt):
-    path = study.layout.gate(scene, attempt)
-    return cells.check(path, names, scene, study.profile, study.context)
+def _check(study, scene, group, attempt):
+    """Verdict rows by contender. Several at once saves time; if the check itself died, one by one
+    loses only the culprit."""
+    report = cells.check(study.layout.gate(scene, attempt), group, scene, study)
+    if report is None:
+        return {name: row for one in group
+                for name, row in _check(study, scene, [one], f"{attempt}-{one.file_name}").items()}
+    found = {row["implementation"]: row for row in report["rows"] if row["scene"] == scene.name}
+    absent = {"verdict": "disagrees", "reason": "the check gave no verdict", "checks": []}
+    return {one.name: found.get(one.variant, absent) for one in group}
 
 
-def best_cost(pilots, verdicts):
-    """Least predicted time per step among those not rejected; infinite if nobody is left."""
+def _file_name(environment):
+    return environment.replace("|", "-")
+
+
+def best_cost(study, pilots, verdicts):
+    """Least predicted time per step of the ranked ones not rejected; infinite if nobody is left."""
     return min((pilot["step_us"] for name, pilot in pilots.items() if "step_us" in pilot
+                and study.contenders[name].ranked
                 and verdicts.get(name, {"verdict": "agrees"})["verdict"] == "agrees"),
                default=float("inf"))
 
 
-def _scene_plan(profile, scene, pilots, verdicts):
-    best, plan, factor = best_cost(pilots, verdicts), {}, profile.exclusion_factor
+def _scene_plan(study, scene, pilots, verdicts):
+    best, plan, factor = best_cost(study, pilots, verdicts), {}, study.profile.exclusion(scene)
     for name, pilot in pilots.items():
         verdict = verdicts.get(name)
         cell = {"pilot_step_us": pilot.get("step_us"), "pilot_ratio": None, "checks": []}
         if "step_us" not in pilot:
-            cell |= without_pilot(profile, pilot, best)
+            cell |= pilot
         elif verdict is None:
+            note = f" ({pilot['note']})" if "note" in pilot else ""
             cell |= {"status": "excluded", "pilot_ratio": pilot["step_us"] / best,
-                     "reason": f"at least {factor:g} times slower than the best of its scene"}
+                     "reason": f"at least {factor:g} times slower than the best of its scene{note}"}
         elif verdict["verdict"] == "agrees":
             cell |= {"status": "measure", "reason": "", "pilot_ratio": pilot["step_us"] / best}
         else:
@@ -130,21 +173,7 @@ def _scene_plan(profile, scene, pilots, verdicts):
     slowest = max((cell["pilot_step_us"] for cell in plan.values() if cell["status"] == "measure"),
                   default=0.0)
     return {"fill_asked": scene.fill, "reached": True, "cells": plan,
-            "stretch_steps": stretch_steps(profile, scene, slowest)}
-
-
-def without_pilot(profile, pilot, best):
-    """A cell whose pilot gave no cost: excluded if its least cost is beyond the factor."""
-    if "step_us_at_least" not in pilot or best == float("inf"):
-        return {"status": pilot["status"], "reason": pilot["reason"]}
-    ratio = pilot["step_us_at_least"] / best
-    if ratio <= profile.exclusion_factor:
-        text = f"{pilot['reason']}; at least {ratio:.1f} times slower than the best of its scene"
-        return {"status": pilot["status"], "reason": text, "pilot_ratio": ratio}
-    limit = profile.limits["pilot_seconds"]
-    return {"status": "excluded", "pilot_ratio": ratio,
-            "reason": f"at least {ratio:.0f} times slower than the best of its scene "
-                      f"(its pilot did not end within {limit:g} s)"}
+            "stretch_steps": stretch_steps(study.profile, scene, slowest)}
 
 
 def stretch_steps(profile, scene, slowest_us):
@@ -161,15 +190,26 @@ def _not_reached(scene, natural_fill):
             "stretch_steps": None}
 
 
-def _accuracy(study, variables, scenes, progress):
-    """Whole simulations of the natural scene by everything that the pilots did not exclude."""
-    scene = study.profile.columns[variables][0]
-    for name, cell in scenes[scene.name]["cells"].items():
-        for penalty in study.profile.accuracy["penalties"]:
-            if cell["status"] in ("measure", "disagrees"):
-                path = study.layout.accuracy(variables, name, penalty)
-                cells.simulate(path, name, scene, str(penalty), study.profile, study.context)
-            progress.done()
+def _accuracy(study, scene, plan, progress):
+    """Whole simulations of the natural scene by the ranked ones that the pilots did not exclude."""
+    for name, penalty in accuracy_runs(study, scene):
+        if plan["cells"][name]["status"] in ("measure", "disagrees"):
+            contender = study.contenders[name]
+            path = study.layout.accuracy(scene.variables, contender, penalty)
+            cells.simulate(path, contender, scene, str(penalty), study)
+        progress.done()
+
+
+def accuracy_runs(study, scene):
+    """[(name, penalty)] of the whole simulations that the profile asks for at this size."""
+    return accuracy_runs_of(study.profile, scene, study.contenders.values())
+
+
+def accuracy_runs_of(profile, scene, contenders):
+    if scene.variables not in profile.accuracy["columns"]:
+        return []
+    return [(one.name, penalty) for one in contenders if one.at(scene) and one.ranked
+            for penalty in profile.accuracy["penalties"]]
 
 
 if __name__ == "__main__":

@@ -20,9 +20,17 @@ def test_smoke_on_the_real_program(tmp_path):
     assert first.returncode == 0, first.stderr
     tidy = pandas.read_csv(results / "tidy.csv")
     assert set(tidy.status) <= {"ok", "not-reached", "unavailable"}, tidy[tidy.status != "ok"]
-    samples = tidy[(tidy.status == "ok") & (tidy.implementation != "null/null")]
+    operations = tidy[tidy.kind == "operations"]
+    assert set(operations.status) == {"ok"} and (operations.operation_us > 0).all()
+    assert {"csc_klu/refactor", "ublas_sparse/plain"} <= set(operations.implementation)
+    samples = tidy[(tidy.status == "ok") & tidy.kind.isin(["timing", "phases"])
+                   & (tidy.implementation != "null/null")]
     assert (samples.groupby("scene").passes.nunique() == 1).all()
     assert (samples.position_error < 1e-3).all()
+    pairs = samples[samples.folder == "armadillo_dense"].groupby("implementation").blas.unique()
+    assert pairs["armadillo_dense/potrf"] == ["openblas"]
+    assert pairs["armadillo_dense/potrf+reference"] == ["reference"]
+    assert "refined" in set(samples.stage)
     assert pandas.read_csv(results / "verification.csv").verdict.isin(["agrees"]).all()
     stored = (results / "tidy.csv").read_bytes()
     assert run("figures", results).returncode == 0

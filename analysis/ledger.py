@@ -1,0 +1,58 @@
+# A row of the claims ledger: the paper's figure, ours with its interval, and the verdict by a rule.
+import math
+
+from analysis.text import number
+
+CONFIRMED, REFUTED, UNTESTED = "confirmed", "refuted", "cannot be tested here"
+COLUMNS = ("id", "claim", "paper", "ours", "low", "high", "where", "machine", "verdict", "rule",
+           "why")
+
+
+def at_least(bound):
+    return bound, math.inf
+
+
+def at_most(bound):
+    return -math.inf, bound
+
+
+def verdict(low, high, rule):
+    """Confirmed if the whole interval obeys the rule, refuted if none of it does; an interval
+    that includes a bound of the rule decides nothing."""
+    lowest, highest = rule
+    if lowest <= low and high <= highest:
+        return CONFIRMED
+    return REFUTED if high < lowest or low > highest else UNTESTED
+
+
+def tested(identity, claim, paper, measured, rule, where, why, unit="×"):
+    """A row from what was measured. `measured`: (value, low, high) in `unit`; `rule`: (lowest,
+    highest) in the same unit; `why`: a sentence from this run's numbers."""
+    value, low, high = measured
+    found = verdict(low, high, rule)
+    if found == UNTESTED:
+        why = f"Undecided: the interval includes a bound of the rule. {why}"
+    return {"id": identity, "claim": claim, "paper": paper, "ours": number(value) + unit,
+            "low": number(low), "high": number(high), "where": where, "verdict": found,
+            "rule": rule_text(rule, unit), "why": why}
+
+
+def untested(identity, claim, paper, why, rule=None, unit="×"):
+    """A row for what this run cannot tell, with the reason."""
+    return {"id": identity, "claim": claim, "paper": paper, "ours": "", "low": "", "high": "",
+            "where": "", "verdict": UNTESTED, "rule": rule_text(rule, unit) if rule else "",
+            "why": why}
+
+
+def rule_text(rule, unit):
+    lowest, highest = rule
+    if math.isinf(highest):
+        return f"at least {number(lowest)}{unit}"
+    if math.isinf(lowest):
+        return f"at most {number(highest)}{unit}"
+    return f"{number(lowest)} to {number(highest)}{unit}"
+
+
+def of(ratio):
+    """(value, low, high) of a compare.Ratio."""
+    return ratio.value, ratio.low, ratio.high
