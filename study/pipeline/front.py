@@ -41,7 +41,7 @@ class Display:
 
 def snakemake_command(layout, columns, stored):
     return ["/usr/bin/python3", "-m", "snakemake", "--snakefile", str(ROOT / "study" / "Snakefile"),
-            "--directory", str(layout.results), "--cores", "1", "--scheduler", "greedy",
+            "--directory", str(layout.results), "--cores", "2", "--scheduler", "greedy",
             "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor",
             *(["--forceall"] if stored else []),
             "--config", f"root={ROOT}", f"stored={int(stored)}",
