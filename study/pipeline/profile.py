@@ -41,7 +41,7 @@ class Profile:
     name: str
     settings: dict
     columns: dict = field(default_factory=dict)     # variables -> [Scene], natural first
-    exclusions: dict = field(default_factory=dict)  # variables -> factor, where a column has its own
+    exclusions: dict = field(default_factory=dict)  # variables -> its own factor at natural fill
 
     def __getattr__(self, key):
         try:
@@ -51,8 +51,9 @@ class Profile:
 
     def exclusion(self, scene):
         """A cell predicted slower than this times the best of its scene is not timed."""
-        usual = self.exclusion_factor["natural" if scene.fill is None else "filled"]
-        return self.exclusions.get(scene.variables, usual)
+        if scene.fill is not None:
+            return self.exclusion_factor["filled"]
+        return self.exclusions.get(scene.variables, self.exclusion_factor["natural"])
 
 
 def names():

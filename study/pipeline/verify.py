@@ -170,8 +170,8 @@ def _scene_plan(study, scene, pilots, verdicts):
             cell |= {"status": verdict["verdict"], "reason": verdict["reason"]}
         cell["checks"] = verdict["checks"] if verdict else []
         plan[name] = cell
-    slowest = max((cell["pilot_step_us"] for cell in plan.values() if cell["status"] == "measure"),
-                  default=0.0)
+    slowest = max((cell["pilot_step_us"] for name, cell in plan.items()
+                   if cell["status"] == "measure" and study.contenders[name].ranked), default=0.0)
     return {"fill_asked": scene.fill, "reached": True, "cells": plan,
             "stretch_steps": stretch_steps(study.profile, scene, slowest)}
 

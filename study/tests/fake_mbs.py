@@ -24,7 +24,8 @@ def context():
             "commit": os.environ.get("FAKE_COMMIT", "abc1234"), "dirty": "false",
             "compiler": "fake 1.0", "flags": "-O3", "build_type": "Release",
             "blas": option("--blas", "system"),
-            "blas_loaded": f"/usr/lib/lib{option('--blas', 'fake')}.so", "libraries": "Fake 1.0", "cpu_model": "Fake CPU",
+            "blas_loaded": f"/usr/lib/lib{option('--blas', 'fake')}.so", "libraries": "Fake 1.0",
+            "cpu_model": "Fake CPU",
             "machine": os.environ.get("FAKE_MACHINE", "m1"), "kernel": "Linux", "command": "mbs"}
 
 

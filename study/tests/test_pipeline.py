@@ -37,8 +37,8 @@ def test_a_run_leaves_everything(pristine):
     assert len(samples) == (3 + 1 + 2 * 3 + 1) * 2 * 2
     assert set(table.status) == {"ok", "not-reached", "unavailable"}
     assert all((pristine / name).exists() for name in
-               ("report.html", "figures/f7_map.svg", "figures/f4_sparse_solvers.png", "accuracy.csv",
-                "claims.csv"))
+               ("report.html", "figures/f7_map.svg", "figures/f4_sparse_solvers.png",
+                "accuracy.csv", "claims.csv"))
     assert not list(pristine.rglob("*.partial"))
 
 
