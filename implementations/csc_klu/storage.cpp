@@ -9,8 +9,7 @@ namespace mbs::csc_klu {
 
 Pattern::Pattern(int columns, std::vector<Position> positions) : column_begin(columns + 1, 0) {
   std::ranges::sort(positions, {}, [](const Position& p) { return std::tuple(p.col, p.row); });
-  const auto repeated = std::ranges::unique(positions);
-  positions.erase(repeated.begin(), repeated.end());
+  positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
   row.reserve(positions.size());
   for (const Position& position : positions) {
     row.push_back(position.row);

@@ -44,8 +44,9 @@ void count_figures(const CellFigures& figures, benchmark::UserCounters& counters
 void BenchRows::add(const std::vector<PlannedCell>& cells, bool phases) {
   for (const PlannedCell& cell : cells) {
     const PlannedScene& planned = *cell.scene;
-    Row& row = rows_.emplace_back(cell, Measurement({planned.scene, *cell.variant, planned.stretch,
-                                                     planned.settings, cell.control, phases}));
+    rows_.push_back({cell, Measurement({planned.scene, *cell.variant, planned.stretch,
+                                        planned.settings, cell.control, phases})});
+    Row& row = rows_.back();
     benchmark::RegisterBenchmark(cell.name.c_str(),
                                  [this, &row](benchmark::State& state) { run(row, state); })
         ->UseManualTime()

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <ranges>
 
 #include "environment/build_info.hpp"
 #include "usage_error.hpp"
@@ -79,8 +78,9 @@ const BlasPair& available_pair(const std::string& name) {
   const auto& pairs = blas_pairs();
   const auto found = std::ranges::find(pairs, name, &BlasPair::name);
   if (found == pairs.end()) {
-    throw UsageError(fmt::format("--blas is '{}': there are {}", name,
-                                 fmt::join(pairs | std::views::transform(&BlasPair::name), ", ")));
+    std::vector<std::string> known;
+    for (const BlasPair& pair : pairs) known.push_back(pair.name);
+    throw UsageError(fmt::format("--blas is '{}': there are {}", name, fmt::join(known, ", ")));
   }
   const std::string reason = why_unavailable(*found);
   if (!reason.empty()) {
