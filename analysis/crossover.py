@@ -54,7 +54,8 @@ def comparison(cell, dense, seed=0, replicates=statistics.REPLICATES):
     top, bottom = ([times[r] for r in rounds] for times in (top, bottom))
     random = numpy.random.default_rng([statistics.SEED, seed])
     drawn = random.integers(len(rounds), size=(replicates, len(rounds)))
-    ratios = (statistics.resampled_medians(random, top, drawn) / statistics.resampled_medians(random, bottom, drawn))
+    ratios = (statistics.resampled_medians(random, top, drawn)
+              / statistics.resampled_medians(random, bottom, drawn))
     value = median(numpy.concatenate(top)) / median(numpy.concatenate(bottom))
     return Comparison(cell.fill_percent, float(numpy.log(value)), numpy.log(ratios))
 

@@ -3,7 +3,7 @@ system_python() {
   local here="$1"
   shift
   if [[ ! -x /usr/bin/python3 ]]; then
-    if [[ "$1" == figures || " $* " == *" --dry-run "* || " $* " == *" --list "* ]]; then
+    if [[ "$1" != run || " $* " == *" --dry-run "* || " $* " == *" --list "* ]]; then
       echo "study/$1: Debian's /usr/bin/python3 is missing: run study/setup" >&2
       exit 1
     fi

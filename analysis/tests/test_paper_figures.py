@@ -186,7 +186,7 @@ def test_fills_at_which_dense_overtakes(tmp_path):
     assert "fastest dense:\n   d/x\n   d/y" in said
     assert "70.0 % (95 %: 70.0 to 70.0)" in said
     assert "faster than dense at every fill timed, to 90 %" in said
-    assert hollow(drawn.axes[0]) == [(90, 500)]
+    assert hollow(drawn.axes[0]) == [(90, 250)]  # a pilot takes two passes a step
     assert "s/c (90 %)" in said
 
 

@@ -1,4 +1,4 @@
-# The command lines of study/run and study/figures.
+# The command lines of study/run, study/figures and study/compare.
 import argparse
 import os
 import re
@@ -23,7 +23,7 @@ class Parser(argparse.ArgumentParser):
 def main(arguments):
     command, *rest = arguments
     try:
-        return {"run": run, "figures": figures}[command](rest)
+        return {"run": run, "figures": figures, "compare": compare}[command](rest)
     except StudyError as error:
         print(f"study/{command}: {error}", file=sys.stderr)
         return 2
@@ -81,6 +81,21 @@ def figures(arguments):
     with only_one(layout):
         run_workflow(layout, profile.columns, {}, stored=True)
     print(f"report: {layout.results / 'report.html'}")
+    return 0
+
+
+def compare(arguments):
+    parser = Parser(prog="study/compare", description="Do two runs give the same map? Says in how "
+                    "many cells that both decided the winner is the same, and draws both.")
+    parser.add_argument("first", help="results directory")
+    parser.add_argument("second", help="another one, of the same profile")
+    parser.add_argument("--output", nargs="+", default=["comparison.png"], metavar="FILE",
+                        help=".png or .svg (comparison.png)")
+    options = parser.parse_args(arguments)
+    need_modules()
+    from analysis.repeat import main as repeat  # it needs the modules
+    repeat([options.first, options.second, *options.output])
+    print(f"figure: {', '.join(options.output)}")
     return 0
 
 

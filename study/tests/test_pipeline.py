@@ -9,7 +9,7 @@ import time
 import pandas
 import pytest
 
-from study.pipeline import child, prepare, profile as profiles
+from study.pipeline import builds, child, prepare, profile as profiles
 from study.pipeline.job import open_study
 from study.pipeline.layout import Layout
 from study.pipeline.marks import mark_differing_passes
@@ -229,3 +229,63 @@ def test_a_run_record_that_lacks_something_is_one_clear_line(tmp_path, text):
     result = study("figures", tmp_path)
     assert result.returncode != 0
     assert result.stderr.count("\n") == 1 and "is no record of a run" in result.stderr
+
+
+def test_refinement_adds_within_its_budget_and_is_not_repeated(results):
+    record = json.loads((results / "plans" / "refined.json").read_text())
+    table = tidy(results)
+    assert record["added"] and record["seconds"] >= 1  # smoke's budget; the last one is finished
+    cells = [entry for entry in record["added"] if entry["kind"] == "cell"]
+    assert cells and all(entry["why"] for entry in record["added"])
+    refined = table[table.stage == "refined"]
+    assert {round(100 * entry["fill"]) for entry in cells} == {
+        round(100 * fill) for fill in refined[refined["round"] <= 2].fill_asked.dropna()}
+    assert (refined[refined["round"] > 2].scene.nunique() > 0) == (len(cells) < len(record["added"]))
+    before = times(results)
+    (results / "plans" / "refined.measured").unlink()
+    assert run_smoke(results).returncode == 0
+    assert times(results) == before
+    assert json.loads((results / "plans" / "refined.json").read_text()) == record
+
+
+def test_missing_pairs_are_rows_with_their_reason(tmp_path, monkeypatch):
+    text = (profiles.FOLDER / "smoke.yaml").read_text()
+    text = text.replace("[armadillo_dense]", "[good_sparse]").replace(
+        "blas: [reference, openblas-reference]", "blas: [reference, atlas]")
+    (tmp_path / "smoke.yaml").write_text(text)
+    monkeypatch.setattr(profiles, "FOLDER", tmp_path)
+    monkeypatch.setenv("MBS_PROGRAM", str(FAKE))
+    results = tmp_path / "results"
+    prepare.start(Layout(results), profiles.load("smoke"), [])
+    opened = open_study(results)
+    for variables in opened.profile.columns:
+        verify(opened, variables)
+        measure(opened, variables)
+    assert study("figures", results).returncode == 0
+    table = tidy(results)
+    pair = table[table.implementation == "good_sparse/only+reference"]
+    assert set(pair.blas) == {"reference"} and set(pair.variables) == {10}
+    assert pair.fill_asked.isna().all() and set(pair.status) == {"ok"}
+    missing = table[table.implementation == "good_sparse/only+atlas"]
+    assert list(missing.status) == ["unavailable"]
+    assert list(missing.reason) == ["libatlas3-base is not installed"]
+    operations = table[table.kind == "operations"]
+    assert set(operations.implementation) == {"good_sparse/only"}
+    assert (operations.operation_us > 0).all() and operations.step_us.isna().all()
+
+
+def test_a_build_that_fails_says_why(monkeypatch, tmp_path):
+    monkeypatch.setattr(builds, "BUILDS", {"bad": ("no-such-compiler", "gcc", "-O1")})
+    monkeypatch.setattr(builds, "program", lambda name: str(tmp_path / name / "mbs"))
+    with open(tmp_path / "log", "w") as log:
+        reason = builds.build("bad", log, lambda line: None)
+    assert reason.startswith("the build with no-such-compiler -O1 failed: ")
+
+
+def test_two_runs_are_compared(results, tmp_path):
+    figure = tmp_path / "comparison.png"
+    done = study("compare", results, results, "--output", figure)
+    assert done.returncode == 0 and "of them with the same winner" in done.stdout
+    assert figure.stat().st_size > 1000
+    done = study("compare", results, tmp_path / "none")
+    assert done.returncode == 1 and done.stderr.count("\n") == 1 and "none" in done.stderr
