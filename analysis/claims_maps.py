@@ -8,7 +8,7 @@ from analysis.text import number
 
 F5_SIZE = 100
 FILLS_NEEDED = 3     # filled scenes that a size needs for Figure 5
-LOW_FILL = 30        # %, "low fill" ends; natural fill always counts as low
+LOW_FILL = 30        # %, "low fill" ends
 HIGH_FILL = 50       # %, "high fill" begins
 FULL_FILL = 90       # %, LAPACK's region of Figure 7
 FIGURE6 = 100        # variables
@@ -60,7 +60,7 @@ def _over_fill(results, head, system, size):
     across = ", ".join(f"{number(ratio.value)}× at {fill:.0f} %" for fill, ratio in found)
     why = (f"Dense ÷ {system}'s stand-in over fill: {across}. "
            + (f"Dense is faster at {', '.join(slower)} %." if slower else
-              "Dense is faster nowhere."))
+              "Dense is faster nowhere.") + _shared(names))
     return tested(*head, of(worst), at_least(1),
                   f"n = {size:g}, {fill:.0f} % fill, {worst.slow} ÷ {worst.fast}", why)
 
@@ -89,11 +89,9 @@ def regions(results):
 
 def _region(results, figure, claim, names, sizes, fills, rule=at_least(HALF), quoted="region"):
     samples = results.samples()
+    samples = samples[samples.stage != "refined"]  # refined cells crowd where winners change
     standing = {name for system in paper.SYSTEMS for name in paper.members(results, system)}
-    filled = samples.fill_percent.between(*fills)
-    natural = samples.fill_asked.isna()  # counts as low fill, whatever it is
-    filled = filled | natural if fills[0] == 0 else filled & ~natural
-    inside = samples[samples.variables.between(*sizes) & filled
+    inside = samples[samples.variables.between(*sizes) & samples.fill_percent.between(*fills)
                      & samples.implementation.isin(standing)]
     names = [name for name in names if name in standing]
     head = figure, claim, quoted
@@ -117,8 +115,14 @@ def _region(results, figure, claim, names, sizes, fills, rule=at_least(HALF), qu
                        sorted(winners.items(), key=lambda entry: -len(entry[1])))
     share = f"{', '.join(names)}: {len(won)} of {count} cells"
     return tested(*head, measured, rule, f"{_extent(inside)}, {share}",
-                  f"Cells by winner among the paper's systems: {listed}. Bounds: undecided "
-                  "cells counted against and for it.", " %")
+                  f"Cells of the grid by winner among the paper's systems: {listed}. Bounds: "
+                  f"undecided cells counted against and for it.{_shared(names)}", " %")
+
+
+def _shared(names):
+    """A warning where one implementation stands for more than one of the paper's systems."""
+    both = [name for name in names if "csc_cholmod/supernodal" == name]
+    return f" {both[0]} stands for CHOLMOD and for WSMP." if both else ""
 
 
 def _extent(inside):

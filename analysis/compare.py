@@ -50,14 +50,6 @@ def best_ratio(samples, slow, fast):
     return None if None in pair else ratio(samples, *pair)
 
 
-def over_sizes(samples, slow, fast, sizes=(0, numpy.inf)):
-    """[Ratio] of the fastest of `slow` to the fastest of `fast`, one a scene within `sizes`."""
-    within = samples[samples.variables.between(*sizes)]
-    found = [best_ratio(rows, slow, fast)
-             for _, rows in within.groupby(["variables", "fill_percent", "scene"])]
-    return [ratio for ratio in found if ratio is not None]
-
-
 def operations(results, operation):
     """Samples of one operation of Table 2; `step_us` is the time of one call here."""
     tidy = results.tidy

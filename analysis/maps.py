@@ -6,7 +6,7 @@ from math import ceil, log
 import pandas
 
 from analysis.loader import FAILURES
-from analysis.statistics import Ranking, by_round, rank, ratio_interval
+from analysis.statistics import CONFIDENCE, Ranking, by_round, rank, ratio_interval
 
 BAND = 5.0             # height of a column's cell that is the only one, %
 CLOSEST = 0.04         # fills nearer than this have no cell put between them, share
@@ -94,13 +94,16 @@ def paired_times(samples):
 
 def paired_rank(samples, rivals_failed=False):
     """As statistics.rank, which it is where all were measured in the same rounds; else the fastest
-    two of `paired_times`, compared over the rounds that they have in common."""
+    two of `paired_times`, compared over the rounds that they have in common. A cell that was sampled
+    again because it was undecided has to be surer: looking again and again would decide by chance."""
     leaders = list(paired_times(samples))[:2]
     if samples.groupby("implementation")["round"].agg(frozenset).nunique() > 1:
         mine = samples[samples.implementation.isin(leaders)]
         shared = mine.groupby("round").implementation.nunique() == len(leaders)
         samples = mine[mine["round"].isin(shared.index[shared])]
-    return rank(samples, rivals_failed)
+    again = set(samples.get("stage", ())) == {"grid", "refined"}
+    confidence = 1 - (1 - CONFIDENCE) / (1 + MOST_ADDITIONS) if again else CONFIDENCE
+    return rank(samples, rivals_failed, confidence)
 
 
 def scene_fills(rows):
@@ -136,8 +139,6 @@ def refinement_candidates(results, rounds_added=None):
     many as the grid has, if None); after MOST_ADDITIONS of them a cell is left undecided.
     """
     cells = map_cells(results)
-    filled = {cell.variables for cell in cells if cell.fill_asked is not None}
-    cells = [cell for cell in cells if cell.variables in filled]
     pairs = zip_longest(_new_cells(cells), _more_samples(results, cells, rounds_added))
     return [candidate for candidate in chain.from_iterable(pairs) if candidate]
 

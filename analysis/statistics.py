@@ -74,7 +74,7 @@ class Ranking:
         return not self.rivals_failed if self.second is None else self.low > 1.0
 
 
-def rank(samples, rivals_failed=False):
+def rank(samples, rivals_failed=False, confidence=CONFIDENCE):
     """Ranking of one scene's ok samples; None if there are none. Only medians order the cells; a
     winner is declared only if the interval of its ratio to the second excludes 1. `rivals_failed`
     says whether another implementation of the scene failed or disagrees."""
@@ -85,7 +85,8 @@ def rank(samples, rivals_failed=False):
         return Ranking(medians.index[0], None, numpy.nan, numpy.nan, numpy.nan, rivals_failed)
     winner, second = medians.index[:2]
     cells = {name: by_round(samples[samples.implementation == name]) for name in (winner, second)}
-    return Ranking(winner, second, *ratio_interval(cells[second], cells[winner]), rivals_failed)
+    ratio = ratio_interval(cells[second], cells[winner], confidence=confidence)
+    return Ranking(winner, second, *ratio, rivals_failed)
 
 
 def power_law_exponent(sizes, times):

@@ -1,10 +1,8 @@
 # What a reader should choose: the winner by size, dense or sparse by fill, the price of one choice.
-import numpy
-
 from analysis import paper
 from analysis.compare import best_ratio, natural
-from analysis.loader import FAILURES
-from analysis.maps import paired_rank
+from analysis.maps import map_cells, paired_rank
+from analysis.regret import regrets
 
 
 def by_size(results):
@@ -49,29 +47,13 @@ def dense_from(results):
 
 
 def prices(results):
-    """The price of always using one implementation: [{"implementation", "mean", "worst", "where",
-    "cells", "rough", "failed"}], best mean first: geometric mean and largest of time ÷ best
-    time over all cells; excluded cells count with their pilot's rough ratio, failed and missing
-    ones do not count but are told."""
-    samples, tidy = results.samples(), results.tidy
-    medians = samples.groupby(["scene", "implementation"]).step_us.median().unstack()
-    if medians.empty:
-        return []
-    losses = medians.div(medians.min(axis=1), axis=0)
-    timing = tidy[(tidy.kind == "timing") & tidy.implementation.isin(list(results.variants))]
-    rough = timing[(timing.status == "excluded") & timing.pilot_ratio.notna()].drop_duplicates(
-        ["scene", "implementation"]).set_index(["scene", "implementation"]).pilot_ratio
-    failed = timing[timing.status.isin(FAILURES)].groupby("implementation").scene.nunique()
-    rows = []
-    for name in results.implementations:
-        mine = losses[name].dropna().to_dict() if name in losses else {}
-        guessed = {scene: ratio for (scene, other), ratio in rough.items()
-                   if other == name and scene in losses.index and scene not in mine}
-        every = mine | guessed
-        if every:
-            worst = max(every, key=every.get)
-            rows.append({"implementation": name, "worst": every[worst], "where": worst,
-                         "mean": float(numpy.exp(numpy.mean(numpy.log(list(every.values()))))),
-                         "cells": len(every), "rough": len(guessed),
-                         "failed": int(failed.get(name, 0)), "of": len(losses)})
-    return sorted(rows, key=lambda row: row["mean"])
+    """The price of always using one implementation, as the regret map orders and draws it:
+    [{"implementation", "mean", "worst", "where", "cells", "of", "rough", "failed", "unknown"}];
+    excluded cells count with their pilot's rough ratio; cells that failed or that were not even
+    tried do not count but are told."""
+    cells = map_cells(results)
+    return [{"implementation": regret.name, "mean": regret.mean, "worst": regret.worst,
+             "where": regret.where, "cells": len(regret.ratios) - regret.unknown,
+             "rough": len(regret.rough) - regret.unknown, "failed": len(regret.failed),
+             "unknown": regret.unknown, "of": len(cells)}
+            for regret in regrets(results, cells) if len(regret.ratios) > regret.unknown]

@@ -27,13 +27,6 @@ def step_times(results):
     return rows
 
 
-def winners(results):
-    """Natural fill: the fastest of each size, its margin over the second and the interval."""
-    samples = results.samples(natural_only=True)
-    return [{"variables": size, "ranking": paired_rank(of_size, results.natural_failures(size))}
-            for size, of_size in samples.groupby("variables")]
-
-
 def overhead(results):
     """Largest median of the null control, µs a step; NaN if it was not measured."""
     tidy = results.tidy

@@ -2,13 +2,13 @@
 import matplotlib.pyplot as plt
 from matplotlib.patches import Patch
 
+from analysis import paper
 from analysis.maps import map_cells
 from analysis.maps_drawing import (DECIDED, KEY, crossing_handle, draw_crossings, draw_winners,
                                    region_handles)
 from analysis.style import Look, figure_main, missing
 
-BASELINES = ("starting_", "ublas_")  # folders that stand for the paper's unoptimised versions
-MANY = 10                            # columns from which the panels stand below one another
+MANY = 10  # columns from which the panels stand below one another
 
 
 def families(results):
@@ -27,7 +27,8 @@ def families(results):
 
 def _from_library(variant):
     library = (variant.get("library") or "none").lower()
-    return library != "none" and not variant["folder"].startswith(BASELINES)
+    baseline = paper.starting(variant["folder"]) or variant["folder"] == paper.NOT_OPTIMISED
+    return library != "none" and not baseline
 
 
 def draw(results):

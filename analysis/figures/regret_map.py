@@ -1,6 +1,4 @@
-# The price of a simple choice: how much is lost everywhere by always using one implementation.
-from dataclasses import dataclass
-
+# The price of a simple choice, drawn: one panel an implementation.
 import matplotlib.pyplot as plt
 import numpy
 from matplotlib.cm import ScalarMappable
@@ -9,6 +7,7 @@ from matplotlib.patches import Rectangle
 
 from analysis.maps import map_cells
 from analysis.maps_drawing import columns, draw_grid
+from analysis.regret import regrets
 from analysis.style import GREY, Look, figure_main, missing
 
 WORST = 50.0       # ratio at which the colours end
@@ -16,48 +15,6 @@ COLOURS = plt.get_cmap("Purples")
 DARK = 10.0        # ratio from which numbers are white
 ROUGH = "#E69F00"  # frame of a pilot's ratio
 NARROW = 10        # columns from which two panels stand beside one another, not three
-
-
-@dataclass(frozen=True)
-class Regret:
-    """Time of one implementation over the best of each cell."""
-    name: str
-    ratios: dict       # {scene: ratio}; NaN: excluded without a pilot's ratio
-    rough: frozenset   # scenes whose ratio is a pilot's, or its least value
-    failed: frozenset  # scenes
-
-    @property
-    def mean(self):
-        """Geometric mean over the cells that have a ratio; infinite if there is none."""
-        known = [ratio for ratio in self.ratios.values() if numpy.isfinite(ratio)]
-        return float(numpy.exp(numpy.mean(numpy.log(known)))) if known else numpy.inf
-
-    @property
-    def worst(self):
-        known = [ratio for ratio in self.ratios.values() if numpy.isfinite(ratio)]
-        return max(known, default=numpy.inf)
-
-
-def regrets(results, cells):
-    """One Regret an implementation: the lowest geometric mean first, those that fail in some cell
-    after all others, as nobody can always use them."""
-    found = [_regret(name, cells) for name in results.implementations]
-    return sorted(found, key=lambda regret: (bool(regret.failed), regret.mean))
-
-
-def _regret(name, cells):
-    ratios, rough, failed = {}, set(), set()
-    for cell in cells:
-        times = cell.times
-        if name in cell.failed:
-            failed.add(cell.scene)
-        elif name in times:
-            ratios[cell.scene] = times[name] / min(times.values())
-        elif name in cell.excluded:
-            pilots = cell.rows[cell.rows.implementation == name].pilot_ratio
-            ratios[cell.scene] = float(pilots.max())
-            rough.add(cell.scene)
-    return Regret(name, ratios, frozenset(rough), frozenset(failed))
 
 
 def draw(results):
@@ -142,8 +99,8 @@ def _key(figure, panels, norm):
     bar.minorticks_off()
     bar.set_label("time / best time of the cell;  framed ~ : excluded as too slow (▲), roughly, "
                   "by its pilot run;  hatched ✕ : failed or disagrees;  – : not measured\n"
-                  "mean: geometric, over all cells with a number; in this order, those that fail "
-                  "somewhere last", fontsize=8, color=GREY)
+                  "mean: geometric, over all cells with a number; last in order: those that "
+                  "fail somewhere, or are too slow to be tried", fontsize=8, color=GREY)
 
 
 if __name__ == "__main__":

@@ -117,9 +117,10 @@ def test_an_undecided_cell_asks_for_samples_of_its_leaders(tables):
     assert sorted(third[0]["implementations"]) == ["a/x", "b/y", "c/z"]
 
 
-def test_decided_natural_only_and_lonely_cells_ask_for_nothing(tables):
+def test_decided_and_lonely_cells_ask_for_nothing(tables):
     assert refinement_candidates(loaded(tables, cell(0.6, {"a/x": 1.0, "b/y": 1.5}))) == []
-    assert refinement_candidates(loaded(tables, cell(None, UNDECIDED))) == []
+    natural, = refinement_candidates(loaded(tables, cell(None, UNDECIDED)))
+    assert (natural["kind"], natural["fill"]) == ("samples", None)
     assert refinement_candidates(loaded(tables, cell(0.6, {"a/x": 1.0, "b/y": "crashed"}))) == []
     natural = refinement_candidates(loaded(tables, cell(None, UNDECIDED) + cell(
         0.6, {"a/x": 1.5, "b/y": 1.0})))

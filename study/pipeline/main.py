@@ -64,7 +64,11 @@ def run(arguments):
         start(layout, profile, options.only)
         reopen_incomplete(layout, profile)
         taking_part = from_json(read_run(layout)["contenders"]).values()
-        run_workflow(layout, profile.columns, estimate.work(profile, taking_part))
+        plan = estimate.work(profile, taking_part)
+        seconds = sum(work.left() for work in plan.values())
+        print(f"{len(taking_part)} contenders; a whole run of profile {profile.name} takes about "
+              f"{estimate.duration(seconds)}")
+        run_workflow(layout, profile.columns, plan)
     print(f"report: {layout.results / 'report.html'}")
     return 0
 

@@ -18,8 +18,8 @@ def mark_lost_cells(rows):
 
 
 def mark_differing_passes(rows):
-    """Pass totals of a scene's stretch must be equal: the most common one stands, every other cell
-    is marked. Without a most common one (a tie) the whole scene is: nobody can be trusted."""
+    """Pass totals of a scene's stretch must be equal: the most common one among ranked ones (others
+    are copies of one code) stands, every other cell is marked. Without a most common one (a tie) the whole scene is: nobody can be trusted."""
     timed = [row for row in rows if row["status"] == "ok" and row["implementation"] != NULL
              and row["kind"] != "operations"]
     for scene in {row["scene"] for row in timed}:
@@ -27,7 +27,8 @@ def mark_differing_passes(rows):
         passes = {}  # implementation -> set of totals over its samples
         for row in mine:
             passes.setdefault(row["implementation"], set()).add(row["passes"])
-        votes = Counter(min(values) for values in passes.values() if len(values) == 1)
+        votes = Counter(min(values) for name, values in passes.items()
+                        if len(values) == 1 and "+" not in name)
         ranked = votes.most_common(2)
         tie = not ranked or (len(ranked) > 1 and ranked[0][1] == ranked[1][1])
         accepted = math.nan if tie else ranked[0][0]

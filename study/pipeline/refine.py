@@ -1,9 +1,9 @@
 # Refines the maps within a time budget: adds fills where the winner changes between two of them, and
 # rounds where a winner is not decided.
 #
-# plans/refined.json holds what was added and the seconds spent, written after each addition, so that
-# a resumed run neither repeats nor exceeds anything: an addition that was interrupted is the first
-# candidate again, and finds the files that it has already. One that has begun is finished.
+# plans/refined.json holds what was added, what is being added and the seconds spent, written before
+# and after each addition: a resumed run first finishes what was interrupted, and repeats nothing. An
+# addition that has begun is finished.
 import sys
 import tempfile
 import time
@@ -27,17 +27,24 @@ def refine(study):
     for entry in record["added"]:
         _measure(study, entry)  # nothing to do, unless a file was removed
     before, begin = record["seconds"], time.monotonic()
+
+    def add(candidate):
+        write_json(layout.refined, record | {"next": candidate})
+        _add(study, record["added"], candidate)
+        spent = before + time.monotonic() - begin
+        progress.done(spent - record["seconds"], _text(record["added"]))
+        record["seconds"] = spent
+        write_json(layout.refined, record)
+
+    if "next" in record:
+        add(record.pop("next"))
     while record["seconds"] < budget:
         candidates = refinement_candidates(_results(study), study.profile.refine["rounds"])
         if not candidates:
             break
         pause = record["seconds"] + budget / LOOKS
         for candidate in candidates:
-            _add(study, record["added"], candidate)
-            spent = before + time.monotonic() - begin
-            progress.done(spent - record["seconds"], _text(record["added"]))
-            record["seconds"] = spent
-            write_json(layout.refined, record)
+            add(candidate)
             if record["seconds"] >= min(budget, pause):
                 break
     files = [layout.relative(layout.cell(f"round{number}", study.contender(name), scene_of(entry)))

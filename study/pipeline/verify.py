@@ -5,7 +5,10 @@
 # checked nor timed. Where a pilot runs out of time, a single step and the least cost that the timeout
 # proves predict; if not even that step ends, it may hang. "Best" counts only what the gate has not
 # rejected, so a wrong but fast implementation excludes nobody: after each verdict the rule is
-# applied again, until nobody new has to be checked.
+# applied again, until nobody new has to be checked. In filled scenes the two fastest of each family
+# (dense, sparse, symmetric, unsymmetric) stay within FAMILY times that factor: maps are drawn for
+# families too. Stretches are as long as if they were excluded.
+import math
 import sys
 from itertools import groupby
 
@@ -15,6 +18,7 @@ from study.pipeline.layout import read_json, write_json
 from study.pipeline.progress import Progress
 
 PILOT_RUNS = 3
+FAMILY = 5
 
 
 def verify(study, variables):
@@ -119,8 +123,10 @@ def _gate(study, scene, pilots):
     verdicts, attempt = {}, 0
     while True:
         limit = study.profile.exclusion(scene) * best_cost(study, pilots, verdicts)
-        todo = [study.contenders[name] for name, pilot in pilots.items() if name not in verdicts
-                and "step_us" in pilot and pilot["step_us"] <= limit]
+        todo = [name for name, pilot in pilots.items() if pilot.get("step_us", math.inf) <= limit]
+        if scene.fill is not None:
+            todo += fastest_of_families(families(study), pilots, verdicts, FAMILY * limit)
+        todo = [study.contenders[name] for name in pilots if name in todo and name not in verdicts]
         if not todo:
             return verdicts
         attempt += 1
@@ -145,12 +151,33 @@ def _file_name(environment):
     return environment.replace("|", "-")
 
 
+def families(study):
+    """{family: names} as `mbs list` says."""
+    found = {"dense": [], "sparse": [], "symmetric": [], "unsymmetric": []}
+    for entry in read_json(study.layout.registry)["implementations"]:
+        for variant in entry["variants"]:
+            found["dense" if variant["dense"] else "sparse"].append(variant["name"])
+            found["unsymmetric" if variant["unsymmetric"] else "symmetric"].append(variant["name"])
+    return found
+
+
+def fastest_of_families(members, pilots, verdicts, limit):
+    """Names of the two fastest of each family that are not rejected, as far as within `limit`."""
+    alive = {name: pilot["step_us"] for name, pilot in pilots.items()
+             if pilot.get("step_us", math.inf) <= limit and not rejected(name, verdicts)}
+    return [name for names in members.values()
+            for name in sorted(set(names) & set(alive), key=alive.get)[:2]]
+
+
+def rejected(name, verdicts):
+    return verdicts.get(name, {"verdict": "agrees"})["verdict"] != "agrees"
+
+
 def best_cost(study, pilots, verdicts):
     """Least predicted time per step of the ranked ones not rejected; infinite if nobody is left."""
     return min((pilot["step_us"] for name, pilot in pilots.items() if "step_us" in pilot
-                and study.contenders[name].ranked
-                and verdicts.get(name, {"verdict": "agrees"})["verdict"] == "agrees"),
-               default=float("inf"))
+                and study.contenders[name].ranked and not rejected(name, verdicts)),
+               default=math.inf)
 
 
 def _scene_plan(study, scene, pilots, verdicts):
@@ -171,7 +198,8 @@ def _scene_plan(study, scene, pilots, verdicts):
         cell["checks"] = verdict["checks"] if verdict else []
         plan[name] = cell
     slowest = max((cell["pilot_step_us"] for name, cell in plan.items()
-                   if cell["status"] == "measure" and study.contenders[name].ranked), default=0.0)
+                   if cell["status"] == "measure" and study.contenders[name].ranked
+                   and cell["pilot_ratio"] <= factor), default=0.0)
     return {"fill_asked": scene.fill, "reached": True, "cells": plan,
             "stretch_steps": stretch_steps(study.profile, scene, slowest)}
 

@@ -7,7 +7,7 @@ import yaml
 from study.pipeline import estimate, profile as profiles
 from study.pipeline.contenders import Contender, contenders
 from study.pipeline.errors import StudyError
-from study.pipeline.verify import best_cost, stretch_steps
+from study.pipeline.verify import best_cost, fastest_of_families, stretch_steps
 
 
 @pytest.mark.parametrize("name", profiles.names())
@@ -72,6 +72,15 @@ def test_neither_a_rejected_implementation_nor_an_alternative_excludes_anybody()
     assert best_cost(study, pilots, {}) == 1.0
     assert best_cost(study, pilots, {"a/fast": {"verdict": "disagrees"}}) == 500.0
     assert best_cost(study, {"a/dead": pilots["a/dead"]}, {}) == float("inf")
+
+
+def test_the_fastest_of_a_family_stay_in_the_map():
+    pilots = {"a/x": {"step_us": 1.0}, "b/x": {"step_us": 40.0}, "b/y": {"step_us": 20.0},
+              "b/z": {"step_us": 30.0}, "c/x": {"status": "crashed"}, "d/x": {"step_us": 99.0}}
+    members = {"one": ["a/x", "c/x"], "two": ["b/x", "b/y", "b/z"], "three": ["d/x"]}
+    assert fastest_of_families(members, pilots, {}, 50) == ["a/x", "b/y", "b/z"]
+    wrong = {"b/y": {"verdict": "disagrees"}}
+    assert fastest_of_families(members, pilots, wrong, 50) == ["a/x", "b/z", "b/x"]
 
 
 def test_estimates():
