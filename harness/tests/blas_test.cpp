@@ -74,7 +74,8 @@ TEST(LoaderEnvironment, PutsThePairFirstAndKeepsTheRest) {
 
 TEST(LoaderEnvironment, EffectIsJudgedByTheMappedFiles) {
   const fs::path root = fs::weakly_canonical(test::temporary_path("lib"));
-  const BlasPair pair = pair_called(blas_pairs(root), "atlas-reference");
+  const std::vector<BlasPair> all = blas_pairs(root);
+  const BlasPair pair = pair_called(all, "atlas-reference");
   for (const fs::path& file : {pair.blas_file, pair.lapack_file}) {
     fs::create_directories(file.parent_path());
     std::ofstream(file.string() + ".10") << "";
@@ -82,8 +83,12 @@ TEST(LoaderEnvironment, EffectIsJudgedByTheMappedFiles) {
   }
   const std::string blas = pair.blas_file.string() + ".10";
   const std::string lapack = pair.lapack_file.string() + ".10";
-  EXPECT_EQ(why_not_in_effect(pair, {blas, lapack}), "");
-  EXPECT_NE(why_not_in_effect(pair, {lapack, "/usr/lib/other/libblas.so.3"}).find("not loaded"),
+  EXPECT_EQ(why_not_in_effect(pair, all, {blas, lapack}), "");
+  EXPECT_NE(
+      why_not_in_effect(pair, all, {lapack, "/usr/lib/other/libblas.so.3"}).find("not loaded"),
+      std::string::npos);
+  const std::string other = pair_called(all, "openblas").lapack_file;
+  EXPECT_NE(why_not_in_effect(pair, all, {blas, lapack, other}).find(other + " is loaded too"),
             std::string::npos);
   fs::remove_all(root);
 }
@@ -119,8 +124,10 @@ TEST(BlasSelection, TakesEffectOrIsRefused) {
     EXPECT_NE(loaded.find(fs::canonical(pair.blas_file).string()), std::string::npos) << loaded;
     EXPECT_NE(loaded.find(fs::canonical(pair.lapack_file).string()), std::string::npos) << loaded;
     for (const BlasPair& other : blas_pairs()) {
-      if (other.blas_file == pair.blas_file || !fs::exists(other.blas_file)) continue;
-      EXPECT_EQ(loaded.find(fs::canonical(other.blas_file).string()), std::string::npos) << loaded;
+      for (const fs::path& file : {other.blas_file, other.lapack_file}) {
+        if (file == pair.blas_file || file == pair.lapack_file || !fs::exists(file)) continue;
+        EXPECT_EQ(loaded.find(fs::canonical(file).string()), std::string::npos) << loaded;
+      }
     }
   }
 }

@@ -8,9 +8,10 @@
 namespace mbs {
 
 /// What Table 2 of the paper times with and without symbolic preprocessing: evaluation of the
-/// Jacobian, rank-k update and matrix addition, each done exactly as the implementation's own step
-/// does it, but one at a time. Construction (mbs::Variant::operations) does all set-up work; the
-/// three operations are called over and over and each overwrites its previous result.
+/// Jacobian, rank-k update and matrix addition, each with the data structures of the
+/// implementation's own step and split where the step fuses them. Construction
+/// (mbs::Variant::operations) does all set-up work; the three operations are called over and over
+/// and each overwrites its previous result.
 ///
 /// The harness checks all three results against its own before it times anything. With
 /// n = variables() and m = constraints() of the model:

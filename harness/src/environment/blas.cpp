@@ -18,6 +18,17 @@ namespace fs = std::filesystem;
 constexpr const char* kBlas = "libblas.so.3";
 constexpr const char* kLapack = "liblapack.so.3";
 
+/// Files of a pair behind all links; those that do not exist as they are named.
+std::vector<std::string> real_files(const BlasPair& pair) {
+  std::vector<std::string> files;
+  for (const fs::path& file : {pair.blas_file, pair.lapack_file, pair.preload}) {
+    std::error_code error;
+    const fs::path real = fs::canonical(file, error);
+    if (!file.empty()) files.push_back(error ? file.string() : real.string());
+  }
+  return files;
+}
+
 bool starts_path_list(const std::string& list, const std::string& prefix) {
   return list == prefix || list.starts_with(prefix + ":");
 }
@@ -105,12 +116,21 @@ std::vector<std::pair<std::string, std::string>> loader_environment(const BlasPa
   return changes;
 }
 
-std::string why_not_in_effect(const BlasPair& pair, const std::vector<std::string>& mapped) {
-  for (const fs::path& file : {pair.blas_file, pair.lapack_file, pair.preload}) {
-    if (file.empty()) continue;
-    std::error_code error;
-    const std::string real = fs::canonical(file, error).string();
-    if (std::ranges::find(mapped, real) == mapped.end()) return file.string() + " is not loaded";
+std::string why_not_in_effect(const BlasPair& pair, const std::vector<BlasPair>& all,
+                              const std::vector<std::string>& mapped) {
+  const auto is_mapped = [&](const std::string& file) {
+    return std::ranges::find(mapped, file) != mapped.end();
+  };
+  const std::vector<std::string> mine = real_files(pair);
+  for (const std::string& file : mine) {
+    if (!is_mapped(file)) return file + " is not loaded";
+  }
+  for (const BlasPair& other : all) {
+    for (const std::string& file : real_files(other)) {
+      if (is_mapped(file) && std::ranges::find(mine, file) == mine.end()) {
+        return file + " is loaded too";
+      }
+    }
   }
   return "";
 }

@@ -41,7 +41,9 @@ std::vector<std::pair<std::string, std::string>> loader_environment(const BlasPa
                                                                     const std::string& library_path,
                                                                     const std::string& preload);
 
-/// What is wrong if a process with these files mapped is to run on `pair`; empty if nothing.
-std::string why_not_in_effect(const BlasPair& pair, const std::vector<std::string>& mapped);
+/// What is wrong if a process with these files mapped is to run on `pair` and on no other of `all`;
+/// empty if nothing.
+std::string why_not_in_effect(const BlasPair& pair, const std::vector<BlasPair>& all,
+                              const std::vector<std::string>& mapped);
 
 }  // namespace mbs

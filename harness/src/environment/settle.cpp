@@ -53,7 +53,8 @@ void settle_environment(int argc, char** argv) {
   const BlasPair* pair = asked ? &available_pair(*asked) : nullptr;
   const auto missing = missing_variables(pair);
   if (missing.empty()) {
-    const std::string wrong = pair ? why_not_in_effect(*pair, loaded_blas_files()) : "";
+    const std::string wrong =
+        pair ? why_not_in_effect(*pair, blas_pairs(), loaded_blas_files()) : "";
     if (wrong.empty()) return;
     throw UsageError(fmt::format("--blas {}: did not take effect: {}", *asked, wrong));
   }
