@@ -133,8 +133,10 @@ def _stale_pivots(results, klu):
     why = (f"Error at the end of the stretch, {klu} ÷ {paper.FULL_PIVOTING}: at most "
            f"{number(largest, 5)} over {len(shares)} scenes ({scene}).")
     if largest < ERROR_GROWS:  # nothing is refuted: the mechanism has no violent change
-        return untested(*head, f"{why} The tangent of this mechanism does not change violently "
-                        "enough: both are equally exact.", rule)
+        return untested(*head, f"{why} The tangent of this mechanism is positive definite and its "
+                        "pivots stay diagonal: both are equally exact. What pivots forced off the "
+                        "diagonal lose, the program csc_klu_stale_pivots shows "
+                        "(implementations/csc_klu/README.md).", rule)
     return tested(*head, (largest,) * 3, rule, f"{scene}, {klu} ÷ {paper.FULL_PIVOTING}", why)
 
 

@@ -24,9 +24,10 @@ def by_size(results):
 
 
 def dense_from(results):
-    """Sizes with filled scenes: [{"variables", "from", "last_sparse"}]; fills in %: "from"
+    """Sizes with filled scenes: [{"variables", "from", "last_sparse", "between"}]; fills in %: "from"
     is the first of those at and above which the best dense version is faster than the best sparse
-    one (None: at none), "last_sparse" the last fill with another outcome (None: at none)."""
+    one (None: at none), "last_sparse" the last fill with another outcome (None: at none), "between"
+    the first and last fill at which dense is faster if it is not up to the last one (or None)."""
     rows = []
     samples = results.samples()
     filled = samples[samples.fill_asked.notna()].variables.unique()
@@ -41,8 +42,10 @@ def dense_from(results):
         start = len(found)
         while start and found[start - 1][1] and found[start - 1][1].high < 1:
             start -= 1
+        ahead = [fill for fill, ratio in found if ratio and ratio.high < 1]
         rows.append({"variables": size, "from": found[start][0] if start < len(found) else None,
-                     "last_sparse": found[start - 1][0] if start else None})
+                     "last_sparse": found[start - 1][0] if start else None,
+                     "between": (ahead[0], ahead[-1]) if ahead and start == len(found) else None})
     return rows
 
 

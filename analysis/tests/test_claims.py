@@ -201,7 +201,8 @@ def test_summary_by_size_fill_and_price(tmp_path):
     assert [(group["first"], group["last"], group["names"], group["low"])
             for group in summary.by_size(data)][0] == (10, 10, (POTRF,), 2)
     assert summary.by_size(data)[1]["last"] == 1000
-    assert summary.dense_from(data) == [{"variables": 22, "from": 50, "last_sparse": 20}]
+    assert summary.dense_from(data) == [
+        {"variables": 22, "from": 50, "last_sparse": 20, "between": None}]
     dear, cheap = (next(row for row in summary.prices(data) if row["implementation"] == name)
                    for name in (POTRF, KLU))
     assert (dear["worst"], dear["rough"], dear["cells"]) == (300, 1, 6)
@@ -230,3 +231,10 @@ def test_command_line_writes_the_columns(tmp_path):
     broken = subprocess.run([*command, "x.csv"], capture_output=True, text=True)
     assert broken.returncode == 1 and broken.stderr.startswith("error: ")
     assert broken.stderr.count("\n") == 1
+
+
+def test_dense_may_be_ahead_in_between_only(tmp_path):
+    rows = [row for fill, sparse in ((0.2, 1), (0.5, 4), (1.0, 2))
+            for row in cell(KLU, 22, sparse, fill=fill) + cell(POTRF, 22, 3, fill=fill)]
+    assert summary.dense_from(load(tmp_path, rows)) == [
+        {"variables": 22, "from": None, "last_sparse": 100, "between": (50, 50)}]
