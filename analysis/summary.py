@@ -24,8 +24,8 @@ def by_size(results):
 
 
 def dense_from(results):
-    """Sizes with filled scenes: [{"variables", "from", "last_sparse", "between"}]; fills in %: "from"
-    is the first of those at and above which the best dense version is faster than the best sparse
+    """Sizes with filled scenes: [{"variables", "from", "last_sparse", "between"}]; fills in %:
+    "from" is the first of those at and above which the best dense version is faster than the best sparse
     one (None: at none), "last_sparse" the last fill with another outcome (None: at none), "between"
     the first and last fill at which dense is faster if it is not up to the last one (or None)."""
     rows = []

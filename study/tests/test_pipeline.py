@@ -9,7 +9,7 @@ import time
 import pandas
 import pytest
 
-from study.pipeline import builds, child, prepare, profile as profiles
+from study.pipeline import builds, child, collect, prepare, profile as profiles, refine
 from study.pipeline.job import open_study
 from study.pipeline.layout import Layout
 from study.pipeline.marks import mark_differing_passes
@@ -231,21 +231,47 @@ def test_a_run_record_that_lacks_something_is_one_clear_line(tmp_path, text):
     assert result.stderr.count("\n") == 1 and "is no record of a run" in result.stderr
 
 
-def test_refinement_adds_within_its_budget_and_is_not_repeated(results):
-    record = json.loads((results / "plans" / "refined.json").read_text())
+CELL = {"kind": "cell", "variables": 10, "fill": 0.7, "why": "the winner changes"}
+SAMPLES = {"kind": "samples", "scene": "four-bar:4", "variables": 10, "fill": None,
+           "implementations": ["good_dense/first", "good_sparse/only"], "why": "undecided"}
+
+
+def refined_rows(results, monkeypatch, *answers):
+    """Runs the refinement on candidates of the test's own; its rows, and what it recorded."""
+    monkeypatch.setenv("MBS_PROGRAM", str(FAKE))
+    text = (results / "profile.yaml").read_text()
+    (results / "profile.yaml").write_text(text.replace("refine: {seconds: 1,",
+                                                       "refine: {seconds: 1000,"))
+    looks = iter(answers)
+    monkeypatch.setattr(refine, "refinement_candidates", lambda *_: next(looks, []))
+    refine.refine(open_study(results))
+    collect.collect(open_study(results))
     table = tidy(results)
-    assert record["added"] and record["seconds"] >= 1  # smoke's budget; the last one is finished
-    cells = [entry for entry in record["added"] if entry["kind"] == "cell"]
-    assert cells and all(entry["why"] for entry in record["added"])
-    refined = table[table.stage == "refined"]
-    assert {round(100 * entry["fill"]) for entry in cells} == {
-        round(100 * fill) for fill in refined[refined["round"] <= 2].fill_asked.dropna()}
-    assert (refined[refined["round"] > 2].scene.nunique() > 0) == (len(cells) < len(record["added"]))
+    record = json.loads((results / "plans" / "refined.json").read_text())
+    return table[(table.stage == "refined") & (table.status == "ok")], record
+
+
+def test_refinement_adds_cells_and_rounds(results, monkeypatch):
+    (results / "plans" / "refined.json").unlink()
+    rows, record = refined_rows(results, monkeypatch, [CELL, SAMPLES], [SAMPLES])
+    assert [entry["kind"] for entry in record["added"]] == ["cell", "samples", "samples"]
+    assert [entry["rounds"] for entry in record["added"]] == [[1, 2], [3, 4], [5, 6]]
+    cell = rows[rows.fill_asked == 0.7]
+    assert set(cell.implementation) == {"good_dense/first", "good_dense/second", "good_sparse/only"}
+    again = rows[rows.fill_asked.isna()]
+    assert set(again.implementation) == set(SAMPLES["implementations"])
+    assert set(again["round"]) == {3, 4, 5, 6} and record["seconds"] > 0
+
+
+def test_an_interrupted_refinement_is_finished_first(results, monkeypatch):
+    path = results / "plans" / "refined.json"
+    path.write_text(json.dumps({"seconds": 0.0, "added": [], "next": CELL}))
+    _, record = refined_rows(results, monkeypatch, [])
+    assert [entry["kind"] for entry in record["added"]] == ["cell"] and "next" not in record
+    path.write_text(json.dumps(record | {"seconds": 1e9}))  # the budget is spent
     before = times(results)
-    (results / "plans" / "refined.measured").unlink()
-    assert run_smoke(results).returncode == 0
-    assert times(results) == before
-    assert json.loads((results / "plans" / "refined.json").read_text()) == record
+    _, record = refined_rows(results, monkeypatch, [SAMPLES])
+    assert len(record["added"]) == 1 and times(results) == before
 
 
 def test_missing_pairs_are_rows_with_their_reason(tmp_path, monkeypatch):
