@@ -30,6 +30,9 @@ struct StepOptions {
   [[nodiscard]] StepSettings resolve(const Model& model) const;
 };
 
+/// Throws UsageError unless `step` (s) is a sensible time step.
+void require_step(double step);
+
 /// Parses the command line and runs it; the exit status: 0 done, 1 a result that is not right,
 /// 2 bad input.
 int run_program(int argc, char** argv);

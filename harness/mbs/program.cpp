@@ -63,10 +63,13 @@ void StepOptions::add_to(CLI::App& command) {
   add_blas_option(command);
 }
 
+void require_step(double step) {
+  if (step >= 1e-12 && step <= 1e6) return;
+  throw UsageError(fmt::format("--step is {:g} s: it must be 1e-12 to 1e6 s", step));
+}
+
 StepSettings StepOptions::resolve(const Model& model) const {
-  if (!(step >= 1e-12) || !(step <= 1e6)) {
-    throw UsageError(fmt::format("--step is {:g} s: it must be 1e-12 to 1e6 s", step));
-  }
+  require_step(step);
   if (max_passes < 1 || max_passes > 1000) {
     throw UsageError(fmt::format("--max-passes is {}: it must be 1 to 1000", max_passes));
   }

@@ -1,38 +1,77 @@
-// CSV rows of named points.
+// From states to rows.
 #include "mbs/trajectory.hpp"
 
 #include <fmt/format.h>
 
-#include <iterator>
+#include <algorithm>
+#include <cmath>
+
+#include "model_math/kinematics.hpp"
+#include "usage_error.hpp"
 
 namespace mbs {
+namespace {
 
-TrajectoryFile::TrajectoryFile(const std::string& path, const Model& model)
-    : model_(model), file_(path) {
-  const std::string axes = model.dimension() == 2 ? "xy" : "xyz";
-  std::string header = "t";
-  for (const Point& point : model.points()) {
-    for (const char axis : axes) header += fmt::format(",{}.{}", point.name, axis);
-    for (const char axis : axes) header += fmt::format(",{}.v{}", point.name, axis);
+std::vector<std::string> trajectory_columns(const Scene& scene) {
+  const std::string axes = scene.model.dimension() == 2 ? "xy" : "xyz";
+  const SceneMotion motion(scene);
+  std::vector<std::string> columns{"t"};
+  for (int i = 0; i < motion.points(); ++i) {
+    for (const char axis : axes) columns.push_back(fmt::format("{}.{}", motion.name(i), axis));
+    for (const char axis : axes) columns.push_back(fmt::format("{}.v{}", motion.name(i), axis));
   }
-  file_.stream() << header << '\n';
+  columns.insert(columns.end(), {"kinetic_energy", "potential_energy", "constraint_violation"});
+  return columns;
 }
 
-void TrajectoryFile::write(double t, const State& state) {
-  fmt::memory_buffer row;
-  auto out = std::back_inserter(row);
-  fmt::format_to(out, "{}", t);
-  for (const Point& point : model_.points()) {
-    for (int axis = 0; axis < model_.dimension(); ++axis) {
-      fmt::format_to(out, ",{}",
-                     point.is_fixed() ? point.position[axis] : state.q[point.offset + axis]);
-    }
-    for (int axis = 0; axis < model_.dimension(); ++axis) {
-      fmt::format_to(out, ",{}", point.is_fixed() ? 0.0 : state.v[point.offset + axis]);
-    }
+std::vector<std::string> output_columns(const Scene& scene, const OutputValues& values) {
+  if (values.columns().empty()) {
+    throw UsageError(
+        fmt::format("--output: scene {} names no \"outputs\"; --trajectory FILE writes all points",
+                    scene.name));
   }
-  row.push_back('\n');
-  file_.stream().write(row.data(), static_cast<std::streamsize>(row.size()));
+  std::vector<std::string> columns{"t"};
+  columns.insert(columns.end(), values.columns().begin(), values.columns().end());
+  return columns;
+}
+
+}  // namespace
+
+TrajectoryFile::TrajectoryFile(const std::string& path, const Scene& scene)
+    : scene_(scene),
+      motion_(scene),
+      file_(path, trajectory_columns(scene)),
+      phi_(static_cast<std::size_t>(scene.model.constraints())) {}
+
+void TrajectoryFile::write(double t, const State& state) {
+  motion_.set(t, state);
+  row_.assign(1, t);
+  for (int i = 0; i < motion_.points(); ++i) {
+    const Vector3 r = motion_.position(i), v = motion_.velocity(i);
+    row_.insert(row_.end(), r.begin(), r.begin() + scene_.model.dimension());
+    row_.insert(row_.end(), v.begin(), v.begin() + scene_.model.dimension());
+  }
+  row_.push_back(kinetic_energy(scene_.model, state.v));
+  row_.push_back(potential_energy(scene_.model, t, state.q));
+  evaluate_constraints(scene_.model, t, state.q, phi_);
+  double largest = 0.0;
+  for (const double phi : phi_) {
+    largest = std::isnan(phi) ? phi : std::max(largest, std::abs(phi));
+  }
+  row_.push_back(largest);
+  file_.write(row_);
+}
+
+OutputFile::OutputFile(const std::string& path, const Scene& scene)
+    : values_(scene), file_(path, output_columns(scene, values_)) {}
+
+void OutputFile::follow(double t, const State& state, bool wanted) {
+  values_.follow(t, state);
+  if (!wanted) return;
+  std::vector<double> row{t};
+  const std::vector<double> values = values_.values();
+  row.insert(row.end(), values.begin(), values.end());
+  file_.write(row);
 }
 
 }  // namespace mbs

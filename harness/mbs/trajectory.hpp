@@ -1,26 +1,45 @@
-// The trajectory file of `mbs simulate`: one row an instant, four columns a named point.
+// The two tables of `mbs simulate`: everything, or what the scene asks for.
 #pragma once
 
 #include <string>
 
-#include "atomic_file.hpp"
+#include "mbs/csv_file.hpp"
 #include "mbs/simulation.hpp"
+#include "run/output_values.hpp"
+#include "run/scene_motion.hpp"
 
 namespace mbs {
 
-/// Writes CSV: t, then NAME.x, NAME.y, NAME.vx, NAME.vy (in 3D also NAME.z, NAME.vz) for each
-/// point; a fixed point keeps its place and velocity 0. Numbers round-trip.
+/// Everything. Columns: t, then NAME.x, NAME.y, NAME.vx, NAME.vy (in 3D also NAME.z, NAME.vz) for
+/// each point and unit vector, fixed and driven ones and points of bodies included, then
+/// kinetic_energy, potential_energy (J) and constraint_violation, the largest |Phi_k|.
 class TrajectoryFile {
  public:
-  /// `model` must outlive the file. Throws UsageError if `path` cannot be written.
-  TrajectoryFile(const std::string& path, const Model& model);
+  /// `scene` must outlive the file. Throws UsageError if `path` cannot be written.
+  TrajectoryFile(const std::string& path, const Scene& scene);
   void write(double t, const State& state);
-  /// Makes the file appear under its name.
   void commit() { file_.commit(); }
 
  private:
-  const Model& model_;
-  AtomicFile file_;
+  const Scene& scene_;
+  SceneMotion motion_;
+  CsvFile file_;
+  std::vector<double> row_, phi_;
+};
+
+/// What the scene asks for. Columns: t, then those of OutputValues.
+class OutputFile {
+ public:
+  /// `scene` must outlive the file. Throws UsageError if the scene names no outputs or `path`
+  /// cannot be written.
+  OutputFile(const std::string& path, const Scene& scene);
+  /// Takes every state of the run, writes those with `wanted`.
+  void follow(double t, const State& state, bool wanted);
+  void commit() { file_.commit(); }
+
+ private:
+  OutputValues values_;
+  CsvFile file_;
 };
 
 }  // namespace mbs

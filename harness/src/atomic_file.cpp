@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -20,18 +21,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The name that a signal handler removes; one file is written at a time.
-std::array<char, 4096> unfinished{};
+/// The names that a signal handler removes; an empty one is a free place.
+using Name = std::array<char, 4096>;
+std::array<Name, 4> unfinished{};
 
 void remove_and_die(int signal) {
-  if (unfinished[0] != '\0') ::unlink(unfinished.data());
+  for (const Name& name : unfinished) {
+    if (name[0] != '\0') ::unlink(name.data());
+  }
   ::signal(signal, SIG_DFL);
   ::raise(signal);
 }
 
+void forget(const std::string& path) {
+  for (Name& name : unfinished) {
+    if (path == name.data()) name[0] = '\0';
+  }
+}
+
 void remember(const std::string& path) {
-  if (path.size() >= unfinished.size()) return;
-  std::memcpy(unfinished.data(), path.c_str(), path.size() + 1);
+  Name* free_place = std::ranges::find_if(unfinished, [](const Name& n) { return n[0] == '\0'; });
+  if (free_place == unfinished.end() || path.size() >= free_place->size()) return;
+  std::memcpy(free_place->data(), path.c_str(), path.size() + 1);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     if (::signal(signal, remove_and_die) == SIG_IGN) ::signal(signal, SIG_IGN);  // nohup
   }
@@ -71,8 +82,8 @@ AtomicFile::AtomicFile(std::string path) : name_(path), path_(std::move(path)) {
 }
 
 AtomicFile::~AtomicFile() {
-  unfinished[0] = '\0';
   if (partial_.empty() || partial_ == path_) return;
+  forget(partial_);
   stream_.close();
   std::error_code ignored;
   fs::remove(partial_, ignored);
@@ -84,8 +95,8 @@ void AtomicFile::commit() {
   if (stream_.fail()) error = std::make_error_code(std::errc::no_space_on_device);
   if (!error && partial_ != path_) fs::rename(partial_, path_, error);
   if (error) throw UsageError(fmt::format("cannot write '{}': {}", name_, error.message()));
+  forget(partial_);
   partial_.clear();
-  unfinished[0] = '\0';
 }
 
 }  // namespace mbs

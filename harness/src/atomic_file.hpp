@@ -8,7 +8,7 @@ namespace mbs {
 
 /// Writes to a file of its own beside `path` and renames it on commit(); without a commit nothing
 /// stays, also when SIGINT, SIGTERM or SIGHUP ends the program. Links are followed, devices written
-/// to directly. One at a time.
+/// to directly. Up to four at a time.
 ///
 ///   AtomicFile file("summary.json");
 ///   file.stream() << text;

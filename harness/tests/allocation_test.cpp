@@ -154,7 +154,7 @@ GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(AllocationFreeStep);
 /// The measurement itself would notice a step that allocates.
 class Allocating final : public Simulation {
  public:
-  explicit Allocating(const Model& model) : Simulation(model.variables(), model.constraints()) {}
+  explicit Allocating(const Model& model) : Simulation(model, StepSettings{}) {}
 
  protected:
   void do_set_state(const State&) override {}

@@ -34,7 +34,7 @@ class Scripted final : public Simulation {
   enum class Script { still, slow_setup, not_finite, refuses, at_limit, phases };
 
   Scripted(const Model& model, Script script)
-      : Simulation(model.variables(), model.constraints()), script_(script) {
+      : Simulation(model, StepSettings{}), script_(script) {
     if (script_ == Script::slow_setup) wait(milliseconds(4));
   }
 

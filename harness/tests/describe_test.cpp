@@ -1,13 +1,44 @@
 // What `mbs describe` says about scenes whose numbers are known.
-#include "scene/describe.hpp"
+#include "describe/describe.hpp"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "describe/penalty_window.hpp"
+#include "describe/structure.hpp"
+#include "support/sample_models.hpp"
 
 namespace mbs {
 namespace {
 
+constexpr double kStep = 1.25e-3;
+
+Scene scene_of(const std::string& json) {
+  SceneData data = parse_scene(json, "test");
+  return {"test", Model(data.model), {}, {}, data.elements, data.assembly};
+}
+
+/// A parallelogram whose coupler's middle N hangs from M too, which changes nothing.
+constexpr const char* kRedundant = R"({"points": [
+  {"name": "A", "position": [0, 0], "fixed": true}, {"name": "D", "position": [2, 0], "fixed": true},
+  {"name": "M", "position": [1, 0], "fixed": true}, {"name": "B", "position": [0.6, 0.8]},
+  {"name": "C", "position": [2.6, 0.8]}, {"name": "N", "position": [1.6, 0.8]}],
+  "rods": [{"name": "AB", "between": ["A", "B"], "mass": 1},
+    {"name": "BC", "between": ["B", "C"], "mass": 1},
+    {"name": "DC", "between": ["D", "C"], "mass": 1},
+    {"name": "MN", "between": ["M", "N"], "mass": 1}],
+  "constraints": [
+    {"type": "linear", "name": "middle x", "terms": [{"point": "B", "axis": "x", "coefficient": 1},
+      {"point": "C", "axis": "x", "coefficient": 1}, {"point": "N", "axis": "x", "coefficient": -2}]},
+    {"type": "linear", "name": "middle y", "terms": [{"point": "B", "axis": "y", "coefficient": 1},
+      {"point": "C", "axis": "y", "coefficient": 1}, {"point": "N", "axis": "y", "coefficient": -2}]}
+  ]})";
+
 TEST(Describe, FourBar) {
-  const auto d = describe_json(load_scene("four-bar:2"));
+  const auto d = describe_json(load_scene("four-bar:2"), kStep);
   EXPECT_EQ(d["scene"], "four-bar:2");
   EXPECT_EQ(d["variables"], 6);
   EXPECT_EQ(d["constraints"], 5);
@@ -25,16 +56,23 @@ TEST(Describe, FourBar) {
   EXPECT_EQ(d["terms"]["dot_constraints"], 5);
   EXPECT_EQ(d["terms"]["linear_constraints"], 0);
   EXPECT_EQ(d["terms"]["damping"], false);
+  EXPECT_EQ(d["redundant_constraints"], nlohmann::json::array());
+  EXPECT_EQ(d["singular_start"], false);
+  EXPECT_EQ(d["assembly"]["position_correction"], 0.0);
   EXPECT_TRUE(d["artificial_fill"].is_null());
 }
 
 TEST(Describe, Text) {
-  const std::string text = describe_text(load_scene("four-bar:2"));
+  const std::string text = describe_text(load_scene("four-bar:2"), kStep);
   for (const char* part :
-       {"coordinates n         6 (3 free", "constraints m         5\n",
-        "degrees of freedom    1 (n - rank of the Jacobian, 5",
-        "terms present         gravity (Q), quadratic constraints (5), fixed points (3)\n",
-        "terms absent          linear constraints, damping (C), stiffness (K), driven",
+       {"coordinates n         6 (3 free and 3 fixed", "constraints m         5\n",
+        "degrees of freedom    1 (n - rank of the Jacobian, 5)\n", "redundant             none\n",
+        "start                 regular\n", "assembly              consistent as given\n",
+        "terms present         gravity or constant forces (Q), quadratic constraints (5), fixed "
+        "points (3)\n",
+        "terms absent          torques, springs and dampers, torsion springs, stiffness (K), "
+        "damping (C)",
+        "penalty factor        ", "(singular positions) to ", "for step 0.00125 s; automatic ",
         "14 non-zeros, 46.67 % of m n", "28 non-zeros, 77.78 % of n^2"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\nnot in\n" << text;
   }
@@ -43,59 +81,178 @@ TEST(Describe, Text) {
 
 TEST(Describe, ArtificialFill) {
   const Scene scene = load_scene("four-bar:5,fill=0.50");
-  const auto d = describe_json(scene);
+  const auto d = describe_json(scene, kStep);
   EXPECT_EQ(d["artificial_fill"]["asked"], 0.5);
   EXPECT_EQ(d["artificial_fill"]["natural"], 64.0 / 144.0);
   EXPECT_EQ(d["artificial_fill"]["reached"], 0.5);
   EXPECT_EQ(d["artificial_fill"]["seed"], kFillSeed);
   EXPECT_EQ(d["tangent"]["fill"], 0.5);
-  EXPECT_NE(describe_text(scene).find("asked 50 %, natural 44.44 %, reached 50 %, seed 607615"),
-            std::string::npos);
+  EXPECT_NE(
+      describe_text(scene, kStep).find("asked 50 %, natural 44.44 %, reached 50 %, seed 607615"),
+      std::string::npos);
 }
 
-TEST(Describe, LargeScenesAreCounted) {
-  const Scene scene = load_scene("four-bar:500");
-  const auto d = describe_json(scene);
-  EXPECT_TRUE(d["jacobian_rank"].is_null());
+TEST(Describe, LargeScenesHaveTheirRank) {
+  const auto d = describe_json(load_scene("four-bar:9999"), kStep);  // 20 000 coordinates
+  EXPECT_EQ(d["jacobian_rank"], 19'999);
   EXPECT_EQ(d["degrees_of_freedom"], 1);
-  EXPECT_EQ(d["degrees_of_freedom_from"], "n - m");
-  EXPECT_NE(describe_text(scene).find("1 (n - m; the rank is computed up to n = 400)"),
+  EXPECT_EQ(d["singular_start"], false);
+}
+
+TEST(Describe, NamesRedundantConstraints) {
+  const Scene scene = scene_of(kRedundant);
+  const auto d = describe_json(scene, kStep);
+  EXPECT_EQ(d["variables"], 6);
+  EXPECT_EQ(d["constraints"], 6);
+  EXPECT_EQ(d["jacobian_rank"], 5);
+  EXPECT_EQ(d["degrees_of_freedom"], 1);
+  ASSERT_EQ(d["redundant_constraints"].size(), 1u);
+  EXPECT_NE(d["redundant_constraints"][0].get<std::string>().find("middle y"), std::string::npos)
+      << d["redundant_constraints"];
+  EXPECT_EQ(d["singular_start"], false);
+  EXPECT_NE(describe_text(scene, kStep).find("redundant             1, implied by those before"),
+            std::string::npos);
+  // Redundancy does not stretch the window down to nothing.
+  EXPECT_LT(d["penalty_window"]["lower"], d["penalty_window"]["upper"]);
+}
+
+TEST(Describe, TellsASingularStartFromRedundancy) {
+  const Model straight = [] {  // a parallelogram that starts with all its rods on one line
+    ModelData data = four_bar(2);
+    for (std::size_t i = 0; i < 3; ++i) data.points[3 + i].position = {i + 1.0, 0.0, 0.0};
+    std::ranges::fill(data.initial_velocity, 0.0);
+    return Model(std::move(data));
+  }();
+  const Structure structure = find_structure(straight);
+  EXPECT_EQ(structure.rank_at_start, 3);
+  EXPECT_EQ(structure.rank, 5);
+  EXPECT_EQ(structure.singular, true);
+  EXPECT_TRUE(structure.redundant.empty());
+  EXPECT_EQ(structure.singular_rows.size(), 2u);
+  const Scene scene{"test", straight, {}, {}};
+  const auto d = describe_json(scene, kStep);
+  EXPECT_EQ(d["degrees_of_freedom"], 1);
+  EXPECT_EQ(d["singular_start"]["rank"], 3);
+  EXPECT_EQ(d["singular_start"]["constraints"].size(), 2u);
+  EXPECT_NE(describe_text(scene, kStep).find("start                 singular, rank 3 only: "),
             std::string::npos);
 }
 
 TEST(Describe, RankShowsDegreesOfFreedomThatCountingMisses) {
   // Two points on one rail each, and a third constraint that follows from the rails.
-  const Scene scene{"test",
-                    Model(parse_scene(R"({"gravity": [0, 0], "points": [
+  const Scene scene = scene_of(R"({"gravity": [0, 0], "points": [
       {"name": "B", "position": [0, 1]}, {"name": "C", "position": [2, 1]}],
       "masses": [{"point": "B", "mass": 1}, {"point": "C", "mass": 1}],
       "constraints": [{"type": "linear", "terms": [{"point": "B", "axis": "y", "coefficient": 1}]},
                       {"type": "linear", "terms": [{"point": "C", "axis": "y", "coefficient": 1}]},
                       {"type": "linear", "terms": [{"point": "B", "axis": "y", "coefficient": 1},
                                                    {"point": "C", "axis": "y", "coefficient": 1}]}
-      ]})",
-                                      "test")),
-                    {},
-                    {}};
-  const auto d = describe_json(scene);
+      ]})");
+  const auto d = describe_json(scene, kStep);
   EXPECT_EQ(d["constraints"], 3);
   EXPECT_EQ(d["degrees_of_freedom"], 2);
   EXPECT_EQ(d["terms"]["gravity"], false);
-  EXPECT_NE(describe_text(scene).find("terms absent          gravity (Q), quadratic"),
+  EXPECT_EQ(d["terms"]["linear_constraints"], 3);
+  EXPECT_NE(describe_text(scene, kStep).find("terms absent          gravity or constant forces"),
             std::string::npos);
 }
 
+TEST(Describe, SaysWhatAssemblyMoved) {
+  const Scene scene = scene_of(R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "B", "position": [1.01, 0], "velocity": [0, 2]}],
+      "rods": [{"between": ["A", "B"], "mass": 1, "length": 1}]})");
+  const auto d = describe_json(scene, kStep);
+  EXPECT_NEAR(d["assembly"]["position_correction"].get<double>(), 0.01, 1e-12);
+  EXPECT_EQ(d["assembly"]["velocity_correction"], 0.0);
+  EXPECT_EQ(d["assembly"]["point"], "B");
+  EXPECT_NE(describe_text(scene, kStep).find("points moved by up to 0.01 m (B)\n"),
+            std::string::npos);
+}
+
+TEST(Describe, CountsTerms) {
+  ModelData data;
+  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1, 0, 0}}, {"C", 2, {1, 1, 0}}};
+  for (int i = 0; i < 4; ++i) data.mass.push_back({i, i, 1.0});
+  data.force.resize(4, 0.0);
+  data.initial_velocity.resize(4, 0.0);
+  data.bilinear_constraints.push_back({1, 0, 2, 0, {{{0, 1, 0}, {-1, 0, 0}, {}}}, 1.0, "cross"});
+  data.springs.push_back({0, 1, 0.0, 5.0, 1.0, "damper"});
+  data.torsion_springs.push_back({1, 0, 2, 0, -1, 3.0, 0.0, 0.0, "torsion"});
+  data.couples.push_back({1, 0, -1, 2.0, "motor"});
+  data.driven_points.push_back({0, {}});
+  const Scene scene{"test", Model(data), {}, {}};
+  const auto terms = describe_json(scene, kStep)["terms"];
+  EXPECT_EQ(terms["bilinear_constraints"], 1);
+  EXPECT_EQ(terms["springs"], 1);
+  EXPECT_EQ(terms["torsion_springs"], 1);
+  EXPECT_EQ(terms["couples"], 1);
+  EXPECT_EQ(terms["damping"], true);
+  EXPECT_EQ(terms["stiffness"], true);
+  EXPECT_EQ(terms["driven_points"], 1);
+  EXPECT_EQ(terms["fixed_points"], 0);
+  EXPECT_EQ(terms["driven_constraints"], true);
+  EXPECT_EQ(terms["gravity"], false);
+}
+
+TEST(Describe, ListsElementsForPictures) {
+  Scene scene = test::spatial_pendulum();
+  scene.elements.bodies.push_back({"body", {0, 1, 4}, {2}});
+  scene.elements.markers.push_back({"middle",
+                                    {{0, {{{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}}}},
+                                     {1, {{{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}}}}}});
+  const auto elements = describe_json(scene, kStep)["elements"];
+  ASSERT_EQ(elements["points"].size(), 5u);
+  EXPECT_EQ(elements["points"][0]["kind"], "fixed");
+  EXPECT_EQ(elements["points"][1]["kind"], "free");
+  EXPECT_EQ(elements["points"][3]["position"], nlohmann::json({1.0, 2.0, -0.5}));
+  EXPECT_EQ(elements["points"][4]["kind"], "marker");
+  EXPECT_EQ(elements["points"][4]["position"], nlohmann::json({0.5, 0.0, 0.0}));
+  EXPECT_EQ(elements["bodies"][0]["points"], nlohmann::json({"A", "B", "middle"}));
+  EXPECT_EQ(elements["bodies"][0]["vectors"], nlohmann::json::array({"C"}));
+  EXPECT_TRUE(elements["rods"].empty());
+  // Without names, distances are what can be drawn.
+  const auto four_bar = describe_json(load_scene("four-bar:1"), kStep)["elements"];
+  ASSERT_EQ(four_bar["rods"].size(), 3u);
+  EXPECT_EQ(four_bar["rods"][2]["between"], nlohmann::json::array({"B0", "B1"}));
+}
+
+// The window against what was measured over 5 s: harness/README.md.
+TEST(PenaltyWindow, IsWhereRunsAreGood) {
+  const struct {
+    int loops;
+    double step, good_from, good_to;  // alpha dt^2/4 with an error of at most twice the best
+  } cases[] = {{2, 5e-3, 3, 560},       {2, 1.25e-3, 100, 3e4},   {10, 5e-3, 10, 560},
+               {10, 1.25e-3, 100, 3e4}, {40, 2.5e-3, 100, 2e3},   {40, 1.25e-3, 300, 3e4},
+               {40, 6.25e-4, 1e3, 1e5}, {10, 6.25e-4, 300, 1.5e5}};
+  for (const auto& [loops, step, good_from, good_to] : cases) {
+    const Model model(four_bar(loops));
+    const PenaltyWindow window = penalty_window(model, find_structure(model), step);
+    const double per_beta = 4.0 / (step * step);
+    EXPECT_LE(window.lower, window.upper) << loops << ", " << step;
+    for (const auto& [bound, measured] :
+         {std::pair(window.lower, good_from), std::pair(window.upper, good_to)}) {
+      EXPECT_LT(std::abs(std::log10(bound / (per_beta * measured))), std::log10(12.0))
+          << loops << ", " << step << ": " << bound / per_beta << " against " << measured;
+    }
+  }
+}
+
+TEST(PenaltyWindow, IsEmptyWhereNoPenaltyWorks) {
+  const Model model(four_bar(1000));
+  const PenaltyWindow window = penalty_window(model, find_structure(model), 1e-4);
+  EXPECT_GT(window.lower, window.upper);
+  EXPECT_TRUE(window.cancellation);
+  EXPECT_TRUE(window.slowest_mode);
+}
+
 TEST(Describe, FreeFlightHasNoConstraints) {
-  const Scene scene{"test",
-                    Model(parse_scene(R"({"points": [{"name": "B", "position": [0, 1]}],
-                                          "masses": [{"point": "B", "mass": 1}]})",
-                                      "test")),
-                    {},
-                    {}};
-  const auto d = describe_json(scene);
+  const Scene scene = test::free_fall();
+  const auto d = describe_json(scene, kStep);
   EXPECT_EQ(d["constraints"], 0);
-  EXPECT_EQ(d["degrees_of_freedom"], 2);
+  EXPECT_EQ(d["degrees_of_freedom"], 4);
   EXPECT_EQ(d["jacobian"]["fill"], 0.0);
+  EXPECT_TRUE(d["penalty_window"].is_null());
+  EXPECT_NE(describe_text(scene, kStep).find("any, there are no constraints"), std::string::npos);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ Positions tangent_positions(const Model& model) {
   for (const MassEntry& entry : model.mass()) {
     if (entry.row > entry.col) positions.emplace(entry.row, entry.col);
   }
-  const auto entries = jacobian(model, model.initial_position());
+  const auto entries = jacobian(model, 0.0, model.initial_position());
   for (const JacobianEntry& x : entries) {
     for (const JacobianEntry& y : entries) {
       if (x.row == y.row && x.col > y.col) positions.emplace(x.col, y.col);
@@ -55,10 +55,42 @@ TEST(TangentNonzeros, SeesLinearAndDotConstraints) {
       "constraints": [{"type": "dot", "first": ["A", "B"], "second": ["B", "C"]},
       {"type": "linear", "terms": [{"point": "D", "axis": "x", "coefficient": 1},
                                    {"point": "C", "axis": "z", "coefficient": 2}]}]})",
-                                "test"));
+                                "test")
+                        .model);
   EXPECT_EQ(tangent_nonzeros(model), 6 * 6 + 3 + 2);
   EXPECT_EQ(tangent_nonzeros(model),
             model.variables() + 2 * static_cast<long>(tangent_positions(model).size()));
+}
+
+TEST(TangentNonzeros, SeesSpringsAndBilinearConstraints) {
+  ModelData data;
+  for (int i = 0; i < 6; ++i) {
+    data.points.push_back({"P" + std::to_string(i), i < 5 ? 2 * i : -1, {1.0 * i, 0.1 * i * i, 0}});
+  }
+  for (int i = 0; i < 10; ++i) data.mass.push_back({i, i, 1.0});
+  data.force.resize(10, 0.0);
+  data.initial_velocity.resize(10, 0.0);
+  const auto extra = [&](const ModelData& changed) {
+    return (tangent_nonzeros(Model(changed)) - 10) / 2;
+  };
+  EXPECT_EQ(extra(data), 0);
+  ModelData spring = data;
+  spring.springs.push_back({0, 1, 1.0, 0.0, 1.0, "s"});  // x and y of both: 4 of 4 coordinates
+  EXPECT_EQ(extra(spring), 6);
+  spring.springs[0].b = 5;  // fixed
+  EXPECT_EQ(extra(spring), 1);
+  ModelData damper = data;
+  damper.springs.push_back({0, 1, 0.0, 1.0, 1.0, "d"});
+  EXPECT_EQ(extra(damper), 6);
+  ModelData torsion = data;
+  torsion.torsion_springs.push_back({0, 1, 2, 5, -1, 1.0, 0.0, 0.0, "t"});  // 6 coordinates
+  EXPECT_EQ(extra(torsion), 15);
+  ModelData bilinear = data;
+  bilinear.bilinear_constraints.push_back({0, 1, 2, 3, {{{0, 1, 0}, {-1, 0, 0}, {}}}, 0.0, "b"});
+  EXPECT_EQ(extra(bilinear), 28);
+  ModelData couple = data;
+  couple.couples.push_back({0, 1, -1, 2.0, "c"});  // its derivative stays out of K
+  EXPECT_EQ(extra(couple), 0);
 }
 
 TEST(TangentNonzeros, IsQuickForLargeSparseModels) {

@@ -23,7 +23,7 @@ void expect_consistent(const Model& model, const State& state) {
   };
   const Eigen::MatrixXd Phi_q = test::dense_jacobian(model, state.q);
   std::vector<double> curvature(static_cast<std::size_t>(model.constraints()));
-  constraint_curvature(model, state.v, curvature);
+  constraint_curvature(model, 0.0, state.q, state.v, curvature);
   const Eigen::VectorXd a = vector(state.a);
   const Eigen::VectorXd forces = test::dense_mass(model) * a +
                                  Phi_q.transpose() * vector(state.lambda) - vector(model.force());

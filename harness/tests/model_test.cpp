@@ -96,7 +96,7 @@ TEST(Kinematics, ConstraintsAreThoseOfTheEquations) {
   const Model model(sample());
   const std::vector<double> q{2.0, 1.5, 0.7, 1.0, 0.5, -0.4};
   std::vector<double> phi(4);
-  evaluate_constraints(model, q, phi);
+  evaluate_constraints(model, 0.0, q, phi);
   EXPECT_NEAR(phi[0], 0.9 * 0.9 + 0.3 * 0.3 + 0.7 * 0.7 - 1.2, 1e-15);
   EXPECT_NEAR(phi[1], -1.0 * 1.1 + -1.0 * -1.8 + -1.1 * -0.2 - 0.3, 1e-15);
   EXPECT_NEAR(phi[2], 0.9 * 1.0 + 0.3 * 1.0 + -0.7 * 1.1 - 0.1, 1e-15);
@@ -106,7 +106,7 @@ TEST(Kinematics, ConstraintsAreThoseOfTheEquations) {
 TEST(Kinematics, JacobianIsTheDerivative) {
   const Model model(sample());
   const std::vector<double> q{2.0, 1.5, 0.7, 1.0, 0.5, -0.4};
-  const auto entries = jacobian(model, q);
+  const auto entries = jacobian(model, 0.0, q);
   EXPECT_EQ(entries.size(), 3u + 6u + 6u + 2u);
   std::vector<std::vector<double>> dense(4, std::vector<double>(6, 0.0));
   for (std::size_t k = 0; k < entries.size(); ++k) {
@@ -118,7 +118,7 @@ TEST(Kinematics, JacobianIsTheDerivative) {
   }
   std::vector<double> rate(4);
   const std::vector<double> v(model.initial_velocity().begin(), model.initial_velocity().end());
-  constraint_rate(model, q, v, rate);
+  constraint_rate(model, 0.0, q, v, rate);
   std::vector<double> above(4);
   std::vector<double> below(4);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -129,8 +129,8 @@ TEST(Kinematics, JacobianIsTheDerivative) {
       auto q_below = q;
       q_above[j] += 0.125;  // central differences of a quadratic are exact
       q_below[j] -= 0.125;
-      evaluate_constraints(model, q_above, above);
-      evaluate_constraints(model, q_below, below);
+      evaluate_constraints(model, 0.0, q_above, above);
+      evaluate_constraints(model, 0.0, q_below, below);
       EXPECT_NEAR(dense[i][j], (above[i] - below[i]) / 0.25, 1e-14) << i << ", " << j;
     }
     EXPECT_NEAR(rate[i], product, 1e-14);
@@ -142,8 +142,9 @@ TEST(Kinematics, EnergyOfASwingingRod) {
   const Model model(parse_scene(R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
       {"name": "B", "position": [0, 2], "velocity": [3, 0]}],
       "rods": [{"between": ["A", "B"], "mass": 6}]})",
-                                "test"));
-  EXPECT_NEAR(energy(model, model.initial_position(), model.initial_velocity()),
+                                "test")
+                        .model);
+  EXPECT_NEAR(energy(model, 0.0, model.initial_position(), model.initial_velocity()),
               6.0 * 4.0 * 1.5 * 1.5 / 6.0 + 6.0 * 9.81 * 1.0, 1e-12);
 }
 
@@ -161,15 +162,15 @@ TEST(Kinematics, NothingHidesANaN) {
   const std::vector<double> v(6, 1.0);
   q[5] = kNaN;  // B.z
   std::vector<double> phi(4);
-  evaluate_constraints(model, q, phi);
+  evaluate_constraints(model, 0.0, q, phi);
   for (const double value : phi) EXPECT_TRUE(std::isnan(value));
-  constraint_rate(model, q, v, phi);
+  constraint_rate(model, 0.0, q, v, phi);
   EXPECT_TRUE(std::isnan(phi[0]));
-  EXPECT_TRUE(std::isnan(energy(model, q, v)));
+  EXPECT_TRUE(std::isnan(energy(model, 0.0, q, v)));
   EXPECT_THROW(jacobian_rank(model, q), std::invalid_argument);
   std::vector<double> infinite(v);
   infinite[0] = HUGE_VAL;
-  EXPECT_FALSE(std::isfinite(energy(model, model.initial_position(), infinite)));
+  EXPECT_FALSE(std::isfinite(energy(model, 0.0, model.initial_position(), infinite)));
 }
 
 TEST(Kinematics, WrongSizesAreRefused) {
@@ -177,12 +178,12 @@ TEST(Kinematics, WrongSizesAreRefused) {
   const std::vector<double> q(6, 0.0);
   const std::vector<double> wrong(5, 0.0);
   std::vector<double> phi(4);
-  EXPECT_THROW(evaluate_constraints(model, wrong, phi), std::invalid_argument);
-  EXPECT_THROW(constraint_rate(model, q, wrong, phi), std::invalid_argument);
-  EXPECT_THROW(jacobian(model, wrong), std::invalid_argument);
-  EXPECT_THROW(energy(model, q, wrong), std::invalid_argument);
+  EXPECT_THROW(evaluate_constraints(model, 0.0, wrong, phi), std::invalid_argument);
+  EXPECT_THROW(constraint_rate(model, 0.0, q, wrong, phi), std::invalid_argument);
+  EXPECT_THROW(jacobian(model, 0.0, wrong), std::invalid_argument);
+  EXPECT_THROW(energy(model, 0.0, q, wrong), std::invalid_argument);
   phi.resize(5);
-  EXPECT_THROW(evaluate_constraints(model, q, phi), std::invalid_argument);
+  EXPECT_THROW(evaluate_constraints(model, 0.0, q, phi), std::invalid_argument);
 }
 
 TEST(JacobianRank, CountsIndependentRows) {
@@ -200,7 +201,7 @@ TEST(JacobianRank, FourBarLosesRankWhereItIsFlat) {
   const std::vector<double> flat{1.0, 0.0, 2.0, 0.0, 3.0, 0.0, 4.0, 0.0};
   EXPECT_EQ(jacobian_rank(model, flat), 4);
   const Model large(four_bar(200));
-  EXPECT_FALSE(jacobian_rank(large, large.initial_position()).has_value());
+  EXPECT_EQ(jacobian_rank(large, large.initial_position()), 401);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ class DenseOperations final : public Operations {
   void set_coordinates(std::span<const double> q) override { q_.assign(q.begin(), q.end()); }
   void evaluate_jacobian() override {
     jacobian_.assign(static_cast<std::size_t>(model_.constraints()) * q_.size(), 0.0);
-    for (const JacobianEntry& e : jacobian(model_, q_)) {
+    for (const JacobianEntry& e : jacobian(model_, 0.0, q_)) {
       jacobian_[static_cast<std::size_t>(e.row) * q_.size() + static_cast<std::size_t>(e.col)] =
           e.value;
     }

@@ -201,14 +201,14 @@ TEST(ReferenceSimulation, KeepsConstraintsAndEnergyOfASpatialMotion) {
     ReferenceSimulation simulation(model, refined(model, step));
     State state = initial_state(model);
     simulation.set_state(state);
-    const double energy_before = energy(model, state.q, state.v);
+    const double energy_before = energy(model, 0.0, state.q, state.v);
     double drift = 0.0, violation = 0.0;
     std::vector<double> phi(static_cast<std::size_t>(model.constraints()));
     for (long i = 0; i < std::lround(2.0 / step); ++i) {
       ASSERT_NE(simulation.step().status, StepStatus::factorization_failed);
       simulation.get_state(state);
-      drift = std::max(drift, std::abs(energy(model, state.q, state.v) - energy_before));
-      evaluate_constraints(model, state.q, phi);
+      drift = std::max(drift, std::abs(energy(model, 0.0, state.q, state.v) - energy_before));
+      evaluate_constraints(model, 0.0, state.q, phi);
       for (const double value : phi) violation = std::max(violation, std::abs(value));
     }
     EXPECT_LT(drift, 0.02) << step;  // of 30 J that change hands

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "controls/controls.hpp"
 #include "run/settings.hpp"
@@ -55,7 +57,8 @@ TEST(Run, ReportsASoundRun) {
   ASSERT_TRUE(summary.position_error_max);
   EXPECT_GT(*summary.position_error_max, 1e-8);
   EXPECT_LT(*summary.position_error_max, 1e-3);
-  EXPECT_LT(summary.energy_drift_max, 1e-4);
+  ASSERT_TRUE(summary.energy_drift_max);
+  EXPECT_LT(*summary.energy_drift_max, 1e-4);
   EXPECT_LT(summary.constraint_violation_max, 1e-6);
 }
 
@@ -64,7 +67,7 @@ TEST(Run, HasNoPositionErrorWithoutAnExactSolution) {
   const RunSummary summary = run(scene, control("reference"), settings_for(scene, 0.5));
   EXPECT_EQ(summary.status, RunStatus::ok) << summary.reason;
   EXPECT_FALSE(summary.position_error_max);
-  EXPECT_LT(summary.energy_drift_max, 1e-3);
+  EXPECT_LT(summary.energy_drift_max.value(), 1e-3);
 }
 
 TEST(Run, WorksWithoutConstraints) {
@@ -72,7 +75,7 @@ TEST(Run, WorksWithoutConstraints) {
   const RunSummary summary = run(scene, control("reference"), settings_for(scene, 0.5));
   EXPECT_EQ(summary.status, RunStatus::ok) << summary.reason;
   EXPECT_EQ(summary.constraint_violation_max, 0.0);
-  EXPECT_LT(summary.energy_drift_max, 1e-12);
+  EXPECT_LT(summary.energy_drift_max.value(), 1e-12);
 }
 
 TEST(Run, TellsThatTooSoftOrTooStiffAPenaltyDiverges) {
@@ -117,7 +120,7 @@ TEST(Run, NeverCallsNanOk) {
       EXPECT_EQ(summary.status, RunStatus::diverged) << name;
       EXPECT_EQ(summary.reason, "the state is not finite");
       EXPECT_EQ(summary.steps, step);
-      EXPECT_FALSE(std::isfinite(summary.energy_drift_max));
+      EXPECT_FALSE(std::isfinite(summary.energy_drift_max.value()));
       EXPECT_FALSE(std::isfinite(summary.constraint_violation_max));
       if (summary.position_error_max) {
         EXPECT_FALSE(std::isfinite(*summary.position_error_max));
@@ -155,6 +158,104 @@ TEST(Judge, NamesWhatIsLost) {
   state = initial;
   for (double& velocity : state.v) velocity *= 3.0;
   EXPECT_TRUE(Judge(scene, initial, 0.0).judge(0.0, state).starts_with("energy drifted by"));
+}
+
+/// A mass on a spring along x, stretched by 0.5 m; `damping` in N s/m.
+Scene oscillator(double damping) {
+  ModelData data;
+  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1.5, 0, 0}}};
+  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
+  data.force = data.initial_velocity = {0.0, 0.0};
+  data.springs.push_back({0, 1, 100.0, damping, 1.0, "spring"});
+  return {"oscillator", Model(std::move(data)), {}, {}};
+}
+
+State at(double x, double vx) { return {{x, 0}, {vx, 0}, {0, 0}, {}, 0.0}; }
+
+TEST(Judge, JudgesEnergyOfConservativeModelsOnly) {
+  const Scene conservative = oscillator(0.0), damped = oscillator(5.0);
+  Judge strict(conservative, at(1.5, 0.0), 0.0);
+  EXPECT_EQ(strict.judge(0.1, at(1.0, 5.0)), "");  // 100 * 0.5^2 / 2 J either way
+  EXPECT_NEAR(*strict.energy_drift_max(), 0.0, 1e-12);
+  EXPECT_TRUE(strict.judge(0.2, at(1.0, 3.0)).starts_with("energy drifted by"));
+  Judge lenient(damped, at(1.5, 0.0), 0.0);
+  EXPECT_EQ(lenient.judge(0.2, at(1.0, 3.0)), "");
+  EXPECT_FALSE(lenient.energy_drift_max());
+  State lost = at(1.0, 3.0);
+  lost.v[1] = kNaN;
+  EXPECT_EQ(lenient.judge(0.2, lost), "the state is not finite");
+}
+
+TEST(Judge, ASpringAtRestGivesTheEnergyScale) {
+  const Scene scene = oscillator(0.0);
+  // At the first step hardly anything moves: the drift is small against what the spring holds.
+  Judge judge(scene, at(1.5, 0.0), 0.0);
+  EXPECT_EQ(judge.judge(1e-6, at(1.5, 1e-4)), "");
+}
+
+TEST(Judge, ScalesLinearAndBilinearConstraints) {
+  ModelData data;
+  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {2, 0, 0}}, {"C", 2, {4, 0, 0}}};
+  for (int i = 0; i < 4; ++i) data.mass.push_back({i, i, 1.0});
+  data.force = data.initial_velocity = {0.0, 0.0, 0.0, 0.0};
+  data.bilinear_constraints.push_back({1, 0, 2, 0, {{{0, 1, 0}, {-1, 0, 0}, {}}}, 0.0, "parallel"});
+  data.linear_constraints = {{{{1, 5.0}}, 0.0, "rail"}};
+  const Scene scene{"test", Model(std::move(data)), {}, {}};
+  const State start{{2, 0, 4, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0}, 0.0};
+  const auto verdict = [&](double b_y, double c_y) {
+    State state = start;
+    state.q[1] = b_y;
+    state.q[3] = c_y;
+    return Judge(scene, start, 0.0).judge(0.0, state);
+  };
+  EXPECT_EQ(verdict(0.0, 0.03), "");  // Phi = 2 * 0.03 of |u| |w| = 8
+  EXPECT_TRUE(verdict(0.0, 0.05).starts_with("constraints violated by 1.25e-02"));
+  EXPECT_EQ(verdict(0.03, 0.06), "");  // Phi = 5 * 0.03 of 5 * 4 m
+  EXPECT_TRUE(verdict(0.05, 0.1).starts_with("constraints violated by 1.25e-02"));
+}
+
+/// f(t) = 1, known until `end`.
+class Table final : public TimeFunction::Kind {
+ public:
+  explicit Table(double end) : end_(end) {}
+  [[nodiscard]] TimeFunction::Sample at(double) const override { return {1.0, 0.0, 0.0}; }
+  [[nodiscard]] double end() const override { return end_; }
+
+ private:
+  double end_;
+};
+
+Scene driven_until(double end) {
+  ModelData data;
+  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1, 0, 0}}};
+  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
+  data.force = data.initial_velocity = {0.0, 0.0};
+  data.dot_constraints = {{0, 1, 0, 1, 1.0, "rod"}};
+  data.driven_values.push_back({0, TimeFunction(std::make_shared<Table>(end))});
+  return {"driven", Model(std::move(data)), {}, {}};
+}
+
+TEST(Run, RefusesToGoBeyondADriversEnd) {
+  const Scene scene = driven_until(0.5);
+  RunSettings settings;
+  settings.duration = 0.5;
+  EXPECT_NO_THROW(require_duration(scene.model, settings));
+  settings.duration = 0.51;
+  EXPECT_THROW(require_duration(scene.model, settings), UsageError);
+  try {
+    run(scene, control("reference"), settings);
+    ADD_FAILURE() << "it ran";
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("0.51 s, but a driver's table ends at 0.5 s"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(Stretch, EndsWithTheDrivers) {
+  EXPECT_EQ(make_stretch(driven_until(0.5), 1.25e-3, 800).steps, 400);
+  EXPECT_EQ(make_stretch(driven_until(0.5), 1.25e-3, 300).steps, 300);
+  EXPECT_THROW(make_stretch(driven_until(0.5), 0.6, 300), UsageError);
 }
 
 TEST(Run, TellsThatAFactorizationFailed) {

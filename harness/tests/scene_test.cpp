@@ -63,9 +63,9 @@ TEST(FourBar, IsTheMechanismOfThePaper) {
   EXPECT_DOUBLE_EQ(model.force()[1], -9.81);
   EXPECT_DOUBLE_EQ(model.force()[3], -1.5 * 9.81);
   std::vector<double> residual(7);
-  evaluate_constraints(model, model.initial_position(), residual);
+  evaluate_constraints(model, 0.0, model.initial_position(), residual);
   for (const double value : residual) EXPECT_EQ(value, 0.0);
-  constraint_rate(model, model.initial_position(), model.initial_velocity(), residual);
+  constraint_rate(model, 0.0, model.initial_position(), model.initial_velocity(), residual);
   for (const double value : residual) EXPECT_EQ(value, 0.0);
 }
 
@@ -74,7 +74,8 @@ TEST(FourBar, EnergyIsThatOfTheReducedMechanism) {
   for (const int loops : {1, 4}) {
     const Model model(four_bar(loops));
     const double cranks = loops + 1;
-    EXPECT_NEAR(energy(model, model.initial_position(), model.initial_velocity()),
+    EXPECT_NEAR(kinetic_energy(model, model.initial_velocity()) +
+                    potential_energy(model, 0.0, model.initial_position()),
                 cranks / 6.0 + loops / 2.0 + 9.81 * (cranks / 2.0 + loops), 1e-12);
   }
 }
@@ -128,15 +129,14 @@ TEST(LoadScene, ListsWhatIsAllowed) {
 
 TEST(LoadScene, ReadsTheShippedScenes) {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
-    if (entry.path().extension() != ".json") continue;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kScenes)) {
+    if (entry.path().extension() != ".json" || entry.path().stem() == "scene.schema") continue;
     ++count;
     const Scene scene = load_scene(entry.path().string());
     EXPECT_EQ(scene.name, entry.path().string());
     EXPECT_FALSE(scene.four_bar_loops.has_value());
-    EXPECT_GE(scene.model.constraints(), 1);
   }
-  EXPECT_EQ(count, 4);
+  EXPECT_GE(count, 4);
 }
 
 TEST(LoadScene, FourBarByHandIsTheGeneratedOne) {
@@ -167,7 +167,7 @@ TEST(LoadScene, NamesAreUtf8WhateverThePath) {
 }
 
 TEST(ParseScene, Defaults) {
-  const Model model(parse_scene(pendulum(), "test"));
+  const Model model(parse_scene(pendulum(), "test").model);
   EXPECT_EQ(model.dimension(), 2);
   EXPECT_EQ(model.dot_constraints()[0].value, 4.0);
   EXPECT_EQ(mass_at(model, 0, 0), 1.0);
@@ -181,23 +181,24 @@ TEST(ParseScene, SpatialWithEveryMember) {
   const Model model(parse_scene(R"(/* all of it */ {"dimension": 3, "gravity": [1, 0, -2],
     "points": [{"name": "G\u00e9", "position": [0, 0, 0], "fixed": true, "velocity": [0, 0, 0]},
                {"name": "B", "position": [1, 0, 0]}, {"name": "C", "position": [1, 2, 0]}],
-    "rods": [{"between": ["Gé", "B"], "mass": 0, "length": 1.0000000005},
+    "rods": [{"between": ["Gé", "B"], "mass": 0, "length": 1},
              {"name": "BC", "between": ["B", "C"], "mass": 6}],
     "masses": [{"point": "B", "mass": 2}, {"point": "B", "mass": 1}], // twice is fine
     "constraints": [{"name": "square", "type": "dot", "first": ["Gé", "B"], "second": ["B", "C"]},
       {"type": "linear", "terms": [{"point": "C", "axis": "z", "coefficient": 2},
                                    {"point": "B", "axis": "z", "coefficient": -1}], "value": 0}]})",
-                                "test"));
+                                "test")
+                        .model);
   EXPECT_EQ(model.variables(), 6);
   ASSERT_EQ(model.constraints(), 4);
   EXPECT_EQ(model.dot_constraints()[0].name, "rods[0]");
-  EXPECT_EQ(model.dot_constraints()[0].value, 1.0000000005 * 1.0000000005);
+  EXPECT_EQ(model.dot_constraints()[0].value, 1.0);
   EXPECT_EQ(model.dot_constraints()[1].name, "rods[1] \"BC\"");
   EXPECT_EQ(model.dot_constraints()[2].name, "constraints[0] \"square\"");
   EXPECT_EQ(model.dot_constraints()[2].value, 0.0);
-  EXPECT_EQ(model.linear_constraints()[0].terms[0].coordinate, 5);
-  EXPECT_EQ(model.linear_constraints()[0].terms[1].coordinate, 2);
-  EXPECT_EQ(model.linear_constraints()[0].terms[1].coefficient, -1.0 / std::sqrt(5.0));
+  EXPECT_EQ(model.linear_constraints()[0].terms[0].coordinate, 2);
+  EXPECT_EQ(model.linear_constraints()[0].terms[0].coefficient, -1.0 / std::sqrt(5.0));
+  EXPECT_EQ(model.linear_constraints()[0].terms[1].coordinate, 5);
   EXPECT_EQ(mass_at(model, 0, 0), 5.0);
   EXPECT_EQ(mass_at(model, 5, 5), 2.0);
   EXPECT_EQ(mass_at(model, 5, 2), 1.0);
@@ -211,7 +212,8 @@ TEST(ParseScene, ConstraintValuesDefaultToTheStart) {
     "masses": [{"point": "B", "mass": 1}, {"point": "C", "mass": 1}],
     "constraints": [{"type": "dot", "first": ["B", "A"], "second": ["C", "A"]},
       {"type": "linear", "terms": [{"point": "B", "axis": "y", "coefficient": 3}]}]})",
-                                "test"));
+                                "test")
+                        .model);
   EXPECT_EQ(model.dot_constraints()[0].value, 10.0);
   EXPECT_EQ(model.linear_constraints()[0].value, 2.0);  // 3 y = 6, to unit length
 }
@@ -219,7 +221,8 @@ TEST(ParseScene, ConstraintValuesDefaultToTheStart) {
 TEST(ParseScene, FreeFlightIsAllowed) {
   const Model model(parse_scene(R"({"points": [{"name": "B", "position": [1, 2]},
     {"name": "C", "position": [4, 3]}], "rods": [{"between": ["B", "C"], "mass": 1}]})",
-                                "test"));
+                                "test")
+                        .model);
   EXPECT_EQ(model.variables(), 4);
   EXPECT_EQ(model.constraints(), 1);
 }

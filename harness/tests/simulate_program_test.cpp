@@ -3,14 +3,17 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "model_math/kinematics.hpp"
 #include "registry/registry.hpp"
 #include "run/run.hpp"
+#include "support/folder.hpp"
 #include "support/program.hpp"
 
 namespace mbs {
@@ -18,20 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-/// An empty folder of its own, removed with everything in it.
-class Folder {
- public:
-  Folder() : path_(test::temporary_path("folder")) { fs::create_directory(path_); }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
-  [[nodiscard]] bool is_empty() const { return fs::is_empty(path_); }
-
- private:
-  std::string path_;
-};
 
 class SimulateProgram : public ::testing::Test {
  protected:
@@ -72,6 +61,8 @@ TEST_F(SimulateProgram, SummaryHasEveryField) {
   EXPECT_EQ(summary.at("duration"), 0.5);
   EXPECT_EQ(summary.at("penalty"), 1e8);
   EXPECT_EQ(summary.at("tolerance"), 1e-8);
+  EXPECT_EQ(summary.at("projections"), "both");
+  EXPECT_EQ(summary.at("assembly").at("position_correction"), 0.0);
   EXPECT_EQ(summary.at("status"), "ok");
   EXPECT_EQ(summary.at("status_reason"), "");
   EXPECT_TRUE(summary.at("failed_at").is_null());
@@ -149,8 +140,16 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
+double largest_violation(const Model& model, double t, const std::vector<double>& q) {
+  std::vector<double> phi(static_cast<std::size_t>(model.constraints()));
+  evaluate_constraints(model, t, q, phi);
+  double largest = 0.0;
+  for (const double value : phi) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
 TEST_F(SimulateProgram, TrajectoryHasTheStatesToTheLastBit) {
-  const Folder folder;
+  const test::Folder folder;
   const std::string file = folder.file("out.csv");
   const std::string options = "four-bar:1 --duration 0.01 --penalty 1e8 --tolerance 1e-9 ";
   ASSERT_EQ(simulate(options + "--every 3 --trajectory '" + file + "'").status, 0);
@@ -159,17 +158,37 @@ TEST_F(SimulateProgram, TrajectoryHasTheStatesToTheLastBit) {
   ASSERT_EQ(lines.size(), 4U);  // the header, and the steps 0, 3 and 6 of 8
   EXPECT_EQ(lines[0],
             "t,A0.x,A0.y,A0.vx,A0.vy,A1.x,A1.y,A1.vx,A1.vy,"
-            "B0.x,B0.y,B0.vx,B0.vy,B1.x,B1.y,B1.vx,B1.vy");
+            "B0.x,B0.y,B0.vx,B0.vy,B1.x,B1.y,B1.vx,B1.vy,"
+            "kinetic_energy,potential_energy,constraint_violation");
 
   std::vector<std::vector<double>> expected;
   RunSettings settings;
   settings.duration = 0.01;
-  run(load_scene("four-bar:1"), *all_variants().front().variant, settings,
+  const Scene scene = load_scene("four-bar:1");
+  run(scene, *all_variants().front().variant, settings,
       [&](long step, double t, const State& state) {
         if (step % 3 != 0) return;
         const auto &q = state.q, &v = state.v;
-        expected.push_back({t, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, q[0], q[1], v[0], v[1], q[2],
-                            q[3], v[2], v[3]});
+        expected.push_back({t,
+                            0.0,
+                            0.0,
+                            0.0,
+                            0.0,
+                            1.0,
+                            0.0,
+                            0.0,
+                            0.0,
+                            q[0],
+                            q[1],
+                            v[0],
+                            v[1],
+                            q[2],
+                            q[3],
+                            v[2],
+                            v[3],
+                            kinetic_energy(scene.model, v),
+                            potential_energy(scene.model, t, q),
+                            largest_violation(scene.model, t, q)});
       });
   for (std::size_t row = 0; row < 3; ++row) {
     std::vector<double> numbers;
@@ -181,7 +200,7 @@ TEST_F(SimulateProgram, TrajectoryHasTheStatesToTheLastBit) {
 }
 
 TEST_F(SimulateProgram, TrajectoryOfADivergedRunHasWhatCameBefore) {
-  const Folder folder;
+  const test::Folder folder;
   const std::string file = folder.file("out.csv");
   EXPECT_EQ(simulate("four-bar:3 --penalty 1e-3 --trajectory '" + file + "'").status, 1);
   const auto lines = split(test::file_text(file), '\n');
@@ -190,7 +209,7 @@ TEST_F(SimulateProgram, TrajectoryOfADivergedRunHasWhatCameBefore) {
 }
 
 TEST_F(SimulateProgram, ARefusedRunLeavesNothingBehind) {
-  const Folder folder;
+  const test::Folder folder;
   const std::string to_file = " --trajectory '" + folder.file("out.csv") + "'";
   expect_refusal("four-bar:2 --step 0" + to_file, "--step");
   expect_refusal("four-bar:2 --every 0" + to_file, "--every");
@@ -200,7 +219,7 @@ TEST_F(SimulateProgram, ARefusedRunLeavesNothingBehind) {
 }
 
 TEST_F(SimulateProgram, ARefusedRunLeavesOlderFilesAlone) {
-  const Folder folder;
+  const test::Folder folder;
   const std::string file = folder.file("out.csv");
   std::ofstream(file) << "precious";
   expect_refusal("four-bar:2 --duration 0 --trajectory '" + file + "'", "--duration");
@@ -208,7 +227,7 @@ TEST_F(SimulateProgram, ARefusedRunLeavesOlderFilesAlone) {
 }
 
 TEST_F(SimulateProgram, RefusesUnwritableOutput) {
-  const Folder folder;
+  const test::Folder folder;
   const std::string missing = folder.file("none/out.csv");
   expect_refusal("four-bar:2 --trajectory '" + missing + "'", missing);
   fs::create_directory(folder.file("taken"));
@@ -217,7 +236,7 @@ TEST_F(SimulateProgram, RefusesUnwritableOutput) {
 
 // Through links of our own, so that a defect could only replace those.
 TEST_F(SimulateProgram, WritesToDevicesWithoutReplacingThem) {
-  const Folder folder;
+  const test::Folder folder;
   const std::string full = folder.file("full"), null = folder.file("null");
   fs::create_symlink("/dev/full", full);
   fs::create_symlink("/dev/null", null);
@@ -287,9 +306,9 @@ TEST_F(SimulateProgram, RefusesScenesThatCannotBe) {
       {"", "empty"},
       {head + R"(], "rods": [{"between": ["A", "B"], "mass": -1}]})", "rods[0].mass"},
       {head +
-           R"(, {"name": "C", "position": [1, 0]}], "rods": [{"between": ["B", "C"], "mass": 1}]})",
+           R"(, {"name": "C", "position": [1, 0]}], "rods": [{"between": ["B", "C"], "mass": 1}, {"between": ["A", "B"], "mass": 1}]})",
        "rods[0]"},
-      {head + R"(, {"name": "C", "position": [2, 0]}], "rods": [)" + rod + "]}", "\"C\""},
+      {head + R"(, {"name": "C", "position": [2, 0]}], "rods": [)" + rod + "]}", "points[2]"},
       {head +
            R"(, {"name": "C", "position": [2, 0], "fixed": true}, {"name": "D", "position": [1, 1],
 "fixed": true}], "rods": [)" +
@@ -298,9 +317,9 @@ TEST_F(SimulateProgram, RefusesScenesThatCannotBe) {
        "over-fixed"},
       {head + R"(], "gravity": [0, 1e999], "rods": [)" + rod + "]}", "1e999"},
       {head + R"(], "gravity": [0, NaN], "rods": [)" + rod + "]}", "line 2"},
-      {head + R"(], "rods": [)" + rod + R"(], "springs": []})", "springs"},
+      {head + R"(], "rods": [)" + rod + R"(], "strings": []})", "strings"},
   };
-  const Folder folder;
+  const test::Folder folder;
   for (const auto& [text, word] : cases) {
     std::ofstream(folder.file("scene.json")) << text;
     expect_refusal("'" + folder.file("scene.json") + "'", word);

@@ -19,6 +19,7 @@ Implementation implementation() {
           .description = "tangent by dsyrk, Cholesky by dpotrf, in place",
           .create = [](const Model& model,
                        const StepSettings& settings) -> std::unique_ptr<mbs::Simulation> {
+            require_storable(model);
             return std::make_unique<DenseSimulation>(model, settings);
           },
           .dense = true,

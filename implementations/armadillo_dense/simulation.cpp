@@ -7,14 +7,14 @@
 namespace mbs::armadillo_dense {
 
 DenseSimulation::DenseSimulation(const Model& model, const StepSettings& settings)
-    : mbs::Simulation(model.variables(), model.constraints()),
+    : mbs::Simulation(model, settings),
       settings_(settings),
       assembly_(model, settings),
       solver_(model.variables()),
       n_(model.variables()),
       m_(model.constraints()),
-      q_(assembly_.initial_positions()),
-      v_(assembly_.zero_velocities()),
+      q_(assembly_.layout().positions(model)),
+      v_(assembly_.layout().zeros()),
       a_(n_, arma::fill::zeros),
       lambda_(m_, arma::fill::zeros),
       mu_(m_, arma::fill::zeros),
@@ -37,6 +37,7 @@ void DenseSimulation::do_get_state(State& state) const {
 }
 
 StepOutcome DenseSimulation::do_step() {
+  if (assembly_.is_driven()) assembly_.drive(time(), q_, v_);
   predict();
   phases_.enter(Phase::evaluation);
   assembly_.evaluate(q_);
@@ -45,7 +46,7 @@ StepOutcome DenseSimulation::do_step() {
     ++outcome.passes;
     phases_.enter(Phase::evaluation);
     mu_ = lambda_ + settings_.penalty * assembly_.phi();
-    assembly_.negative_residual(a_, mu_, rhs_);
+    assembly_.negative_residual(q_, v_, a_, mu_, rhs_);
     phases_.enter(Phase::assembly);
     assembly_.tangent(solver_.matrix());
     phases_.enter(Phase::factorization);
@@ -103,13 +104,18 @@ bool DenseSimulation::correct() {
 }
 
 void DenseSimulation::project() {
+  if (settings_.projections == Projections::none) return;
   phases_.enter(Phase::projection);
-  assembly_.velocity_projection(v_, rhs_);
+  assembly_.velocity_projection(q_, v_, rhs_);
   phases_.enter(Phase::solve);
   solver_.solve(rhs_);  // Eq. (6)
   phases_.enter(Phase::projection);
   std::copy_n(rhs_.begin(), n_, v_.begin());
-  assembly_.acceleration_projection(v_, a_, rhs_);
+  if (settings_.projections == Projections::velocity) {
+    phases_.enter(Phase::other);
+    return;
+  }
+  assembly_.acceleration_projection(q_, v_, a_, rhs_);
   phases_.enter(Phase::solve);
   solver_.solve(rhs_);  // Eq. (6)
   phases_.enter(Phase::other);

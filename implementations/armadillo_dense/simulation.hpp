@@ -23,13 +23,14 @@ class DenseSimulation final : public mbs::Simulation {
   void predict();
   /// Applies Δq (rhs_) to q', v' and a'; whether max|Δq| <= tolerance (false with a NaN).
   [[nodiscard]] bool correct();
+  /// Eq. (6) as far as settings ask for it.
   void project();
 
   StepSettings settings_;
   Assembly assembly_;
   CholeskySolver solver_;
   arma::uword n_, m_;
-  arma::vec q_;       ///< extended (see Assembly), m
+  arma::vec q_;       ///< extended (see Layout), m
   arma::vec v_;       ///< extended, m/s
   arma::vec a_;       ///< n, m/s²
   arma::vec lambda_;  ///< m

@@ -4,88 +4,19 @@
 #include <cstddef>
 #include <utility>
 
+#include "schedule.hpp"
+
 namespace mbs::csc_cholmod {
 namespace {
 
-/// Visits each pair of entries of a linear row once: (row, column, product of coefficients).
-template <typename Visit>
-void for_linear_pairs(const LinearBlock& linear, Visit visit) {
-  for (int k = 0; k < linear.count; ++k) {
-    for (int s = linear.start[k]; s < linear.start[k + 1]; ++s) {
-      for (int t = s; t < linear.start[k + 1]; ++t) {
-        visit(linear.column[s], linear.column[t], linear.coefficient[s] * linear.coefficient[t]);
-      }
-    }
-  }
-}
-
-/// Visits each pair of entries of each other row once: (row, first entry, second entry).
-template <typename Visit>
-void for_pairs(const LoweredConstraints& lowered, Visit visit) {
-  for (int row = 0; row < lowered.distance.count + lowered.dot.count; ++row) {
-    const auto entries = lowered.entries(row);
-    for (std::size_t e = 0; e < entries.size(); ++e) {
-      for (std::size_t f = e; f < entries.size(); ++f) visit(row, entries[e], entries[f]);
-    }
-  }
-}
-
-std::vector<Contribution> row_contributions(const LoweredConstraints& lowered) {
-  std::vector<Contribution> result;
-  for (int row = 0; row < lowered.distance.count + lowered.dot.count; ++row) {
-    for (const JacobianEntry& e : lowered.entries(row)) {
-      result.push_back({e.column, e.value + (e.negative ? lowered.values() : 0)});
-    }
-  }
-  int source = 2 * lowered.values();
-  for (int column : lowered.linear.column) result.push_back({column, source++});
-  return result;
-}
-
-std::vector<Contribution> tangent_contributions(const LoweredConstraints& lowered,
-                                                const HalfPattern& pattern) {
-  std::vector<Contribution> result;
-  for_pairs(lowered, [&](int row, const JacobianEntry& e, const JacobianEntry& f) {
-    const int sign = e.negative != f.negative ? lowered.products() : 0;
-    result.push_back(
-        {pattern.index({e.column, f.column}), lowered.product(row, e.value, f.value) + sign});
-  });
+std::vector<double> constant_force(const Model& model, double factor,
+                                   const std::vector<int>& number) {
+  std::vector<double> result(model.variables());
+  for (int i = 0; i < model.variables(); ++i) result[number[i]] = factor * model.force()[i];
   return result;
 }
 
 }  // namespace
-
-HalfPattern tangent_pattern(const Model& model) {
-  std::vector<int> number(model.variables());
-  for (int i = 0; i < model.variables(); ++i) number[i] = i;
-  const LoweredConstraints lowered(model, Coordinates(model, number));
-  std::vector<Position> positions;
-  for (const MassEntry& e : model.mass()) positions.push_back({e.row, e.col});
-  for_pairs(lowered, [&](int, const JacobianEntry& e, const JacobianEntry& f) {
-    positions.push_back({e.column, f.column});
-  });
-  for_linear_pairs(lowered.linear, [&](int i, int j, double) { positions.push_back({i, j}); });
-  return HalfPattern(Half::lower, model.variables(), positions);
-}
-
-std::vector<double> mass_values(const Model& model, const HalfPattern& pattern,
-                                const std::vector<int>& number) {
-  std::vector<double> values(pattern.nonzeros());
-  for (const MassEntry& e : model.mass()) {
-    values[pattern.index({number[e.row], number[e.col]})] = e.value;
-  }
-  return values;
-}
-
-void add_linear_products(const LinearBlock& linear, const HalfPattern& pattern, double factor,
-                         std::vector<double>& values) {
-  for_linear_pairs(linear, [&](int i, int j, double product) {
-    values[pattern.index({i, j})] += factor * product;
-  });
-}
-
-AssemblySchedule::AssemblySchedule(const LoweredConstraints& lowered, const HalfPattern& pattern)
-    : rows_(row_contributions(lowered)), tangent_(tangent_contributions(lowered, pattern)) {}
 
 Assembly::Assembly(const Model& model, const StepSettings& settings, const HalfPattern& pattern,
                    std::vector<int> number, Half half)
@@ -93,49 +24,83 @@ Assembly::Assembly(const Model& model, const StepSettings& settings, const HalfP
       penalty_(settings.penalty),
       coordinates_(model, std::move(number)),
       lowered_(model, coordinates_),
+      lowered_forces_(model, coordinates_),
       pattern_(pattern.renumbered(half, coordinates_.number())),
-      schedule_(lowered_, pattern_),
+      rows_schedule_(row_contributions(lowered_)),
+      tangent_schedule_(tangent_contributions(lowered_, lowered_forces_, pattern_)),
       mass_(model, pattern_.half(), coordinates_.number()),
       constraints_(lowered_),
-      force_(model.variables()),
+      forces_(lowered_forces_, settings),
+      force_(constant_force(model, quarter_, coordinates_.number())),
+      drivers_(model, settings, coordinates_, lowered_, force_),
       constant_(mass_values(model, pattern_, coordinates_.number())),
+      products_(2 * (lowered_.products() + lowered_forces_.products())),
       row_(lowered_.rows()) {
-  const std::vector<int>& place = coordinates_.number();
-  for (int i = 0; i < model.variables(); ++i) force_[place[i]] = quarter_ * model.force()[i];
   add_linear_products(lowered_.linear, pattern_, quarter_ * penalty_, constant_);
   tangent_ = constant_;
 }
 
-void Assembly::update_multipliers(double* lambda) const {
-  const double* phi = constraints_.phi();
-  for (std::size_t k = 0; k < row_.size(); ++k) lambda[k] += penalty_ * phi[k];
+void Assembly::drive(double t, double* q, double* u) {
+  drivers_.drive(t, q, u, constraints_.target(), force_.data());
 }
 
-void Assembly::residual(const double* s, const double* lambda, double* result) {
+void Assembly::update_multipliers(double* lambda) const {
+  const double* phi = constraints_.phi();
+  for (std::size_t k = 0; k < row_.size(); ++k) lambda[k] += penalty_ * phi[k];  // Eq. (1)
+}
+
+void Assembly::residual(const double* q, const double* u, const double* s, const double* lambda,
+                        double* result) {
   const double* phi = constraints_.phi();
   for (std::size_t k = 0; k < row_.size(); ++k) {
     row_[k] = -quarter_ * (lambda[k] + penalty_ * phi[k]);
   }
   mass_.subtract_product(force_.data(), s, result);
   constraints_.multiply(row_.data());
-  schedule_.rows().sum(result, constraints_.forces(), result);  // Eq. (3)
+  rows_schedule_.sum(result, constraints_.forces(), result);  // Eq. (3)
+  if (!forces_.empty()) {
+    forces_.evaluate(q, u);
+    forces_.add_loads(q, result);
+  }
 }
 
 void Assembly::refresh_tangent() {
-  constraints_.multiply_pairs(quarter_ * penalty_);
-  schedule_.tangent().sum(constant_.data(), constraints_.products(), tangent_.data());  // Eq. (5)
+  constraints_.multiply_pairs(quarter_ * penalty_, products_.data());
+  if (!forces_.empty()) forces_.tangent(products_.data() + 2 * lowered_.products());
+  tangent_schedule_.sum(constant_.data(), products_.data(), tangent_.data());  // Eq. (5)
 }
 
-void Assembly::projections(const double* u, const double* s, double* velocity,
-                           double* acceleration) const {
+void Assembly::project_velocity(const double* q, const double* u, double* velocity) {
+  mass_.product(u, velocity);  // Eq. (6)
+  if (!forces_.empty()) forces_.add_product(u, velocity);
+  subtract_rates(q, velocity);
+}
+
+void Assembly::project_both(const double* q, const double* u, const double* s, double* velocity,
+                            double* acceleration) {
   mass_.products(u, s, velocity, acceleration);  // Eq. (6)
+  if (!forces_.empty()) {
+    forces_.add_product(u, velocity);
+    forces_.add_product(s, acceleration);
+  }
+  subtract_rates(q, velocity);
 }
 
-void Assembly::subtract_velocity_terms(const double* u, double* acceleration) {
+void Assembly::subtract_rates(const double* q, double* velocity) {
+  for (const DrivenRow& row : drivers_.rows()) {
+    const double factor = -quarter_ * penalty_ * drivers_.rate(row, q);  // Eq. (6)
+    constraints_.add_row(row.row, factor, velocity);
+  }
+}
+
+void Assembly::subtract_velocity_terms(const double* q, const double* u, double* acceleration) {
   // (dt^2/4)^2 v v = (dt^2/4) u u.
   constraints_.velocity_terms(u, -quarter_ * penalty_, row_.data());
+  for (const DrivenRow& row : drivers_.rows()) {
+    row_[row.row] -= quarter_ * penalty_ * drivers_.acceleration(row, q);
+  }
   constraints_.multiply(row_.data());
-  schedule_.rows().sum(acceleration, constraints_.forces(), acceleration);  // Eq. (6)
+  rows_schedule_.sum(acceleration, constraints_.forces(), acceleration);  // Eq. (6)
 }
 
 }  // namespace mbs::csc_cholmod

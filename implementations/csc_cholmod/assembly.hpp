@@ -4,7 +4,10 @@
 #include <vector>
 
 #include "constraints.hpp"
+#include "drivers.hpp"
+#include "forces.hpp"
 #include "gather.hpp"
+#include "lowered_forces.hpp"
 #include "lowering.hpp"
 #include "mass.hpp"
 #include "mbs/model.hpp"
@@ -13,33 +16,8 @@
 
 namespace mbs::csc_cholmod {
 
-/// Positions of T = M + (dt^2/4) alpha Phi_q^T Phi_q, lower half, in the model's own order.
-HalfPattern tangent_pattern(const Model& model);
-
-/// The part of a tangent matrix that no coordinate changes, on `pattern`: M, extended by zeros.
-/// Unknown i of the model is `number[i]` there.
-std::vector<double> mass_values(const Model& model, const HalfPattern& pattern,
-                                const std::vector<int>& number);
-/// values (on `pattern`) += factor * the linear rows' part of Phi_q^T Phi_q.
-void add_linear_products(const LinearBlock& linear, const HalfPattern& pattern, double factor,
-                         std::vector<double>& values);
-
-/// Symbolic: which summands of Phi_q^T x go into which row, and which products of two Jacobian
-/// values into which value of the tangent matrix.
-class AssemblySchedule {
- public:
-  AssemblySchedule(const LoweredConstraints& lowered, const HalfPattern& pattern);
-
-  [[nodiscard]] const GatherSchedule& rows() const { return rows_; }
-  [[nodiscard]] const GatherSchedule& tangent() const { return tangent_; }
-
- private:
-  GatherSchedule rows_;
-  GatherSchedule tangent_;
-};
-
-/// Numeric. Velocities and accelerations come as lengths, u = (dt/2) v and s = (dt^2/4) a, m: by
-/// Eq. (2) they grow by the same Delta q as the coordinates.
+/// Velocities and accelerations come as lengths, u = (dt/2) v and s = (dt^2/4) a, m: by Eq. (2)
+/// they grow by the same Delta q as the coordinates. q and u have all places, s n and a zero.
 class Assembly {
  public:
   /// `pattern`: of T in the model's order. Unknown i of the model becomes `number[i]`, and T is
@@ -55,7 +33,10 @@ class Assembly {
   /// Values of T, aligned with pattern(); the array stays where it is.
   [[nodiscard]] const double* tangent() const { return tangent_.data(); }
 
-  /// Phi and Phi_q at q (all places, m); every other call works with them.
+  [[nodiscard]] bool has_drivers() const { return !drivers_.empty(); }
+  /// Samples the drivers at time t, for the whole step; writes their places of q and u.
+  void drive(double t, double* q, double* u);
+  /// Phi and Phi_q at q; every other call works with them.
   void evaluate(const double* q) {
     constraints_.evaluate_jacobian(q);
     constraints_.evaluate_phi(q);
@@ -63,26 +44,38 @@ class Assembly {
   /// lambda += alpha Phi (rows).
   void update_multipliers(double* lambda) const;
   /// result (n) = -f, Eq. (3).
-  void residual(const double* s, const double* lambda, double* result);
-  /// Refreshes T, Eq. (5): only values that depend on q are written.
+  void residual(const double* q, const double* u, const double* s, const double* lambda,
+                double* result);
+  /// Refreshes T, Eq. (5), at the q of residual(): only values that depend on q are written.
   void refresh_tangent();
-  /// Eq. (6): velocity = M u*; acceleration = M s*, to be completed once u is known. n each.
-  void projections(const double* u, const double* s, double* velocity, double* acceleration) const;
-  /// Eq. (6): acceleration (n) -= (dt^2/4)^2 alpha Phi_q^T (Phi-dot_q v), u at all places.
-  void subtract_velocity_terms(const double* u, double* acceleration);
+
+  /// Eq. (6): velocity (n) is the right-hand side for u.
+  void project_velocity(const double* q, const double* u, double* velocity);
+  /// Eq. (6): the same; acceleration (n) to be completed once u is known.
+  void project_both(const double* q, const double* u, const double* s, double* velocity,
+                    double* acceleration);
+  /// Eq. (6): acceleration (n) -= (dt^2/4)^2 alpha Phi_q^T (Phi-dot_q v + Phi-dot_t).
+  void subtract_velocity_terms(const double* q, const double* u, double* acceleration);
 
  private:
+  void subtract_rates(const double* q, double* velocity);
+
   double quarter_;  ///< dt^2/4, s^2
   double penalty_;  ///< alpha
   Coordinates coordinates_;
   LoweredConstraints lowered_;
+  LoweredForces lowered_forces_;
   HalfPattern pattern_;
-  AssemblySchedule schedule_;
+  GatherSchedule rows_schedule_;     ///< of Phi_q^T x
+  GatherSchedule tangent_schedule_;  ///< of Phi_q^T Phi_q, C and K
   MassMatrix mass_;
   Constraints constraints_;
-  std::vector<double> force_;     ///< n, (dt^2/4) Q
+  Forces forces_;
+  std::vector<double> force_;  ///< n, (dt^2/4) Q without force elements
+  Drivers drivers_;
   std::vector<double> constant_;  ///< on pattern(): M and the linear constraints' part of T
   std::vector<double> tangent_;   ///< on pattern()
+  std::vector<double> products_;  ///< summands of T, scratch
   std::vector<double> row_;       ///< rows, scratch
 };
 

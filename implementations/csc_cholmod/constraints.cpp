@@ -1,24 +1,17 @@
 // Straight loops over the flat arrays of the lowered constraints.
 #include "constraints.hpp"
 
+#include <cstddef>
+
 namespace mbs::csc_cholmod {
 
 Constraints::Constraints(const LoweredConstraints& lowered)
     : lowered_(lowered),
+      target_(lowered.target),
       phi_(lowered.rows()),
       values_(lowered.values()),
-      u_(lowered.dot.a.size()),
-      w_(lowered.dot.a.size()),
-      forces_(2 * lowered.values() + lowered.linear.column.size()),
-      products_(2 * lowered.products()) {}
-
-void Constraints::dot_differences(const double* q) {
-  const DotBlock& dot = lowered_.dot;
-  for (std::size_t e = 0; e < u_.size(); ++e) {
-    u_[e] = q[dot.a[e]] - q[dot.b[e]];
-    w_[e] = q[dot.c[e]] - q[dot.d[e]];
-  }
-}
+      pairs_(lowered.pairs.begin(), lowered.pairs.end()),
+      forces_(2 * lowered.values() + lowered.linear.column.size()) {}
 
 void Constraints::evaluate_jacobian(const double* q) {
   const DistanceBlock& distance = lowered_.distance;
@@ -26,13 +19,10 @@ void Constraints::evaluate_jacobian(const double* q) {
   const int* plus = distance.plus.data();
   const int* minus = distance.minus.data();
   const int elements = lowered_.dimension * distance.count;
-  for (int e = 0; e < elements; ++e) values[e] = 2.0 * (q[plus[e]] - q[minus[e]]);
-
-  const DotBlock& dot = lowered_.dot;
-  values += elements;
-  dot_differences(q);
-  for (std::size_t i = 0; i < dot.source.size(); ++i) {
-    values[i] = dot.of_u[i] * u_[dot.source[i]] + dot.of_w[i] * w_[dot.source[i]];
+  for (int e = 0; e < elements; ++e) values[e] = 2.0 * (q[plus[e]] - q[minus[e]]);  // Eq. (7)
+  for (PairValues& block : pairs_) {
+    block.take(q);
+    block.write_jacobian(values);
   }
 }
 
@@ -41,25 +31,18 @@ void Constraints::evaluate_phi(const double* q) {
   const double* __restrict values = values_.data();
   double* __restrict phi = phi_.data();
   const int elements = lowered_.dimension * distance.count;
-  for (int k = 0; k < distance.count; ++k) phi[k] = -distance.squared_length[k];
+  for (std::size_t k = 0; k < phi_.size(); ++k) phi[k] = -target_[k];
   for (int first = 0; first < elements; first += distance.count) {
     for (int k = 0; k < distance.count; ++k) {
       phi[k] += 0.25 * values[first + k] * values[first + k];  // Eq. (7); the factors are exact
     }
   }
-
-  const DotBlock& dot = lowered_.dot;
-  phi += distance.count;
-  for (int k = 0; k < dot.count; ++k) phi[k] = -dot.target[k];
-  for (std::size_t e = 0, k = 0; e < u_.size(); ++e) {
-    phi[k] += u_[e] * w_[e];  // Eq. (7)
-    if (++k == static_cast<std::size_t>(dot.count)) k = 0;
-  }
+  for (const PairValues& block : pairs_) block.add_products(1.0, phi);  // Eq. (7)
 
   const LinearBlock& linear = lowered_.linear;
-  phi += dot.count;
+  phi += linear.first_row;
   for (int k = 0; k < linear.count; ++k) {
-    double sum = -linear.target[k];
+    double sum = phi[k];
     for (int t = linear.start[k]; t < linear.start[k + 1]; ++t) {
       sum += linear.coefficient[t] * q[linear.column[t]];  // Eq. (8)
     }
@@ -79,20 +62,17 @@ void Constraints::velocity_terms(const double* v, double factor, double* __restr
       result[k] += twice * difference * difference;
     }
   }
-  const DotBlock& dot = lowered_.dot;
-  dot_differences(v);
-  for (std::size_t e = 0, k = 0; e < u_.size(); ++e) {
-    result[distance.count + k] += twice * u_[e] * w_[e];
-    if (++k == static_cast<std::size_t>(dot.count)) k = 0;
+  for (PairValues& block : pairs_) {
+    block.take(v);
+    block.add_products(twice, result);
   }
 }
 
 void Constraints::multiply(const double* x) {
   const int count = lowered_.distance.count;
-  const int size = lowered_.values();
   const double* __restrict values = values_.data();
   double* __restrict plus = forces_.data();
-  double* __restrict minus = plus + size;
+  double* __restrict minus = plus + lowered_.values();
   int i = 0;
   for (int axis = 0; axis < lowered_.dimension; ++axis, i += count) {
     for (int k = 0; k < count; ++k) {
@@ -101,24 +81,24 @@ void Constraints::multiply(const double* x) {
       minus[i + k] = -force;
     }
   }
-  x += count;
-  for (int row : lowered_.dot.row) {
-    const double force = values[i] * x[row];
-    plus[i] = force;
-    minus[i++] = -force;
+  for (const PairBlock& block : lowered_.pairs) {
+    for (int row : block.row) {
+      const double force = values[i] * x[row];
+      plus[i] = force;
+      minus[i++] = -force;
+    }
   }
-  x += lowered_.dot.count;
   const LinearBlock& linear = lowered_.linear;
-  double* terms = plus + 2 * size;
+  double* terms = minus + lowered_.values();
   for (std::size_t t = 0; t < linear.row.size(); ++t) {
     terms[t] = linear.coefficient[t] * x[linear.row[t]];
   }
 }
 
-void Constraints::multiply_pairs(double factor) {
+void Constraints::multiply_pairs(double factor, double* products) const {
   const int count = lowered_.distance.count;
   const double* __restrict values = values_.data();
-  double* __restrict plus = products_.data();
+  double* __restrict plus = products;
   double* __restrict minus = plus + lowered_.products();
   const int elements = lowered_.dimension * count;
   for (int first = 0; first < elements; first += count) {
@@ -132,11 +112,26 @@ void Constraints::multiply_pairs(double factor) {
       minus += count;
     }
   }
-  const DotBlock& dot = lowered_.dot;
-  for (std::size_t p = 0; p < dot.left.size(); ++p) {
-    const double product = factor * values[dot.left[p]] * values[dot.right[p]];
-    plus[p] = product;
-    minus[p] = -product;
+  for (const PairBlock& block : lowered_.pairs) {
+    for (int p = 0; p < block.products(); ++p) {
+      const double product = factor * values[block.left[p]] * values[block.right[p]];
+      *plus++ = product;
+      *minus++ = -product;
+    }
+  }
+}
+
+void Constraints::add_row(int row, double x, double* result) const {
+  const LinearBlock& linear = lowered_.linear;
+  if (row < linear.first_row) {
+    for (const SignedEntry& e : lowered_.entries()[row]) {
+      result[e.column] += (e.negative ? -x : x) * values_[e.value];
+    }
+    return;
+  }
+  const int k = row - linear.first_row;
+  for (int t = linear.start[k]; t < linear.start[k + 1]; ++t) {
+    result[linear.column[t]] += x * linear.coefficient[t];
   }
 }
 

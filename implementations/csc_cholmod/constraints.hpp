@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lowering.hpp"
+#include "pair_values.hpp"
 
 namespace mbs::csc_cholmod {
 
@@ -19,29 +20,30 @@ class Constraints {
   void evaluate_jacobian(const double* q);
   /// Phi (rows) at the q of the last evaluate_jacobian(). Eqs. (7), (8)
   void evaluate_phi(const double* q);
-  /// result (rows) = factor * the part of Phi-double-dot free of a, at velocities v (all places).
+  /// result (rows) = factor * what velocities v (all places) alone give of Phi-double-dot.
   void velocity_terms(const double* v, double factor, double* result);
   /// Each Jacobian value times the x (rows) of its row: the summands of Phi_q^T x.
   void multiply(const double* x);
-  /// Factor times each product of two values: the summands of factor * Phi_q^T Phi_q.
-  void multiply_pairs(double factor);
+  /// products = factor times each product of two values, then the same negated: the summands of
+  /// factor * Phi_q^T Phi_q.
+  void multiply_pairs(double factor, double* products) const;
+  /// result (n) += x times one row of Phi_q.
+  void add_row(int row, double x, double* result) const;
 
   [[nodiscard]] const double* values() const { return values_.data(); }
   [[nodiscard]] const double* phi() const { return phi_.data(); }
   /// Of multiply(): values, negated values, then the terms of the linear constraints.
   [[nodiscard]] const double* forces() const { return forces_.data(); }
-  /// Of multiply_pairs(): products, negated products.
-  [[nodiscard]] const double* products() const { return products_.data(); }
+  /// The s of each row; drivers overwrite theirs.
+  [[nodiscard]] double* target() { return target_.data(); }
 
  private:
-  void dot_differences(const double* q);
-
   const LoweredConstraints& lowered_;
+  std::vector<double> target_;
   std::vector<double> phi_;
   std::vector<double> values_;
-  std::vector<double> u_, w_;  ///< of the dot block
+  std::vector<PairValues> pairs_;
   std::vector<double> forces_;
-  std::vector<double> products_;
 };
 
 }  // namespace mbs::csc_cholmod

@@ -66,26 +66,36 @@ void MassMatrix::add_column(int column, const int* row, const double* value, int
   if (entries > 0) columns_.push_back({column, entries});
 }
 
-void MassMatrix::subtract_product(const double* b, const double* __restrict x,
-                                  double* __restrict result) const {
-  for (std::size_t j = 0; j < diagonal_.size(); ++j) result[j] = b[j] - diagonal_[j] * x[j];
+template <int kSign>
+void MassMatrix::add_off_diagonal(const double* __restrict x, double* __restrict result) const {
   const int* row = row_.data();
   const double* value = value_.data();
   for (const Column& c : columns_) {
-    const double x_column = x[c.column];
+    const double x_column = kSign * x[c.column];
     double sum = 0.0;
     for (int e = 0; e < c.entries; ++e, ++row, ++value) {
       sum += *value * x[*row];
-      result[*row] -= *value * x_column;
+      result[*row] += *value * x_column;
     }
-    result[c.column] -= sum;
+    result[c.column] += kSign * sum;
   }
   const double* m = segment_value_.data();
   for (const Segment& s : segments_) {
-    result[s.column] -=
-        multiply_segment(m, s.length, x + s.first_row, -x[s.column], result + s.first_row);
+    result[s.column] += kSign * multiply_segment(m, s.length, x + s.first_row, kSign * x[s.column],
+                                                 result + s.first_row);
     m += s.length;
   }
+}
+
+void MassMatrix::subtract_product(const double* b, const double* __restrict x,
+                                  double* __restrict result) const {
+  for (std::size_t j = 0; j < diagonal_.size(); ++j) result[j] = b[j] - diagonal_[j] * x[j];
+  add_off_diagonal<-1>(x, result);
+}
+
+void MassMatrix::product(const double* __restrict x, double* __restrict result) const {
+  for (std::size_t j = 0; j < diagonal_.size(); ++j) result[j] = diagonal_[j] * x[j];
+  add_off_diagonal<1>(x, result);
 }
 
 void MassMatrix::products(const double* __restrict x, const double* __restrict y,

@@ -18,6 +18,8 @@ class MassMatrix {
 
   /// result = b - M x; n each, no two overlap.
   void subtract_product(const double* b, const double* x, double* result) const;
+  /// result = M x; n each, they do not overlap.
+  void product(const double* x, double* result) const;
   /// first = M x, second = M y in one sweep; n each, no two overlap.
   void products(const double* x, const double* y, double* first, double* second) const;
 
@@ -31,6 +33,9 @@ class MassMatrix {
     int first_row = 0;
     int length = 0;
   };
+  /// result += kSign * M x but for the diagonal.
+  template <int kSign>
+  void add_off_diagonal(const double* x, double* result) const;
   void add_column(int column, const int* row, const double* value, int count);
 
   std::vector<double> diagonal_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "schedule.hpp"
 #include "solver.hpp"
 
 namespace mbs::csc_cholmod {
@@ -19,15 +20,15 @@ struct Entry {
 
 std::vector<Entry> entries_by_columns(const LoweredConstraints& lowered) {
   std::vector<Entry> result;
-  const int first_linear = lowered.distance.count + lowered.dot.count;
-  for (int row = 0; row < first_linear; ++row) {
-    for (const JacobianEntry& e : lowered.entries(row)) {
+  const SignedRows& rows = lowered.entries();
+  for (int row = 0; row < rows.rows(); ++row) {
+    for (const SignedEntry& e : rows[row]) {
       result.push_back({e.column, row, e.value, e.negative ? -1.0 : 1.0});
     }
   }
   const LinearBlock& linear = lowered.linear;
   for (std::size_t t = 0; t < linear.column.size(); ++t) {
-    result.push_back({linear.column[t], first_linear + linear.row[t], -1, linear.coefficient[t]});
+    result.push_back({linear.column[t], linear.row[t], -1, linear.coefficient[t]});
   }
   std::stable_sort(result.begin(), result.end(),
                    [](const Entry& a, const Entry& b) { return a.column < b.column; });
@@ -65,14 +66,15 @@ CscOperations::CscOperations(const Model& model, const HalfPattern& pattern)
       lowered_(model, coordinates_),
       pattern_(
           pattern.renumbered(preferred_half(Factorization::simplicial), coordinates_.number())),
-      schedule_(lowered_, pattern_),
+      schedule_(tangent_contributions(lowered_, pattern_)),
       constraints_(lowered_),
       jacobian_(lowered_, model.variables()),
       model_row_(model.constraints()),
       q_(coordinates_.all()),
       mass_(mass_values(model, pattern_, coordinates_.number())),
       linear_(pattern_.nonzeros()),
-      sum_(pattern_.nonzeros()) {
+      sum_(pattern_.nonzeros()),
+      products_(2 * lowered_.products()) {
   for (int k = 0; k < model.constraints(); ++k) model_row_[lowered_.row(k)] = k;
   const std::vector<double>& constants = coordinates_.constants();
   std::copy(constants.begin(), constants.end(), q_.begin() + model.variables());
@@ -90,8 +92,8 @@ void CscOperations::evaluate_jacobian() {
 }
 
 void CscOperations::rank_update() {
-  constraints_.multiply_pairs(1.0);
-  schedule_.tangent().sum(linear_.data(), constraints_.products(), product_.data());
+  constraints_.multiply_pairs(1.0, products_.data());
+  schedule_.sum(linear_.data(), products_.data(), product_.data());
 }
 
 void CscOperations::add_mass(double factor) {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "assembly.hpp"
 #include "constraints.hpp"
+#include "gather.hpp"
 #include "lowering.hpp"
 #include "mbs/operations.hpp"
 #include "pattern.hpp"
@@ -59,7 +59,7 @@ class CscOperations final : public Operations {
   Coordinates coordinates_;
   LoweredConstraints lowered_;
   HalfPattern pattern_;
-  AssemblySchedule schedule_;
+  GatherSchedule schedule_;
   Constraints constraints_;
   JacobianMatrix jacobian_;
   std::vector<int> model_row_;  ///< of each row here: the constraint of the model
@@ -68,6 +68,7 @@ class CscOperations final : public Operations {
   std::vector<double> linear_;  ///< the linear rows' constant part of Phi_q^T Phi_q
   std::vector<double> product_;
   std::vector<double> sum_;
+  std::vector<double> products_;  ///< summands of Phi_q^T Phi_q
 };
 
 }  // namespace mbs::csc_cholmod

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "schedule.hpp"
+
 namespace mbs::csc_cholmod {
 
 CholmodSimulation::CholmodSimulation(const Model& model, const StepSettings& settings,
@@ -12,7 +14,7 @@ CholmodSimulation::CholmodSimulation(const Model& model, const StepSettings& set
 
 CholmodSimulation::CholmodSimulation(const Model& model, const StepSettings& settings,
                                      const HalfPattern& pattern, Factorization factorization)
-    : Simulation(model.variables(), model.constraints()),
+    : Simulation(model, settings),
       settings_(settings),
       assembly_(model, settings, pattern, fill_reducing_order(pattern),
                 preferred_half(factorization)),
@@ -21,7 +23,7 @@ CholmodSimulation::CholmodSimulation(const Model& model, const StepSettings& set
       v_(model.variables()),
       a_(model.variables()),
       u_(assembly_.coordinates().all()),
-      s_(model.variables()),
+      s_(model.variables() + 1),
       lambda_(model.constraints()),
       right_(model.variables()),
       second_right_(model.variables()),
@@ -55,13 +57,14 @@ void CholmodSimulation::do_get_state(State& state) const {
 }
 
 StepOutcome CholmodSimulation::do_step() {
+  if (assembly_.has_drivers()) assembly_.drive(time(), q_.data(), u_.data());
   predict();
   phases_.enter(Phase::evaluation);
   assembly_.evaluate(q_.data());
   StepOutcome outcome{StepStatus::pass_limit, 0};
   while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
     ++outcome.passes;
-    assembly_.residual(s_.data(), lambda_.data(), right_.data());
+    assembly_.residual(q_.data(), u_.data(), s_.data(), lambda_.data(), right_.data());
     phases_.enter(Phase::assembly);
     assembly_.refresh_tangent();
     phases_.enter(Phase::factorization);
@@ -106,7 +109,7 @@ bool CholmodSimulation::update() {
   double* __restrict u = u_.data();
   double* __restrict s = s_.data();
   long long beyond = 0;
-  for (std::size_t i = 0; i < s_.size(); ++i) {
+  for (std::size_t i = 0; i < v_.size(); ++i) {
     q[i] += delta[i];
     u[i] += delta[i];  // Eq. (2)
     s[i] += delta[i];  // Eq. (2)
@@ -116,14 +119,16 @@ bool CholmodSimulation::update() {
 }
 
 void CholmodSimulation::project() {
-  phases_.enter(Phase::projection);
-  assembly_.projections(u_.data(), s_.data(), right_.data(), second_right_.data());
-  phases_.enter(Phase::solve);
-  solver_.solve(right_.data(), u_.data());  // Eq. (6)
-  phases_.enter(Phase::projection);
-  assembly_.subtract_velocity_terms(u_.data(), second_right_.data());
-  phases_.enter(Phase::solve);
-  solver_.solve(second_right_.data(), s_.data());  // Eq. (6)
+  switch (settings_.projections) {
+    case Projections::none:
+      break;
+    case Projections::velocity:
+      project_velocity();
+      break;
+    case Projections::both:
+      project_both();
+      break;
+  }
   phases_.enter(Phase::other);
   const double per_half = 2.0 / settings_.step;
   const double per_quarter = per_half * per_half;
@@ -131,6 +136,24 @@ void CholmodSimulation::project() {
     v_[i] = per_half * u_[i];
     a_[i] = per_quarter * s_[i];
   }
+}
+
+void CholmodSimulation::project_velocity() {
+  phases_.enter(Phase::projection);
+  assembly_.project_velocity(q_.data(), u_.data(), right_.data());
+  phases_.enter(Phase::solve);
+  solver_.solve(right_.data(), u_.data());  // Eq. (6)
+}
+
+void CholmodSimulation::project_both() {
+  phases_.enter(Phase::projection);
+  assembly_.project_both(q_.data(), u_.data(), s_.data(), right_.data(), second_right_.data());
+  phases_.enter(Phase::solve);
+  solver_.solve(right_.data(), u_.data());  // Eq. (6)
+  phases_.enter(Phase::projection);
+  assembly_.subtract_velocity_terms(q_.data(), u_.data(), second_right_.data());
+  phases_.enter(Phase::solve);
+  solver_.solve(second_right_.data(), s_.data());  // Eq. (6)
 }
 
 }  // namespace mbs::csc_cholmod

@@ -30,11 +30,14 @@ class CholmodSimulation final : public Simulation {
   /// q, u, s grow by Delta q. True if max |Delta q| <= tolerance; NaN is false.
   bool update();
   void project();
+  void project_velocity();
+  void project_both();
 
   StepSettings settings_;
   Assembly assembly_;
   Solver solver_;
-  // All places for q and u (constants of fixed points behind the unknowns), else n.
+  // All places for q and u (constants and driven points behind the unknowns), n and a zero for s,
+  // else n.
   std::vector<double> q_, v_, a_;
   std::vector<double> u_, s_;
   std::vector<double> lambda_;  ///< rows

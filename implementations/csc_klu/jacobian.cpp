@@ -1,6 +1,10 @@
 // Phi, the Jacobian Phi_q and the products with it, streamed through recorded positions.
 #include "jacobian.hpp"
 
+#include <array>
+
+#include "point_vector.hpp"
+
 namespace mbs::csc_klu {
 
 template <int dim>
@@ -10,23 +14,32 @@ Jacobian<dim>::Jacobian(const JacobianPattern<dim>& pattern)
 template <int dim>
 void Jacobian<dim>::evaluate(const double* q, double* phi) {
   for (const auto& distance : pattern_.distances) {
-    const Vector d = difference(q, distance.a, distance.b);
+    const Vector<dim> d = difference<dim>(q, distance.a, distance.b);
     *phi++ = dot(d, d) - distance.value;  // Eq. (7)
     double* const at_a = values_.data() + dim * distance.block_a;
     double* const at_b = values_.data() + dim * distance.block_b;
     for (int k = 0; k < dim; ++k) at_a[k] = 2.0 * d[k];   // Eq. (7)
     for (int k = 0; k < dim; ++k) at_b[k] = -2.0 * d[k];  // Eq. (7)
   }
-  const auto* term = pattern_.other_terms.data();
-  for (const auto& other : pattern_.others) {
-    const Vector ab = difference(q, other.a, other.b);
-    const Vector cd = difference(q, other.c, other.d);
-    *phi++ = dot(ab, cd) - other.value;  // Eq. (7)
-    const auto* const end = pattern_.other_terms.data() + other.terms_end;
-    for (; term < end; ++term) {
+  const auto* const terms = pattern_.terms.data();
+  const auto* term = terms;
+  const auto write_blocks = [&](int terms_end, const Vector<dim>& Bw, const Vector<dim>& Bu) {
+    for (; term < terms + terms_end; ++term) {
       double* const value = values_.data() + dim * term->block;
-      for (int k = 0; k < dim; ++k) value[k] = term->first * cd[k] + term->second * ab[k];
+      for (int k = 0; k < dim; ++k) value[k] = term->first * Bw[k] + term->second * Bu[k];
     }
+  };
+  for (const auto& other : pattern_.dots) {
+    const Vector<dim> u = difference<dim>(q, other.a, other.b);
+    const Vector<dim> w = difference<dim>(q, other.c, other.d);
+    *phi++ = dot(u, w) - other.value;     // Eq. (7)
+    write_blocks(other.terms_end, w, u);  // Eq. (7)
+  }
+  for (const auto& bilinear : pattern_.bilinears) {
+    const Vector<dim> u = difference<dim>(q, bilinear.a, bilinear.b);
+    const Vector<dim> Bw = product(bilinear.B, difference<dim>(q, bilinear.c, bilinear.d));
+    *phi++ = dot(u, Bw) - bilinear.value;                                     // Eq. (7)
+    write_blocks(bilinear.terms_end, Bw, transposed_product(bilinear.B, u));  // Eq. (7)
   }
   int k = 0;
   for (const auto& linear : pattern_.linears) {
@@ -39,7 +52,7 @@ void Jacobian<dim>::evaluate(const double* q, double* phi) {
 }
 
 template <int dim>
-void Jacobian<dim>::subtract_transposed_dots(const double* z, double* y) const {
+void Jacobian<dim>::subtract_transposed_quadratics(const double* z, double* y) const {
   const int* const row = pattern_.block_row.data();
   const double* value = values_.data();
   int block = 0;
@@ -54,8 +67,8 @@ void Jacobian<dim>::subtract_transposed_dots(const double* z, double* y) const {
 
 template <int dim>
 void Jacobian<dim>::subtract_transposed_product(const double* z, double* y) const {
-  subtract_transposed_dots(z, y);
-  z += pattern_.dots();
+  subtract_transposed_quadratics(z, y);
+  z += pattern_.quadratics();
   int k = 0;
   for (const auto& linear : pattern_.linears) {
     for (; k < linear.terms_end; ++k) {
@@ -68,12 +81,17 @@ void Jacobian<dim>::subtract_transposed_product(const double* z, double* y) cons
 template <int dim>
 void Jacobian<dim>::velocity_term(const double* v, double factor, double* z) const {
   for (const auto& distance : pattern_.distances) {
-    const Vector d = difference(v, distance.a, distance.b);
+    const Vector<dim> d = difference<dim>(v, distance.a, distance.b);
     *z++ = factor * (2.0 * dot(d, d));  // Eq. (7)
   }
-  for (const auto& other : pattern_.others) {
-    const Vector ab = difference(v, other.a, other.b);
-    *z++ = factor * (2.0 * dot(ab, difference(v, other.c, other.d)));  // Eq. (7)
+  for (const auto& other : pattern_.dots) {
+    const Vector<dim> u = difference<dim>(v, other.a, other.b);
+    *z++ = factor * (2.0 * dot(u, difference<dim>(v, other.c, other.d)));  // Eq. (7)
+  }
+  for (const auto& bilinear : pattern_.bilinears) {
+    const Vector<dim> u = difference<dim>(v, bilinear.a, bilinear.b);
+    const Vector<dim> w = difference<dim>(v, bilinear.c, bilinear.d);
+    *z++ = factor * (2.0 * dot(u, product(bilinear.B, w)));  // Eq. (7)
   }
 }
 

@@ -1,7 +1,6 @@
 // Phi, the Jacobian Phi_q and the products with it, streamed through recorded positions.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "jacobian_pattern.hpp"
@@ -18,28 +17,15 @@ class Jacobian {
   void evaluate(const double* q, double* phi);
   /// y (n) -= Phi_q^T z; z is m.
   void subtract_transposed_product(const double* z, double* y) const;
-  /// The same for a z (dots()) that is zero for the linear constraints.
-  void subtract_transposed_dots(const double* z, double* y) const;
-  /// z (dots(), m^2/s^2) = factor Phi-dot_q v at the extended velocities v.
+  /// The same for a z (quadratics()) that is zero for the linear constraints.
+  void subtract_transposed_quadratics(const double* z, double* y) const;
+  /// z (quadratics(), m^2/s^2) = factor times what the extended velocities v alone give of
+  /// Phi-dot_q v + Phi-dot_t.
   void velocity_term(const double* v, double factor, double* z) const;
 
   [[nodiscard]] const double* block(int k) const { return values_.data() + dim * k; }
 
  private:
-  using Vector = std::array<double, dim>;
-
-  /// x_a - x_b, two points given by their offsets into x.
-  static Vector difference(const double* x, int a, int b) {
-    Vector d;
-    for (int k = 0; k < dim; ++k) d[k] = x[a + k] - x[b + k];
-    return d;
-  }
-  static double dot(const Vector& x, const Vector& y) {
-    double sum = 0.0;
-    for (int k = 0; k < dim; ++k) sum += x[k] * y[k];
-    return sum;
-  }
-
   const JacobianPattern<dim>& pattern_;
   std::vector<double> values_;  ///< dim values a block, and the spare block
 };

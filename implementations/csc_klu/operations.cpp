@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "extended_points.hpp"
 #include "jacobian.hpp"
 #include "storage.hpp"
 #include "tangent.hpp"
@@ -20,14 +21,14 @@ class SparseOperations final : public Operations {
       : n_(model.variables()),
         jacobian_pattern_(model),
         jacobian_(jacobian_pattern_),
-        tangent_pattern_(model, jacobian_pattern_),
+        tangent_pattern_(model, jacobian_pattern_, ForcePattern(model)),
         product_(tangent_pattern_, std::vector<double>(tangent_pattern_.pattern.entries(), 0.0),
                  1.0),
         mass_(mass_values(model, tangent_pattern_.pattern)),
         sum_(mass_.size(), 0.0),
         q_(model.initial_position().begin(), model.initial_position().end()),
         phi_(model.constraints(), 0.0) {
-    const std::vector<double>& fixed = jacobian_pattern_.fixed_coordinates;
+    const std::vector<double> fixed = fixed_coordinates(model);
     q_.insert(q_.end(), fixed.begin(), fixed.end());
   }
 
@@ -54,7 +55,7 @@ class SparseOperations final : public Operations {
     }
     int k = 0;
     for (int i = 0; i < std::ssize(pattern.linears); ++i) {
-      double* const row = dense.data() + row_begin(pattern.dots() + i);
+      double* const row = dense.data() + row_begin(pattern.quadratics() + i);
       for (; k < pattern.linears[i].terms_end; ++k) {
         row[pattern.linear_terms[k].coordinate] = pattern.linear_terms[k].coefficient;
       }

@@ -2,10 +2,12 @@
 #include "simulation.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
+#include "drivers.hpp"
+#include "forces.hpp"
 #include "jacobian.hpp"
+#include "newmark.hpp"
 #include "storage.hpp"
 #include "tangent.hpp"
 
@@ -16,7 +18,7 @@ template <int dim, TangentSolver Solver>
 class NewtonSimulation final : public Simulation {
  public:
   NewtonSimulation(const Model& model, const StepSettings& settings)
-      : Simulation(model.variables(), model.constraints()),
+      : Simulation(model, settings),
         settings_(settings),
         weight_(settings.step * settings.step / 4.0),
         n_(model.variables()),
@@ -24,7 +26,13 @@ class NewtonSimulation final : public Simulation {
         mass_(model),
         jacobian_pattern_(model),
         jacobian_(jacobian_pattern_),
-        tangent_pattern_(model, jacobian_pattern_),
+        force_pattern_(model),
+        forces_(force_pattern_, settings.step),
+        has_forces_(forces_.any()),
+        driver_pattern_(model, jacobian_pattern_),
+        drivers_(driver_pattern_, jacobian_pattern_),
+        has_drivers_(drivers_.any()),
+        tangent_pattern_(model, jacobian_pattern_, force_pattern_),
         tangent_(tangent_pattern_, mass_values(model, tangent_pattern_.pattern),
                  weight_ * settings.penalty),
         weighted_force_(model.force().begin(), model.force().end()),
@@ -35,10 +43,8 @@ class NewtonSimulation final : public Simulation {
         phi_(m_, 0.0),
         reaction_(m_, 0.0),
         right_a_(n_, 0.0),
-        solver_(tangent_.pattern(), initial_tangent()) {
+        solver_(tangent_.pattern(), initial_tangent(model)) {
     for (double& force : weighted_force_) force *= weight_;
-    v_.resize(q_.size(), 0.0);
-    right_v_.resize(q_.size(), 0.0);
   }
 
  private:
@@ -57,16 +63,17 @@ class NewtonSimulation final : public Simulation {
   }
 
   StepOutcome do_step() override {
-    predict();
+    if (has_drivers_) drivers_.sample(time(), q_.data(), v_.data(), right_v_.data());
+    predict(n_, settings_.step, q_.data(), v_.data(), a_.data());
     phases_.enter(Phase::evaluation);
-    jacobian_.evaluate(q_.data(), phi_.data());
+    evaluate_constraints();
     StepOutcome outcome{StepStatus::pass_limit, 0};
     do {
       ++outcome.passes;
       phases_.enter(Phase::evaluation);
       evaluate_residual();
       phases_.enter(Phase::assembly);
-      tangent_.assemble(jacobian_);
+      assemble_tangent();
       phases_.enter(Phase::factorization);
       if (!solver_.factorize(tangent_.values())) {
         phases_.enter(Phase::other);
@@ -75,39 +82,41 @@ class NewtonSimulation final : public Simulation {
       phases_.enter(Phase::solve);
       solver_.solve(right_a_);
       phases_.enter(Phase::other);
-      if (correct()) outcome.status = StepStatus::converged;
+      if (correct(n_, settings_.step, settings_.tolerance, right_a_.data(), q_.data(), v_.data(),
+                  a_.data())) {
+        outcome.status = StepStatus::converged;
+      }
       phases_.enter(Phase::evaluation);
-      jacobian_.evaluate(q_.data(), phi_.data());
+      evaluate_constraints();
       phases_.enter(Phase::other);
       update_multipliers();
     } while (outcome.status != StepStatus::converged && outcome.passes < settings_.max_passes);
-    project();
+    if (settings_.projections != Projections::none) project();
     phases_.enter(Phase::other);
     return outcome;
   }
 
-  /// Puts the fixed points behind q and evaluates T there.
-  std::span<const double> initial_tangent() {
-    const std::vector<double>& fixed = jacobian_pattern_.fixed_coordinates;
+  /// Completes the extended vectors and evaluates T at the start.
+  std::span<const double> initial_tangent(const Model& model) {
+    const std::vector<double> fixed = fixed_coordinates(model);
     q_.insert(q_.end(), fixed.begin(), fixed.end());
-    jacobian_.evaluate(q_.data(), phi_.data());
-    tangent_.assemble(jacobian_);
+    v_.resize(q_.size(), 0.0);
+    right_v_.resize(q_.size(), 0.0);
+    if (has_drivers_) drivers_.sample(0.0, q_.data(), v_.data(), right_v_.data());
+    evaluate_constraints();
+    if (has_forces_) forces_.evaluate(q_.data(), v_.data(), right_a_.data());
+    assemble_tangent();
     return tangent_.values();
   }
 
-  void predict() {
-    const double h = settings_.step;
-    double* __restrict const q = q_.data();
-    double* __restrict const v = v_.data();
-    double* __restrict const a = a_.data();
-    for (int i = 0; i < n_; ++i) {
-      const double end = q[i] + h * v[i] + (h * h / 2.0) * a[i];
-      const double moved = end - q[i];
-      const double start_v = v[i];
-      q[i] = end;
-      v[i] = (2.0 / h) * moved - start_v;                           // Eq. (2)
-      a[i] = (4.0 / (h * h)) * moved - (4.0 / h) * start_v - a[i];  // Eq. (2)
-    }
+  void evaluate_constraints() {
+    jacobian_.evaluate(q_.data(), phi_.data());
+    if (has_drivers_) drivers_.subtract_values(phi_.data());
+  }
+
+  void assemble_tangent() {
+    tangent_.assemble(jacobian_);
+    if (has_forces_) tangent_.add(forces_);
   }
 
   /// The right-hand side -f of Eq. (4), in right_a_.
@@ -123,6 +132,8 @@ class NewtonSimulation final : public Simulation {
     double* __restrict const right = right_a_.data();
     for (int i = 0; i < n_; ++i) right[i] = force[i] - weight_ * right[i];  // Eq. (3)
     jacobian_.subtract_transposed_product(reaction, right);                 // Eq. (3)
+    if (has_forces_) forces_.evaluate(q_.data(), v_.data(), right);
+    if (has_drivers_) drivers_.subtract_inertia(weight_, right);
   }
 
   void update_multipliers() {
@@ -132,34 +143,29 @@ class NewtonSimulation final : public Simulation {
     for (int i = 0; i < m_; ++i) lambda[i] += alpha * phi[i];  // Eq. (1)
   }
 
-  /// Adds the increment in right_a_; true if it is within the tolerance, which no NaN is.
-  bool correct() {
-    const double h = settings_.step;
-    const double tolerance = settings_.tolerance;
-    const double* __restrict const increment = right_a_.data();
-    double* __restrict const q = q_.data();
-    double* __restrict const v = v_.data();
-    double* __restrict const a = a_.data();
-    long long beyond = 0;
-    for (int i = 0; i < n_; ++i) {
-      beyond |= !(std::abs(increment[i]) <= tolerance);
-      q[i] += increment[i];
-      v[i] += (2.0 / h) * increment[i];        // Eq. (2)
-      a[i] += (4.0 / (h * h)) * increment[i];  // Eq. (2)
-    }
-    return beyond == 0;
-  }
-
   /// Eq. (6) with the last factors; the solutions are solved for in the buffers that become v, a.
   void project() {
+    const bool both = settings_.projections == Projections::both;
+    const double factor = weight_ * settings_.penalty;
     phases_.enter(Phase::projection);
-    mass_.multiply(v_.data(), a_.data(), right_v_.data(), right_a_.data());
+    if (both) {
+      mass_.multiply(v_.data(), a_.data(), right_v_.data(), right_a_.data());
+    } else {
+      mass_.multiply(v_.data(), right_v_.data());
+    }
+    if (has_forces_) forces_.add_product(v_.data(), right_v_.data());
+    if (has_forces_ && both) forces_.add_product(a_.data(), right_a_.data());
+    if (has_drivers_) drivers_.subtract_rates(jacobian_, q_.data(), factor, right_v_.data());
     phases_.enter(Phase::solve);
     solver_.solve({right_v_.data(), static_cast<std::size_t>(n_)});
     v_.swap(right_v_);
+    if (!both) return;
     phases_.enter(Phase::projection);
-    jacobian_.velocity_term(v_.data(), weight_ * settings_.penalty, reaction_.data());
-    jacobian_.subtract_transposed_dots(reaction_.data(), right_a_.data());
+    jacobian_.velocity_term(v_.data(), factor, reaction_.data());
+    jacobian_.subtract_transposed_quadratics(reaction_.data(), right_a_.data());
+    if (has_drivers_) {
+      drivers_.subtract_accelerations(jacobian_, q_.data(), factor, right_a_.data());
+    }
     phases_.enter(Phase::solve);
     solver_.solve(right_a_);
     a_.swap(right_a_);
@@ -172,11 +178,17 @@ class NewtonSimulation final : public Simulation {
   const MassMatrix mass_;
   const JacobianPattern<dim> jacobian_pattern_;
   Jacobian<dim> jacobian_;
+  const ForcePattern force_pattern_;
+  Forces<dim> forces_;
+  const bool has_forces_;
+  const DriverPattern<dim> driver_pattern_;
+  Drivers<dim> drivers_;
+  const bool has_drivers_;
   const TangentPattern<dim> tangent_pattern_;
   Tangent<dim> tangent_;
 
-  std::vector<double> weighted_force_;  ///< dt^2/4 Q (n)
-  std::vector<double> q_, v_;           ///< extended by the fixed points and their zero velocity
+  std::vector<double> weighted_force_;  ///< dt^2/4 times the constant part of Q (n)
+  std::vector<double> q_, v_;           ///< extended by the fixed points and their velocity
   std::vector<double> a_;               ///< n
   std::vector<double> lambda_, phi_;    ///< m, in the order of JacobianPattern
   std::vector<double> reaction_;        ///< m; what Phi_q^T multiplies

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "extended_points.hpp"
 #include "jacobian.hpp"
 #include "solver.hpp"
 #include "tangent.hpp"
@@ -43,7 +44,7 @@ Model four_bar() {
 class TangentSequence {
  public:
   TangentSequence() : q_(model_.initial_position().begin(), model_.initial_position().end()) {
-    const std::vector<double>& fixed = jacobian_pattern_.fixed_coordinates;
+    const std::vector<double> fixed = fixed_coordinates(model_);
     q_.insert(q_.end(), fixed.begin(), fixed.end());
   }
   std::span<const double> at(double angle) {
@@ -61,7 +62,7 @@ class TangentSequence {
   const Model model_ = four_bar();
   const JacobianPattern<2> jacobian_pattern_{model_};
   Jacobian<2> jacobian_{jacobian_pattern_};
-  const TangentPattern<2> tangent_pattern_{model_, jacobian_pattern_};
+  const TangentPattern<2> tangent_pattern_{model_, jacobian_pattern_, ForcePattern(model_)};
   Tangent<2> tangent_{tangent_pattern_, mass_values(model_, tangent_pattern_.pattern), kWeight};
   std::vector<double> q_;
   std::vector<double> phi_ = std::vector<double>(model_.constraints());

@@ -1,4 +1,4 @@
-// The tangent matrix T of Eq. (5): rank-k update and matrix addition in one sweep.
+// The tangent matrix T of Eq. (5): rank-k update and matrix addition in one sweep, then C and K.
 #include "tangent.hpp"
 
 #include <array>
@@ -55,6 +55,25 @@ void Tangent<dim>::assemble(const Jacobian<dim>& jacobian) {
   };
   for (const auto& coupling : pattern_.couplings) couple(coupling, constant);
   for (const auto& coupling : pattern_.further_couplings) couple(coupling, value);
+}
+
+template <int dim>
+void Tangent<dim>::add(const Forces<dim>& forces) {
+  double* const value = values_.data();
+  const auto add_share = [&](const auto& share, const double* base) {
+    const double along = forces.along(share.element);
+    const double across = forces.across(share.element) * share.sign;
+    std::array<double, dim> left, right;
+    for (int k = 0; k < dim; ++k) left[k] = forces.gradient(share.left)[k];
+    for (int k = 0; k < dim; ++k) right[k] = forces.gradient(share.right)[k];
+    for (int col = 0; col < dim; ++col) {
+      const int at = share.columns[col];
+      add_column<dim>(base + at, left, along * right[col], value + at);  // Eq. (5)
+      value[at + col] += across;                                         // Eq. (5)
+    }
+  };
+  for (const auto& share : pattern_.shares) add_share(share, constant_.data());
+  for (const auto& share : pattern_.further_shares) add_share(share, value);
 }
 
 template class Tangent<2>;

@@ -1,9 +1,10 @@
-// The tangent matrix T of Eq. (5): rank-k update and matrix addition in one sweep.
+// The tangent matrix T of Eq. (5): rank-k update and matrix addition in one sweep, then C and K.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "forces.hpp"
 #include "jacobian.hpp"
 #include "tangent_pattern.hpp"
 
@@ -19,6 +20,8 @@ class Tangent {
 
   /// Updates the values for a new Phi_q.
   void assemble(const Jacobian<dim>& jacobian);
+  /// Adds dt/2 C + dt^2/4 K; after every assemble(), if there are forces.
+  void add(const Forces<dim>& forces);
 
   [[nodiscard]] const Pattern& pattern() const { return pattern_.pattern; }
   [[nodiscard]] std::span<const double> values() const { return values_; }

@@ -1,9 +1,11 @@
-// The union pattern of M and Phi_q^T Phi_q and the schedule of the rank-k update, found once.
+// The union pattern of T and the schedules that update it, found once.
 #include "tangent_pattern.hpp"
 
 #include <algorithm>
 #include <tuple>
 #include <utility>
+
+#include "element_blocks.hpp"
 
 namespace mbs::csc_klu {
 namespace {
@@ -14,9 +16,11 @@ struct Pair {
   int left, right;  ///< their Jacobian blocks
 };
 
+std::pair<int, int> points_of(const Pair& pair) { return {pair.p, pair.q}; }
+
 template <int dim>
 std::vector<Pair> point_pairs(const JacobianPattern<dim>& jacobian) {
-  std::vector<std::vector<std::pair<int, int>>> row_blocks(jacobian.dots());
+  std::vector<std::vector<std::pair<int, int>>> row_blocks(jacobian.quadratics());
   for (int p = 0; p < jacobian.points(); ++p) {
     for (int k = jacobian.block_begin[p]; k < jacobian.block_begin[p + 1]; ++k) {
       row_blocks[jacobian.block_row[k]].push_back({p, k});
@@ -30,7 +34,7 @@ std::vector<Pair> point_pairs(const JacobianPattern<dim>& jacobian) {
       }
     }
   }
-  std::ranges::stable_sort(pairs, {}, [](const Pair& pair) { return std::tuple(pair.p, pair.q); });
+  std::ranges::stable_sort(pairs, {}, points_of);
   return pairs;
 }
 
@@ -49,22 +53,24 @@ void visit_linear(const JacobianPattern<dim>& jacobian, Visit visit) {
   }
 }
 
-/// Offsets of the first rows of the columns of block (p, q).
 template <int dim>
-std::array<int, dim> block_columns(const Pattern& pattern, int p, int q) {
-  std::array<int, dim> columns;
-  for (int k = 0; k < dim; ++k) columns[k] = pattern.offset(dim * p, dim * q + k);
-  return columns;
+bool is_constrained(const JacobianPattern<dim>& jacobian, int p) {
+  return jacobian.block_begin[p] < jacobian.block_begin[p + 1];
 }
 
-}  // namespace
+/// Whether constraints write block (p, q) in every pass; `pairs` are sorted.
+template <int dim>
+bool is_written(const JacobianPattern<dim>& jacobian, const std::vector<Pair>& pairs, int p,
+                int q) {
+  if (p == q) return is_constrained(jacobian, p);
+  const std::pair<int, int> points = std::minmax(p, q);
+  const auto found = std::ranges::lower_bound(pairs, points, {}, points_of);
+  return found != pairs.end() && points_of(*found) == points;
+}
 
 template <int dim>
-TangentPattern<dim>::TangentPattern(const Model& model, const JacobianPattern<dim>& jacobian) {
-  const std::vector<Pair> pairs = point_pairs(jacobian);
-  const auto is_constrained = [&](int p) {
-    return jacobian.block_begin[p] < jacobian.block_begin[p + 1];
-  };
+Pattern union_pattern(const Model& model, const JacobianPattern<dim>& jacobian,
+                      const std::vector<Pair>& pairs, const std::vector<ElementBlock>& elements) {
   std::vector<Pattern::Position> positions = mass_positions(model);
   const auto add_block = [&](int p, int q) {
     for (int col = dim * q; col < dim * q + dim; ++col) {
@@ -72,31 +78,51 @@ TangentPattern<dim>::TangentPattern(const Model& model, const JacobianPattern<di
     }
   };
   for (int p = 0; p < jacobian.points(); ++p) {
-    if (is_constrained(p)) add_block(p, p);
+    if (is_constrained(jacobian, p)) add_block(p, p);
   }
   for (const Pair& pair : pairs) {
     add_block(pair.p, pair.q);
     add_block(pair.q, pair.p);
   }
+  for (const ElementBlock& block : elements) add_block(block.p, block.q);
   visit_linear(jacobian, [&](int row, int col, double) { positions.push_back({row, col}); });
-  pattern = Pattern(model.variables(), std::move(positions));
+  return Pattern(model.variables(), std::move(positions));
+}
 
+}  // namespace
+
+template <int dim>
+TangentPattern<dim>::TangentPattern(const Model& model, const JacobianPattern<dim>& jacobian,
+                                    const ForcePattern& forces) {
+  const std::vector<Pair> pairs = point_pairs(jacobian);
+  const std::vector<ElementBlock> elements = element_blocks(forces, dim);
+  pattern = union_pattern(model, jacobian, pairs, elements);
+  const auto columns = [&](int p, int q) {
+    Columns offsets;
+    for (int k = 0; k < dim; ++k) offsets[k] = pattern.offset(dim * p, dim * q + k);
+    return offsets;
+  };
   for (int p = 0; p < jacobian.points(); ++p) {
-    if (!is_constrained(p)) continue;
-    diagonals.push_back(
-        {jacobian.block_begin[p], jacobian.block_begin[p + 1], block_columns<dim>(pattern, p, p)});
+    if (!is_constrained(jacobian, p)) continue;
+    diagonals.push_back({jacobian.block_begin[p], jacobian.block_begin[p + 1], columns(p, p)});
   }
   const Pair* last = nullptr;
   for (const Pair& pair : pairs) {
-    const bool repeated = last != nullptr && last->p == pair.p && last->q == pair.q;
+    const bool repeated = last != nullptr && points_of(*last) == points_of(pair);
     (repeated ? further_couplings : couplings)
-        .push_back({pair.left, pair.right, block_columns<dim>(pattern, pair.p, pair.q),
-                    block_columns<dim>(pattern, pair.q, pair.p)});
+        .push_back({pair.left, pair.right, columns(pair.p, pair.q), columns(pair.q, pair.p)});
     last = &pair;
   }
   visit_linear(jacobian, [&](int row, int col, double product) {
     constants.push_back({pattern.offset(row, col), product});
   });
+  const ElementBlock* before = nullptr;
+  for (const ElementBlock& block : elements) {
+    const bool repeated = before != nullptr && before->p == block.p && before->q == block.q;
+    (repeated || is_written(jacobian, pairs, block.p, block.q) ? further_shares : shares)
+        .push_back({block.element, block.left, block.right, block.sign, columns(block.p, block.q)});
+    before = &block;
+  }
 }
 
 template struct TangentPattern<2>;

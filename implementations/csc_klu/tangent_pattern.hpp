@@ -1,43 +1,55 @@
-// The union pattern of M and Phi_q^T Phi_q and the schedule of the rank-k update, found once.
+// The union pattern of T and the schedules that update it, found once.
 #pragma once
 
 #include <array>
 #include <vector>
 
+#include "force_pattern.hpp"
 #include "jacobian_pattern.hpp"
 #include "storage.hpp"
 
 namespace mbs::csc_klu {
 
-/// The union pattern of M and Phi_q^T Phi_q, and the schedule that updates Phi_q^T Phi_q: for every
-/// dim x dim block of it which Jacobian blocks to multiply and where the values go.
+/// The union pattern of M, Phi_q^T Phi_q, C and K, and what updates it. For Phi_q^T Phi_q: for
+/// every dim x dim block of it which Jacobian blocks to multiply and where the values go. For C and
+/// K: for every pair of an element's ends which gradients to multiply and where the values go.
 template <int dim>
 struct TangentPattern {
+  using Columns = std::array<int, dim>;  ///< offset of the first row of each column of a block
+
   /// Block (p, p): the sum over the point's own, consecutive Jacobian blocks.
   struct Diagonal {
-    int begin, end;                ///< Jacobian blocks
-    std::array<int, dim> columns;  ///< offset of the first row of each of its columns
+    int begin, end;  ///< Jacobian blocks
+    Columns columns;
   };
   /// Blocks (p, q), p < q, and (q, p), its transpose: one product of two Jacobian blocks.
   struct Coupling {
-    int left, right;             ///< Jacobian blocks of p and q, of the same constraint
-    std::array<int, dim> above;  ///< columns of (p, q)
-    std::array<int, dim> below;  ///< columns of (q, p)
+    int left, right;  ///< Jacobian blocks of p and q, of the same constraint
+    Columns above;    ///< columns of (p, q)
+    Columns below;    ///< columns of (q, p)
   };
-
   /// One product of two coefficients of a linear constraint, Eq. (8): a constant.
   struct Constant {
     int at;  ///< offset
     double product;
   };
+  /// Block (p, q) of an element's share, any p and q: one product of the gradients of two ends.
+  struct Share {
+    int element, left, right;  ///< an element with C and K of a ForcePattern, and two of its ends
+    double sign;               ///< what S S^T of Forces has there; 0 for torsion springs
+    Columns columns;
+  };
 
-  TangentPattern(const Model& model, const JacobianPattern<dim>& jacobian);
+  TangentPattern(const Model& model, const JacobianPattern<dim>& jacobian,
+                 const ForcePattern& forces);
 
   Pattern pattern;
   std::vector<Diagonal> diagonals;
   std::vector<Coupling> couplings;          ///< the first product for each pair of points
   std::vector<Coupling> further_couplings;  ///< more products for pairs that have them
   std::vector<Constant> constants;          ///< all of the linear constraints' Phi_q^T Phi_q
+  std::vector<Share> shares;                ///< the first of each block without constraints
+  std::vector<Share> further_shares;        ///< all others
 };
 
 }  // namespace mbs::csc_klu

@@ -11,7 +11,7 @@ std::unique_ptr<Simulation> make_simulation(const Model& model, const StepSettin
 }
 
 CscMumpsSimulation::CscMumpsSimulation(const Model& model, const StepSettings& settings)
-    : Simulation(model.variables(), model.constraints()),
+    : Simulation(model, settings),
       variables_(model.variables()),
       settings_(settings),
       velocity_factor_(2.0 / settings.step),

@@ -9,7 +9,7 @@ namespace mbs::csc_umfpack {
 
 template <int D>
 CscUmfpack<D>::CscUmfpack(const Model& model, const StepSettings& settings)
-    : Simulation(model.variables(), model.constraints()),
+    : Simulation(model, settings),
       settings_(settings),
       n_(model.variables()),
       m_(model.constraints()),

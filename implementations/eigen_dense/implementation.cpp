@@ -2,6 +2,7 @@
 #include "mbs/implementation.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -11,7 +12,15 @@ namespace mbs::eigen_dense {
 
 namespace {
 
+/// No matrix larger than this is stored; there are three or four of them.
+constexpr double kMatrixLimit = 2.0 * 1024 * 1024 * 1024;  // bytes
+
 std::unique_ptr<mbs::Simulation> create(const Model& model, const StepSettings& settings) {
+  const double columns = std::max(model.variables(), model.constraints());
+  if (sizeof(double) * columns * model.variables() > kMatrixLimit) {
+    throw Unsupported("a dense matrix of " + std::to_string(model.variables()) +
+                      " variables would exceed 2 GiB");
+  }
   return std::make_unique<Simulation>(model, settings);
 }
 

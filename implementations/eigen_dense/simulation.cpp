@@ -7,11 +7,12 @@
 namespace mbs::eigen_dense {
 
 Simulation::Simulation(const Model& model, const StepSettings& settings)
-    : mbs::Simulation(model.variables(), model.constraints()),
+    : mbs::Simulation(model, settings),
       settings_(settings),
-      assembly_(model, settings),
+      layout_(model),
+      assembly_(model, settings, layout_),
       solver_(model.variables()),
-      q_(assembly_.extended_position(model)),
+      q_(layout_.initial_position(model)),
       v_(Eigen::VectorXd::Zero(q_.size())),
       a_(Eigen::VectorXd::Zero(model.variables())),
       lambda_(Eigen::VectorXd::Zero(model.constraints())),
@@ -35,6 +36,7 @@ void Simulation::do_get_state(State& state) const {
 
 StepOutcome Simulation::do_step() {
   phases_.enter(Phase::other);
+  if (assembly_.driven()) assembly_.drive(time(), q_, v_);
   predict();
   phases_.enter(Phase::evaluation);
   assembly_.evaluate(q_);
@@ -84,7 +86,7 @@ bool Simulation::update() {
 
 bool Simulation::pass(bool& converged) {
   phases_.enter(Phase::evaluation);
-  assembly_.residual(a_, lambda_, solution_);
+  assembly_.residual(q_, v_, a_, lambda_, solution_);
   phases_.enter(Phase::assembly);
   assembly_.tangent(solver_.matrix());
   phases_.enter(Phase::factorization);
@@ -103,16 +105,19 @@ bool Simulation::pass(bool& converged) {
 }
 
 void Simulation::project() {
+  if (settings_.projections == Projections::none) return;
   phases_.enter(Phase::projection);
-  assembly_.project_velocity(v_, solution_);
+  assembly_.project_velocity(q_, v_, solution_);
   phases_.enter(Phase::solve);
   solver_.solve(solution_);  // Eq. (6)
   v_.head(a_.size()) = solution_;
-  phases_.enter(Phase::projection);
-  assembly_.project_acceleration(v_, a_, solution_);
-  phases_.enter(Phase::solve);
-  solver_.solve(solution_);  // Eq. (6)
-  a_.swap(solution_);
+  if (settings_.projections == Projections::both) {
+    phases_.enter(Phase::projection);
+    assembly_.project_acceleration(q_, v_, a_, solution_);
+    phases_.enter(Phase::solve);
+    solver_.solve(solution_);  // Eq. (6)
+    a_.swap(solution_);
+  }
   phases_.enter(Phase::other);
 }
 

@@ -4,13 +4,14 @@
 #include <Eigen/Core>
 
 #include "assembly.hpp"
+#include "layout.hpp"
 #include "mbs/model.hpp"
 #include "mbs/simulation.hpp"
 #include "solver.hpp"
 
 namespace mbs::eigen_dense {
 
-/// Holds q and v as extended vectors (see Assembly), so that fixed points cost nothing in a step.
+/// Holds q and v as extended vectors (see Layout), so that fixed points cost nothing in a step.
 class Simulation final : public mbs::Simulation {
  public:
   Simulation(const Model& model, const StepSettings& settings);
@@ -29,6 +30,7 @@ class Simulation final : public mbs::Simulation {
   void project();
 
   StepSettings settings_;
+  Layout layout_;
   Assembly assembly_;
   Solver solver_;
 

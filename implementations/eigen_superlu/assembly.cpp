@@ -24,20 +24,21 @@ void Assembly::evaluate_constraints(const double* q) {
   evaluate_distances<kDimension, 1>(q, 0, to_ground_);
   evaluate_distances<kDimension, 2>(q, to_ground_, distances_);
   double* row = jacobian_.valuePtr() + jacobian_.outerIndexPtr()[distances_];
-  for (int k = distances_; k < quadratic_; ++k) {
-    const Dot& dot = dots_[k - distances_];
-    double ab[kDimension], cd[kDimension], product = 0.0;
-    for (int axis = 0; axis < kDimension; ++axis) {
-      ab[axis] = q[dot.ends[axis]] - q[dot.ends[kDimension + axis]];
-      cd[axis] = q[dot.ends[2 * kDimension + axis]] - q[dot.ends[3 * kDimension + axis]];
-      product += ab[axis] * cd[axis];
-    }
-    phi_[k] = product - value_[k];  // Eq. (7)
-    for (int i = 0; i < dot.free_points; ++i) {
-      for (int axis = 0; axis < kDimension; ++axis) {
-        *row++ = dot.weights[2 * i] * cd[axis] + dot.weights[2 * i + 1] * ab[axis];
-      }
-    }
+  double u[kDimension], w[kDimension];
+  for (int k = distances_; k < products_; ++k) {
+    const PointPairs& pairs = dots_[k - distances_];
+    pairs.differences<kDimension>(q, u, w);
+    phi_[k] = inner<kDimension>(u, w) - value_[k];  // Eq. (7)
+    row = pairs.write_row<kDimension>(w, u, row);
+  }
+  for (int k = products_; k < quadratic_; ++k) {
+    const auto& [pairs, B] = bilinear_[k - products_];
+    double B_w[kDimension], u_B[kDimension];
+    pairs.template differences<kDimension>(q, u, w);
+    multiply<kDimension>(B, w, B_w);
+    multiply_transposed<kDimension>(B, u, u_B);
+    phi_[k] = inner<kDimension>(u, B_w) - value_[k];  // Eq. (7)
+    row = pairs.template write_row<kDimension>(B_w, u_B, row);
   }
 }
 
@@ -69,14 +70,17 @@ void Assembly::evaluate_velocities(const double* v, double* result) const {
     }
     result[k] = 2.0 * square;  // Eq. (7)
   }
-  for (int k = distances_; k < quadratic_; ++k) {
-    const int* ends = dots_[k - distances_].ends;
-    double product = 0.0;
-    for (int axis = 0; axis < kDimension; ++axis) {
-      product += (v[ends[axis]] - v[ends[kDimension + axis]]) *
-                 (v[ends[2 * kDimension + axis]] - v[ends[3 * kDimension + axis]]);
-    }
-    result[k] = 2.0 * product;  // Eq. (7)
+  double u[kDimension], w[kDimension];
+  for (int k = distances_; k < products_; ++k) {
+    dots_[k - distances_].differences<kDimension>(v, u, w);
+    result[k] = 2.0 * inner<kDimension>(u, w);  // Eq. (7)
+  }
+  for (int k = products_; k < quadratic_; ++k) {
+    const auto& [pairs, B] = bilinear_[k - products_];
+    double B_w[kDimension];
+    pairs.template differences<kDimension>(v, u, w);
+    multiply<kDimension>(B, w, B_w);
+    result[k] = 2.0 * inner<kDimension>(u, B_w);  // Eq. (7)
   }
 }
 

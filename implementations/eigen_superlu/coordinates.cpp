@@ -42,13 +42,22 @@ void Coordinates::scatter(const Vector& source, std::vector<double>& target) con
   for (int i = 0; i < variables(); ++i) target[i] = source[position_[i]];
 }
 
-std::vector<int> free_points(const Coordinates& coordinates, const DotConstraint& constraint) {
-  std::vector<int> points;
-  for (const int point : {constraint.a, constraint.b, constraint.c, constraint.d}) {
-    const bool seen = std::find(points.begin(), points.end(), point) != points.end();
-    if (!seen && coordinates.is_free(point)) points.push_back(point);
+std::vector<int> free_ones(const Coordinates& coordinates, std::span<const int> points) {
+  std::vector<int> free;
+  for (const int point : points) {
+    const bool seen = std::find(free.begin(), free.end(), point) != free.end();
+    if (!seen && coordinates.is_free(point)) free.push_back(point);
   }
-  return points;
+  return free;
+}
+
+void append_columns(const Coordinates& coordinates, std::span<const int> points,
+                    std::vector<int>& columns) {
+  for (const int point : free_ones(coordinates, points)) {
+    for (int axis = 0; axis < coordinates.dimension(); ++axis) {
+      columns.push_back(coordinates.of_point(point, axis));
+    }
+  }
 }
 
 RowSparseMatrix mass_matrix(const Model& model, const Coordinates& coordinates) {
@@ -67,14 +76,16 @@ SparseMatrix tangent_pattern(const Model& model, const Coordinates& coordinates)
     }
     coupled.clear();
   };
-  for (const DotConstraint& constraint : model.dot_constraints()) {
-    for (const int point : free_points(coordinates, constraint)) {
-      for (int axis = 0; axis < coordinates.dimension(); ++axis) {
-        coupled.push_back(coordinates.of_point(point, axis));
-      }
+  const auto add_items = [&](const auto& items) {
+    for (const auto& item : items) {
+      append_columns(coordinates, ends_of(item), coupled);
+      add_clique();
     }
-    add_clique();
-  }
+  };
+  add_items(model.dot_constraints());
+  add_items(model.bilinear_constraints());
+  add_items(model.springs());
+  add_items(model.torsion_springs());
   for (const LinearConstraint& constraint : model.linear_constraints()) {
     for (const auto& term : constraint.terms) {
       coupled.push_back(coordinates.of_unknown(term.coordinate));

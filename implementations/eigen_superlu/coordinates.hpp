@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <array>
+#include <span>
 #include <vector>
 
 #include "mbs/model.hpp"
@@ -34,7 +36,7 @@ class Coordinates {
     return points_[point * dimension_ + axis];
   }
   [[nodiscard]] bool is_free(int point) const { return of_point(point, 0) < variables(); }
-  /// Coordinates of the fixed points, the tail of an extended position (m).
+  /// Coordinates of the fixed points, the tail of an extended position (m); driven ones at t = 0.
   [[nodiscard]] const std::vector<double>& fixed() const { return fixed_; }
 
   /// Copies `source` (n, order of the model) into the first n entries of `target`.
@@ -49,13 +51,28 @@ class Coordinates {
   std::vector<double> fixed_;
 };
 
-/// The unknowns that a dot constraint couples: all coordinates of its free points, points once.
-std::vector<int> free_points(const Coordinates& coordinates, const DotConstraint& constraint);
+/// The points a, b, c, d of a constraint or torsion spring, a and b of a spring or couple.
+template <class Item>
+auto ends_of(const Item& item) {
+  if constexpr (requires { item.c; }) {
+    return std::array<int, 4>{item.a, item.b, item.c, item.d};
+  } else {
+    return std::array<int, 2>{item.a, item.b};
+  }
+}
+
+/// Those of `points` that are free, each once, in their order.
+std::vector<int> free_ones(const Coordinates& coordinates, std::span<const int> points);
+
+/// Appends the unknowns of free_ones(): the columns of a row that depends on these points.
+void append_columns(const Coordinates& coordinates, std::span<const int> points,
+                    std::vector<int>& columns);
 
 /// M: n x n, symmetric, both triangles, stored zeros included.
 RowSparseMatrix mass_matrix(const Model& model, const Coordinates& coordinates);
 
-/// M with a position for every entry of Phi_q^T Phi_q, Eq. (5): n x n, symmetric, both triangles.
+/// M with a position for every entry of Phi_q^T Phi_q, C and K, Eq. (5): n x n, symmetric, both
+/// triangles.
 SparseMatrix tangent_pattern(const Model& model, const Coordinates& coordinates);
 
 }  // namespace mbs::eigen_superlu

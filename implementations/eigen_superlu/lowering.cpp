@@ -13,31 +13,20 @@ bool is_distance(const Coordinates& coordinates, const DotConstraint& constraint
          (coordinates.is_free(constraint.a) || coordinates.is_free(constraint.b));
 }
 
-/// Where entry (row, col) is in the arrays of `matrix`.
-int slot_of(const SparseMatrix& matrix, int row, int col) {
-  const int* rows = matrix.innerIndexPtr();
-  const int* first = rows + matrix.outerIndexPtr()[col];
-  const int* last = rows + matrix.outerIndexPtr()[col + 1];
-  return static_cast<int>(std::lower_bound(first, last, row) - rows);
+/// Sorts first ... last of `order` by what `kind` gives for them, computed once each.
+template <class Kind>
+void sort_by(std::vector<int>& order, std::size_t first, std::size_t last, Kind kind) {
+  std::vector<std::size_t> kinds;
+  for (std::size_t k = first; k < last; ++k) kinds.push_back(kind(k - first));
+  std::stable_sort(order.begin() + first, order.begin() + last,
+                   [&](int k, int l) { return kinds[k - first] < kinds[l - first]; });
 }
 
-struct Product {
-  int i, j, slot;
-};
-
-/// Where r^T r goes for a row r of Phi_q with `width` entries in `columns`, ordered for add_rows().
-std::vector<Product> products_of_row(const SparseMatrix& tangent, Triangle triangle,
-                                     const int* columns, int width) {
-  std::vector<Product> products;
-  for (int i = 0; i < width; ++i) {
-    for (int j = 0; j < (triangle == Triangle::full ? width : i + 1); ++j) {
-      const auto [low, high] = std::minmax(columns[i], columns[j]);
-      const bool full = triangle == Triangle::full;
-      products.push_back(
-          {i, j, slot_of(tangent, full ? columns[i] : low, full ? columns[j] : high)});
-    }
-  }
-  return products;
+/// The points of quadratic constraint `k` in the order of Phi.
+std::array<int, 4> ends_of_quadratic(const Model& model, std::size_t k) {
+  const auto dots = model.dot_constraints();
+  return k < dots.size() ? ends_of(dots[k])
+                         : ends_of(model.bilinear_constraints()[k - dots.size()]);
 }
 
 }  // namespace
@@ -51,30 +40,42 @@ Assembly::Assembly(const Model& model, const Coordinates& coordinates, Triangle 
       penalty_(penalty),
       tangent_(tangent_pattern(model, coordinates)) {
   if (triangle == Triangle::upper) tangent_ = SparseMatrix(tangent_.triangularView<Eigen::Upper>());
+  sort_rows(model, coordinates);
+  make_jacobian(model, coordinates);
+  make_runs(triangle);
+  add_linear_rows(triangle);
+  base_ = Eigen::Map<const Vector>(tangent_.valuePtr(), tangent_.nonZeros());
+}
+
+void Assembly::sort_rows(const Model& model, const Coordinates& coordinates) {
   const auto dots = model.dot_constraints();
+  const auto bilinear = model.bilinear_constraints();
   const auto linear = model.linear_constraints();
-  const auto kind = [&](int k) {
-    const auto free = free_points(coordinates, dots[k]).size();
-    return is_distance(coordinates, dots[k]) ? free : 3 + free;
+  const auto free = [&](const auto& constraint) {
+    return free_ones(coordinates, ends_of(constraint)).size();
   };
   std::iota(order_.begin(), order_.end(), 0);
-  std::stable_sort(order_.begin(), order_.begin() + dots.size(),
-                   [&](int k, int l) { return kind(k) < kind(l); });
-  for (std::size_t row = 0; row < order_.size(); ++row) {
-    if (row >= dots.size()) {
-      value_[row] = linear[order_[row] - dots.size()].value;
-      continue;
-    }
+  sort_by(order_, 0, dots.size(), [&](std::size_t k) {
+    return is_distance(coordinates, dots[k]) ? free(dots[k]) : 3 + free(dots[k]);
+  });
+  sort_by(order_, dots.size(), dots.size() + bilinear.size(),
+          [&](std::size_t k) { return free(bilinear[k]); });
+  for (std::size_t row = 0; row < dots.size(); ++row) {
     const DotConstraint& constraint = dots[order_[row]];
     value_[row] = constraint.value;
     if (is_distance(coordinates, constraint)) {
       add_distance(coordinates, constraint);
     } else {
-      add_dot(coordinates, constraint);
+      dots_.push_back({coordinates, ends_of(constraint)});
     }
   }
-  make_jacobian(model, coordinates);
-  make_runs(triangle);
+  products_ = quadratic_ = static_cast<int>(dots.size());
+  for (; quadratic_ < products_ + static_cast<int>(bilinear.size()); ++quadratic_) {
+    const BilinearConstraint& constraint = bilinear[order_[quadratic_] - products_];
+    value_[quadratic_] = constraint.value;
+    bilinear_.push_back({{coordinates, ends_of(constraint)}, packed(constraint.B, dimension_)});
+  }
+  for (std::size_t k = 0; k < linear.size(); ++k) value_[quadratic_ + k] = linear[k].value;
 }
 
 void Assembly::add_distance(const Coordinates& coordinates, const DotConstraint& constraint) {
@@ -87,35 +88,15 @@ void Assembly::add_distance(const Coordinates& coordinates, const DotConstraint&
     }
   }
   to_ground_ += free ? 0 : 1;
-  quadratic_ = ++distances_;
-}
-
-void Assembly::add_dot(const Coordinates& coordinates, const DotConstraint& constraint) {
-  Dot dot;
-  for (const int point : free_points(coordinates, constraint)) {
-    dot.weights[2 * dot.free_points] = (point == constraint.a) - (point == constraint.b);
-    dot.weights[2 * dot.free_points + 1] = (point == constraint.c) - (point == constraint.d);
-    ++dot.free_points;
-  }
-  int* end = dot.ends;
-  for (const int point : {constraint.a, constraint.b, constraint.c, constraint.d}) {
-    for (int axis = 0; axis < dimension_; ++axis) *end++ = coordinates.of_point(point, axis);
-  }
-  dots_.push_back(dot);
-  ++quadratic_;
+  ++distances_;
 }
 
 /// Columns of a row stay in the order of its points, which Eigen's products with vectors allow but
 /// its copies of sparse matrices do not: hence the arrays are filled directly.
 void Assembly::make_jacobian(const Model& model, const Coordinates& coordinates) {
-  const auto dots = model.dot_constraints();
   std::vector<int> starts{0}, columns;
   for (int row = 0; row < quadratic_; ++row) {
-    for (const int point : free_points(coordinates, dots[order_[row]])) {
-      for (int axis = 0; axis < dimension_; ++axis) {
-        columns.push_back(coordinates.of_point(point, axis));
-      }
-    }
+    append_columns(coordinates, ends_of_quadratic(model, order_[row]), columns);
     starts.push_back(static_cast<int>(columns.size()));
   }
   std::vector<double> values(columns.size());
@@ -133,31 +114,42 @@ void Assembly::make_jacobian(const Model& model, const Coordinates& coordinates)
   std::copy(values.begin(), values.end(), jacobian_.valuePtr());
 }
 
-/// Rows that change get slots and runs; those of linear constraints are added once and for all.
+/// Slots and runs of the rows that change.
 void Assembly::make_runs(Triangle triangle) {
   const int* starts = jacobian_.outerIndexPtr();
   int run_width = 0;
-  for (int row = 0; row < jacobian_.rows(); ++row) {
+  for (int row = 0; row < quadratic_; ++row) {
     const int width = starts[row + 1] - starts[row];
-    const auto products =
-        products_of_row(tangent_, triangle, jacobian_.innerIndexPtr() + starts[row], width);
-    if (row >= quadratic_) {
-      const double* values = jacobian_.valuePtr() + starts[row];
-      for (const Product& at : products) {
-        tangent_.valuePtr()[at.slot] += penalty_ * values[at.i] * values[at.j];
+    if (width == 0) continue;
+    if (width != run_width) {
+      runs_.push_back({loop_for(triangle, width), starts[row], static_cast<int>(slots_.size()), 0});
+      run_width = width;
+    }
+    ++runs_.back().count;
+    append_slots(tangent_, triangle,
+                 {jacobian_.innerIndexPtr() + starts[row], static_cast<std::size_t>(width)},
+                 slots_);
+  }
+}
+
+/// The share of the linear constraints in the tangent, once and for all.
+void Assembly::add_linear_rows(Triangle triangle) {
+  const int* starts = jacobian_.outerIndexPtr();
+  std::vector<int> slots;
+  for (int row = quadratic_; row < jacobian_.rows(); ++row) {
+    const std::span columns(jacobian_.innerIndexPtr() + starts[row],
+                            jacobian_.innerIndexPtr() + starts[row + 1]);
+    const double* values = jacobian_.valuePtr() + starts[row];
+    slots.clear();
+    append_slots(tangent_, triangle, columns, slots);
+    const int* slot = slots.data();
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const std::size_t end = triangle == Triangle::full ? columns.size() : i + 1;
+      for (std::size_t j = 0; j < end; ++j) {
+        tangent_.valuePtr()[*slot++] += penalty_ * values[i] * values[j];  // Eq. (5)
       }
-    } else if (width > 0) {
-      if (width != run_width) {
-        runs_.push_back({triangle == Triangle::full ? loop_for<Triangle::full>(width)
-                                                    : loop_for<Triangle::upper>(width),
-                         starts[row], static_cast<int>(slots_.size()), 0});
-        run_width = width;
-      }
-      ++runs_.back().count;
-      for (const Product& at : products) slots_.push_back(at.slot);
     }
   }
-  base_ = Eigen::Map<const Vector>(tangent_.valuePtr(), tangent_.nonZeros());
 }
 
 }  // namespace mbs::eigen_superlu

@@ -1,13 +1,20 @@
 // Loops that add penalty r^T r to the tangent for rows r of Phi_q, Eq. (5).
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "solver.hpp"
 
 namespace mbs::eigen_superlu {
 
+/// Appends where the products (i, j) of a row with entries in `columns` go in the arrays of
+/// `tangent`: for i ascending all j, or for the upper triangle alone those with j <= i.
+void append_slots(const SparseMatrix& tangent, Triangle triangle, std::span<const int> columns,
+                  std::vector<int>& slots);
+
 /// Adds penalty r^T r for each of `count` rows r of equal width, one after another in `rows`, to
-/// the values of the tangent. For each row, `slots` says where its products (i, j) go: for i
-/// ascending all j, or for the upper triangle alone those with j <= i.
+/// the values of the tangent; `slots` as append_slots() lists them for one row after another.
 using AddRows = void (*)(const double* rows, const int* slots, int count, double penalty,
                          double* tangent);
 
@@ -22,10 +29,12 @@ void add_rows(const double* rows, const int* slots, int count, double penalty, d
   }
 }
 
-/// The loop for rows of `width` entries: those of 1 to 4 free points in 2 or 3 dimensions.
+/// The loop for rows of `width` entries: those of up to 4 free points in 2 or 3 dimensions.
 template <Triangle kTriangle>
 AddRows loop_for(int width) {
   switch (width) {
+    case 0:
+      return add_rows<0, kTriangle>;
     case 2:
       return add_rows<2, kTriangle>;
     case 3:
@@ -42,5 +51,6 @@ AddRows loop_for(int width) {
       return add_rows<12, kTriangle>;
   }
 }
+AddRows loop_for(Triangle triangle, int width);
 
 }  // namespace mbs::eigen_superlu

@@ -19,7 +19,7 @@ Coordinates numbered_for(const Model& model) {
 
 template <class Solver>
 SparseSimulation<Solver>::SparseSimulation(const Model& model, const StepSettings& settings)
-    : Simulation(model.variables(), model.constraints()),
+    : Simulation(model, settings),
       settings_(settings),
       quarter_(0.25 * settings.step * settings.step),
       coordinates_(numbered_for<Solver>(model)),
@@ -36,6 +36,14 @@ SparseSimulation<Solver>::SparseSimulation(const Model& model, const StepSetting
   coordinates_.gather({model.force().begin(), model.force().end()}, force_);
   const std::vector<double>& fixed = coordinates_.fixed();
   std::copy(fixed.begin(), fixed.end(), q_.data() + model.variables());
+  if (!model.driven_points().empty() || !model.driven_values().empty()) {
+    drivers_.emplace(model, coordinates_, assembly_.order());
+  }
+  const ForceSetup setup{model, coordinates_, Solver::kTriangle, assembly_.tangent(),
+                         settings.step};
+  append_springs(setup, forces_);
+  append_torsion_springs(setup, forces_);
+  append_couples(setup, forces_);
 }
 
 template <class Solver>
@@ -59,12 +67,14 @@ void SparseSimulation<Solver>::do_get_state(State& state) const {
 template <class Solver>
 StepOutcome SparseSimulation<Solver>::do_step() {
   StepOutcome outcome{StepStatus::pass_limit, 0};
+  if (drivers_) drivers_->sample(time(), q_, v_, assembly_.value(), force_);
   predict();
   while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
     ++outcome.passes;
     form_right_hand_side();
     phases_.enter(Phase::assembly);
     assembly_.refresh_tangent();
+    for (const auto& force : forces_) force->add_to_tangent(assembly_.tangent_values());
     phases_.enter(Phase::factorization);
     if (!solver_.factorize()) {
       phases_.enter(Phase::other);
@@ -74,7 +84,8 @@ StepOutcome SparseSimulation<Solver>::do_step() {
     solver_.solve(delta_);  // Eq. (4)
     if (correct()) outcome.status = StepStatus::converged;
   }
-  project();
+  if (settings_.projections != Projections::none) project_velocities();
+  if (settings_.projections == Projections::both) project_accelerations();
   phases_.enter(Phase::other);
   return outcome;
 }
@@ -100,6 +111,7 @@ void SparseSimulation<Solver>::form_right_hand_side() {
   phases_.enter(Phase::evaluation);
   multiplier_ = -lambda_ - settings_.penalty * assembly_.phi();
   delta_ = force_;
+  for (const auto& force : forces_) force->apply(q_, v_, delta_);
   delta_.noalias() -= mass_ * a_;
   delta_.noalias() += assembly_.jacobian().transpose() * multiplier_;
   delta_ *= quarter_;
@@ -122,16 +134,29 @@ bool SparseSimulation<Solver>::correct() {
 }
 
 template <class Solver>
-void SparseSimulation<Solver>::project() {
+void SparseSimulation<Solver>::project_velocities() {
   phases_.enter(Phase::projection);
   delta_.noalias() = mass_ * v_.head(a_.size());
+  for (const auto& force : forces_) force->add_product(v_, delta_);
+  if (drivers_) {
+    multiplier_.setZero();
+    drivers_->add_rates(q_, multiplier_);
+    multiplier_ *= -quarter_ * settings_.penalty;
+    delta_.noalias() += assembly_.jacobian().transpose() * multiplier_;
+  }
   phases_.enter(Phase::solve);
   solver_.solve(delta_);  // Eq. (6), velocities
   phases_.enter(Phase::projection);
   v_.head(a_.size()) = delta_;
+}
+
+template <class Solver>
+void SparseSimulation<Solver>::project_accelerations() {
   assembly_.velocity_terms(v_, multiplier_);
+  if (drivers_) drivers_->add_accelerations(q_, multiplier_);
   multiplier_ *= -quarter_ * settings_.penalty;
   delta_.noalias() = mass_ * a_;
+  for (const auto& force : forces_) force->add_product(a_, delta_);
   delta_.noalias() += assembly_.jacobian().transpose() * multiplier_;
   phases_.enter(Phase::solve);
   solver_.solve(delta_);  // Eq. (6), accelerations

@@ -1,8 +1,12 @@
 // The time step on Eigen's sparse matrices, for either solver.
 #pragma once
 
+#include <optional>
+
 #include "assembly.hpp"
 #include "coordinates.hpp"
+#include "drivers.hpp"
+#include "forces.hpp"
 #include "mbs/simulation.hpp"
 #include "solver.hpp"
 
@@ -23,7 +27,8 @@ class SparseSimulation final : public Simulation {
   void predict();
   void form_right_hand_side();
   bool correct();
-  void project();
+  void project_velocities();
+  void project_accelerations();
 
   StepSettings settings_;
   double quarter_;  // dt^2/4
@@ -31,7 +36,9 @@ class SparseSimulation final : public Simulation {
   Assembly assembly_;
   Solver solver_;
   RowSparseMatrix mass_;  // both triangles: row products need no scattered stores
-  Vector force_;
+  Vector force_;          // the part of Q that holds for a whole step
+  std::optional<Drivers> drivers_;
+  Forces forces_;  // the rest of Q
 
   Vector q_, v_;  // extended by fixed points
   Vector a_, lambda_;

@@ -1,75 +1,62 @@
-// Phi, Phi_q, residual and tangent matrix, everything stored dense.
+// Right-hand sides and tangent matrix of the step, everything stored dense.
 #pragma once
 
-#include <array>
-#include <vector>
-
+#include "constraints.hpp"
+#include "drivers.hpp"
+#include "forces.hpp"
+#include "layout.hpp"
 #include "matrix.hpp"
-#include "mbs/model.hpp"
+#include "mbs/simulation.hpp"
 
 namespace mbs::starting_dense {
 
-/// Holds M, Q and the constraints, and evaluates them. With n variables and m constraints.
-///
-/// Coordinates and velocities are taken *extended*: the n entries of q (or v), then the constants
-/// of the fixed points (or zeros). So a fixed point is addressed like a free one:
-///
-///   A fixed at (0, 7), B free, C free:  extended q = (Bx By Cx Cy | 0 7), A at 4, B at 0, C at 2.
+/// Holds M and the constant part of Q, and puts them together with constraints, forces and drivers.
+/// With n variables and m constraints; coordinates and velocities are extended (see Layout).
 class Assembly {
  public:
-  explicit Assembly(const Model& model);
+  /// `model` outlives the assembly.
+  Assembly(const Model& model, const StepSettings& settings);
 
-  /// Extended coordinates at t = 0; from entry n on they are constant.
-  [[nodiscard]] const Vector& extended_position() const { return extended_position_; }
+  /// Extended coordinates at t = 0.
+  [[nodiscard]] const Vector& extended_position() const { return layout_.position; }
 
-  /// Evaluates phi() and the Jacobian, both ways round, at `q` (extended, m).
-  void evaluate(const Vector& q);
+  /// Whether drive() has to be called, once a step.
+  [[nodiscard]] bool driven() const { return !drivers_.empty(); }
+  /// Takes what is prescribed at time t (s), and writes driven points to q and v.
+  void drive(double t, Vector& q, Vector& v) {
+    drivers_.sample(t, q, v, constraints_.values(), Q_);
+  }
+
+  /// Evaluates phi() and the Jacobian at `q` (m).
+  void evaluate(const Vector& q) { constraints_.evaluate(q); }
   /// Phi (m) at the coordinates of the last evaluate().
-  [[nodiscard]] const Vector& phi() const { return phi_; }
+  [[nodiscard]] const Vector& phi() const { return constraints_.phi(); }
+  /// Evaluates the forces of springs and couples, C and K at `q` (m) and `v` (m/s).
+  void evaluate_forces(const Vector& q, const Vector& v) { forces_.evaluate(q, v); }
 
   /// right (n) = M a + Phi_q^T multipliers - Q, with a (n, m/s^2) and multipliers (m, N/m).
   void residual(const Vector& a, const Vector& multipliers, Vector& right);
-  /// result (n x n) = M + factor Phi_q^T Phi_q.
-  void tangent(double factor, Matrix& result);
-  /// right (n) = M x.
-  void mass_times(const Vector& x, Vector& right) const { matmul(M_, x, right); }
-  /// right (n) = M a - factor Phi_q^T (Phi_q_dot v), with a (n) and v (extended, m/s).
-  void acceleration_right(const Vector& a, const Vector& v, double factor, Vector& right);
+  /// result (n x n) = M + dt/2 C + dt^2/4 (alpha Phi_q^T Phi_q + K).
+  void tangent(Matrix& result);
+  /// right (n): of the velocities in Eq. (6).
+  void velocity_right(const Vector& v, Vector& right);
+  /// right (n): of the accelerations in Eq. (6), with a (n) and the projected v.
+  void acceleration_right(const Vector& a, const Vector& v, Vector& right);
 
  private:
-  /// What stays of Eq. (7): where the points are in extended coordinates, and which blocks of the
-  /// Jacobian row its two differences go to.
-  struct Dot {
-    int a, b, c, d;
-    int blocks_begin, blocks_end;
-    double value;  ///< m^2
-  };
-  /// The entries at one free point: ab (r_a - r_b) + cd (r_c - r_d).
-  struct Block {
-    int coordinate;
-    double ab, cd;
-  };
+  /// right (n) = (M + dt/2 C + dt^2/4 K) x, with the first n entries of x.
+  void multiply(const Vector& x, Vector& right);
+  /// right (n) -= dt^2/4 alpha Phi_q^T y, with y (m).
+  void subtract_transposed(const Vector& y, Vector& right);
 
-  void add_dot(const Model& model, const DotConstraint& constraint, const std::vector<int>& at);
-  void add_linear(const LinearConstraint& constraint, int row);
-  void evaluate_dot(int row, const Vector& q);
-
-  int dimension_;
+  const Layout layout_;
+  const double factor_;  ///< dt^2/4 alpha
   Matrix M_;
-  Vector Q_;
-  Vector extended_position_;
-
-  std::vector<Dot> dots_;  ///< rows 0, 1, ... of Phi
-  std::vector<Block> blocks_;
-  std::vector<LinearConstraint::Term> terms_;  ///< of all linear rows, one row after another
-  std::vector<int> terms_end_;                 ///< for each linear row
-  Vector linear_values_;
-
-  Vector phi_;
-  Matrix Phi_q_;             ///< m x n; rows of linear constraints are set once
-  Matrix Phi_q_transposed_;  ///< n x m
-  Vector Phi_q_dot_v_;       ///< m; zero for linear constraints
-  Vector product_;           ///< n
+  Vector Q_;  ///< force of the model, and of driven mass
+  Constraints constraints_;
+  Forces forces_;
+  Drivers drivers_;
+  Vector product_;  ///< n
 };
 
 }  // namespace mbs::starting_dense

@@ -1,13 +1,25 @@
 // Describes starting_dense to the harness.
 #include "mbs/implementation.hpp"
 
+#include <algorithm>
+#include <memory>
+#include <string>
+
 #include "simulation.hpp"
 
 namespace mbs::starting_dense {
 
 namespace {
 
+/// A dense matrix of more than 2 GiB is refused: four of them are kept.
+constexpr double kLargest = 2.0 * 1024 * 1024 * 1024;
+
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
+  const double n = model.variables(), m = model.constraints();
+  if (8.0 * n * std::max(n, m) > kLargest) {
+    throw Unsupported("dense matrices of " + std::to_string(model.variables()) + " variables and " +
+                      std::to_string(model.constraints()) + " constraints exceed 2 GiB each");
+  }
   return std::make_unique<DenseSimulation>(model, settings);
 }
 

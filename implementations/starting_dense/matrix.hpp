@@ -35,14 +35,20 @@ class Matrix {
 
 using Vector = std::vector<double>;
 
-/// result (c x r) = transposed `matrix` (r x c). The two are distinct.
+/// result (c x r) = transposed first c columns of `matrix` (r x c or wider). The two are distinct.
 void transpose(const Matrix& matrix, Matrix& result);
 
-/// result (r) = matrix (r x c) times x (c), column after column. `result` is not `x`.
+/// result (r) = matrix (r x c) times the first c entries of x, column after column. `result` is not
+/// `x`.
 void matmul(const Matrix& matrix, const Vector& x, Vector& result);
 
-/// result (r x c) = left (r x k) times right (k x c), one column of the result after another, each
-/// as in the product above. All r k c products are formed. `result` is neither factor.
+/// result (r) += columns first, first + 1, ... of `matrix` (r x c) times x, one column an entry of
+/// x.
+void add_product(const Matrix& matrix, int first, const Vector& x, Vector& result);
+
+/// result (r x c) = left (r x k) times the first c columns of `right` (k x c or wider), one column
+/// of the result after another, each as in the product above. All r k c products are formed.
+/// `result` is neither factor.
 void matmul(const Matrix& left, const Matrix& right, Matrix& result);
 
 }  // namespace mbs::starting_dense

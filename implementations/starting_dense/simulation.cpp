@@ -7,10 +7,10 @@
 namespace mbs::starting_dense {
 
 DenseSimulation::DenseSimulation(const Model& model, const StepSettings& settings)
-    : Simulation(model.variables(), model.constraints()),
+    : Simulation(model, settings),
       settings_(settings),
       n_(model.variables()),
-      assembly_(model),
+      assembly_(model, settings),
       solver_(n_),
       q_(assembly_.extended_position()),
       v_(q_.size()),
@@ -40,6 +40,7 @@ StepOutcome DenseSimulation::do_step() {
   phases_.enter(Phase::other);
   predict();
   phases_.enter(Phase::evaluation);
+  if (assembly_.driven()) assembly_.drive(time(), q_, v_);
   assembly_.evaluate(q_);
   bool converged = false;
   while (!converged && outcome.passes < settings_.max_passes) {
@@ -74,10 +75,11 @@ bool DenseSimulation::pass(bool& converged) {
   for (std::size_t i = 0; i < lambda_.size(); ++i) {
     multipliers_[i] = lambda_[i] + settings_.penalty * phi[i];
   }
+  assembly_.evaluate_forces(q_, v_);
   assembly_.residual(a_, multipliers_, solution_);
   for (double& entry : solution_) entry *= -quarter;  // Eq. (3), -f
   phases_.enter(Phase::assembly);
-  assembly_.tangent(quarter * settings_.penalty, solver_.matrix());  // Eq. (5)
+  assembly_.tangent(solver_.matrix());  // Eq. (5)
   phases_.enter(Phase::factorization);
   if (!solver_.factorize()) return false;
   phases_.enter(Phase::solve);
@@ -107,14 +109,15 @@ void DenseSimulation::apply_increment(bool& converged) {
 }
 
 void DenseSimulation::project() {
-  const double factor = 0.25 * settings_.step * settings_.step * settings_.penalty;
+  if (settings_.projections == Projections::none) return;
   phases_.enter(Phase::projection);
-  assembly_.mass_times(v_, solution_);  // Eq. (6), velocities
+  assembly_.velocity_right(v_, solution_);  // Eq. (6), velocities
   phases_.enter(Phase::solve);
   solver_.solve(solution_);
   std::copy_n(solution_.begin(), n_, v_.begin());
+  if (settings_.projections == Projections::velocity) return;
   phases_.enter(Phase::projection);
-  assembly_.acceleration_right(a_, v_, factor, solution_);  // Eq. (6), accelerations
+  assembly_.acceleration_right(a_, v_, solution_);  // Eq. (6), accelerations
   phases_.enter(Phase::solve);
   solver_.solve(solution_);
   a_.swap(solution_);

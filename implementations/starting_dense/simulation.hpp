@@ -7,7 +7,7 @@
 
 namespace mbs::starting_dense {
 
-/// q_ and v_ are extended by the fixed points, see Assembly; a_ has n entries, lambda_ m.
+/// q_ and v_ are extended by points that are not free (see Layout); a_ has n entries, lambda_ m.
 class DenseSimulation final : public Simulation {
  public:
   DenseSimulation(const Model& model, const StepSettings& settings);

@@ -12,7 +12,7 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
 }
 
 StartingSparseSimulation::StartingSparseSimulation(const Model& model, const StepSettings& settings)
-    : Simulation(model.variables(), model.constraints()),
+    : Simulation(model, settings),
       settings_(settings),
       assembly_(model, 0.25 * settings.step * settings.step, settings.penalty),
       solver_(assembly_.tangent()),

@@ -23,7 +23,7 @@ Vector to_vector(std::span<const double> values) {
 
 template <class Product>
 UblasSimulation<Product>::UblasSimulation(const Model& model, const StepSettings& settings)
-    : Simulation(model.variables(), model.constraints()),
+    : Simulation(model, settings),
       settings_(settings),
       scale_(settings.step * settings.step / 4.0),
       constraints_(model),

@@ -1,4 +1,4 @@
-# The command lines of study/run, study/figures and study/compare.
+# The command lines of study/run, study/figures and study/compare, and the way into study/view.
 import argparse
 import os
 import re
@@ -23,7 +23,8 @@ class Parser(argparse.ArgumentParser):
 def main(arguments):
     command, *rest = arguments
     try:
-        return {"run": run, "figures": figures, "compare": compare}[command](rest)
+        return {"run": run, "figures": figures, "compare": compare, "view": view,
+                "scenes": scenes, "against": against}[command](rest)
     except StudyError as error:
         print(f"study/{command}: {error}", file=sys.stderr)
         return 2
@@ -101,6 +102,21 @@ def compare(arguments):
     repeat([options.first, options.second, *options.output])
     print(f"figure: {', '.join(options.output)}")
     return 0
+
+
+def view(arguments):
+    from study.viewer.main import view as show
+    return show(arguments)
+
+
+def scenes(arguments):
+    from study.scene_study.main import scenes as run_scenes
+    return run_scenes(arguments)
+
+
+def against(arguments):
+    from study.pipeline.against import against as run_against
+    return run_against(arguments)
 
 
 def list_choices():

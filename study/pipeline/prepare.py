@@ -19,7 +19,7 @@ from study.pipeline.front import Display
 from study.pipeline.layout import ROOT, fingerprint, program, read_json, read_run, write_json
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
-           "jinja2": "python3-jinja2", "snakemake": "snakemake"}
+           "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
 
 
 def set_up(layout):
@@ -43,15 +43,15 @@ def set_up(layout):
 def start(layout, profile, only):
     """Records what this results directory is for, or refuses one that is for something else."""
     known = registry()
-    run_record = _run_record(layout, profile, only, known)
+    record = run_record(layout, profile, only, known)
     text = (profiles.FOLDER / f"{profile.name}.yaml").read_text()
     stored_text = layout.results / "profile.yaml"
     if layout.run.exists():
         stored = read_run(layout)
         differing = [text for environment, context in stored["contexts"].items()
-                     for text in _differing(context, run_record["contexts"].get(environment, {}))]
+                     for text in _differing(context, record["contexts"].get(environment, {}))]
         differing += [key for key in ("profile", "variants", "contenders", "programs")
-                      if stored[key] != run_record[key]]
+                      if stored[key] != record[key]]
         differing += [] if stored_text.read_text() == text else ["the profile's settings"]
         if differing:
             raise StudyError(f"{layout.results} holds results of something else ({differing[0]}); "
@@ -60,10 +60,10 @@ def start(layout, profile, only):
         return
     write_json(layout.registry, known)
     stored_text.write_text(text)
-    write_json(layout.run, run_record)
+    write_json(layout.run, record)
 
 
-def _run_record(layout, profile, only, known):
+def run_record(layout, profile, only, known):
     variants = select(known, only)
     broken = _build_others(layout, wanted_builds(profile, variants))
     own, found, contexts = control(profile, known), [], {}

@@ -10,12 +10,20 @@
 
 namespace mbs {
 
+/// Which projections end a step.
+enum class Projections {
+  none,      ///< v and a stay what Eq. (2) gave
+  velocity,  ///< v is projected, a stays what Eq. (2) gave
+  both,      ///< Eq. (6) for v, then for a
+};
+
 /// Settings of the time stepping, fixed for the lifetime of a Simulation.
 struct StepSettings {
   double step = 1.25e-3;    ///< Delta t, s
   double penalty = 1e8;     ///< alpha
   double tolerance = 1e-9;  ///< converged once max |Delta q| <= tolerance, m
   int max_passes = 20;      ///< passes a step at most; the last state is kept and stepping goes on
+  Projections projections = Projections::both;
 };
 
 /// The full dynamic state at one instant.
@@ -24,6 +32,7 @@ struct State {
   std::vector<double> v;       ///< n, m/s
   std::vector<double> a;       ///< n, m/s^2
   std::vector<double> lambda;  ///< constraints(), lambda* of Eq. (1)
+  double t = 0.0;              ///< s
 };
 
 enum class StepStatus {
@@ -52,7 +61,8 @@ class Unsupported : public std::runtime_error {
 ///   simulation->get_state(state);                   // sizes adapted
 class Simulation {
  public:
-  Simulation(int variables, int constraints) : variables_(variables), constraints_(constraints) {}
+  Simulation(const Model& model, const StepSettings& settings)
+      : variables_(model.variables()), constraints_(model.constraints()), step_(settings.step) {}
   virtual ~Simulation() = default;
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
@@ -61,9 +71,12 @@ class Simulation {
   void set_state(const State& state);
 
   /// Advances by one time step as paper/README.md, "The step", states it.
-  [[nodiscard]] StepOutcome step() { return do_step(); }
+  [[nodiscard]] StepOutcome step() {
+    ++steps_;
+    return do_step();
+  }
 
-  /// Copies the current state out: q, v, a after the projections, and lambda*.
+  /// Copies the current state out: q, v, a after the projections, lambda* and t.
   void get_state(State& state) const;
 
   /// The phase clock that step() marks; off unless the harness profiles.
@@ -75,11 +88,17 @@ class Simulation {
   /// `state` arrives with the right sizes.
   virtual void do_get_state(State& state) const = 0;
 
+  /// Within do_step(): the time at the end of this step, s. Only driven models need it.
+  [[nodiscard]] double time() const { return start_ + static_cast<double>(steps_) * step_; }
+
   PhaseClock phases_;
 
  private:
   int variables_;
   int constraints_;
+  double step_;         // s
+  double start_ = 0.0;  // s; time of the last set_state()
+  long steps_ = 0;      // since then
 };
 
 }  // namespace mbs

@@ -23,7 +23,7 @@ Expected expect(const Model& model, const std::vector<double>& q, double factor)
   const std::size_t n = q.size(), m = static_cast<std::size_t>(model.constraints());
   Expected expected{Dense(m * n), Dense(n * n), Dense(n * n)};
   std::vector<long double> products(n * n, 0.0L);
-  const std::vector<JacobianEntry> entries = jacobian(model, q);
+  const std::vector<JacobianEntry> entries = jacobian(model, 0.0, q);
   const auto at = [n](int row, int col) {
     return static_cast<std::size_t>(row) * n + static_cast<std::size_t>(col);
   };

@@ -14,10 +14,10 @@ namespace mbs {
 
 namespace {
 
-/// Largest absolute row sum of Phi_q at q.
-double row_sum_norm(const Model& model, const std::vector<double>& q) {
+/// Largest absolute row sum of Phi_q.
+double row_sum_norm(const Model& model, const State& state) {
   std::vector<double> sums(static_cast<std::size_t>(model.constraints()) + 1, 0.0);
-  for (const JacobianEntry& entry : jacobian(model, q)) {
+  for (const JacobianEntry& entry : jacobian(model, state.t, state.q)) {
     sums[static_cast<std::size_t>(entry.row)] += std::abs(entry.value);
   }
   return *std::ranges::max_element(sums);
@@ -60,7 +60,7 @@ ReferenceRun run_reference(const Scene& scene, const StepSettings& settings) {
     probe.outcome = reference.step();
     reference.get_state(probe.after);
     probe.condition = reference.tangent_condition();
-    probe.jacobian_norm = row_sum_norm(scene.model, probe.before.q);
+    probe.jacobian_norm = row_sum_norm(scene.model, probe.before);
   }
   return result;
 }

@@ -32,16 +32,115 @@ int count_variables(const ModelData& data) {
   return static_cast<int>(offsets.size()) * data.dimension;
 }
 
-void check_constraints(const ModelData& data, int variables) {
-  const int points = static_cast<int>(data.points.size());
-  for (const DotConstraint& constraint : data.dot_constraints) {
-    for (const int index : {constraint.a, constraint.b, constraint.c, constraint.d}) {
-      if (index < 0 || index >= points) {
-        fail("constraint '" + constraint.name + "' refers to point " + std::to_string(index));
+/// Refuses what refers to anything that is not there.
+class IndexCheck {
+ public:
+  explicit IndexCheck(const ModelData& data) : data_(data) {}
+
+  void points(std::initializer_list<int> indices, const std::string& what) const {
+    for (const int index : indices) {
+      if (index < 0 || index >= static_cast<int>(data_.points.size())) {
+        fail(what + " refers to point " + std::to_string(index));
       }
     }
-    require_finite(constraint.value, "constraint '" + constraint.name + "'");
   }
+  /// Of a torsion spring or couple: a point in three dimensions, none in the plane.
+  void axis(int index, const std::string& what) const {
+    if (data_.dimension == 3) return points({index}, what);
+    if (index != -1) fail(what + " has an axis in a planar model");
+  }
+  void different(int a, int b, const std::string& what) const {
+    if (a == b) fail(what + " has the same point at both ends");
+  }
+
+ private:
+  const ModelData& data_;
+};
+
+void check_quadratic(const ModelData& data) {
+  const IndexCheck check(data);
+  for (const DotConstraint& c : data.dot_constraints) {
+    const std::string what = "constraint '" + c.name + "'";
+    check.points({c.a, c.b, c.c, c.d}, what);
+    require_finite(c.value, what);
+  }
+  for (const BilinearConstraint& c : data.bilinear_constraints) {
+    const std::string what = "constraint '" + c.name + "'";
+    check.points({c.a, c.b, c.c, c.d}, what);
+    require_finite(c.value, what);
+    for (const auto& row : c.B) {
+      for (const double entry : row) require_finite(entry, what);
+    }
+  }
+}
+
+void require_not_negative(double value, const std::string& what) {
+  require_finite(value, what);
+  if (value < 0.0) fail(what + " is negative");
+}
+
+void check_forces(const ModelData& data) {
+  const IndexCheck check(data);
+  for (const Spring& spring : data.springs) {
+    const std::string what = "spring '" + spring.name + "'";
+    check.points({spring.a, spring.b}, what);
+    check.different(spring.a, spring.b, what);
+    for (const double value : {spring.stiffness, spring.damping, spring.length}) {
+      require_not_negative(value, what);
+    }
+  }
+  for (const TorsionSpring& spring : data.torsion_springs) {
+    const std::string what = "torsion spring '" + spring.name + "'";
+    check.points({spring.a, spring.b, spring.c, spring.d}, what);
+    check.axis(spring.axis, what);
+    check.different(spring.a, spring.b, what);
+    check.different(spring.c, spring.d, what);
+    for (const double value : {spring.stiffness, spring.damping}) require_not_negative(value, what);
+    require_finite(spring.angle, what);
+  }
+  for (const Couple& couple : data.couples) {
+    const std::string what = "couple '" + couple.name + "'";
+    check.points({couple.a, couple.b}, what);
+    check.axis(couple.axis, what);
+    check.different(couple.a, couple.b, what);
+    require_finite(couple.torque, what);
+  }
+}
+
+void check_drivers(const ModelData& data, int variables) {
+  const IndexCheck check(data);
+  std::vector<bool> driven(data.points.size(), false);
+  for (const DrivenPoint& point : data.driven_points) {
+    check.points({point.point}, "a driven point");
+    const auto index = static_cast<std::size_t>(point.point);
+    if (!data.points[index].is_fixed())
+      fail("point '" + data.points[index].name + "' is driven and free");
+    if (driven[index]) fail("point '" + data.points[index].name + "' is driven twice");
+    driven[index] = true;
+  }
+  const std::size_t constraints = data.dot_constraints.size() + data.bilinear_constraints.size() +
+                                  data.linear_constraints.size();
+  std::vector<bool> valued(constraints, false);
+  for (const DrivenValue& value : data.driven_values) {
+    const auto index = static_cast<std::size_t>(value.constraint);
+    if (value.constraint < 0 || index >= constraints) {
+      fail("a driven value refers to constraint " + std::to_string(value.constraint));
+    }
+    if (valued[index]) fail("constraint " + std::to_string(value.constraint) + " is driven twice");
+    valued[index] = true;
+  }
+  for (const DrivenMass& mass : data.driven_mass) {
+    check.points({mass.point}, "a driven mass");
+    if (!driven[static_cast<std::size_t>(mass.point)] || mass.coordinate < 0 ||
+        mass.coordinate >= variables || mass.axis < 0 || mass.axis >= data.dimension) {
+      fail("a driven mass does not fit: coordinate " + std::to_string(mass.coordinate) +
+           ", point " + std::to_string(mass.point) + ", axis " + std::to_string(mass.axis));
+    }
+    require_finite(mass.value, "a driven mass");
+  }
+}
+
+void check_linear(const ModelData& data, int variables) {
   for (const LinearConstraint& constraint : data.linear_constraints) {
     std::vector<int> coordinates;
     for (const LinearConstraint::Term& term : constraint.terms) {
@@ -93,7 +192,10 @@ void normalise_mass(std::vector<MassEntry>& mass, int variables) {
 Model::Model(ModelData data) : data_(std::move(data)) {
   if (data_.dimension != 2 && data_.dimension != 3) fail("the dimension must be 2 or 3");
   variables_ = count_variables(data_);
-  check_constraints(data_, variables_);
+  check_quadratic(data_);
+  check_linear(data_, variables_);
+  check_forces(data_);
+  check_drivers(data_, variables_);
   normalise_mass(data_.mass, variables_);
   const auto n = static_cast<std::size_t>(variables_);
   if (data_.force.size() != n) fail("the applied force must have one entry a coordinate");

@@ -29,6 +29,9 @@ void Simulation::set_state(const State& state) {
   check(state.v, n, "v");
   check(state.a, n, "a");
   check(state.lambda, static_cast<std::size_t>(constraints_), "lambda");
+  if (!std::isfinite(state.t)) throw std::invalid_argument("state.t is not finite");
+  start_ = state.t;
+  steps_ = 0;
   do_set_state(state);
 }
 
@@ -39,6 +42,7 @@ void Simulation::get_state(State& state) const {
   state.a.resize(n);
   state.lambda.resize(static_cast<std::size_t>(constraints_));
   do_get_state(state);
+  state.t = time();
 }
 
 }  // namespace mbs

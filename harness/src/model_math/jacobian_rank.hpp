@@ -1,23 +1,40 @@
-// Rank of the constraints' Jacobian, by dense factorization where that is affordable.
+// Rank of the constraints' Jacobian, and which constraints depend on others.
 #pragma once
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "mbs/model.hpp"
 #include "model_math/kinematics.hpp"
 
 namespace mbs {
 
-/// Most coordinates for which jacobian_rank() factorizes (twice as many constraints): some 50 ms.
-inline constexpr int kDenseRankLimit = 400;
+/// Entries below this, in rows of length 1, count as zero for the rank.
+inline constexpr double kRankTolerance = 1e-9;
 
-/// Rank of a rows x cols matrix, each row scaled to length 1 first: pivots of a QR factorization
-/// with column pivoting below 1e-9 of the largest count as zero. Throws std::invalid_argument on a
-/// non-finite value.
+/// Most entries that find_rank() processes before it gives up, about a second; chains of 100 000
+/// coordinates take a tenth of that.
+inline constexpr long kRankWork = 200'000'000;
+
+struct RowRank {
+  int rank = 0;
+  std::vector<int> dependent;  ///< rows that depend on the rows before them, ascending
+};
+
+/// Rank of a sparse rows x cols matrix whose entries are sorted by row, each row scaled to length 1
+/// first. Sparse QR by Givens rotations, row after row in the order given, columns in COLAMD's: a
+/// row of which less than kRankTolerance is left depends on those before it [Heath, 1982]. Nothing
+/// if that takes more than kRankWork. Throws std::invalid_argument on a non-finite value.
+///
+/// [Heath, 1982] M. T. Heath, Some extensions of an algorithm for sparse linear least squares
+/// problems, SIAM J. Sci. Stat. Comput. 3, 223-237.
+std::optional<RowRank> find_rank(int rows, int cols, std::span<const JacobianEntry> entries);
+
+/// The rank alone, of a matrix small enough.
 int rank_of(int rows, int cols, std::span<const JacobianEntry> entries);
 
-/// Rank of Phi_q(q), or nothing if the model is beyond kDenseRankLimit.
-std::optional<int> jacobian_rank(const Model& model, std::span<const double> q);
+/// Rank of Phi_q at q and time t, or nothing if that is too much work.
+std::optional<int> jacobian_rank(const Model& model, std::span<const double> q, double t = 0.0);
 
 }  // namespace mbs

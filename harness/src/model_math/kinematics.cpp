@@ -1,15 +1,19 @@
-// Direct transcription of Eqs. (7) and (8) of paper/README.md, and of the energy.
+// Direct transcription of Eqs. (7), (8) and (11) of paper/README.md, and of the energy.
 #include "model_math/kinematics.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
+
+#include "model_math/known_motion.hpp"
+#include "model_math/vector3.hpp"
 
 namespace mbs {
 namespace {
 
-using Vector = std::array<double, 3>;
+using Coordinates = std::span<const double>;
 
 void require_size(std::size_t found, int needed, const char* name) {
   if (found != static_cast<std::size_t>(needed)) {
@@ -18,33 +22,74 @@ void require_size(std::size_t found, int needed, const char* name) {
   }
 }
 
-/// What `q` holds for a point; `constant` supplies the value of a fixed one.
-Vector of_point(const Model& model, const Point& point, std::span<const double> q,
-                const Vector& constant) {
-  Vector result{};
-  for (int axis = 0; axis < model.dimension(); ++axis) {
-    const auto i = static_cast<std::size_t>(axis);
-    result[i] = point.is_fixed() ? constant[i] : q[static_cast<std::size_t>(point.offset) + i];
+/// Positions and velocities of all points at one instant.
+class Motion {
+ public:
+  Motion(const Model& model, double t, Coordinates q, Coordinates v = {})
+      : model_(model), known_(model, t), q_(q), v_(v) {
+    require_size(q.size(), model.variables(), "q");
+    if (v.data() != nullptr) require_size(v.size(), model.variables(), "v");
   }
-  return result;
+
+  [[nodiscard]] Vector3 position(int point) const {
+    return is_fixed(point) ? known_.position(point) : of(point, q_);
+  }
+  [[nodiscard]] Vector3 velocity(int point) const {
+    return is_fixed(point) ? known_.velocity(point) : of(point, v_);
+  }
+  [[nodiscard]] Vector3 known_acceleration(int point) const {
+    return is_fixed(point) ? known_.acceleration(point) : Vector3{};
+  }
+  /// r_a - r_b and the like.
+  [[nodiscard]] Vector3 r(int a, int b) const { return position(a) - position(b); }
+  [[nodiscard]] Vector3 v(int a, int b) const { return velocity(a) - velocity(b); }
+  [[nodiscard]] Vector3 a(int a, int b) const {
+    return known_acceleration(a) - known_acceleration(b);
+  }
+  /// The axis of a torsion spring or couple.
+  [[nodiscard]] Vector3 axis(int point) const {
+    return point < 0 ? Vector3{0.0, 0.0, 1.0} : position(point);
+  }
+  [[nodiscard]] const std::vector<TimeFunction::Sample>& values() const { return known_.values(); }
+  [[nodiscard]] bool is_fixed(int point) const { return at(point).is_fixed(); }
+  [[nodiscard]] const Point& at(int point) const {
+    return model_.points()[static_cast<std::size_t>(point)];
+  }
+
+ private:
+  [[nodiscard]] Vector3 of(int point, Coordinates x) const {
+    Vector3 result{};
+    const auto offset = static_cast<std::size_t>(at(point).offset);
+    for (int axis = 0; axis < model_.dimension(); ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      result[k] = x[offset + k];
+    }
+    return result;
+  }
+
+  const Model& model_;
+  KnownMotion known_;
+  Coordinates q_, v_;
+};
+
+/// u . B w, or u . w for a dot constraint.
+double product(const DotConstraint&, const Vector3& u, const Vector3& w) { return dot(u, w); }
+double product(const BilinearConstraint& c, const Vector3& u, const Vector3& w) {
+  return dot(u, multiply(c.B, w));
+}
+/// B w and B^T u.
+Vector3 right(const DotConstraint&, const Vector3& w) { return w; }
+Vector3 right(const BilinearConstraint& c, const Vector3& w) { return multiply(c.B, w); }
+Vector3 left(const DotConstraint&, const Vector3& u) { return u; }
+Vector3 left(const BilinearConstraint& c, const Vector3& u) { return multiply_transposed(c.B, u); }
+
+template <class Function>
+void for_quadratic(const Model& model, Function&& function) {
+  for (const DotConstraint& constraint : model.dot_constraints()) function(constraint);
+  for (const BilinearConstraint& constraint : model.bilinear_constraints()) function(constraint);
 }
 
-Vector minus(const Vector& x, const Vector& y) { return {x[0] - y[0], x[1] - y[1], x[2] - y[2]}; }
-double dot(const Vector& x, const Vector& y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; }
-
-/// r_from - r_to.
-Vector position_difference(const Model& model, int from, int to, std::span<const double> q) {
-  const Point& x = model.points()[static_cast<std::size_t>(from)];
-  const Point& y = model.points()[static_cast<std::size_t>(to)];
-  return minus(of_point(model, x, q, x.position), of_point(model, y, q, y.position));
-}
-Vector velocity_difference(const Model& model, int from, int to, std::span<const double> v) {
-  const Point& x = model.points()[static_cast<std::size_t>(from)];
-  const Point& y = model.points()[static_cast<std::size_t>(to)];
-  return minus(of_point(model, x, v, {}), of_point(model, y, v, {}));
-}
-
-double sum_of_terms(const LinearConstraint& constraint, std::span<const double> x) {
+double sum_of_terms(const LinearConstraint& constraint, Coordinates x) {
   double sum = 0.0;
   for (const auto& term : constraint.terms) {
     sum += term.coefficient * x[static_cast<std::size_t>(term.coordinate)];
@@ -52,17 +97,17 @@ double sum_of_terms(const LinearConstraint& constraint, std::span<const double> 
   return sum;
 }
 
-/// Appends the row of a dot constraint; the coefficients of coinciding points add up.
-void append_row(const Model& model, const DotConstraint& constraint, std::span<const double> q,
-                int row, std::vector<JacobianEntry>& entries) {
-  const Vector first = position_difference(model, constraint.a, constraint.b, q);
-  const Vector second = position_difference(model, constraint.c, constraint.d, q);
+/// Appends the row of a quadratic constraint; the coefficients of coinciding points add up.
+template <class Constraint>
+void append_row(const Model& model, const Constraint& c, const Motion& motion, int row,
+                std::vector<JacobianEntry>& entries) {
+  const Vector3 at_ab = right(c, motion.r(c.c, c.d));
+  const Vector3 at_cd = left(c, motion.r(c.a, c.b));
   const auto begin = static_cast<std::ptrdiff_t>(entries.size());
-  const auto add = [&](int index, const Vector& value, double sign) {
-    const Point& point = model.points()[static_cast<std::size_t>(index)];
-    if (point.is_fixed()) return;
+  const auto add = [&](int index, const Vector3& value, double sign) {
+    if (motion.is_fixed(index)) return;
     for (int axis = 0; axis < model.dimension(); ++axis) {
-      const int col = point.offset + axis;
+      const int col = motion.at(index).offset + axis;
       const auto found = std::find_if(entries.begin() + begin, entries.end(),
                                       [&](const JacobianEntry& entry) { return entry.col == col; });
       const double term = sign * value[static_cast<std::size_t>(axis)];
@@ -73,64 +118,124 @@ void append_row(const Model& model, const DotConstraint& constraint, std::span<c
       }
     }
   };
-  add(constraint.a, second, 1.0);
-  add(constraint.b, second, -1.0);
-  add(constraint.c, first, 1.0);
-  add(constraint.d, first, -1.0);
+  add(c.a, at_ab, 1.0);
+  add(c.b, at_ab, -1.0);
+  add(c.c, at_cd, 1.0);
+  add(c.d, at_cd, -1.0);
+}
+
+/// Adds forces to the rows of free points.
+class ForceVector {
+ public:
+  ForceVector(const Model& model, const Motion& motion, std::span<double> force)
+      : dimension_(model.dimension()), motion_(motion), force_(force) {}
+
+  /// `value` at point a, its opposite at point b.
+  void add_pair(int a, int b, const Vector3& value) {
+    add(a, value);
+    add(b, -1.0 * value);
+  }
+
+ private:
+  void add(int index, const Vector3& value) {
+    if (motion_.is_fixed(index)) return;
+    for (int axis = 0; axis < dimension_; ++axis) {
+      force_[static_cast<std::size_t>(motion_.at(index).offset + axis)] +=
+          value[static_cast<std::size_t>(axis)];
+    }
+  }
+
+  int dimension_;
+  const Motion& motion_;
+  std::span<double> force_;
+};
+
+/// theta - angle of a torsion spring, in -pi ... pi.
+double twist(const TorsionSpring& spring, const Motion& motion) {
+  const Vector3 u = motion.r(spring.a, spring.b), w = motion.r(spring.c, spring.d);
+  const double theta = std::atan2(dot(motion.axis(spring.axis), cross(u, w)), dot(u, w));
+  return std::remainder(theta - spring.angle, 2.0 * std::numbers::pi);
+}
+
+/// The gradient of the angle of w against axis z: (z x w) / (w . w).
+Vector3 turning(const Vector3& z, const Vector3& w) { return (1.0 / dot(w, w)) * cross(z, w); }
+
+void add_spring(const Spring& spring, const Motion& motion, ForceVector& force) {
+  const Vector3 d = motion.r(spring.a, spring.b);
+  const double length = std::sqrt(dot(d, d));
+  const Vector3 e = (length > 0.0 ? 1.0 / length : 0.0) * d;
+  const double rate = dot(e, motion.v(spring.a, spring.b));
+  const double tension = spring.stiffness * (length - spring.length) + spring.damping * rate;
+  force.add_pair(spring.a, spring.b, -tension * e);
+}
+
+void add_torsion_spring(const TorsionSpring& spring, const Motion& motion, ForceVector& force) {
+  const Vector3 z = motion.axis(spring.axis);
+  const Vector3 at_u = turning(z, motion.r(spring.a, spring.b));
+  const Vector3 at_w = turning(z, motion.r(spring.c, spring.d));
+  const double rate =
+      dot(at_w, motion.v(spring.c, spring.d)) - dot(at_u, motion.v(spring.a, spring.b));
+  const double torque = spring.stiffness * twist(spring, motion) + spring.damping * rate;
+  force.add_pair(spring.c, spring.d, -torque * at_w);
+  force.add_pair(spring.a, spring.b, torque * at_u);
 }
 
 }  // namespace
 
-void evaluate_constraints(const Model& model, std::span<const double> q, std::span<double> phi) {
-  require_size(q.size(), model.variables(), "q");
+void evaluate_constraints(const Model& model, double t, Coordinates q, std::span<double> phi) {
+  const Motion motion(model, t, q);
   require_size(phi.size(), model.constraints(), "phi");
   std::size_t row = 0;
-  for (const DotConstraint& constraint : model.dot_constraints()) {  // Eq. (7)
-    phi[row++] = dot(position_difference(model, constraint.a, constraint.b, q),
-                     position_difference(model, constraint.c, constraint.d, q)) -
-                 constraint.value;
-  }
+  const auto& values = motion.values();
+  for_quadratic(model, [&](const auto& c) {  // Eq. (7)
+    phi[row] = product(c, motion.r(c.a, c.b), motion.r(c.c, c.d)) - values[row].value;
+    ++row;
+  });
   for (const LinearConstraint& constraint : model.linear_constraints()) {  // Eq. (8)
-    phi[row++] = sum_of_terms(constraint, q) - constraint.value;
+    phi[row] = sum_of_terms(constraint, q) - values[row].value;
+    ++row;
   }
 }
 
-void constraint_rate(const Model& model, std::span<const double> q, std::span<const double> v,
+void constraint_rate(const Model& model, double t, Coordinates q, Coordinates v,
                      std::span<double> rate) {
-  require_size(q.size(), model.variables(), "q");
+  const Motion motion(model, t, q, v);
   require_size(v.size(), model.variables(), "v");
   require_size(rate.size(), model.constraints(), "rate");
   std::size_t row = 0;
-  for (const DotConstraint& constraint : model.dot_constraints()) {
-    rate[row++] = dot(velocity_difference(model, constraint.a, constraint.b, v),
-                      position_difference(model, constraint.c, constraint.d, q)) +
-                  dot(position_difference(model, constraint.a, constraint.b, q),
-                      velocity_difference(model, constraint.c, constraint.d, v));
-  }
+  const auto& values = motion.values();
+  for_quadratic(model, [&](const auto& c) {
+    rate[row] = product(c, motion.v(c.a, c.b), motion.r(c.c, c.d)) +
+                product(c, motion.r(c.a, c.b), motion.v(c.c, c.d)) - values[row].rate;
+    ++row;
+  });
   for (const LinearConstraint& constraint : model.linear_constraints()) {
-    rate[row++] = sum_of_terms(constraint, v);
+    rate[row] = sum_of_terms(constraint, v) - values[row].rate;
+    ++row;
   }
 }
 
-void constraint_curvature(const Model& model, std::span<const double> v,
+void constraint_curvature(const Model& model, double t, Coordinates q, Coordinates v,
                           std::span<double> curvature) {
+  const Motion motion(model, t, q, v);
   require_size(v.size(), model.variables(), "v");
   require_size(curvature.size(), model.constraints(), "curvature");
-  std::ranges::fill(curvature, 0.0);  // Eq. (8)
   std::size_t row = 0;
-  for (const DotConstraint& constraint : model.dot_constraints()) {  // Eq. (7)
-    curvature[row++] = 2 * dot(velocity_difference(model, constraint.a, constraint.b, v),
-                               velocity_difference(model, constraint.c, constraint.d, v));
-  }
+  const auto& values = motion.values();
+  for_quadratic(model, [&](const auto& c) {  // Eq. (7)
+    curvature[row] = 2 * product(c, motion.v(c.a, c.b), motion.v(c.c, c.d)) +
+                     product(c, motion.a(c.a, c.b), motion.r(c.c, c.d)) +
+                     product(c, motion.r(c.a, c.b), motion.a(c.c, c.d)) - values[row].acceleration;
+    ++row;
+  });
+  for (; row < curvature.size(); ++row) curvature[row] = -values[row].acceleration;  // Eq. (8)
 }
 
-std::vector<JacobianEntry> jacobian(const Model& model, std::span<const double> q) {
-  require_size(q.size(), model.variables(), "q");
+std::vector<JacobianEntry> jacobian(const Model& model, double t, Coordinates q) {
+  const Motion motion(model, t, q);
   std::vector<JacobianEntry> entries;
   int row = 0;
-  for (const DotConstraint& constraint : model.dot_constraints()) {
-    append_row(model, constraint, q, row++, entries);
-  }
+  for_quadratic(model, [&](const auto& c) { append_row(model, c, motion, row++, entries); });
   for (const LinearConstraint& constraint : model.linear_constraints()) {
     for (const auto& term : constraint.terms) {
       entries.push_back({row, term.coordinate, term.coefficient});
@@ -143,7 +248,28 @@ std::vector<JacobianEntry> jacobian(const Model& model, std::span<const double> 
   return entries;
 }
 
-void mass_times(const Model& model, std::span<const double> x, std::span<double> y) {
+void applied_force(const Model& model, double t, Coordinates q, Coordinates v,
+                   std::span<double> force) {
+  const Motion motion(model, t, q, v);
+  require_size(v.size(), model.variables(), "v");
+  require_size(force.size(), model.variables(), "force");
+  std::ranges::copy(model.force(), force.begin());
+  ForceVector sum(model, motion, force);
+  for (const Spring& spring : model.springs()) add_spring(spring, motion, sum);
+  for (const TorsionSpring& spring : model.torsion_springs()) {
+    add_torsion_spring(spring, motion, sum);
+  }
+  for (const Couple& couple : model.couples()) {
+    const Vector3 w = motion.r(couple.a, couple.b);
+    sum.add_pair(couple.a, couple.b, couple.torque * turning(motion.axis(couple.axis), w));
+  }
+  for (const DrivenMass& mass : model.driven_mass()) {
+    force[static_cast<std::size_t>(mass.coordinate)] -=
+        mass.value * motion.known_acceleration(mass.point)[static_cast<std::size_t>(mass.axis)];
+  }
+}
+
+void mass_times(const Model& model, Coordinates x, std::span<double> y) {
   require_size(x.size(), model.variables(), "x");
   require_size(y.size(), model.variables(), "y");
   std::fill(y.begin(), y.end(), 0.0);
@@ -155,7 +281,7 @@ void mass_times(const Model& model, std::span<const double> x, std::span<double>
   }
 }
 
-double kinetic_energy(const Model& model, std::span<const double> v) {
+double kinetic_energy(const Model& model, Coordinates v) {
   std::vector<double> momentum(v.size());
   mass_times(model, v, momentum);
   double doubled = 0.0;
@@ -163,11 +289,47 @@ double kinetic_energy(const Model& model, std::span<const double> v) {
   return doubled / 2;
 }
 
-double energy(const Model& model, std::span<const double> q, std::span<const double> v) {
+double potential_energy(const Model& model, double t, Coordinates q) {
   require_size(q.size(), model.variables(), "q");
-  double work = 0.0;
-  for (std::size_t i = 0; i < q.size(); ++i) work += model.force()[i] * q[i];
-  return kinetic_energy(model, v) - work;
+  double result = 0.0;
+  for (std::size_t i = 0; i < q.size(); ++i) result -= model.force()[i] * q[i];
+  if (model.springs().empty() && model.torsion_springs().empty()) return result;
+  const Motion motion(model, t, q);
+  for (const Spring& spring : model.springs()) {
+    const Vector3 d = motion.r(spring.a, spring.b);
+    const double stretch = std::sqrt(dot(d, d)) - spring.length;
+    result += spring.stiffness / 2 * stretch * stretch;
+  }
+  for (const TorsionSpring& spring : model.torsion_springs()) {
+    const double angle = twist(spring, motion);
+    result += spring.stiffness / 2 * angle * angle;
+  }
+  return result;
+}
+
+double energy(const Model& model, double t, Coordinates q, Coordinates v) {
+  return kinetic_energy(model, v) + potential_energy(model, t, q);
+}
+
+bool is_conservative(const Model& model) {
+  const auto damped = [](const auto& spring) { return spring.damping != 0.0; };
+  return std::ranges::none_of(model.springs(), damped) &&
+         std::ranges::none_of(model.torsion_springs(), damped) && model.couples().empty() &&
+         model.driven_points().empty() && model.driven_values().empty();
+}
+
+PointMotion point_motion(const Model& model, int point, double t, Coordinates q, Coordinates v,
+                         Coordinates a) {
+  const Motion motion(model, t, q, v);
+  PointMotion result{motion.position(point), motion.velocity(point),
+                     motion.known_acceleration(point)};
+  if (!motion.is_fixed(point)) {
+    for (int axis = 0; axis < model.dimension(); ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      result.a[k] = a[static_cast<std::size_t>(motion.at(point).offset) + k];
+    }
+  }
+  return result;
 }
 
 }  // namespace mbs

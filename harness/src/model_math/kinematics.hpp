@@ -1,7 +1,7 @@
-// Constraints, Jacobian, mass and energy of a Model in plain double: how the harness judges a
-// state.
+// Constraints, forces, mass and energy of a Model in plain double: how the harness judges a state.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -15,32 +15,52 @@ struct JacobianEntry {
   double value = 0.0;
 };
 
-// In all of these q and v hold model.variables() entries, and every span must have the size stated
-// (std::invalid_argument otherwise). A NaN or infinity in the input reaches every result that
-// depends on it.
+// In all of these t is the time (s), q and v hold model.variables() entries, and every span must
+// have the size stated (std::invalid_argument otherwise). A NaN or infinity in the input reaches
+// every result that depends on it. Equations as numbered in paper/README.md.
 
-/// Phi(q) of Eqs. (7) and (8) into `phi` (constraints()).
-void evaluate_constraints(const Model& model, std::span<const double> q, std::span<double> phi);
+/// Phi(q, t) of Eqs. (7) and (8) into `phi` (constraints()).
+void evaluate_constraints(const Model& model, double t, std::span<const double> q,
+                          std::span<double> phi);
 
-/// Phi_q(q) v into `rate` (constraints()).
-void constraint_rate(const Model& model, std::span<const double> q, std::span<const double> v,
-                     std::span<double> rate);
+/// Phi' = Phi_q v + Phi_t into `rate` (constraints()).
+void constraint_rate(const Model& model, double t, std::span<const double> q,
+                     std::span<const double> v, std::span<double> rate);
 
-/// Phi_q(q), sorted by row then column, each structural position once: a dot constraint has
-/// `dimension` entries for each distinct free point it names, a linear one an entry a term.
-std::vector<JacobianEntry> jacobian(const Model& model, std::span<const double> q);
+/// Phi_q(q, t), sorted by row then column, each structural position once: a quadratic constraint
+/// has `dimension` entries for each distinct free point it names, a linear one an entry a term.
+std::vector<JacobianEntry> jacobian(const Model& model, double t, std::span<const double> q);
 
-/// The velocity-dependent part of Phi'', (Phi_q)' v, into `curvature` (constraints()).
-void constraint_curvature(const Model& model, std::span<const double> v,
-                          std::span<double> curvature);
+/// The part of Phi'' that is free of a, (Phi_q)' v + (Phi_t)', into `curvature` (constraints()).
+void constraint_curvature(const Model& model, double t, std::span<const double> q,
+                          std::span<const double> v, std::span<double> curvature);
+
+/// Q(q, v, t): constant force, springs and dampers, couples, driven mass, into `force`
+/// (variables()).
+void applied_force(const Model& model, double t, std::span<const double> q,
+                   std::span<const double> v, std::span<double> force);
 
 /// M x into `y` (variables()).
 void mass_times(const Model& model, std::span<const double> x, std::span<double> y);
 
-/// Kinetic energy v.M v / 2, J.
+/// Kinetic energy v.M v / 2, J; what driven points add is left out.
 double kinetic_energy(const Model& model, std::span<const double> v);
 
-/// Mechanical energy v.M v / 2 - Q.q, J; the zero of the potential is at q = 0.
-double energy(const Model& model, std::span<const double> q, std::span<const double> v);
+/// Potential energy of the constant force, which is zero at q = 0, and of the springs, J.
+double potential_energy(const Model& model, double t, std::span<const double> q);
+
+/// Kinetic plus potential energy, J.
+double energy(const Model& model, double t, std::span<const double> q, std::span<const double> v);
+
+/// Whether kinetic plus potential energy is constant: no damper, couple or driver.
+bool is_conservative(const Model& model);
+
+/// Position, velocity and acceleration of a point: from q, v, a if it is free, from its driver if
+/// it is driven. m, m/s, m/s^2; planar: the third component is 0.
+struct PointMotion {
+  std::array<double, 3> r{}, v{}, a{};
+};
+PointMotion point_motion(const Model& model, int point, double t, std::span<const double> q,
+                         std::span<const double> v, std::span<const double> a);
 
 }  // namespace mbs

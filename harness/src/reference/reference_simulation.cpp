@@ -9,61 +9,122 @@
 namespace mbs {
 
 ReferenceSimulation::ReferenceSimulation(const Model& model, const StepSettings& settings)
-    : Simulation(model.variables(), model.constraints()),
+    : Simulation(model, settings),
       model_(model),
       settings_(settings),
       n_(model.variables()),
       m_(model.constraints()),
+      known_(model, 0.0),
       tangent_(envelope()) {}
 
-ReferenceSimulation::Real ReferenceSimulation::coordinate(const Vector& x, int point,
-                                                          int axis) const {
-  const Point& p = model_.points()[point];
-  return p.is_fixed() ? Real{p.position[axis]} : x[p.offset + axis];
+namespace {
+
+using Real = ReferenceSimulation::Real;
+using Triple = std::array<Real, 3>;
+
+Real dot(const Triple& x, const Triple& y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; }
+Triple minus(const Triple& x, const Triple& y) { return {x[0] - y[0], x[1] - y[1], x[2] - y[2]}; }
+
+/// B w and B^T u; for a dot constraint B is the identity.
+Triple right(const DotConstraint&, const Triple& w) { return w; }
+Triple left(const DotConstraint&, const Triple& u) { return u; }
+Triple right(const BilinearConstraint& c, const Triple& w) {
+  Triple result{};
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) result[i] += c.B[i][k] * w[k];
+  }
+  return result;
+}
+Triple left(const BilinearConstraint& c, const Triple& u) {
+  Triple result{};
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) result[k] += c.B[i][k] * u[i];
+  }
+  return result;
 }
 
-ReferenceSimulation::Real ReferenceSimulation::velocity(const Vector& x, int point,
-                                                        int axis) const {
-  const Point& p = model_.points()[point];
-  return p.is_fixed() ? Real{0} : x[p.offset + axis];
+template <class Function>
+void for_quadratic(const Model& model, Function&& function) {
+  for (const DotConstraint& c : model.dot_constraints()) function(c);
+  for (const BilinearConstraint& c : model.bilinear_constraints()) function(c);
+}
+
+}  // namespace
+
+Triple ReferenceSimulation::position(int point) const {
+  if (offset(point) < 0) {
+    const auto r = known_.position(point);
+    return {r[0], r[1], model_.dimension() == 3 ? r[2] : 0.0};
+  }
+  Triple r{};
+  for (int k = 0; k < model_.dimension(); ++k) r[k] = q_[offset(point) + k];
+  return r;
+}
+
+Triple ReferenceSimulation::velocity(int point) const {
+  Triple v{};
+  if (offset(point) < 0) {
+    const auto known = known_.velocity(point);
+    std::copy(known.begin(), known.end(), v.begin());
+    return v;
+  }
+  for (int k = 0; k < model_.dimension(); ++k) v[k] = v_[offset(point) + k];
+  return v;
+}
+
+Triple ReferenceSimulation::difference(int a, int b) const {
+  return minus(position(a), position(b));
+}
+Triple ReferenceSimulation::velocity_difference(int a, int b) const {
+  return minus(velocity(a), velocity(b));
+}
+
+Triple ReferenceSimulation::known_velocity_difference(int a, int b) const {
+  const auto of = [this](int point) { return offset(point) < 0 ? velocity(point) : Triple{}; };
+  return minus(of(a), of(b));
+}
+
+Triple ReferenceSimulation::known_acceleration_difference(int a, int b) const {
+  const auto of = [this](int point) {
+    Triple result{};
+    const auto known = known_.acceleration(point);
+    if (offset(point) < 0) std::copy(known.begin(), known.end(), result.begin());
+    return result;
+  };
+  return minus(of(a), of(b));
 }
 
 ReferenceSimulation::Vector ReferenceSimulation::constraints() const {
   Vector phi;
-  for (const DotConstraint& c : model_.dot_constraints()) {  // Eq. (7)
-    Real product = 0;
-    for (int axis = 0; axis < model_.dimension(); ++axis) {
-      product += (coordinate(q_, c.a, axis) - coordinate(q_, c.b, axis)) *
-                 (coordinate(q_, c.c, axis) - coordinate(q_, c.d, axis));
-    }
-    phi.push_back(product - c.value);
-  }
+  for_quadratic(model_, [&](const auto& c) {  // Eq. (7)
+    phi.push_back(dot(difference(c.a, c.b), right(c, difference(c.c, c.d))) -
+                  known_.values()[phi.size()].value);
+  });
   for (const LinearConstraint& c : model_.linear_constraints()) {  // Eq. (8)
     Real sum = 0;
     for (const auto& term : c.terms) sum += term.coefficient * q_[term.coordinate];
-    phi.push_back(sum - c.value);
+    phi.push_back(sum - known_.values()[phi.size()].value);
   }
   return phi;
 }
 
 std::vector<ReferenceSimulation::Row> ReferenceSimulation::jacobian() const {
   std::vector<Row> rows;
-  const auto points = model_.points();
-  for (const DotConstraint& c : model_.dot_constraints()) {  // Eq. (7)
+  for_quadratic(model_, [&](const auto& c) {  // Eq. (7)
     Row row;
-    for (int axis = 0; axis < model_.dimension(); ++axis) {
-      const Real ab = coordinate(q_, c.a, axis) - coordinate(q_, c.b, axis);
-      const Real cd = coordinate(q_, c.c, axis) - coordinate(q_, c.d, axis);
-      const auto add = [&](int point, Real value) {
-        if (!points[point].is_fixed()) row.push_back({points[point].offset + axis, value});
-      };
-      add(c.a, cd);
-      add(c.b, -cd);
-      add(c.c, ab);
-      add(c.d, -ab);
-    }
+    const auto add = [&](int point, Real sign, const Triple& value) {
+      for (int k = 0; offset(point) >= 0 && k < model_.dimension(); ++k) {
+        row.push_back({offset(point) + k, sign * value[k]});
+      }
+    };
+    const Triple at_ab = right(c, difference(c.c, c.d));
+    const Triple at_cd = left(c, difference(c.a, c.b));
+    add(c.a, 1, at_ab);
+    add(c.b, -1, at_ab);
+    add(c.c, 1, at_cd);
+    add(c.d, -1, at_cd);
     rows.push_back(row);
-  }
+  });
   for (const LinearConstraint& c : model_.linear_constraints()) {  // Eq. (8)
     Row row;
     for (const auto& term : c.terms) row.push_back({term.coordinate, term.coefficient});
@@ -72,17 +133,27 @@ std::vector<ReferenceSimulation::Row> ReferenceSimulation::jacobian() const {
   return rows;
 }
 
+ReferenceSimulation::Vector ReferenceSimulation::partial_rate() const {
+  Vector result;
+  for_quadratic(model_, [&](const auto& c) {  // Eq. (7)
+    result.push_back(dot(known_velocity_difference(c.a, c.b), right(c, difference(c.c, c.d))) +
+                     dot(difference(c.a, c.b), right(c, known_velocity_difference(c.c, c.d))));
+  });
+  result.resize(m_, Real{0});  // Eq. (8)
+  for (int k = 0; k < m_; ++k) result[k] -= known_.values()[k].rate;
+  return result;
+}
+
 ReferenceSimulation::Vector ReferenceSimulation::curvature() const {
   Vector result;
-  for (const DotConstraint& c : model_.dot_constraints()) {  // Eq. (7)
-    Real product = 0;
-    for (int axis = 0; axis < model_.dimension(); ++axis) {
-      product += (velocity(v_, c.a, axis) - velocity(v_, c.b, axis)) *
-                 (velocity(v_, c.c, axis) - velocity(v_, c.d, axis));
-    }
-    result.push_back(2 * product);
-  }
+  for_quadratic(model_, [&](const auto& c) {  // Eq. (7)
+    result.push_back(
+        2 * dot(velocity_difference(c.a, c.b), right(c, velocity_difference(c.c, c.d))) +
+        dot(known_acceleration_difference(c.a, c.b), right(c, difference(c.c, c.d))) +
+        dot(difference(c.a, c.b), right(c, known_acceleration_difference(c.c, c.d))));
+  });
   result.resize(m_, Real{0});  // Eq. (8)
+  for (int k = 0; k < m_; ++k) result[k] -= known_.values()[k].acceleration;
   return result;
 }
 
@@ -115,16 +186,18 @@ std::vector<int> ReferenceSimulation::envelope() const {
     const int lowest = *std::min_element(coordinates.begin(), coordinates.end());
     for (const int i : coordinates) first[i] = std::min(first[i], lowest);
   };
-  for (const DotConstraint& c : model_.dot_constraints()) {
+  const auto couple_points = [&](std::initializer_list<int> points) {
     std::vector<int> coordinates;
-    for (const int index : {c.a, c.b, c.c, c.d}) {
-      const Point& point = model_.points()[index];
-      for (int axis = 0; !point.is_fixed() && axis < model_.dimension(); ++axis) {
-        coordinates.push_back(point.offset + axis);
+    for (const int point : points) {
+      for (int k = 0; offset(point) >= 0 && k < model_.dimension(); ++k) {
+        coordinates.push_back(offset(point) + k);
       }
     }
     couple(coordinates);
-  }
+  };
+  for_quadratic(model_, [&](const auto& c) { couple_points({c.a, c.b, c.c, c.d}); });
+  for (const Spring& spring : model_.springs()) couple_points({spring.a, spring.b});
+  for (const TorsionSpring& s : model_.torsion_springs()) couple_points({s.a, s.b, s.c, s.d});
   for (const LinearConstraint& c : model_.linear_constraints()) {
     std::vector<int> coordinates;
     for (const auto& term : c.terms) coordinates.push_back(term.coordinate);
@@ -148,6 +221,8 @@ void ReferenceSimulation::assemble_tangent(const std::vector<Row>& rows) {
       }
     }
   }
+  last_elements_ = elements();
+  for (const Element& element : last_elements_) add_element(element);
 }
 
 void ReferenceSimulation::do_set_state(const State& state) {
@@ -155,6 +230,7 @@ void ReferenceSimulation::do_set_state(const State& state) {
   v_.assign(state.v.begin(), state.v.end());
   a_.assign(state.a.begin(), state.a.end());
   lambda_.assign(state.lambda.begin(), state.lambda.end());
+  known_.set_time(time());
 }
 
 void ReferenceSimulation::do_get_state(State& state) const {
@@ -168,6 +244,7 @@ void ReferenceSimulation::do_get_state(State& state) const {
 StepOutcome ReferenceSimulation::do_step() {
   const Real h = settings_.step;
   const Real alpha = settings_.penalty;
+  known_.set_time(time());
   for (int i = 0; i < n_; ++i) {  // predictor, and Eq. (2) on the difference
     const Real difference = h * v_[i] + h * h / 2 * a_[i];
     const Real v = v_[i];
@@ -181,9 +258,10 @@ StepOutcome ReferenceSimulation::do_step() {
     Vector force = lambda_;
     for (int k = 0; k < m_; ++k) force[k] += alpha * phi[k];
     const Vector inertia = mass_times(a_);
+    const Vector applied = applied_force();
     Vector delta = transpose_times(rows, force);
     for (int i = 0; i < n_; ++i) {  // minus f of Eq. (3)
-      delta[i] = -h * h / 4 * (inertia[i] + delta[i] - model_.force()[i]);
+      delta[i] = -h * h / 4 * (inertia[i] + delta[i] - applied[i]);
     }
     assemble_tangent(rows);
     if (!tangent_.factorize()) return {StepStatus::factorization_failed, pass};
@@ -208,13 +286,18 @@ StepOutcome ReferenceSimulation::do_step() {
 }
 
 void ReferenceSimulation::project() {
-  const Real h = settings_.step;
-  v_ = mass_times(v_);  // Eq. (6)
-  tangent_.solve(v_);
-  const Vector bending = transpose_times(jacobian(), curvature());
-  a_ = mass_times(a_);  // Eq. (6)
-  for (int i = 0; i < n_; ++i) a_[i] -= h * h / 4 * settings_.penalty * bending[i];
-  tangent_.solve(a_);
+  if (settings_.projections == Projections::none) return;
+  const Real factor = Real{settings_.step} * settings_.step / 4 * settings_.penalty;
+  const std::vector<Row> rows = jacobian();
+  const auto projected = [&](const Vector& x, const Vector& rate) {  // Eq. (6)
+    Vector right = weighted_mass_times(x);
+    const Vector term = transpose_times(rows, rate);
+    for (int i = 0; i < n_; ++i) right[i] -= factor * term[i];
+    tangent_.solve(right);
+    return right;
+  };
+  v_ = projected(v_, partial_rate());
+  if (settings_.projections == Projections::both) a_ = projected(a_, curvature());
 }
 
 double ReferenceSimulation::tangent_condition() {
@@ -229,7 +312,7 @@ double ReferenceSimulation::tangent_condition() {
       for (const Entry& entry : rows[k]) projected[k] += scale * entry.value * x[entry.coordinate];
     }
     Vector y = transpose_times(rows, projected);
-    const Vector inertia = mass_times(x);
+    const Vector inertia = weighted_mass_times(x);
     for (int i = 0; i < n_; ++i) y[i] += inertia[i];
     return y;
   };

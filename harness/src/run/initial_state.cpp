@@ -19,14 +19,14 @@ using Sparse = Eigen::SparseMatrix<Real>;
 /// [M, J^T; J, -eps]: quasi-definite, so LDL^T without pivoting exists whatever the rank of J.
 class SaddlePoint {
  public:
-  SaddlePoint(const Model& model, std::span<const double> q)
+  SaddlePoint(const Model& model, double t, std::span<const double> q)
       : n_(model.variables()), m_(model.constraints()) {
     std::vector<Eigen::Triplet<Real>> entries;
     for (const MassEntry& entry : model.mass()) {
       if (entry.value != 0.0) entries.emplace_back(entry.row, entry.col, entry.value);
     }
     Real largest = 0;
-    for (const JacobianEntry& entry : jacobian(model, q)) {
+    for (const JacobianEntry& entry : jacobian(model, t, q)) {
       entries.emplace_back(n_ + entry.row, entry.col, entry.value);
       largest = std::max(largest, std::abs(static_cast<Real>(entry.value)));
     }
@@ -52,15 +52,18 @@ class SaddlePoint {
 
 }  // namespace
 
-State consistent_state(const Model& model, std::span<const double> q, std::span<const double> v) {
+State consistent_state(const Model& model, std::span<const double> q, std::span<const double> v,
+                       double t) {
   const int n = model.variables();
   const int m = model.constraints();
-  const SaddlePoint saddle_point(model, q);
+  const SaddlePoint saddle_point(model, t, q);
   std::vector<double> curvature(static_cast<std::size_t>(m));
-  constraint_curvature(model, v, curvature);
+  constraint_curvature(model, t, q, v, curvature);
+  std::vector<double> force(static_cast<std::size_t>(n));
+  applied_force(model, t, q, v, force);
 
   Vector right = Vector::Zero(n + m);
-  for (int i = 0; i < n; ++i) right[i] = model.force()[static_cast<std::size_t>(i)];
+  for (int i = 0; i < n; ++i) right[i] = force[static_cast<std::size_t>(i)];
   Vector solution = Vector::Zero(n + m);
   // Each round removes the error of -eps: lambda_k+1 from Phi_q a - eps (lambda_k+1 - lambda_k).
   constexpr int kMaxRounds = 100;
@@ -74,7 +77,7 @@ State consistent_state(const Model& model, std::span<const double> q, std::span<
     solution = next;
     if (!(change > 1e-17L * solution.cwiseAbs().maxCoeff())) break;
   }
-  State state{{q.begin(), q.end()}, {v.begin(), v.end()}, {}, {}};
+  State state{{q.begin(), q.end()}, {v.begin(), v.end()}, {}, {}, t};
   for (int i = 0; i < n; ++i) state.a.push_back(static_cast<double>(solution[i]));
   for (int k = 0; k < m; ++k) state.lambda.push_back(static_cast<double>(solution[n + k]));
   return state;
@@ -88,7 +91,7 @@ double smallest_constraint_eigenvalue(const Model& model, std::span<const double
   const int n = model.variables();
   const int m = model.constraints();
   if (m == 0) return std::numeric_limits<double>::infinity();
-  const SaddlePoint saddle_point(model, q);
+  const SaddlePoint saddle_point(model, 0.0, q);
   // Inverse iteration: the lower block of the solution is -(Phi_q M^-1 Phi_q^T + eps)^-1 y.
   Vector y(m);
   for (int k = 0; k < m; ++k) y[k] = 1.0L + 0.5L * std::sin(1.0L + k);

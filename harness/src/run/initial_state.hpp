@@ -7,15 +7,16 @@
 
 namespace mbs {
 
-/// The state (q, v) completed by the a and lambda that solve Eq. (1) with Phi'' = 0:
-///   M a + Phi_q^T lambda = Q,   Phi_q a = -(Phi_q' v).
+/// The state (q, v) at time t (s) completed by the a and lambda that solve Eq. (1) with Phi'' = 0:
+///   M a + Phi_q^T lambda = Q,   Phi_q a = -(Phi_q' v + Phi_t').
 /// Where constraints are redundant, lambda is the solution that the iteration from zero reaches.
-State consistent_state(const Model& model, std::span<const double> q, std::span<const double> v);
+State consistent_state(const Model& model, std::span<const double> q, std::span<const double> v,
+                       double t = 0.0);
 
 /// consistent_state() at the model's initial position and velocity.
 State initial_state(const Model& model);
 
-/// Smallest eigenvalue of Phi_q M^-1 Phi_q^T at q (m^2/kg), to a few per cent; infinity without
+/// Smallest eigenvalue of Phi_q M^-1 Phi_q^T at q and t = 0 (m^2/kg), to a few per cent; infinity without
 /// constraints. It sets how fast the multiplier iteration contracts.
 double smallest_constraint_eigenvalue(const Model& model, std::span<const double> q);
 

@@ -5,36 +5,66 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "model_math/kinematics.hpp"
+#include "model_math/known_motion.hpp"
+#include "model_math/vector3.hpp"
 
 namespace mbs {
 namespace {
 
-/// Largest distance along one axis that the scene spans at t = 0, m.
+/// Largest distance along one axis that the scene's points span at t = 0, m; 1 if they span none.
 double extent(const Model& model) {
   double largest = 0.0;
-  for (int axis = 0; axis < model.dimension(); ++axis) {
-    const auto at = [axis](const Point& point) { return point.position[axis]; };
-    const auto [low, high] = std::ranges::minmax_element(model.points(), {}, at);
-    largest = std::max(largest, at(*high) - at(*low));
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(model.dimension()); ++axis) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Point& point : model.points()) {
+      if (point.is_vector) continue;
+      low = std::min(low, point.position[axis]);
+      high = std::max(high, point.position[axis]);
+    }
+    largest = std::max(largest, high - low);
+  }
+  return largest > 0.0 ? largest : 1.0;
+}
+
+/// Largest entry of B, at least of a dot constraint.
+double largest_factor(const DotConstraint&) { return 1.0; }
+double largest_factor(const BilinearConstraint& c) {
+  double largest = 0.0;
+  for (const auto& row : c.B) {
+    for (const double entry : row) largest = std::max(largest, std::abs(entry));
   }
   return largest;
 }
 
-/// What each constraint's |Phi| is small against: the squared length, or the extent if linear.
+/// What each constraint's |Phi| is small against: the product of the two lengths that it relates,
+/// or its value if that is more, or the extent times the largest coefficient if linear.
 std::vector<double> constraint_scales(const Model& model) {
+  const double scene_extent = extent(model);
+  const auto known = KnownMotion(model, 0.0).values();
   std::vector<double> scales;
-  const auto points = model.points();
-  for (const DotConstraint& c : model.dot_constraints()) {
-    double first = 0.0, second = 0.0;
-    for (int axis = 0; axis < model.dimension(); ++axis) {
-      first = std::hypot(first, points[c.a].position[axis] - points[c.b].position[axis]);
-      second = std::hypot(second, points[c.c].position[axis] - points[c.d].position[axis]);
-    }
-    scales.push_back(std::max(std::abs(c.value), first * second));
+  const auto length = [points = model.points()](int a, int b) {
+    const Vector3 d =
+        points[static_cast<std::size_t>(a)].position - points[static_cast<std::size_t>(b)].position;
+    return std::hypot(d[0], d[1], d[2]);
+  };
+  const auto add = [&](double scale) {
+    scale = std::max(scale, std::abs(known[scales.size()].value));
+    scales.push_back(scale > 0.0 ? scale : scene_extent * scene_extent);
+  };
+  const auto add_quadratic = [&](const auto& c) {
+    add(largest_factor(c) * length(c.a, c.b) * length(c.c, c.d));
+  };
+  for (const DotConstraint& c : model.dot_constraints()) add_quadratic(c);
+  for (const BilinearConstraint& c : model.bilinear_constraints()) add_quadratic(c);
+  for (const LinearConstraint& c : model.linear_constraints()) {
+    double coefficient = 0.0;
+    for (const auto& term : c.terms)
+      coefficient = std::max(coefficient, std::abs(term.coefficient));
+    add(coefficient * scene_extent);
   }
-  scales.resize(static_cast<std::size_t>(model.constraints()), extent(model));
   return scales;
 }
 
@@ -51,10 +81,16 @@ Judge::Judge(const Scene& scene, const State& initial, double start)
     : scene_(scene),
       phi_(static_cast<std::size_t>(scene.model.constraints())),
       phi_scale_(constraint_scales(scene.model)),
-      initial_energy_(energy(scene.model, initial.q, initial.v)) {
-  double force = 0.0;
-  for (const double component : scene.model.force()) force += std::abs(component);
-  energy_scale_ = 1e-3 * force * extent(scene.model);
+      conservative_(is_conservative(scene.model)) {
+  const Model& model = scene.model;
+  const double potential = potential_energy(model, start, initial.q);
+  initial_energy_ = kinetic_energy(model, initial.v) + potential;
+  double force = 0.0, in_springs = potential;
+  for (std::size_t i = 0; i < initial.q.size(); ++i) {
+    force += std::abs(model.force()[i]);
+    in_springs += model.force()[i] * initial.q[i];
+  }
+  energy_scale_ = 1e-3 * (force * extent(model) + std::max(in_springs, 0.0));
   if (scene.four_bar_loops) {
     exact_.emplace(*scene.four_bar_loops);
     position_error_ = 0.0;
@@ -64,27 +100,22 @@ Judge::Judge(const Scene& scene, const State& initial, double start)
 
 std::string Judge::judge(double t, const State& state) {
   if (!is_finite(state)) {
-    violation_ = energy_difference_ = std::numeric_limits<double>::infinity();
-    if (exact_) position_error_ = std::numeric_limits<double>::infinity();
+    spoil();
     return "the state is not finite";
   }
-  const Model& model = scene_.model;
-  evaluate_constraints(model, state.q, phi_);
+  evaluate_constraints(scene_.model, t, state.q, phi_);
   double relative = 0.0;
   for (std::size_t k = 0; k < phi_.size(); ++k) {
+    // max() would drop a NaN that finite but huge coordinates make.
+    if (!std::isfinite(phi_[k])) {
+      spoil();
+      return "the state is too large to be judged";
+    }
     violation_ = std::max(violation_, std::abs(phi_[k]));
     relative = std::max(relative, std::abs(phi_[k]) / phi_scale_[k]);
   }
-  const double kinetic = kinetic_energy(model, state.v);
-  const double difference = std::abs(energy(model, state.q, state.v) - initial_energy_);
-  // max() would drop a NaN that finite but huge coordinates make.
-  if (!std::isfinite(kinetic) || !std::isfinite(difference) ||
-      !std::ranges::all_of(phi_, [](double x) { return std::isfinite(x); })) {
-    violation_ = energy_difference_ = std::numeric_limits<double>::infinity();
-    return "the state is too large to be judged";
-  }
-  energy_scale_ = std::max(energy_scale_, kinetic);
-  energy_difference_ = std::max(energy_difference_, difference);
+  const std::string lost = judge_energy(t, state);
+  if (!std::isfinite(energy_difference_)) return lost;
   if (exact_) {
     const double error = exact_->position_error(t, state.q);
     position_error_ = std::max(*position_error_, error);
@@ -97,14 +128,32 @@ std::string Judge::judge(double t, const State& state) {
     return fmt::format("constraints violated by {:.2e} of their size (allowed {:g})", relative,
                        bounds_.constraint_violation);
   }
-  if (!(energy_drift_max() <= bounds_.energy_drift)) {
-    return fmt::format("energy drifted by {:.2e} of its scale (allowed {:g})", energy_drift_max(),
-                       bounds_.energy_drift);
-  }
-  return "";
+  return lost;
 }
 
-double Judge::energy_drift_max() const {
+std::string Judge::judge_energy(double t, const State& state) {
+  const double kinetic = kinetic_energy(scene_.model, state.v);
+  const double difference =
+      std::abs(kinetic + potential_energy(scene_.model, t, state.q) - initial_energy_);
+  if (!std::isfinite(kinetic) || !std::isfinite(difference)) {
+    spoil();
+    return "the state is too large to be judged";
+  }
+  if (!conservative_) return "";
+  energy_scale_ = std::max(energy_scale_, kinetic);
+  energy_difference_ = std::max(energy_difference_, difference);
+  if (*energy_drift_max() <= bounds_.energy_drift) return "";
+  return fmt::format("energy drifted by {:.2e} of its scale (allowed {:g})", *energy_drift_max(),
+                     bounds_.energy_drift);
+}
+
+void Judge::spoil() {
+  violation_ = energy_difference_ = std::numeric_limits<double>::infinity();
+  if (exact_) position_error_ = std::numeric_limits<double>::infinity();
+}
+
+std::optional<double> Judge::energy_drift_max() const {
+  if (!conservative_) return std::nullopt;
   return energy_scale_ > 0.0 ? energy_difference_ / energy_scale_ : energy_difference_;
 }
 

@@ -14,7 +14,7 @@ namespace mbs {
 /// is inaccurate from one that means nothing.
 struct RunBounds {
   double position_error = 0.1;         ///< m, where an exact solution is known
-  double energy_drift = 0.1;           ///< of the energy scale, see Judge
+  double energy_drift = 0.1;           ///< of the energy scale, see Judge; if energy is conserved
   double constraint_violation = 1e-2;  ///< |Phi| relative to the squared length it constrains
   double pass_limit_share = 0.05;      ///< of the steps; a few near singular positions are normal
 };
@@ -31,17 +31,23 @@ class Judge {
   /// Largest distance of a point from the exact motion, m; none if no exact solution is known.
   [[nodiscard]] std::optional<double> position_error_max() const { return position_error_; }
   /// Largest |E - E_0| over the energy scale: the largest kinetic energy so far, but at least a
-  /// thousandth of the work that the applied forces do over the scene's extent. Dimensionless.
-  [[nodiscard]] double energy_drift_max() const;
+  /// thousandth of the work that the applied forces do over the scene's extent and of what springs
+  /// hold at the start. Dimensionless; none if the model is not conservative.
+  [[nodiscard]] std::optional<double> energy_drift_max() const;
   /// Largest |Phi_k|, m^2 (m for linear constraints).
   [[nodiscard]] double constraint_violation_max() const { return violation_; }
 
  private:
+  std::string judge_energy(double t, const State& state);
+  /// Marks every figure as lost.
+  void spoil();
+
   const Scene& scene_;
   RunBounds bounds_;
   std::optional<FourBarExact> exact_;
   std::vector<double> phi_;
   std::vector<double> phi_scale_;
+  bool conservative_;
   double initial_energy_ = 0.0;
   double energy_scale_ = 0.0;
   double energy_difference_ = 0.0;

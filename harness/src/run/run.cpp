@@ -9,6 +9,7 @@
 #include <new>
 
 #include "printable.hpp"
+#include "run/driver_end.hpp"
 #include "run/initial_state.hpp"
 #include "usage_error.hpp"
 
@@ -110,9 +111,14 @@ long count_steps(const RunSettings& settings) {
   return static_cast<long>(steps);
 }
 
+void require_duration(const Model& model, const RunSettings& settings) {
+  const auto steps = static_cast<double>(count_steps(settings));
+  require_drivers_until(model, steps * settings.step.step);
+}
+
 RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& settings,
                const Observer& observer) {
-  count_steps(settings);
+  require_duration(scene.model, settings);
   RunSummary summary;
   State state = initial_state(scene.model);
   Judge judge(scene, state, 0.0);

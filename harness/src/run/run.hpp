@@ -35,7 +35,7 @@ struct RunSummary {
   double setup_us = 0.0;  ///< the factory and the first set_state()
   double step_us_median = 0.0, step_us_p99 = 0.0, step_us_max = 0.0;
   std::optional<double> position_error_max;  ///< m
-  double energy_drift_max = 0.0;
+  std::optional<double> energy_drift_max;    ///< none if the model is not conservative
   double constraint_violation_max = 0.0;
 };
 
@@ -45,7 +45,11 @@ using Observer = std::function<void(long step, double t, const State& state)>;
 /// Number of steps that `duration` takes. Throws UsageError if settings are out of range.
 long count_steps(const RunSettings& settings);
 
-/// Simulates; stops at the first state that the judge refuses. Never throws for a numeric failure.
+/// Throws UsageError, like run(), if settings are out of range or a driver's table is too short.
+void require_duration(const Model& model, const RunSettings& settings);
+
+/// Simulates; stops at the first state that the judge refuses. Never throws for a numeric failure;
+/// throws UsageError if settings are out of range or the duration is beyond the model's drivers.
 RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& settings,
                const Observer& observer = {});
 

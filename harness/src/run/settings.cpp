@@ -15,23 +15,17 @@
 
 namespace mbs {
 
-namespace {
-
-/// s_mean: the mean of the diagonal of Phi_q M^-1 Phi_q^T at the start with the diagonal of M for
-/// M, m^2/kg.
 double mean_constraint_eigenvalue(const Model& model) {
   std::vector<double> diagonal(static_cast<std::size_t>(model.variables()));
   for (const MassEntry& entry : model.mass()) {
     if (entry.row == entry.col) diagonal[static_cast<std::size_t>(entry.row)] = entry.value;
   }
   double trace = 0.0;
-  for (const JacobianEntry& entry : jacobian(model, model.initial_position())) {
+  for (const JacobianEntry& entry : jacobian(model, 0.0, model.initial_position())) {
     trace += entry.value * entry.value / diagonal[static_cast<std::size_t>(entry.col)];
   }
   return trace / model.constraints();
 }
-
-}  // namespace
 
 double automatic_penalty(const Model& model, double step) {
   if (model.constraints() == 0) return 1.0;

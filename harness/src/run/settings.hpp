@@ -17,6 +17,9 @@ namespace mbs {
 /// constraints.
 double automatic_penalty(const Model& model, double step);
 
+/// s_mean of the above, m^2/kg; not a number for a model without constraints.
+double mean_constraint_eigenvalue(const Model& model);
+
 /// "auto" or a number > 0; `step` in s. Throws UsageError.
 double parse_penalty(const std::string& text, const Model& model, double step);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "exact/four_bar_exact.hpp"
+#include "run/driver_end.hpp"
 #include "run/initial_state.hpp"
 #include "usage_error.hpp"
 
@@ -18,7 +19,12 @@ Stretch make_stretch(const Scene& scene, double step, int steps, std::optional<d
       throw UsageError(
           fmt::format("--start needs an exact solution: scene '{}' starts at 0", scene.name));
     }
-    return {0.0, steps, initial_state(scene.model)};
+    const double known = driver_end(scene.model) / step;  // steps; infinite without tables
+    if (known < 1.0) {
+      throw UsageError(fmt::format("--step is {:g} s: a driver's table ends at {:g} s", step,
+                                   driver_end(scene.model)));
+    }
+    return {0.0, known < steps ? static_cast<int>(known) : steps, initial_state(scene.model)};
   }
   if (start && !(*start >= 0.0 && std::isfinite(*start))) {
     throw UsageError(fmt::format("--start is {:g} s: it must be at least 0", *start));
@@ -35,7 +41,7 @@ Stretch make_stretch(const Scene& scene, double step, int steps, std::optional<d
   const auto n = static_cast<std::size_t>(scene.model.variables());
   std::vector<double> q(n), v(n), a(n);
   exact.state(stretch.start, q, v, a);
-  stretch.initial = consistent_state(scene.model, q, v);
+  stretch.initial = consistent_state(scene.model, q, v, stretch.start);
   return stretch;
 }
 

@@ -1,7 +1,7 @@
 // Generates the N-loop four-bar mechanism of paper/README.md.
 #include <fmt/format.h>
 
-#include "scene/bodies.hpp"
+#include "scene/mass_writer.hpp"
 #include "scene/scene.hpp"
 #include "usage_error.hpp"
 
@@ -12,7 +12,7 @@ ModelData four_bar(int loops) {
     throw UsageError(
         fmt::format("four-bar: found N = {}, allowed are 1 to {} loops", loops, kMostLoops));
   }
-  const std::array<double, 3> gravity{0.0, -9.81, 0.0};  // m/s^2
+  const Vector3 gravity{0.0, -9.81, 0.0};  // m/s^2
   const int rods = loops + 1;
   ModelData data;
   data.points.reserve(static_cast<std::size_t>(2 * rods));
@@ -23,13 +23,14 @@ ModelData four_bar(int loops) {
     data.points.push_back({fmt::format("B{}", i), 2 * i, {static_cast<double>(i), 1.0, 0.0}});
     data.initial_velocity.insert(data.initial_velocity.end(), {1.0, 0.0});
   }
-  start_bodies(data);
+  MassWriter mass(data);
   for (int i = 0; i < rods; ++i) {
-    add_rod(data, {i, rods + i, 1.0, 1.0, fmt::format("A{}-B{}", i, i)}, gravity);
+    mass.add_rod({i, rods + i, 1.0, 1.0, fmt::format("A{}-B{}", i, i)}, gravity);
   }
   for (int i = 1; i < rods; ++i) {
-    add_rod(data, {rods + i - 1, rods + i, 1.0, 1.0, fmt::format("B{}-B{}", i - 1, i)}, gravity);
+    mass.add_rod({rods + i - 1, rods + i, 1.0, 1.0, fmt::format("B{}-B{}", i - 1, i)}, gravity);
   }
+  mass.finish();
   return data;
 }
 

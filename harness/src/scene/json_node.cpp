@@ -15,6 +15,8 @@
 namespace mbs {
 namespace {
 
+constexpr std::size_t kCompared = 64;  // bytes of a name, for the nearest known one
+
 std::string description(const nlohmann::json& value) {
   if (value.is_object()) return "an object";
   if (value.is_array()) return fmt::format("an array of {}", value.size());
@@ -47,11 +49,31 @@ void JsonNode::fail(const std::string& found, const std::string& allowed) const 
 
 void JsonNode::fail(const std::string& allowed) const { fail(description(*value_), allowed); }
 
+void JsonNode::fail_name(const std::string& what, const std::vector<std::string>& names) const {
+  constexpr std::size_t kShown = 8;
+  const std::string_view start = std::string_view(text()).substr(0, kCompared);
+  std::string shown;
+  const std::string* nearest = nullptr;
+  std::size_t least = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i < kShown) shown += (i == 0 ? "" : ", ") + printable(names[i]);
+    const std::size_t away = distance(start, std::string_view(names[i]).substr(0, kCompared));
+    if (nearest != nullptr && away >= least) continue;
+    nearest = &names[i];
+    least = away;
+  }
+  if (names.size() > kShown) shown += ", ...";
+  fail(in_quotes(text()), nearest == nullptr
+                              ? fmt::format("the name of {}, of which there is none", what)
+                              : fmt::format("the name of {} ({}); the nearest is {}", what, shown,
+                                            in_quotes(*nearest)));
+}
+
 void JsonNode::allow_keys(std::initializer_list<std::string_view> known) const {
   if (!value_->is_object()) fail("an object");
   for (const auto& [key, value] : value_->items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    const std::string_view start = std::string_view(key).substr(0, 64);
+    const std::string_view start = std::string_view(key).substr(0, kCompared);
     const auto nearest = std::min_element(known.begin(), known.end(), [&](auto x, auto y) {
       return distance(start, x) < distance(start, y);
     });
@@ -70,6 +92,16 @@ std::optional<JsonNode> JsonNode::find(std::string_view key) const {
   const auto found = value_->find(key);
   if (found == value_->end()) return std::nullopt;
   return JsonNode(*found, *file_, path_of_key(path_, key));
+}
+
+std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
+  if (!value_->is_object()) fail("an object");
+  std::vector<std::pair<std::string, JsonNode>> members;
+  members.reserve(value_->size());
+  for (const auto& [key, value] : value_->items()) {
+    members.emplace_back(key, JsonNode(value, *file_, path_of_key(path_, key)));
+  }
+  return members;
 }
 
 std::vector<JsonNode> JsonNode::items() const {
@@ -99,6 +131,16 @@ double JsonNode::number() const {
     fail(fmt::format("a number of magnitude up to {:g}", kLargestNumber));
   }
   return number;
+}
+
+double JsonNode::number_above(double bound, const std::string& allowed) const {
+  if (!(number() > bound)) fail(allowed);
+  return number();
+}
+
+double JsonNode::number_at_least(double bound, const std::string& allowed) const {
+  if (!(number() >= bound)) fail(allowed);
+  return number();
 }
 
 std::vector<double> JsonNode::numbers(int count) const {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace mbs {
@@ -28,15 +29,26 @@ class JsonNode {
   /// The same, with the value itself as what was found.
   [[noreturn]] void fail(const std::string& allowed) const;
 
+  /// Fails with the value, a string, as what was found, and names of `what` as what is allowed:
+  /// some of `names` and the one nearest to it.
+  [[noreturn]] void fail_name(const std::string& what, const std::vector<std::string>& names) const;
+
   /// The value must be an object with no other keys than these.
   void allow_keys(std::initializer_list<std::string_view> known) const;
   [[nodiscard]] JsonNode get(std::string_view key) const;  ///< must be there
   [[nodiscard]] std::optional<JsonNode> find(std::string_view key) const;
 
+  [[nodiscard]] bool is_text() const { return value_->is_string(); }
+  [[nodiscard]] bool is_object() const { return value_->is_object(); }
+  [[nodiscard]] bool is_number() const { return value_->is_number(); }
+  /// Members of an object, sorted by key.
+  [[nodiscard]] std::vector<std::pair<std::string, JsonNode>> members() const;
   [[nodiscard]] std::vector<JsonNode> items() const;  ///< of an array
   [[nodiscard]] const std::string& text() const;      ///< a string
   [[nodiscard]] bool boolean() const;
-  [[nodiscard]] double number() const;                         ///< magnitude up to kLargestNumber
+  [[nodiscard]] double number() const;  ///< magnitude up to kLargestNumber
+  [[nodiscard]] double number_above(double bound, const std::string& allowed) const;
+  [[nodiscard]] double number_at_least(double bound, const std::string& allowed) const;
   [[nodiscard]] std::vector<double> numbers(int count) const;  ///< an array of exactly `count`
 
  private:

@@ -74,7 +74,14 @@ Scene load_four_bar(const std::string& scene) {
   }
 }
 
+[[noreturn]] void fail_too_large(const std::string& path) {
+  fail(path, fmt::format("the file is too large, allowed are {} bytes", kLargestFile));
+}
+
 std::string read_file(const std::string& path) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);  // of a regular file
+  if (!error && size > kLargestFile) fail_too_large(path);
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   std::string text;
@@ -83,7 +90,7 @@ std::string read_file(const std::string& path) {
     file.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
     text.append(chunk, 0, static_cast<std::size_t>(file.gcount()));
     if (text.size() > kLargestFile) {
-      fail(path, fmt::format("the file is too large, allowed are {} bytes", kLargestFile));
+      fail_too_large(path);
     }
   }
   if (!file.eof()) {
@@ -111,7 +118,9 @@ Scene load_scene(const std::string& text) {
     fail(text, "this is a directory, allowed is a JSON scene file");
   }
   // Paths may hold any bytes; a scene's name ends up in JSON and must be UTF-8.
-  return {printable(text, kLongestName), Model(parse_scene(read_file(text), text)), {}, {}};
+  SceneData data = parse_scene(read_file(text), text);
+  return {printable(text, kLongestName), Model(std::move(data.model)), {}, {},
+          std::move(data.elements),      std::move(data.assembly)};
 }
 
 }  // namespace mbs

@@ -1,16 +1,36 @@
-// A JSON scene: text, then members, then the whole.
+// A JSON scene: text, then members, then equations, then the whole at its start.
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "printable.hpp"
+#include "scene/body_basis.hpp"
 #include "scene/json_text.hpp"
+#include "scene/lowering.hpp"
+#include "scene/placement.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_checks.hpp"
 #include "scene/scene_reader.hpp"
+#include "usage_error.hpp"
 
 namespace mbs {
 
-ModelData parse_scene(std::string_view json, const std::string& where) {
+SceneData parse_scene(std::string_view json, const std::string& where) {
   const nlohmann::json root = parse_json(json, where);
-  ModelData data = SceneReader(JsonNode(root, where)).read();
-  check_scene(data, where);
-  return data;
+  SceneDraft draft = SceneReader(JsonNode(root, where)).read();
+  choose_bases(draft);
+  place(draft);
+  try {
+    Lowered lowered = lower(draft);
+    check_scene(lowered, where);
+    assemble_start(lowered.data, where);
+    finish_start(lowered, where);
+    check_mobility(lowered, where);
+    return std::move(lowered.data);
+  } catch (const std::logic_error& error) {  // from the checks of Model: sums that overflow
+    throw UsageError(fmt::format("{}: found numbers too large or too small to calculate with ({})",
+                                 printable(where), printable(error.what())));
+  }
 }
 
 }  // namespace mbs

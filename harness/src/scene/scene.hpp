@@ -1,10 +1,12 @@
 // A scene: what the user asked for, lowered to a Model.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "mbs/model.hpp"
 
@@ -18,6 +20,67 @@ struct Fill {
   std::uint64_t seed = 0;  ///< of their random choice
 };
 
+/// A point of a body that is no coordinate: r = sum over `parts` of matrix * r_point.
+struct Marker {
+  struct Part {
+    int point = 0;  ///< index into Model::points()
+    std::array<std::array<double, 3>, 3> matrix{};
+  };
+  std::string name;
+  std::vector<Part> parts;
+};
+
+/// From `from` to `to`, or a unit vector alone (`from` = -1); indices into Model::points().
+struct Direction {
+  int from = -1, to = -1;
+};
+
+/// One quantity that a run is asked for.
+struct Output {
+  enum class Kind {
+    position,
+    velocity,
+    acceleration,  ///< of `point`
+    angle,         ///< from `first` to `second`, about `axis` in 3D, rad
+    distance,      ///< between first.from and first.to, m
+    kinetic_energy,
+    potential_energy,
+    total_energy,      ///< J
+    constraint_force,  ///< of `constraint`: N for a distance (tension positive), else its
+                       ///< multiplier
+  };
+  std::string name;
+  Kind kind = Kind::position;
+  int point = -1;  ///< index into Model::points(), or past its end into Elements::markers
+  Direction first = {}, second = {};
+  int axis = -1;        ///< index into Model::points()
+  int constraint = -1;  ///< index into Phi
+};
+
+/// What the scene's author named, for outputs, messages and pictures; no implementation sees it.
+struct Elements {
+  struct Rod {
+    std::string name;
+    int a = 0, b = 0;
+  };
+  struct Body {
+    std::string name;
+    std::vector<int> points;   ///< indices into Model::points(), or past its end into `markers`
+    std::vector<int> vectors;  ///< indices into Model::points()
+  };
+  std::vector<Rod> rods;
+  std::vector<Body> bodies;
+  std::vector<Marker> markers;
+  std::vector<Output> outputs;
+};
+
+/// What the assembly of the start changed.
+struct AssemblyReport {
+  double position_correction = 0.0;  ///< largest change of a point, m
+  double velocity_correction = 0.0;  ///< m/s
+  std::string point;                 ///< where the first of them is
+};
+
 struct Scene {
   /// As given: "four-bar:40", "four-bar:40,fill=0.30", "pendulum.json"; UTF-8 without control
   /// characters, for in a path such bytes become \xNN.
@@ -25,6 +88,16 @@ struct Scene {
   Model model;
   std::optional<int> four_bar_loops;  ///< N, if the scene is the generated N-four-bar
   std::optional<Fill> fill;           ///< if artificial fill was asked for
+  Elements elements = {};
+  AssemblyReport assembly = {};
+};
+
+/// A scene on its way to a Model: assembled or not.
+struct SceneData {
+  ModelData model;
+  Elements elements;
+  double largest_correction = 0.0;  ///< m; allowed to the assembly
+  AssemblyReport assembly = {};
 };
 
 inline constexpr int kMostLoops = 100'000;                ///< of four_bar(): n = 200 002
@@ -39,11 +112,21 @@ Scene load_scene(const std::string& text);
 /// Throws UsageError unless 1 <= loops <= kMostLoops.
 ModelData four_bar(int loops);
 
-/// Parses the text of a JSON scene and checks it, physically too; `where` names it in errors.
-/// A Model made from the result is valid. Throws UsageError.
-ModelData parse_scene(std::string_view json, const std::string& where);
+/// Parses the text of a JSON scene, assembles its start and checks it, physically too; `where`
+/// names it in errors. A Model made from the result is valid. Throws UsageError.
+SceneData parse_scene(std::string_view json, const std::string& where);
 
-/// Number of non-zero positions of the tangent (5), both triangles: pattern of M plus Phi_q^T
+/// Moves data.model's start onto its constraints: positions onto Phi(q, 0) = 0, then velocities
+/// onto Phi_q v = -Phi_t, each by the smallest change in the norm of M (Gauss-Newton; redundant
+/// constraints are fine). Velocities given, that is not zero, stay as they are if the others can
+/// follow. A start on its constraints to rounding is left bit for bit. Fills data.assembly. Throws
+/// UsageError, prefixed by `where`, naming the constraint and by how much it fails, if that does
+/// not converge, if a point would move by more than data.largest_correction (a unit vector: by more
+/// than its share of the scene's extent), or if a given velocity would change by more than a tenth
+/// of the largest given.
+void assemble_start(SceneData& data, const std::string& where);
+
+/// Number of non-zero positions of the tangent (5), both triangles: pattern of M, C, K and Phi_q^T
 /// Phi_q.
 long tangent_nonzeros(const Model& model);
 

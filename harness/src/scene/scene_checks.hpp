@@ -3,22 +3,18 @@
 
 #include <string>
 
-#include "mbs/model.hpp"
+#include "scene/lowering.hpp"
 
 namespace mbs {
 
-/// |Phi| at the start, relative to the size of its terms. A rod whose "length" is off by the 1e-9
-/// that SceneReader allows is off by 2e-9 here.
-inline constexpr double kPositionTolerance = 1e-8;
-/// |Phi_q v| at the start, relative to |Phi_q| |v|; the energy that the first projection then takes
-/// away is the square of it.
-inline constexpr double kVelocityTolerance = 1e-6;
+/// Throws UsageError, prefixed by `where`, unless a point is free, every free point and vector has
+/// mass and none is held by more constraints of its own than it has coordinates. For a scene that
+/// is lowered, before its assembly.
+void check_scene(const Lowered& lowered, const std::string& where);
 
-/// Throws UsageError, prefixed by `where`, unless: a point is free; every point is touched by a
-/// rod, mass or constraint; every free point has mass; no point is held by more constraints than it
-/// has coordinates; the start fulfils the constraints to the tolerances above; and the scene can
-/// move, judged by the rank of Phi_q up to kDenseRankLimit coordinates and by m <= n beyond. `data`
-/// is as SceneReader makes it: points in the order of the file, diagonal of M first.
-void check_scene(const ModelData& data, const std::string& where);
+/// Throws UsageError, prefixed by `where`, if the scene cannot move: judged at the assembled start
+/// by the rank of Phi_q, or by m <= n where that is too much work. A scene whose drivers leave it
+/// no freedom moves as they say.
+void check_mobility(const Lowered& lowered, const std::string& where);
 
 }  // namespace mbs

@@ -1,4 +1,5 @@
-// Two compressed patterns, Phi_q by rows and by columns, give Phi_q^T Phi_q on the fly.
+// Two compressed lists, coordinates by clique and cliques by coordinate, give the pattern on the
+// fly.
 #include "scene/tangent_pattern.hpp"
 
 #include <algorithm>
@@ -16,43 +17,51 @@ void accumulate(std::vector<std::size_t>& counts) {
 TangentPattern::TangentPattern(const Model& model)
     : mass_(model.mass()),
       mass_start_(static_cast<std::size_t>(model.variables()) + 1, 0),
-      constraint_start_{0},
+      clique_start_{0},
       column_start_(static_cast<std::size_t>(model.variables()) + 1, 0),
       seen_in_(static_cast<std::size_t>(model.variables()), -1) {
   for (const MassEntry& entry : mass_) ++mass_start_[static_cast<std::size_t>(entry.col) + 1];
   accumulate(mass_start_);
-  read_constraints(model);
-  for (const int col : constraint_columns_) ++column_start_[static_cast<std::size_t>(col) + 1];
+  read_cliques(model);
+  for (const int col : clique_columns_) ++column_start_[static_cast<std::size_t>(col) + 1];
   accumulate(column_start_);
-  column_constraints_.resize(constraint_columns_.size());
+  column_cliques_.resize(clique_columns_.size());
   std::vector<std::size_t> next(column_start_.begin(), column_start_.end() - 1);
-  for (std::size_t i = 0; i + 1 < constraint_start_.size(); ++i) {
-    for (std::size_t k = constraint_start_[i]; k < constraint_start_[i + 1]; ++k) {
-      column_constraints_[next[static_cast<std::size_t>(constraint_columns_[k])]++] =
-          static_cast<int>(i);
+  for (std::size_t i = 0; i + 1 < clique_start_.size(); ++i) {
+    for (std::size_t k = clique_start_[i]; k < clique_start_[i + 1]; ++k) {
+      column_cliques_[next[static_cast<std::size_t>(clique_columns_[k])]++] = static_cast<int>(i);
     }
   }
 }
 
-void TangentPattern::read_constraints(const Model& model) {
-  for (const DotConstraint& constraint : model.dot_constraints()) {
-    const auto first = static_cast<std::ptrdiff_t>(constraint_columns_.size());
-    for (const int index : {constraint.a, constraint.b, constraint.c, constraint.d}) {
-      const Point& point = model.points()[static_cast<std::size_t>(index)];
-      const auto begin = constraint_columns_.begin() + first;
-      if (point.is_fixed() ||
-          std::find(begin, constraint_columns_.end(), point.offset) != constraint_columns_.end()) {
-        continue;
-      }
-      for (int axis = 0; axis < model.dimension(); ++axis) {
-        constraint_columns_.push_back(point.offset + axis);
-      }
+void TangentPattern::add_points(const Model& model, std::initializer_list<int> points) {
+  const auto first = static_cast<std::ptrdiff_t>(clique_columns_.size());
+  for (const int index : points) {
+    const Point& point = model.points()[static_cast<std::size_t>(index)];
+    const auto begin = clique_columns_.begin() + first;
+    if (point.is_fixed() ||
+        std::find(begin, clique_columns_.end(), point.offset) != clique_columns_.end()) {
+      continue;
     }
-    constraint_start_.push_back(constraint_columns_.size());
+    for (int axis = 0; axis < model.dimension(); ++axis) {
+      clique_columns_.push_back(point.offset + axis);
+    }
+  }
+  clique_start_.push_back(clique_columns_.size());
+}
+
+void TangentPattern::read_cliques(const Model& model) {
+  for (const DotConstraint& c : model.dot_constraints()) add_points(model, {c.a, c.b, c.c, c.d});
+  for (const BilinearConstraint& c : model.bilinear_constraints()) {
+    add_points(model, {c.a, c.b, c.c, c.d});
   }
   for (const LinearConstraint& constraint : model.linear_constraints()) {
-    for (const auto& term : constraint.terms) constraint_columns_.push_back(term.coordinate);
-    constraint_start_.push_back(constraint_columns_.size());
+    for (const auto& term : constraint.terms) clique_columns_.push_back(term.coordinate);
+    clique_start_.push_back(clique_columns_.size());
+  }
+  for (const Spring& spring : model.springs()) add_points(model, {spring.a, spring.b});
+  for (const TorsionSpring& spring : model.torsion_springs()) {
+    add_points(model, {spring.a, spring.b, spring.c, spring.d});
   }
 }
 
@@ -70,9 +79,9 @@ std::span<const int> TangentPattern::below(int col) {
   const auto j = static_cast<std::size_t>(col);
   for (std::size_t k = mass_start_[j]; k < mass_start_[j + 1]; ++k) collect(col, mass_[k].row);
   for (std::size_t k = column_start_[j]; k < column_start_[j + 1]; ++k) {
-    const auto i = static_cast<std::size_t>(column_constraints_[k]);
-    for (std::size_t p = constraint_start_[i]; p < constraint_start_[i + 1]; ++p) {
-      collect(col, constraint_columns_[p]);
+    const auto i = static_cast<std::size_t>(column_cliques_[k]);
+    for (std::size_t p = clique_start_[i]; p < clique_start_[i + 1]; ++p) {
+      collect(col, clique_columns_[p]);
     }
   }
   return rows_;

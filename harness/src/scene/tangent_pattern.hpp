@@ -1,6 +1,7 @@
 // Where the tangent (5) can be non-zero, column by column.
 #pragma once
 
+#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -8,8 +9,10 @@
 
 namespace mbs {
 
-/// Pattern of M plus Phi_q^T Phi_q without storing it: memory is that of M and Phi_q, and a column
-/// costs the sizes of the constraints that touch it. The diagonal is always in the pattern.
+/// Pattern of M + C + K + Phi_q^T Phi_q without storing it: memory is that of M and Phi_q, and a
+/// column costs the sizes of the cliques that touch it. A clique is a set of coordinates that are
+/// all coupled: those of a constraint, a spring or a torsion spring. The diagonal is always in the
+/// pattern.
 ///
 /// Example: the pendulum (A fixed, B free, one rod) has n = 2 and below(0) = {1}, below(1) = {}.
 class TangentPattern {
@@ -22,14 +25,15 @@ class TangentPattern {
 
  private:
   void collect(int col, int row);
-  void read_constraints(const Model& model);
+  void add_points(const Model& model, std::initializer_list<int> points);
+  void read_cliques(const Model& model);
 
   std::span<const MassEntry> mass_;
-  std::vector<std::size_t> mass_start_;        // of column j in mass_
-  std::vector<std::size_t> constraint_start_;  // of constraint i in constraint_columns_
-  std::vector<int> constraint_columns_;
-  std::vector<std::size_t> column_start_;  // of column j in column_constraints_
-  std::vector<int> column_constraints_;
+  std::vector<std::size_t> mass_start_;    // of column j in mass_
+  std::vector<std::size_t> clique_start_;  // of clique i in clique_columns_
+  std::vector<int> clique_columns_;
+  std::vector<std::size_t> column_start_;  // of column j in column_cliques_
+  std::vector<int> column_cliques_;
   std::vector<int> seen_in_;  // last column whose pattern held this row
   std::vector<int> rows_;
 };

@@ -12,7 +12,7 @@ namespace mbs::test {
 class WrappedReference : public Simulation {
  public:
   WrappedReference(const Model& model, const StepSettings& settings)
-      : Simulation(model.variables(), model.constraints()), reference_(model, settings) {}
+      : Simulation(model, settings), reference_(model, settings) {}
 
  protected:
   void do_set_state(const State& state) override { reference_.set_state(state); }

@@ -20,7 +20,7 @@ inline Eigen::MatrixXd dense_mass(const Model& model) {
 
 inline Eigen::MatrixXd dense_jacobian(const Model& model, std::span<const double> q) {
   Eigen::MatrixXd Phi_q = Eigen::MatrixXd::Zero(model.constraints(), model.variables());
-  for (const JacobianEntry& entry : jacobian(model, q)) {
+  for (const JacobianEntry& entry : jacobian(model, 0.0, q)) {
     Phi_q(entry.row, entry.col) += entry.value;
   }
   return Phi_q;

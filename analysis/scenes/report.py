@@ -1,0 +1,63 @@
+# scenes.html: the standard problems and the cost of modelling, one self-contained page.
+import base64
+from pathlib import Path
+
+import jinja2
+import matplotlib.pyplot as plt
+
+from analysis.loader import _json
+from analysis.scenes import modelling_figure, tables
+from analysis.text import number
+
+SHEETS = Path(__file__).resolve().parents[2] / "harness" / "scenes" / "pictures"
+CONSERVED = 1e-3  # of the range of the energy
+
+
+def write(folder):
+    """Writes figures/modelling.svg and .png, and scenes.html, atomically."""
+    folder = Path(folder)
+    data = tables.load(folder)
+    (folder / "figures").mkdir(exist_ok=True)
+    figure = modelling_figure.draw(data["modelling"])
+    for kind in ("svg", "png"):
+        figure.savefig(folder / "figures" / f"modelling.{kind}", bbox_inches="tight",
+                       metadata={"Date": None} if kind == "svg" else None)
+    plt.close(figure)
+    page = render(folder, data)
+    partial = folder / "scenes.html.partial"
+    partial.write_text(page, encoding="utf-8")
+    partial.replace(folder / "scenes.html")
+
+
+def render(folder, data):
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
+                                     autoescape=True, trim_blocks=True, lstrip_blocks=True,
+                                     undefined=jinja2.StrictUndefined)
+    environment.filters |= {"number": number, "digits": tables.digits}
+    run = _json(folder / "run.json")
+    context = next(iter(run["contexts"].values()))
+    problems, convergence = data["problems"], data["convergence"]
+    return environment.get_template("scenes.html.j2").render(
+        context=context, problems=[] if problems.empty else tables.best_errors(problems),
+        agreement={} if data["gate"].empty else tables.agreement(data["gate"]),
+        convergence=[] if convergence.empty else convergence.to_dict("records"),
+        everyone=[] if problems.empty else _everyone(problems),
+        costs=tables.costs(data["modelling"]), conserved_limit=CONSERVED,
+        figure=base64.b64encode((folder / "figures" / "modelling.svg").read_bytes()).decode(),
+        sheets=_sheets())
+
+
+def _everyone(problems):
+    """Problems that every implementation ran at the first step: energy drift of each."""
+    result = []
+    for name, group in problems.groupby("problem", sort=False):
+        first = group[group.step == group.step.max()]
+        if first.implementation.nunique() > 2:
+            result.append({"problem": name, "step": first.step.iloc[0],
+                           "rows": first.to_dict("records")})
+    return result
+
+
+def _sheets():
+    return {path.stem: base64.b64encode(path.read_bytes()).decode()
+            for path in sorted(SHEETS.glob("*.png"))}

@@ -1,0 +1,26 @@
+// Tables of numbers as CSV, which appear whole or not at all.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "atomic_file.hpp"
+
+namespace mbs {
+
+/// One line of column names, then rows of numbers that round-trip. Names with a comma, a quote or a
+/// line break are quoted as RFC 4180 says.
+class CsvFile {
+ public:
+  /// Throws UsageError if `path` cannot be written.
+  CsvFile(const std::string& path, const std::vector<std::string>& columns);
+  void write(std::span<const double> row);
+  /// Makes the file appear under its name. Throws UsageError if not everything could be written.
+  void commit() { file_.commit(); }
+
+ private:
+  AtomicFile file_;
+};
+
+}  // namespace mbs

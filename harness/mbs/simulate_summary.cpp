@@ -1,0 +1,96 @@
+// A run's figures as JSON and as text.
+#include "mbs/simulate_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "describe/describe.hpp"
+
+namespace mbs {
+namespace {
+
+const char* to_string(Projections projections) {
+  switch (projections) {
+    case Projections::none:
+      return "none";
+    case Projections::velocity:
+      return "velocity";
+    case Projections::both:
+      return "both";
+  }
+  return "unknown";
+}
+
+nlohmann::json finite_or_null(std::optional<double> value) {
+  if (!value || !std::isfinite(*value)) return nullptr;
+  return *value;
+}
+
+}  // namespace
+
+nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
+                            const RunSettings& settings, const RunSummary& summary) {
+  const double steps = static_cast<double>(std::max(summary.steps, 1L));
+  return {{"scene", scene.name},
+          {"implementation", variant.name},
+          {"variables", scene.model.variables()},
+          {"constraints", scene.model.constraints()},
+          {"tangent_nonzeros", tangent_nonzeros(scene.model)},
+          {"step", settings.step.step},
+          {"duration", settings.duration},
+          {"penalty", settings.step.penalty},
+          {"tolerance", settings.step.tolerance},
+          {"max_passes", settings.step.max_passes},
+          {"projections", to_string(settings.step.projections)},
+          {"assembly", assembly_json(scene.assembly)},
+          {"status", to_string(summary.status)},
+          {"status_reason", summary.reason},
+          {"failed_at", finite_or_null(summary.failed_at)},
+          {"steps", summary.steps},
+          {"steps_at_limit", summary.steps_at_limit},
+          {"passes_per_step", static_cast<double>(summary.passes) / steps},
+          {"position_error_max", finite_or_null(summary.position_error_max)},
+          {"energy_drift_max", finite_or_null(summary.energy_drift_max)},
+          {"constraint_violation_max", finite_or_null(summary.constraint_violation_max)},
+          {"setup_us", summary.setup_us},
+          {"step_us",
+           {{"median", summary.step_us_median},
+            {"p99", summary.step_us_p99},
+            {"max", summary.step_us_max}}}};
+}
+
+std::string summary_text(const nlohmann::json& json) {
+  const auto number = [&json](const char* key, const char* unit) {
+    return json[key].is_null() ? std::string("none")
+                               : fmt::format("{:.3g}{}", json[key].get<double>(), unit);
+  };
+  std::string text = fmt::format("{} on {}\n", json["implementation"].get<std::string>(),
+                                 json["scene"].get<std::string>());
+  text += fmt::format("  status                 {}\n", json["status"].get<std::string>());
+  text += fmt::format(
+      "  size                   {} variables, {} constraints, {} non-zeros in the tangent\n",
+      json["variables"].get<int>(), json["constraints"].get<int>(),
+      json["tangent_nonzeros"].get<long>());
+  text += fmt::format(
+      "  settings               step {:g} s, penalty {:.4g}, tolerance {:g} m{}\n",
+      json["step"].get<double>(), json["penalty"].get<double>(), json["tolerance"].get<double>(),
+      json["projections"] == "both" ? std::string()
+                                    : ", projections " + json["projections"].get<std::string>());
+  text += fmt::format("  start                  {}\n", assembly_text(json["assembly"]));
+  text += fmt::format("  steps                  {}, {:.3f} passes each, {} at the pass limit\n",
+                      json["steps"].get<long>(), json["passes_per_step"].get<double>(),
+                      json["steps_at_limit"].get<long>());
+  text += fmt::format("  position error max     {}\n", number("position_error_max", " m"));
+  text += fmt::format("  energy drift max       {}\n", number("energy_drift_max", " of its scale"));
+  text += fmt::format("  constraint violation   {}\n", number("constraint_violation_max", " m^2"));
+  text += fmt::format("  set-up                 {:.1f} us\n", json["setup_us"].get<double>());
+  text += fmt::format("  step                   {:.2f} us median, {:.2f} p99, {:.2f} max\n",
+                      json["step_us"]["median"].get<double>(), json["step_us"]["p99"].get<double>(),
+                      json["step_us"]["max"].get<double>());
+  return text;
+}
+
+}  // namespace mbs

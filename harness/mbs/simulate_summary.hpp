@@ -1,0 +1,18 @@
+// What `mbs simulate` says about a run.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "run/run.hpp"
+
+namespace mbs {
+
+/// The summary for programs; the top README lists its keys.
+nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
+                            const RunSettings& settings, const RunSummary& summary);
+
+/// The same for people, several lines.
+std::string summary_text(const nlohmann::json& summary);
+
+}  // namespace mbs

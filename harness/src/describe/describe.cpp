@@ -1,0 +1,107 @@
+// The description as JSON.
+#include "describe/describe.hpp"
+
+#include <optional>
+#include <vector>
+
+#include "describe/elements.hpp"
+#include "describe/penalty_window.hpp"
+#include "describe/structure.hpp"
+#include "describe/terms.hpp"
+#include "model_math/kinematics.hpp"
+#include "scene/row_names.hpp"
+
+namespace mbs {
+namespace {
+
+using nlohmann::json;
+
+json matrix(long nonzeros, double positions) {
+  const double fill = positions > 0.0 ? static_cast<double>(nonzeros) / positions : 0.0;
+  return {{"nonzeros", nonzeros}, {"fill", fill}};
+}
+
+json names_of(const Model& model, const std::vector<int>& rows) {
+  json names = json::array();
+  for (const int row : rows) names.push_back(row_name(model, row));
+  return names;
+}
+
+void add_points(json& result, const Model& model) {
+  std::ptrdiff_t free_points = 0, free_vectors = 0, fixed = 0;
+  for (const Point& point : model.points()) {
+    ++(point.is_fixed() ? fixed : point.is_vector ? free_vectors : free_points);
+  }
+  const auto driven = static_cast<std::ptrdiff_t>(model.driven_points().size());
+  result["free_points"] = free_points;
+  result["free_vectors"] = free_vectors;
+  result["fixed_points"] = fixed - driven;
+  result["driven_points"] = driven;
+}
+
+void add_structure(json& result, const Model& model, const Structure& structure) {
+  result["jacobian_rank"] = nullptr;
+  if (structure.rank) result["jacobian_rank"] = *structure.rank;
+  result["degrees_of_freedom"] = model.variables() - structure.rank.value_or(model.constraints());
+  result["degrees_of_freedom_from"] = structure.rank ? "n - rank" : "n - m";
+  result["redundant_constraints"] = names_of(model, structure.redundant);
+  result["singular_start"] = nullptr;
+  if (!structure.singular) return;
+  result["singular_start"] = false;
+  if (!*structure.singular) return;
+  result["singular_start"] = {{"rank", *structure.rank_at_start},
+                              {"constraints", names_of(model, structure.singular_rows)}};
+}
+
+json penalty_json(const Model& model, const Structure& structure, double step) {
+  if (model.constraints() == 0) return nullptr;
+  const PenaltyWindow window = penalty_window(model, structure, step);
+  return {{"step", step},
+          {"lower", window.lower},
+          {"upper", window.upper},
+          {"automatic", window.automatic},
+          {"lower_from", window.slowest_mode ? "slowest mode" : "singular positions"},
+          {"upper_from", window.cancellation ? "cancellation" : "nonlinearity"}};
+}
+
+json fill_json(const std::optional<Fill>& fill) {
+  if (!fill) return nullptr;
+  return {{"asked", fill->asked},
+          {"natural", fill->natural},
+          {"reached", fill->reached},
+          {"seed", fill->seed}};
+}
+
+}  // namespace
+
+json assembly_json(const AssemblyReport& report) {
+  return {{"position_correction", report.position_correction},
+          {"velocity_correction", report.velocity_correction},
+          {"point", report.point}};
+}
+
+json describe_json(const Scene& scene, double step) {
+  const Model& model = scene.model;
+  const double n = model.variables();
+  const double m = model.constraints();
+  const Structure structure = find_structure(model);
+  const auto jacobian_entries = jacobian(model, 0.0, model.initial_position()).size();
+  json result = {
+      {"scene", scene.name},
+      {"dimension", model.dimension()},
+      {"variables", model.variables()},
+      {"constraints", model.constraints()},
+      {"assembly", assembly_json(scene.assembly)},
+      {"terms", terms_json(scene)},
+      {"mass", matrix(2 * static_cast<long>(model.mass().size()) - model.variables(), n * n)},
+      {"jacobian", matrix(static_cast<long>(jacobian_entries), m * n)},
+      {"tangent", matrix(tangent_nonzeros(model), n * n)},
+      {"penalty_window", penalty_json(model, structure, step)},
+      {"artificial_fill", fill_json(scene.fill)},
+      {"elements", elements_json(scene)}};
+  add_points(result, model);
+  add_structure(result, model, structure);
+  return result;
+}
+
+}  // namespace mbs

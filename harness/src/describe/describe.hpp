@@ -1,0 +1,34 @@
+// What a scene requires and what it asks of the linear algebra: `mbs describe`.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "scene/scene.hpp"
+
+namespace mbs {
+
+/// The description for programs; `step` (s) is what the penalty window is for. Keys:
+///
+/// - scene, dimension, variables, constraints, free_points, free_vectors, fixed_points,
+/// driven_points;
+/// - jacobian_rank (null if that was too much work), degrees_of_freedom, degrees_of_freedom_from
+///   ("n - rank" or "n - m"), redundant_constraints [names], singular_start {rank, constraints} or
+///   false, null if unknown;
+/// - assembly {position_correction, velocity_correction, point};
+/// - terms {name: count or true/false};
+/// - mass, jacobian and tangent {nonzeros, fill}, fill as a share of n^2 or m n;
+/// - penalty_window {step, lower, upper, automatic, lower_from, upper_from} or null;
+/// - artificial_fill {asked, natural, reached, seed} or null;
+/// - elements, see elements_json().
+nlohmann::json describe_json(const Scene& scene, double step);
+
+/// The same for people, several lines.
+std::string describe_text(const Scene& scene, double step);
+
+/// What the assembly of the start changed: keys position_correction, velocity_correction, point.
+nlohmann::json assembly_json(const AssemblyReport& report);
+/// The same on one line.
+std::string assembly_text(const nlohmann::json& assembly);
+
+}  // namespace mbs

@@ -1,0 +1,122 @@
+// The description as text, printed from the JSON.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "describe/describe.hpp"
+#include "describe/terms.hpp"
+
+namespace mbs {
+namespace {
+
+using nlohmann::json;
+
+std::string line(const char* label, const std::string& text) {
+  return fmt::format("{:<22}{}\n", label, text);
+}
+
+std::string matrix_text(const json& matrix, const char* of) {
+  return fmt::format("{} non-zeros, {:.4g} % of {}", matrix["nonzeros"].get<long>(),
+                     100.0 * matrix["fill"].get<double>(), of);
+}
+
+/// At most eight names.
+std::string listed(const json& names) {
+  constexpr std::size_t kMost = 8;
+  std::vector<std::string> first;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) first.push_back(names[i]);
+  const std::string text = fmt::format("{}", fmt::join(first, ", "));
+  return names.size() > kMost ? fmt::format("{} and {} more", text, names.size() - kMost) : text;
+}
+
+std::string points_text(const json& d) {
+  std::string text = fmt::format("{} free", d["free_points"].get<long>());
+  const auto add = [&](const char* key, const char* what) {
+    if (d[key] != 0) text += fmt::format(", {} {}", d[key].get<long>(), what);
+  };
+  add("free_vectors", "free unit vector(s)");
+  add("driven_points", "driven");
+  return fmt::format("{} ({} and {} fixed point(s) in {} dimensions)", d["variables"].get<int>(),
+                     text, d["fixed_points"].get<long>(), d["dimension"].get<int>());
+}
+
+std::string freedom_text(const json& d) {
+  const json& rank = d["jacobian_rank"];
+  return fmt::format("{} ({})", d["degrees_of_freedom"].get<int>(),
+                     rank.is_null() ? "n - m; the rank was not computed, it is too much work"
+                                    : fmt::format("n - rank of the Jacobian, {}", rank.get<int>()));
+}
+
+std::string redundant_text(const json& d) {
+  const json& names = d["redundant_constraints"];
+  if (d["jacobian_rank"].is_null()) return "not computed";
+  if (names.empty()) return "none";
+  return fmt::format("{}, implied by those before them: {}", names.size(), listed(names));
+}
+
+std::string start_text(const json& d) {
+  const json& singular = d["singular_start"];
+  if (singular.is_null()) return "not known to be regular: no position nearby was found";
+  if (singular == false) return "regular";
+  return fmt::format("singular, rank {} only: {} hold(s) nothing there that others do not",
+                     singular["rank"].get<int>(), listed(singular["constraints"]));
+}
+
+std::string penalty_text(const json& window) {
+  if (window.is_null()) return "any, there are no constraints";
+  const double lower = window["lower"], upper = window["upper"];
+  const std::string step = fmt::format("for step {:g} s", window["step"].get<double>());
+  const std::string rest = fmt::format("automatic {:.2g}", window["automatic"].get<double>());
+  if (!(lower <= upper)) {
+    return fmt::format("no good one {}: {} ask(s) for {:.2g} at least, {} for {:.2g} at most; {}",
+                       step, window["lower_from"].get<std::string>(), lower,
+                       window["upper_from"].get<std::string>(), upper, rest);
+  }
+  return fmt::format("{:.2g} ({}) to {:.2g} ({}), estimated {}; {}", lower,
+                     window["lower_from"].get<std::string>(), upper,
+                     window["upper_from"].get<std::string>(), step, rest);
+}
+
+}  // namespace
+
+std::string assembly_text(const json& assembly) {
+  const double position = assembly["position_correction"];
+  const double velocity = assembly["velocity_correction"];
+  const std::string point = assembly["point"];
+  std::vector<std::string> changes;
+  if (position > 0.0) {
+    changes.push_back(fmt::format("points moved by up to {:.3g} m ({})", position, point));
+  }
+  if (velocity > 0.0) {
+    changes.push_back(fmt::format("velocities changed by up to {:.3g} m/s", velocity));
+  }
+  return changes.empty() ? "consistent as given" : fmt::format("{}", fmt::join(changes, ", "));
+}
+
+std::string describe_text(const Scene& scene, double step) {
+  const json d = describe_json(scene, step);
+  std::string text = line("scene", scene.name);
+  text += line("coordinates n", points_text(d));
+  text += line("constraints m", fmt::format("{}", d["constraints"].get<int>()));
+  text += line("degrees of freedom", freedom_text(d));
+  text += line("redundant", redundant_text(d));
+  text += line("start", start_text(d));
+  text += line("assembly", assembly_text(d["assembly"]));
+  text += line("terms present", term_list(d["terms"], true));
+  text += line("terms absent", term_list(d["terms"], false));
+  text += line("mass matrix M", matrix_text(d["mass"], "n^2"));
+  text += line("Jacobian", matrix_text(d["jacobian"], "m n"));
+  text += line("tangent", matrix_text(d["tangent"], "n^2"));
+  text += line("penalty factor", penalty_text(d["penalty_window"]));
+  if (const auto& fill = scene.fill) {
+    text += line(
+        "artificial fill",
+        fmt::format("asked {:.4g} %, natural {:.4g} %, reached {:.4g} %, seed {}",
+                    100.0 * fill->asked, 100.0 * fill->natural, 100.0 * fill->reached, fill->seed));
+  }
+  return text;
+}
+
+}  // namespace mbs

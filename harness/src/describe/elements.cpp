@@ -1,0 +1,93 @@
+// Names and places of what a scene is made of.
+#include "describe/elements.hpp"
+
+#include <algorithm>
+
+#include "run/scene_motion.hpp"
+
+namespace mbs {
+namespace {
+
+using nlohmann::json;
+
+json pair(const SceneMotion& motion, int a, int b) {
+  return json::array({motion.name(a), motion.name(b)});
+}
+
+json names(const SceneMotion& motion, const std::vector<int>& indices) {
+  json result = json::array();
+  for (const int index : indices) result.push_back(motion.name(index));
+  return result;
+}
+
+json points(const Scene& scene, const SceneMotion& motion) {
+  const Model& model = scene.model;
+  std::vector<bool> driven(model.points().size(), false);
+  for (const DrivenPoint& point : model.driven_points()) {
+    driven[static_cast<std::size_t>(point.point)] = true;
+  }
+  json result = json::array();
+  for (int i = 0; i < motion.points(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const bool is_marker = k >= driven.size();
+    const auto position = motion.position(i);
+    const char* kind = is_marker                      ? "marker"
+                       : model.points()[k].is_vector  ? "vector"
+                       : driven[k]                    ? "driven"
+                       : model.points()[k].is_fixed() ? "fixed"
+                                                      : "free";
+    result.push_back({{"name", motion.name(i)},
+                      {"kind", kind},
+                      {"position", std::vector<double>(position.begin(),
+                                                       position.begin() + model.dimension())}});
+  }
+  return result;
+}
+
+json rods(const Scene& scene, const SceneMotion& motion) {
+  json result = json::array();
+  for (const auto& rod : scene.elements.rods) {
+    result.push_back({{"name", rod.name}, {"between", pair(motion, rod.a, rod.b)}});
+  }
+  if (!scene.elements.rods.empty() || !scene.elements.bodies.empty()) return result;
+  for (const DotConstraint& c : scene.model.dot_constraints()) {
+    if (c.a != c.c || c.b != c.d) continue;
+    result.push_back({{"name", c.name}, {"between", pair(motion, c.a, c.b)}});
+  }
+  return result;
+}
+
+}  // namespace
+
+json elements_json(const Scene& scene) {
+  const Model& model = scene.model;
+  const std::vector<double> zero(static_cast<std::size_t>(model.variables()), 0.0);
+  const State start{
+      {model.initial_position().begin(), model.initial_position().end()}, zero, zero, {}, 0.0};
+  SceneMotion motion(scene);
+  motion.set(0.0, start);
+  json bodies = json::array(), springs = json::array(), torsion_springs = json::array(),
+       outputs = json::array();
+  for (const auto& body : scene.elements.bodies) {
+    bodies.push_back({{"name", body.name},
+                      {"points", names(motion, body.points)},
+                      {"vectors", names(motion, body.vectors)}});
+  }
+  for (const Spring& spring : model.springs()) {
+    springs.push_back({{"name", spring.name}, {"between", pair(motion, spring.a, spring.b)}});
+  }
+  for (const TorsionSpring& spring : model.torsion_springs()) {
+    torsion_springs.push_back({{"name", spring.name},
+                               {"from", pair(motion, spring.b, spring.a)},
+                               {"to", pair(motion, spring.d, spring.c)}});
+  }
+  for (const Output& output : scene.elements.outputs) outputs.push_back(output.name);
+  return {{"points", points(scene, motion)},
+          {"rods", rods(scene, motion)},
+          {"bodies", bodies},
+          {"springs", springs},
+          {"torsion_springs", torsion_springs},
+          {"outputs", outputs}};
+}
+
+}  // namespace mbs

@@ -1,0 +1,25 @@
+// Between which penalty factors a scene simulates well with a given step.
+#pragma once
+
+#include "describe/structure.hpp"
+#include "mbs/model.hpp"
+
+namespace mbs {
+
+/// An estimate from the start alone; README.md here has the derivation and what it was fitted to.
+/// On mechanisms that meet singular positions it is right to a factor of about ten, others work
+/// below it too. Empty, lower > upper, if the step is too long for the motion or too short for
+/// double precision.
+struct PenaltyWindow {
+  double lower = 0.0;         ///< alpha; below it the multipliers do not converge
+  double upper = 0.0;         ///< alpha; above it errors grow in proportion
+  double automatic = 0.0;     ///< what `--penalty auto` takes
+  double rate = 0.0;          ///< omega, the fastest rate of turning expected, 1/s
+  bool slowest_mode = false;  ///< whether the slowest mode sets `lower`, not singular positions
+  bool cancellation = false;  ///< whether rounding sets `upper`, not the nonlinearity in a step
+};
+
+/// `step` in s. The model must have a constraint that is not redundant.
+PenaltyWindow penalty_window(const Model& model, const Structure& structure, double step);
+
+}  // namespace mbs

@@ -1,0 +1,208 @@
+// Gauss-Newton on Phi(q, t) = 0, and the linear Phi_q v = -Phi_t.
+#include "model_math/consistency.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model_math/kinematics.hpp"
+#include "model_math/known_motion.hpp"
+#include "model_math/least_change.hpp"
+#include "model_math/vector3.hpp"
+
+namespace mbs {
+namespace {
+
+constexpr double kReached = 1e-15;  // no better ratio is worth a step
+
+double norm(const Vector3& x) { return std::hypot(x[0], x[1], x[2]); }
+
+double norm(const BilinearConstraint& c) {
+  double sum = 0.0;
+  for (const auto& row : c.B) {
+    for (const double entry : row) sum = std::hypot(sum, entry);
+  }
+  return sum;
+}
+double norm(const DotConstraint&) { return 1.0; }
+
+/// Positions of the points, fixed and driven ones included.
+std::vector<Vector3> positions(const Model& model, const KnownMotion& known,
+                               std::span<const double> q) {
+  std::vector<Vector3> result(model.points().size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const Point& point = model.points()[i];
+    if (point.is_fixed()) {
+      result[i] = known.position(static_cast<int>(i));
+    } else {
+      std::copy_n(q.begin() + point.offset, model.dimension(), result[i].begin());
+    }
+  }
+  return result;
+}
+
+double largest_position(const Model& model, const std::vector<Vector3>& positions) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (!model.points()[i].is_vector) largest = std::max(largest, norm(positions[i]));
+  }
+  return largest;
+}
+
+/// The size of each constraint's terms at q, see position_violation().
+std::vector<double> sizes_of_terms(const Model& model, double t, std::span<const double> q) {
+  const KnownMotion known(model, t);
+  const std::vector<Vector3> r = positions(model, known, q);
+  const double largest = largest_position(model, r);
+  std::vector<double> result;
+  result.reserve(known.values().size());
+  const auto value = [&] { return std::abs(known.values()[result.size()].value); };
+  const auto length = [&](int a, int b) {
+    return norm(r[static_cast<std::size_t>(a)] - r[static_cast<std::size_t>(b)]);
+  };
+  const auto add_quadratic = [&](const auto& c) {
+    const double u = length(c.a, c.b), w = length(c.c, c.d);
+    result.push_back(norm(c) * (u * w + (u + w) * largest) + value());
+  };
+  for (const DotConstraint& c : model.dot_constraints()) add_quadratic(c);
+  for (const BilinearConstraint& c : model.bilinear_constraints()) add_quadratic(c);
+  for (const LinearConstraint& c : model.linear_constraints()) {
+    double coefficients = 0.0;
+    for (const auto& term : c.terms) coefficients += std::abs(term.coefficient);
+    result.push_back(coefficients * largest + value());
+  }
+  return result;
+}
+
+/// The worst of `values` against `sizes`.
+Violation worst_of(const std::vector<double>& values, const std::vector<double>& sizes) {
+  Violation worst;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (values[k] == 0.0) continue;
+    double ratio = std::abs(values[k]) / std::max(sizes[k], std::numeric_limits<double>::min());
+    if (!std::isfinite(ratio)) ratio = std::numeric_limits<double>::infinity();
+    if (ratio > worst.ratio) worst = {ratio, static_cast<int>(k), values[k]};
+  }
+  return worst;
+}
+
+std::vector<double> constraints_at(const Model& model, double t, std::span<const double> q) {
+  std::vector<double> phi(static_cast<std::size_t>(model.constraints()));
+  evaluate_constraints(model, t, q, phi);
+  return phi;
+}
+
+std::vector<double> rates_at(const Model& model, double t, std::span<const double> q,
+                             std::span<const double> v) {
+  std::vector<double> rate(static_cast<std::size_t>(model.constraints()));
+  constraint_rate(model, t, q, v, rate);
+  return rate;
+}
+
+/// Sum of squared ratios: what a Gauss-Newton step must reduce. Not finite if anything is not.
+double merit(const std::vector<double>& phi, const std::vector<double>& sizes) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < phi.size(); ++k) {
+    const double ratio = phi[k] / std::max(sizes[k], std::numeric_limits<double>::min());
+    sum += ratio * ratio;
+  }
+  return sum;
+}
+
+std::vector<double> negative(std::vector<double> x) {
+  for (double& value : x) value = -value;
+  return x;
+}
+
+std::vector<double> sum(const std::vector<double>& x, double factor, const std::vector<double>& y) {
+  std::vector<double> result(x);
+  for (std::size_t i = 0; i < x.size(); ++i) result[i] += factor * y[i];
+  return result;
+}
+
+/// Gauss-Newton steps that are damped where they would not help [Levenberg, 1944].
+class Approach {
+ public:
+  Approach(const Model& model, double t, const std::vector<double>& sizes)
+      : model_(model), t_(t), sizes_(sizes) {}
+
+  /// One step of q and Phi(q, t). False, and both unchanged, if no step helps.
+  bool step(std::vector<double>& q, std::vector<double>& phi) {
+    constexpr double kFirst = 1e-4, kLast = 1e4;  // damping, where there is any
+    const double before = merit(phi, sizes_);
+    for (; damping_ <= kLast; damping_ = std::max(kFirst, 10.0 * damping_)) {
+      const LeastChange least(model_, t_, q, {}, damping_);
+      std::vector<double> trial = sum(q, 1.0, least.solve(negative(phi)));
+      std::vector<double> trial_phi = constraints_at(model_, t_, trial);
+      const double enough = (damping_ == 0.0 ? 0.9 : 1.0) * before;
+      if (!(merit(trial_phi, sizes_) < enough)) continue;  // nor does NaN help
+      damping_ = damping_ > kFirst ? damping_ / 10.0 : 0.0;
+      q = std::move(trial);
+      phi = std::move(trial_phi);
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  const Model& model_;
+  double t_;
+  const std::vector<double>& sizes_;
+  double damping_ = 0.0;
+};
+
+}  // namespace
+
+Violation position_violation(const Model& model, double t, std::span<const double> q) {
+  return worst_of(constraints_at(model, t, q), sizes_of_terms(model, t, q));
+}
+
+Violation velocity_violation(const Model& model, double t, std::span<const double> q,
+                             std::span<const double> v) {
+  double fastest = 0.0;
+  for (const double value : v) fastest = std::max(fastest, std::abs(value));
+  const std::vector<double> zero(v.size());
+  std::vector<double> sizes = rates_at(model, t, q, zero);  // Phi_t
+  const std::size_t quadratic = sizes.size() - model.linear_constraints().size();
+  const double largest = largest_position(model, positions(model, KnownMotion(model, t), q));
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    sizes[k] = std::abs(sizes[k]) + (k < quadratic ? largest * fastest : 0.0);
+  }
+  for (const JacobianEntry& entry : jacobian(model, t, q)) {
+    sizes[static_cast<std::size_t>(entry.row)] += std::abs(entry.value) * fastest;
+  }
+  return worst_of(rates_at(model, t, q, v), sizes);
+}
+
+Violation move_onto_constraints(const Model& model, double t, std::vector<double>& q) {
+  // Those of the start throughout, so that nothing counts as small because something else grew.
+  const std::vector<double> sizes = sizes_of_terms(model, t, q);
+  std::vector<double> phi = constraints_at(model, t, q);
+  Violation rest = worst_of(phi, sizes);
+  if (rest.ratio <= kMet || !std::isfinite(rest.ratio)) return rest;
+  // Towards a singular position the steps halve the distance only: 60 of them reach rounding.
+  constexpr int kMostSteps = 100;
+  Approach approach(model, t, sizes);
+  for (int i = 0; i < kMostSteps && rest.ratio > kReached && approach.step(q, phi); ++i) {
+    rest = worst_of(phi, sizes);
+  }
+  return rest;
+}
+
+Violation make_consistent(const Model& model, double t, std::span<const double> q,
+                          std::vector<double>& v, const std::vector<bool>& held) {
+  Violation rest = velocity_violation(model, t, q, v);
+  if (rest.ratio <= kMet || !std::isfinite(rest.ratio)) return rest;
+  const LeastChange least(model, t, q, held);
+  constexpr int kMostRounds = 5;  // the first solves, the others remove the rounding of the first
+  for (int i = 0; i < kMostRounds && rest.ratio > kReached; ++i) {
+    const std::vector<double> next = sum(v, 1.0, least.solve(negative(rates_at(model, t, q, v))));
+    const Violation after = velocity_violation(model, t, q, next);
+    if (!std::isfinite(after.ratio) || (i > 0 && !(after.ratio < rest.ratio))) break;
+    v = next;
+    rest = after;
+  }
+  return rest;
+}
+
+}  // namespace mbs

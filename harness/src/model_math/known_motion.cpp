@@ -1,0 +1,50 @@
+// Samples the drivers.
+#include "model_math/known_motion.hpp"
+
+namespace mbs {
+
+KnownMotion::KnownMotion(const Model& model, double t)
+    : model_(model),
+      positions_(model.driven_points().size()),
+      velocities_(positions_.size()),
+      accelerations_(positions_.size()) {
+  if (!positions_.empty()) driven_.assign(model.points().size(), -1);
+  for (std::size_t i = 0; i < positions_.size(); ++i) {
+    driven_[static_cast<std::size_t>(model.driven_points()[i].point)] = static_cast<int>(i);
+  }
+  values_.reserve(static_cast<std::size_t>(model.constraints()));
+  for (const auto& constraint : model.dot_constraints()) values_.push_back({constraint.value});
+  for (const auto& constraint : model.bilinear_constraints()) values_.push_back({constraint.value});
+  for (const auto& constraint : model.linear_constraints()) values_.push_back({constraint.value});
+  set_time(t);
+}
+
+void KnownMotion::set_time(double t) {
+  for (std::size_t i = 0; i < positions_.size(); ++i) {
+    for (int axis = 0; axis < model_.dimension(); ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      const TimeFunction::Sample sample = model_.driven_points()[i].position[k].at(t);
+      positions_[i][k] = sample.value;
+      velocities_[i][k] = sample.rate;
+      accelerations_[i][k] = sample.acceleration;
+    }
+  }
+  for (const DrivenValue& driven : model_.driven_values()) {
+    values_[static_cast<std::size_t>(driven.constraint)] = driven.value.at(t);
+  }
+}
+
+KnownMotion::Vector KnownMotion::position(int point) const {
+  const auto index = static_cast<std::size_t>(point);
+  if (!driven_.empty() && driven_[index] >= 0) {
+    return positions_[static_cast<std::size_t>(driven_[index])];
+  }
+  return model_.points()[index].position;
+}
+
+KnownMotion::Vector KnownMotion::of(int point, const std::vector<Vector>& motion) const {
+  const int driven = driven_.empty() ? -1 : driven_[static_cast<std::size_t>(point)];
+  return driven < 0 ? Vector{} : motion[static_cast<std::size_t>(driven)];
+}
+
+}  // namespace mbs

@@ -1,0 +1,122 @@
+// Each kind of output from one state.
+#include "run/output_values.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "model_math/kinematics.hpp"
+
+namespace mbs {
+namespace {
+
+/// What the columns of a vector have before the axis's letter; nullptr: the output is one number.
+const char* vector_prefix(Output::Kind kind) {
+  switch (kind) {
+    case Output::Kind::position:
+      return ".";
+    case Output::Kind::velocity:
+      return ".v";
+    case Output::Kind::acceleration:
+      return ".a";
+    default:
+      return nullptr;
+  }
+}
+
+}  // namespace
+
+OutputValues::OutputValues(const Scene& scene) : scene_(scene), motion_(scene) {
+  const std::string axes = scene.model.dimension() == 2 ? "xy" : "xyz";
+  for (const Output& output : scene.elements.outputs) {
+    const char* prefix = vector_prefix(output.kind);
+    if (prefix == nullptr) {
+      columns_.push_back(output.name);
+    } else {
+      for (const char axis : axes) columns_.push_back(output.name + prefix + axis);
+    }
+  }
+  angles_.resize(scene.elements.outputs.size(), 0.0);
+}
+
+void OutputValues::follow(double t, const State& state) {
+  const bool is_first = state_ == nullptr;
+  t_ = t;
+  state_ = &state;
+  motion_.set(t, state);
+  for (std::size_t i = 0; i < angles_.size(); ++i) {
+    const Output& output = scene_.elements.outputs[i];
+    if (output.kind != Output::Kind::angle) continue;
+    const double now = angle(output);
+    // The multiple of 2 pi that brings it closest to the last one.
+    angles_[i] =
+        is_first ? now : angles_[i] + std::remainder(now - angles_[i], 2 * std::numbers::pi);
+  }
+}
+
+std::vector<double> OutputValues::values() const {
+  std::vector<double> result;
+  result.reserve(columns_.size());
+  const auto dimension = static_cast<std::size_t>(scene_.model.dimension());
+  for (std::size_t i = 0; i < angles_.size(); ++i) {
+    const Output& output = scene_.elements.outputs[i];
+    if (vector_prefix(output.kind) == nullptr) {
+      result.push_back(scalar(i));
+      continue;
+    }
+    const Vector3 value = output.kind == Output::Kind::position ? motion_.position(output.point)
+                          : output.kind == Output::Kind::velocity
+                              ? motion_.velocity(output.point)
+                              : motion_.acceleration(output.point);
+    for (std::size_t axis = 0; axis < dimension; ++axis) result.push_back(value[axis]);
+  }
+  return result;
+}
+
+double OutputValues::scalar(std::size_t index) const {
+  const Output& output = scene_.elements.outputs[index];
+  const Model& model = scene_.model;
+  switch (output.kind) {
+    case Output::Kind::angle:
+      return angles_[index];
+    case Output::Kind::distance: {
+      const Vector3 d = along(output.first);
+      return std::hypot(d[0], d[1], d[2]);
+    }
+    case Output::Kind::kinetic_energy:
+      return kinetic_energy(model, state_->v);
+    case Output::Kind::potential_energy:
+      return potential_energy(model, t_, state_->q);
+    case Output::Kind::total_energy:
+      return kinetic_energy(model, state_->v) + potential_energy(model, t_, state_->q);
+    case Output::Kind::constraint_force:
+      return constraint_force(output);
+    default:
+      throw std::logic_error("an output that is no single number");
+  }
+}
+
+Vector3 OutputValues::along(const Direction& direction) const {
+  const Vector3 to = motion_.position(direction.to);
+  return direction.from < 0 ? to : to - motion_.position(direction.from);
+}
+
+double OutputValues::angle(const Output& output) const {
+  const Vector3 u = along(output.first), w = along(output.second);
+  const Vector3 z = output.axis < 0 ? Vector3{0.0, 0.0, 1.0} : motion_.position(output.axis);
+  return std::atan2(dot(z, cross(u, w)), dot(u, w));
+}
+
+double OutputValues::constraint_force(const Output& output) const {
+  const auto row = static_cast<std::size_t>(output.constraint);
+  const double lambda = state_->lambda[row];
+  const auto dots = scene_.model.dot_constraints();
+  if (row >= dots.size()) return lambda;
+  const DotConstraint& c = dots[row];
+  if (c.a != c.c || c.b != c.d) return lambda;
+  // -Phi_q^T lambda is -2 lambda (r_a - r_b) at a: a pull of 2 lambda |r_a - r_b| towards b.
+  const Vector3 d = along({c.b, c.a});
+  return 2.0 * lambda * std::hypot(d[0], d[1], d[2]);
+}
+
+}  // namespace mbs

@@ -1,0 +1,48 @@
+// The kinds of TimeFunction that a JSON scene can ask for, and what lowering makes of them.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "mbs/time_function.hpp"
+
+namespace mbs {
+
+/// sum of coefficients[k] t^k.
+TimeFunction polynomial(std::vector<double> coefficients);
+
+/// offset + amplitude sin(2 pi frequency t + phase); frequency in Hz, phase in rad.
+struct Sine {
+  double amplitude = 0.0, frequency = 0.0, phase = 0.0, offset = 0.0;
+};
+TimeFunction sine(const Sine& sine);
+
+/// Natural cubic spline through (times[i], values[i]); beyond them it goes on straight, and end()
+/// is the last time. Needs at least two rows and strictly increasing times.
+TimeFunction spline(std::vector<double> times, std::vector<double> values);
+
+/// f^2.
+TimeFunction square_of(TimeFunction f);
+
+/// amplitude cos(angle + phase).
+TimeFunction cosine_of(TimeFunction angle, double amplitude, double phase = 0.0);
+
+/// constant + sum of factor * function; a constant again if all of them are.
+using Terms = std::vector<std::pair<double, TimeFunction>>;
+TimeFunction combination(const Terms& terms, double constant = 0.0);
+
+/// Row at which a table has a corner. With D_i the second divided differences at the inner rows, a
+/// pair (i, i + 1) is a corner if |D| at one of them exceeds kCornerRatio times |D| at the two rows
+/// before and the two after the pair (a corner between two rows splits its D among them), and if
+/// the slope jumps there by more than kCornerJump of the table's steepest slope (smaller ones are
+/// rounding of the values).
+///
+/// Example: |t - 1| at t = 0, 0.1, ..., 2 has D = 0 but for 20 at t = 1. A sine is smooth from six
+/// rows a period on.
+inline constexpr double kCornerRatio = 5.0;
+inline constexpr double kCornerJump = 0.01;
+std::optional<std::size_t> corner_of(const std::vector<double>& times,
+                                     const std::vector<double>& values);
+
+}  // namespace mbs

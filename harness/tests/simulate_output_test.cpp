@@ -1,0 +1,146 @@
+// `mbs simulate --output`, and how trajectories, projections and corrections show from outside.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/folder.hpp"
+#include "support/program.hpp"
+
+namespace mbs {
+namespace {
+
+/// A pendulum that starts level, 1.001 m from its pivot instead of 1 m, and asks for three things.
+constexpr const char* kPendulum = R"({
+  "points": [{"name": "A", "position": [0, 0], "fixed": true}, {"name": "B", "position": [1.001, 0]}],
+  "rods": [{"name": "rod", "between": ["A", "B"], "mass": 1, "length": 1}],
+  "outputs": [{"name": "tip", "position": "B"}, {"name": "energy", "energy": "total"},
+              {"name": "pull", "constraint_force": "rod"}]})";
+
+struct Table {
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> rows;
+};
+
+Table read_table(const std::string& path) {
+  Table table;
+  std::istringstream text(test::file_text(path));
+  std::string line, part;
+  std::getline(text, line);
+  for (std::istringstream parts(line); std::getline(parts, part, ',');) {
+    table.columns.push_back(part);
+  }
+  while (std::getline(text, line)) {
+    table.rows.emplace_back();
+    for (std::istringstream parts(line); std::getline(parts, part, ',');) {
+      table.rows.back().push_back(std::strtod(part.c_str(), nullptr));
+    }
+  }
+  return table;
+}
+
+class SimulateOutput : public ::testing::Test {
+ protected:
+  void SetUp() override { std::ofstream(folder_.file("scene.json")) << kPendulum; }
+
+  [[nodiscard]] test::ProgramResult simulate(const std::string& arguments) const {
+    return test::run_program(MBS_CONTROLS,
+                             "simulate --implementation control/reference " + arguments);
+  }
+  [[nodiscard]] std::string scene() const { return "'" + folder_.file("scene.json") + "'"; }
+  [[nodiscard]] std::string to(const char* option, const char* name) const {
+    return std::string(" ") + option + " '" + folder_.file(name) + "'";
+  }
+
+  test::Folder folder_;
+};
+
+TEST_F(SimulateOutput, WritesWhatTheSceneAsksForAndNothingElse) {
+  const auto run = simulate(scene() + " --duration 0.5 --every 100" + to("--output", "out.csv"));
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const Table table = read_table(folder_.file("out.csv"));
+  EXPECT_EQ(table.columns, (std::vector<std::string>{"t", "tip.x", "tip.y", "energy", "pull"}));
+  ASSERT_EQ(table.rows.size(), 5u);  // steps 0, 100, 200, 300, 400
+  for (std::size_t i = 0; i < 5; ++i) {
+    const std::vector<double>& row = table.rows[i];
+    ASSERT_EQ(row.size(), 5u);
+    EXPECT_NEAR(row[0], 0.125 * static_cast<double>(i), 1e-12);
+    EXPECT_NEAR(std::hypot(row[1], row[2]), 1.0, 1e-8);
+    EXPECT_NEAR(row[3], 0.0, 2e-3);
+    // A rod of 1 kg that fell by h: the multiplier's share of the pull grows with h.
+    EXPECT_NEAR(row[4], -0.5 * row[2] * 9.81 + 9.81 * -row[2], 0.02);
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("")), {}), 2);
+}
+
+TEST_F(SimulateOutput, WritesBothTables) {
+  const auto run = simulate(scene() + " --duration 0.01" + to("--output", "out.csv") +
+                            to("--trajectory", "all.csv"));
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const Table output = read_table(folder_.file("out.csv"));
+  const Table trajectory = read_table(folder_.file("all.csv"));
+  EXPECT_EQ(trajectory.columns, (std::vector<std::string>{
+                                    "t", "A.x", "A.y", "A.vx", "A.vy", "B.x", "B.y", "B.vx", "B.vy",
+                                    "kinetic_energy", "potential_energy", "constraint_violation"}));
+  ASSERT_EQ(output.rows.size(), 9u);
+  ASSERT_EQ(trajectory.rows.size(), 9u);
+  for (std::size_t i = 0; i < 9; ++i) {
+    EXPECT_EQ(output.rows[i][1], trajectory.rows[i][5]);
+    EXPECT_EQ(output.rows[i][3], trajectory.rows[i][9] + trajectory.rows[i][10]);
+    EXPECT_LT(trajectory.rows[i][11], 1e-9);
+  }
+}
+
+TEST_F(SimulateOutput, SaysWhatTheStartNeeded) {
+  const auto run = simulate(scene() + " --duration 0.01 --json");
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const auto assembly = nlohmann::json::parse(run.output).at("assembly");
+  EXPECT_NEAR(assembly.at("position_correction").get<double>(), 0.001, 1e-9);
+  EXPECT_EQ(assembly.at("point"), "B");
+  EXPECT_NE(simulate(scene() + " --duration 0.01").output.find("points moved by up to 0.001 m (B)"),
+            std::string::npos);
+}
+
+TEST_F(SimulateOutput, RefusesASceneWithoutOutputs) {
+  const auto run = simulate("four-bar:2 --duration 0.1" + to("--output", "out.csv"));
+  EXPECT_EQ(run.status, 2);
+  EXPECT_EQ(std::ranges::count(run.errors, '\n'), 1) << run.errors;
+  EXPECT_NE(run.errors.find("--trajectory"), std::string::npos) << run.errors;
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("out.csv")));
+}
+
+TEST_F(SimulateOutput, RefusesOneFileForBoth) {
+  const auto run = simulate(scene() + to("--output", "out.csv") + to("--trajectory", "out.csv"));
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.errors.find("same file"), std::string::npos) << run.errors;
+  const auto empty = simulate(scene() + " --output ''");
+  EXPECT_EQ(empty.status, 2);
+  EXPECT_NE(empty.errors.find("--output"), std::string::npos) << empty.errors;
+}
+
+TEST_F(SimulateOutput, ProjectionsAreAChoice) {
+  std::vector<double> violations;
+  for (const char* choice : {"none", "velocity", "both"}) {
+    const auto run =
+        simulate(scene() + " --duration 1 --json --projections " + std::string(choice));
+    ASSERT_EQ(run.status, 0) << choice << run.errors;
+    const auto summary = nlohmann::json::parse(run.output);
+    EXPECT_EQ(summary.at("projections"), choice);
+    violations.push_back(summary.at("energy_drift_max"));
+  }
+  EXPECT_NE(violations[0], violations[1]);
+  EXPECT_NE(violations[1], violations[2]);
+  const auto bad = simulate(scene() + " --projections some");
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_NE(bad.errors.find("--projections"), std::string::npos) << bad.errors;
+}
+
+}  // namespace
+}  // namespace mbs

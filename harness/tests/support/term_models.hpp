@@ -1,0 +1,20 @@
+// Small models that hold every term of the equations, each alone and all together.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mbs/model.hpp"
+
+namespace mbs::test {
+
+struct TermModel {
+  std::string name;
+  Model model;
+};
+
+/// Mechanisms of a few points in two and three dimensions, each with one kind of term and one with
+/// all of them; their start fulfils the constraints, velocities included.
+std::vector<TermModel> term_models();
+
+}  // namespace mbs::test

@@ -1,0 +1,51 @@
+// Every implementation on every term of the equations, against the reference.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "check/gate.hpp"
+#include "registry/registry.hpp"
+#include "run/settings.hpp"
+#include "support/term_models.hpp"
+
+namespace mbs {
+namespace {
+
+StepSettings settings_for(const Model& model, Projections projections) {
+  StepSettings settings;
+  settings.step = 2.5e-4;  // 800 steps: short enough that no driver forces what geometry forbids
+  settings.penalty = automatic_penalty(model, settings.step);
+  settings.tolerance = automatic_tolerance(model, settings.step, settings.penalty);
+  settings.projections = projections;
+  return settings;
+}
+
+class Terms : public ::testing::TestWithParam<NamedVariant> {};
+
+void expect_agreement(const NamedVariant& variant, Projections projections) {
+  for (const test::TermModel& term : test::term_models()) {
+    SCOPED_TRACE(term.name);
+    const Scene scene{term.name, term.model, {}, {}};
+    const StepSettings settings = settings_for(scene.model, projections);
+    const ReferenceRun reference = run_reference(scene, settings);
+    const Verdict verdict = check_implementation(scene, variant, settings, reference);
+    EXPECT_EQ(verdict.verdict, "agrees") << verdict.reason;
+  }
+}
+
+TEST_P(Terms, Agree) { expect_agreement(GetParam(), Projections::both); }
+TEST_P(Terms, AgreeWithoutProjections) { expect_agreement(GetParam(), Projections::none); }
+TEST_P(Terms, AgreeWithProjectedVelocities) { expect_agreement(GetParam(), Projections::velocity); }
+
+std::string test_name(const ::testing::TestParamInfo<NamedVariant>& info) {
+  std::string name = info.param.name;
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Terms, ::testing::ValuesIn(all_variants()), test_name);
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Terms);
+
+}  // namespace
+}  // namespace mbs

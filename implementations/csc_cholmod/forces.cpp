@@ -1,0 +1,56 @@
+// Elements write summands, schedules gather them.
+#include "forces.hpp"
+
+#include "schedule.hpp"
+
+namespace mbs::csc_cholmod {
+namespace {
+
+std::vector<Contribution> contributions(const LoweredForces& lowered, bool with_couples) {
+  std::vector<Contribution> result;
+  add_row_contributions(lowered.gradients(), lowered.values(), result);
+  if (with_couples) add_row_contributions(lowered.couple_rows(), lowered.values(), result);
+  return result;
+}
+
+void negate(const double* __restrict values, int count, double* __restrict result) {
+  for (int i = 0; i < count; ++i) result[i] = -values[i];
+}
+
+}  // namespace
+
+Forces::Forces(const LoweredForces& lowered, const StepSettings& settings)
+    : lowered_(lowered),
+      springs_(lowered.springs, settings),
+      torsions_(lowered.springs.dimension, lowered.torsions, settings),
+      couples_(lowered.springs.dimension, lowered.couples, settings),
+      load_rows_(contributions(lowered, true)),
+      stiff_rows_(contributions(lowered, false)),
+      summands_(2 * lowered.values()) {}
+
+void Forces::evaluate(const double* q, const double* u) {
+  springs_.evaluate(q, u);
+  torsions_.evaluate(q, u);
+}
+
+void Forces::add_loads(const double* q, double* result) {
+  couples_.loads(q, torsions_.loads(springs_.loads(summands_.data())));
+  gather(load_rows_, result);
+}
+
+void Forces::add_product(const double* x, double* result) {
+  torsions_.multiply(x, springs_.multiply(x, summands_.data()));
+  gather(stiff_rows_, result);
+}
+
+void Forces::gather(const GatherSchedule& rows, double* result) {
+  negate(summands_.data(), lowered_.values(), summands_.data() + lowered_.values());
+  rows.sum(result, summands_.data(), result);
+}
+
+void Forces::tangent(double* products) const {
+  torsions_.tangent(springs_.tangent(products));
+  negate(products, lowered_.products(), products + lowered_.products());
+}
+
+}  // namespace mbs::csc_cholmod

@@ -1,0 +1,43 @@
+// All force elements: what they add to (dt^2/4) Q, to T and to the right-hand sides of Eq. (6).
+#pragma once
+
+#include <vector>
+
+#include "gather.hpp"
+#include "lowered_forces.hpp"
+#include "mbs/simulation.hpp"
+#include "springs.hpp"
+#include "torsion.hpp"
+
+namespace mbs::csc_cholmod {
+
+/// C and K have no storage of their own: elements keep gradients and weights of the last
+/// evaluate(), from which T gets its products and Eq. (6) its vectors.
+class Forces {
+ public:
+  /// `lowered` must outlive this.
+  Forces(const LoweredForces& lowered, const StepSettings& settings);
+
+  [[nodiscard]] bool empty() const { return lowered_.values() == 0; }
+  /// Takes all elements at q and u (all places, m; u = (dt/2) v).
+  void evaluate(const double* q, const double* u);
+  /// result (n) += (dt^2/4) times what they give of Q; q is that of evaluate(). Eq. (11)
+  void add_loads(const double* q, double* result);
+  /// result (n) += [(dt/2) C + (dt^2/4) K] x; x (n, then a zero).
+  void add_product(const double* x, double* result);
+  /// products: the summands of (dt/2) C + (dt^2/4) K, then the same negated.
+  void tangent(double* products) const;
+
+ private:
+  void gather(const GatherSchedule& rows, double* result);
+
+  const LoweredForces& lowered_;
+  Springs springs_;
+  TorsionSprings torsions_;
+  Couples couples_;
+  GatherSchedule load_rows_;
+  GatherSchedule stiff_rows_;     ///< without couples
+  std::vector<double> summands_;  ///< values, negated values; scratch
+};
+
+}  // namespace mbs::csc_cholmod

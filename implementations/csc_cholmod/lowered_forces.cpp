@@ -1,0 +1,95 @@
+// Records places and entries of every force element.
+#include "lowered_forces.hpp"
+
+namespace mbs::csc_cholmod {
+namespace {
+
+/// Pushes the entries of `point`, if it is free: plus or minus the values from `first` on.
+void push_point(const Coordinates& coordinates, int point, int first, bool negative,
+                SignedRows& rows) {
+  if (!coordinates.is_unknown(coordinates.place(point, 0))) return;
+  for (int axis = 0; axis < coordinates.dimension(); ++axis) {
+    rows.push({coordinates.place(point, axis), first + axis, negative});
+  }
+}
+
+}  // namespace
+
+LoweredForces::LoweredForces(const Model& model, const Coordinates& coordinates) {
+  springs.dimension = model.dimension();
+  add_springs(model, coordinates);
+  add_torsions(model, coordinates);
+  add_couples(model, coordinates);
+}
+
+void LoweredForces::add_springs(const Model& model, const Coordinates& coordinates) {
+  SpringBlock& s = springs;
+  const int count = s.count = static_cast<int>(model.springs().size());
+  for (auto* places : {&s.plus, &s.minus, &s.free_plus, &s.free_minus}) {
+    places->resize(spring_values());
+  }
+  int k = 0;
+  for (const Spring& spring : model.springs()) {
+    const Places free_a = coordinates.free_places(spring.a);
+    const Places free_b = coordinates.free_places(spring.b);
+    for (int axis = 0; axis < s.dimension; ++axis) {
+      const int value = axis * count + k;
+      s.plus[value] = coordinates.place(spring.a, axis);
+      s.minus[value] = coordinates.place(spring.b, axis);
+      s.free_plus[value] = free_a[axis];
+      s.free_minus[value] = free_b[axis];
+      if (coordinates.is_unknown(free_a[0])) gradients_.push({free_a[axis], value, false});
+      if (coordinates.is_unknown(free_b[0])) gradients_.push({free_b[axis], value, true});
+    }
+    gradients_.end_row();
+    s.stiffness.push_back(spring.stiffness);
+    s.damping.push_back(spring.damping);
+    s.length.push_back(spring.length);
+    ++k;
+  }
+}
+
+void LoweredForces::add_torsions(const Model& model, const Coordinates& coordinates) {
+  for (const TorsionSpring& t : model.torsion_springs()) {
+    const int u = gradient_values();
+    const int w = u + model.dimension();
+    push_point(coordinates, t.a, u, true, gradients_);
+    push_point(coordinates, t.b, u, false, gradients_);
+    push_point(coordinates, t.c, w, false, gradients_);
+    push_point(coordinates, t.d, w, true, gradients_);
+    gradients_.end_row();
+    const auto at = [&](int point) { return coordinates.places(point); };
+    const auto free_at = [&](int point) { return coordinates.free_places(point); };
+    torsions.push_back({at(t.a), at(t.b), at(t.c), at(t.d), coordinates.axis_places(t.axis),
+                        free_at(t.a), free_at(t.b), free_at(t.c), free_at(t.d), t.stiffness,
+                        t.damping, t.angle});
+  }
+}
+
+void LoweredForces::add_couples(const Model& model, const Coordinates& coordinates) {
+  for (const Couple& c : model.couples()) {
+    const int first = values();
+    push_point(coordinates, c.a, first, false, couple_rows_);
+    push_point(coordinates, c.b, first, true, couple_rows_);
+    couple_rows_.end_row();
+    couples.push_back({coordinates.places(c.a), coordinates.places(c.b),
+                       coordinates.axis_places(c.axis), c.torque});
+  }
+}
+
+int LoweredForces::products() const {
+  return spring_products() +
+         product_count(2 * springs.dimension) * static_cast<int>(torsions.size());
+}
+
+int LoweredForces::product(int row, int i, int j) const {
+  const int count = springs.count;
+  const int dimension = springs.dimension;
+  if (row < count) return product_number(dimension, i / count, j / count) * count + row;
+  const int torsion = row - count;
+  const int first = spring_values() + 2 * dimension * torsion;
+  return spring_products() + product_count(2 * dimension) * torsion +
+         product_number(2 * dimension, i - first, j - first);
+}
+
+}  // namespace mbs::csc_cholmod

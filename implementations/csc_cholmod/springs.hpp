@@ -1,0 +1,39 @@
+// The numbers of springs with dampers.
+#pragma once
+
+#include <vector>
+
+#include "lowered_forces.hpp"
+#include "mbs/simulation.hpp"
+
+namespace mbs::csc_cholmod {
+
+/// A spring's share of (dt/2) C + (dt^2/4) K is W e e^T + P (I - e e^T) at (a, a) and (b, b), its
+/// negative at (a, b) and (b, a), with W = (dt/2) c + (dt^2/4) k and P = (dt^2/4) p.
+class Springs {
+ public:
+  /// `block` must outlive this.
+  Springs(const SpringBlock& block, const StepSettings& settings);
+
+  /// Takes lengths, directions and forces at q and u (all places, m; u = (dt/2) v). Eq. (11)
+  void evaluate(const double* q, const double* u);
+  /// summands = -(dt^2/4) (k (s - s_0) + c s') e; returns their end, as the next two do.
+  double* loads(double* summands) const;
+  /// summands = [(dt/2) C + (dt^2/4) K] x at r_a, x (n, then a zero).
+  double* multiply(const double* x, double* summands);
+  /// products: the values of a 2 x 2 block above.
+  double* tangent(double* products) const;
+
+ private:
+  const SpringBlock& block_;
+  double half_;                  ///< dt/2, s
+  double quarter_;               ///< dt^2/4, s^2
+  std::vector<double> e_;        ///< dimension x count, in runs as in the block
+  std::vector<double> force_;    ///< count, N s^2
+  std::vector<double> along_;    ///< count, W - P, kg
+  std::vector<double> across_;   ///< count, P, kg
+  std::vector<double> square_;   ///< count, scratch: L^2
+  std::vector<double> product_;  ///< count, scratch: e . difference
+};
+
+}  // namespace mbs::csc_cholmod

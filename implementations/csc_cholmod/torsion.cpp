@@ -1,0 +1,111 @@
+// One element after the other; in the plane third components are zeros.
+#include "torsion.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace mbs::csc_cholmod {
+namespace {
+
+using Vector = std::array<double, 3>;
+
+Vector at(const double* x, const Places& p) { return {x[p[0]], x[p[1]], x[p[2]]}; }
+
+Vector difference(const double* x, const Places& p, const Places& m) {
+  return {x[p[0]] - x[m[0]], x[p[1]] - x[m[1]], x[p[2]] - x[m[2]]};
+}
+
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// (z x w) / (w . w): how the angle of w about z changes with w.
+Vector turn(const Vector& z, const Vector& w) {
+  const double square = dot(w, w);
+  const Vector direction = cross(z, w);
+  return {direction[0] / square, direction[1] / square, direction[2] / square};
+}
+
+}  // namespace
+
+TorsionSprings::TorsionSprings(int dimension, const std::vector<TorsionElement>& elements,
+                               const StepSettings& settings)
+    : dimension_(dimension),
+      elements_(elements),
+      half_(settings.step / 2.0),
+      quarter_(half_ * half_),
+      numbers_(elements.size()) {
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    numbers_[k].weight = half_ * elements[k].damping + quarter_ * elements[k].stiffness;
+  }
+}
+
+void TorsionSprings::evaluate(const double* q, const double* u) {
+  Numbers* numbers = numbers_.data();
+  for (const TorsionElement& e : elements_) {
+    const Vector z = at(q, e.axis);
+    const Vector from = difference(q, e.a, e.b);
+    const Vector to = difference(q, e.c, e.d);
+    const Vector g_u = turn(z, from);
+    const Vector g_w = turn(z, to);
+    const double angle = std::atan2(dot(z, cross(from, to)), dot(from, to));
+    const double deviation = std::remainder(angle - e.angle, 2.0 * std::numbers::pi);
+    const double rate = dot(g_w, difference(u, e.c, e.d)) - dot(g_u, difference(u, e.a, e.b));
+    numbers->torque = -(quarter_ * e.stiffness * deviation + half_ * e.damping * rate);  // Eq. (11)
+    for (int axis = 0; axis < dimension_; ++axis) {
+      numbers->g[axis] = g_u[axis];
+      numbers->g[dimension_ + axis] = g_w[axis];
+    }
+    ++numbers;
+  }
+}
+
+double* TorsionSprings::write(const Numbers& numbers, double factor, double* summands) const {
+  for (int i = 0; i < 2 * dimension_; ++i) *summands++ = factor * numbers.g[i];
+  return summands;
+}
+
+double* TorsionSprings::loads(double* summands) const {
+  for (const Numbers& n : numbers_) summands = write(n, n.torque, summands);  // Eq. (11)
+  return summands;
+}
+
+double* TorsionSprings::multiply(const double* x, double* summands) const {
+  const Numbers* n = numbers_.data();
+  for (const TorsionElement& e : elements_) {
+    const Vector from = difference(x, e.free_a, e.free_b);
+    const Vector to = difference(x, e.free_c, e.free_d);
+    double product = 0.0;
+    for (int axis = 0; axis < dimension_; ++axis) {
+      product += n->g[dimension_ + axis] * to[axis] - n->g[axis] * from[axis];
+    }
+    summands = write(*n, n->weight * product, summands);  // Eq. (6)
+    ++n;
+  }
+  return summands;
+}
+
+double* TorsionSprings::tangent(double* products) const {
+  for (const Numbers& n : numbers_) {
+    for (int i = 0; i < 2 * dimension_; ++i) {
+      for (int j = i; j < 2 * dimension_; ++j) *products++ = n.weight * n.g[i] * n.g[j];
+    }
+  }
+  return products;
+}
+
+Couples::Couples(int dimension, const std::vector<CoupleElement>& elements,
+                 const StepSettings& settings)
+    : dimension_(dimension), elements_(elements), quarter_(settings.step * settings.step / 4.0) {}
+
+double* Couples::loads(const double* q, double* summands) const {
+  for (const CoupleElement& e : elements_) {
+    const Vector force = turn(at(q, e.axis), difference(q, e.a, e.b));
+    for (int axis = 0; axis < dimension_; ++axis) *summands++ = quarter_ * e.torque * force[axis];
+  }
+  return summands;
+}
+
+}  // namespace mbs::csc_cholmod

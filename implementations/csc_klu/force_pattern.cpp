@@ -1,0 +1,35 @@
+// Where springs, torsion springs and couples act, found once from the model.
+#include "force_pattern.hpp"
+
+namespace mbs::csc_klu {
+
+ForcePattern::ForcePattern(const Model& model) {
+  const std::vector<int> offset = extended_offsets(model);
+  const auto axis_offset = [&](int axis) { return axis < 0 ? 0 : offset[axis]; };
+  const auto append_ends = [&](std::initializer_list<int> abcd) {
+    append_moved_points(model, abcd, ends);
+    return static_cast<int>(ends.size());
+  };
+  for (const mbs::Spring& spring : model.springs()) {
+    springs.push_back({offset[spring.a], offset[spring.b], spring.stiffness, spring.damping,
+                       spring.length, append_ends({spring.a, spring.b})});
+  }
+  for (const TorsionSpring& spring : model.torsion_springs()) {
+    torsions.push_back({offset[spring.a], offset[spring.b], offset[spring.c], offset[spring.d],
+                        axis_offset(spring.axis), spring.stiffness, spring.damping, spring.angle,
+                        append_ends({spring.a, spring.b, spring.c, spring.d})});
+  }
+  for (const mbs::Couple& couple : model.couples()) {
+    couples.push_back({offset[couple.a], offset[couple.b], axis_offset(couple.axis), couple.torque,
+                       append_ends({couple.a, couple.b})});
+  }
+}
+
+std::vector<int> ForcePattern::stiff_ends() const {
+  std::vector<int> stiff;
+  for (const Spring& spring : springs) stiff.push_back(spring.ends_end);
+  for (const Torsion& torsion : torsions) stiff.push_back(torsion.ends_end);
+  return stiff;
+}
+
+}  // namespace mbs::csc_klu

@@ -1,0 +1,13 @@
+# Richardson's extrapolation of runs with a step, half of it and a quarter of it.
+import numpy
+
+
+def extrapolate(finer, finest, order=2):
+    """The limit of two runs of which the second has half the step of the first."""
+    return finest + (finest - finer) / (2**order - 1)
+
+
+def observed_order(coarse, finer, finest):
+    """log2 of the ratio of successive differences; NaN where the differences vanish."""
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        return numpy.log2(numpy.abs((coarse - finer) / (finer - finest)))

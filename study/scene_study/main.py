@@ -1,0 +1,129 @@
+# study/scenes: runs the standard problems and the cost of modelling, writes tables and a report.
+import argparse
+import os
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+from study.pipeline import profile as profiles
+from study.pipeline.contenders import from_json
+from study.pipeline.errors import StudyError
+from study.pipeline.layout import Layout, ROOT, fingerprint, read_run, write_json
+from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, registry, run_record,
+                                    set_up, writable)
+
+
+def scenes(arguments):
+    parser = argparse.ArgumentParser(prog="study/scenes", description="Standard problems: gate, "
+                                     "accuracy, conserved energy. Modelling: what each piece costs. "
+                                     "Writes tables and scenes.html; about ten minutes.")
+    parser.add_argument("--results", metavar="DIR", help="results directory (results/local/scenes)")
+    parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
+                        help="only these implementations (folder or folder/variant)")
+    parser.add_argument("--problems", nargs="+", metavar="NAME",
+                        help="only these standard problems; none: no problem")
+    parser.add_argument("--rounds", type=int, default=7,
+                        help="rounds of the modelling measurement, 0 for none (7)")
+    parser.add_argument("--stored", action="store_true",
+                        help="tables and report again from stored runs, without running anything")
+    options = parser.parse_args(arguments)
+    if options.rounds < 0:
+        raise StudyError(f"--rounds is {options.rounds}: it must be at least 0")
+    layout = Layout(Path(options.results).absolute() if options.results
+                    else ROOT / "results" / "local" / "scenes")
+    if options.stored and not layout.run.exists():
+        raise StudyError(f"{layout.results} holds no results (no run.json)")
+    writable(layout.results)
+    with only_one(layout), only_one_measuring():
+        if "MBS_PROGRAM" not in os.environ and not options.stored:
+            set_up(layout)
+        need_modules("yaml", "pandas", "matplotlib", "jinja2", "scipy")
+        _run(layout, options)
+    return 0
+
+
+def _run(layout, options):
+    from study.scene_study import modelling, problems  # they need the modules
+    compared, listed = problems.read_list()
+    chosen = _choose(listed, options.problems)
+    if not options.stored:
+        _start(layout, options.only)
+    run = read_run(layout)
+    contenders = [one for one in from_json(run["contenders"]).values()
+                  if one.ranked and not one.missing]
+    raw, tell = layout.results / "raw", _Teller()
+    if options.stored:
+        tell.quiet = True
+    found = {problem: problems.run_problem(problem, raw, contenders, compared, run["contexts"], tell,
+                                           options.stored)
+             for problem in chosen}
+    rounds = (len(list((raw / "modelling").glob("round*"))) if options.stored else options.rounds)
+    pieces = modelling.measure(raw, contenders, run["contexts"], rounds, tell, options.stored)
+    tell.end()
+    tables = problems.tables(found, compared, lambda folder, name, step:
+                             f"raw/{folder}/{name.replace('/', '.')}-{step:g}.json")
+    tables["modelling"] = modelling.rows(pieces, lambda name, loops, case, number: (
+        f"raw/modelling/round{number}/{name.replace('/', '.')}-{loops}-"
+        f"{case.replace(' ', '-')}.json"))
+    for name, table in tables.items():
+        path = layout.results / f"{name}.csv"
+        partial = path.with_suffix(".csv.partial")
+        table.to_csv(partial, index=False)
+        partial.replace(path)
+    from analysis.scenes.report import write
+    write(layout.results)
+    print(f"report: {layout.results / 'scenes.html'}")
+
+
+def _choose(listed, names):
+    if names is None:
+        return listed
+    known = {problem.name.lower(): problem for problem in listed}
+    unknown = [name for name in names if name.lower() not in known and name.lower() != "none"]
+    if unknown:
+        raise StudyError(f"--problems: unknown problem '{unknown[0]}'; known: "
+                         f"{', '.join(problem.name for problem in listed)}")
+    return [known[name.lower()] for name in names if name.lower() in known]
+
+
+def _start(layout, only):
+    """Records build and machine, or refuses a directory that holds those of another."""
+    usual = profiles.load("quick")
+    profile = replace(usual, name="scenes", settings=usual.settings | {"alternatives": []})
+    known = registry()
+    record = run_record(layout, profile, only, known)
+    if layout.run.exists():
+        stored = read_run(layout)
+        for name, context in record["contexts"].items():
+            old = fingerprint(stored["contexts"].get(name, {}))
+            new = fingerprint(context)
+            differing = [key for key in old if old[key] != new[key]]
+            if differing or stored["programs"] != record["programs"]:
+                what = differing[0] if differing else "the program"
+                raise StudyError(f"{layout.results} holds results of another build or machine "
+                                 f"({what}); name another directory with --results, or move this "
+                                 "one away")
+        return
+    write_json(layout.registry, known)
+    write_json(layout.run, record)
+
+
+class _Teller:
+    """One line that is rewritten on a terminal; a line now and then elsewhere."""
+    quiet = False
+
+    def __init__(self):
+        self.terminal, self.last = sys.stdout.isatty(), ""
+
+    def __call__(self, text):
+        if self.quiet:
+            return
+        if self.terminal:
+            print(f"\r\033[K{text[:100]}", end="", flush=True)
+        elif text.split(":")[0].split(",")[0] != self.last:
+            self.last = text.split(":")[0].split(",")[0]
+            print(text, flush=True)
+
+    def end(self):
+        if self.terminal and not self.quiet:
+            print()

@@ -1,0 +1,53 @@
+# One simulation in a child process: its summary and its sampled outputs, kept as one raw file.
+import json
+
+import pandas
+
+from study.pipeline import child
+from study.pipeline.errors import StudyError
+from study.pipeline.layout import read_json, write_json
+
+MEMORY_MB = 4096
+
+
+def simulate(path, contender, scene, *, step, duration, every, context, seconds, more=(),
+             stored=False):
+    """{"context", "command", "seconds", "summary", "outputs": {column: values}} or "failure" in place
+    of the last two; an existing file is never run again."""
+    if path.exists():
+        return read_json(path)
+    need(stored, path)
+    outputs = path.with_name(path.name + ".partial.csv")
+    outputs.parent.mkdir(parents=True, exist_ok=True)
+    command = contender.call("simulate", scene, "--implementation", contender.variant,
+                             "--step", f"{step:g}", "--duration", f"{duration:g}", "--json",
+                             *(["--output", str(outputs), "--every", str(every)] if every else []),
+                             *map(str, more))
+    ended = child.run(command, seconds, MEMORY_MB)
+    record = {"context": context, "seconds": ended.seconds,
+              "command": ["OUTPUT.csv" if word == str(outputs) else word for word in command]}
+    try:
+        if ended.status != "exited" or ended.code not in (0, 1):
+            raise ValueError(ended.reason)
+        record["summary"] = json.loads(ended.stdout)
+        table = pandas.read_csv(outputs) if outputs.exists() else pandas.DataFrame()
+        record["outputs"] = {column: table[column].tolist() for column in table}
+    except ValueError as error:
+        status = "crashed" if ended.status == "exited" else ended.status
+        record |= {"failure": {"status": status, "reason": str(error)}}
+    outputs.unlink(missing_ok=True)
+    write_json(path, record)
+    return record
+
+
+def need(stored, path):
+    """With `stored` nothing may be run: StudyError, since `path` is missing."""
+    if stored:
+        raise StudyError(f"{path} is missing: the results are not complete; run study/scenes again")
+
+
+def status(record):
+    """(status, reason) of a run."""
+    if "failure" in record:
+        return record["failure"]["status"], record["failure"]["reason"]
+    return record["summary"]["status"], record["summary"]["status_reason"]

@@ -1,0 +1,123 @@
+# study/scenes: references against their own equations, the metric, and the whole on two problems.
+import os
+import subprocess
+
+import numpy
+import pandas
+import pytest
+
+from study.scene_study import metric, modelling, problems, references
+from study.scene_study.extrapolate import extrapolate, observed_order
+from study.tests.conftest import ROOT
+
+GRAVITY = references.GRAVITY
+
+
+def second_derivative(function, column, times, step=1e-4):
+    left, middle, right = (function(times + shift)[column] for shift in (-step, 0, step))
+    return (right - 2 * middle + left) / step**2
+
+
+def test_pendulum_fulfils_its_equation():
+    times = numpy.linspace(0.1, 9.9, 41)
+    at = references.pendulum(times)
+    assert numpy.allclose(at["B.x"]**2 + at["B.y"]**2, 1, atol=1e-12)
+    assert numpy.allclose((at["vB.x"]**2 + at["vB.y"]**2) / 2 + GRAVITY * at["B.y"], 0, atol=1e-9)
+    # The tension cannot change the angular momentum: d/dt (x vy - y vx) = -g x.
+    turning = (at["B.x"] * second_derivative(references.pendulum, "B.y", times)
+               - at["B.y"] * second_derivative(references.pendulum, "B.x", times))
+    assert numpy.allclose(turning, -GRAVITY * at["B.x"], atol=1e-5)
+
+
+@pytest.mark.parametrize("loops", [1, 2, 40])
+def test_four_bar_conserves_its_energy(loops):
+    at = references.four_bar(numpy.linspace(0, 20, 101), loops)
+    inertia, weight = (loops + 1) / 3 + loops, (loops + 1) / 2 + loops
+    energy = inertia / 2 * (at["vB0.x"]**2 + at["vB0.y"]**2) + weight * GRAVITY * at["B0.y"]
+    assert numpy.allclose(energy, inertia / 2 + weight * GRAVITY, rtol=1e-10)
+
+
+def test_grid_of_one_row_is_a_four_bar():
+    """One row of the grid hangs from the ground as the N-four-bar stands on it."""
+    times = numpy.linspace(0, 1, 11)
+    at = references.grid(times, 1, lean=0.3)
+    angle = numpy.arctan2(at["corner.x"] - 1, -at["corner.y"])
+    step = 1e-4
+    nearby = references.grid(numpy.array([0.0, 0.5 - step, 0.5, 0.5 + step]), 1, lean=0.3)
+    turned = numpy.arctan2(nearby["corner.x"] - 1, -nearby["corner.y"])[1:]
+    k = 3 * GRAVITY * (3 * 1 + 1) / (2 * (4 * 1 + 1))
+    found = (turned[2] - 2 * turned[1] + turned[0]) / step**2
+    assert abs(angle[0] - 0.3) < 1e-12
+    assert abs(found + k * numpy.sin(turned[1])) < 1e-4
+
+
+def test_metric_divides_by_the_reference_or_the_threshold():
+    known = {"x": numpy.array([2.0, 0.0])}
+    square, largest = metric.errors({"x": numpy.array([2.002, 1e-5])}, known)
+    assert largest == pytest.approx(1e-2)
+    assert square == pytest.approx(((1e-3**2 + 1e-2**2) / 2) ** 0.5)
+    assert [metric.precision(e) for e in (1e-3, 1.1e-3, 0.1, 0.2, float("nan"))] == [
+        "high", "low", "low", "none", "none"]
+
+
+def test_extrapolation_removes_the_leading_error():
+    values = [1 + 0.3 * step**2 + 0.01 * step**4 for step in (0.4, 0.2, 0.1)]
+    assert observed_order(*map(numpy.float64, values)) == pytest.approx(2, abs=0.01)
+    assert abs(extrapolate(*values[1:]) - 1) < 1e-5
+
+
+def test_every_problem_is_complete():
+    compared, listed = problems.read_list()
+    assert len(compared) == 2 and compared[0].split("/")[0] != compared[1].split("/")[0]
+    for problem in listed:
+        if not problem.scene.startswith("four-bar:"):
+            assert (ROOT / problem.scene).exists(), problem.scene
+        for step in problem.steps:
+            steps = problem.duration / step
+            assert abs(steps - round(steps)) < 1e-6 and round(steps) % metric.SAMPLES == 0
+
+
+def test_modelling_scenes_differ_where_they_should():
+    scenes = modelling.scenes(3)
+    assert {case.scene for case in modelling.CASES} == set(scenes)
+    assert len(scenes["redundant"]["rods"]) == len(scenes["plain"]["rods"]) + 2
+    assert all(not point.get("fixed") for point in scenes["unknown grounds"]["points"])
+
+
+def run(*arguments, **more):
+    program = os.environ.get("MBS_PROGRAM", str(ROOT / "build" / "mbs"))
+    environment = os.environ | {"MBS_PROGRAM": program} | more
+    return subprocess.run([ROOT / "study" / "scenes", *map(str, arguments)], text=True,
+                          capture_output=True, env=environment, timeout=600)
+
+
+def test_two_problems_through_the_real_program(tmp_path):
+    results = tmp_path / "scenes"
+    choice = ["--results", results, "--only", "csc_klu/refactor", "csc_cholmod/simplicial",
+              "--problems", "A01", "slider-crank", "--rounds", "1"]
+    done = run(*choice, TMPDIR=str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    found = pandas.read_csv(results / "problems.csv")
+    assert set(found.status) == {"ok"}, found[["implementation", "status", "reason"]]
+    finest = found[found.groupby("problem").step.transform("min") == found.step]
+    assert set(finest.precision) == {"high"}, finest[["problem", "error_rms"]]
+    assert set(pandas.read_csv(results / "gate.csv").verdict) == {"agrees"}
+    orders = pandas.read_csv(results / "convergence.csv")
+    meaningful = orders[orders.order_meaningful]
+    assert len(meaningful) and meaningful.order.between(1.9, 2.1).all(), meaningful
+    pieces = pandas.read_csv(results / "modelling.csv")
+    assert set(pieces.status) == {"ok"}, pieces[pieces.status != "ok"]
+    assert (pieces.position_error.dropna() < 0.05).all()
+    for raw in [*found.raw_file, *pieces.raw_file]:
+        assert (results / raw).exists(), raw
+    before = (results / "problems.csv").read_bytes(), (results / "scenes.html").read_bytes()
+    again = run("--results", results, "--problems", "A01", "slider-crank", "--stored",
+                TMPDIR=str(tmp_path))
+    assert again.returncode == 0, again.stderr
+    assert before == ((results / "problems.csv").read_bytes(),
+                      (results / "scenes.html").read_bytes())
+
+
+def test_unknown_problem_is_named(tmp_path):
+    done = run("--results", tmp_path, "--problems", "A99", TMPDIR=str(tmp_path))
+    assert done.returncode == 2 and "A99" in done.stderr and "A01" in done.stderr

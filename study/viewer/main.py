@@ -1,0 +1,124 @@
+# The command line of study/view: from a scene to an HTML page and a PNG sheet.
+import argparse
+import math
+import os
+import re
+import tempfile
+import webbrowser
+from pathlib import Path
+
+from study.pipeline.errors import StudyError
+from study.pipeline.prepare import need_modules
+
+VALUES_AT_MOST = 2_000_000  # coordinates in a page: 11 MB of it
+FASTEST = "csc_cholmod/simplicial"
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise StudyError(f"{message} (see {self.prog} --help)")
+
+
+def view(arguments):
+    options = _options(arguments)
+    need_modules("matplotlib", "jinja2")
+    from study.viewer import program, trajectory  # they need the modules
+    scene = program.describe(options.scene)
+    if not scene.points:
+        raise StudyError(f"{options.scene} has no points to show")
+    values = len(scene.points) * scene.dimension
+    frames = max(2, min(options.frames, VALUES_AT_MOST // values))
+    if options.trajectory:
+        motion = trajectory.read(options.trajectory, scene, frames)
+        note = Path(options.trajectory).name
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            csv = Path(folder) / "trajectory.csv"
+            note = program.simulate(options.scene, options, scene.end, frames, csv, print)
+            motion = trajectory.read(csv, scene, frames)
+    if not motion.curves:
+        print("the trajectory has no energy and constraint columns: the page leaves the curves out")
+    _write(options, scene, motion, note)
+    return 0
+
+
+def _options(arguments):
+    parser = Parser(prog="study/view", description="Shows the motion of a scene: an HTML page that "
+                    "needs nothing else to play it, and a PNG sheet for documents.")
+    parser.add_argument("scene", help="four-bar:N or a JSON file")
+    parser.add_argument("trajectory", nargs="?", help="CSV of `mbs simulate --trajectory`; without "
+                        "it, the scene is simulated now")
+    parser.add_argument("--output", metavar="FILE.html", help="the page (SCENE.html, here)")
+    parser.add_argument("--png", metavar="FILE.png", help="write a contact sheet of the motion too")
+    parser.add_argument("--window", nargs=2, type=_number, metavar="S",
+                        help="first and last time of the sheet (about one swing from the start)")
+    parser.add_argument("--up", choices="xyz", default="y", help="axis that points up in 3D (y)")
+    parser.add_argument("--frames", type=int, default=600, help="at most in the page (600)")
+    parser.add_argument("--open", action="store_true", help="open the page in a browser")
+    own = parser.add_argument_group("without TRAJECTORY")
+    own.add_argument("--duration", type=_positive, metavar="S", help="simulated time (10 or, with "
+                     "small steps or large scenes, what a minute is enough for)")
+    own.add_argument("--step", type=_positive, metavar="S", help="time step (1.25e-3, or the first "
+                     "tenth, hundredth, … of it that does)")
+    own.add_argument("--implementation", default=FASTEST, help=f"folder/variant ({FASTEST})")
+    options = parser.parse_args(arguments)
+    _check(options)
+    return options
+
+
+def _number(text):
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError
+    return value
+
+
+def _positive(text):
+    value = _number(text)
+    if value <= 0:
+        raise ValueError
+    return value
+
+
+def _check(options):
+    if options.trajectory and (options.duration or options.step):
+        raise StudyError("--duration and --step are for a simulation, but a TRAJECTORY is given")
+    if options.frames < 2:
+        raise StudyError(f"--frames is {options.frames}: it must be at least 2")
+    if options.window and not options.window[0] < options.window[1]:
+        raise StudyError("--window must be two times, the first before the last")
+    if options.output is None:
+        stem = Path(options.scene).name.removesuffix(".json")
+        options.output = re.sub(r"[^\w.=-]+", "-", stem) + ".html"
+    inputs = [Path(name).resolve() for name in (options.scene, options.trajectory) if name]
+    for flag, name, ending in (("--output", options.output, ".html"),
+                               ("--png", options.png, ".png")):
+        if name is None:
+            continue
+        path = Path(name)
+        if path.suffix.lower() != ending:
+            raise StudyError(f"{flag} is {name!r}: it must end with {ending}")
+        if path.resolve() in inputs or path.is_dir() or not path.parent.is_dir():
+            raise StudyError(f"{flag}: cannot write {name}: "
+                             + ("it is an input" if path.resolve() in inputs else
+                                "it is a directory" if path.is_dir() else
+                                f"there is no directory {path.parent}"))
+
+
+def _write(options, scene, motion, note):
+    from study.viewer import page, sheet
+    up = "xyz".index(options.up)
+    outputs = [(options.output, page.render(scene, motion, note, up).encode())]
+    if options.png:
+        outputs.append((options.png, sheet.draw(scene, motion, up, options.window)))
+    for name, content in outputs:
+        partial = Path(f"{name}.partial")
+        try:
+            partial.write_bytes(content)
+            os.replace(partial, name)
+        except OSError as error:
+            partial.unlink(missing_ok=True)
+            raise StudyError(f"cannot write {name}: {error.strerror}") from error
+        print(f"{name}: {len(motion.times)} frames" if name == options.output else name)
+    if options.open and not webbrowser.open(Path(options.output).resolve().as_uri()):
+        raise StudyError(f"no browser found to open {options.output} in")

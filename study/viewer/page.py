@@ -1,0 +1,57 @@
+# Writes the HTML page: template, style and scripts of page/, and the motion packed as text.
+import base64
+import json
+from pathlib import Path
+
+import jinja2
+import numpy
+
+from study.viewer import picture
+
+FOLDER = Path(__file__).parent / "page"
+SCRIPTS = ("data.js", "camera.js", "grid.js", "elements.js", "symbols.js", "stage.js", "charts.js",
+           "playback.js", "pointer.js", "controls.js")
+
+
+def render(scene, motion, note, up):
+    """The whole page as text; nothing in it refers to anything outside."""
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(FOLDER), trim_blocks=True,
+                                     undefined=jinja2.StrictUndefined, autoescape=True)
+    moving = [index for index in range(len(scene.points))
+              if numpy.ptp(motion.positions[:, index], axis=0).max() > 0]
+    return environment.get_template("page.html.j2").render(
+        scene=scene, note=note, has_curves=bool(motion.curves), style=_text("page.css"),
+        scripts="\n".join(map(_text, SCRIPTS)),
+        data=_json(_data(scene, motion, moving, up)),
+        packed=base64.b64encode(
+            motion.positions[:, moving].astype("<f4").tobytes()).decode())
+
+
+def _text(name):
+    return (FOLDER / name).read_text(encoding="utf-8")
+
+
+def _json(data):
+    """JSON that no text in it can end the script element of."""
+    return json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+
+
+def _data(scene, motion, moving, up):
+    low, high = picture.bounds(scene, motion)
+    curves = {name: _rounded(values) for name, values in motion.curves.items()}
+    return {
+        "dimension": scene.dimension, "up": up, "times": _rounded(motion.times, 9),
+        "points": [{"name": name, "kind": kind, "start": _rounded(motion.positions[0, index], 9)}
+                   for index, (name, kind) in enumerate(scene.points)],
+        "moving": moving, "low": _rounded(low), "high": _rounded(high),
+        "typical": picture.typical_length(scene, motion),
+        "rods": [rod.points for rod in scene.rods],
+        "springs": [spring.points for spring in scene.springs],
+        "bodies": [{"name": body.name, "points": body.points} for body in scene.bodies],
+        "arrows": [vars(arrow) for arrow in picture.arrows(scene, motion)],
+        "traces": picture.traces(scene, motion),
+        "curves": curves or None}
+
+
+def _rounded(values, digits=7):
+    return [float(f"{value:.{digits}g}") for value in values]

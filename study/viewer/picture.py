@@ -1,0 +1,94 @@
+# What the page and the sheet both need to know: extent, which points to trace, where vectors sit.
+from dataclasses import dataclass
+
+import numpy
+
+TRACES = 2         # by default, at most
+CANDIDATES = 50    # points that are looked at for a trace
+DISTINCT = 0.1     # of the extent: how far traces must differ to be shown both
+
+
+@dataclass
+class Arrow:
+    """A unit vector drawn at the mean of some points."""
+    vector: int
+    at: list
+    length: float  # m
+
+
+def places(scene):
+    """Indices of points that are places, not vectors."""
+    return [index for index, (_, kind) in enumerate(scene.points) if kind != "vector"]
+
+
+def bounds(scene, motion):
+    """Lowest and highest corner of everywhere that a point gets to, m."""
+    shown = motion.positions[:, places(scene)]
+    return shown.min(axis=(0, 1)), shown.max(axis=(0, 1))
+
+
+def reach(scene, motion):
+    """The diagonal of `bounds`, m; never zero."""
+    low, high = bounds(scene, motion)
+    return float(numpy.linalg.norm(high - low)) or 1.0
+
+
+def ways(scene, motion):
+    """For each point the length of its way up to each frame, m (frames, points); 0 for vectors."""
+    steps = numpy.linalg.norm(numpy.diff(motion.positions, axis=0), axis=2)
+    steps[:, [index for index, (_, kind) in enumerate(scene.points) if kind == "vector"]] = 0
+    return numpy.vstack([numpy.zeros(len(scene.points)), numpy.cumsum(steps, axis=0)])
+
+
+def traces(scene, motion):
+    """The point with the longest way and others whose ways look different, TRACES at most."""
+    order = [int(index) for index in numpy.argsort(-ways(scene, motion)[-1], kind="stable")
+             if scene.points[index][1] in ("free", "marker")]
+    apart, chosen = DISTINCT * reach(scene, motion), []
+    for index in order[::max(1, len(order) // CANDIDATES)]:
+        way = motion.positions[:, index]
+        if numpy.ptp(way, axis=0).max() > 0 and all(
+                _apart(way, motion.positions[:, other]) > apart for other in chosen):
+            chosen.append(index)
+    return chosen[:TRACES]
+
+
+def _apart(first, second):
+    """Largest distance of two ways that are laid over each other."""
+    shifted = (first - first.mean(axis=0)) - (second - second.mean(axis=0))
+    return numpy.linalg.norm(shifted, axis=1).max()
+
+
+def typical_length(scene, motion):
+    """Median distance of what rods, bodies and springs join, m: the size of symbols goes by it."""
+    start = motion.positions[0]
+    lengths = []
+    for element in (*scene.rods, *scene.springs, *scene.bodies):
+        corners = start[element.points]
+        if len(corners) > 1:
+            lengths.append(float(numpy.linalg.norm(corners - corners[0], axis=1).max()))
+    return float(numpy.median(lengths)) if lengths else 0.1 * reach(scene, motion)
+
+
+def arrows(scene, motion):
+    """Where to draw the vectors of bodies: at the point that all bodies with this vector share (a
+    hinge's axis), else at the body's fixed point if the vector stands still, else amid the body."""
+    owners = {}
+    for body in scene.bodies:
+        for vector in body.vectors:
+            owners.setdefault(vector, []).append(body)
+    length = 0.3 * typical_length(scene, motion)
+    found = []
+    for vector, bodies in owners.items():
+        shared = set(bodies[0].points).intersection(*(body.points for body in bodies[1:]))
+        fixed = [point for point in bodies[0].points if scene.points[point][1] == "fixed"]
+        still = numpy.ptp(motion.positions[:, vector], axis=0).max() < 1e-9
+        if len(bodies) > 1 and shared:
+            at = [min(shared)]
+        elif still and fixed:
+            at = fixed[:1]
+        else:
+            at = bodies[0].points
+        if at:
+            found.append(Arrow(vector, at, length))
+    return found

@@ -1,0 +1,126 @@
+# Runs `mbs describe` and `mbs simulate` for the viewer, showing progress and passing errors on.
+import json
+import math
+import os
+import pty
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from study.pipeline.errors import StudyError
+from study.pipeline.layout import ROOT, program
+from study.viewer.scene import from_description
+
+STEPS = (1.25e-3, 1.25e-4, 1.25e-5, 1.25e-6)  # s; tried in this order until the run is right
+STEPS_AT_MOST = 8000     # of an automatic step: 10 s of the first
+SECONDS_AT_MOST = 60     # of computing, where the duration is not asked for
+TRIAL_STEPS = 20
+PROGRESS = re.compile(r"\s*\d+ %  t = \S+ s")
+
+
+def describe(scene):
+    """The Scene of `mbs describe SCENE --json`. Raises StudyError with the program's own words."""
+    code, out, words = _run(["describe", scene, "--json"])
+    if code != 0:
+        raise StudyError(_failure("describe", code, words))
+    try:
+        return from_description(json.loads(out), Path(scene).name)
+    except json.JSONDecodeError as error:
+        raise StudyError(f"`mbs describe {scene} --json` gave no JSON: {error}") from error
+
+
+def simulate(scene, options, end, frames, csv, say):
+    """Writes the trajectory `csv` of about `frames` rows; returns a line on what was run.
+    `options` has step, duration (None: chosen here, up to `end`) and implementation. `say` takes
+    what to tell the user. Raises StudyError."""
+    for step in (options.step,) if options.step else STEPS:
+        duration = options.duration or min(10.0, STEPS_AT_MOST * step, end)
+        if not options.duration:
+            duration = _affordable(scene, options.implementation, step, duration, say)
+        say(f"simulating {duration:g} s in steps of {step:g} s with {options.implementation}")
+        every = _every(round(duration / step), frames)
+        code, out, words = _simulate(scene, options.implementation, step, duration,
+                                     ["--trajectory", csv, "--every", str(every)])
+        if code != 1 or options.step:
+            break
+        say(f"  {_last(words)}")
+    if code != 0:
+        raise StudyError(_failure("simulate", code, words)
+                         + ("" if options.step else " (choose a --step)" if code == 1 else ""))
+    return f"{options.implementation}, step {step:g} s"
+
+
+def _every(steps, frames):
+    """Write every so many steps: the fewest that make no more than `frames`, better a divisor of
+    `steps`, so that the last step is written too."""
+    least = max(1, math.ceil(steps / frames))
+    return next((every for every in range(least, 2 * least + 1) if steps % every == 0), least)
+
+
+def _affordable(scene, implementation, step, duration, say):
+    """`duration`, or as much of it as a trial says can be computed in SECONDS_AT_MOST."""
+    code, out, _ = _simulate(scene, implementation, step, TRIAL_STEPS * step, ["--json"])
+    if code != 0:
+        return duration  # the run itself will say what is wrong
+    seconds_a_step = json.loads(out)["step_us"]["median"] * 1e-6
+    fits = SECONDS_AT_MOST / max(seconds_a_step, 1e-9) * step
+    if fits >= duration:
+        return duration
+    fits = float(f"{max(fits, TRIAL_STEPS * step):.1g}")
+    say(f"{duration:g} s would take about {duration / step * seconds_a_step / 60:.0f} minutes: "
+        f"only {fits:g} s of it (ask for more with --duration)")
+    return fits
+
+
+def _simulate(scene, implementation, step, duration, more):
+    return _run(["simulate", scene, "--implementation", implementation, "--step", repr(step),
+                 "--duration", repr(duration), *more])
+
+
+def _run(arguments):
+    """(exit status, standard output, lines of standard error); its progress is shown meanwhile."""
+    executable = ROOT / program()  # an absolute MBS_PROGRAM stays as it is
+    if not os.access(executable, os.X_OK):
+        raise StudyError(f"{program()} is not built yet: run study/setup")
+    ours, its = pty.openpty()  # mbs shows its progress to terminals only
+    with tempfile.TemporaryFile("w+", encoding="utf-8") as out:
+        process = subprocess.Popen([executable, *map(str, arguments)], stdin=subprocess.DEVNULL,
+                                   stdout=out, stderr=its)
+        os.close(its)
+        try:
+            words = _listen(ours)
+        finally:
+            os.close(ours)
+            if sys.exc_info()[0]:
+                process.kill()
+            code = process.wait()
+        out.seek(0)
+        return code, out.read(), words
+
+
+def _listen(terminal):
+    """Lines that came before the other side closed; progress goes to our own terminal instead."""
+    shows, lines, rest = sys.stderr.isatty(), [], ""
+    while True:
+        try:
+            text = os.read(terminal, 4096).decode("utf-8", "replace")
+        except OSError:  # EIO: the other side is closed
+            break
+        *whole, rest = re.split(r"[\r\n]", rest + text)
+        lines += [line for line in whole if line.strip() and not PROGRESS.fullmatch(line)]
+        if shows and PROGRESS.match(rest):
+            print(f"\r{rest[:78]}", end="", file=sys.stderr, flush=True)
+    if shows:
+        print("\r\033[K", end="", file=sys.stderr, flush=True)
+    return lines + ([rest] if rest.strip() else [])
+
+
+def _last(words):
+    return words[-1].strip() if words else "without a word"
+
+
+def _failure(command, code, words):
+    end = f"signal {-code}" if code < 0 else f"status {code}"
+    return _last(words) if words else f"mbs {command} ended with {end}, without a word"

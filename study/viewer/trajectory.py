@@ -1,0 +1,146 @@
+# Reads the CSV of `mbs simulate --trajectory`, however long: only the rows that are shown are kept.
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy
+
+from study.pipeline.errors import StudyError
+
+CURVES = ("kinetic_energy", "potential_energy", "constraint_violation")
+NUMBERS = b"0123456789+-.eE,"
+START_TOLERANCE = 1e-3  # of the scene's extent: a start farther off is another scene's
+
+
+@dataclass
+class Motion:
+    """`positions` is (frames, points, dimension), m; `curves` has the columns of CURVES by name,
+    one value a frame, or is empty if the file lacks them."""
+    times: numpy.ndarray
+    positions: numpy.ndarray
+    curves: dict
+
+
+def read(path, scene, frames):
+    """About `frames` rows, equally spaced in the file, and its last. The constraint violation of a
+    frame is the largest of all rows since the frame before. Raises StudyError."""
+    try:
+        with open(path, "rb") as file:
+            columns = _header(path, file.readline())
+            places, curves = _places(path, columns, scene)
+            rows = _check_rows(path, file, len(columns))
+            file.seek(0)
+            file.readline()
+            times, table, violation = _kept_rows(path, file, _kept(rows, frames), len(columns),
+                                                 [*places, *curves], curves)
+    except OSError as error:
+        raise StudyError(f"cannot read {path}: {error.strerror}") from error
+    positions = table[:, :len(places)].reshape(len(times), len(scene.points), scene.dimension)
+    motion = Motion(times, positions, dict(zip(CURVES, table[:, len(places):].T)))
+    if curves:
+        motion.curves["constraint_violation"] = violation
+    _same_start(path, motion, scene)
+    return motion
+
+
+def _header(path, line):
+    if not line.strip():
+        raise StudyError(f"{path} is empty: it must be the CSV of `mbs simulate --trajectory`")
+    columns = line.decode("utf-8", "replace").rstrip("\r\n").split(",")
+    if columns[0] != "t":
+        raise StudyError(f"{path} is no trajectory: its first column is {columns[0][:40]!r}, "
+                         "not t (write one with `mbs simulate SCENE --trajectory FILE`)")
+    if len(set(columns)) < len(columns):
+        doubled = next(name for name, count in Counter(columns).items() if count > 1)
+        raise StudyError(f"{path} has the column {doubled} more than once")
+    return columns
+
+
+def _places(path, columns, scene):
+    """Columns of all positions, point by point, then of CURVES if they are there."""
+    place = {name: index for index, name in enumerate(columns)}
+    axes = "xyz"[:scene.dimension]
+    wanted = [f"{name}.{axis}" for name, _ in scene.points for axis in axes]
+    missing = [name for name in wanted if name not in place]
+    names = {name for name, _ in scene.points}
+    foreign = [column for column in columns[1:] if column not in CURVES
+               and (column.rpartition(".")[0] not in names
+                    or column.rpartition(".")[2].lstrip("v") not in list(axes))]
+    if missing or foreign:
+        what = f"it lacks the column {missing[0]}" if missing else f"it has the column {foreign[0]}"
+        more = len(missing or foreign) - 1
+        raise StudyError(f"{path} is a trajectory of another scene than {scene.name}: {what}"
+                         + (f" and {more} more" if more else ""))
+    found = [name for name in CURVES if name in place]
+    if found and len(found) < len(CURVES):
+        raise StudyError(f"{path} has {found[0]} but not all of {', '.join(CURVES)}")
+    return [place[name] for name in wanted], [place[name] for name in found]
+
+
+def _check_rows(path, file, columns):
+    """The number of rows, all complete, all of finite numbers."""
+    rows = 0
+    for rows, line in enumerate(file, 1):
+        if line.count(b",") != columns - 1:
+            raise StudyError(f"{path}, line {rows + 1}: {line.count(b',') + 1} values, but the "
+                             f"header has {columns} columns: is the file complete?")
+        odd = line.rstrip(b"\r\n").translate(None, NUMBERS)
+        if odd:
+            values = line.decode("utf-8", "replace").strip().split(",")
+            bad = next(value for value in values if set(value.encode()) - set(NUMBERS))
+            raise StudyError(f"{path}, line {rows + 1}: {bad[:40]!r} is no finite number")
+    if rows < 2:
+        raise StudyError(f"{path} has {rows} row(s): a motion needs two at least")
+    return rows
+
+
+def _kept(rows, frames):
+    """Indices of the rows to show."""
+    kept = list(range(0, rows, max(1, -(-(rows - 1) // frames))))
+    return kept if kept[-1] == rows - 1 else [*kept, rows - 1]
+
+
+def _kept_rows(path, file, kept, columns, places, curves):
+    """Times (frames), the columns `places` (frames, places) and the constraint violation (frames)
+    of the rows `kept`; `curves` is empty if there is no violation."""
+    times, table = numpy.empty(len(kept)), numpy.empty((len(kept), len(places)))
+    violation = numpy.zeros(len(kept))
+    last, frame = -numpy.inf, 0
+    for row, line in enumerate(file):
+        t = _numbers(path, row, line.split(b",", 1)[0], 1)[0]
+        if t <= last:
+            raise StudyError(f"{path}, line {row + 2}: the time {t:g} s does not come after "
+                             f"{last:g} s")
+        last = t
+        if curves:  # columns before a place are never split: rows may have thousands
+            text = line.rsplit(b",", columns - curves[-1])[1]
+            violation[frame] = max(violation[frame], _numbers(path, row, text, 1)[0])
+        if row == kept[frame]:
+            times[frame] = t
+            table[frame] = _numbers(path, row, line, columns)[places]
+            frame += 1
+    return times, table, violation
+
+
+def _numbers(path, row, text, count):
+    try:
+        values = numpy.array([float(value) for value in text.split(b",")])
+    except ValueError:
+        values = numpy.empty(0)
+    if len(values) != count or not numpy.isfinite(values).all():
+        raise StudyError(f"{path}, line {row + 2}: not {count} finite number(s), from "
+                         f"{text[:40].decode('utf-8', 'replace').strip()!r} on")
+    return values
+
+
+def _same_start(path, motion, scene):
+    """A trajectory from t = 0 must start where the scene does."""
+    start = numpy.asarray(scene.start, dtype=float)
+    if motion.times[0] != 0 or not len(start):
+        return
+    away = numpy.abs(motion.positions[0] - start).max(axis=1)
+    extent = max(numpy.ptp(start, axis=0).max(), 1e-12)
+    worst = int(away.argmax())
+    if away[worst] > START_TOLERANCE * extent:
+        raise StudyError(f"{path} is a trajectory of another scene than {scene.name}: "
+                         f"{scene.points[worst][0]} starts {away[worst]:.3g} m away from where the "
+                         "scene has it")
