@@ -9,7 +9,7 @@ COLOURS = {0: "#0072B2", 1: "#009E73", 2: "#D55E00", 3: "#CC79A7"}
 
 
 def draw(modelling):
-    rows = [row for row in costs(modelling) if row["status"] == "ok"]
+    rows = costs(modelling)
     sizes = sorted({row["loops"] for row in rows})
     if not rows:
         figure, axes = plt.subplots(figsize=(8, 2))
@@ -19,7 +19,7 @@ def draw(modelling):
     cases = [case for case in dict.fromkeys(row["case"] for row in rows)]
     order = [PLAIN] + [case for case in cases if case != PLAIN]
     figure, panels = plt.subplots(1, 2 * len(sizes), figsize=(4.1 * 2 * len(sizes) * 0.72, 0.42 *
-                                  len(order) + 1.3), sharey=True, layout="constrained")
+                                  len(order) + 1.3), sharey=True, constrained_layout=True)
     for place, loops in enumerate(sizes):
         time_axes, error_axes = panels[2 * place], panels[2 * place + 1]
         of_size = {(row["implementation"], row["case"]): row for row in rows
@@ -29,6 +29,11 @@ def draw(modelling):
             for line, case in enumerate(order):
                 row = of_size.get((name, case))
                 if row is None:
+                    continue
+                if row["status"] != "ok":
+                    time_axes.annotate(row["status"], (1, line + offset), (6, 0), va="center",
+                                       textcoords="offset points", fontsize=7,
+                                       color=COLOURS[number % len(COLOURS)])
                     continue
                 at, colour = line + offset, COLOURS[number % len(COLOURS)]
                 whole = row["piece"] == "output"
@@ -55,6 +60,6 @@ def draw(modelling):
             axes.set_axisbelow(True)
             axes.set_ylim(len(order) - 0.5, -0.5)
     panels[0].set_yticks(range(len(order)), order)
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center",
-                  ncols=len(names), fontsize=9)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="upper center",
+                  bbox_to_anchor=(0.5, 0.0), ncols=len(names), fontsize=9)
     return figure

@@ -26,15 +26,16 @@ def load(folder):
 
 
 def costs(modelling):
-    """One row for each implementation, size and case: time of a step with its ratio to the plain
-    model (paired by round, 95 % interval), time of the whole process likewise, error, tangent."""
+    """One row for each implementation, size and case: time of a step with its ratio to the case that
+    it is compared with, usually the plain model (paired by round, 95 % interval), time of the whole
+    process likewise, error, tangent."""
     result = []
     if modelling.empty:
         return result
     for (implementation, loops), group in modelling.groupby(["implementation", "loops"], sort=False):
-        plain = group[group.case == PLAIN]
-        for case in dict.fromkeys(group.sort_values("round").case):
+        for case in dict.fromkeys(group[group["round"] == 1].case):
             rows = group[group.case == case]
+            plain = group[group.case == rows.base.iloc[0]]
             failed = rows[rows.status != "ok"]
             row = {"implementation": implementation, "loops": loops, "case": case,
                    "piece": "" if case == PLAIN else rows.piece.iloc[0],

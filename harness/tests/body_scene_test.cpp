@@ -233,6 +233,24 @@ TEST(BodyScene, FixedPointsAndVectorsAreConstants) {
   expect_freedom(door("", R"("y": [0, 1, 0], "x": [1, 0, 0])"), 3, 0, 3);
 }
 
+TEST(BodyScene, EnergyOfBodiesOnFixedPoints) {
+  const Scene plate = load_scene((kScenes / "examples/compound_pendulum.json").string());
+  EXPECT_NEAR(kinetic_energy(plate.model, plate.model.initial_velocity()),
+              0.5 * (0.05 + 2.0 * 0.17), 1e-13);
+  const double height = 0.4 * std::sin(-0.5) + 0.1 * std::cos(-0.5);
+  EXPECT_NEAR(potential_energy(plate.model, 0.0, plate.model.initial_position()),
+              2.0 * 9.81 * height, 1e-12);
+  // A bar about its fixed axis z, which is a vector of the body, 3 rad/s: J = 0.2 + 2 * 0.5^2.
+  const Model bar(scene_of(R"({"dimension": 3,
+    "points": [{"name": "A", "position": [1, 1, 1], "fixed": true}],
+    "vectors": [{"name": "z", "direction": [0, 0, 1], "fixed": true}],
+    "bodies": [{"name": "bar", "mass": 2, "centre": [0.5, 0, 0.3], "inertia": [0.1, 0.2, 0.2],
+                "points": {"A": [0, 0, 0]}, "vectors": {"z": [0, 0, 1]}, "pose": {},
+                "angular_velocity": [0, 0, 3]}]})")
+                      .model);
+  EXPECT_NEAR(kinetic_energy(bar, bar.initial_velocity()), 0.5 * 0.7 * 9.0, 1e-13);
+}
+
 TEST(BodyScene, TorquesTurnBodies) {
   const SceneData plane = scene_of(planar(R"("bodies": [{"name": "K", "mass": 1, "inertia": 1,
     "points": {"G": [0, 0], "A": [1.4142135623730951, 0]}}],

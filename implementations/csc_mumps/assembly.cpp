@@ -1,51 +1,10 @@
-// The numerical evaluations, along the lists that assembly_symbolic.cpp has made.
+// T, the right-hand sides and products, along the lists that the set-up has made.
 #include "assembly.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace mbs::csc_mumps {
-
-void Assembly::evaluate_constraints(const double* q_extended) {
-  dimension_ == 2 ? evaluate_constraints_in<2>(q_extended) : evaluate_constraints_in<3>(q_extended);
-  for (std::size_t i = 0; i < linear_value_.size(); ++i) {
-    double sum = -linear_value_[i];
-    for (int k = linear_start_[i]; k < linear_start_[i + 1]; ++k) {
-      sum += linear_terms_[k].coefficient * q_extended[linear_terms_[k].coordinate];
-    }
-    phi_[linear_row_ + i] = sum;  // Eq. (8)
-  }
-}
-
-template <int kDimension>
-void Assembly::evaluate_constraints_in(const double* q) {
-  const int* place = write_order_.data();
-  double* jacobian = jacobian_.data();
-  for (const Distance& distance : distances_) {
-    double square = 0.0;
-    for (int axis = 0; axis < kDimension; ++axis) {
-      const double edge = q[distance.first + axis] - q[distance.second + axis];
-      square += edge * edge;
-      jacobian[*place++] = 2.0 * edge;
-      jacobian[*place++] = -2.0 * edge;
-    }
-    phi_[distance.row] = square - distance.value;  // Eq. (7)
-  }
-  const Gradient* gradient = gradients_.data();
-  for (const Dot& dot : dots_) {
-    double product = 0.0;
-    for (int axis = 0; axis < kDimension; ++axis) {
-      const double first = q[dot.a + axis] - q[dot.b + axis];
-      const double second = q[dot.c + axis] - q[dot.d + axis];
-      product += first * second;
-      for (int slot = 0; slot < kPointsOfDot; ++slot) {
-        jacobian[*place++] = gradient[slot].of_second * second + gradient[slot].of_first * first;
-      }
-    }
-    phi_[dot.row] = product - dot.value;  // Eq. (7)
-    gradient += kPointsOfDot;
-  }
-}
 
 bool Assembly::evaluate_tangent() {
   const double* jacobian = jacobian_.data();
@@ -60,14 +19,18 @@ bool Assembly::evaluate_tangent() {
   for (std::size_t k = 0; k < tangent_.size(); ++k) {
     tangent_[k] = constant_[k] + factor * update_[k];  // Eq. (5)
   }
-  double trace = 0.0;  // squares of Phi_q are in it, so nothing else can be worse
+  if (!forces_.empty()) forces_.add_to_tangent(tangent_.data());
+  double trace = 0.0;  // squares of Phi_q and g are in it, so nothing else is worse
   for (int j = 0; j < variables_; ++j) trace += tangent_[pattern_.start[j]];
   return std::isfinite(trace);
 }
 
-void Assembly::newton_right(const double* acceleration, const double* lambda, double* right) {
+void Assembly::newton_right(const double* q_extended, const double* v_extended,
+                            const double* acceleration, const double* lambda, double* right) {
   for (std::size_t i = 0; i < weights_.size(); ++i) weights_[i] = lambda[i] + penalty_ * phi_[i];
   multiply_mass(acceleration, right);
+  if (!forces_.empty()) forces_.evaluate(q_extended, v_extended, right);
+  if (!drivers_.empty()) drivers_.add_inertia(right);
   for (int j = 0; j < variables_; ++j) {
     double sum = right[j] - force_[j];
     for (int k = column_start_[j]; k < column_start_[j + 1]; ++k) {
@@ -77,15 +40,26 @@ void Assembly::newton_right(const double* acceleration, const double* lambda, do
   }
 }
 
-void Assembly::velocity_right(const double* velocity, double* right) const {
+void Assembly::velocity_right(const double* q_extended, const double* velocity, double* right) {
   multiply_mass(velocity, right);  // Eq. (6)
+  if (!forces_.empty()) forces_.multiply(velocity, right);
+  if (drivers_.empty()) return;
+  std::fill(weights_.begin(), weights_.end(), 0.0);
+  drivers_.add_velocity(q_extended, weights_.data());
+  subtract_reaction(right);
 }
 
-void Assembly::acceleration_right(const double* acceleration, const double* v_extended,
-                                  double* right) {
-  dimension_ == 2 ? evaluate_weights_in<2>(v_extended) : evaluate_weights_in<3>(v_extended);
-  std::fill(weights_.begin() + linear_row_, weights_.end(), 0.0);  // Eq. (8)
+void Assembly::acceleration_right(const double* q_extended, const double* v_extended,
+                                  const double* acceleration, double* right) {
+  evaluate_weights(v_extended);
+  if (!drivers_.empty()) drivers_.add_acceleration(q_extended, weights_.data());
   multiply_mass(acceleration, right);
+  if (!forces_.empty()) forces_.multiply(acceleration, right);
+  subtract_reaction(right);
+}
+
+/// right -= quarter alpha Phi_q' weights.
+void Assembly::subtract_reaction(double* right) const {
   const double factor = quarter_ * penalty_;
   for (int j = 0; j < variables_; ++j) {
     double sum = 0.0;
@@ -93,26 +67,6 @@ void Assembly::acceleration_right(const double* acceleration, const double* v_ex
       sum += jacobian_[k] * weights_[row_[k]];
     }
     right[j] -= factor * sum;  // Eq. (6)
-  }
-}
-
-/// weights_ = dPhi_q/dt v of the dot constraints, Eq. (7).
-template <int kDimension>
-void Assembly::evaluate_weights_in(const double* v) {
-  for (const Distance& distance : distances_) {
-    double square = 0.0;
-    for (int axis = 0; axis < kDimension; ++axis) {
-      const double edge = v[distance.first + axis] - v[distance.second + axis];
-      square += edge * edge;
-    }
-    weights_[distance.row] = 2.0 * square;
-  }
-  for (const Dot& dot : dots_) {
-    double product = 0.0;
-    for (int axis = 0; axis < kDimension; ++axis) {
-      product += (v[dot.a + axis] - v[dot.b + axis]) * (v[dot.c + axis] - v[dot.d + axis]);
-    }
-    weights_[dot.row] = 2.0 * product;
   }
 }
 

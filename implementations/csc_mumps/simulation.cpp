@@ -16,7 +16,7 @@ CscMumpsSimulation::CscMumpsSimulation(const Model& model, const StepSettings& s
       settings_(settings),
       velocity_factor_(2.0 / settings.step),
       acceleration_factor_(4.0 / (settings.step * settings.step)),
-      assembly_(model, settings.step * settings.step / 4.0, settings.penalty),
+      assembly_(model, settings.step, settings.penalty),
       solver_(assembly_.pattern(), assembly_.tangent()),
       a_(variables_, 0.0),
       lambda_(model.constraints(), 0.0),
@@ -43,6 +43,8 @@ void CscMumpsSimulation::do_get_state(State& state) const {
 }
 
 StepOutcome CscMumpsSimulation::do_step() {
+  phases_.enter(Phase::other);
+  if (assembly_.is_driven()) assembly_.drive(time(), q_.data(), v_.data());
   predict();
   int passes = 0;
   Pass pass = Pass::unconverged;
@@ -57,7 +59,6 @@ StepOutcome CscMumpsSimulation::do_step() {
 }
 
 void CscMumpsSimulation::predict() {
-  phases_.enter(Phase::other);
   const double step = settings_.step;
   for (int i = 0; i < variables_; ++i) {
     const double start = q_[i];
@@ -72,7 +73,7 @@ void CscMumpsSimulation::predict() {
 
 CscMumpsSimulation::Pass CscMumpsSimulation::newton_pass() {
   phases_.enter(Phase::evaluation);
-  assembly_.newton_right(a_.data(), lambda_.data(), x_.data());
+  assembly_.newton_right(q_.data(), v_.data(), a_.data(), lambda_.data(), x_.data());
   phases_.enter(Phase::assembly);
   if (!assembly_.evaluate_tangent()) return Pass::failed;
   phases_.enter(Phase::factorization);  // with the solution in it: one call does both
@@ -104,15 +105,18 @@ void CscMumpsSimulation::raise_multipliers() {
   for (std::size_t i = 0; i < lambda_.size(); ++i) lambda_[i] += settings_.penalty * phi[i];
 }
 
-/// Eq. (6): v, then a, with the factors of the last pass. False if the solver gave up.
+/// Eq. (6): v, then a, as far as asked for, with the factors of the last pass. False if the solver
+/// gave up.
 bool CscMumpsSimulation::project() {
+  if (settings_.projections == Projections::none) return true;
   phases_.enter(Phase::projection);
-  assembly_.velocity_right(v_.data(), x_.data());
+  assembly_.velocity_right(q_.data(), v_.data(), x_.data());
   phases_.enter(Phase::solve);
   if (!solver_.solve(x_)) return false;
   phases_.enter(Phase::projection);
   std::copy(x_.begin(), x_.end(), v_.begin());
-  assembly_.acceleration_right(a_.data(), v_.data(), x_.data());
+  if (settings_.projections == Projections::velocity) return true;
+  assembly_.acceleration_right(q_.data(), v_.data(), a_.data(), x_.data());
   phases_.enter(Phase::solve);
   if (!solver_.solve(x_)) return false;
   a_.swap(x_);

@@ -38,7 +38,7 @@ class CscMumpsSimulation : public Simulation {
   const double acceleration_factor_;  // 4 / Delta t^2
   Assembly assembly_;
   MultifrontalSolver solver_;
-  std::vector<double> q_, v_;       // extended, see Assembly; v_ ends in zeros
+  std::vector<double> q_, v_;       // extended; v_ ends in driven velocities, or zeros
   std::vector<double> a_, lambda_;  // n, m
   std::vector<double> x_;           // n; handed to the solver and got back from it
 };

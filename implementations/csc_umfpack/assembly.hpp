@@ -1,9 +1,12 @@
-// The values of M, Phi_q and T on their patterns, and everything that is evaluated in a step.
+// The values of M and T on their patterns.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
+#include "forces.hpp"
+#include "jacobian.hpp"
 #include "mbs/model.hpp"
 #include "symbolic.hpp"
 
@@ -19,50 +22,28 @@ class MassMatrix {
 
   /// y = scale (Q - M x).
   void residual(const double* x, const double* Q, double scale, double* y) const;
-  /// y = M x and y2 = M x2, reading M once.
-  void multiply(const double* x, const double* x2, double* y, double* y2) const;
+  /// y[k] = M x[k] for Count vectors, reading M once.
+  template <std::size_t Count>
+  void multiply(const double* const* x, double* const* y) const;
 
  private:
   SparsityPattern pattern_;
   std::vector<double> values_;
 };
 
-/// Phi and Phi_q in D dimensions. Rows and x are those of the layout, which it keeps.
-template <int D>
-class Jacobian {
- public:
-  explicit Jacobian(const Model& model) : layout_(model), values_(layout_.blocks.size() * D) {}
-
-  [[nodiscard]] const JacobianLayout& layout() const { return layout_; }
-  [[nodiscard]] const double* values() const { return values_.data(); }
-
-  /// Phi (m) and Phi_q at x.
-  void evaluate(const double* x, double* Phi);
-  /// y = factor (dPhi_q/dt v) (m) for velocities v, laid out like x with zeros for fixed points.
-  void velocity_term(const double* v, double factor, double* y) const;
-  /// y (n) -= Phi_q^T z, z (m).
-  void subtract_transpose_product(const double* z, double* y) const;
-
- private:
-  /// The rows of general dot constraints, whose blocks start at J; returns where Phi goes on.
-  double* evaluate_dots(const double* x, double* Phi, double* J) const;
-
-  JacobianLayout layout_;
-  std::vector<double> values_;
-};
-
 /// T by Eq. (5), both triangles. What does not change is written once, at construction: the entries
-/// of M that no dot constraint reaches, and the share of the linear constraints.
+/// of M that no block of the schedule covers, and the share of the linear constraints.
 template <int D>
 class Tangent {
  public:
   /// `factor` is (Delta t^2 / 4) alpha.
-  Tangent(const MassMatrix& mass, const JacobianLayout& layout, double factor);
+  Tangent(const MassMatrix& mass, const JacobianLayout& layout, const ForceLayout& forces,
+          double factor);
 
   [[nodiscard]] const SparsityPattern& pattern() const { return schedule_.pattern; }
   [[nodiscard]] const double* values() const { return values_.data(); }
 
-  void update(const Jacobian<D>& jacobian);
+  void update(const Jacobian<D>& jacobian, const Forces<D>& forces);
 
  private:
   TangentSchedule<D> schedule_;

@@ -15,12 +15,15 @@ CscUmfpack<D>::CscUmfpack(const Model& model, const StepSettings& settings)
       m_(model.constraints()),
       quarter_(settings.step * settings.step / 4.0),
       factor_(quarter_ * settings.penalty),
+      points_(model),
       mass_(model),
-      jacobian_(model),
-      tangent_(mass_, jacobian_.layout(), factor_),
+      jacobian_(model, points_),
+      forces_(model, points_, settings.step),
+      tangent_(mass_, jacobian_.layout(), forces_.layout(), factor_),
       solver_(tangent_.pattern()),
+      drivers_(model, points_, jacobian_.layout()),
       force_(model.force().begin(), model.force().end()),
-      q_(n_ + jacobian_.layout().fixed.size(), 0.0),
+      q_(n_ + points_.fixed.size(), 0.0),
       v_(q_.size(), 0.0),
       a_(n_),
       lambda_(m_),
@@ -29,7 +32,7 @@ CscUmfpack<D>::CscUmfpack(const Model& model, const StepSettings& settings)
       rhs_(n_),
       rhs_a_(n_),
       delta_q_(n_) {
-  std::ranges::copy(jacobian_.layout().fixed, q_.begin() + n_);
+  std::ranges::copy(points_.fixed, q_.begin() + n_);
 }
 
 template <int D>
@@ -52,13 +55,14 @@ void CscUmfpack<D>::do_get_state(State& state) const {
 
 template <int D>
 StepOutcome CscUmfpack<D>::do_step() {
+  if (!drivers_.empty()) drive();
   predict();
   StepOutcome outcome{StepStatus::pass_limit, 0};
   while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
     ++outcome.passes;
     evaluate_residual();
     phases_.enter(Phase::assembly);
-    tangent_.update(jacobian_);
+    tangent_.update(jacobian_, forces_);
     phases_.enter(Phase::factorization);
     if (!solver_.factorize(tangent_.values())) {
       phases_.enter(Phase::other);
@@ -70,8 +74,18 @@ StepOutcome CscUmfpack<D>::do_step() {
     if (correct()) outcome.status = StepStatus::converged;
     update_multipliers();
   }
-  project();
+  if (settings_.projections == Projections::velocity) project<1>();
+  if (settings_.projections == Projections::both) project<2>();
+  phases_.enter(Phase::other);
   return outcome;
+}
+
+template <int D>
+void CscUmfpack<D>::drive() {
+  drivers_.sample(time());
+  drivers_.move(q_.data(), v_.data());
+  drivers_.set_values(jacobian_);
+  drivers_.set_force(force_.data());
 }
 
 template <int D>
@@ -95,6 +109,7 @@ void CscUmfpack<D>::evaluate_residual() {
     row_factors_[row] = quarter_ * (lambda_[row] + settings_.penalty * Phi_[row]);
   }
   mass_.residual(a_.data(), force_.data(), quarter_, rhs_.data());
+  forces_.evaluate(q_.data(), v_.data(), rhs_.data());
   jacobian_.subtract_transpose_product(row_factors_.data(), rhs_.data());  // -f, Eq. (3)
 }
 
@@ -122,17 +137,35 @@ void CscUmfpack<D>::update_multipliers() {
 }
 
 template <int D>
+template <std::size_t Count>
 void CscUmfpack<D>::project() {
   phases_.enter(Phase::projection);
-  mass_.multiply(v_.data(), a_.data(), rhs_.data(), rhs_a_.data());
+  const double* moving[] = {v_.data(), a_.data()};
+  double* sides[] = {rhs_.data(), rhs_a_.data()};
+  mass_.multiply<Count>(moving, sides);
+  forces_.template add_product<Count>(moving, sides);
+  project_velocity();
+  if constexpr (Count == 2) project_acceleration();
+}
+
+template <int D>
+void CscUmfpack<D>::project_velocity() {
+  if (!drivers_.empty()) {
+    drivers_.rates(q_.data(), factor_, row_factors_);
+    jacobian_.subtract_transpose_product(row_factors_.data(), rhs_.data());
+  }
   phases_.enter(Phase::solve);
   solver_.solve(rhs_.data(), v_.data());  // Eq. (6)
+}
+
+template <int D>
+void CscUmfpack<D>::project_acceleration() {
   phases_.enter(Phase::projection);
   jacobian_.velocity_term(v_.data(), factor_, row_factors_.data());
+  if (!drivers_.empty()) drivers_.add_accelerations(q_.data(), factor_, row_factors_);
   jacobian_.subtract_transpose_product(row_factors_.data(), rhs_a_.data());
   phases_.enter(Phase::solve);
   solver_.solve(rhs_a_.data(), a_.data());  // Eq. (6)
-  phases_.enter(Phase::other);
 }
 
 template class CscUmfpack<2>;

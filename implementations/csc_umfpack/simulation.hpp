@@ -1,9 +1,13 @@
 // One simulation in D dimensions: the step of paper/README.md on the storage of assembly.hpp.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "assembly.hpp"
+#include "drivers.hpp"
+#include "forces.hpp"
+#include "jacobian.hpp"
 #include "mbs/simulation.hpp"
 #include "solver.hpp"
 
@@ -19,16 +23,21 @@ class CscUmfpack final : public Simulation {
   StepOutcome do_step() override;
   void do_get_state(State& state) const override;
 
+  /// Step 0: positions and velocities of driven points, driven values, Q of driven masses.
+  void drive();
   /// Step 1: q, v, a at the end of the step; Phi and Phi_q there.
   void predict();
-  /// rhs = -f, Eq. (3), from a, lambda, Phi and Phi_q.
+  /// rhs = -f, Eq. (3), from q, v, a, lambda, Phi and Phi_q; the elements' values for T.
   void evaluate_residual();
   /// Adds Delta q to the motion. True if all |Delta q| are within the tolerance, no NaN among them.
   [[nodiscard]] bool correct();
   /// Phi and Phi_q at the new q, and lambda by Eq. (1).
   void update_multipliers();
-  /// Step 3, Eq. (6).
+  /// Step 3, Eq. (6): the first Count of the projections.
+  template <std::size_t Count>
   void project();
+  void project_velocity();
+  void project_acceleration();
 
   const StepSettings settings_;
   const int n_;
@@ -36,14 +45,17 @@ class CscUmfpack final : public Simulation {
   const double quarter_;  ///< Delta t^2 / 4, s^2
   const double factor_;   ///< (Delta t^2 / 4) alpha, kg / m^2
 
+  const PointLayout points_;
   MassMatrix mass_;
   Jacobian<D> jacobian_;
+  Forces<D> forces_;
   Tangent<D> tangent_;
   Solver solver_;
-  std::vector<double> force_;  ///< n, Q
+  Drivers<D> drivers_;
+  std::vector<double> force_;  ///< n, Q without elements: constant during a step
 
   std::vector<double> q_;            ///< n, then the fixed points: x of the layout
-  std::vector<double> v_;            ///< n, then zeros for the fixed points
+  std::vector<double> v_;            ///< n, then those of the fixed points
   std::vector<double> a_;            ///< n
   std::vector<double> lambda_;       ///< m, rows of the layout
   std::vector<double> Phi_;          ///< m, rows of the layout

@@ -7,9 +7,8 @@ namespace mbs::starting_sparse {
 
 void Assembly::evaluate(const double* q) {
   dimension_ == 2 ? evaluate_dots<2>(q) : evaluate_dots<3>(q);
-  for (std::size_t i = 0; i < linear_.size(); ++i) {
-    const int row = dot_count_ + static_cast<int>(i);
-    double sum = -linear_[i].value;
+  for (int row = quadratic_count_; row < constraints_; ++row) {
+    double sum = -value_[row];
     for (int k = row_start_[row]; k < row_start_[row + 1]; ++k) {
       sum += jacobian_[nonzero_place_[k]] * q[nonzero_column_[k]];
     }
@@ -28,7 +27,7 @@ void Assembly::evaluate_dots(const double* q) {
       jacobian[distance.to_a + axis] = 2.0 * difference;
       jacobian[distance.to_b + axis] = -2.0 * difference;
     }
-    phi_[distance.row] = square - distance.value;  // Eq. (7)
+    phi_[distance.row] = square - value_[distance.row];  // Eq. (7)
   }
   for (const Dot& dot : dots_) {
     double product = 0.0;
@@ -42,21 +41,24 @@ void Assembly::evaluate_dots(const double* q) {
       jacobian[dot.to_c + axis] += first;
       jacobian[dot.to_d + axis] -= first;
     }
-    phi_[dot.row] = product - dot.value;  // Eq. (7)
+    phi_[dot.row] = product - value_[dot.row];  // Eq. (7)
   }
+  evaluate_bilinears<kDimension>(q);
 }
 
 bool Assembly::is_finite() const {
   double sum = 0.0;  // what makes Phi_q infinite or undefined does so with Phi
   for (double value : phi_) sum += std::abs(value);
-  return std::isfinite(sum);
+  return std::isfinite(sum) && forces_.is_finite();
 }
 
-void Assembly::residual(const double* a, const double* lambda, double* right) {
+void Assembly::residual(const double* q, const double* v, const double* a, const double* lambda,
+                        double* right) {
   for (int i = 0; i < constraints_; ++i) multiplier_[i] = lambda[i] + penalty_ * phi_[i];
   multiply_mass(a, right);
   add_transposed_product(constraints_, right);
   for (int i = 0; i < variables_; ++i) right[i] = weight_ * (force_[i] - right[i]);  // Eq. (3)
+  forces_.add_forces(q, v, right);
 }
 
 void Assembly::assemble() {
@@ -65,20 +67,26 @@ void Assembly::assemble() {
   for (std::size_t k = 0; k < left_.size(); ++k) {
     products[k] = factor * jacobian_[left_[k]] * jacobian_[right_[k]];  // Eq. (5)
   }
+  forces_.assemble(values_.data() + forces_first_);
 }
 
-void Assembly::project_velocity(const double* v, double* right) const {
-  multiply_mass(v, right);  // Eq. (6)
+void Assembly::project_velocity(const double* q, const double* v, double* right) {
+  multiply_mass(v, right);
+  forces_.add_product(v, right);  // Eq. (6)
+  add_time_terms(drivers_.velocity_terms(q), right);
 }
 
-void Assembly::project_acceleration(const double* a, const double* v, double* right) {
+void Assembly::project_acceleration(const double* q, const double* v, const double* a,
+                                    double* right) {
   dimension_ == 2 ? evaluate_derivative<2>(v) : evaluate_derivative<3>(v);
   multiply_mass(a, right);
-  add_transposed_product(dot_count_, right);  // Eq. (6)
+  forces_.add_product(a, right);
+  add_transposed_product(quadratic_count_, right);  // Eq. (6)
+  add_time_terms(drivers_.acceleration_terms(q), right);
 }
 
-/// multiplier_ = -weight alpha (dPhi_q/dt v), Eq. (7), for the dot constraints; zero for the
-/// others.
+/// multiplier_ = -weight alpha 2 u' . w', Eq. (7), or u' . B w', for the quadratic constraints; the
+/// rest of dPhi_q/dt v + dPhi_t/dt is the drivers'.
 template <int kDimension>
 void Assembly::evaluate_derivative(const double* v) {
   const double factor = -2.0 * weight_ * penalty_;
@@ -97,6 +105,7 @@ void Assembly::evaluate_derivative(const double* v) {
     }
     multiplier_[dot.row] = factor * product;
   }
+  evaluate_bilinear_derivative<kDimension>(v);
 }
 
 /// y = M x from the mass entries at the head of T's list.
@@ -113,6 +122,17 @@ void Assembly::multiply_mass(const double* x, double* y) const {
 void Assembly::add_transposed_product(int row_count, double* y) const {
   for (int row = 0; row < row_count; ++row) {
     const double multiplier = multiplier_[row];
+    for (int k = row_start_[row]; k < row_start_[row + 1]; ++k) {
+      y[nonzero_column_[k]] += jacobian_[nonzero_place_[k]] * multiplier;
+    }
+  }
+}
+
+/// y -= weight alpha Phi_q' `terms`, which are those of the rows that depend on time.
+void Assembly::add_time_terms(std::span<const double> terms, double* y) const {
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const int row = drivers_.rows()[i];
+    const double multiplier = -weight_ * penalty_ * terms[i];
     for (int k = row_start_[row]; k < row_start_[row + 1]; ++k) {
       y[nonzero_column_[k]] += jacobian_[nonzero_place_[k]] * multiplier;
     }

@@ -18,26 +18,36 @@ void require_at_most_one_gibibyte(double bytes, const std::string& what) {
 
 }  // namespace
 
-Assembly::Assembly(const Model& model, double weight, double penalty)
+Assembly::Assembly(const Model& model, const StepSettings& settings)
     : variables_(model.variables()),
       constraints_(model.constraints()),
       dimension_(model.dimension()),
-      dot_count_(static_cast<int>(model.dot_constraints().size())),
-      weight_(weight),
-      penalty_(penalty),
-      force_(model.force()),
-      linear_(model.linear_constraints()),
+      quadratic_count_(constraints_ - static_cast<int>(model.linear_constraints().size())),
+      weight_(0.25 * settings.step * settings.step),
+      penalty_(settings.penalty),
+      point_offset_(number_points(model)),
+      drivers_(model, point_offset_),
+      forces_(model, point_offset_, settings.step),
+      force_(drivers_.force()),
       phi_(constraints_),
       multiplier_(constraints_),
       stride_(variables_ + dimension_) {
   require_memory(model);
-  number_points(model);
   jacobian_.resize(static_cast<std::size_t>(constraints_) * stride_);
   append_mass(model);
   row_start_.push_back(0);
-  int row = 0;
-  for (const DotConstraint& constraint : model.dot_constraints()) append_dot(row++, constraint);
-  for (const LinearConstraint& constraint : linear_) append_linear(row++, constraint);
+  const auto append_all = [this](const auto& constraints, auto append) {
+    for (const auto& constraint : constraints) {
+      (this->*append)(static_cast<int>(value_.size()), constraint);
+      value_.push_back(constraint.value);
+    }
+  };
+  append_all(model.dot_constraints(), &Assembly::append_dot);
+  append_all(model.bilinear_constraints(), &Assembly::append_bilinear);
+  append_all(model.linear_constraints(), &Assembly::append_linear);
+  forces_first_ = static_cast<int>(values_.size());
+  forces_.append_positions(rows_, columns_);
+  values_.resize(rows_.size());
 }
 
 void Assembly::require_memory(const Model& model) const {
@@ -45,22 +55,27 @@ void Assembly::require_memory(const Model& model) const {
                                "the dense Jacobian, " + std::to_string(constraints_) + " x " +
                                    std::to_string(variables_) + ",");
   const double width = 4.0 * dimension_;
-  double entries = model.mass().size() + dot_count_ * width * (width + 1) / 2;
-  for (const LinearConstraint& constraint : linear_) {
+  const double full = static_cast<double>(quadratic_count_) + model.torsion_springs().size() +
+                      model.springs().size();
+  double entries = model.mass().size() + full * width * (width + 1) / 2;
+  for (const LinearConstraint& constraint : model.linear_constraints()) {
     entries += 0.5 * constraint.terms.size() * (constraint.terms.size() + 1.0);
   }
   require_at_most_one_gibibyte(16.0 * entries, "the coordinate list of the tangent matrix");
 }
 
-void Assembly::number_points(const Model& model) {
+/// Offsets of the points in an extended vector; fills fixed_.
+std::vector<int> Assembly::number_points(const Model& model) {
+  std::vector<int> offsets;
   for (const Point& point : model.points()) {
     if (point.is_fixed()) {
-      point_offset_.push_back(variables_ + static_cast<int>(fixed_.size()));
+      offsets.push_back(variables_ + static_cast<int>(fixed_.size()));
       fixed_.insert(fixed_.end(), point.position.begin(), point.position.begin() + dimension_);
     } else {
-      point_offset_.push_back(point.offset);
+      offsets.push_back(point.offset);
     }
   }
+  return offsets;
 }
 
 void Assembly::append_mass(const Model& model) {
@@ -79,20 +94,39 @@ void Assembly::append_mass(const Model& model) {
 }
 
 void Assembly::append_dot(int row, const DotConstraint& constraint) {
-  const auto place = [&](int offset) { return row * stride_ + std::min(offset, variables_); };
-  const int a = point_offset_[constraint.a], b = point_offset_[constraint.b];
-  const int c = point_offset_[constraint.c], d = point_offset_[constraint.d];
-  if (a == c && b == d && a != b) {
-    distances_.push_back({row, a, b, place(a), place(b), constraint.value});
+  const Dot dot = locate(row, constraint.a, constraint.b, constraint.c, constraint.d);
+  if (dot.a == dot.c && dot.b == dot.d && dot.a != dot.b) {
+    distances_.push_back({row, dot.a, dot.b, dot.to_a, dot.to_b});
   } else {
-    dots_.push_back({row, a, b, c, d, place(a), place(b), place(c), place(d), constraint.value});
+    dots_.push_back(dot);
   }
+  append_quadratic_row(dot);
+}
+
+void Assembly::append_bilinear(int row, const BilinearConstraint& constraint) {
+  const Dot dot = locate(row, constraint.a, constraint.b, constraint.c, constraint.d);
+  bilinears_.push_back({dot, constraint.B});
+  append_quadratic_row(dot);
+}
+
+/// Where a constraint on points a, b, c and d reads and writes.
+Assembly::Dot Assembly::locate(int row, int a, int b, int c, int d) const {
+  Dot dot{row, point_offset_[a], point_offset_[b], point_offset_[c], point_offset_[d], 0, 0, 0, 0};
+  const auto place = [&](int offset) { return row * stride_ + std::min(offset, variables_); };
+  dot.to_a = place(dot.a);
+  dot.to_b = place(dot.b);
+  dot.to_c = place(dot.c);
+  dot.to_d = place(dot.d);
+  return dot;
+}
+
+void Assembly::append_quadratic_row(const Dot& dot) {
   std::vector<int> columns;
-  for (int offset : {a, b, c, d}) {
+  for (int offset : {dot.a, dot.b, dot.c, dot.d}) {
     if (offset >= variables_) continue;
     for (int axis = 0; axis < dimension_; ++axis) columns.push_back(offset + axis);
   }
-  append_row(row, columns, false);
+  append_row(dot.row, columns, false);
 }
 
 void Assembly::append_linear(int row, const LinearConstraint& constraint) {

@@ -14,7 +14,7 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
 StartingSparseSimulation::StartingSparseSimulation(const Model& model, const StepSettings& settings)
     : Simulation(model, settings),
       settings_(settings),
-      assembly_(model, 0.25 * settings.step * settings.step, settings.penalty),
+      assembly_(model, settings),
       solver_(assembly_.tangent()),
       q_(model.initial_position().begin(), model.initial_position().end()),
       v_(model.initial_velocity().begin(), model.initial_velocity().end()),
@@ -41,6 +41,7 @@ void StartingSparseSimulation::do_get_state(State& state) const {
 
 StepOutcome StartingSparseSimulation::do_step() {
   phases_.enter(Phase::other);
+  if (assembly_.is_driven()) assembly_.drive(time(), q_.data(), v_.data());
   predict();
   phases_.enter(Phase::evaluation);
   assembly_.evaluate(q_.data());
@@ -76,8 +77,8 @@ void StartingSparseSimulation::predict() {
 /// solution_ = Delta q of Eq. (4) at the evaluated q. False if the factorization failed.
 bool StartingSparseSimulation::solve_newton() {
   phases_.enter(Phase::evaluation);
+  assembly_.residual(q_.data(), v_.data(), a_.data(), lambda_.data(), solution_.data());
   if (!assembly_.is_finite()) return false;
-  assembly_.residual(a_.data(), lambda_.data(), solution_.data());
   phases_.enter(Phase::assembly);
   assembly_.assemble();
   phases_.enter(Phase::factorization);  // with the solution in it: one call does both
@@ -108,15 +109,17 @@ void StartingSparseSimulation::evaluate_and_raise_multipliers() {
   for (std::size_t i = 0; i < lambda_.size(); ++i) lambda_[i] += settings_.penalty * phi[i];
 }
 
-/// Eq. (6) with the last factorization. False if a solution failed.
+/// Eq. (6) with the last factorization, as far as the settings want it. False if a solution failed.
 bool StartingSparseSimulation::project() {
+  if (settings_.projections == Projections::none) return true;
   phases_.enter(Phase::projection);
-  assembly_.project_velocity(v_.data(), solution_.data());
+  assembly_.project_velocity(q_.data(), v_.data(), solution_.data());
   phases_.enter(Phase::solve);
   if (!solver_.solve(solution_.data())) return false;
   phases_.enter(Phase::projection);
   std::copy(solution_.begin(), solution_.end(), v_.begin());
-  assembly_.project_acceleration(a_.data(), v_.data(), solution_.data());
+  if (settings_.projections == Projections::velocity) return true;
+  assembly_.project_acceleration(q_.data(), v_.data(), a_.data(), solution_.data());
   phases_.enter(Phase::solve);
   if (!solver_.solve(solution_.data())) return false;
   std::swap(a_, solution_);

@@ -35,12 +35,16 @@ struct Entry {
 
 /// rows x cols from `entries` in any order, each position once; zeros are stored like any other.
 [[nodiscard]] SparseMatrix from_entries(int rows, int cols, std::vector<Entry> entries);
+/// All stored positions of A.
+[[nodiscard]] std::vector<Entry> to_entries(const SparseMatrix& A);
+/// `entries` with those of equal position added up.
+[[nodiscard]] std::vector<Entry> sum_equal(std::vector<Entry> entries);
 
 /// M (n x n, kg), both triangles, stored zeros included.
 [[nodiscard]] SparseMatrix mass_matrix(const Model& model);
 
-/// Every position that M + s Phi_q^T Phi_q can fill at any values of both; set-up only.
-[[nodiscard]] SparseMatrix tangent_pattern(const SparseMatrix& M, const SparseMatrix& Phi_q);
+/// Every position that S + s Phi_q^T Phi_q can fill at any values of both; set-up only.
+[[nodiscard]] SparseMatrix tangent_pattern(const SparseMatrix& S, const SparseMatrix& Phi_q);
 
 /// Rank-k update as one writes it: C = prod(trans(Phi_q), Phi_q).
 class ExpressionProduct {
@@ -64,28 +68,25 @@ class AxpyProduct {
   SparseMatrix transpose_;  // n x m
 };
 
-/// Matrix addition T = M + s C (n x n each). T is written anew and has no position for a sum that
+/// Matrix addition T = S + s C (n x n each). T is written anew and has no position for a sum that
 /// is exactly zero. Allocates only if T has to grow.
-void add_scaled(const SparseMatrix& M, double s, const SparseMatrix& C, SparseMatrix& T);
+void add_scaled(const SparseMatrix& S, double s, const SparseMatrix& C, SparseMatrix& T);
 
-/// The matrices of Eq. (5), with room for every position they can fill.
+/// The matrices of Eq. (5), with room for every position they can fill. C = Phi_q^T Phi_q is not
+/// the damping matrix: that one and K arrive added to M, as S.
 template <class Product>
 class TangentMatrices {
  public:
-  /// Takes M (n x n) and Phi_q (m x n) with all their positions in place.
-  TangentMatrices(SparseMatrix mass, SparseMatrix jacobian)
-      : M(std::move(mass)),
-        Phi_q(std::move(jacobian)),
-        T(tangent_pattern(M, Phi_q)),
-        C(T),
-        product_(Phi_q) {}
+  /// Takes S (n x n) and Phi_q (m x n) with all their positions in place.
+  TangentMatrices(const SparseMatrix& S, SparseMatrix jacobian)
+      : Phi_q(std::move(jacobian)), T(tangent_pattern(S, Phi_q)), C(T), product_(Phi_q) {}
 
   /// C = Phi_q^T Phi_q.
   void rank_update() { product_(Phi_q, C); }
-  /// T = M + factor C of the last rank_update().
-  void add_mass(double factor) { add_scaled(M, factor, C, T); }
+  /// T = S + factor C of the last rank_update().
+  void add(const SparseMatrix& S, double factor) { add_scaled(S, factor, C, T); }
 
-  SparseMatrix M, Phi_q, T, C;
+  SparseMatrix Phi_q, T, C;
 
  private:
   Product product_;

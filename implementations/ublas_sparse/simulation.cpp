@@ -26,8 +26,14 @@ UblasSimulation<Product>::UblasSimulation(const Model& model, const StepSettings
     : Simulation(model, settings),
       settings_(settings),
       scale_(settings.step * settings.step / 4.0),
-      constraints_(model),
-      matrices_(mass_matrix(model), constraints_.jacobian_storage()),
+      points_(model),
+      constraints_(model, points_),
+      drivers_(model, points_),
+      forces_(model, points_, settings.step),
+      M_(mass_matrix(model)),
+      S_(forces_.has_stiffness() ? forces_.storage(points_, M_) : SparseMatrix()),
+      mass_values_(S_.value_data()),
+      matrices_(S(), constraints_.jacobian_storage(points_)),
       solver_(matrices_.T),
       Q_(to_vector(model.force())),
       q_(model.variables()),
@@ -57,10 +63,11 @@ void UblasSimulation<Product>::do_get_state(State& state) const {
 
 template <class Product>
 StepOutcome UblasSimulation<Product>::do_step() {
+  if (!drivers_.empty()) drivers_.sample(time(), points_, constraints_);
   predict();
   phases_.enter(Phase::evaluation);
-  constraints_.move_to(q_.data());
-  constraints_.evaluate(Phi_);
+  points_.move_to(q_.data());
+  constraints_.evaluate(points_, Phi_);
   StepOutcome outcome{.status = StepStatus::pass_limit, .passes = 0};
   while (outcome.status != StepStatus::converged && outcome.passes < settings_.max_passes) {
     ++outcome.passes;
@@ -77,12 +84,13 @@ StepOutcome UblasSimulation<Product>::do_step() {
     phases_.enter(Phase::other);
     if (update()) outcome.status = StepStatus::converged;
     phases_.enter(Phase::evaluation);
-    constraints_.move_to(q_.data());
-    constraints_.evaluate(Phi_);
+    points_.move_to(q_.data());
+    constraints_.evaluate(points_, Phi_);
     phases_.enter(Phase::other);
     noalias(lambda_) += settings_.penalty * Phi_;  // Eq. (1)
   }
-  project();
+  if (settings_.projections != Projections::none) project_velocity();
+  if (settings_.projections == Projections::both) project_acceleration();
   phases_.enter(Phase::other);
   return outcome;
 }
@@ -100,17 +108,26 @@ void UblasSimulation<Product>::predict() {
 
 template <class Product>
 void UblasSimulation<Product>::evaluate_residual() {
-  constraints_.evaluate_jacobian(matrices_.Phi_q);
+  constraints_.evaluate_jacobian(points_, matrices_.Phi_q);
   noalias(weight_) = lambda_ + settings_.penalty * Phi_;
-  axpy_prod(matrices_.M, a_, rhs_, true);
+  axpy_prod(M_, a_, rhs_, true);
   axpy_prod(weight_, matrices_.Phi_q, rhs_, false);
+  if (!drivers_.empty()) drivers_.subtract_force(rhs_);
+  if (!forces_.empty()) {
+    points_.set_velocity(v_.data());
+    forces_.subtract_force(points_, rhs_);
+  }
   noalias(rhs_) = scale_ * (Q_ - rhs_);  // -f, Eq. (3)
 }
 
 template <class Product>
 void UblasSimulation<Product>::assemble_tangent() {
+  if (forces_.has_stiffness()) {
+    std::copy(mass_values_.begin(), mass_values_.end(), S_.value_data().begin());
+    forces_.add_stiffness(points_, S_);
+  }
   matrices_.rank_update();
-  matrices_.add_mass(scale_ * settings_.penalty);  // Eq. (5)
+  matrices_.add(S(), scale_ * settings_.penalty);  // Eq. (5)
   solver_.load(matrices_.T);
 }
 
@@ -123,24 +140,6 @@ bool UblasSimulation<Product>::update() {
   return std::all_of(rhs_.begin(), rhs_.end(), [&](double x) {  // false for a NaN
     return std::abs(x) <= settings_.tolerance;
   });
-}
-
-template <class Product>
-void UblasSimulation<Product>::project() {  // Eq. (6)
-  phases_.enter(Phase::projection);
-  constraints_.evaluate_jacobian(matrices_.Phi_q);
-  axpy_prod(matrices_.M, v_, rhs_, true);
-  phases_.enter(Phase::solve);
-  solver_.solve(rhs_);
-  v_.swap(rhs_);
-  phases_.enter(Phase::projection);
-  constraints_.evaluate_acceleration_term(v_, weight_);
-  weight_ *= -scale_ * settings_.penalty;
-  axpy_prod(matrices_.M, a_, rhs_, true);
-  axpy_prod(weight_, matrices_.Phi_q, rhs_, false);
-  phases_.enter(Phase::solve);
-  solver_.solve(rhs_);
-  a_.swap(rhs_);
 }
 
 template class UblasSimulation<ExpressionProduct>;

@@ -2,8 +2,11 @@
 #pragma once
 
 #include "assembly.hpp"
+#include "drivers.hpp"
+#include "forces.hpp"
 #include "matrices.hpp"
 #include "mbs/simulation.hpp"
+#include "points.hpp"
 #include "solver.hpp"
 
 namespace mbs::ublas_sparse {
@@ -27,11 +30,22 @@ class UblasSimulation final : public Simulation {
   void assemble_tangent();
   /// Applies the solved correction in rhs_; true if it is within the tolerance.
   [[nodiscard]] bool update();
-  void project();
+  void project_velocity();
+  void project_acceleration();
+  /// Adds -(step^2 / 4) alpha Phi_q^T weight_ to rhs_, Eq. (6).
+  void add_weighted_rows();
+  /// M + (step / 2) C + (step^2 / 4) K of the last pass; M itself where nothing adds to it.
+  [[nodiscard]] const SparseMatrix& S() const { return forces_.has_stiffness() ? S_ : M_; }
 
   StepSettings settings_;
   double scale_;  // step^2 / 4
+  Points points_;
   Constraints constraints_;
+  Drivers drivers_;
+  Forces forces_;
+  SparseMatrix M_;
+  SparseMatrix S_;                   // empty without C and K, as the next
+  std::vector<double> mass_values_;  // those of M at the positions of S_
   TangentMatrices<Product> matrices_;
   KluSolver solver_;
   Vector Q_;

@@ -64,7 +64,7 @@ def _run(layout, options):
                              f"raw/{folder}/{name.replace('/', '.')}-{step:g}.json")
     tables["modelling"] = modelling.rows(pieces, lambda name, loops, case, number: (
         f"raw/modelling/round{number}/{name.replace('/', '.')}-{loops}-"
-        f"{case.replace(' ', '-')}.json"))
+        f"{modelling.label(case)}.json"))
     for name, table in tables.items():
         path = layout.results / f"{name}.csv"
         partial = path.with_suffix(".csv.partial")

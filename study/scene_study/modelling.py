@@ -16,6 +16,7 @@ from study.scene_study.references import four_bar
 IMPLEMENTATIONS = ("csc_klu/refactor", "csc_cholmod/simplicial", "eigen_dense/llt")
 LOOPS = (10, 40)
 STEP, DURATION = 1.25e-3, 10.0
+EARLY = 0.5  # s; the first singular position comes at 0.708 s or later
 SEED = 20080101
 FAINT = 1e-9  # stiffness (N/m) and damping (N s/m) that cost like any other and move nothing
 PLAIN = "plain"
@@ -28,6 +29,8 @@ class Case:
     scene: str = PLAIN     # which of scenes()
     options: tuple = ()
     output: str = "B0"     # "B0", "nothing" or "everything"
+    duration: float = DURATION
+    base: str = PLAIN      # the case that it is compared with
 
 
 CASES = (
@@ -40,6 +43,11 @@ CASES = (
     Case("redundant rods", "constraints", "redundant"),
     Case("velocities projected only", "projections", options=("--projections", "velocity")),
     Case("no projections", "projections", options=("--projections", "none")),
+    Case("plain, before singular", "early", duration=EARLY, base="plain, before singular"),
+    Case("velocities only, before singular", "early", options=("--projections", "velocity"),
+         duration=EARLY, base="plain, before singular"),
+    Case("no projections, before singular", "early", options=("--projections", "none"),
+         duration=EARLY, base="plain, before singular"),
     Case("no output", "output", output="nothing"),
     Case("output of everything", "output", output="everything"),
 )
@@ -80,6 +88,11 @@ def scenes(loops):
     }
 
 
+def label(name):
+    """A case's name in those of files."""
+    return name.replace(",", "").replace(" ", "-")
+
+
 def measure(raw, contenders, contexts, rounds, tell, stored=False):
     """{(implementation, loops, case, round): record}; raw files and the scenes beside them."""
     folder = raw / "modelling"
@@ -101,15 +114,15 @@ def measure(raw, contenders, contexts, rounds, tell, stored=False):
 def _run(folder, contender, loops, case, number, context, stored):
     scene = folder / "scenes" / f"{loops}-{case.scene.replace(' ', '-')}.json"
     path = folder / f"round{number}" / (
-        f"{contender.file_name}-{loops}-{case.name.replace(' ', '-')}.json")
-    steps = round(DURATION / STEP)
-    every = {"B0": steps // metric.SAMPLES, "nothing": 0, "everything": 0}[case.output]
+        f"{contender.file_name}-{loops}-{label(case.name)}.json")
+    steps = round(case.duration / STEP)
+    every = {"B0": max(1, steps // metric.SAMPLES), "nothing": 0, "everything": 0}[case.output]
     more = list(case.options)
     trajectory = path.with_name(path.name + ".trajectory.csv")
     if case.output == "everything":
         path.parent.mkdir(parents=True, exist_ok=True)
         more += ["--trajectory", str(trajectory)]
-    record = runs.simulate(path, contender, str(scene), step=STEP, duration=DURATION, every=every,
+    record = runs.simulate(path, contender, str(scene), step=STEP, duration=case.duration, every=every,
                            context=context, seconds=120, more=more, stored=stored)
     trajectory.unlink(missing_ok=True)
     return record
@@ -122,8 +135,9 @@ def rows(found, relative):
     for (name, loops, case, number), record in found.items():
         status, reason = runs.status(record)
         row = {"implementation": name, "loops": loops, "case": case, "piece": by_name[case].piece,
+               "base": by_name[case].base,
                "round": number, "status": status, "reason": reason, "step": STEP,
-               "duration": DURATION, "run_seconds": record["seconds"]}
+               "duration": by_name[case].duration, "run_seconds": record["seconds"]}
         if "summary" in record:
             summary = record["summary"]
             row |= {key: summary[key] for key in (
@@ -137,6 +151,9 @@ def rows(found, relative):
                 numpy.array(outputs[column]) - exact[column]))) for column in ("B0.x", "B0.y"))
         row["raw_file"] = relative(name, loops, case, number)
         result.append(row)
+    order = [case.name for case in CASES]
+    result.sort(key=lambda row: (row["round"], row["implementation"], row["loops"],
+                                 order.index(row["case"])))
     return pandas.DataFrame(result)
 
 

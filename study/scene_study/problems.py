@@ -34,6 +34,7 @@ class Problem:
     penalty: str = "auto"
     tolerance: str = "auto"
     max_passes: int = 20
+    check_step: float | None = None
     conserved: bool = False
     mirrored: tuple = ()
     everyone: bool = False
@@ -89,8 +90,9 @@ def _check(path, contender, problem, context, stored):
     runs.need(stored, path)
     partial = path.with_name(path.name + ".partial")
     partial.parent.mkdir(parents=True, exist_ok=True)
-    command = contender.call("check", problem.scene, "--step", f"{problem.steps[0]:g}",
-                             *problem.settings, "--time-limit", str(CHECK_SECONDS), "--json",
+    settings = ["--step", f"{problem.check_step:g}"] if problem.check_step else [
+        "--step", f"{problem.steps[0]:g}", *problem.settings]
+    command = contender.call("check", problem.scene, *settings, "--time-limit", str(CHECK_SECONDS), "--json",
                              str(partial), "--implementation", contender.variant)
     ended = child.run(command, 2 * CHECK_SECONDS, runs.MEMORY_MB)
     if partial.exists() and ended.status == "exited":

@@ -16,7 +16,7 @@ def pendulum(times):
     theta = -2 * numpy.arcsin(half)
     theta_rate = 2 * rate * parameter**0.5 * cn
     return {"B.x": numpy.sin(theta), "B.y": -numpy.cos(theta),
-            "vB.x": theta_rate * numpy.cos(theta), "vB.y": theta_rate * numpy.sin(theta)}
+            "vB.vx": theta_rate * numpy.cos(theta), "vB.vy": theta_rate * numpy.sin(theta)}
 
 
 def four_bar(times, loops):
@@ -26,7 +26,7 @@ def four_bar(times, loops):
     parameter = 4 * k / w**2
     sn, cn, dn, _ = ellipj(ellipk(parameter) + w * times / 2, parameter)
     sine, cosine, rate = -2 * sn * cn, 2 * sn**2 - 1, w * dn
-    return {"B0.x": sine, "B0.y": cosine, "vB0.x": rate * cosine, "vB0.y": -rate * sine}
+    return {"B0.x": sine, "B0.y": cosine, "vB0.vx": rate * cosine, "vB0.vy": -rate * sine}
 
 
 def grid(times, size, lean=0.5):

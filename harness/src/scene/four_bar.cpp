@@ -34,4 +34,22 @@ ModelData four_bar(int loops) {
   return data;
 }
 
+Elements four_bar_elements(int loops) {
+  const int rods = loops + 1;
+  Elements elements;
+  for (int i = 0; i < rods; ++i) {
+    elements.rods.push_back({fmt::format("A{}-B{}", i, i), i, rods + i});
+  }
+  for (int i = 1; i < rods; ++i) {
+    elements.rods.push_back({fmt::format("B{}-B{}", i - 1, i), rods + i - 1, rods + i});
+  }
+  Output position, velocity;
+  position.name = "B0";
+  velocity.name = "vB0";
+  velocity.kind = Output::Kind::velocity;
+  position.point = velocity.point = rods;
+  elements.outputs = {position, velocity};
+  return elements;
+}
+
 }  // namespace mbs

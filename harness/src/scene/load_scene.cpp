@@ -63,12 +63,14 @@ Scene load_four_bar(const std::string& scene) {
   const std::string_view rest = std::string_view(scene).substr(kFourBar.size());
   const auto comma = rest.find(',');
   const int loops = parse_loops(scene, rest.substr(0, comma));
-  if (comma == std::string_view::npos) return {scene, Model(four_bar(loops)), loops, {}};
+  if (comma == std::string_view::npos) {
+    return {scene, Model(four_bar(loops)), loops, {}, four_bar_elements(loops), {}};
+  }
   const double asked = parse_fill(scene, rest.substr(comma + 1));
   ModelData data = four_bar(loops);
   try {
     const Fill fill = add_fill(data, asked, kFillSeed);
-    return {scene, Model(std::move(data)), loops, fill};
+    return {scene, Model(std::move(data)), loops, fill, four_bar_elements(loops), {}};
   } catch (const UsageError& error) {
     fail(scene, error.what());
   }

@@ -102,6 +102,9 @@ class Lowering {
   std::map<std::vector<std::pair<int, double>>, std::string> linears_;  // by scaled terms
 };
 
+/// Planar: u . B w is the cross product u x w.
+inline constexpr Matrix3 kCrossProduct{{{0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}};
+
 /// Lowers a draft whose bases are chosen and whose points are placed. Throws UsageError.
 Lowered lower(SceneDraft& draft);
 

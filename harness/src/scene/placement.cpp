@@ -14,12 +14,13 @@ namespace {
 
 class Placement {
  public:
-  explicit Placement(SceneDraft& draft) : draft_(draft), poses_(draft.bodies.size()) {}
+  explicit Placement(SceneDraft& draft)
+      : draft_(draft), poses_(draft.bodies.size()), is_waiting_(draft.bodies.size(), false) {}
 
   void run() {
     for (DraftPoint& point : draft_.points) place_driven(point);
     for (int i = 0; i < bodies(); ++i) place_given(i);
-    for (int i = 0; i < bodies(); ++i) waiting_.push_back(i);
+    for (int i = 0; i < bodies(); ++i) wait(i);
     place_fitted();
     for (int i = 0; i < bodies(); ++i) place_at_origin(i);
     refuse_open_places();
@@ -63,13 +64,19 @@ class Placement {
     set_pose(index, given);
   }
 
+  void wait(int body) {
+    if (is_waiting_[static_cast<std::size_t>(body)]) return;
+    is_waiting_[static_cast<std::size_t>(body)] = true;
+    waiting_.push_back(body);
+  }
+
   void set_pose(int index, const Pose& given) {
     pose(index) = given;
     for (const DraftBody::Item& item : draft_.body(index).items) {
       DraftPoint& point = draft_.point(item.point);
       if (point.position) continue;
       point.position = given.place(item.local, point.is_vector);
-      for (const int other : point.bodies) waiting_.push_back(other);
+      for (const int other : point.bodies) wait(other);
     }
   }
 
@@ -84,6 +91,7 @@ class Placement {
     while (!waiting_.empty()) {
       const int index = waiting_.front();
       waiting_.pop_front();
+      is_waiting_[static_cast<std::size_t>(index)] = false;
       if (pose(index)) continue;
       if (draft_.body(index).rotation) {
         place_given(index);
@@ -179,7 +187,11 @@ class Placement {
     for (const Sighting& sighting : seen) {
       if (!sighting.is_vector && anchor == nullptr) anchor = &sighting;
     }
-    if (body.velocity && pose(index)) {
+    if (body.velocity) {
+      if (!pose(index)) {
+        body.node.get("velocity")
+            .fail("the velocity of a body whose pose is open", "one beside a \"pose\"");
+      }
       return Twist{pose(index)->origin, *body.velocity, body.spin.value_or(Vector3{})};
     }
     if (body.spin && anchor != nullptr) return Twist{anchor->local, anchor->global, *body.spin};
@@ -205,7 +217,8 @@ class Placement {
 
   SceneDraft& draft_;
   std::vector<std::optional<Pose>> poses_;
-  std::deque<int> waiting_;
+  std::deque<int> waiting_;  // bodies to place, each once
+  std::vector<bool> is_waiting_;
   std::vector<bool> inherited_;  // velocities that came from a body
 };
 

@@ -111,6 +111,8 @@ Scene load_scene(const std::string& text);
 /// The N-loop four-bar mechanism of paper/README.md; points A0..AN (fixed), then B0..BN.
 /// Throws UsageError unless 1 <= loops <= kMostLoops.
 ModelData four_bar(int loops);
+/// Its rods, for pictures, and position and velocity of B0 as outputs.
+Elements four_bar_elements(int loops);
 
 /// Parses the text of a JSON scene, assembles its start and checks it, physically too; `where`
 /// names it in errors. A Model made from the result is valid. Throws UsageError.

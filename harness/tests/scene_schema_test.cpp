@@ -1,0 +1,95 @@
+// The JSON Schema names the keys that the reader takes, all of them and no others.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "support/scene_support.hpp"
+
+namespace mbs {
+namespace {
+
+using Keys = std::set<std::string>;
+
+nlohmann::json schema() {
+  std::ifstream file(kScenes / "scene.schema.json");
+  return nlohmann::json::parse(file);
+}
+
+Keys keys_of(const nlohmann::json& object) {
+  Keys keys;
+  for (const auto& [key, value] : object.at("properties").items()) keys.insert(key);
+  return keys;
+}
+
+/// The keys that the complaint about the unknown key "?" lists.
+Keys keys_taken(const std::string& json) {
+  const std::string message = parse_error_of(json);
+  const std::string before = "the unknown key \"?\", allowed is ", after = " (the nearest is";
+  const auto begin = message.find(before), end = message.find(after);
+  EXPECT_TRUE(begin != std::string::npos && end != std::string::npos) << message;
+  if (begin == std::string::npos || end == std::string::npos) return {};
+  std::istringstream list(message.substr(begin + before.size(), end - begin - before.size()));
+  Keys keys;
+  for (std::string key; list >> key;) {
+    if (key.back() == ',') key.pop_back();
+    keys.insert(key);
+  }
+  return keys;
+}
+
+/// A spatial scene with one more list.
+std::string with(const std::string& list, const std::string& item) {
+  return R"({"dimension": 3, "points": [{"name": "A", "position": [0, 0, 0], "fixed": true},
+    {"name": "B", "position": [1, 0, 0]}, {"name": "C", "position": [2, 0, 0]}], ")" +
+         list + "\": " + item + "}";
+}
+
+TEST(SceneSchema, NamesTheReadersKeys) {
+  const nlohmann::json all = schema();
+  EXPECT_EQ(keys_taken(R"({"?": 1})"), keys_of(all));
+  const std::pair<const char*, const char*> kLists[] = {
+      {"vectors", "unit_vector"}, {"rods", "rod"},       {"masses", "mass"},
+      {"bodies", "body"},         {"springs", "spring"}, {"torsion_springs", "torsion_spring"},
+      {"forces", "force"},        {"torques", "torque"}, {"outputs", "output"}};
+  for (const auto& [list, definition] : kLists) {
+    EXPECT_EQ(keys_taken(with(list, R"([{"?": 1}])")), keys_of(all["$defs"][definition])) << list;
+  }
+  EXPECT_EQ(keys_taken(R"({"points": [{"?": 1}]})"), keys_of(all["$defs"]["point"]));
+  EXPECT_EQ(keys_taken(with("assembly", R"({"?": 1})")), keys_of(all["properties"]["assembly"]));
+}
+
+TEST(SceneSchema, NamesTheKeysOfConstraintsAndFunctions) {
+  const nlohmann::json definitions = schema()["$defs"];
+  int types = 0;
+  for (const auto& constraint : definitions["constraint"]["oneOf"]) {
+    const std::string type = constraint["properties"]["type"]["const"];
+    ++types;
+    EXPECT_EQ(
+        keys_taken(with("constraints", R"([{"?": 1, "between": ["A", "B"], "points": ["A", "B"],
+                                "first": ["A", "B"], "second": ["B", "C"], "type": ")" +
+                                           type + "\"}]")),
+        keys_of(constraint))
+        << type;
+  }
+  EXPECT_EQ(types, 7);
+  const std::string distance = R"([{"type": "distance", "between": ["A", "B"], "value": )";
+  Keys functions;
+  for (const auto& function : definitions["function"]["oneOf"]) {
+    if (!function.contains("properties")) continue;
+    const Keys kind = keys_of(function);
+    functions.insert(kind.begin(), kind.end());
+    const nlohmann::json& inner = function["properties"][*kind.begin()];
+    if (!inner.contains("properties")) continue;
+    EXPECT_EQ(
+        keys_taken(with("constraints", distance + "{\"" + *kind.begin() + R"(": {"?": 1}}}])")),
+        keys_of(inner));
+  }
+  EXPECT_EQ(keys_taken(with("constraints", distance + R"({"?": 1}}])")), functions);
+}
+
+}  // namespace
+}  // namespace mbs
