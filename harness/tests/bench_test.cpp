@@ -33,8 +33,7 @@ class Scripted final : public Simulation {
  public:
   enum class Script { still, slow_setup, not_finite, refuses, at_limit, phases };
 
-  Scripted(const Model& model, Script script)
-      : Simulation(model, StepSettings{}), script_(script) {
+  Scripted(const Model& model, Script script) : Simulation(model, StepSettings{}), script_(script) {
     if (script_ == Script::slow_setup) wait(milliseconds(4));
   }
 

@@ -68,8 +68,9 @@ TEST(Describe, Text) {
        {"coordinates n         6 (3 free and 3 fixed", "constraints m         5\n",
         "degrees of freedom    1 (n - rank of the Jacobian, 5)\n", "redundant             none\n",
         "start                 regular\n", "assembly              consistent as given\n",
-        "terms present         gravity or constant forces (Q), quadratic constraints (5), fixed "
-        "points (3)\n",
+        "terms present         gravity or constant forces (Q), rods (5), quadratic constraints "
+        "(5), "
+        "fixed points (3)\n",
         "terms absent          torques, springs and dampers, torsion springs, stiffness (K), "
         "damping (C)",
         "penalty factor        ", "(singular positions) to ", "for step 0.00125 s; automatic ",

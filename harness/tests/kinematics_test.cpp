@@ -93,8 +93,7 @@ TEST_P(Kinematics, CurvatureIsWhatTheRateGainsBesidesAcceleration) {
 /// At rest, without couples and drivers, the force is minus the gradient of the energy.
 TEST_P(Kinematics, ForceIsTheGradientOfThePotential) {
   const Model& model = GetParam().model;
-  if (!model.couples().empty() || !model.driven_mass().empty() ||
-      !model.driven_points().empty()) {
+  if (!model.couples().empty() || !model.driven_mass().empty() || !model.driven_points().empty()) {
     GTEST_SKIP() << "has forces without a potential";
   }
   Values is_length(model.variables(), 0.0);  // of a unit vector: constrained, so without a force

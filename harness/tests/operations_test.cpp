@@ -90,7 +90,8 @@ TEST(Operations, OfEveryVariantThatOffersThemAreRight) {
     if (variant.variant->operations == nullptr) continue;
     ++offered;
     std::vector<Scene> scenes{test::free_fall(), test::spatial_pendulum()};
-    for (const char* name : {"four-bar:1", "four-bar:6", "four-bar:5,fill=0.7", "four-bar:4,fill=1"}) {
+    for (const char* name :
+         {"four-bar:1", "four-bar:6", "four-bar:5,fill=0.7", "four-bar:4,fill=1"}) {
       scenes.push_back(load_scene(name));
     }
     for (const Scene& scene : scenes) {

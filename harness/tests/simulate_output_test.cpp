@@ -109,7 +109,8 @@ TEST_F(SimulateOutput, SaysWhatTheStartNeeded) {
 }
 
 TEST_F(SimulateOutput, RefusesASceneWithoutOutputs) {
-  const auto run = simulate("four-bar:2 --duration 0.1" + to("--output", "out.csv"));
+  const auto run =
+      simulate(MBS_ROOT "/harness/scenes/pendulum.json --duration 0.1" + to("--output", "out.csv"));
   EXPECT_EQ(run.status, 2);
   EXPECT_EQ(std::ranges::count(run.errors, '\n'), 1) << run.errors;
   EXPECT_NE(run.errors.find("--trajectory"), std::string::npos) << run.errors;

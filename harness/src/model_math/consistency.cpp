@@ -126,16 +126,22 @@ class Approach {
   Approach(const Model& model, double t, const std::vector<double>& sizes)
       : model_(model), t_(t), sizes_(sizes) {}
 
-  /// One step of q and Phi(q, t). False, and both unchanged, if no step helps.
-  bool step(std::vector<double>& q, std::vector<double>& phi) {
+  /// One step of q and Phi(q, t), whose worst ratio is `ratio`. False, and both unchanged, if no
+  /// step helps. Once the constraints are met what is left is rounding, which a plain step may
+  /// still reduce; damping would only cost time.
+  bool step(std::vector<double>& q, std::vector<double>& phi, double ratio) {
     constexpr double kFirst = 1e-4, kLast = 1e4;  // damping, where there is any
+    constexpr double kNear = 1e-3;  // from here on plain steps do not lead to another solution
+    const bool is_met = ratio <= kMet;
+    if (is_met) damping_ = 0.0;
     const double before = merit(phi, sizes_);
-    for (; damping_ <= kLast; damping_ = std::max(kFirst, 10.0 * damping_)) {
+    if (damping_ == 0.0 && run_plain(q, phi, before, ratio < kNear ? 8 : 1)) return true;
+    if (is_met) return false;
+    for (damping_ = std::max(kFirst, damping_); damping_ <= kLast; damping_ *= 10.0) {
       const LeastChange least(model_, t_, q, {}, damping_);
       std::vector<double> trial = sum(q, 1.0, least.solve(negative(phi)));
       std::vector<double> trial_phi = constraints_at(model_, t_, trial);
-      const double enough = (damping_ == 0.0 ? 0.9 : 1.0) * before;
-      if (!(merit(trial_phi, sizes_) < enough)) continue;  // nor does NaN help
+      if (!(merit(trial_phi, sizes_) < before)) continue;  // nor does NaN help
       damping_ = damping_ > kFirst ? damping_ / 10.0 : 0.0;
       q = std::move(trial);
       phi = std::move(trial_phi);
@@ -145,6 +151,24 @@ class Approach {
   }
 
  private:
+  /// Up to `steps` plain steps, which may make things worse before they converge quadratically, as
+  /// long chains do. Goes to the first of them that is better than the start of the run.
+  bool run_plain(std::vector<double>& q, std::vector<double>& phi, double before, int steps) {
+    std::vector<double> trial = q, trial_phi = phi;
+    for (int i = 0; i < steps; ++i) {
+      trial = sum(trial, 1.0, LeastChange(model_, t_, trial, {}, 0.0).solve(negative(trial_phi)));
+      trial_phi = constraints_at(model_, t_, trial);
+      const double after = merit(trial_phi, sizes_);
+      if (!std::isfinite(after)) return false;
+      if (after < 0.9 * before) {
+        q = std::move(trial);
+        phi = std::move(trial_phi);
+        return true;
+      }
+    }
+    return false;
+  }
+
   const Model& model_;
   double t_;
   const std::vector<double>& sizes_;
@@ -183,7 +207,8 @@ Violation move_onto_constraints(const Model& model, double t, std::vector<double
   // Towards a singular position the steps halve the distance only: 60 of them reach rounding.
   constexpr int kMostSteps = 100;
   Approach approach(model, t, sizes);
-  for (int i = 0; i < kMostSteps && rest.ratio > kReached && approach.step(q, phi); ++i) {
+  for (int i = 0; i < kMostSteps && rest.ratio > kReached; ++i) {
+    if (!approach.step(q, phi, rest.ratio)) break;
     rest = worst_of(phi, sizes);
   }
   return rest;

@@ -28,8 +28,8 @@ class Wave final : public TimeFunction::Kind {
 
 /// A wave whose value at t = 0 is `start`.
 TimeFunction wave(double start, double amplitude, double frequency, double phase) {
-  return TimeFunction(std::make_shared<Wave>(start - amplitude * std::sin(phase), amplitude,
-                                             frequency, phase));
+  return TimeFunction(
+      std::make_shared<Wave>(start - amplitude * std::sin(phase), amplitude, frequency, phase));
 }
 
 /// A chain A (fixed), B, C, D, E of rods, G fixed aside, P driven, and in space the unit vectors
@@ -95,9 +95,8 @@ class Builder {
   /// P moves; what it is connected to follows.
   void drive_point() {
     const auto& r = data_.points[P].position;
-    data_.driven_points.push_back({P,
-                                   {wave(r[0], 0.1, 7.0, 0.3), wave(r[1], -0.15, 5.0, 1.0),
-                                    wave(r[2], 0.05, 9.0, 0.0)}});
+    data_.driven_points.push_back(
+        {P, {wave(r[0], 0.1, 7.0, 0.3), wave(r[1], -0.15, 5.0, 1.0), wave(r[2], 0.05, 9.0, 0.0)}});
   }
   /// With the mass matrix of a rod from E to the driven P.
   void driven_rod() {
@@ -108,9 +107,7 @@ class Builder {
       data_.driven_mass.push_back({data_.points[E].offset + k, P, k, 0.5 / 6});
     }
   }
-  void drive_value(int constraint, double amplitude) {
-    driven_.push_back({constraint, amplitude});
-  }
+  void drive_value(int constraint, double amplitude) { driven_.push_back({constraint, amplitude}); }
   int bilinear(int a, int b, int c, int d) {
     BilinearConstraint constraint{a, b, c, d, {}, 0.0, "bilinear"};
     for (int i = 0; i < data_.dimension; ++i) {
@@ -162,8 +159,7 @@ class Builder {
     for (auto& c : data_.bilinear_constraints) c.value += phi[row++];
     for (auto& c : data_.linear_constraints) c.value += phi[row++];
     for (const auto& [constraint, amplitude] : driven_) {
-      data_.driven_values.push_back(
-          {constraint, wave(phi[constraint], amplitude, 6.0, 0.7)});
+      data_.driven_values.push_back({constraint, wave(phi[constraint], amplitude, 6.0, 0.7)});
     }
   }
 
@@ -193,7 +189,10 @@ std::vector<Term> terms() {
        [](Builder& b) {
          b.data().springs = {{D, G, 0.0, 8.0, 0.0, "to the ground"}, {B, E, 0.0, 5.0, 0.0, "free"}};
        }},
-      {"zero springs", [](Builder& b) { b.data().springs = {{D, G, 0.0, 0.0, 0.0, "nothing"}}; }},
+      {"zero springs",
+       [](Builder& b) {
+         b.data().springs = {{D, G, 0.0, 0.0, 0.0, "nothing"}};
+       }},
       {"spring to a driven point",
        [](Builder& b) {
          b.drive_point();
@@ -201,9 +200,9 @@ std::vector<Term> terms() {
        }},
       {"torsion springs",
        [](Builder& b) {
-         b.data().torsion_springs = {{B, A, C, B, b.axis(), 12.0, 0.0, 0.4, "hinge"},
-                                     {A, B, G, G == 0 ? A : (b.spatial() ? A : D), b.axis(), 0.0,
-                                      0.0, 0.0, "zero"}};
+         b.data().torsion_springs = {
+             {B, A, C, B, b.axis(), 12.0, 0.0, 0.4, "hinge"},
+             {A, B, G, G == 0 ? A : (b.spatial() ? A : D), b.axis(), 0.0, 0.0, 0.0, "zero"}};
          if (b.spatial()) b.data().torsion_springs.pop_back();
        }},
       {"torsion dampers",
@@ -228,7 +227,10 @@ std::vector<Term> terms() {
                                         {{{d + 1, 0.5}, {e + 1, -0.5}}, 0.0, "other"}};
          b.drive_value(static_cast<int>(b.data().dot_constraints.size()), 0.05);
        }},
-      {"dot", [](Builder& b) { b.data().dot_constraints.push_back({B, A, E, D, 0.0, "dot"}); }},
+      {"dot",
+       [](Builder& b) {
+         b.data().dot_constraints.push_back({B, A, E, D, 0.0, "dot"});
+       }},
       {"dot with a driven direction",
        [](Builder& b) {
          b.drive_point();
@@ -278,8 +280,8 @@ std::vector<TermModel> term_models() {
     for (const auto& [name, add] : terms()) {
       Builder builder(dimension);
       add(builder);
-      models.push_back({std::string(name) + (dimension == 2 ? ", planar" : ", spatial"),
-                        builder.finish()});
+      models.push_back(
+          {std::string(name) + (dimension == 2 ? ", planar" : ", spatial"), builder.finish()});
     }
   }
   return models;

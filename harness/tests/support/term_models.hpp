@@ -1,6 +1,7 @@
 // Small models that hold every term of the equations, each alone and all together.
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@ struct TermModel {
   std::string name;
   Model model;
 };
+
+/// How GoogleTest names it.
+inline void PrintTo(const TermModel& model, std::ostream* out) { *out << model.name; }
 
 /// Mechanisms of a few points in two and three dimensions, each with one kind of term and one with
 /// all of them; their start fulfils the constraints, velocities included.
