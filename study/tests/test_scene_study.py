@@ -106,7 +106,8 @@ def test_two_problems_through_the_real_program(tmp_path):
     meaningful = orders[orders.order_meaningful]
     assert len(meaningful) and meaningful.order.between(1.9, 2.1).all(), meaningful
     pieces = pandas.read_csv(results / "modelling.csv")
-    assert set(pieces.status) == {"ok"}, pieces[pieces.status != "ok"]
+    lost = pieces[pieces.status != "ok"]  # no projections: lost at a singular position
+    assert set(lost.piece) <= {"projections"} and lost.reason.notna().all(), lost.reason
     assert (pieces.position_error.dropna() < 0.05).all()
     for raw in [*found.raw_file, *pieces.raw_file]:
         assert (results / raw).exists(), raw
