@@ -1,8 +1,7 @@
 // The projections that end a step, Eq. (6).
-#include <boost/numeric/ublas/matrix.hpp>  // operation.hpp misses it
-#include <boost/numeric/ublas/operation.hpp>
+#include "simulation.hpp"  // first: matrices.hpp sets up uBLAS
 
-#include "simulation.hpp"
+#include <boost/numeric/ublas/operation.hpp>
 
 namespace mbs::ublas_sparse {
 
