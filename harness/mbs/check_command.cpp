@@ -15,7 +15,7 @@
 namespace mbs {
 namespace {
 
-struct Options {
+struct CheckOptions {
   std::vector<std::string> scenes;
   std::vector<std::string> implementations;
   StepOptions step;
@@ -37,7 +37,7 @@ void print_verdict(const Verdict& verdict) {
   std::fflush(stdout);
 }
 
-int check(const Options& options) {
+int check(const CheckOptions& options) {
   if (!(options.time_limit > 0.0) || !(options.time_limit <= 1e6)) {
     throw UsageError(fmt::format("--time-limit is {:g} s: it must be above 0 and at most 1e6",
                                  options.time_limit));
@@ -77,7 +77,7 @@ int check(const Options& options) {
 void add_check_command(CLI::App& app, int& status) {
   auto* command =
       app.add_subcommand("check", "check that implementations agree with the reference");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CheckOptions>();
   command->add_option("scenes", options->scenes,
                       "scenes (default: four-bar:1 four-bar:10 four-bar:10,fill=0.6 four-bar:40)");
   command->add_option("--implementation", options->implementations,

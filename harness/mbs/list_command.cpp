@@ -30,12 +30,11 @@ nlohmann::json list_json() {
     const Implementation& implementation = entry.implementation;
     nlohmann::json variants = nlohmann::json::array();
     for (const Variant& variant : implementation.variants) {
-      variants.push_back(
-          {{"name", entry.folder + "/" + variant.name},
-           {"description", variant.description},
-           {"dense", variant.dense},
-           {"unsymmetric", variant.unsymmetric},
-           {"operations", variant.operations != nullptr}});
+      variants.push_back({{"name", entry.folder + "/" + variant.name},
+                          {"description", variant.description},
+                          {"dense", variant.dense},
+                          {"unsymmetric", variant.unsymmetric},
+                          {"operations", variant.operations != nullptr}});
     }
     implementations.push_back({{"folder", entry.folder},
                                {"description", implementation.description},

@@ -16,7 +16,7 @@
 namespace mbs {
 namespace {
 
-struct Options {
+struct SimulateOptions {
   std::string scene;
   std::string implementation;
   StepOptions step;
@@ -53,8 +53,8 @@ const std::map<std::string, Projections> kProjections{
     {"none", Projections::none}, {"velocity", Projections::velocity}, {"both", Projections::both}};
 
 /// Runs, and writes the files that were asked for.
-RunSummary run_with_files(const Options& options, const Scene& scene, const Variant& variant,
-                          const RunSettings& settings) {
+RunSummary run_with_files(const SimulateOptions& options, const Scene& scene,
+                          const Variant& variant, const RunSettings& settings) {
   std::optional<TrajectoryFile> trajectory;
   if (!options.trajectory.empty()) trajectory.emplace(options.trajectory, scene);
   std::optional<OutputFile> output;
@@ -74,7 +74,7 @@ RunSummary run_with_files(const Options& options, const Scene& scene, const Vari
   return summary;
 }
 
-int simulate(const Options& options) {
+int simulate(const SimulateOptions& options) {
   const std::vector<NamedVariant> variants = select_variants({options.implementation});
   if (variants.size() != 1) {
     throw UsageError(fmt::format("--implementation '{}' has {} variants: name one, folder/variant",
@@ -109,7 +109,7 @@ int simulate(const Options& options) {
 
 void add_simulate_command(CLI::App& app, int& status) {
   auto* command = app.add_subcommand("simulate", "simulate a scene with one implementation");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SimulateOptions>();
   command->add_option("scene", options->scene, "the scene")->required();
   command->add_option("--implementation", options->implementation, "folder/variant (see mbs list)")
       ->required();

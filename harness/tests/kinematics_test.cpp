@@ -14,7 +14,7 @@ namespace {
 using Values = std::vector<double>;
 
 constexpr double kTime = 0.37;  // s
-constexpr double kStep = 1e-6;
+constexpr double kDifference = 1e-6;
 
 /// A motion that has nothing to do with the model: q(t), v(t), a(t) of each coordinate.
 struct Motion {
@@ -54,11 +54,11 @@ class Kinematics : public ::testing::TestWithParam<test::TermModel> {};
 
 TEST_P(Kinematics, RateIsTheDerivativeOfPhiAlongAMotion) {
   const Model& model = GetParam().model;
-  const Values after = phi_at(model, kTime + kStep, motion(model, kTime + kStep).q);
-  const Values before = phi_at(model, kTime - kStep, motion(model, kTime - kStep).q);
+  const Values after = phi_at(model, kTime + kDifference, motion(model, kTime + kDifference).q);
+  const Values before = phi_at(model, kTime - kDifference, motion(model, kTime - kDifference).q);
   const Values rate = rate_at(model, kTime);
   for (int k = 0; k < model.constraints(); ++k) {
-    EXPECT_NEAR(rate[k], (after[k] - before[k]) / (2 * kStep), 1e-8) << "row " << k;
+    EXPECT_NEAR(rate[k], (after[k] - before[k]) / (2 * kDifference), 1e-8) << "row " << k;
   }
 }
 
@@ -68,12 +68,12 @@ TEST_P(Kinematics, JacobianIsTheDerivativeOfPhi) {
   for (int i = 0; i < model.variables(); ++i) {
     Values unit(model.variables(), 0.0), above = at.q, below = at.q;
     unit[i] = 1.0;
-    above[i] += kStep;
-    below[i] -= kStep;
+    above[i] += kDifference;
+    below[i] -= kDifference;
     const Values column = jacobian_times(model, kTime, at.q, unit);
     const Values high = phi_at(model, kTime, above), low = phi_at(model, kTime, below);
     for (int k = 0; k < model.constraints(); ++k) {
-      EXPECT_NEAR(column[k], (high[k] - low[k]) / (2 * kStep), 1e-8) << k << ", " << i;
+      EXPECT_NEAR(column[k], (high[k] - low[k]) / (2 * kDifference), 1e-8) << k << ", " << i;
     }
   }
 }
@@ -81,12 +81,13 @@ TEST_P(Kinematics, JacobianIsTheDerivativeOfPhi) {
 TEST_P(Kinematics, CurvatureIsWhatTheRateGainsBesidesAcceleration) {
   const Model& model = GetParam().model;
   const Motion at = motion(model, kTime);
-  const Values after = rate_at(model, kTime + kStep), before = rate_at(model, kTime - kStep);
+  const Values after = rate_at(model, kTime + kDifference),
+               before = rate_at(model, kTime - kDifference);
   const Values accelerated = jacobian_times(model, kTime, at.q, at.a);
   Values curvature(model.constraints());
   constraint_curvature(model, kTime, at.q, at.v, curvature);
   for (int k = 0; k < model.constraints(); ++k) {
-    EXPECT_NEAR(accelerated[k] + curvature[k], (after[k] - before[k]) / (2 * kStep), 1e-6);
+    EXPECT_NEAR(accelerated[k] + curvature[k], (after[k] - before[k]) / (2 * kDifference), 1e-6);
   }
 }
 
@@ -106,11 +107,11 @@ TEST_P(Kinematics, ForceIsTheGradientOfThePotential) {
   applied_force(model, kTime, q, rest, force);
   for (int i = 0; i < model.variables(); ++i) {
     Values above = q, below = q;
-    above[i] += kStep;
-    below[i] -= kStep;
+    above[i] += kDifference;
+    below[i] -= kDifference;
     const double slope =
         (potential_energy(model, kTime, above) - potential_energy(model, kTime, below)) /
-        (2 * kStep);
+        (2 * kDifference);
     if (is_length[i] != 0.0) continue;
     EXPECT_NEAR(force[i], -slope, 1e-6) << "coordinate " << i;
   }

@@ -24,13 +24,13 @@ constexpr const char* kPendulum = R"({
   "outputs": [{"name": "tip", "position": "B"}, {"name": "energy", "energy": "total"},
               {"name": "pull", "constraint_force": "rod"}]})";
 
-struct Table {
+struct CsvTable {
   std::vector<std::string> columns;
   std::vector<std::vector<double>> rows;
 };
 
-Table read_table(const std::string& path) {
-  Table table;
+CsvTable read_table(const std::string& path) {
+  CsvTable table;
   std::istringstream text(test::file_text(path));
   std::string line, part;
   std::getline(text, line);
@@ -65,7 +65,7 @@ class SimulateOutput : public ::testing::Test {
 TEST_F(SimulateOutput, WritesWhatTheSceneAsksForAndNothingElse) {
   const auto run = simulate(scene() + " --duration 0.5 --every 100" + to("--output", "out.csv"));
   ASSERT_EQ(run.status, 0) << run.errors;
-  const Table table = read_table(folder_.file("out.csv"));
+  const CsvTable table = read_table(folder_.file("out.csv"));
   EXPECT_EQ(table.columns, (std::vector<std::string>{"t", "tip.x", "tip.y", "energy", "pull"}));
   ASSERT_EQ(table.rows.size(), 5u);  // steps 0, 100, 200, 300, 400
   for (std::size_t i = 0; i < 5; ++i) {
@@ -84,8 +84,8 @@ TEST_F(SimulateOutput, WritesBothTables) {
   const auto run = simulate(scene() + " --duration 0.01" + to("--output", "out.csv") +
                             to("--trajectory", "all.csv"));
   ASSERT_EQ(run.status, 0) << run.errors;
-  const Table output = read_table(folder_.file("out.csv"));
-  const Table trajectory = read_table(folder_.file("all.csv"));
+  const CsvTable output = read_table(folder_.file("out.csv"));
+  const CsvTable trajectory = read_table(folder_.file("all.csv"));
   EXPECT_EQ(trajectory.columns, (std::vector<std::string>{
                                     "t", "A.x", "A.y", "A.vx", "A.vy", "B.x", "B.y", "B.vx", "B.vy",
                                     "kinetic_energy", "potential_energy", "constraint_violation"}));

@@ -14,21 +14,21 @@
 namespace mbs {
 namespace {
 
-constexpr double kStep = 1.25e-3;
+constexpr double kTimeStep = 1.25e-3;
 
 TEST(Stretch, IsCentredOnTheSingularPosition) {
   for (const int loops : {1, 10, kMostLoopsToCross}) {
     const Scene scene = load_scene("four-bar:" + std::to_string(loops));
     const double singular = FourBarExact(loops).first_singular_time();
-    const Stretch stretch = make_stretch(scene, kStep, 800);
+    const Stretch stretch = make_stretch(scene, kTimeStep, 800);
     EXPECT_EQ(stretch.steps, 800);
-    EXPECT_NEAR(stretch.start + 400 * kStep, singular, 1e-12) << loops;
+    EXPECT_NEAR(stretch.start + 400 * kTimeStep, singular, 1e-12) << loops;
   }
 }
 
 TEST(Stretch, IsClippedAtZero) {
   const Scene scene = load_scene("four-bar:2");
-  const Stretch stretch = make_stretch(scene, kStep, 5000);
+  const Stretch stretch = make_stretch(scene, kTimeStep, 5000);
   EXPECT_EQ(stretch.start, 0.0);
   EXPECT_EQ(stretch.steps, 5000);
 }
@@ -37,18 +37,18 @@ TEST(Stretch, OfALongChainEndsBeforeTheSingularPosition) {
   const int loops = kMostLoopsToCross + 1;
   const Scene scene = load_scene("four-bar:" + std::to_string(loops));
   const double singular = FourBarExact(loops).first_singular_time();
-  const Stretch stretch = make_stretch(scene, kStep, 300);
-  EXPECT_NEAR(stretch.start + 300 * kStep, singular - 0.2, 1e-12);
+  const Stretch stretch = make_stretch(scene, kTimeStep, 300);
+  EXPECT_NEAR(stretch.start + 300 * kTimeStep, singular - 0.2, 1e-12);
   EXPECT_EQ(stretch.steps, 300);
-  const Stretch longest = make_stretch(scene, kStep, 10'000);  // fewer fit
+  const Stretch longest = make_stretch(scene, kTimeStep, 10'000);  // fewer fit
   EXPECT_LT(longest.steps, 600);
-  EXPECT_LT(longest.start, kStep);
-  EXPECT_NEAR(longest.start + longest.steps * kStep, singular - 0.2, 1e-12);
+  EXPECT_LT(longest.start, kTimeStep);
+  EXPECT_NEAR(longest.start + longest.steps * kTimeStep, singular - 0.2, 1e-12);
 }
 
 TEST(Stretch, StartsOnTheExactMotion) {
   const Scene scene = load_scene("four-bar:3");
-  const Stretch stretch = make_stretch(scene, kStep, 800);
+  const Stretch stretch = make_stretch(scene, kTimeStep, 800);
   const FourBarExact exact(3);
   std::vector<double> q(8), v(8), a(8);
   exact.state(stretch.start, q, v, a);
@@ -61,7 +61,7 @@ TEST(Stretch, StartsOnTheExactMotion) {
 TEST(Stretch, StartsWhereItIsTold) {
   const Scene scene = load_scene("four-bar:3");
   for (const double start : {0.0, 0.1, 17.0}) {
-    const Stretch stretch = make_stretch(scene, kStep, 100, start);
+    const Stretch stretch = make_stretch(scene, kTimeStep, 100, start);
     EXPECT_EQ(stretch.start, start);
     EXPECT_LT(FourBarExact(3).position_error(start, stretch.initial.q), 1e-15);
   }
@@ -71,21 +71,21 @@ TEST(Stretch, OfOtherScenesStartsAtZero) {
   const Scene scene = test::spatial_pendulum();
   const State initial = initial_state(scene.model);
   for (const Stretch& stretch :
-       {make_stretch(scene, kStep, 50), make_stretch(scene, kStep, 50, 0.0)}) {
+       {make_stretch(scene, kTimeStep, 50), make_stretch(scene, kTimeStep, 50, 0.0)}) {
     EXPECT_EQ(stretch.start, 0.0);
     EXPECT_EQ(stretch.steps, 50);
     EXPECT_EQ(stretch.initial.q, initial.q);
     EXPECT_EQ(stretch.initial.a, initial.a);
     EXPECT_EQ(stretch.initial.lambda, initial.lambda);
   }
-  EXPECT_THROW(make_stretch(scene, kStep, 50, 1.0), UsageError);
+  EXPECT_THROW(make_stretch(scene, kTimeStep, 50, 1.0), UsageError);
 }
 
 TEST(Stretch, RefusesABadStart) {
   const Scene scene = load_scene("four-bar:3");
   for (const double start : {-1e-9, -1.0, std::numeric_limits<double>::quiet_NaN(),
                              std::numeric_limits<double>::infinity()}) {
-    EXPECT_THROW(make_stretch(scene, kStep, 100, start), UsageError) << start;
+    EXPECT_THROW(make_stretch(scene, kTimeStep, 100, start), UsageError) << start;
   }
 }
 

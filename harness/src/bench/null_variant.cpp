@@ -7,8 +7,7 @@ namespace {
 
 class NullSimulation final : public Simulation {
  public:
-  explicit NullSimulation(const Model& model)
-      : Simulation(model, StepSettings{}) {}
+  explicit NullSimulation(const Model& model) : Simulation(model, StepSettings{}) {}
 
  protected:
   void do_set_state(const State& state) override { state_ = state; }

@@ -160,7 +160,8 @@ void OperationRows::run(Subject& subject, std::size_t operation, benchmark::Stat
       for (auto iteration : state) (void)iteration, operations.rank_update();
       break;
     default:
-      for (auto iteration : state) (void)iteration, operations.add_mass(eq5_factor(planned.settings));
+      for (auto iteration : state)
+        (void)iteration, operations.add_mass(eq5_factor(planned.settings));
   }
   state.counters["variables"] = planned.scene.model.variables();
   state.counters["constraints"] = planned.scene.model.constraints();

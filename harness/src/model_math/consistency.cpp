@@ -15,16 +15,14 @@ namespace {
 
 constexpr double kReached = 1e-15;  // no better ratio is worth a step
 
-double norm(const Vector3& x) { return std::hypot(x[0], x[1], x[2]); }
-
-double norm(const BilinearConstraint& c) {
+double factor_norm(const BilinearConstraint& c) {
   double sum = 0.0;
   for (const auto& row : c.B) {
     for (const double entry : row) sum = std::hypot(sum, entry);
   }
   return sum;
 }
-double norm(const DotConstraint&) { return 1.0; }
+double factor_norm(const DotConstraint&) { return 1.0; }
 
 /// Positions of the points, fixed and driven ones included.
 std::vector<Vector3> positions(const Model& model, const KnownMotion& known,
@@ -62,7 +60,7 @@ std::vector<double> sizes_of_terms(const Model& model, double t, std::span<const
   };
   const auto add_quadratic = [&](const auto& c) {
     const double u = length(c.a, c.b), w = length(c.c, c.d);
-    result.push_back(norm(c) * (u * w + (u + w) * largest) + value());
+    result.push_back(factor_norm(c) * (u * w + (u + w) * largest) + value());
   };
   for (const DotConstraint& c : model.dot_constraints()) add_quadratic(c);
   for (const BilinearConstraint& c : model.bilinear_constraints()) add_quadratic(c);

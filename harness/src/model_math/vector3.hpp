@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 namespace mbs {
 
@@ -20,6 +21,7 @@ inline Vector3 operator*(double factor, const Vector3& x) {
 inline double dot(const Vector3& x, const Vector3& y) {
   return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
 }
+inline double norm(const Vector3& x) { return std::hypot(x[0], x[1], x[2]); }
 inline Vector3 cross(const Vector3& x, const Vector3& y) {
   return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
 }

@@ -16,8 +16,8 @@ State consistent_state(const Model& model, std::span<const double> q, std::span<
 /// consistent_state() at the model's initial position and velocity.
 State initial_state(const Model& model);
 
-/// Smallest eigenvalue of Phi_q M^-1 Phi_q^T at q and t = 0 (m^2/kg), to a few per cent; infinity without
-/// constraints. It sets how fast the multiplier iteration contracts.
+/// Smallest eigenvalue of Phi_q M^-1 Phi_q^T at q and t = 0 (m^2/kg), to a few per cent; infinity
+/// without constraints. It sets how fast the multiplier iteration contracts.
 double smallest_constraint_eigenvalue(const Model& model, std::span<const double> q);
 
 }  // namespace mbs

@@ -7,27 +7,13 @@
 #include <cmath>
 #include <limits>
 
+#include "model_math/extent.hpp"
 #include "model_math/kinematics.hpp"
 #include "model_math/known_motion.hpp"
 #include "model_math/vector3.hpp"
 
 namespace mbs {
 namespace {
-
-/// Largest distance along one axis that the scene's points span at t = 0, m; 1 if they span none.
-double extent(const Model& model) {
-  double largest = 0.0;
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(model.dimension()); ++axis) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Point& point : model.points()) {
-      if (point.is_vector) continue;
-      low = std::min(low, point.position[axis]);
-      high = std::max(high, point.position[axis]);
-    }
-    largest = std::max(largest, high - low);
-  }
-  return largest > 0.0 ? largest : 1.0;
-}
 
 /// Largest entry of B, at least of a dot constraint.
 double largest_factor(const DotConstraint&) { return 1.0; }
@@ -42,7 +28,7 @@ double largest_factor(const BilinearConstraint& c) {
 /// What each constraint's |Phi| is small against: the product of the two lengths that it relates,
 /// or its value if that is more, or the extent times the largest coefficient if linear.
 std::vector<double> constraint_scales(const Model& model) {
-  const double scene_extent = extent(model);
+  const double scene_extent = extent(model.points());
   const auto known = KnownMotion(model, 0.0).values();
   std::vector<double> scales;
   const auto length = [points = model.points()](int a, int b) {
@@ -90,7 +76,7 @@ Judge::Judge(const Scene& scene, const State& initial, double start)
     force += std::abs(model.force()[i]);
     in_springs += model.force()[i] * initial.q[i];
   }
-  energy_scale_ = 1e-3 * (force * extent(model) + std::max(in_springs, 0.0));
+  energy_scale_ = 1e-3 * (force * extent(model.points()) + std::max(in_springs, 0.0));
   if (scene.four_bar_loops) {
     exact_.emplace(*scene.four_bar_loops);
     position_error_ = 0.0;

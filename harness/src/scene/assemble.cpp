@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "model_math/consistency.hpp"
+#include "model_math/extent.hpp"
 #include "printable.hpp"
 #include "scene/row_names.hpp"
 #include "scene/scene.hpp"
@@ -27,21 +28,6 @@ double change_of(const Point& point, int dimension, std::span<const double> from
     change = std::hypot(change, to[i] - from[i]);
   }
   return change;
-}
-
-/// Largest distance along one axis that the points span, m.
-double extent(const Model& model) {
-  double result = 0.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Point& point : model.points()) {
-      if (point.is_vector) continue;
-      low = std::min(low, point.position[axis]);
-      high = std::max(high, point.position[axis]);
-    }
-    result = std::max(result, high - low);
-  }
-  return result;
 }
 
 class Assembly {
@@ -78,7 +64,7 @@ class Assembly {
                       describe_violation(model_, rest)));
     }
     // A vector's change is that of a point at its end if it were as long as the scene.
-    const double scene_extent = extent(model_);
+    const double scene_extent = extent(model_.points());
     double largest = 0.0;
     std::string where;
     for (const Point& point : model_.points()) {

@@ -20,8 +20,6 @@ constexpr double kSharedBonus = 4.0;
 /// The same for fixed items, which must be in the basis if they add anything to it.
 constexpr double kKnownApart = 1e-6;
 
-double norm(const Vector3& x) { return std::hypot(x[0], x[1], x[2]); }
-
 class BasisChoice {
  public:
   BasisChoice(SceneDraft& draft, int index)

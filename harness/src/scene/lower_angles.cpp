@@ -9,11 +9,7 @@
 #include "scene/time_functions.hpp"
 
 namespace mbs {
-namespace {
-
-double norm(const Vector3& x) { return std::hypot(x[0], x[1], x[2]); }
-
-}  // namespace
+namespace {}  // namespace
 
 /// Radians; in the plane from first to second, counter-clockwise, in space 0 ... pi.
 double Lowering::start_angle(const DraftConstraint& constraint) const {

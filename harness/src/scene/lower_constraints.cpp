@@ -13,8 +13,6 @@ namespace {
 
 using Type = DraftConstraint::Type;
 
-double norm(const Vector3& x) { return std::hypot(x[0], x[1], x[2]); }
-
 }  // namespace
 
 void Lowering::lower_constraint(const DraftConstraint& constraint) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model_math/extent.hpp"
 #include "printable.hpp"
 
 namespace mbs {
@@ -132,19 +133,7 @@ void Lowering::lower_outputs() {
   }
 }
 
-double Lowering::default_correction() const {
-  double extent = 0.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Point& point : lowered_.data.model.points) {
-      if (point.is_vector) continue;
-      low = std::min(low, point.position[axis]);
-      high = std::max(high, point.position[axis]);
-    }
-    extent = std::max(extent, high - low);
-  }
-  return 0.1 * extent;
-}
+double Lowering::default_correction() const { return 0.1 * extent(lowered_.data.model.points); }
 
 Vector3 Lowering::along(const DraftDirection& direction) const {
   return direction.from < 0 ? position(direction.to)

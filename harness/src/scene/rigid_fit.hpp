@@ -42,8 +42,8 @@ struct Twist {
   [[nodiscard]] Vector3 of_point(const Vector3& r) const { return velocity + cross(spin, r - at); }
 };
 
-/// The least-squares motion with these velocities of points and vectors, or nothing if they leave it
-/// open.
+/// The least-squares motion with these velocities of points and vectors, or nothing if they leave
+/// it open.
 std::optional<Twist> fit_twist(const std::vector<Sighting>& sightings, int dimension);
 
 }  // namespace mbs

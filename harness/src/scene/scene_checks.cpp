@@ -19,7 +19,7 @@
 namespace mbs {
 namespace {
 
-[[noreturn]] void fail(const std::string& where, const std::string& what) {
+[[noreturn]] void refuse(const std::string& where, const std::string& what) {
   throw UsageError(fmt::format("{}: {}", printable(where), what));
 }
 
@@ -67,11 +67,12 @@ class MobilityCheck {
       if (rank_of(static_cast<int>(rows.size()), model_.dimension(), local) < model_.dimension()) {
         continue;
       }
-      fail(where_,
-           fmt::format("{}: found an over-fixed point: {} rods or constraints to fixed points ({}) "
-                       "hold its {} coordinates, allowed are at most {}",
-                       lowered_.labels[owner], rows.size(), names, model_.dimension(),
-                       model_.dimension()));
+      refuse(
+          where_,
+          fmt::format("{}: found an over-fixed point: {} rods or constraints to fixed points ({}) "
+                      "hold its {} coordinates, allowed are at most {}",
+                      lowered_.labels[owner], rows.size(), names, model_.dimension(),
+                      model_.dimension()));
     }
   }
 
@@ -80,15 +81,16 @@ class MobilityCheck {
     const auto rank = jacobian_rank(model_, model_.initial_position());
     const bool is_driven = !model_.driven_points().empty() || !model_.driven_values().empty();
     if (rank && *rank == n && !is_driven) {
-      fail(where_,
-           fmt::format("the scene cannot move: its constraints hold all {} coordinates (rank {} at "
-                       "the start), allowed is at least one degree of freedom",
-                       n, *rank));
+      refuse(
+          where_,
+          fmt::format("the scene cannot move: its constraints hold all {} coordinates (rank {} at "
+                      "the start), allowed is at least one degree of freedom",
+                      n, *rank));
     }
     if (!rank && model_.constraints() > n) {
-      fail(where_,
-           fmt::format("found {} constraints on {} coordinates, allowed are at most as many",
-                       model_.constraints(), n));
+      refuse(where_,
+             fmt::format("found {} constraints on {} coordinates, allowed are at most as many",
+                         model_.constraints(), n));
     }
   }
 
@@ -106,18 +108,19 @@ class MobilityCheck {
 void check_scene(const Lowered& lowered, const std::string& where) {
   const ModelData& data = lowered.data.model;
   if (data.initial_velocity.empty()) {
-    fail(where, "points: found no free point, allowed is at least one");
+    refuse(where, "points: found no free point, allowed is at least one");
   }
   const std::vector<std::size_t> owner_of = owners(data);
   for (const MassEntry& entry : data.mass) {
     if (entry.row != entry.col || entry.value > 0.0) continue;
     const std::size_t owner = owner_of[static_cast<std::size_t>(entry.row)];
-    fail(where, lowered.labels[owner] +
-                    (data.points[owner].is_vector
-                         ? ": found a free unit vector without mass, allowed are fixed unit "
-                           "vectors and those of a body"
-                         : ": found a free point without mass, allowed are free points at a mass, "
-                           "at a rod with mass or on a body"));
+    refuse(where,
+           lowered.labels[owner] +
+               (data.points[owner].is_vector
+                    ? ": found a free unit vector without mass, allowed are fixed unit "
+                      "vectors and those of a body"
+                    : ": found a free point without mass, allowed are free points at a mass, "
+                      "at a rod with mass or on a body"));
   }
   MobilityCheck(lowered, where).check_over_fixed();
 }

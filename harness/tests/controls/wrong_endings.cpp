@@ -101,7 +101,7 @@ class Prints final : public WrappedReference {
 };
 
 template <class Control>
-std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
+std::unique_ptr<Simulation> create_ending(const Model& model, const StepSettings& settings) {
   return std::make_unique<Control>(model, settings);
 }
 
@@ -113,17 +113,17 @@ std::unique_ptr<Simulation> refuse(const Model&, const StepSettings&) {
 
 std::vector<Variant> wrong_endings() {
   return {
-      {"hangs", "step() never returns", create<Hangs>},
-      {"crashes", "step() writes to address 0", create<Crashes>},
-      {"overflows_stack", "step() calls itself without end", create<OverflowsStack>},
-      {"divides_by_zero", "step() divides an integer by zero", create<DividesByZero>},
-      {"aborts", "step() calls abort()", create<Aborts>},
-      {"allocates", "step() allocates and uses memory without end", create<Allocates>},
-      {"throws", "step() throws", create<Throws>},
-      {"throws_number", "step() throws what is no std::exception", create<ThrowsNumber>},
-      {"exits", "step() ends the process with status 0", create<Exits>},
-      {"forks", "right, but a second process comes back too", create<Forks>},
-      {"prints", "right, but prints in every step", create<Prints>},
+      {"hangs", "step() never returns", create_ending<Hangs>},
+      {"crashes", "step() writes to address 0", create_ending<Crashes>},
+      {"overflows_stack", "step() calls itself without end", create_ending<OverflowsStack>},
+      {"divides_by_zero", "step() divides an integer by zero", create_ending<DividesByZero>},
+      {"aborts", "step() calls abort()", create_ending<Aborts>},
+      {"allocates", "step() allocates and uses memory without end", create_ending<Allocates>},
+      {"throws", "step() throws", create_ending<Throws>},
+      {"throws_number", "step() throws what is no std::exception", create_ending<ThrowsNumber>},
+      {"exits", "step() ends the process with status 0", create_ending<Exits>},
+      {"forks", "right, but a second process comes back too", create_ending<Forks>},
+      {"prints", "right, but prints in every step", create_ending<Prints>},
       {"unsupported", "cannot simulate any scene", refuse},
   };
 }

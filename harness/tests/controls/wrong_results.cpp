@@ -140,7 +140,7 @@ class GravitySign final : OwnModel, public WrappedReference {
 };
 
 template <class Control>
-std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
+std::unique_ptr<Simulation> create_wrong(const Model& model, const StepSettings& settings) {
   return std::make_unique<Control>(model, settings);
 }
 
@@ -148,19 +148,20 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
 
 std::vector<Variant> wrong_results() {
   return {
-      {"reference", "no defect", create<WrappedReference>},
-      {"returns_at_once", "step() computes nothing and says converged", create<ReturnsAtOnce>},
-      {"nan_after_100", "the state is NaN after 100 steps", create<NanAfter100>},
-      {"nan_velocity", "one velocity is NaN", create<NanVelocity>},
-      {"empty_state", "the state comes back empty", create<EmptyState>},
-      {"gravity_sign", "gravity points up", create<GravitySign>},
+      {"reference", "no defect", create_wrong<WrappedReference>},
+      {"returns_at_once", "step() computes nothing and says converged",
+       create_wrong<ReturnsAtOnce>},
+      {"nan_after_100", "the state is NaN after 100 steps", create_wrong<NanAfter100>},
+      {"nan_velocity", "one velocity is NaN", create_wrong<NanVelocity>},
+      {"empty_state", "the state comes back empty", create_wrong<EmptyState>},
+      {"gravity_sign", "gravity points up", create_wrong<GravitySign>},
       {"single_precision", "the state is rounded to float after each step",
-       create<SinglePrecision>},
-      {"wrong_lambda", "lambda is not updated", create<WrongLambda>},
-      {"late_jump", "velocities change by 1e-5 of themselves in step 500", create<LateJump>},
-      {"pass_count", "claims one pass too many", create<PassCount>},
-      {"always_converged", "never admits the pass limit", create<AlwaysConverged>},
-      {"factorization_failed", "refuses every tangent matrix", create<FactorizationFailed>},
+       create_wrong<SinglePrecision>},
+      {"wrong_lambda", "lambda is not updated", create_wrong<WrongLambda>},
+      {"late_jump", "velocities change by 1e-5 of themselves in step 500", create_wrong<LateJump>},
+      {"pass_count", "claims one pass too many", create_wrong<PassCount>},
+      {"always_converged", "never admits the pass limit", create_wrong<AlwaysConverged>},
+      {"factorization_failed", "refuses every tangent matrix", create_wrong<FactorizationFailed>},
   };
 }
 
