@@ -84,7 +84,9 @@ TEST(Run, TellsThatTooSoftOrTooStiffAPenaltyDiverges) {
     const char* scene;
     double penalty;
   } cases[] = {{"four-bar:5", 1e14}, {"four-bar:40", 1e8}, {"four-bar:3", 1e-3}};
-  for (const NamedVariant& variant : all_variants()) {
+  std::vector<NamedVariant> variants = all_variants();
+  if (MBS_SANITIZE) variants.resize(1);  // many steps; what judges them is the same for all
+  for (const NamedVariant& variant : variants) {
     for (const auto& [name, penalty] : cases) {
       const Scene scene = load_scene(name);
       RunSettings settings = settings_for(scene, 20.0);
