@@ -1,4 +1,6 @@
 # study/against REVISION: times this tree and another revision of it in the same rounds.
+#
+# A results directory belongs to these two programs, this machine and selection. Its run.json says so.
 import argparse
 import json
 import os
@@ -7,11 +9,12 @@ import subprocess
 import sys
 from pathlib import Path
 
-from study.pipeline import child
+from study.pipeline import cells, child
+from study.pipeline.contenders import Contender
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import ROOT, Layout, write_json
-from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, registry, select,
-                                    set_up, writable)
+from study.pipeline.layout import NULL, ROOT, Layout, program, read_json, write_json
+from study.pipeline.prepare import (continues, digest, digest_of_scene, need_modules, only_one,
+                                    only_one_measuring, registry, select, set_up, writable)
 
 SEED = 20080101
 SECONDS, MEMORY_MB = 60, 4096
@@ -38,8 +41,10 @@ def against(arguments):
         need_modules("pandas", "yaml")
         if "MBS_PROGRAM" not in os.environ:
             set_up(layout)
-        old = _build(revision)
-        samples = _measure(layout, options, old)
+        programs = {"old": _build(revision), "new": ROOT / program()}
+        variants = select(registry(), options.only)
+        _start(layout, options, programs, variants)
+        samples = _measure(layout, options, programs, variants)
     _tell(layout, samples, revision)
     return 0
 
@@ -72,12 +77,18 @@ def _build(revision):
     return program
 
 
-def _measure(layout, options, old):
+def _start(layout, options, programs, variants):
+    """Records what is measured, or refuses a directory that holds samples of something else."""
+    record = {"contexts": {"new": cells.context(Contender(NULL, NULL))}, "variants": variants,
+              "scenes": {scene: digest_of_scene(scene) for scene in options.scenes},
+              "programs": {tree: digest(path) for tree, path in programs.items()}}
+    if not continues(layout, record, ("programs", "variants", "scenes")):
+        write_json(layout.run, record)
+
+
+def _measure(layout, options, programs, variants):
     import pandas
-    from study.pipeline.layout import program
-    new = ROOT / program()
-    variants = select(registry(), options.only)
-    work = [(tree, path, variant, scene) for tree, path in (("old", old), ("new", new))
+    work = [(tree, path, variant, scene) for tree, path in programs.items()
             for variant in variants for scene in options.scenes]
     rows, skipped = [], set()
     for number in range(1, options.rounds + 1):
@@ -87,7 +98,7 @@ def _measure(layout, options, old):
             raw = layout.results / "raw" / f"round{number}" / (
                 f"{tree}-{variant.replace('/', '.')}@{scene.replace(':', '')}.json")
             record = _sample(raw, path, variant, scene)
-            step, reason = _step_us(record)
+            step, reason = _step_us(record, raw)
             rows.append({"tree": tree, "implementation": variant, "scene": scene, "round": number,
                          "step_us": step, "reason": reason,
                          "raw_file": str(raw.relative_to(layout.results))})
@@ -101,7 +112,7 @@ def _measure(layout, options, old):
 
 def _sample(raw, path, variant, scene):
     if raw.exists():
-        return json.loads(raw.read_text())
+        return read_json(raw)
     ended = child.run([str(path), "bench", scene, "--implementation", variant,
                        "--benchmark_min_time=0.02", "--benchmark_format=json"], SECONDS, MEMORY_MB)
     try:
@@ -112,14 +123,18 @@ def _sample(raw, path, variant, scene):
     return record
 
 
-def _step_us(record):
-    """(microseconds a step, "") or (None, why not)."""
-    if "failure" in record:
-        return None, record["failure"]
-    row = record["benchmarks"][0]
-    if row.get("error_occurred"):
-        return None, row.get("error_message", "failed")
-    return row["step_us"], ""
+def _step_us(record, raw):
+    """(microseconds a step, "") or (None, why not). StudyError if `raw` is in another format."""
+    try:
+        if "failure" in record:
+            return None, record["failure"]
+        row = record["benchmarks"][0]
+        if row.get("error_occurred"):
+            return None, row.get("error_message", "failed")
+        return row["step_us"], ""
+    except (KeyError, IndexError, TypeError, AttributeError) as error:
+        raise StudyError(f"{raw} has no time of a step (benchmarks[0].step_us): its program is of a "
+                         "revision that this tree's study/against cannot read") from error
 
 
 def _tell(layout, samples, revision):

@@ -63,11 +63,13 @@ def read_json(path):
         raise StudyError(f"cannot read {path}: {error.strerror}") from error
 
 
-def read_run(layout):
+RUN = frozenset({"profile", "only", "variants", "contenders", "control", "contexts", "programs",
+                 "builds"})  # what run.json of study/run must hold
+
+
+def read_run(layout, needed=RUN):
     """run.json, with everything that it must hold; StudyError if something is missing."""
     record = read_json(layout.run)
-    needed = {"profile", "only", "variants", "contenders", "control", "contexts", "programs",
-              "builds"}
     missing = sorted(needed - set(record)) if isinstance(record, dict) else sorted(needed)
     if missing:
         raise StudyError(f"{layout.run} is no record of a run: it lacks {', '.join(missing)}")

@@ -46,21 +46,32 @@ def start(layout, profile, only):
     record = run_record(layout, profile, only, known)
     text = (profiles.FOLDER / f"{profile.name}.yaml").read_text()
     stored_text = layout.results / "profile.yaml"
-    if layout.run.exists():
-        stored = read_run(layout)
-        differing = [text for environment, context in stored["contexts"].items()
-                     for text in _differing(context, record["contexts"].get(environment, {}))]
-        differing += [key for key in ("profile", "variants", "contenders", "programs")
-                      if stored[key] != record[key]]
-        differing += [] if stored_text.read_text() == text else ["the profile's settings"]
-        if differing:
-            raise StudyError(f"{layout.results} holds results of something else ({differing[0]}); "
-                             "results are never merged: name another directory with --results, "
-                             "or move this one away")
+    if continues(layout, record, ("profile", "variants", "contenders", "programs")):
+        if stored_text.read_text() != text:
+            raise _other(layout, "the profile's settings")
         return
     write_json(layout.registry, known)
     stored_text.write_text(text)
     write_json(layout.run, record)
+
+
+def continues(layout, record, keys):
+    """Whether this results directory holds a run with `record`; False if it holds none. StudyError if
+    it is one of something else: another machine, build or BLAS in "contexts", or one of `keys`."""
+    if not layout.run.exists():
+        return False
+    stored = read_run(layout, {"contexts", *keys})
+    differing = [text for environment, context in stored["contexts"].items()
+                 for text in _differing(context, record["contexts"].get(environment, {}))]
+    differing += [key for key in keys if stored[key] != record[key]]
+    if differing:
+        raise _other(layout, differing[0])
+    return True
+
+
+def _other(layout, what):
+    return StudyError(f"{layout.results} holds results of something else ({what}); results are never "
+                      "merged: name another directory with --results, or move this one away")
 
 
 def run_record(layout, profile, only, known):
@@ -118,8 +129,14 @@ def reopen_incomplete(layout, profile):
 
 
 def digest(path):
-    """Tells two builds of one commit apart while there are uncommitted changes."""
+    """Tells two builds of one commit, or two states of a file, apart."""
     return hashlib.sha256(path.read_bytes()).hexdigest()[:12]
+
+
+def digest_of_scene(scene):
+    """Of a scene's file, relative to ROOT as programs are run there; "" for a name of `mbs`."""
+    path = ROOT / scene
+    return digest(path) if path.is_file() else ""
 
 
 def registry():
@@ -176,7 +193,7 @@ def only_one(layout):
 def only_one_measuring():
     """Holds the machine: two studies that measure at once would time each other."""
     path = Path(tempfile.gettempdir()) / "mbs-study.lock"
-    return _lock(path, "another study/run is measuring on this machine, in other results "
+    return _lock(path, "another study is measuring on this machine, in other results "
                        f"({path} is held): wait until it is done")
 
 

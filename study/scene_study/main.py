@@ -8,9 +8,9 @@ from pathlib import Path
 from study.pipeline import profile as profiles
 from study.pipeline.contenders import from_json
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, ROOT, fingerprint, read_run, write_json
-from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, registry, run_record,
-                                    set_up, writable)
+from study.pipeline.layout import Layout, ROOT, read_run, write_json
+from study.pipeline.prepare import (continues, digest, digest_of_scene, need_modules, only_one,
+                                    only_one_measuring, registry, run_record, set_up, writable)
 
 
 def scenes(arguments):
@@ -47,7 +47,8 @@ def _run(layout, options):
     compared, listed = problems.read_list()
     chosen = _choose(listed, options.problems)
     if not options.stored:
-        _start(layout, options.only)
+        _start(layout, options.only, {problems.LIST.name: digest(problems.LIST)} | {
+            problem.scene: digest_of_scene(problem.scene) for problem in listed})
     run = read_run(layout)
     contenders = [one for one in from_json(run["contenders"]).values()
                   if one.ranked and not one.missing]
@@ -86,26 +87,16 @@ def _choose(listed, names):
     return [known[name.lower()] for name in names if name.lower() in known]
 
 
-def _start(layout, only):
-    """Records build and machine, or refuses a directory that holds those of another."""
+def _start(layout, only, inputs):
+    """Records build, machine, selection and digests of the `inputs`, or refuses a directory that holds
+    results of others."""
     usual = profiles.load("quick")
     profile = replace(usual, name="scenes", settings=usual.settings | {"alternatives": []})
     known = registry()
-    record = run_record(layout, profile, only, known)
-    if layout.run.exists():
-        stored = read_run(layout)
-        for name, context in record["contexts"].items():
-            old = fingerprint(stored["contexts"].get(name, {}))
-            new = fingerprint(context)
-            differing = [key for key in old if old[key] != new[key]]
-            if differing or stored["programs"] != record["programs"]:
-                what = differing[0] if differing else "the program"
-                raise StudyError(f"{layout.results} holds results of another build or machine "
-                                 f"({what}); name another directory with --results, or move this "
-                                 "one away")
-        return
-    write_json(layout.registry, known)
-    write_json(layout.run, record)
+    record = run_record(layout, profile, only, known) | {"inputs": inputs}
+    if not continues(layout, record, ("variants", "contenders", "programs", "inputs")):
+        write_json(layout.registry, known)
+        write_json(layout.run, record)
 
 
 class _Teller:

@@ -49,17 +49,17 @@ class Problem:
         return self.name.replace(" ", "-").lower()
 
 
-def read_list(path=LIST):
+def read_list():
     """(names of the two that are compared, [Problem])"""
-    data = yaml.safe_load(path.read_text())
+    data = yaml.safe_load(LIST.read_text())
     listed = [Problem(**entry | {"steps": tuple(entry["steps"]), "judged": tuple(entry["judged"]),
                                  "mirrored": tuple(map(tuple, entry.get("mirrored", ())))})
               for entry in data["problems"]]
     for problem in listed:
         if problem.known != "extrapolated" and problem.known not in KNOWN:
-            raise StudyError(f"{path}: {problem.name}: unknown reference '{problem.known}'")
+            raise StudyError(f"{LIST}: {problem.name}: unknown reference '{problem.known}'")
         if problem.known == "extrapolated" and len(problem.steps) != 3:
-            raise StudyError(f"{path}: {problem.name}: extrapolation needs three steps")
+            raise StudyError(f"{LIST}: {problem.name}: extrapolation needs three steps")
     return data["compared"], listed
 
 

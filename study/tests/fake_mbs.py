@@ -73,7 +73,7 @@ def bench(scene):
     n = 2 * int(re.match(r"four-bar:(\d+)", scene).group(1)) + 2
     asked = re.search(r"fill=([\d.]+)", scene)
     fill = float(asked.group(1)) if asked else (6 * n - 8) / n**2
-    steps, rng = int(option("--steps")), random.Random()
+    steps, rng = int(option("--steps", "100")), random.Random()
     repetitions, rows = int(option("--benchmark_repetitions", "1")), []
     if name == "bad/crawl":
         time.sleep(0.1 * steps * (repetitions + 1))

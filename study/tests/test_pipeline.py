@@ -218,7 +218,7 @@ def test_two_studies_never_measure_at_once(tmp_path):
         fcntl.flock(held, fcntl.LOCK_EX)
         done = run_smoke(tmp_path / "results", TMPDIR=str(tmp_path))
     assert done.returncode == 2 and done.stderr.count("\n") == 1
-    assert "another study/run is measuring on this machine" in done.stderr
+    assert "another study is measuring on this machine" in done.stderr
     assert run_smoke(tmp_path / "results", "--only", "good_sparse",
                      TMPDIR=str(tmp_path)).returncode == 0
 

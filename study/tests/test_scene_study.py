@@ -1,14 +1,17 @@
 # study/scenes: references against their own equations, the metric, and the whole on two problems.
 import os
 import subprocess
+import tempfile
 
 import numpy
 import pandas
 import pytest
 
+from study.pipeline.errors import StudyError
 from study.scene_study import metric, modelling, problems, references
 from study.scene_study.extrapolate import extrapolate, observed_order
-from study.tests.conftest import ROOT
+from study.scene_study.main import scenes
+from study.tests.conftest import FAKE, ROOT
 
 GRAVITY = references.GRAVITY
 
@@ -117,6 +120,34 @@ def test_two_problems_through_the_real_program(tmp_path):
     assert again.returncode == 0, again.stderr
     assert before == ((results / "problems.csv").read_bytes(),
                       (results / "scenes.html").read_bytes())
+
+
+@pytest.fixture
+def runs_nothing(tmp_path, monkeypatch):
+    """study/scenes on the fake program, which runs no problem, and a list of its own to be edited."""
+    (tmp_path / "scene.json").write_text("{}")
+    listed = tmp_path / "problems.yaml"
+    listed.write_text("""{compared: [good_sparse/only, good_dense/first], problems: [
+        {name: A01, title: One, scene: %s, duration: 1, steps: [0.1], known: pendulum, judged: [B]}]}
+        """ % (tmp_path / "scene.json"))
+    monkeypatch.setenv("MBS_PROGRAM", str(FAKE))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(problems, "LIST", listed)
+    return lambda *more: scenes(["--results", str(tmp_path / "results"), "--problems", "none",
+                                 "--rounds", "0", *more])
+
+
+@pytest.mark.parametrize("edited, what", [("scene.json", "inputs"), ("problems.yaml", "inputs"),
+                                          ("", "variants")])
+def test_a_results_directory_is_of_one_selection_and_one_state_of_the_scenes(
+        runs_nothing, tmp_path, edited, what):
+    runs_nothing()
+    runs_nothing()
+    more = () if edited else ("--only", "good_dense")
+    if edited:
+        (tmp_path / edited).write_text((tmp_path / edited).read_text() + "\n")
+    with pytest.raises(StudyError, match=rf"holds results of something else \({what}\)"):
+        runs_nothing(*more)
 
 
 def test_unknown_problem_is_named(tmp_path):
