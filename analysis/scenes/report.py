@@ -13,8 +13,9 @@ SHEETS = Path(__file__).resolve().parents[2] / "harness" / "scenes" / "pictures"
 CONSERVED = 1e-3  # of the range of the energy
 
 
-def write(folder):
-    """Writes figures/modelling.svg and .png, and scenes.html, atomically."""
+def write(folder, compared):
+    """Writes figures/modelling.svg and .png, and scenes.html, atomically. `compared`: names of the two
+    implementations that ran every problem at every step."""
     folder = Path(folder)
     data = tables.load(folder)
     (folder / "figures").mkdir(exist_ok=True)
@@ -23,13 +24,13 @@ def write(folder):
         figure.savefig(folder / "figures" / f"modelling.{kind}", bbox_inches="tight",
                        metadata={"Date": None} if kind == "svg" else None)
     plt.close(figure)
-    page = render(folder, data)
+    page = render(folder, data, compared)
     partial = folder / "scenes.html.partial"
     partial.write_text(page, encoding="utf-8")
     partial.replace(folder / "scenes.html")
 
 
-def render(folder, data):
+def render(folder, data, compared):
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
                                      autoescape=True, trim_blocks=True, lstrip_blocks=True,
                                      undefined=jinja2.StrictUndefined)
@@ -38,9 +39,11 @@ def render(folder, data):
     context = next(iter(run["contexts"].values()))
     problems, convergence = data["problems"], data["convergence"]
     return environment.get_template("scenes.html.j2").render(
-        context=context, problems=[] if problems.empty else tables.best_errors(problems),
+        context=context, compared=compared, problems=[] if problems.empty else tables.best_errors(problems),
         agreement={} if data["gate"].empty else tables.agreement(data["gate"]),
         convergence=[] if convergence.empty else convergence.to_dict("records"),
+        with_published=set() if convergence.empty else set(
+            convergence[convergence.published.notna()].problem),
         everyone=[] if problems.empty else _everyone(problems),
         costs=tables.costs(data["modelling"]), conserved_limit=CONSERVED,
         figure=base64.b64encode((folder / "figures" / "modelling.svg").read_bytes()).decode(),

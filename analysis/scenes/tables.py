@@ -71,7 +71,7 @@ def best_errors(problems):
                 for _, row in of_one[of_one.step == of_one.step.min()].iterrows()]
         result.append({"problem": name, "title": first.title, "scene": first.scene,
                        "variables": first.get("variables"), "constraints": first.get("constraints"),
-                       "duration": first.duration, "known": first.known,
+                       "duration": first.duration, "reference": first.reference,
                        "conserved": bool(first.conserved), "runs": runs})
     return result
 

@@ -72,7 +72,7 @@ def _run(layout, options):
         table.to_csv(partial, index=False)
         partial.replace(path)
     from analysis.scenes.report import write
-    write(layout.results)
+    write(layout.results, compared)
     print(f"report: {layout.results / 'scenes.html'}")
 
 

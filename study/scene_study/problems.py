@@ -1,7 +1,9 @@
 # The standard problems: gate, accuracy against what is known, conserved energy, mirror symmetry.
 #
-# Two independent implementations run every problem at every step and are judged against what is known:
-# a closed form, or the extrapolation of the *other* one. Every implementation goes through the gate.
+# Two implementations run every problem at every step and are judged against what is known: a closed form,
+# equations of motion of its own, or else the extrapolation of the *other* one. The last is self-convergence:
+# both start from the same lowering of the scene, so that it checks the integration and not the modelling.
+# Every implementation goes through the gate.
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +16,7 @@ from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_json
 from study.scene_study import metric, runs
 from study.scene_study.extrapolate import extrapolate, observed_order
-from study.scene_study.references import KNOWN
+from study.scene_study.references import EXTRAPOLATED, KNOWN, PUBLISHED, kind
 
 LIST = Path(__file__).resolve().parent.parent / "problems.yaml"
 SECONDS = 600  # a run at most
@@ -38,6 +40,7 @@ class Problem:
     conserved: bool = False
     mirrored: tuple = ()
     everyone: bool = False
+    published: str | None = None
 
     @property
     def settings(self):
@@ -56,9 +59,12 @@ def read_list():
                                  "mirrored": tuple(map(tuple, entry.get("mirrored", ())))})
               for entry in data["problems"]]
     for problem in listed:
-        if problem.known != "extrapolated" and problem.known not in KNOWN:
+        if problem.known not in {EXTRAPOLATED, *KNOWN}:
             raise StudyError(f"{LIST}: {problem.name}: unknown reference '{problem.known}'")
-        if problem.known == "extrapolated" and len(problem.steps) != 3:
+        if problem.published not in {None, *PUBLISHED}:
+            raise StudyError(f"{LIST}: {problem.name}: unknown published values "
+                             f"'{problem.published}'")
+        if problem.known == EXTRAPOLATED and len(problem.steps) != 3:
             raise StudyError(f"{LIST}: {problem.name}: extrapolation needs three steps")
     return data["compared"], listed
 
@@ -114,7 +120,7 @@ def columns_of(problem, outputs):
 def known_solution(problem, found, judged_one, compared):
     """{column: values} that `judged_one` is judged by, or None if what it needs failed."""
     times = _times(found["runs"][judged_one, problem.steps[0]])
-    if problem.known != "extrapolated":
+    if problem.known != EXTRAPOLATED:
         solution = KNOWN[problem.known](times)
         return {name: values for name, values in solution.items()
                 if name.split(".")[0] in problem.judged}
@@ -141,7 +147,7 @@ def rows(problem, found, compared, layout_relative):
         status, reason = runs.status(record)
         row = {"problem": problem.name, "title": problem.title, "scene": problem.scene,
                "implementation": name, "step": step, "duration": problem.duration,
-               "known": problem.known, "status": status, "reason": reason}
+               "known": problem.known, "reference": kind(problem.known), "status": status, "reason": reason}
         if "summary" in record:
             summary = record["summary"]
             row |= {key: summary[key] for key in (
@@ -173,8 +179,10 @@ def gate_rows(problem, found):
 
 
 def convergence_rows(problem, found, compared):
-    """The final value of every judged component over three steps: order and extrapolated value."""
+    """The final value of every judged component over three steps: order and extrapolated value; where it
+    is published, that and by how much the extrapolated value differs."""
     result = []
+    published = PUBLISHED[problem.published]() if problem.published else {}
     for name in compared:
         records = [found["runs"].get((name, step)) for step in problem.steps]
         if len(records) != 3 or any(record is None or runs.status(record)[0] != "ok"
@@ -182,13 +190,14 @@ def convergence_rows(problem, found, compared):
             continue
         for column in columns_of(problem, records[0]["outputs"]):
             values = [_values(record, column)[-1] for record in records]
+            limit, known = extrapolate(*values[1:]), published.get(column, numpy.nan)
             result.append({
                 "problem": problem.name, "implementation": name, "component": column,
                 "time": _times(records[0])[-1], "coarse": values[0], "finer": values[1],
                 "finest": values[2], "order": float(observed_order(*values)),
                 "order_meaningful": abs(values[1] - values[2]) > ORDER_NOISE * max(
                     abs(values[2]), 1e-3),
-                "extrapolated": extrapolate(*values[1:])})
+                "extrapolated": limit, "published": known, "difference": limit - known})
     return result
 
 

@@ -1,11 +1,13 @@
-# Solutions that no implementation provides: closed forms, and one small set of equations.
+# Solutions that no implementation provides: closed forms, the equations of mechanics.py, and what others
+# have published. Functions of times (s) return {column of an output file: values}.
 #
-# Each function takes times (s) and returns {column of an output file: values}.
+# [Mazzia, Magherini, 2008] F. Mazzia, C. Magherini: Test set for initial value problem solvers, release 2.4,
+# University of Bari: Andrews' squeezing mechanism, reference solution at the end of the interval.
 import numpy
-from scipy.integrate import solve_ivp
 from scipy.special import ellipj, ellipk
 
-GRAVITY = 9.81  # m/s^2
+from study.scene_study import mechanics
+from study.scene_study.mechanics import GRAVITY
 
 
 def pendulum(times):
@@ -29,31 +31,33 @@ def four_bar(times, loops):
     return {"B0.x": sine, "B0.y": cosine, "vB0.vx": rate * cosine, "vB0.vy": -rate * sine}
 
 
-def grid(times, size, lean=0.5):
-    """The grid of four-bars as a chain of `size` links: all rods of a row are parallel, so that the
-    points of a row share one displacement, with the masses of the row's rods on it."""
-    upright, couplers = size + 1, size  # rods of 1 kg in each row
-    last = numpy.arange(size) == size - 1
-    mass = numpy.diag(upright / 3 * numpy.where(last, 1, 2) + couplers)
-    mass += numpy.diag([upright / 6] * (size - 1), 1) + numpy.diag([upright / 6] * (size - 1), -1)
-    weight = GRAVITY * (upright / 2 * numpy.where(last, 1, 2) + couplers)
-    below = numpy.tril(numpy.ones((size, size)))  # displacement of row r: sum over links 0..r
-
-    def derivative(_, state):
-        theta, rate = state[:size], state[size:]
-        across, down = below * numpy.cos(theta), below * numpy.sin(theta)  # d x, d y by d theta
-        inertia = across.T @ mass @ across + down.T @ mass @ down
-        bend_x, bend_y = -below @ (numpy.sin(theta) * rate**2), below @ (numpy.cos(theta) * rate**2)
-        force = -across.T @ mass @ bend_x - down.T @ (mass @ bend_y + weight)
-        return numpy.concatenate([rate, numpy.linalg.solve(inertia, force)])
-    start = numpy.concatenate([numpy.full(size, lean), numpy.zeros(size)])
-    solution = solve_ivp(derivative, (0, times[-1]), start, "DOP853", times, rtol=1e-12, atol=1e-12)
-    x = below @ numpy.sin(solution.y[:size])
-    y = -below @ numpy.cos(solution.y[:size])
-    middle = size // 2 - 1
-    return {"corner.x": size + x[-1], "corner.y": y[-1],
-            "middle.x": size // 2 + x[middle], "middle.y": y[middle]}
+def andrews_end():
+    """Positions of Andrews' mechanism at 0.03 s from the published angles: [Mazzia, Magherini, 2008],
+    computed there in quadruple precision."""
+    beta, gamma = 0.1581077119629904e2, 0.4082224013073101e-1
+    delta, epsilon = 0.5244099658805304, 0.1048080741042263e1
+    a, b = numpy.array([-0.06934, -0.00227]), numpy.array([-0.03635, 0.03273])
+    cos, sin = numpy.cos, numpy.sin
+    at = {"E": 7e-3 * numpy.array([cos(beta), sin(beta)]),
+          "P": b + 35e-3 * numpy.array([sin(gamma), -cos(gamma)]),
+          "S": a + 40e-3 * numpy.array([cos(delta), sin(delta)]),
+          "U": a + 40e-3 * numpy.array([sin(epsilon), -cos(epsilon)])}
+    return {f"{name}.{axis}": float(value) for name, place in at.items()
+            for axis, value in zip("xy", place)}
 
 
-KNOWN = {"pendulum": pendulum, "four_bar_2": lambda t: four_bar(t, 2),
-         "four_bar_40": lambda t: four_bar(t, 40), "grid_10": lambda t: grid(t, 10)}
+# What `known` in problems.yaml may name, by where it comes from.
+EXTRAPOLATED = "extrapolated"
+CLOSED = {"pendulum": pendulum, "four_bar_2": lambda t: four_bar(t, 2),
+          "four_bar_40": lambda t: four_bar(t, 40)}
+INTEGRATED = {"grid_10": lambda t: mechanics.grid(t, 10), "slider_crank": mechanics.slider_crank,
+              "spatial_slider_crank": mechanics.spatial_slider_crank,
+              "governor": mechanics.governor, "half_car": mechanics.half_car}
+KNOWN = CLOSED | INTEGRATED
+PUBLISHED = {"andrews_end": andrews_end}  # at the end of the run; what `published` may name
+
+
+def kind(name):
+    """In words, what a comparison with `name` is worth."""
+    return ("closed form" if name in CLOSED else "own equations, integrated" if name in INTEGRATED
+            else "self-convergence of two implementations")

@@ -1,4 +1,5 @@
 # study/scenes: references against their own equations, the metric, and the whole on two problems.
+import json
 import os
 import subprocess
 import tempfile
@@ -8,7 +9,7 @@ import pandas
 import pytest
 
 from study.pipeline.errors import StudyError
-from study.scene_study import metric, modelling, problems, references
+from study.scene_study import mechanics, metric, modelling, problems, references
 from study.scene_study.extrapolate import extrapolate, observed_order
 from study.scene_study.main import scenes
 from study.tests.conftest import FAKE, ROOT
@@ -43,10 +44,10 @@ def test_four_bar_conserves_its_energy(loops):
 def test_grid_of_one_row_is_a_four_bar():
     """One row of the grid hangs from the ground as the N-four-bar stands on it."""
     times = numpy.linspace(0, 1, 11)
-    at = references.grid(times, 1, lean=0.3)
+    at = mechanics.grid(times, 1, lean=0.3)
     angle = numpy.arctan2(at["corner.x"] - 1, -at["corner.y"])
     step = 1e-4
-    nearby = references.grid(numpy.array([0.0, 0.5 - step, 0.5, 0.5 + step]), 1, lean=0.3)
+    nearby = mechanics.grid(numpy.array([0.0, 0.5 - step, 0.5, 0.5 + step]), 1, lean=0.3)
     turned = numpy.arctan2(nearby["corner.x"] - 1, -nearby["corner.y"])[1:]
     k = 3 * GRAVITY * (3 * 1 + 1) / (2 * (4 * 1 + 1))
     found = (turned[2] - 2 * turned[1] + turned[0]) / step**2
@@ -87,9 +88,55 @@ def test_modelling_scenes_differ_where_they_should():
     assert all(not point.get("fixed") for point in scenes["unknown grounds"]["points"])
 
 
+PROGRAM = os.environ.get("MBS_PROGRAM", str(ROOT / "build" / "mbs"))
+
+
+def outputs(folder, scene, step, problem):
+    """Samples of a run of `problem` with csc_klu/refactor, of `scene` instead of its own."""
+    file = folder / "outputs.csv"
+    every = round(problem.duration / step) // metric.SAMPLES
+    subprocess.run([PROGRAM, "simulate", scene, "--implementation", "csc_klu/refactor", "--step",
+                    f"{step:g}", "--duration", f"{problem.duration:g}", *problem.settings,
+                    "--output", file, "--every", f"{every}"], check=True, stdout=subprocess.DEVNULL,
+                   cwd=ROOT)
+    return {name: values.to_numpy() for name, values in pandas.read_csv(file).items()}
+
+
+@pytest.mark.parametrize("problem", [one for one in problems.read_list()[1]
+                                     if one.known in references.INTEGRATED],
+                         ids=lambda one: one.file_name)
+def test_the_program_agrees_with_equations_of_motion_of_their_own(tmp_path, problem):
+    found = outputs(tmp_path, problem.scene, problem.steps[-1], problem)
+    known = references.KNOWN[problem.known](found["t"])
+    assert metric.precision(metric.errors(found, known)[0]) == "high"
+    assert set(known) == set(problems.columns_of(problem, found))
+
+
+def test_published_angles_of_andrews_mechanism_close_its_loop():
+    """P from B and gamma, and from O by beta and Theta."""
+    at, beta, theta = references.andrews_end(), 0.1581077119629904e2, -0.1575637105984298e2
+    for axis, direction in (("x", numpy.cos), ("y", numpy.sin)):
+        assert abs(at[f"E.{axis}"] - 28e-3 * direction(beta + theta) - at[f"P.{axis}"]) < 1e-14
+
+
+@pytest.mark.parametrize("body", [None, "K1", "K2", "K3", "K4", "K5", "K6", "K7"])
+def test_andrews_mechanism_ends_where_it_was_published_to_end(tmp_path, body):
+    """1e-9 m with the right inertias; with one of them 1 % off, far more than that."""
+    problem = next(one for one in problems.read_list()[1] if one.published)
+    lines = (ROOT / problem.scene).read_text().splitlines()
+    scene = json.loads("\n".join(line for line in lines if not line.startswith("//")))
+    for entry in scene["bodies"]:
+        entry["inertia"] *= 1.01 if entry["name"] == body else 1
+    path = tmp_path / "scene.json"
+    path.write_text(json.dumps(scene))
+    finer, finest = (outputs(tmp_path, path, step, problem) for step in problem.steps[:2])
+    away = max(abs(extrapolate(finer[column][-1], finest[column][-1]) - value)
+               for column, value in references.andrews_end().items())
+    assert away < 1e-9 if body is None else away > 1e-7
+
+
 def run(*arguments, **more):
-    program = os.environ.get("MBS_PROGRAM", str(ROOT / "build" / "mbs"))
-    environment = os.environ | {"MBS_PROGRAM": program} | more
+    environment = os.environ | {"MBS_PROGRAM": PROGRAM} | more
     return subprocess.run([ROOT / "study" / "scenes", *map(str, arguments)], text=True,
                           capture_output=True, env=environment, timeout=600)
 
@@ -105,6 +152,8 @@ def test_two_problems_through_the_real_program(tmp_path):
     finest = found[found.groupby("problem").step.transform("min") == found.step]
     assert set(finest.precision) == {"high"}, finest[["problem", "error_rms"]]
     assert set(pandas.read_csv(results / "gate.csv").verdict) == {"agrees"}
+    assert dict(zip(found.problem, found.reference)) == {
+        "A01": "closed form", "slider-crank": "own equations, integrated"}
     orders = pandas.read_csv(results / "convergence.csv")
     meaningful = orders[orders.order_meaningful]
     assert len(meaningful) and meaningful.order.between(1.9, 2.1).all(), meaningful
