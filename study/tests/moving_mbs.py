@@ -58,18 +58,21 @@ def elements(scene):
     names = list(points)
     listed = {"points": [{"name": name, "kind": kind, "position": list(at)}
                          for name, (kind, at) in points.items()],
-              "rods": [], "bodies": [], "springs": []}
+              "rods": [], "bodies": [], "springs": [], "torsion_springs": [], "outputs": []}
     if scene.startswith("chain:"):
         listed["rods"] = [{"name": "", "between": [a, b]} for a, b in zip(names, names[1:])]
     elif scene == "top":
         listed["bodies"] = [{"name": "K", "points": list("OTUV"), "vectors": ["a"]}]
         listed["rods"] = [{"name": "hanging", "between": ["T", "W"]}]
         listed["springs"] = [{"name": "s", "between": ["W", "G"]}]
+        listed["torsion_springs"] = [{"name": "", "from": ["O", "T"], "to": ["O", "a"]}]
     else:
         listed["bodies"] = [{"name": "plate", "points": ["E", "P", "D"], "vectors": []}]
         listed["rods"] = [{"name": "crank", "between": ["O", "E"]}]
         listed["springs"] = [{"name": "a", "between": ["C", "D"]},
                              {"name": "b", "between": ["R", "P"]}]
+        listed["torsion_springs"] = [{"name": "", "from": ["O", "C"], "to": ["O", "E"]}]
+        listed["outputs"] = ["slider", "turned"]
     return listed
 
 
@@ -80,7 +83,8 @@ def option(name, default=None):
 def simulate(scene):
     step, duration = float(option("--step")), float(option("--duration"))
     if scene == "short" and duration > 0.5:
-        print("mbs: short: its drivers end at 0.5 s", file=sys.stderr)
+        print(f"mbs: --duration: the run would end at {duration:g} s, but a driver's table ends at "
+              "0.5 s", file=sys.stderr)
         sys.exit(2)
     if scene == "stiff" and step > 2e-5:
         sys.exit("mbs: any/one on stiff: diverged at t = 0.1 s: energy")
@@ -100,6 +104,13 @@ def simulate(scene):
             values = [x for _, at in place(scene, t).values() for x in (*at, *[0] * len(at))]
             print(",".join(map(str, [t, *values, 2 + math.sin(8 * t), 3 - math.sin(8 * t),
                                      1e-9 * (1.1 + math.sin(40 * t))])), file=file)
+
+
+    if "--output" in sys.argv:
+        with open(option("--output"), "w") as file:
+            print("t,slider.x,slider.y,turned", file=file)
+            for k in range(0, round(duration / step) + 1, every):
+                print(k * step, *crank(k * step)["P"][1], 4 * k * step, sep=",", file=file)
 
 
 def main():

@@ -183,7 +183,7 @@ def test_driven_motion_is_shown_as_long_as_it_is_known(tmp_path):
     assert view(tmp_path, "short").returncode == 0
     assert data_of(tmp_path / "short.html")[0]["times"][-1] == pytest.approx(0.5)
     done = view(tmp_path, "short", "--duration", "2")
-    assert done.returncode == 2 and "its drivers end at 0.5 s" in done.stderr
+    assert done.returncode == 2 and "a driver's table ends at 0.5 s" in done.stderr
 
 
 def test_no_name_in_a_scene_can_leave_its_element(tmp_path):

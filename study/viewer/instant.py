@@ -9,9 +9,9 @@ BULK = 300  # more rods than these are one line, not sorted by depth
 COILS = 7
 
 
-def draw_instant(axes, scene, at, depth, arrows, typical):
+def draw_instant(axes, scene, at, depth, arrows, wires, typical):
     """`at` has all places on the paper (points, 2), `depth` how far behind it they are; `arrows`
-    pairs of a place and a vector on the paper; `typical` is the length of an element in points of
+    pairs of a place and a vector on the paper; `wires` the ways of torsion springs; `typical` is the length of an element in points of
     paper, which the widths of lines go by."""
     width = float(numpy.clip(0.06 * typical, 0.8, 4.0))
     items = [(element, _body, element.points, HUES[index % len(HUES)])
@@ -28,6 +28,8 @@ def draw_instant(axes, scene, at, depth, arrows, typical):
         axes.annotate("", start + along, start, zorder=3.5, arrowprops={
             "arrowstyle": "-|>", "color": ACCENT, "linewidth": 1, "shrinkA": 0, "shrinkB": 0,
             "mutation_scale": 7})
+    for wire in wires:
+        _line(axes, wire, SPRING, 1, 3.4)
     _points(axes, scene, at, float(numpy.clip(0.11 * typical, 1.0, 5.0)))
     axes.spines[:].set_visible(True)
     axes.spines[:].set_color("#dcdfe4")

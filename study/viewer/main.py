@@ -11,7 +11,7 @@ from study.pipeline.errors import StudyError
 from study.pipeline.prepare import need_modules
 
 VALUES_AT_MOST = 2_000_000  # coordinates in a page: 11 MB of it
-FASTEST = "csc_cholmod/simplicial"
+IMPLEMENTATION = "csc_klu/refactor"
 
 
 class Parser(argparse.ArgumentParser):
@@ -33,9 +33,12 @@ def view(arguments):
         note = Path(options.trajectory).name
     else:
         with tempfile.TemporaryDirectory() as folder:
-            csv = Path(folder) / "trajectory.csv"
-            note = program.simulate(options.scene, options, scene.end, frames, csv, print)
+            csv, outputs = Path(folder) / "trajectory.csv", Path(folder) / "outputs.csv"
+            note = program.simulate(options.scene, options, scene.end, frames, csv,
+                                    outputs if scene.outputs else None, print)
             motion = trajectory.read(csv, scene, frames)
+            if scene.outputs:
+                motion.outputs = trajectory.read_outputs(outputs, scene, frames)
     if not motion.curves:
         print("the trajectory has no energy and constraint columns: the page leaves the curves out")
     _write(options, scene, motion, note)
@@ -60,7 +63,8 @@ def _options(arguments):
                      "small steps or large scenes, what a minute is enough for)")
     own.add_argument("--step", type=_positive, metavar="S", help="time step (1.25e-3, or the first "
                      "tenth, hundredth, … of it that does)")
-    own.add_argument("--implementation", default=FASTEST, help=f"folder/variant ({FASTEST})")
+    own.add_argument("--implementation", default=IMPLEMENTATION,
+                     help=f"folder/variant ({IMPLEMENTATION})")
     options = parser.parse_args(arguments)
     _check(options)
     return options

@@ -20,7 +20,7 @@ def render(scene, motion, note, up):
     moving = [index for index in range(len(scene.points))
               if numpy.ptp(motion.positions[:, index], axis=0).max() > 0]
     return environment.get_template("page.html.j2").render(
-        scene=scene, note=note, has_curves=bool(motion.curves), style=_text("page.css"),
+        scene=scene, note=note, has_curves=bool(motion.curves), outputs=motion.outputs, style=_text("page.css"),
         scripts="\n".join(map(_text, SCRIPTS)),
         data=_json(_data(scene, motion, moving, up)),
         packed=base64.b64encode(
@@ -49,8 +49,11 @@ def _data(scene, motion, moving, up):
         "springs": [spring.points for spring in scene.springs],
         "bodies": [{"name": body.name, "points": body.points} for body in scene.bodies],
         "arrows": [vars(arrow) for arrow in picture.arrows(scene, motion)],
+        "coils": [vars(coil) for coil in picture.coils(scene, motion)],
         "traces": picture.traces(scene, motion),
-        "curves": curves or None}
+        "curves": curves or None,
+        "outputs": {name: {column: _rounded(values) for column, values in columns.items()}
+                    for name, columns in motion.outputs.items()}}
 
 
 def _rounded(values, digits=7):

@@ -3,6 +3,8 @@ from dataclasses import dataclass
 
 import numpy
 
+from study.viewer.scene import NO_PLACES
+
 TRACES = 2         # by default, at most
 CANDIDATES = 50    # points that are looked at for a trace
 DISTINCT = 0.1     # of the extent: how far traces must differ to be shown both
@@ -16,9 +18,19 @@ class Arrow:
     length: float  # m
 
 
+@dataclass
+class Coil:
+    """A torsion spring, drawn as a spiral at the mean of some points from one direction to the other;
+    these are pairs of points."""
+    first: list
+    second: list
+    at: list
+    length: float  # m
+
+
 def places(scene):
-    """Indices of points that are places, not vectors."""
-    return [index for index, (_, kind) in enumerate(scene.points) if kind != "vector"]
+    """Indices of points that are drawn as places: neither vectors nor hidden."""
+    return [index for index, (_, kind) in enumerate(scene.points) if kind not in NO_PLACES]
 
 
 def bounds(scene, motion):
@@ -34,9 +46,9 @@ def reach(scene, motion):
 
 
 def ways(scene, motion):
-    """For each point the length of its way up to each frame, m (frames, points); 0 for vectors."""
+    """For each point the length of its way up to each frame, m (frames, points); 0 if it is no place."""
     steps = numpy.linalg.norm(numpy.diff(motion.positions, axis=0), axis=2)
-    steps[:, [index for index, (_, kind) in enumerate(scene.points) if kind == "vector"]] = 0
+    steps[:, [index for index, (_, kind) in enumerate(scene.points) if kind in NO_PLACES]] = 0
     return numpy.vstack([numpy.zeros(len(scene.points)), numpy.cumsum(steps, axis=0)])
 
 
@@ -92,3 +104,38 @@ def arrows(scene, motion):
         if at:
             found.append(Arrow(vector, at, length))
     return found
+
+
+def coils(scene, motion):
+    """Torsion springs where they can be seen: at the point that both directions share, else where the
+    second begins; of unit vectors, where one of these is drawn."""
+    vectors = {arrow.vector: arrow.at for arrow in arrows(scene, motion)}
+    length = 0.2 * typical_length(scene, motion)
+    found = []
+    for first, second in scene.torsion_springs:
+        lines = [pair for pair in (second, first)
+                 if all(scene.points[point][1] != "vector" for point in pair)]
+        shared = sorted(set(first) & set(second)) if len(lines) == 2 else []
+        at = (shared[:1] or (lines[0][:1] if lines else []) or vectors.get(second[1])
+              or vectors.get(first[1]))
+        if at:
+            found.append(Coil(first, second, at, length))
+    return found
+
+
+def spiral(coil, at):
+    """The way of a coil's wire (points, dimension) where the points are at `at` (points, dimension):
+    one turn more than the angle between its directions."""
+    first, second = ((at[b] - at[a]) / (numpy.linalg.norm(at[b] - at[a]) or 1)
+                     for a, b in (coil.first, coil.second))
+    if len(first) == 2:
+        across = numpy.array([-first[1], first[0]])
+    else:
+        across = second - first * (first @ second)
+        if numpy.linalg.norm(across) < 1e-6:
+            across = numpy.cross(first, numpy.eye(3)[numpy.abs(first).argmin()])
+        across /= numpy.linalg.norm(across) or 1
+    share = numpy.linspace(0, 1, 60)[:, None]
+    angle = share * (2 * numpy.pi + numpy.arctan2(across @ second, first @ second))
+    return at[coil.at].mean(axis=0) + coil.length * (0.35 + 0.65 * share) * (
+        numpy.cos(angle) * first + numpy.sin(angle) * across)

@@ -17,6 +17,7 @@ STEPS = (1.25e-3, 1.25e-4, 1.25e-5, 1.25e-6)  # s; tried in this order until the
 STEPS_AT_MOST = 8000     # of an automatic step: 10 s of the first
 SECONDS_AT_MOST = 60     # of computing, where the duration is not asked for
 TRIAL_STEPS = 20
+STEPS_OF_A_RUN = 1e8     # at most: mbs refuses more
 PROGRESS = re.compile(r"\s*\d+ %  t = \S+ s")
 
 
@@ -31,8 +32,9 @@ def describe(scene):
         raise StudyError(f"`mbs describe {scene} --json` gave no JSON: {error}") from error
 
 
-def simulate(scene, options, end, frames, csv, say):
-    """Writes the trajectory `csv` of about `frames` rows; returns a line on what was run.
+def simulate(scene, options, end, frames, csv, outputs, say):
+    """Writes the trajectory `csv` of about `frames` rows, and the scene's outputs at the same times to
+    `outputs` unless that is None; returns a line on what was run.
     `options` has step, duration (None: chosen here, up to `end`) and implementation. `say` takes
     what to tell the user. Raises StudyError."""
     for step in (options.step,) if options.step else STEPS:
@@ -40,9 +42,10 @@ def simulate(scene, options, end, frames, csv, say):
         if not options.duration:
             duration = _affordable(scene, options.implementation, step, duration, say)
         say(f"simulating {duration:g} s in steps of {step:g} s with {options.implementation}")
-        every = _every(round(duration / step), frames)
+        every = _every(duration / step, frames)
         code, out, words = _simulate(scene, options.implementation, step, duration,
-                                     ["--trajectory", csv, "--every", str(every)])
+                                     ["--trajectory", csv, "--every", str(every),
+                                      *(["--output", outputs] if outputs else [])])
         if code != 1 or options.step:
             break
         say(f"  {_last(words)}")
@@ -53,10 +56,12 @@ def simulate(scene, options, end, frames, csv, say):
 
 
 def _every(steps, frames):
-    """Write every so many steps: the fewest that make no more than `frames`, better a divisor of
-    `steps`, so that the last step is written too."""
-    least = max(1, math.ceil(steps / frames))
-    return next((every for every in range(least, 2 * least + 1) if steps % every == 0), least)
+    """Write every so many steps: the fewest that make no more than `frames` rows, better a divisor of
+    `steps`, so that the last step is written too. More steps than `mbs` takes are for it to refuse."""
+    steps = max(1, round(min(steps, STEPS_OF_A_RUN)))
+    most = min(frames, steps)
+    return next((steps // rows for rows in range(most, most // 2, -1) if steps % rows == 0),
+                math.ceil(steps / frames))
 
 
 def _affordable(scene, implementation, step, duration, say):

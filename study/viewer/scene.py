@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 from study.pipeline.errors import StudyError
 
 KINDS = ("free", "fixed", "driven", "vector", "marker")
+HIDDEN = "hidden"  # a body's own helper point, not drawn
+NO_PLACES = ("vector", HIDDEN)
 
 
 @dataclass
@@ -17,7 +19,8 @@ class Element:
 
 @dataclass
 class Scene:
-    """Points are (name, kind); `start` has their positions at t = 0, one row each, m."""
+    """Points are (name, kind); `start` has their positions at t = 0, one row each, m. Torsion springs are
+    pairs of directions, each from a point to a point; `outputs` names what the author asked for."""
     name: str
     dimension: int
     points: list
@@ -25,6 +28,8 @@ class Scene:
     rods: list
     bodies: list
     springs: list
+    torsion_springs: list
+    outputs: list
     facts: str
     end: float = math.inf  # s; driven motion is not known beyond
 
@@ -36,11 +41,14 @@ def from_description(description, name):
         points = [(point["name"], point["kind"]) for point in elements["points"]]
         start = [[float(x) for x in point["position"]] for point in elements["points"]]
         index = {name: place for place, (name, _) in enumerate(points)}
+        helpers = {index[point["name"]] for point in elements["points"] if point.get("helper")}
         rods = [_pair(index, rod) for rod in elements["rods"]]
         springs = [_pair(index, spring) for spring in elements["springs"]]
-        bodies = [Element(body["name"], [index[point] for point in body["points"]],
+        bodies = [Element(body["name"], _seen([index[point] for point in body["points"]], helpers),
                           [index[vector] for vector in body.get("vectors", [])])
                   for body in elements["bodies"]]
+        torsion_springs = [tuple([index[name] for name in spring[side]] for side in ("from", "to"))
+                           for spring in elements.get("torsion_springs", [])]
     except (KeyError, TypeError, ValueError) as error:
         raise StudyError(f"`mbs describe {name} --json` lacks something to draw ({error!r}): "
                          "is the program older than study/view? Build it again") from error
@@ -48,9 +56,19 @@ def from_description(description, name):
     if dimension not in (2, 3) or unknown or any(len(row) != dimension for row in start):
         raise StudyError(f"`mbs describe {name} --json` gives dimension {dimension} and kinds of "
                          f"points {', '.join(unknown) or 'known'}: its points do not fit")
+    used = {point for element in (*rods, *springs, *bodies) for point in element.points}
+    points = [(name, HIDDEN if place in helpers - used and kind != "vector" else kind)
+              for place, (name, kind) in enumerate(points)]
     end = description.get("drivers_end")
-    return Scene(name, dimension, points, start, rods, bodies, springs, _facts(description),
+    return Scene(name, dimension, points, start, rods, bodies, springs, torsion_springs,
+                 list(elements.get("outputs", [])), _facts(description),
                  math.inf if end is None else float(end))
+
+
+def _seen(points, helpers):
+    """Those of a body that its author named; all of them if these are too few to show how it lies."""
+    named = [point for point in points if point not in helpers]
+    return named if len(named) > 1 else points
 
 
 def _pair(index, element):

@@ -22,7 +22,8 @@ def draw(scene, motion, up, window=None):
     """The PNG file as bytes. `window` is the first and last time, s, or None for the first swing
     or so. Raises StudyError if the motion has nothing in the window."""
     inside, frames = _choose_frames(scene, motion, window)
-    flat, depth, axes_of_space = _flatten(scene, motion, up)
+    flat, depth = _flatten(motion.positions, scene, motion, up)
+    axes_of_space = _paper(scene, up)[0]
     low, high = _limits(scene, flat[inside])
     figure, all_axes = _grid(len(frames), high - low)
     for axes in all_axes:
@@ -33,6 +34,7 @@ def draw(scene, motion, up, window=None):
     points_a_metre = all_axes[0].get_window_extent().width / figure.dpi * 72 / (high - low)[0]
     typical = picture.typical_length(scene, motion) * points_a_metre
     arrows, traced = picture.arrows(scene, motion), picture.traces(scene, motion)
+    coils = picture.coils(scene, motion)
     span = motion.times[frames[-1]] - motion.times[frames[0]]
     digits = max(0, int(1 - numpy.floor(numpy.log10(span))) + 1)
     for axes, frame in zip(all_axes, frames):
@@ -42,7 +44,9 @@ def draw(scene, motion, up, window=None):
                       zorder=1)
         tips = [(flat[frame, arrow.at].mean(axis=0), arrow.length * motion.positions[
             frame, arrow.vector] @ axes_of_space) for arrow in arrows]
-        draw_instant(axes, scene, flat[frame], depth[frame], tips, typical)
+        wires = [_flatten(picture.spiral(coil, motion.positions[frame]), scene, motion, up)[0]
+                 for coil in coils]
+        draw_instant(axes, scene, flat[frame], depth[frame], tips, wires, typical)
         axes.set_title(f"{motion.times[frame]:.{digits}f} s", fontsize=9, loc="left", pad=3,
                        color=INK)
     if scene.dimension == 2:
@@ -76,22 +80,29 @@ def _first_swing(scene, motion):
     return motion.times[max(later[0], 1)] if len(later) else motion.times[-1]
 
 
-def _flatten(scene, motion, up):
-    """Places on the paper (frames, points, 2), depth behind it (frames, points), and what turns a
-    vector into one on the paper (dimension, 2): nothing, or the first view of the page."""
+def _paper(scene, up):
+    """What turns a vector into one on the paper (dimension, 2), and the direction out of the paper:
+    nothing in the plane, or the first view of the page."""
     if scene.dimension == 2:
-        return motion.positions, numpy.zeros(motion.positions.shape[:2]), numpy.eye(2)
-    low, high = picture.bounds(scene, motion)
+        return numpy.eye(2), numpy.zeros(2)
     upward = numpy.eye(3)[up]
     towards = numpy.array([0.0, -1, 0]) if up == 2 else numpy.array([0.0, 0, 1])
     level = numpy.sin(AZIMUTH) * numpy.cross(upward, towards) + numpy.cos(AZIMUTH) * towards
     back = numpy.cos(ELEVATION) * level + numpy.sin(ELEVATION) * upward
     right = numpy.cross(upward, level)
-    paper = numpy.stack([right, numpy.cross(back, right)], axis=1)
-    offset = motion.positions - (low + high) / 2
+    return numpy.stack([right, numpy.cross(back, right)], axis=1), back
+
+
+def _flatten(positions, scene, motion, up):
+    """Places on the paper (…, 2) of `positions` (…, dimension), and their depth behind it (…)."""
+    if scene.dimension == 2:
+        return positions, numpy.zeros(positions.shape[:-1])
+    low, high = picture.bounds(scene, motion)
+    paper, back = _paper(scene, up)
+    offset = positions - (low + high) / 2
     distance = DISTANCE * picture.reach(scene, motion) / 2
     depth = distance - offset @ back
-    return offset @ paper * (distance / depth)[..., None], depth, paper
+    return offset @ paper * (distance / depth)[..., None], depth
 
 
 def _limits(scene, flat):

@@ -1,6 +1,6 @@
 # Reads the CSV of `mbs simulate --trajectory`, however long: only the rows that are shown are kept.
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy
 
@@ -14,10 +14,12 @@ START_TOLERANCE = 1e-3  # of the scene's extent: a start farther off is another 
 @dataclass
 class Motion:
     """`positions` is (frames, points, dimension), m; `curves` has the columns of CURVES by name,
-    one value a frame, or is empty if the file lacks them."""
+    one value a frame, or is empty if the file lacks them; `outputs` has the scene's own by name, each
+    {column: one value a frame}."""
     times: numpy.ndarray
     positions: numpy.ndarray
     curves: dict
+    outputs: dict = field(default_factory=dict)
 
 
 def read(path, scene, frames):
@@ -40,6 +42,24 @@ def read(path, scene, frames):
         motion.curves["constraint_violation"] = violation
     _same_start(path, motion, scene)
     return motion
+
+
+def read_outputs(path, scene, frames):
+    """Motion.outputs from the CSV of `mbs simulate --output`, of the run that `read` read the trajectory
+    of: their rows are at the same times. Raises StudyError."""
+    try:
+        with open(path, "rb") as file:
+            columns = _header(path, file.readline())
+            rows = _check_rows(path, file, len(columns))
+            kept = set(_kept(rows, frames))
+            file.seek(0)
+            file.readline()
+            table = numpy.array([_numbers(path, row, line, len(columns))
+                                 for row, line in enumerate(file) if row in kept])
+    except OSError as error:
+        raise StudyError(f"cannot read {path}: {error.strerror}") from error
+    return {name: {column: table[:, place] for place, column in enumerate(columns)
+                   if name in (column, column.rpartition(".")[0])} for name in scene.outputs}
 
 
 def _header(path, line):

@@ -1,29 +1,37 @@
 // Curves beside the motion, with a cursor at the shown time.
 const EDGE = {left: 52, right: 10, top: 8, bottom: 20};  // pixels around a chart's area
 
+const named = (names, all) => names.map((name) => ({name, values: all[name],
+                                                    colour: () => colours[name]}));
 const charts = data.curves ? [
-  {canvas: element("energy"), values: element("energy-values"), isLog: false, curves: [
-    {name: "kinetic", values: data.curves.kinetic_energy},
-    {name: "potential", values: data.curves.potential_energy},
-    {name: "total", values: data.curves.kinetic_energy.map(
-      (kinetic, i) => kinetic + data.curves.potential_energy[i])}]},
-  {canvas: element("violation"), values: element("violation-values"), isLog: true, curves: [
-    {name: "violation", values: data.curves.constraint_violation}]},
+  {canvas: element("energy"), values: element("energy-values"), isLog: false,
+   curves: named(["kinetic", "potential", "total"], {
+     kinetic: data.curves.kinetic_energy, potential: data.curves.potential_energy,
+     total: data.curves.kinetic_energy.map(
+       (kinetic, i) => kinetic + data.curves.potential_energy[i])})},
+  {canvas: element("violation"), values: element("violation-values"), isLog: true,
+   curves: named(["violation"], {violation: data.curves.constraint_violation})},
 ] : [];
+charts.forEach(prepare);
 
-for (const chart of charts) {
+/// Range and labels of a chart's curves.
+function prepare(chart) {
   const all = chart.curves.flatMap((curve) => curve.values)
     .filter((value) => !chart.isLog || value > 0);
   chart.low = all.reduce((a, b) => Math.min(a, b), Infinity);
   chart.high = all.reduce((a, b) => Math.max(a, b), -Infinity);
   chart.isEmpty = all.length === 0;
-  if (chart.isEmpty) continue;
+  chart.values.replaceChildren();
+  if (chart.isEmpty) return;
   if (chart.isLog) {
     chart.low = 10 ** Math.floor(Math.log10(chart.low));
     chart.high = 10 ** Math.max(Math.ceil(Math.log10(chart.high)), Math.log10(chart.low) + 1);
     chart.low = Math.max(chart.low, chart.high * 1e-12);
   } else {
-    const margin = 0.05 * (chart.high - chart.low) || Math.abs(chart.high) || 1;
+    // Rounding of something constant, in 7 digits, is no motion.
+    const noise = 1e-6 * Math.max(Math.abs(chart.low), Math.abs(chart.high));
+    const range = chart.high - chart.low > noise ? chart.high - chart.low : 0;
+    const margin = 0.05 * range || Math.abs(chart.high) || 1;
     chart.low -= margin;
     chart.high += margin;
   }
@@ -34,6 +42,26 @@ for (const chart of charts) {
     chart.values.append(label);
     curve.holder = label;
   }
+}
+
+/// One chart for the scene's own outputs, with a list to choose from; angles and forces come first.
+const outputs = Object.entries(data.outputs)
+  .sort(([, a], [, b]) => Object.keys(a).length - Object.keys(b).length);
+if (outputs.length) {
+  const chart = {canvas: element("output"), values: element("output-values"), isLog: false};
+  const choose = (index) => {
+    const [name, columns] = outputs[index];
+    chart.curves = Object.entries(columns).map(([column, values], k) => ({
+      name: column.slice(name.length + 1), values, colour: () => colours.traces[k]}));
+    prepare(chart);
+  };
+  element("output-name").append(...outputs.map(([name], index) => new Option(name, index)));
+  element("output-name").addEventListener("change", (event) => {
+    choose(+event.target.value);
+    redraw();
+  });
+  choose(0);
+  charts.push(chart);
 }
 
 function drawCharts(t) {
@@ -58,7 +86,7 @@ function drawChart(chart, t) {
   }
   drawTicks(ink, chart, x, y, width, height);
   chart.curves.forEach((curve) => {
-    const colour = colours[curve.name];
+    const colour = curve.colour();
     ink.strokeStyle = colour;
     ink.lineWidth = curve.name === "total" || chart.isLog ? 1.1 : 1.6;
     ink.lineJoin = "round";

@@ -7,7 +7,8 @@ const times = data.times, firstTime = times[0], lastTime = times[times.length - 
 const duration = lastTime - firstTime;
 const isSpatial = data.dimension === 3;
 const points = data.points;
-const places = points.flatMap((point, index) => (point.kind === "vector" ? [] : [index]));
+const isPlace = (point) => point.kind !== "vector" && point.kind !== "hidden";
+const places = points.flatMap((point, index) => (isPlace(point) ? [index] : []));
 
 /// Little-endian float32: frame by frame, moving point by moving point, axis by axis.
 const packed = (() => {

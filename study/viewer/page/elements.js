@@ -131,3 +131,31 @@ function drawVector(pen, {vector, at, length}) {
     arrow(pen, ends[0], ends[1], ends[3], ends[4], colours.accent, 1.8);
   }
 }
+
+/// A torsion spring: a spiral from one direction to the other and a turn more; as in picture.py.
+function drawCoil(pen, {first, second, at, length}) {
+  const unit = (v) => v.map((x) => x / (Math.hypot(...v) || 1));
+  const dot = (v, w) => v.reduce((sum, x, axis) => sum + x * w[axis], 0);
+  const [u, w] = [first, second].map(([a, b]) => unit(
+    [0, 1, 2].map((axis) => now[3 * b + axis] - now[3 * a + axis])));
+  let across = isSpatial ? w.map((x, axis) => x - dot(u, w) * u[axis]) : [-u[1], u[0], 0];
+  if (Math.hypot(...across) < 1e-6) {
+    const least = u.map(Math.abs).indexOf(Math.min(...u.map(Math.abs)));
+    across = cross(u, [0, 1, 2].map((axis) => (axis === least ? 1 : 0)));
+  }
+  across = unit(across);
+  const total = 2 * Math.PI + Math.atan2(dot(across, w), dot(u, w)), place = new Float64Array(3);
+  const mean = [0, 1, 2].map((axis) => at.reduce((sum, i) => sum + now[3 * i + axis], 0) / at.length);
+  pen.beginPath();
+  for (let k = 0; k < 60; ++k) {
+    const angle = total * k / 59, radius = length * (0.35 + 0.65 * k / 59);
+    project(...mean.map((x, axis) => x + radius * (
+      Math.cos(angle) * u[axis] + Math.sin(angle) * across[axis])), place, 0);
+    if (Number.isNaN(place[0])) return;
+    pen.lineTo(place[0], place[1]);
+  }
+  pen.lineWidth = 1.7;
+  pen.lineJoin = pen.lineCap = "round";
+  pen.strokeStyle = colours.spring;
+  pen.stroke();
+}

@@ -57,6 +57,7 @@ function drawElements() {
   if (isSpatial) items.sort((a, b) => b[0] - a[0]);
   for (const [, draw] of items) draw();
   for (const vector of data.arrows) drawVector(pen, vector);
+  for (const coil of data.coils) drawCoil(pen, coil);
 }
 
 /// What the floor shows of rods and bodies under a light straight above.
