@@ -13,7 +13,7 @@ import pytest
 from study.pipeline.errors import StudyError
 from study.tests import moving_mbs
 from study.tests.conftest import ROOT
-from study.viewer import picture, trajectory
+from study.viewer import picture, program, trajectory
 from study.viewer.scene import from_description
 
 STAND_IN = Path(moving_mbs.__file__)
@@ -211,3 +211,52 @@ def test_vectors_sit_on_shared_points_or_amid_their_body(tmp_path):
     assert picture.arrows(scene, motion)[0].at == [index[name] for name in "OTUV"]
     scene.bodies.append(type(scene.bodies[0])("L", [index["W"], index["T"]], [index["a"]]))
     assert picture.arrows(scene, motion)[0].at == [index["T"]]
+
+
+def test_a_bodys_own_helper_points_are_not_drawn(tmp_path):
+    listed = moving_mbs.elements("top")
+    for point in listed["points"]:
+        point["helper"] = point["name"] in "UVW"
+    scene = from_description({"dimension": 3, "elements": listed}, "top")
+    index = {name: place for place, (name, _) in enumerate(scene.points)}
+    assert scene.bodies[0].points == [index["O"], index["T"]]
+    # W is the end of a rod: what is drawn needs it
+    assert [name for name, kind in scene.points if kind == "hidden"] == ["U", "V"]
+    motion = trajectory.read(csv_of(tmp_path, "top"), scene, 100)
+    assert not {index["U"], index["V"]} & {*picture.places(scene), *picture.traces(scene, motion)}
+    listed["bodies"][0]["points"] = list("OUV")  # one named point alone shows nothing
+    scene = from_description({"dimension": 3, "elements": listed}, "top")
+    assert len(scene.bodies[0].points) == 3
+    assert not [name for name, kind in scene.points if kind == "hidden"]
+
+
+@pytest.mark.parametrize("name, place", [("crank", "O"), ("top", "O")])
+def test_torsion_springs_wind_from_one_direction_to_the_other(tmp_path, name, place):
+    scene = scene_of(name)
+    motion = trajectory.read(csv_of(tmp_path, name), scene, 100)
+    coil, = picture.coils(scene, motion)
+    at = motion.positions[1]
+    wire = picture.spiral(coil, at) - at[[name for name, _ in scene.points].index(place)]
+    for end, (a, b) in ((wire[0], coil.first), (wire[-1], coil.second)):
+        cosine = end @ (at[b] - at[a]) / numpy.linalg.norm(end) / numpy.linalg.norm(at[b] - at[a])
+        assert cosine == pytest.approx(1)
+    assert numpy.linalg.norm(wire[-1]) == pytest.approx(coil.length)
+
+
+def test_the_scenes_own_outputs_are_in_the_page(tmp_path):
+    done = view(tmp_path, "crank", "--duration", "2")
+    assert done.returncode == 0, done.stderr
+    data, _ = data_of(tmp_path / "crank.html")
+    assert {name: list(columns) for name, columns in data["outputs"].items()} == {
+        "slider": ["slider.x", "slider.y"], "turned": ["turned"]}
+    assert data["outputs"]["turned"]["turned"] == pytest.approx([4 * t for t in data["times"]])
+    view(tmp_path, "top", "--duration", "2")
+    assert data_of(tmp_path / "top.html")[0]["outputs"] == {}
+    assert 'id="output"' not in (tmp_path / "top.html").read_text()
+
+
+@pytest.mark.parametrize("steps, frames, every", [
+    (8000, 600, 16), (8000, 8000, 1), (7, 600, 1), (8001, 600, 21), (7919, 600, 14), (0.2, 600, 1),
+    (1e300, 600, 200_000), (float("inf"), 600, 200_000)])
+def test_rows_are_written_every_so_many_steps(steps, frames, every):
+    assert program._every(steps, frames) == every

@@ -172,6 +172,20 @@ def test_a_click_on_a_point_traces_it(opened):
     assert "E" in page.value(names)
 
 
+def test_the_chart_of_outputs_shows_the_chosen_one(opened):
+    page = opened("crank.html")
+    values = "document.getElementById('output-values').textContent"
+    assert page.value("[...document.getElementById('output-name').options].map((o) => o.label)") == [
+        "turned", "slider"]
+    page.key("End")
+    settle(page)
+    assert page.value(values) == "16"
+    page.value("""(() => { const list = document.getElementById("output-name");
+                  list.value = 1; list.dispatchEvent(new Event("change")); })()""")
+    settle(page)
+    assert page.value(values).startswith("x 0.709") and "y 0" in page.value(values)
+
+
 def test_a_phone_sees_everything(opened):
     page = opened("top.html")
     page.resize(390, 844, 2, True)

@@ -48,3 +48,39 @@ def test_the_programs_own_complaint_about_a_scene_is_passed_on(tmp_path):
     done = view(tmp_path, "bad.json", program=PROGRAM)
     assert done.returncode == 2 and done.stderr.startswith("study/view: mbs: ")
     assert "bad.json: points[0]" in done.stderr
+
+
+def test_a_scene_of_a_short_driver_table_is_shown_as_long_as_it_is_known(tmp_path):
+    times = [0.05 * k for k in range(11)]
+    (tmp_path / "short.json").write_text(json.dumps({
+        "points": [{"name": "R", "position": [0, 0], "driven": {"y": {"table": {
+            "times": times, "values": [0.1 * t * t for t in times]}}}},
+            {"name": "B", "position": [0.6, -0.8]}],
+        "rods": [{"name": "rod", "between": ["R", "B"], "mass": 1}]}))
+    described = json.loads(subprocess.run([PROGRAM, "describe", tmp_path / "short.json", "--json"],
+                                          check=True, capture_output=True).stdout)
+    if "drivers_end" not in described:
+        pytest.skip("mbs describe --json does not tell yet when driven motion ends (drivers_end)")
+    done = view(tmp_path, "short.json", program=PROGRAM)
+    assert done.returncode == 0, done.stderr
+    assert data_of(tmp_path / "short.html")[0]["times"][-1] == pytest.approx(0.5)
+    done = view(tmp_path, "short.json", "--duration", "2", program=PROGRAM)
+    assert done.returncode == 2 and "a driver's table ends at 0.5 s" in done.stderr
+
+
+@pytest.mark.parametrize("duration", ["1e12", "1e300"])
+def test_a_duration_that_takes_too_many_steps_is_refused(tmp_path, duration):
+    done = view(tmp_path, "four-bar:1", "--duration", duration, program=PROGRAM)
+    assert done.returncode == 2 and "steps" in done.stderr and "at most 1e+08" in done.stderr
+
+
+def test_outputs_and_torsion_springs_of_a_scene_are_shown(tmp_path):
+    done = view(tmp_path, ROOT / "harness/scenes/examples/spatial_joints.json", "--duration", "0.5",
+                "--output", "page.html", "--png", "sheet.png", program=PROGRAM)
+    assert done.returncode == 0, done.stderr
+    data, _ = data_of(tmp_path / "page.html")
+    assert set(data["outputs"]) == {"bend", "M", "axis", "reach", "slide"} and len(data["coils"]) == 1
+    with Browser(tmp_path / "profile") as browser:
+        browser.open(tmp_path / "page.html")
+        browser.wait("document.getElementById('output-values').textContent !== ''")
+        assert browser.complaints == []
