@@ -119,6 +119,19 @@ def test_published_angles_of_andrews_mechanism_close_its_loop():
         assert abs(at[f"E.{axis}"] - 28e-3 * direction(beta + theta) - at[f"P.{axis}"]) < 1e-14
 
 
+def test_published_values_and_the_difference_are_in_the_table():
+    problem = next(one for one in problems.read_list()[1] if one.published)
+    published = references.andrews_end()
+    found = {"runs": {("a/b", step): {
+        "summary": {"status": "ok", "status_reason": ""},
+        "outputs": {"t": [0, 0.03]} | {column: [0, value + 1e-6 + step**2]
+                                       for column, value in published.items()}}
+        for step in problem.steps}}
+    rows = problems.convergence_rows(problem, found, ["a/b"])
+    assert {row["component"]: row["published"] for row in rows} == published
+    assert [row["difference"] for row in rows] == pytest.approx([1e-6] * 8, rel=1e-6)
+
+
 @pytest.mark.parametrize("body", [None, "K1", "K2", "K3", "K4", "K5", "K6", "K7"])
 def test_andrews_mechanism_ends_where_it_was_published_to_end(tmp_path, body):
     """1e-9 m with the right inertias; with one of them 1 % off, far more than that."""

@@ -215,19 +215,18 @@ def test_vectors_sit_on_shared_points_or_amid_their_body(tmp_path):
 
 def test_a_bodys_own_helper_points_are_not_drawn(tmp_path):
     listed = moving_mbs.elements("top")
+    listed["bodies"][0]["points"] = list("OT")
+    names = {"U": "K.x", "V": "V", "W": "K.w"}
     for point in listed["points"]:
-        point["helper"] = point["name"] in "UVW"
+        point["name"] = names.get(point["name"], point["name"])
+    listed["rods"][0]["between"], listed["springs"] = ["T", "K.w"], []
     scene = from_description({"dimension": 3, "elements": listed}, "top")
-    index = {name: place for place, (name, _) in enumerate(scene.points)}
-    assert scene.bodies[0].points == [index["O"], index["T"]]
-    # W is the end of a rod: what is drawn needs it
-    assert [name for name, kind in scene.points if kind == "hidden"] == ["U", "V"]
-    motion = trajectory.read(csv_of(tmp_path, "top"), scene, 100)
-    assert not {index["U"], index["V"]} & {*picture.places(scene), *picture.traces(scene, motion)}
-    listed["bodies"][0]["points"] = list("OUV")  # one named point alone shows nothing
-    scene = from_description({"dimension": 3, "elements": listed}, "top")
-    assert len(scene.bodies[0].points) == 3
-    assert not [name for name, kind in scene.points if kind == "hidden"]
+    kinds = dict(scene.points)
+    # The author's own V stays; K.w is the end of a rod: what is drawn needs it.
+    assert kinds["K.x"] == "hidden" and kinds["V"] == kinds["K.w"] == "free"
+    motion = trajectory.read(csv_of(tmp_path, "top"), scene_of("top"), 100)
+    hidden = [name for name, _ in scene.points].index("K.x")
+    assert hidden not in {*picture.places(scene), *picture.traces(scene, motion)}
 
 
 @pytest.mark.parametrize("name, place", [("crank", "O"), ("top", "O")])

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from study.pipeline.errors import StudyError
 
 KINDS = ("free", "fixed", "driven", "vector", "marker")
-HIDDEN = "hidden"  # a body's own helper point, not drawn
+HIDDEN = "hidden"  # a point that body K1 got for itself, K1.x, and nothing else names: not drawn
 NO_PLACES = ("vector", HIDDEN)
 
 
@@ -41,10 +41,9 @@ def from_description(description, name):
         points = [(point["name"], point["kind"]) for point in elements["points"]]
         start = [[float(x) for x in point["position"]] for point in elements["points"]]
         index = {name: place for place, (name, _) in enumerate(points)}
-        helpers = {index[point["name"]] for point in elements["points"] if point.get("helper")}
         rods = [_pair(index, rod) for rod in elements["rods"]]
         springs = [_pair(index, spring) for spring in elements["springs"]]
-        bodies = [Element(body["name"], _seen([index[point] for point in body["points"]], helpers),
+        bodies = [Element(body["name"], [index[point] for point in body["points"]],
                           [index[vector] for vector in body.get("vectors", [])])
                   for body in elements["bodies"]]
         torsion_springs = [tuple([index[name] for name in spring[side]] for side in ("from", "to"))
@@ -57,18 +56,14 @@ def from_description(description, name):
         raise StudyError(f"`mbs describe {name} --json` gives dimension {dimension} and kinds of "
                          f"points {', '.join(unknown) or 'known'}: its points do not fit")
     used = {point for element in (*rods, *springs, *bodies) for point in element.points}
-    points = [(name, HIDDEN if place in helpers - used and kind != "vector" else kind)
+    owners = {body.name for body in bodies}
+    points = [(name, HIDDEN if kind == "free" and place not in used
+               and name.rpartition(".")[0] in owners else kind)
               for place, (name, kind) in enumerate(points)]
     end = description.get("drivers_end")
     return Scene(name, dimension, points, start, rods, bodies, springs, torsion_springs,
                  list(elements.get("outputs", [])), _facts(description),
                  math.inf if end is None else float(end))
-
-
-def _seen(points, helpers):
-    """Those of a body that its author named; all of them if these are too few to show how it lies."""
-    named = [point for point in points if point not in helpers]
-    return named if len(named) > 1 else points
 
 
 def _pair(index, element):
