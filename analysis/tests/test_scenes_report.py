@@ -48,4 +48,4 @@ def test_published_values_stand_beside_ours_with_the_difference(tmp_path):
     without, beside = page(tmp_path).split("<summary>")[1:3]
     assert "published" not in without
     assert '<th class="n">published</th><th class="n">difference</th>' in beside
-    assert "0.50000000" in beside and "0.50000012" in beside and "1.2" in beside
+    assert "0.50000000" in beside and "0.50000012" in beside and "1.2·10⁻⁷" in beside
