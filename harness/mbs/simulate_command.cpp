@@ -89,7 +89,7 @@ int simulate(const SimulateOptions& options) {
   const Scene scene = load_scene(options.scene);
   RunSettings settings{options.step.resolve(scene.model), options.duration};
   settings.step.projections = kProjections.at(options.projections);
-  require_duration(scene.model, settings);
+  require_duration(scene, settings);
   const RunSummary summary = run_with_files(options, scene, *variants[0].variant, settings);
   const nlohmann::json json = summary_json(scene, variants[0], settings, summary);
   if (options.json) {

@@ -42,6 +42,15 @@ std::string printable(std::string_view text, std::size_t longest) {
   return result;
 }
 
+std::size_t first_ill_formed(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = sequence_length(text.substr(at));
+    if (length == 0) return at;
+    at += length;
+  }
+  return std::string_view::npos;
+}
+
 std::string in_quotes(std::string_view text) { return '"' + printable(text) + '"'; }
 
 }  // namespace mbs

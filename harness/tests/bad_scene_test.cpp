@@ -40,6 +40,9 @@ TEST(BadJson, IsLocatedWithItsReason) {
       {"{\"gravity\": [0, NaN]}", {"line 1, column 17", "invalid literal"}},
       {"{\"points\": \"\xff\"}", {"line 1, column 13", "ill-formed UTF-8", "\\xFF"}},
       {std::string("{\"a\0b\": 1}", 10), {"line 1, column 4", "control character"}},
+      {pendulum() + std::string("\0 {", 3), {"line 3", "a NUL byte"}},
+      {std::string("/*\0*/", 5) + pendulum(), {"line 1, column 3", "<U+0000>"}},
+      {"// caf\xe9\n" + pendulum(), {"line 1, column 7", "ill-formed UTF-8"}},
       {"\xff\xfe{\0}\0", {"line 1, column 1"}},
       {"{'points': 1}", {"line 1, column 2"}},
       {"{\"points\": [1, // cut\n", {"unexpected end of input"}},
@@ -140,7 +143,11 @@ TEST(BadScene, Constraints) {
       {constrained(linear("")), {"constraints[0].terms", "1 to 10000 terms"}},
       {constrained(linear(x + "," + x)), {"terms[1]: found the same coordinate as in"}},
       {constrained(linear(x) + "," + linear(R"({"point": "B", "axis": "x", "coefficient": 2})")),
-       {"constraints[1]: found the same coefficients as in constraints[0]"}},
+       {"constraints[1]: found the same coefficients as in constraints[0]", "redundant"}},
+      {constrained(linear(x, R"(, "value": 1)") + "," +
+                   linear(R"({"point": "B", "axis": "x", "coefficient": 2})", R"(, "value": 2.1)")),
+       {"constraints[1]: found the same coefficients as in constraints[0]",
+        "the value 1.05 m where that has 1 m: they contradict each other"}},
       {constrained(linear(R"({"point": "A", "axis": "x", "coefficient": 1})")),
        {"terms[0].point", "fixed or driven point \"A\""}},
       {constrained(linear(R"({"point": "B", "axis": "z", "coefficient": 1})")),
@@ -187,6 +194,67 @@ TEST(BadScene, OverFixedOrImmovable) {
              {"between": ["P", "R"], "mass": 1}, {"between": ["A", "P"], "mass": 1},
              {"between": ["B", "Q"], "mass": 1}, {"between": ["C", "R"], "mass": 1}]})"),
             "no error");
+}
+
+/// Two rods from fixed points 2 m apart, along one line.
+std::string stretched(const std::string& length) {
+  return R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
+    {"name": "B", "position": [2, 0], "fixed": true}, {"name": "C", "position": [1, 0]}],
+    "rods": [{"between": ["A", "C"], "mass": 1},
+             {"name": "last", "between": ["B", "C"], "mass": 1, "length": )" +
+         length + "}]}";
+}
+
+TEST(BadScene, StretchedIsImmovable) {
+  expect_errors({{stretched("1"), {"cannot move", "1 of 2 coordinates"}}});
+  // A third parallel crank of another length: off by less than six digits may show.
+  expect_errors({{R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
+    {"name": "B", "position": [1, 0], "fixed": true}, {"name": "C", "position": [2, 0], "fixed": true},
+    {"name": "P", "position": [0, 1]}, {"name": "Q", "position": [1, 1]},
+    {"name": "R", "position": [2, 1]}],
+    "bodies": [{"name": "K", "mass": 1, "inertia": 1, "points": {"P": [0, 0], "Q": [1, 0],
+                "R": [2, 0]}}],
+    "rods": [{"between": ["A", "P"], "mass": 1}, {"between": ["B", "Q"], "mass": 1},
+             {"between": ["C", "R"], "mass": 1, "length": 1.00001}]})",
+                  {"cannot be assembled", "apart, its length is 1", "a difference of "}}});
+}
+
+TEST(BadScene, GivenPointsThatAreNoCoordinatesCount) {
+  const auto triangle = [](const std::string& c, const std::string& rest = "") {
+    return R"({"points": [{"name": "A", "position": [0, 0]}, {"name": "B", "position": [1, 0]},
+      {"name": "C", "position": )" +
+           c + R"(}], "bodies": [{"name": "L", "mass": 1, "inertia": 0.1,
+      "points": {"A": [0, 0], "B": [1, 0], "C": [1, 1]}}])" +
+           rest + "}";
+  };
+  EXPECT_EQ(parse_error_of(triangle("[1, 1]")), "no error");
+  EXPECT_EQ(parse_error_of(triangle("[1.02, 1]")), "no error");
+  EXPECT_GT(parse_scene(triangle("[1.02, 1]"), "test").assembly.position_correction, 0.004);
+  const std::string lenient = R"(, "assembly": {"largest_correction": 10})";
+  expect_errors({{triangle("[1, 1.6]"), {"would move by 0.", "allowed is 0.0"}},
+                 {triangle("[1, -1]"), {"bodies[0]: found points", "mirror image"}},
+                 {triangle("[1, -1]", lenient), {"mirror image"}}});
+}
+
+TEST(BadScene, GivenVelocitiesOfPointsThatAreNoCoordinatesCount) {
+  const auto crank = [](const std::string& velocity) {
+    return R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "B", "position": [1, 0], "velocity": )" +
+           velocity + R"(}], "bodies": [{"name": "L", "mass": 1, "inertia": 0.1,
+      "angular_velocity": 1, "points": {"A": [0, 0], "B": [1, 0]}}]})";
+  };
+  EXPECT_EQ(parse_error_of(crank("[0, 1]")), "no error");
+  EXPECT_EQ(parse_error_of(crank("[0, 1.05]")), "no error");
+  EXPECT_NEAR(parse_scene(crank("[0, 1.05]"), "test").assembly.velocity_correction, 0.05, 1e-12);
+  expect_errors({{crank("[0, 3]"),
+                  {"points[1].velocity: the velocities contradict", "that of \"B\", 3 m/s",
+                   "change by 2 m/s, allowed is 0.3 m/s"}}});
+}
+
+TEST(BadScene, VelocityAlongARodIsNamed) {
+  expect_errors({{pendulum("[1, 0]", "[0, 0.5]"),
+                  {"points[1].velocity: the velocities contradict", "that of \"B\", 0.5 m/s",
+                   "change by 0.5 m/s, allowed is 0.05 m/s"}}});
 }
 
 TEST(BadScene, OverFixedBeyondTheRankLimit) {

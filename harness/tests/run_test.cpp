@@ -241,9 +241,9 @@ TEST(Run, RefusesToGoBeyondADriversEnd) {
   const Scene scene = driven_until(0.5);
   RunSettings settings;
   settings.duration = 0.5;
-  EXPECT_NO_THROW(require_duration(scene.model, settings));
+  EXPECT_NO_THROW(require_duration(scene, settings));
   settings.duration = 0.51;
-  EXPECT_THROW(require_duration(scene.model, settings), UsageError);
+  EXPECT_THROW(require_duration(scene, settings), UsageError);
   try {
     run(scene, control("reference"), settings);
     ADD_FAILURE() << "it ran";

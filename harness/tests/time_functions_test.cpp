@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -114,6 +115,46 @@ TEST(Corner, IsFoundWhereverItLies) {
   EXPECT_TRUE(
       corner_of({0, 0.1, 0.5, 1.0, 1.1, 1.7, 2.0, 2.5}, {1, 0.9, 0.5, 0, 0.1, 0.7, 1, 1.5}));
   EXPECT_TRUE(corner_of({0, 0.5, 1, 1.5, 2}, {1, 0.5, 0, 0.5, 1}));
+}
+
+TEST(Corner, CoarseTablesAreFound) {
+  EXPECT_TRUE(corner_of({0, 1, 1.001, 2}, {0, 0, 1, 1}));
+  EXPECT_TRUE(corner_of({0, 1, 2, 3}, {0, 0, 1, 1}));
+  EXPECT_TRUE(corner_of({0, 1, 2, 3}, {0, 0, 0, 1}));
+  const auto times = steps(41, 0.1);
+  for (const std::size_t at : {0u, 1u, 2u, 3u, 20u, 38u, 39u, 40u}) {
+    std::vector<double> spike(41, 0.0);
+    spike[at] = 1.0;
+    EXPECT_TRUE(corner_of(times, spike)) << at;
+  }
+  for (const int period : {2, 3, 4}) {  // rows of a sine
+    const auto wave = [&](double t) { return std::sin(20 * std::numbers::pi * t / period + 0.7); };
+    EXPECT_TRUE(corner_of(times, sampled(times, wave))) << period;
+  }
+}
+
+TEST(Corner, SmoothStepsAndShortTablesHaveNone) {
+  for (const int rise : {3, 4, 8, 20}) {
+    for (const double shift : {0.0, 0.3, 0.5}) {
+      const auto step = [&](double t) {
+        const double x = std::clamp((t - 10 - shift) / rise, 0.0, 1.0);
+        return 0.5 - 0.5 * std::cos(std::numbers::pi * x);
+      };
+      EXPECT_FALSE(corner_of(steps(41, 1.0), sampled(steps(41, 1.0), step))) << rise << shift;
+    }
+  }
+  for (int phase = 0; phase < 60; ++phase) {
+    const auto wave = [&](double t) {
+      return std::sin(2 * std::numbers::pi * (t / 6 + phase / 60.0));
+    };
+    for (const int rows : {4, 5, 6, 7, 20}) {
+      EXPECT_FALSE(corner_of(steps(rows, 1.0), sampled(steps(rows, 1.0), wave)))
+          << rows << ' ' << phase;
+    }
+  }
+  EXPECT_FALSE(corner_of({0, 0.001, 1, 2}, {0, 0.001, 1, 2}));
+  const double third = 1.0 / 3, next = std::nextafter(third, 1.0);  // rounding is no zigzag
+  EXPECT_FALSE(corner_of({0, 1, 2, 3, 4, 5}, {third, next, third, next, third, next}));
 }
 
 TEST(Corner, SmoothTablesHaveNone) {

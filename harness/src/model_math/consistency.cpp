@@ -72,6 +72,29 @@ std::vector<double> sizes_of_terms(const Model& model, double t, std::span<const
   return result;
 }
 
+double largest_of(std::span<const double> v) {
+  double largest = 0.0;
+  for (const double value : v) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+/// The size of each rate's terms where no velocity exceeds `fastest`, see velocity_violation().
+std::vector<double> sizes_of_rates(const Model& model, double t, std::span<const double> q,
+                                   double fastest) {
+  const std::vector<double> zero(q.size());
+  std::vector<double> sizes(static_cast<std::size_t>(model.constraints()));
+  constraint_rate(model, t, q, zero, sizes);  // Phi_t
+  const std::size_t quadratic = sizes.size() - model.linear_constraints().size();
+  const double largest = largest_position(model, positions(model, KnownMotion(model, t), q));
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    sizes[k] = std::abs(sizes[k]) + (k < quadratic ? largest * fastest : 0.0);
+  }
+  for (const JacobianEntry& entry : jacobian(model, t, q)) {
+    sizes[static_cast<std::size_t>(entry.row)] += std::abs(entry.value) * fastest;
+  }
+  return sizes;
+}
+
 /// The worst of `values` against `sizes`.
 Violation worst_of(const std::vector<double>& values, const std::vector<double>& sizes) {
   Violation worst;
@@ -181,19 +204,7 @@ Violation position_violation(const Model& model, double t, std::span<const doubl
 
 Violation velocity_violation(const Model& model, double t, std::span<const double> q,
                              std::span<const double> v) {
-  double fastest = 0.0;
-  for (const double value : v) fastest = std::max(fastest, std::abs(value));
-  const std::vector<double> zero(v.size());
-  std::vector<double> sizes = rates_at(model, t, q, zero);  // Phi_t
-  const std::size_t quadratic = sizes.size() - model.linear_constraints().size();
-  const double largest = largest_position(model, positions(model, KnownMotion(model, t), q));
-  for (std::size_t k = 0; k < sizes.size(); ++k) {
-    sizes[k] = std::abs(sizes[k]) + (k < quadratic ? largest * fastest : 0.0);
-  }
-  for (const JacobianEntry& entry : jacobian(model, t, q)) {
-    sizes[static_cast<std::size_t>(entry.row)] += std::abs(entry.value) * fastest;
-  }
-  return worst_of(rates_at(model, t, q, v), sizes);
+  return worst_of(rates_at(model, t, q, v), sizes_of_rates(model, t, q, largest_of(v)));
 }
 
 Violation move_onto_constraints(const Model& model, double t, std::vector<double>& q) {
@@ -214,15 +225,20 @@ Violation move_onto_constraints(const Model& model, double t, std::vector<double
 
 Violation make_consistent(const Model& model, double t, std::span<const double> q,
                           std::vector<double>& v, const std::vector<bool>& held) {
-  Violation rest = velocity_violation(model, t, q, v);
+  const double given = largest_of(v);  // v may have to vanish: what is left is then rounding of it
+  std::vector<double> rates = rates_at(model, t, q, v);
+  Violation rest = worst_of(rates, sizes_of_rates(model, t, q, given));
   if (rest.ratio <= kMet || !std::isfinite(rest.ratio)) return rest;
   const LeastChange least(model, t, q, held);
   constexpr int kMostRounds = 5;  // the first solves, the others remove the rounding of the first
   for (int i = 0; i < kMostRounds && rest.ratio > kReached; ++i) {
-    const std::vector<double> next = sum(v, 1.0, least.solve(negative(rates_at(model, t, q, v))));
-    const Violation after = velocity_violation(model, t, q, next);
+    const std::vector<double> next = sum(v, 1.0, least.solve(negative(rates)));
+    std::vector<double> next_rates = rates_at(model, t, q, next);
+    const double fastest = std::max(given, largest_of(next));
+    const Violation after = worst_of(next_rates, sizes_of_rates(model, t, q, fastest));
     if (!std::isfinite(after.ratio) || (i > 0 && !(after.ratio < rest.ratio))) break;
     v = next;
+    rates = std::move(next_rates);
     rest = after;
   }
   return rest;

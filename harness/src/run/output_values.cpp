@@ -6,34 +6,13 @@
 #include <stdexcept>
 
 #include "model_math/kinematics.hpp"
+#include "scene/output_columns.hpp"
 
 namespace mbs {
-namespace {
-
-/// What the columns of a vector have before the axis's letter; nullptr: the output is one number.
-const char* vector_prefix(Output::Kind kind) {
-  switch (kind) {
-    case Output::Kind::position:
-      return ".";
-    case Output::Kind::velocity:
-      return ".v";
-    case Output::Kind::acceleration:
-      return ".a";
-    default:
-      return nullptr;
-  }
-}
-
-}  // namespace
-
 OutputValues::OutputValues(const Scene& scene) : scene_(scene), motion_(scene) {
-  const std::string axes = scene.model.dimension() == 2 ? "xy" : "xyz";
   for (const Output& output : scene.elements.outputs) {
-    const char* prefix = vector_prefix(output.kind);
-    if (prefix == nullptr) {
-      columns_.push_back(output.name);
-    } else {
-      for (const char axis : axes) columns_.push_back(output.name + prefix + axis);
+    for (const std::string& column : columns_of(output, scene.model.dimension())) {
+      columns_.push_back(column);
     }
   }
   angles_.resize(scene.elements.outputs.size(), 0.0);
@@ -60,7 +39,7 @@ std::vector<double> OutputValues::values() const {
   const auto dimension = static_cast<std::size_t>(scene_.model.dimension());
   for (std::size_t i = 0; i < angles_.size(); ++i) {
     const Output& output = scene_.elements.outputs[i];
-    if (vector_prefix(output.kind) == nullptr) {
+    if (vector_prefix(output) == nullptr) {
       result.push_back(scalar(i));
       continue;
     }

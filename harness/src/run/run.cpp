@@ -111,14 +111,13 @@ long count_steps(const RunSettings& settings) {
   return static_cast<long>(steps);
 }
 
-void require_duration(const Model& model, const RunSettings& settings) {
-  const auto steps = static_cast<double>(count_steps(settings));
-  require_drivers_until(model, steps * settings.step.step);
+void require_duration(const Scene& scene, const RunSettings& settings) {
+  require_drivers(scene, settings.step.step, count_steps(settings));
 }
 
 RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& settings,
                const Observer& observer) {
-  require_duration(scene.model, settings);
+  require_duration(scene, settings);
   RunSummary summary;
   State state = initial_state(scene.model);
   Judge judge(scene, state, 0.0);

@@ -45,8 +45,9 @@ using Observer = std::function<void(long step, double t, const State& state)>;
 /// Number of steps that `duration` takes. Throws UsageError if settings are out of range.
 long count_steps(const RunSettings& settings);
 
-/// Throws UsageError, like run(), if settings are out of range or a driver's table is too short.
-void require_duration(const Model& model, const RunSettings& settings);
+/// Throws UsageError, like run(), if settings are out of range or do not fit the scene's drivers:
+/// beyond a table, out of a range, too coarse steps.
+void require_duration(const Scene& scene, const RunSettings& settings);
 
 /// Simulates; stops at the first state that the judge refuses. Never throws for a numeric failure;
 /// throws UsageError if settings are out of range or the duration is beyond the model's drivers.

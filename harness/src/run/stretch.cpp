@@ -24,7 +24,9 @@ Stretch make_stretch(const Scene& scene, double step, int steps, std::optional<d
       throw UsageError(fmt::format("--step is {:g} s: a driver's table ends at {:g} s", step,
                                    driver_end(scene.model)));
     }
-    return {0.0, known < steps ? static_cast<int>(known) : steps, initial_state(scene.model)};
+    if (known < steps) steps = static_cast<int>(known);
+    require_drivers(scene, step, steps);
+    return {0.0, steps, initial_state(scene.model)};
   }
   if (start && !(*start >= 0.0 && std::isfinite(*start))) {
     throw UsageError(fmt::format("--start is {:g} s: it must be at least 0", *start));

@@ -7,6 +7,8 @@
 
 #include "model_math/consistency.hpp"
 #include "model_math/extent.hpp"
+#include "model_math/known_motion.hpp"
+#include "model_math/vector3.hpp"
 #include "printable.hpp"
 #include "scene/row_names.hpp"
 #include "scene/scene.hpp"
@@ -20,15 +22,14 @@ constexpr double kAssembled = 1e-10;
 /// Largest change of a given velocity, as a share of the largest given one.
 constexpr double kLargestVelocityChange = 0.1;
 
-double change_of(const Point& point, int dimension, std::span<const double> from,
-                 std::span<const double> to) {
-  double change = 0.0;
-  for (int axis = 0; axis < dimension; ++axis) {
-    const auto i = static_cast<std::size_t>(point.offset + axis);
-    change = std::hypot(change, to[i] - from[i]);
-  }
-  return change;
-}
+/// A point or vector of the scene with a velocity or position before and after.
+struct Change {
+  std::string name, path;
+  bool is_vector = false;
+  Vector3 from{}, to{};
+
+  [[nodiscard]] double size() const { return norm(to - from); }
+};
 
 class Assembly {
  public:
@@ -39,11 +40,11 @@ class Assembly {
         start_(model_.initial_position().begin(), model_.initial_position().end()),
         given_(model_.initial_velocity().begin(), model_.initial_velocity().end()),
         q_(start_),
-        v_(given_) {}
+        v_(given_),
+        known_(model_, 0.0) {}
 
   void run() {
     data_.assembly = {};
-    if (model_.constraints() == 0) return;
     assemble_positions();
     assemble_velocities();
     write_back();
@@ -67,74 +68,122 @@ class Assembly {
     const double scene_extent = extent(model_.points());
     double largest = 0.0;
     std::string where;
-    for (const Point& point : model_.points()) {
-      if (point.is_fixed()) continue;
-      const double change = change_of(point, model_.dimension(), start_, q_);
-      const double counted = point.is_vector ? change * scene_extent : change;
+    for (const Change& change : position_changes()) {
+      const double counted = change.is_vector ? change.size() * scene_extent : change.size();
       if (counted > largest) {
         largest = counted;
-        where = point.name;
+        where = change.name;
       }
-      if (!point.is_vector && change > data_.assembly.position_correction) {
-        data_.assembly.position_correction = change;
-        data_.assembly.point = point.name;
+      if (!change.is_vector && counted > data_.assembly.position_correction) {
+        data_.assembly.position_correction = counted;
+        data_.assembly.point = change.name;
       }
     }
     if (largest <= data_.largest_correction || largest == 0.0) return;
     fail(fmt::format(
         "the start is too far from its constraints: {} would move by {:.3g} m, allowed "
-        "is {:.3g} m (assembly.largest_correction); worst is {}",
-        in_quotes(where), largest, data_.largest_correction, describe_violation(model_, before)));
+        "is {:.3g} m (assembly.largest_correction){}",
+        in_quotes(where), largest, data_.largest_correction,
+        before.ratio <= kMet ? "" : "; worst is " + describe_violation(model_, before)));
+  }
+
+  /// Of the coordinates, and of what the file says of points that are computed from them.
+  [[nodiscard]] std::vector<Change> position_changes() const {
+    std::vector<Change> changes = changes_of(start_, q_);
+    for (const GivenMarker& given : data_.given_markers) {
+      if (!given.position) continue;
+      changes.push_back({marker(given).name, given.path, given.is_vector, *given.position,
+                         place(marker(given), q_, &KnownMotion::position)});
+    }
+    return changes;
+  }
+  [[nodiscard]] std::vector<Change> velocity_changes() const {
+    std::vector<Change> changes = changes_of(given_, v_);
+    for (const GivenMarker& given : data_.given_markers) {
+      if (!given.velocity) continue;
+      changes.push_back({marker(given).name, given.path + ".velocity", given.is_vector,
+                         *given.velocity, place(marker(given), v_, &KnownMotion::velocity)});
+    }
+    return changes;
+  }
+
+  [[nodiscard]] std::vector<Change> changes_of(const std::vector<double>& from,
+                                               const std::vector<double>& to) const {
+    std::vector<Change> changes;
+    for (std::size_t i = 0; i < model_.points().size(); ++i) {
+      const Point& point = model_.points()[i];
+      if (point.is_fixed()) continue;
+      const std::string path = i < data_.velocity_paths.size() ? data_.velocity_paths[i] : "";
+      changes.push_back({point.name, path, point.is_vector, part(point, from), part(point, to)});
+    }
+    return changes;
+  }
+
+  [[nodiscard]] Vector3 part(const Point& point, const std::vector<double>& x) const {
+    Vector3 result{};
+    std::copy_n(x.begin() + point.offset, model_.dimension(), result.begin());
+    return result;
+  }
+  [[nodiscard]] const Marker& marker(const GivenMarker& given) const {
+    return data_.elements.markers[static_cast<std::size_t>(given.marker)];
+  }
+  /// Position or velocity of a marker, from those of all coordinates and the known motion.
+  [[nodiscard]] Vector3 place(const Marker& marker, const std::vector<double>& x,
+                              Vector3 (KnownMotion::*known)(int) const) const {
+    Vector3 result{};
+    for (const Marker::Part& of : marker.parts) {
+      const Point& point = model_.points()[static_cast<std::size_t>(of.point)];
+      const Vector3 r = point.is_fixed() ? (known_.*known)(of.point) : part(point, x);
+      result = result + multiply(of.matrix, r);
+    }
+    return result;
   }
 
   /// Velocities given (not zero) stay if the others can follow; else all change.
   void assemble_velocities() {
     const Violation before = velocity_violation(model_, 0.0, q_, v_);
-    if (before.ratio <= kMet) return;
-    std::vector<bool> held(v_.size(), false);
-    for (const Point& point : model_.points()) {
-      if (!point.is_fixed() && speed(point, given_) > 0.0) {
-        std::fill_n(held.begin() + point.offset, model_.dimension(), true);
-      }
-    }
-    const bool any_held = std::ranges::find(held, true) != held.end();
-    Violation rest = before;
-    if (any_held) rest = make_consistent(model_, 0.0, q_, v_, held);
-    if (!(rest.ratio <= kMet)) rest = make_consistent(model_, 0.0, q_, v_);
-    if (!(rest.ratio <= kAssembled)) {
-      fail(
-          fmt::format("the velocities cannot be made consistent: the start is a singular position "
-                      "or its drivers contradict the constraints; what remains is {:.3g} {} at {}",
-                      rest.value, rate_unit(model_, rest.row), row_name(model_, rest.row)));
-    }
+    if (before.ratio > kMet) make_velocities_consistent();
     check_velocity_change(before);
   }
 
-  void check_velocity_change(const Violation& before) {
-    double fastest = 0.0;
+  void make_velocities_consistent() {
+    std::vector<bool> held(v_.size(), false);
     for (const Point& point : model_.points()) {
-      if (!point.is_fixed()) fastest = std::max(fastest, speed(point, given_));
+      if (!point.is_fixed() && norm(part(point, given_)) > 0.0) {
+        std::fill_n(held.begin() + point.offset, model_.dimension(), true);
+      }
     }
-    for (const Point& point : model_.points()) {
-      if (point.is_fixed()) continue;
-      const double change = change_of(point, model_.dimension(), given_, v_);
-      data_.assembly.velocity_correction = std::max(data_.assembly.velocity_correction, change);
-      if (speed(point, given_) == 0.0 || change <= kLargestVelocityChange * fastest) continue;
-      fail(fmt::format(
-          "the velocities contradict the constraints: that of {}, {:.3g} m/s, would "
-          "change by {:.3g} m/s, allowed is {:.3g} m/s, a tenth of the largest given; "
-          "worst is {}, whose Phi changes at {:.3g} {}",
-          in_quotes(point.name), speed(point, given_), change, kLargestVelocityChange * fastest,
-          row_name(model_, before.row), before.value, rate_unit(model_, before.row)));
+    Violation rest{std::numeric_limits<double>::infinity()};
+    if (std::ranges::find(held, true) != held.end()) {
+      rest = make_consistent(model_, 0.0, q_, v_, held);
     }
+    if (!(rest.ratio <= kAssembled)) v_ = given_;  // else only rounding is left to remove
+    if (!(rest.ratio <= kMet)) rest = make_consistent(model_, 0.0, q_, v_);
+    if (rest.ratio <= kAssembled) return;
+    fail(
+        fmt::format("the velocities cannot be made consistent: the start is a singular position "
+                    "or its drivers contradict the constraints; what remains is {:.3g} {} at {}",
+                    rest.value, rate_unit(model_, rest.row), row_name(model_, rest.row)));
   }
 
-  [[nodiscard]] double speed(const Point& point, std::span<const double> v) const {
-    double result = 0.0;
-    for (int axis = 0; axis < model_.dimension(); ++axis) {
-      result = std::hypot(result, v[static_cast<std::size_t>(point.offset + axis)]);
+  void check_velocity_change(const Violation& before) {
+    const std::vector<Change> changes = velocity_changes();
+    double fastest = 0.0;
+    for (const Change& change : changes) fastest = std::max(fastest, norm(change.from));
+    for (const Change& change : changes) {
+      data_.assembly.velocity_correction =
+          std::max(data_.assembly.velocity_correction, change.size());
+      if (norm(change.from) == 0.0 || change.size() <= kLargestVelocityChange * fastest) continue;
+      fail(fmt::format(
+          "{}{}the velocities contradict the constraints: that of {}, {:.3g} m/s, would "
+          "change by {:.3g} m/s, allowed is {:.3g} m/s, a tenth of the largest given{}",
+          change.path, change.path.empty() ? "" : ": ", in_quotes(change.name), norm(change.from),
+          change.size(), kLargestVelocityChange * fastest,
+          before.ratio <= kMet ? ""
+                               : fmt::format("; worst is {}, whose Phi changes at {:.3g} {}",
+                                             row_name(model_, before.row), before.value,
+                                             rate_unit(model_, before.row))));
     }
-    return result;
   }
 
   void write_back() {
@@ -150,6 +199,7 @@ class Assembly {
   Model model_;
   std::vector<double> start_, given_;  // q and v as given
   std::vector<double> q_, v_;
+  KnownMotion known_;
 };
 
 }  // namespace

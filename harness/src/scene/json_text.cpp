@@ -50,13 +50,15 @@ class StrictBuilder : public nlohmann::json_sax<json> {
     std::string_view reason = error.what();
     reason.remove_prefix(std::min(reason.find("] ") + 2, reason.size()));
     if (reason.starts_with("parse error")) reason.remove_prefix(reason.find(": ") + 2);
-    const std::string_view read = text_.substr(0, position == 0 ? 0 : position - 1);
-    const auto line = std::count(read.begin(), read.end(), '\n') + 1;
-    const auto newline = read.rfind('\n');
-    const std::size_t column =
-        newline == std::string_view::npos ? read.size() + 1 : read.size() - newline;
-    fail(fmt::format("malformed JSON at line {}, column {}: {}", line, column,
-                     printable(reason, 300)));
+    fail_at(position == 0 ? 0 : position - 1, reason);
+  }
+
+  /// What the parser does not look at: what follows a NUL, which ends the text for it, and
+  /// comments.
+  void check_bytes() const {
+    const std::size_t nul = text_.find('\0'), bad = first_ill_formed(text_);
+    if (nul < bad) fail_at(nul, "a NUL byte; allowed is text");
+    if (bad != std::string_view::npos) fail_at(bad, "ill-formed UTF-8 byte");
   }
 
  private:
@@ -64,6 +66,16 @@ class StrictBuilder : public nlohmann::json_sax<json> {
     json* container;
     std::string key;  // of the member being read, if the container is an object
   };
+
+  [[noreturn]] void fail_at(std::size_t byte, std::string_view reason) const {
+    const std::string_view read = text_.substr(0, byte);
+    const auto line = std::count(read.begin(), read.end(), '\n') + 1;
+    const auto newline = read.rfind('\n');
+    const std::size_t column =
+        newline == std::string_view::npos ? read.size() + 1 : read.size() - newline;
+    fail(fmt::format("malformed JSON at line {}, column {}: {}", line, column,
+                     printable(reason, 300)));
+  }
 
   [[noreturn]] void fail(const std::string& what) const {
     throw UsageError(fmt::format("{}: {}", printable(where_), what));
@@ -123,6 +135,7 @@ json parse_json(std::string_view text, const std::string& where) {
   StrictBuilder builder(text, where);
   json::sax_parse(text, &builder, json::input_format_t::json, /*strict=*/true,
                   /*ignore_comments=*/true);
+  builder.check_bytes();
   return builder.take();
 }
 

@@ -9,7 +9,6 @@
 #include "scene/time_functions.hpp"
 
 namespace mbs {
-namespace {}  // namespace
 
 /// Radians; in the plane from first to second, counter-clockwise, in space 0 ... pi.
 double Lowering::start_angle(const DraftConstraint& constraint) const {
@@ -65,8 +64,6 @@ void Lowering::lower_fixed_angle(const DraftConstraint& constraint, const TimeFu
 /// A driven vector of this length at `offset` + `sign` angle(t) from x.
 int Lowering::driven_normal(const DraftConstraint& constraint, const TimeFunction& angle,
                             double sign, double offset, double length) {
-  static_cast<void>(
-      zero());  // driven points are listed in ascending order; a point at 0 is not one
   const int normal = add_hidden(constraint.node.path() + ".normal", true);
   // sin x = cos(x - pi/2), cos(-x) = cos x
   const TimeFunction x = cosine_of(angle, length, sign * offset);
@@ -94,7 +91,7 @@ void Lowering::lower_moving_angle(const DraftConstraint& constraint, const TimeF
 }
 
 void Lowering::lower_spatial_angle(const DraftConstraint& constraint, const TimeFunction& angle) {
-  constexpr double kLeast = 0.01;  // rad
+  constexpr double kLeast = kLeastSpatialAngle;
   const double start = angle.at(0.0).value;
   if (!(start >= kLeast && start <= std::numbers::pi - kLeast)) {
     constraint.node.fail(

@@ -7,6 +7,7 @@
 
 #include "printable.hpp"
 #include "scene/lowering.hpp"
+#include "scene/shared_shape.hpp"
 
 namespace mbs {
 namespace {
@@ -139,6 +140,9 @@ class BodyLowering {
         }
       }
     }
+    std::vector<int> points;  // products cannot tell a body from its mirror image
+    for (const std::size_t item : body_.basis) points.push_back(body_.items[item].point);
+    static_cast<void>(is_said(points));
   }
 
   void check_product(std::size_t k, std::size_t l, double value) const {
@@ -206,13 +210,21 @@ class BodyLowering {
       marker.parts.push_back({point(body_.basis[k]).index, block_of(weights[k], draft_.dimension)});
     }
     markers.push_back(std::move(marker));
+    GivenMarker given{point(item).marker, point(item).node->path(), point(item).is_vector, {}, {}};
+    if (!point(item).is_placed) given.position = point(item).position;
+    if (!point(item).is_carried) given.velocity = point(item).velocity;
+    if (!given.position && !given.velocity) return;
+    scene_.lowered_.data.given_markers.push_back(std::move(given));
   }
 
-  /// Whether a body that has its constraints holds these points and vectors together.
+  /// Whether a body that has its constraints holds these points and vectors together, which must
+  /// then be in the shape that they have here.
   [[nodiscard]] bool is_said(const std::vector<int>& points) const {
-    return common_body(draft_, points, [&](int other) {
-             return other != index_ && is_done_[static_cast<std::size_t>(other)];
-           }) >= 0;
+    const int holder = common_body(draft_, points, [&](int other) {
+      return other != index_ && is_done_[static_cast<std::size_t>(other)];
+    });
+    if (holder >= 0) check_same_shape(draft_, index_, holder, points);
+    return holder >= 0;
   }
 
   void keep(Row row) {

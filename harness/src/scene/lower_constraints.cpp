@@ -128,7 +128,8 @@ void Lowering::lower_dot(const DraftConstraint& constraint) {
   rows_.dot(constraint.name, first, second, constraint.value.value_or(dot(u, w)));
 }
 
-/// To unit length: the penalty weighs all constraints alike, and violations are judged in metres.
+/// To coefficients of length 1, so that what the author multiplied them with changes neither the
+/// row's weight in the penalty nor how its violation, then in metres, is judged.
 void Lowering::lower_linear(const DraftConstraint& constraint) {
   double norm = 0.0, start = 0.0;
   for (const DraftConstraint::Term& term : constraint.terms) {
@@ -171,17 +172,24 @@ void Lowering::refuse_same_dot(const JsonNode& node, const DraftDirection& first
 Lowering::Row Lowering::distinct_linear(const JsonNode& node, const std::string& name,
                                         const std::vector<Part>& parts, const TimeFunction& value) {
   const Row row = rows_.linear(name, parts, value);
-  const auto& terms = model().linear_constraints.back().terms;
+  const LinearConstraint& written = model().linear_constraints.back();
+  const double scale = written.terms.front().coefficient;
   std::vector<std::pair<int, double>> scaled;
-  for (const auto& term : terms) {
-    scaled.emplace_back(term.coordinate, term.coefficient / terms.front().coefficient);
+  for (const auto& term : written.terms) {
+    scaled.emplace_back(term.coordinate, term.coefficient / scale);
   }
-  const auto [same, is_new] = linears_.emplace(std::move(scaled), node.path());
-  if (!is_new) {
-    node.fail("the same coefficients as in " + same->second + " or a multiple",
-              "one such constraint, another is redundant");
-  }
-  return row;
+  const Known own{node.path(), written.value / scale};
+  const auto [same, is_new] = linears_.emplace(std::move(scaled), own);
+  if (is_new) return row;
+  const Known& other = same->second;
+  constexpr double kSame = 1e-12;  // of the value: rounding
+  const bool agrees = std::abs(own.value - other.value) <= kSame * std::abs(own.value);
+  node.fail("the same coefficients as in " + other.path + " or a multiple" +
+                (agrees ? ""
+                        : fmt::format(", but the value {:.9g} m where that has {:.9g} m: they "
+                                      "contradict each other",
+                                      own.value, other.value)),
+            agrees ? "one such constraint, another is redundant" : "one such constraint");
 }
 
 }  // namespace mbs

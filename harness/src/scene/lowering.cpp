@@ -9,6 +9,7 @@
 
 #include "model_math/extent.hpp"
 #include "printable.hpp"
+#include "scene/output_columns.hpp"
 
 namespace mbs {
 
@@ -25,6 +26,8 @@ Lowered Lowering::run() {
   rows_.finish();
   lower_elements();
   lower_outputs();
+  refuse_same_columns();
+  lowered_.data.elements.drivers = std::move(draft_.drivers);
   lowered_.data.largest_correction = draft_.largest_correction.value_or(default_correction());
   return std::move(lowered_);
 }
@@ -50,11 +53,19 @@ void Lowering::add_point(DraftPoint& point) {
   const int offset = is_free ? static_cast<int>(data.initial_velocity.size()) : -1;
   data.points.push_back({point.name, offset, *point.position, point.is_vector});
   lowered_.labels.push_back((point.node ? point.node->path() + ' ' : "") + in_quotes(point.name));
+  lowered_.data.velocity_paths.push_back(velocity_path(point));
   if (point.hold == Hold::driven) data.driven_points.push_back({point.index, point.motion});
   if (!is_free) return;
   const Vector3 velocity = point.velocity.value_or(Vector3{});
   data.initial_velocity.insert(data.initial_velocity.end(), velocity.begin(),
                                velocity.begin() + draft_.dimension);
+}
+
+/// Where the file gives the velocity: with the point, or by its first body's motion.
+std::string Lowering::velocity_path(const DraftPoint& point) const {
+  if (!point.velocity) return "";
+  return point.is_carried ? draft_.body(point.bodies.front()).node.path()
+                          : point.node->path() + ".velocity";
 }
 
 void Lowering::lower_rods() {
@@ -130,6 +141,22 @@ void Lowering::lower_outputs() {
       output.constraint = rows_.place(row->second);
     }
     lowered_.data.elements.outputs.push_back(std::move(output));
+  }
+}
+
+/// In a table of all outputs, which starts with the time.
+void Lowering::refuse_same_columns() const {
+  std::unordered_map<std::string, std::string> owner_of{{"t", "the time"}};
+  for (std::size_t i = 0; i < draft_.outputs.size(); ++i) {
+    const JsonNode name = draft_.outputs[i].node.get("name");
+    for (const std::string& column :
+         columns_of(lowered_.data.elements.outputs[i], draft_.dimension)) {
+      const auto [same, is_new] = owner_of.emplace(column, name.path());
+      if (is_new) continue;
+      name.fail(
+          fmt::format("{}, which makes the column {}", in_quotes(name.text()), in_quotes(column)),
+          fmt::format("columns of its own ({} has it)", same->second));
+    }
   }
 }
 

@@ -38,10 +38,12 @@ class Lowering {
   // lowering.cpp
   void number_points();
   void add_point(DraftPoint& point);
+  [[nodiscard]] std::string velocity_path(const DraftPoint& point) const;
   void lower_rods();
   void lower_masses();
   void lower_elements();
   void lower_outputs();
+  void refuse_same_columns() const;
   [[nodiscard]] int element_index(int point) const;
   [[nodiscard]] double default_correction() const;
   [[nodiscard]] ModelData& model() { return lowered_.data.model; }
@@ -99,7 +101,11 @@ class Lowering {
   std::unordered_map<std::string, Row> row_of_;     // first row of a rod, body or constraint
   std::map<std::pair<int, int>, double> lengths_;   // constant ones, by indices into the model
   std::map<std::array<int, 4>, std::string> dots_;  // path of the first such constraint
-  std::map<std::vector<std::pair<int, double>>, std::string> linears_;  // by scaled terms
+  struct Known {
+    std::string path;
+    double value = 0.0;  // at t = 0
+  };
+  std::map<std::vector<std::pair<int, double>>, Known> linears_;  // by terms whose first has 1
 };
 
 /// Planar: u . B w is the cross product u x w.

@@ -25,7 +25,11 @@ class Placement {
     for (int i = 0; i < bodies(); ++i) place_at_origin(i);
     refuse_open_places();
     for (int i = 0; i < bodies(); ++i) {
-      if (draft_.dimension == 3) refuse_mirror_image(i);
+      if (draft_.dimension == 3) {
+        refuse_mirror_image(i);
+      } else {
+        refuse_planar_mirror_image(i);
+      }
       move(i);
     }
   }
@@ -76,6 +80,7 @@ class Placement {
       DraftPoint& point = draft_.point(item.point);
       if (point.position) continue;
       point.position = given.place(item.local, point.is_vector);
+      point.is_placed = true;
       for (const int other : point.bodies) wait(other);
     }
   }
@@ -102,11 +107,13 @@ class Placement {
     }
   }
 
-  [[nodiscard]] std::vector<Sighting> sightings(const DraftBody& body) const {
+  /// Of what has a position, with `only_given` of what does not have it from a body.
+  [[nodiscard]] std::vector<Sighting> sightings(const DraftBody& body,
+                                                bool only_given = false) const {
     std::vector<Sighting> result;
     for (const DraftBody::Item& item : body.items) {
       const DraftPoint& point = draft_.point(item.point);
-      if (!point.position) continue;
+      if (!point.position || (only_given && point.is_placed)) continue;
       result.push_back({item.local, *point.position, point.is_vector,
                         point.is_vector && point.hold == Hold::fixed});
     }
@@ -152,6 +159,31 @@ class Placement {
     const double there = dot(cross(local[0], local[1]), local[2]);
     const double here = dot(cross(global[0], global[1]), global[2]);
     if (here * there > 0.0 || here == 0.0) return;
+    fail_mirror_image(body);
+  }
+
+  /// Of the positions that do not come from the body itself: as complex numbers about their
+  /// middles, |sum conj(local) global| is how well the body fits them, |sum local global| its
+  /// mirror image; on a line these are equal.
+  void refuse_planar_mirror_image(int index) const {
+    const std::vector<Sighting> seen = sightings(draft_.body(index), true);
+    Vector3 local{}, global{};
+    for (const Sighting& sighting : seen) {
+      const double share = 1.0 / static_cast<double>(seen.size());
+      local = local + share * sighting.local;
+      global = global + share * sighting.global;
+    }
+    Vector3 as_is{}, mirrored{};
+    for (const Sighting& sighting : seen) {
+      const Vector3 x = sighting.local - local, y = sighting.global - global;
+      as_is = as_is + Vector3{dot(x, y), cross(x, y)[2], 0.0};
+      mirrored = mirrored + Vector3{x[0] * y[0] - x[1] * y[1], x[0] * y[1] + x[1] * y[0], 0.0};
+    }
+    constexpr double kMargin = 1.001;  // what lies nearly on a line is not judged by its rounding
+    if (norm(mirrored) > kMargin * norm(as_is)) fail_mirror_image(draft_.body(index));
+  }
+
+  [[noreturn]] static void fail_mirror_image(const DraftBody& body) {
     body.node.fail("points and vectors that start as the mirror image of the body's",
                    "positions that turning and moving the body gives");
   }
@@ -165,8 +197,7 @@ class Placement {
       if (point.velocity || point.hold != Hold::free) continue;
       point.velocity =
           point.is_vector ? cross(twist->spin, *point.position) : twist->of_point(*point.position);
-      inherited_.resize(draft_.points.size(), false);
-      inherited_[static_cast<std::size_t>(item.point)] = true;
+      point.is_carried = true;
     }
   }
 
@@ -178,7 +209,7 @@ class Placement {
     bool any_stated = false;
     for (const DraftBody::Item& item : body.items) {
       const DraftPoint& point = draft_.point(item.point);
-      const bool is_stated = point.velocity && !is_inherited(item.point);
+      const bool is_stated = point.velocity && !point.is_carried;
       if (point.hold == Hold::free && !is_stated) continue;
       any_stated = any_stated || is_stated;
       seen.push_back(
@@ -199,11 +230,6 @@ class Placement {
     return any_stated ? fit_twist(seen, draft_.dimension) : std::nullopt;
   }
 
-  [[nodiscard]] bool is_inherited(int point) const {
-    return static_cast<std::size_t>(point) < inherited_.size() &&
-           inherited_[static_cast<std::size_t>(point)];
-  }
-
   [[nodiscard]] Vector3 centre(int index) {
     return pose(index) ? pose(index)->place(draft_.body(index).inertia.centre, false) : Vector3{};
   }
@@ -219,7 +245,6 @@ class Placement {
   std::vector<std::optional<Pose>> poses_;
   std::deque<int> waiting_;  // bodies to place, each once
   std::vector<bool> is_waiting_;
-  std::vector<bool> inherited_;  // velocities that came from a body
 };
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scene/time_functions.hpp"
 
 namespace mbs {
@@ -27,16 +29,18 @@ TimeFunction read_polynomial(const JsonNode& node) {
   return polynomial(std::move(coefficients));
 }
 
-TimeFunction read_sine(const JsonNode& node) {
+GivenFunction read_sine(const JsonNode& node) {
   node.allow_keys({"amplitude", "frequency", "phase", "offset"});
   Sine values{node.get("amplitude").number(),
               node.get("frequency").number_at_least(0.0, "a frequency in Hz of at least 0")};
   if (const auto phase = node.find("phase")) values.phase = phase->number();
   if (const auto offset = node.find("offset")) values.offset = offset->number();
-  return sine(values);
+  if (values.amplitude == 0.0 || values.frequency == 0.0) return {sine(values)};
+  return {sine(values), 1.0 / (kStepsPerPeriod * values.frequency),
+          fmt::format("1/{:g} of the sine's period", kStepsPerPeriod)};
 }
 
-TimeFunction read_table(const JsonNode& node) {
+GivenFunction read_table(const JsonNode& node) {
   node.allow_keys({"times", "values"});
   const JsonNode times_node = node.get("times"), values_node = node.get("values");
   std::vector<double> times = numbers(times_node), values = numbers(values_node);
@@ -58,13 +62,18 @@ TimeFunction read_table(const JsonNode& node) {
         "a smooth function, whose slope changes over at least four rows (a corner would need an "
         "infinite force)");
   }
-  return spline(std::move(times), std::move(values));
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    shortest = std::min(shortest, times[i] - times[i - 1]);
+  }
+  return {spline(std::move(times), std::move(values)), shortest,
+          "the table's shortest row distance"};
 }
 
 }  // namespace
 
-TimeFunction read_function(const JsonNode& node, const std::string& unit) {
-  if (node.is_number()) return node.number();
+GivenFunction read_function(const JsonNode& node, const std::string& unit) {
+  if (node.is_number()) return {node.number()};
   if (!node.is_object()) {
     node.fail("a number " + unit + ", or an object with polynomial, sine or table");
   }
@@ -75,7 +84,7 @@ TimeFunction read_function(const JsonNode& node, const std::string& unit) {
               "one of polynomial, sine, table");
   }
   const auto& [kind, value] = members.front();
-  if (kind == "polynomial") return read_polynomial(value);
+  if (kind == "polynomial") return {read_polynomial(value)};
   return kind == "sine" ? read_sine(value) : read_table(value);
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "printable.hpp"
-#include "scene/read_function.hpp"
 #include "scene/scene_reader.hpp"
 
 namespace mbs {
@@ -84,7 +83,8 @@ void SceneReader::read_constraint(const JsonNode& node) {
       break;
   }
   if (const auto value = node.find("value")) {
-    constraint.value = read_function(*value, constraint.type == Type::angle ? "in rad" : "");
+    constraint.value =
+        read_driver(*value, constraint.type == Type::angle ? "in rad" : "", &constraint);
   }
   draft_.constraints.push_back(std::move(constraint));
 }

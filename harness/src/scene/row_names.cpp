@@ -38,8 +38,11 @@ std::string describe_violation(const Model& model, const Violation& violation) {
     const DotConstraint& c = model.dot_constraints()[row];
     const double found = violation.value + wanted;
     if (c.a == c.c && c.b == c.d && found >= 0.0) {
-      return fmt::format("{}: its points are {:.6g} m apart, its length is {:.6g} m", name,
-                         std::sqrt(found), std::sqrt(wanted));
+      const double apart = std::sqrt(found), length = std::sqrt(wanted), off = apart - length;
+      constexpr double kShown = 1e-3;  // smaller shares are hard to see, or not shown
+      return fmt::format(
+          "{}: its points are {:.6g} m apart, its length is {:.6g} m{}", name, apart, length,
+          std::abs(off) < kShown * length ? fmt::format(" (a difference of {:.3g} m)", off) : "");
     }
   }
   return fmt::format("{}: Phi = {:.3g} {}", name, violation.value,

@@ -29,11 +29,13 @@ RowWriter::Row RowWriter::bilinear(const std::string& name, Edge first, Edge sec
   return row;
 }
 
-const DrivenPoint* RowWriter::driven(int point) const {
-  const auto found =  // in ascending order of the points
-      std::lower_bound(data_.driven_points.begin(), data_.driven_points.end(), point,
-                       [](const DrivenPoint& driven, int index) { return driven.point < index; });
-  return found != data_.driven_points.end() && found->point == point ? &*found : nullptr;
+const DrivenPoint* RowWriter::driven(int point) {
+  while (driven_points_.size() < data_.driven_points.size()) {  // those added since the last time
+    const std::size_t next = driven_points_.size();
+    driven_points_.emplace(data_.driven_points[next].point, next);
+  }
+  const auto found = driven_points_.find(point);
+  return found == driven_points_.end() ? nullptr : &data_.driven_points[found->second];
 }
 
 RowWriter::Row RowWriter::linear(const std::string& name, const std::vector<Part>& parts,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "mbs/model.hpp"
@@ -46,9 +47,10 @@ class RowWriter {
     TimeFunction value;
   };
   double constant(Row row, const TimeFunction& value);
-  [[nodiscard]] const DrivenPoint* driven(int point) const;
+  const DrivenPoint* driven(int point);
 
   ModelData& data_;
+  std::unordered_map<int, std::size_t> driven_points_;  // index into data_.driven_points
   std::vector<Driven> driven_;
 };
 

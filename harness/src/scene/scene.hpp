@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -57,6 +58,19 @@ struct Output {
   int constraint = -1;  ///< index into Phi
 };
 
+/// A function of time that the scene's author gave, and what a run may make of it.
+struct Driver {
+  std::string path;  ///< in the file: "constraints[0].value"
+  std::string name;  ///< of its constraint, as messages have it; empty: that of a point
+  TimeFunction value;
+  double longest_step = std::numeric_limits<double>::infinity();  ///< s, that resolves it
+  std::string resolution = {};  ///< what longest_step is: "a twentieth of its period"
+  double least = -std::numeric_limits<double>::infinity();  ///< of its value during a run
+  double most = std::numeric_limits<double>::infinity();
+  double largest_change = std::numeric_limits<double>::infinity();  ///< in one step
+  std::string range = {};  ///< what is allowed: "a distance above 0 m"
+};
+
 /// What the scene's author named, for outputs, messages and pictures; no implementation sees it.
 struct Elements {
   struct Rod {
@@ -72,11 +86,12 @@ struct Elements {
   std::vector<Body> bodies;
   std::vector<Marker> markers;
   std::vector<Output> outputs;
+  std::vector<Driver> drivers = {};
 };
 
 /// What the assembly of the start changed.
 struct AssemblyReport {
-  double position_correction = 0.0;  ///< largest change of a point, m
+  double position_correction = 0.0;  ///< largest change of a point given or a coordinate, m
   double velocity_correction = 0.0;  ///< m/s
   std::string point;                 ///< where the first of them is
 };
@@ -92,10 +107,20 @@ struct Scene {
   AssemblyReport assembly = {};
 };
 
+/// What the file says of a point or vector of a body that is no coordinate.
+struct GivenMarker {
+  int marker = 0;    ///< index into Elements::markers
+  std::string path;  ///< in the file: "points[1]"
+  bool is_vector = false;
+  std::optional<std::array<double, 3>> position, velocity;  ///< m, m/s
+};
+
 /// A scene on its way to a Model: assembled or not.
 struct SceneData {
   ModelData model;
   Elements elements;
+  std::vector<std::string> velocity_paths = {};  ///< what gave the velocity of each model point
+  std::vector<GivenMarker> given_markers = {};
   double largest_correction = 0.0;  ///< m; allowed to the assembly
   AssemblyReport assembly = {};
 };
@@ -121,11 +146,12 @@ SceneData parse_scene(std::string_view json, const std::string& where);
 /// Moves data.model's start onto its constraints: positions onto Phi(q, 0) = 0, then velocities
 /// onto Phi_q v = -Phi_t, each by the smallest change in the norm of M (Gauss-Newton; redundant
 /// constraints are fine). Velocities given, that is not zero, stay as they are if the others can
-/// follow. A start on its constraints to rounding is left bit for bit. Fills data.assembly. Throws
-/// UsageError, prefixed by `where`, naming the constraint and by how much it fails, if that does
-/// not converge, if a point would move by more than data.largest_correction (a unit vector: by more
-/// than its share of the scene's extent), or if a given velocity would change by more than a tenth
-/// of the largest given.
+/// follow. A start on its constraints to rounding is left bit for bit. What the file gives of
+/// points that are no coordinates counts like theirs. Fills data.assembly. Throws UsageError,
+/// prefixed by `where`, naming the constraint and by how much it fails, if that does not converge,
+/// if a point would move by more than data.largest_correction (a unit vector: by more than its
+/// share of the scene's extent), or if a given velocity would change by more than a tenth of the
+/// largest given.
 void assemble_start(SceneData& data, const std::string& where);
 
 /// Number of non-zero positions of the tangent (5), both triangles: pattern of M, C, K and Phi_q^T

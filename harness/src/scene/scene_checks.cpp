@@ -12,6 +12,7 @@
 
 #include "model_math/jacobian_rank.hpp"
 #include "model_math/kinematics.hpp"
+#include "model_math/least_change.hpp"
 #include "printable.hpp"
 #include "scene/row_names.hpp"
 #include "usage_error.hpp"
@@ -87,6 +88,9 @@ class MobilityCheck {
                       "the start), allowed is at least one degree of freedom",
                       n, *rank));
     }
+    if (rank && *rank == n - 1 && *rank < model_.constraints() && !is_driven) {
+      refuse_second_order();
+    }
     if (!rank && model_.constraints() > n) {
       refuse(where_,
              fmt::format("found {} constraints on {} coordinates, allowed are at most as many",
@@ -95,6 +99,40 @@ class MobilityCheck {
   }
 
  private:
+  /// One direction v is left by Phi_q v = 0. A motion along it has Phi_q a = -(Phi_q)' v, which
+  /// redundant constraints of a mechanism allow, and stretched ones of a framework do not.
+  void refuse_second_order() const {
+    const std::span<const double> q = model_.initial_position();
+    const auto rows = static_cast<std::size_t>(model_.constraints());
+    const LeastChange least(model_, 0.0, q);
+    const auto times_jacobian = [&](const std::vector<double>& x) {
+      std::vector<double> result(rows);
+      constraint_rate(model_, 0.0, q, x, result);  // Phi_t is 0
+      return result;
+    };
+    std::vector<double> v(q.size());
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = 1.0 + 0.5 * std::sin(1.0 + 2.0 * i);
+    for (int pass = 0; pass < 2; ++pass) {
+      const std::vector<double> off = least.solve(times_jacobian(v));
+      for (std::size_t i = 0; i < v.size(); ++i) v[i] -= off[i];
+    }
+    std::vector<double> curvature(rows);
+    constraint_curvature(model_, 0.0, q, v, curvature);
+    const std::vector<double> rate = times_jacobian(least.solve(curvature));
+    double size = 0.0, rest = 0.0;
+    for (std::size_t k = 0; k < rows; ++k) {
+      size = std::hypot(size, curvature[k]);
+      rest = std::hypot(rest, curvature[k] - rate[k]);
+    }
+    constexpr double kRest = 1e-6;  // share of the curvature that is no rounding
+    if (!(rest > kRest * size)) return;
+    refuse(where_,
+           fmt::format("the scene cannot move: its constraints are stretched or folded at the "
+                       "start, where they hold {} of {} coordinates at first order and the last at "
+                       "second, allowed is at least one degree of freedom",
+                       model_.variables() - 1, model_.variables()));
+  }
+
   [[nodiscard]] int row_of(std::size_t entry) const { return entries_[entry].row; }
 
   const Lowered& lowered_;

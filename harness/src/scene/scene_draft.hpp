@@ -17,6 +17,9 @@
 
 namespace mbs {
 
+/// Parallel directions are nearer than this in space, where the cosine holds an angle, rad.
+inline constexpr double kLeastSpatialAngle = 0.01;
+
 enum class Hold { free, fixed, driven };
 
 /// A point or unit vector. Below, `int` refers to one by its index in SceneDraft::points.
@@ -31,8 +34,10 @@ struct DraftPoint {
   bool is_output = false;  ///< an output names it
   bool is_own = false;     ///< made for a body, which names it
   std::optional<Vector3> position = std::nullopt;  ///< a vector's: its direction, length 1
-  std::optional<Vector3> velocity = std::nullopt;  ///< as given
-  std::array<TimeFunction, 3> motion = {};         ///< of a driven one
+  std::optional<Vector3> velocity = std::nullopt;
+  bool is_placed = false;   ///< `position` is where a body's pose has it, not what the file says
+  bool is_carried = false;  ///< the same of `velocity`
+  std::array<TimeFunction, 3> motion = {};  ///< of a driven one
   std::vector<int> bodies = {};  ///< that have it: ascending indices into SceneDraft::bodies
   std::size_t item = 0;          ///< of the first of these bodies
   bool is_member = false;        ///< of a body's basis or further items
@@ -145,6 +150,7 @@ struct SceneDraft {
   std::vector<DraftForce> forces;
   std::vector<DraftTorque> torques;
   std::vector<DraftOutput> outputs;
+  std::vector<Driver> drivers;
   std::optional<double> largest_correction;
   std::unordered_map<std::string, int> index_of;  ///< points and vectors by name
 

@@ -5,11 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "printable.hpp"
 #include "scene/read_function.hpp"
 
 namespace mbs {
+namespace {
+
+constexpr double kLeastDistance = 1e-150;  // m, whose square is still a number above 0
+
+}  // namespace
 
 SceneDraft SceneReader::read() {
   root_.allow_keys({"dimension", "gravity", "points", "vectors", "rods", "masses", "bodies",
@@ -79,7 +86,7 @@ void SceneReader::read_driven(const JsonNode& node, DraftPoint& point) {
     const std::string key(1, static_cast<char>('x' + axis));
     const auto function = node.find(key);
     if (!function && !point.position) static_cast<void>(node.get(key));
-    point.motion[axis] = function ? read_function(*function, "in m") : (*point.position)[axis];
+    point.motion[axis] = function ? read_driver(*function, "in m") : (*point.position)[axis];
     moves = moves || !point.motion[axis].is_constant();
   }
   point.hold = moves ? Hold::driven : Hold::fixed;
@@ -88,6 +95,29 @@ void SceneReader::read_driven(const JsonNode& node, DraftPoint& point) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     (*point.position)[axis] = point.motion[axis].at(0.0).value;
   }
+}
+
+TimeFunction SceneReader::read_driver(const JsonNode& node, const std::string& unit,
+                                      const DraftConstraint* constraint) {
+  using Type = DraftConstraint::Type;
+  const GivenFunction given = read_function(node, unit);
+  if (given.value.is_constant()) return given.value;
+  Driver driver{node.path(), constraint == nullptr ? "" : constraint->name, given.value,
+                given.longest_step, given.resolution};
+  if (constraint != nullptr && constraint->type == Type::distance) {
+    driver.least = kLeastDistance;
+    driver.range = "a distance in m above 0";
+  }
+  if (constraint != nullptr && constraint->type == Type::angle) {
+    driver.largest_change = 2 * std::numbers::pi / kStepsPerPeriod;
+    if (is_spatial()) {
+      driver.least = kLeastSpatialAngle;
+      driver.most = std::numbers::pi - kLeastSpatialAngle;
+      driver.range = fmt::format("{0} to pi - {0} rad", kLeastSpatialAngle);
+    }
+  }
+  draft_.drivers.push_back(std::move(driver));
+  return given.value;
 }
 
 void SceneReader::read_vector(const JsonNode& node) {

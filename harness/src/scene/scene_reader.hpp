@@ -35,6 +35,9 @@ class SceneReader {
   void read_rod(const JsonNode& node);
   void read_mass(const JsonNode& node);
   void read_assembly(const JsonNode& node);
+  /// A function of time, listed as a driver unless it is constant.
+  TimeFunction read_driver(const JsonNode& node, const std::string& unit,
+                           const DraftConstraint* constraint = nullptr);
 
   // reader_bodies.cpp
   void read_body(const JsonNode& node);

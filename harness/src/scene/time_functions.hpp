@@ -32,15 +32,23 @@ TimeFunction cosine_of(TimeFunction angle, double amplitude, double phase = 0.0)
 using Terms = std::vector<std::pair<double, TimeFunction>>;
 TimeFunction combination(const Terms& terms, double constant = 0.0);
 
-/// Row at which a table has a corner. With D_i the second divided differences at the inner rows, a
-/// pair (i, i + 1) is a corner if |D| at one of them exceeds kCornerRatio times |D| at the two rows
-/// before and the two after the pair (a corner between two rows splits its D among them), and if
-/// the slope jumps there by more than kCornerJump of the table's steepest slope (smaller ones are
-/// rounding of the values).
+/// Row at which a table has a corner or is too coarse: two rules.
 ///
-/// Example: |t - 1| at t = 0, 0.1, ..., 2 has D = 0 but for 20 at t = 1. A sine is smooth from six
-/// rows a period on.
+/// Jump: with D_i the second divided differences at the inner rows, a pair (i, i + 1) is a corner
+/// if |D| at one of them exceeds kCornerRatio times |D| at the two rows before and the two after
+/// the pair, both inner rows on one side at least (a corner between two rows splits its D among
+/// them), and if the slope jumps there by more than kCornerJump of the table's steepest slope
+/// (smaller ones are rounding of the values).
+///
+/// Stray: an inner row is one if the cubic through the four rows nearest by number (in a table of
+/// four rows the parabola through the three others) and the straight line between its neighbours
+/// both miss its value by more than kStrayShare of the range of the values from three rows before
+/// to three after, and by kCornerJump of the range of all.
+///
+/// Example: |t - 1| at t = 0, 0.1, ..., 2 has D = 0 but for 20 at t = 1: a jump. A single 1 among
+/// zeros, and rows that go up and down by turns, stray. A sine is smooth from six rows a period on.
 inline constexpr double kCornerRatio = 5.0;
+inline constexpr double kStrayShare = 0.2;
 inline constexpr double kCornerJump = 0.01;
 std::optional<std::size_t> corner_of(const std::vector<double>& times,
                                      const std::vector<double>& values);
