@@ -5,20 +5,22 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "model_math/kinematics.hpp"
+#include "run/constraint_force.hpp"
 
 namespace mbs {
 namespace {
 
 /// What the columns of a vector have before the axis's letter; nullptr: the output is one number.
-const char* vector_prefix(Output::Kind kind) {
-  switch (kind) {
+const char* vector_prefix(const Output& output) {
+  switch (output.kind) {
     case Output::Kind::position:
       return ".";
     case Output::Kind::velocity:
       return ".v";
     case Output::Kind::acceleration:
       return ".a";
+    case Output::Kind::constraint_force:
+      return output.force == Output::Force::vector ? "." : nullptr;
     default:
       return nullptr;
   }
@@ -29,7 +31,7 @@ const char* vector_prefix(Output::Kind kind) {
 OutputValues::OutputValues(const Scene& scene) : scene_(scene), motion_(scene) {
   const std::string axes = scene.model.dimension() == 2 ? "xy" : "xyz";
   for (const Output& output : scene.elements.outputs) {
-    const char* prefix = vector_prefix(output.kind);
+    const char* prefix = vector_prefix(output);
     if (prefix == nullptr) {
       columns_.push_back(output.name);
     } else {
@@ -41,7 +43,6 @@ OutputValues::OutputValues(const Scene& scene) : scene_(scene), motion_(scene) {
 
 void OutputValues::follow(double t, const State& state) {
   const bool is_first = state_ == nullptr;
-  t_ = t;
   state_ = &state;
   motion_.set(t, state);
   for (std::size_t i = 0; i < angles_.size(); ++i) {
@@ -60,22 +61,31 @@ std::vector<double> OutputValues::values() const {
   const auto dimension = static_cast<std::size_t>(scene_.model.dimension());
   for (std::size_t i = 0; i < angles_.size(); ++i) {
     const Output& output = scene_.elements.outputs[i];
-    if (vector_prefix(output.kind) == nullptr) {
+    if (vector_prefix(output) == nullptr) {
       result.push_back(scalar(i));
       continue;
     }
-    const Vector3 value = output.kind == Output::Kind::position ? motion_.position(output.point)
-                          : output.kind == Output::Kind::velocity
-                              ? motion_.velocity(output.point)
-                              : motion_.acceleration(output.point);
+    const Vector3 value = vector(output);
     for (std::size_t axis = 0; axis < dimension; ++axis) result.push_back(value[axis]);
   }
   return result;
 }
 
+Vector3 OutputValues::vector(const Output& output) const {
+  switch (output.kind) {
+    case Output::Kind::position:
+      return motion_.position(output.point);
+    case Output::Kind::velocity:
+      return motion_.velocity(output.point);
+    case Output::Kind::acceleration:
+      return motion_.acceleration(output.point);
+    default:
+      return constraint_vector(scene_, motion_, *state_, output);
+  }
+}
+
 double OutputValues::scalar(std::size_t index) const {
   const Output& output = scene_.elements.outputs[index];
-  const Model& model = scene_.model;
   switch (output.kind) {
     case Output::Kind::angle:
       return angles_[index];
@@ -84,13 +94,13 @@ double OutputValues::scalar(std::size_t index) const {
       return std::hypot(d[0], d[1], d[2]);
     }
     case Output::Kind::kinetic_energy:
-      return kinetic_energy(model, state_->v);
+      return motion_.kinetic_energy();
     case Output::Kind::potential_energy:
-      return potential_energy(model, t_, state_->q);
+      return motion_.potential_energy();
     case Output::Kind::total_energy:
-      return kinetic_energy(model, state_->v) + potential_energy(model, t_, state_->q);
+      return motion_.kinetic_energy() + motion_.potential_energy();
     case Output::Kind::constraint_force:
-      return constraint_force(output);
+      return constraint_scalar(scene_, motion_, *state_, output);
     default:
       throw std::logic_error("an output that is no single number");
   }
@@ -105,18 +115,6 @@ double OutputValues::angle(const Output& output) const {
   const Vector3 u = along(output.first), w = along(output.second);
   const Vector3 z = output.axis < 0 ? Vector3{0.0, 0.0, 1.0} : motion_.position(output.axis);
   return std::atan2(dot(z, cross(u, w)), dot(u, w));
-}
-
-double OutputValues::constraint_force(const Output& output) const {
-  const auto row = static_cast<std::size_t>(output.constraint);
-  const double lambda = state_->lambda[row];
-  const auto dots = scene_.model.dot_constraints();
-  if (row >= dots.size()) return lambda;
-  const DotConstraint& c = dots[row];
-  if (c.a != c.c || c.b != c.d) return lambda;
-  // -Phi_q^T lambda is -2 lambda (r_a - r_b) at a: a pull of 2 lambda |r_a - r_b| towards b.
-  const Vector3 d = along({c.b, c.a});
-  return 2.0 * lambda * std::hypot(d[0], d[1], d[2]);
 }
 
 }  // namespace mbs
