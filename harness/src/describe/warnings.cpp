@@ -82,10 +82,10 @@ std::string penalty_warning(const PenaltyWindow& window, double penalty, double 
         "estimate: mbs describe)",
         penalty, side, bound, what, step);
   };
-  if (penalty < window.lower / kFarOutside) {
-    return far("below", window.lower, "least that holds the constraints");
+  if (penalty < window.lower / kFarBelow) {
+    return far("below", window.lower, "least that is sure to hold the constraints");
   }
-  if (penalty > window.upper * kFarOutside) {
+  if (penalty > window.upper * kFarAbove) {
     return far("above", window.upper, "most without loss of accuracy");
   }
   return "";
