@@ -53,10 +53,14 @@ TEST(ConstraintForce, OfADrivenAngleIsTheMotorsTorque) {
 }
 
 TEST(ConstraintForce, OfAConstantAngleHoldsTheWeight) {
-  std::string json = motor(R"("first": ["A", "X"], "second": ["A", "B"])");
-  json.replace(json.find("\"velocity\""), json.find("]}],") - json.find("\"velocity\"") + 1,
-               "\"velocity\": [0, 0]");
-  EXPECT_NEAR(outputs_at_start(json)[0], 3 * 9.81 * 2 * std::cos(kAngle), 1e-9);
+  const auto values = outputs_at_start(R"({"gravity": [0, -10], "points": [
+      {"name": "A", "position": [0, 0], "fixed": true}, {"name": "X", "position": [1, 0], "fixed": true},
+      {"name": "B", "position": [0.6, 0.8]}, {"name": "falls", "position": [5, 0]}],
+    "rods": [{"between": ["A", "B"], "mass": 0}],
+    "masses": [{"point": "B", "mass": 3}, {"point": "falls", "mass": 1}],
+    "constraints": [{"name": "hold", "type": "angle", "first": ["A", "X"], "second": ["A", "B"]}],
+    "outputs": [{"name": "M", "constraint_force": "hold"}]})");
+  EXPECT_NEAR(values[0], 3 * 10 * 0.6, 1e-9);
 }
 
 TEST(ConstraintForce, OfAnAngleBetweenMovingLinksIsTheMotorsTorqueToo) {
