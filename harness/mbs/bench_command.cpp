@@ -18,6 +18,7 @@
 #include "bench/reporters.hpp"
 #include "environment/environment.hpp"
 #include "mbs/commands.hpp"
+#include "mbs/file_names.hpp"
 #include "usage_error.hpp"
 
 // The library exports all of its flags, but has no header and no accessor for these.
@@ -106,6 +107,9 @@ std::string redirect_output() {
 }
 
 int run_cells(const std::vector<PlannedCell>& cells, const BenchRequest& request) {
+  for (const std::string& scene : request.scenes) {
+    require_not_scene("--benchmark_out", benchmark::FLAGS_benchmark_out, scene);
+  }
   const std::string rename_to = redirect_output();
   const std::string out = benchmark::FLAGS_benchmark_out;
   BenchRows rows;

@@ -9,6 +9,7 @@
 #include "check/gate.hpp"
 #include "environment/environment.hpp"
 #include "mbs/commands.hpp"
+#include "mbs/file_names.hpp"
 #include "scene/scene.hpp"
 #include "usage_error.hpp"
 
@@ -44,6 +45,9 @@ int check(const CheckOptions& options) {
   }
   const std::vector<NamedVariant> variants = select_variants(options.implementations);
   if (variants.empty()) throw UsageError("no implementation is available (see mbs list)");
+  for (const std::string& scene : options.scenes) {
+    require_not_scene("--json", options.json, scene);
+  }
   std::optional<AtomicFile> file;
   if (!options.json.empty()) file.emplace(options.json);
   std::vector<Verdict> verdicts;

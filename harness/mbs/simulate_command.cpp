@@ -1,5 +1,6 @@
 // mbs simulate: one scene, one implementation, a typed outcome.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -7,7 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "describe/warnings.hpp"
 #include "mbs/commands.hpp"
+#include "mbs/file_names.hpp"
 #include "mbs/simulate_summary.hpp"
 #include "mbs/trajectory.hpp"
 #include "run/run.hpp"
@@ -74,34 +77,49 @@ RunSummary run_with_files(const SimulateOptions& options, const Scene& scene,
   return summary;
 }
 
+void require_files(const SimulateOptions& options) {
+  require_not_scene("--output", options.output, options.scene);
+  require_not_scene("--trajectory", options.trajectory, options.scene);
+  if (options.output.empty() && options.trajectory.empty() && options.every != 1) {
+    throw UsageError("--every is for --output and --trajectory, and neither is there");
+  }
+  if (options.output.empty() || options.trajectory.empty()) return;
+  if (is_same_file(options.output, options.trajectory)) {
+    throw UsageError("--output and --trajectory name the same file");
+  }
+}
+
 int simulate(const SimulateOptions& options) {
   const std::vector<NamedVariant> variants = select_variants({options.implementation});
   if (variants.size() != 1) {
     throw UsageError(fmt::format("--implementation '{}' has {} variants: name one, folder/variant",
                                  options.implementation, variants.size()));
   }
-  if (!options.output.empty() && options.output == options.trajectory) {
-    throw UsageError("--output and --trajectory name the same file");
-  }
   if (options.every < 1) {
     throw UsageError(fmt::format("--every is {}: it must be at least 1", options.every));
   }
+  require_files(options);
   const Scene scene = load_scene(options.scene);
   RunSettings settings{options.step.resolve(scene.model), options.duration};
   settings.step.projections = kProjections.at(options.projections);
   require_duration(scene, settings);
+  const std::vector<std::string> warnings = setting_warnings(scene.model, settings.step);
   const RunSummary summary = run_with_files(options, scene, *variants[0].variant, settings);
-  const nlohmann::json json = summary_json(scene, variants[0], settings, summary);
+  nlohmann::json json = summary_json(scene, variants[0], settings, summary);
+  json["warnings"] = warnings;
   if (options.json) {
     fmt::print("{}\n", json.dump(2));
   } else {
     fmt::print("{}", summary_text(json));
   }
-  if (summary.status == RunStatus::ok) return 0;
-  fmt::print(stderr, "mbs: {} on {}: {}{}{}\n", variants[0].name, scene.name,
-             to_string(summary.status),
-             summary.failed_at ? fmt::format(" at t = {:g} s: ", *summary.failed_at) : ": ",
-             summary.reason);
+  if (summary.status == RunStatus::ok) {
+    for (const std::string& warning : warnings) fmt::print(stderr, "mbs: warning: {}\n", warning);
+    return 0;
+  }
+  fmt::print(
+      stderr, "mbs: {} on {}: {}{}{}{}\n", variants[0].name, scene.name, to_string(summary.status),
+      summary.failed_at ? fmt::format(" at t = {:g} s: ", *summary.failed_at) : ": ",
+      summary.reason, warnings.empty() ? "" : fmt::format(" ({})", fmt::join(warnings, "; ")));
   return 1;
 }
 

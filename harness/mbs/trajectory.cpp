@@ -51,8 +51,8 @@ void TrajectoryFile::write(double t, const State& state) {
     row_.insert(row_.end(), r.begin(), r.begin() + scene_.model.dimension());
     row_.insert(row_.end(), v.begin(), v.begin() + scene_.model.dimension());
   }
-  row_.push_back(kinetic_energy(scene_.model, state.v));
-  row_.push_back(potential_energy(scene_.model, t, state.q));
+  row_.push_back(motion_.kinetic_energy());
+  row_.push_back(motion_.potential_energy());
   evaluate_constraints(scene_.model, t, state.q, phi_);
   double largest = 0.0;
   for (const double phi : phi_) {

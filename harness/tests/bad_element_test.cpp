@@ -146,6 +146,9 @@ TEST(BadElement, Forces) {
        {R"(["road", "P"])", R"(["raod", "P"])", {"the nearest is \"road\""}},
        {R"(["road", "P"])", R"(["E", "P"])", {"points of one body only"}},
        {R"("ts")", R"("s")", {"torsion_springs[0].name: found \"s\"", "springs[0] has it"}},
+       {R"("to": ["E", "P"])",
+        R"("to": ["E", "P"], "angle": 3.2)",
+        {"torsion_springs[0].angle: found 3.2", "-pi to pi"}},
        {R"("to": ["E", "P"])", R"("to": ["E", "P"], "axis": "z")", {"axis in a planar scene"}},
        {R"("from": ["O", "E"], "to": ["E", "P"])",
         R"("from": ["O", "X"], "to": ["X", "O"])",
@@ -230,7 +233,10 @@ TEST(BadElement, Outputs) {
        output(R"({"name": "a", "angle": [["O", "E"], ["O", "X"]], "axis": "z"})", {"an axis"}),
        output(R"({"name": "a", "distance": ["O", "O"]})", {"the point \"O\" twice"}),
        output(R"({"name": "c", "constraint_force": "slt"})",
-              {"outputs[0].constraint_force: found \"slt\"", "crank", "nearest is \"slot\""})});
+              {"outputs[0].constraint_force: found \"slt\"", "a rod or constraint",
+               "nearest is \"slot\""}),
+       output(R"({"name": "c", "constraint_force": "crank"})",
+              {"outputs[0].constraint_force: found \"crank\"", "a rod or constraint (slot)"})});
 }
 
 const std::string kSpatial = R"({"dimension": 3,

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "describe/penalty_window.hpp"
 #include "describe/structure.hpp"
+#include "describe/warnings.hpp"
 #include "support/sample_models.hpp"
 
 namespace mbs {
@@ -211,10 +213,79 @@ TEST(Describe, ListsElementsForPictures) {
   EXPECT_EQ(elements["bodies"][0]["points"], nlohmann::json({"A", "B", "middle"}));
   EXPECT_EQ(elements["bodies"][0]["vectors"], nlohmann::json::array({"C"}));
   EXPECT_TRUE(elements["rods"].empty());
-  // Without names, distances are what can be drawn.
   const auto four_bar = describe_json(load_scene("four-bar:1"), kStep)["elements"];
   ASSERT_EQ(four_bar["rods"].size(), 3u);
   EXPECT_EQ(four_bar["rods"][2]["between"], nlohmann::json::array({"B0", "B1"}));
+}
+
+TEST(Describe, ListsDistancesBesideBodiesAndMarksHelpers) {
+  const auto d = describe_json(scene_of(R"({"points": [
+      {"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "D", "position": [3, 0],
+       "driven": {"x": {"table": {"times": [0, 1, 2, 3, 4], "values": [3, 3, 3, 3, 3]}}}}],
+    "bodies": [{"name": "L", "mass": 2, "inertia": 0.2, "points": {"A": [0, 0], "B": [1, 0]},
+                "pose": {"angle": 0.3}},
+               {"name": "K", "mass": 2, "inertia": 0.2, "points": {"C": [0, 0]},
+                "pose": {"position": [3, 1]}}],
+    "constraints": [{"name": "rope", "type": "distance", "between": ["B", "C"]},
+                    {"type": "distance", "between": ["D", "C"]}]})"),
+                               kStep);
+  EXPECT_EQ(d["drivers_end"], 4.0);
+  const auto& elements = d["elements"];
+  ASSERT_EQ(elements["distances"].size(), 2u);
+  EXPECT_EQ(elements["distances"][0]["name"], "rope");
+  EXPECT_EQ(elements["distances"][0]["between"], nlohmann::json::array({"B", "C"}));
+  EXPECT_TRUE(elements["rods"].empty());
+  int helpers = 0;
+  for (const auto& point : elements["points"]) {
+    const std::string name = point["name"];
+    EXPECT_EQ(point["helper"].get<bool>(), name.size() > 1) << name;
+    helpers += point["helper"].get<bool>();
+  }
+  EXPECT_GT(helpers, 0);
+}
+
+TEST(Describe, DriversOfFunctionsNeverEnd) {
+  EXPECT_TRUE(describe_json(load_scene("four-bar:2"), kStep)["drivers_end"].is_null());
+}
+
+TEST(Warnings, TellOfPenaltyFactorsFarOutsideTheWindow) {
+  const Model model(four_bar(3));
+  StepSettings settings;
+  EXPECT_TRUE(setting_warnings(model, settings).empty());
+  for (const auto& [penalty, word] : {std::pair{1e-300, "far below"}, {1e16, "far above"}}) {
+    settings.penalty = penalty;
+    const auto warnings = setting_warnings(model, settings);
+    ASSERT_EQ(warnings.size(), 1u) << penalty;
+    EXPECT_NE(warnings[0].find(word), std::string::npos) << warnings[0];
+  }
+  // Automatic, at a step for which it is not made.
+  EXPECT_FALSE(describe_json(load_scene("four-bar:40"), 2e-2)["warnings"].empty());
+  EXPECT_TRUE(describe_json(load_scene("four-bar:40"), kStep)["warnings"].empty());
+}
+
+/// 1 kg on a spring of 1e4 N/m along x, `damping` in N s/m.
+Model oscillator(double damping) {
+  ModelData data;
+  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1, 0, 0}}};
+  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
+  data.force = data.initial_velocity = {0.0, 0.0};
+  data.springs.push_back({0, 1, 1e4, damping, 1.0, "spring"});
+  return Model(std::move(data));
+}
+
+TEST(Warnings, TellOfStepsTooLongForSprings) {
+  EXPECT_NEAR(shortest_period(oscillator(0.0)), 2 * std::numbers::pi / 100, 1e-15);
+  EXPECT_EQ(period_warning(oscillator(0.0), 6e-3), "");
+  EXPECT_NE(period_warning(oscillator(0.0), 7e-3).find("shortest period"), std::string::npos);
+  EXPECT_EQ(period_warning(oscillator(200.1), 7e-3), "");  // creeps back
+  EXPECT_EQ(period_warning(Model(four_bar(2)), 1.0), "");
+  ModelData data;  // a rod of 2 m, 3 kg at its end, on 12 N m/rad
+  data.points = {{"A", -1, {0, 0, 0}}, {"X", -1, {1, 0, 0}}, {"B", 0, {0, 2, 0}}};
+  data.mass = {{0, 0, 3.0}, {1, 1, 3.0}};
+  data.force = data.initial_velocity = {0.0, 0.0};
+  data.torsion_springs.push_back({1, 0, 2, 0, -1, 12.0, 0.0, 1.5, "torsion"});
+  EXPECT_NEAR(shortest_period(Model(std::move(data))), 2 * std::numbers::pi, 1e-14);
 }
 
 // The window against what was measured over 5 s: harness/README.md.

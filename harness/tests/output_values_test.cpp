@@ -118,10 +118,12 @@ TEST(OutputValues, ConstraintForcesArePulls) {
   const Scene scene{"test", Model(data), {}, {}};
   const State state{{0, -2}, {0, 0}, {0, 0}, {3 * 9.81 / 4, -7.0}, 0.0};
   Output force{"tension", Output::Kind::constraint_force};
-  force.constraint = 0;
+  force.rows = {0};
   EXPECT_NEAR(values_of(scene, force, 0, state, {"tension"})[0], 3 * 9.81, 1e-12);
-  force.constraint = 1;
-  EXPECT_EQ(values_of(scene, force, 0, state, {"tension"})[0], -7.0);
+  force.rows = {1};
+  force.force = Output::Force::multiplier;
+  force.factor = 0.5;
+  EXPECT_EQ(values_of(scene, force, 0, state, {"tension"})[0], -3.5);
 }
 
 }  // namespace

@@ -195,6 +195,60 @@ TEST(Judge, ASpringAtRestGivesTheEnergyScale) {
   EXPECT_EQ(judge.judge(1e-6, at(1.5, 1e-4)), "");
 }
 
+TEST(Judge, RoundingIsNoEnergy) {
+  ModelData data;  // a balanced body: what is left of its weight is rounding
+  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1, 0, 0}}};
+  data.mass = {{0, 0, 0.2}, {1, 1, 0.2}};
+  data.force = {0.0, 2e-17};
+  data.initial_velocity = {0.0, 0.0};
+  data.dot_constraints = {{0, 1, 0, 1, 1.0, "body"}};
+  const Scene scene{"balanced", Model(std::move(data)), {}, {}};
+  const State start{{1, 0}, {0, 0}, {0, 0}, {0}, 0.0};
+  Judge judge(scene, start, 0.0);
+  EXPECT_EQ(judge.judge(1.0, {{1, 0}, {0, 1e-12}, {0, 0}, {0}, 1.0}), "");
+  EXPECT_NE(judge.judge(1.0, {{1, 0}, {0, 1e-2}, {0, 0}, {0}, 1.0}), "");
+}
+
+/// A rod of 1 m from A along x, on a torsion spring that is free at `angle`.
+Scene on_torsion_spring(double stiffness, double angle) {
+  ModelData data;
+  data.points = {{"A", -1, {0, 0, 0}}, {"X", -1, {1, 0, 0}}, {"B", 0, {1, 0, 0}}};
+  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
+  data.force = data.initial_velocity = {0.0, 0.0};
+  data.torsion_springs.push_back({1, 0, 2, 0, -1, stiffness, 1.0, angle, "clock"});
+  return {"torsion", Model(std::move(data)), {}, {}};
+}
+
+TEST(Judge, ATorsionSpringEndsHalfATurnFromItsFreeAngle) {
+  const auto turned = [](double angle) {
+    return State{{std::cos(angle), std::sin(angle)}, {0, 0}, {0, 0}, {}, 0.0};
+  };
+  const Scene scene = on_torsion_spring(1.0, 0.5), damper = on_torsion_spring(0.0, 0.5);
+  Judge judge(scene, turned(0.0), 0.0), lenient(damper, turned(0.0), 0.0);
+  for (const double angle : {1.0, 2.0, 3.0, 3.6}) {
+    EXPECT_EQ(judge.judge(angle, turned(angle)), "");
+    EXPECT_EQ(lenient.judge(angle, turned(angle)), "");
+  }
+  const std::string lost = judge.judge(3.7, turned(3.7));
+  EXPECT_TRUE(lost.starts_with("clock: it is more than half a turn from its free angle")) << lost;
+  EXPECT_EQ(lenient.judge(3.7, turned(3.7)), "");  // without stiffness there is no such angle
+}
+
+TEST(Judge, ATorsionSpringStaysAcrossItsAxis) {
+  ModelData data;
+  data.dimension = 3;
+  data.points = {
+      {"A", -1, {0, 0, 0}}, {"X", -1, {1, 0, 0}}, {"z", -1, {0, 0, 1}, true}, {"B", 0, {0, 1, 0}}};
+  for (int i = 0; i < 3; ++i) data.mass.push_back({i, i, 1.0});
+  data.force = data.initial_velocity = {0.0, 0.0, 0.0};
+  data.torsion_springs.push_back({1, 0, 3, 0, 2, 1.0, 1.0, 1.5, "hinge"});
+  const Scene scene{"torsion", Model(std::move(data)), {}, {}};
+  const auto lifted = [](double z) { return State{{0, 1, z}, {0, 0, 0}, {0, 0, 0}, {}, 0.0}; };
+  Judge judge(scene, lifted(0.0), 0.0);
+  EXPECT_EQ(judge.judge(0.1, lifted(0.009)), "");
+  EXPECT_TRUE(judge.judge(0.2, lifted(0.011)).starts_with("hinge: its axis is not perpendicular"));
+}
+
 TEST(Judge, ScalesLinearAndBilinearConstraints) {
   ModelData data;
   data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {2, 0, 0}}, {"C", 2, {4, 0, 0}}};

@@ -226,6 +226,42 @@ TEST_F(SimulateProgram, ARefusedRunLeavesOlderFilesAlone) {
   EXPECT_EQ(test::file_text(file), "precious");
 }
 
+TEST_F(SimulateProgram, NeverWritesOverItsSceneOrOneTableOverTheOther) {
+  const test::Folder folder;
+  const std::string scene = folder.file("s.json"), link = folder.file("link.csv");
+  fs::copy_file(MBS_ROOT "/harness/scenes/pendulum.json", scene);
+  const std::string text = test::file_text(scene);
+  fs::create_symlink(scene, link);
+  const std::string run = "'" + scene + "' --duration 0.01 ";
+  for (const std::string& file : {scene, folder.file("./s.json"), link}) {
+    expect_refusal(run + "--output '" + file + "'", "--output: found '" + file + "', the scene's");
+    expect_refusal(run + "--trajectory '" + file + "'", "--trajectory: found");
+    const auto check = test::run_mbs("check --json '" + file + "' '" + scene + "'");
+    expect_one_line(check, "check", "--json: found");
+    const auto bench = test::run_mbs("bench --benchmark_out='" + file + "' '" + scene + "'");
+    expect_one_line(bench, "bench", "--benchmark_out: found");
+  }
+  EXPECT_EQ(test::file_text(scene), text);
+  expect_refusal(
+      run + "--output '" + folder.file("o.csv") + "' --trajectory '" + folder.file("./o.csv") + "'",
+      "the same file");
+  EXPECT_FALSE(fs::exists(folder.file("o.csv")));
+  expect_refusal("four-bar:1 --every 2", "--every is for --output and --trajectory");
+}
+
+TEST_F(SimulateProgram, WarnsOfSettingsFarOutsideTheWindow) {
+  const auto run = simulate("four-bar:1 --duration 0.01 --penalty 1e-300 --json");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_TRUE(run.errors.starts_with("mbs: warning: the penalty factor 1e-300 is far below "))
+      << run.errors;
+  EXPECT_EQ(std::ranges::count(run.errors, '\n'), 1) << run.errors;
+  EXPECT_EQ(json::parse(run.output).at("warnings").size(), 1u);
+  const auto lost = simulate("four-bar:40 --penalty 1e-3");
+  EXPECT_EQ(lost.status, 1);
+  EXPECT_NE(lost.errors.find("(the penalty factor 0.001 is far below"), std::string::npos);
+  EXPECT_EQ(std::ranges::count(lost.errors, '\n'), 1) << lost.errors;
+}
+
 TEST_F(SimulateProgram, RefusesUnwritableOutput) {
   const test::Folder folder;
   const std::string missing = folder.file("none/out.csv");

@@ -20,7 +20,7 @@ enum class Projections {
 /// Settings of the time stepping, fixed for the lifetime of a Simulation.
 struct StepSettings {
   double step = 1.25e-3;    ///< Delta t, s
-  double penalty = 1e8;     ///< alpha
+  double penalty = 1e8;     ///< alpha, kg/(m^2 s^2); of linear rows, Phi in m, N/m
   double tolerance = 1e-9;  ///< converged once max |Delta q| <= tolerance, m
   int max_passes = 20;      ///< passes a step at most; the last state is kept and stepping goes on
   Projections projections = Projections::both;
@@ -31,7 +31,7 @@ struct State {
   std::vector<double> q;       ///< n, m
   std::vector<double> v;       ///< n, m/s
   std::vector<double> a;       ///< n, m/s^2
-  std::vector<double> lambda;  ///< constraints(), lambda* of Eq. (1)
+  std::vector<double> lambda;  ///< constraints(), lambda* of Eq. (1), N/m; of linear rows N
   double t = 0.0;              ///< s
 };
 

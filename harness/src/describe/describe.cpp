@@ -1,6 +1,7 @@
 // The description as JSON.
 #include "describe/describe.hpp"
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -8,7 +9,9 @@
 #include "describe/penalty_window.hpp"
 #include "describe/structure.hpp"
 #include "describe/terms.hpp"
+#include "describe/warnings.hpp"
 #include "model_math/kinematics.hpp"
+#include "run/driver_end.hpp"
 #include "scene/row_names.hpp"
 
 namespace mbs {
@@ -53,9 +56,7 @@ void add_structure(json& result, const Model& model, const Structure& structure)
                               {"constraints", names_of(model, structure.singular_rows)}};
 }
 
-json penalty_json(const Model& model, const Structure& structure, double step) {
-  if (model.constraints() == 0) return nullptr;
-  const PenaltyWindow window = penalty_window(model, structure, step);
+json penalty_json(const PenaltyWindow& window, double step) {
   return {{"step", step},
           {"lower", window.lower},
           {"upper", window.upper},
@@ -63,6 +64,23 @@ json penalty_json(const Model& model, const Structure& structure, double step) {
           {"lower_from", window.slowest_mode ? "slowest mode" : "singular positions"},
           {"upper_from", window.cancellation ? "cancellation" : "nonlinearity"}};
 }
+
+/// The window, and what is likely to go wrong with the automatic factor and this step.
+void add_settings(json& result, const Model& model, const Structure& structure, double step) {
+  result["penalty_window"] = nullptr;
+  result["warnings"] = json::array();
+  std::vector<std::string> warnings{period_warning(model, step)};
+  if (model.constraints() > 0) {
+    const PenaltyWindow window = penalty_window(model, structure, step);
+    result["penalty_window"] = penalty_json(window, step);
+    warnings.push_back(penalty_warning(window, window.automatic, step));
+  }
+  for (const std::string& warning : warnings) {
+    if (!warning.empty()) result["warnings"].push_back(warning);
+  }
+}
+
+json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json fill_json(const std::optional<Fill>& fill) {
   if (!fill) return nullptr;
@@ -96,11 +114,12 @@ json describe_json(const Scene& scene, double step) {
       {"mass", matrix(2 * static_cast<long>(model.mass().size()) - model.variables(), n * n)},
       {"jacobian", matrix(static_cast<long>(jacobian_entries), m * n)},
       {"tangent", matrix(tangent_nonzeros(model), n * n)},
-      {"penalty_window", penalty_json(model, structure, step)},
+      {"drivers_end", finite_or_null(driver_end(model))},
       {"artificial_fill", fill_json(scene.fill)},
       {"elements", elements_json(scene)}};
   add_points(result, model);
   add_structure(result, model, structure);
+  add_settings(result, model, structure, step);
   return result;
 }
 

@@ -110,6 +110,7 @@ std::string describe_text(const Scene& scene, double step) {
   text += line("Jacobian", matrix_text(d["jacobian"], "m n"));
   text += line("tangent", matrix_text(d["tangent"], "n^2"));
   text += line("penalty factor", penalty_text(d["penalty_window"]));
+  for (const json& warning : d["warnings"]) text += line("warning", warning);
   if (const auto& fill = scene.fill) {
     text += line(
         "artificial fill",

@@ -1,8 +1,6 @@
 // Names and places of what a scene is made of.
 #include "describe/elements.hpp"
 
-#include <algorithm>
-
 #include "run/scene_motion.hpp"
 
 namespace mbs {
@@ -26,6 +24,8 @@ json points(const Scene& scene, const SceneMotion& motion) {
   for (const DrivenPoint& point : model.driven_points()) {
     driven[static_cast<std::size_t>(point.point)] = true;
   }
+  std::vector<bool> helper(static_cast<std::size_t>(motion.points()), false);
+  for (const int index : scene.elements.helpers) helper[static_cast<std::size_t>(index)] = true;
   json result = json::array();
   for (int i = 0; i < motion.points(); ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -38,21 +38,19 @@ json points(const Scene& scene, const SceneMotion& motion) {
                                                       : "free";
     result.push_back({{"name", motion.name(i)},
                       {"kind", kind},
+                      {"helper", static_cast<bool>(helper[k])},
                       {"position", std::vector<double>(position.begin(),
                                                        position.begin() + model.dimension())}});
   }
   return result;
 }
 
-json rods(const Scene& scene, const SceneMotion& motion) {
+/// Rods, distances, springs.
+template <class Elements>
+json pairs(const SceneMotion& motion, const Elements& elements) {
   json result = json::array();
-  for (const auto& rod : scene.elements.rods) {
-    result.push_back({{"name", rod.name}, {"between", pair(motion, rod.a, rod.b)}});
-  }
-  if (!scene.elements.rods.empty() || !scene.elements.bodies.empty()) return result;
-  for (const DotConstraint& c : scene.model.dot_constraints()) {
-    if (c.a != c.c || c.b != c.d) continue;
-    result.push_back({{"name", c.name}, {"between", pair(motion, c.a, c.b)}});
+  for (const auto& element : elements) {
+    result.push_back({{"name", element.name}, {"between", pair(motion, element.a, element.b)}});
   }
   return result;
 }
@@ -66,15 +64,11 @@ json elements_json(const Scene& scene) {
       {model.initial_position().begin(), model.initial_position().end()}, zero, zero, {}, 0.0};
   SceneMotion motion(scene);
   motion.set(0.0, start);
-  json bodies = json::array(), springs = json::array(), torsion_springs = json::array(),
-       outputs = json::array();
+  json bodies = json::array(), torsion_springs = json::array(), outputs = json::array();
   for (const auto& body : scene.elements.bodies) {
     bodies.push_back({{"name", body.name},
                       {"points", names(motion, body.points)},
                       {"vectors", names(motion, body.vectors)}});
-  }
-  for (const Spring& spring : model.springs()) {
-    springs.push_back({{"name", spring.name}, {"between", pair(motion, spring.a, spring.b)}});
   }
   for (const TorsionSpring& spring : model.torsion_springs()) {
     torsion_springs.push_back({{"name", spring.name},
@@ -83,9 +77,10 @@ json elements_json(const Scene& scene) {
   }
   for (const Output& output : scene.elements.outputs) outputs.push_back(output.name);
   return {{"points", points(scene, motion)},
-          {"rods", rods(scene, motion)},
+          {"rods", pairs(motion, scene.elements.rods)},
+          {"distances", pairs(motion, scene.elements.distances)},
           {"bodies", bodies},
-          {"springs", springs},
+          {"springs", pairs(motion, model.springs())},
           {"torsion_springs", torsion_springs},
           {"outputs", outputs}};
 }

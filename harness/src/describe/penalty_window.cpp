@@ -19,7 +19,7 @@ namespace {
 constexpr double kSlowestMode = 0.1;   // beta s_min omega dt >= this
 constexpr double kSingular = 3.0;      // beta s_row omega dt >= this
 constexpr double kNonlinear = 0.02;    // beta s_row (omega dt)^3 <= this
-constexpr double kCancellation = 0.4;  // u max|q| sqrt(beta s_mean) <= this times l (omega dt)^4
+constexpr double kCancellation = 0.4;  // u l_r sqrt(beta s_mean) <= this times l (omega dt)^4
 
 struct Turning {
   double rate = 0.0;    // omega, 1/s
@@ -30,11 +30,9 @@ struct Turning {
 /// at it, over that length.
 Turning fastest_turning(const Model& model) {
   const auto n = static_cast<std::size_t>(model.variables());
-  std::vector<double> force(n), mass(n);
+  const std::vector<double> mass = mass_diagonal(model);
+  std::vector<double> force(n);
   applied_force(model, 0.0, model.initial_position(), model.initial_velocity(), force);
-  for (const MassEntry& entry : model.mass()) {
-    if (entry.row == entry.col) mass[static_cast<std::size_t>(entry.row)] = entry.value;
-  }
   const std::vector<double> length = shortest_lengths(model);
   Turning result;
   for (std::size_t k = 0; k < length.size(); ++k) {
@@ -55,10 +53,7 @@ Turning fastest_turning(const Model& model) {
 /// s_row: the least of the diagonal of Phi_q M^-1 Phi_q^T with the diagonal of M, m^2/kg: the
 /// heaviest that a constraint moves. Light unit vectors make the mean a hundred times as much.
 double least_row(const Model& model) {
-  std::vector<double> mass(static_cast<std::size_t>(model.variables()));
-  for (const MassEntry& entry : model.mass()) {
-    if (entry.row == entry.col) mass[static_cast<std::size_t>(entry.row)] = entry.value;
-  }
+  const std::vector<double> mass = mass_diagonal(model);
   std::vector<double> diagonal(static_cast<std::size_t>(model.constraints()), 0.0);
   for (const JacobianEntry& entry : jacobian(model, 0.0, model.initial_position())) {
     diagonal[static_cast<std::size_t>(entry.row)] +=
@@ -69,12 +64,6 @@ double least_row(const Model& model) {
     if (value > 0.0) least = std::min(least, value);
   }
   return least;
-}
-
-double largest_coordinate(const Model& model) {
-  double result = 0.0;
-  for (const double x : model.initial_position()) result = std::max(result, std::abs(x));
-  return result;
 }
 
 }  // namespace
@@ -88,13 +77,12 @@ PenaltyWindow penalty_window(const Model& model, const Structure& structure, dou
   const double row = least_row(model);
   double smallest = std::numeric_limits<double>::infinity();  // at a singular start it says nothing
   if (!structure.singular.value_or(true)) {
-    smallest = smallest_constraint_eigenvalue(without_rows(model, structure.redundant),
-                                              model.initial_position());
+    smallest = smallest_constraint_eigenvalue(model, model.initial_position());
   }
   const double for_slowest = kSlowestMode / (smallest * turn);
   const double for_singular = kSingular / (row * turn);
   const double for_newton = kNonlinear / (row * std::pow(turn, 3));
-  const double noise = std::numeric_limits<double>::epsilon() / 2 * largest_coordinate(model);
+  const double noise = std::numeric_limits<double>::epsilon() / 2 * rounding_length(model);
   const double for_rounding =
       std::pow(kCancellation * fastest.length * std::pow(turn, 4) / noise, 2) /
       mean_constraint_eigenvalue(model);

@@ -64,30 +64,4 @@ Structure find_structure(const Model& model) {
   return result;
 }
 
-Model without_rows(const Model& model, const std::vector<int>& rows) {
-  ModelData data;
-  data.dimension = model.dimension();
-  data.points.assign(model.points().begin(), model.points().end());
-  data.mass.assign(model.mass().begin(), model.mass().end());
-  data.force.assign(model.force().begin(), model.force().end());
-  data.initial_velocity.assign(model.initial_velocity().begin(), model.initial_velocity().end());
-  data.driven_points.assign(model.driven_points().begin(), model.driven_points().end());
-  auto next = rows.begin();
-  int row = 0;
-  const auto keep = [&](const auto& constraints, auto& kept) {
-    for (const auto& constraint : constraints) {
-      if (next != rows.end() && *next == row) {
-        ++next;
-      } else {
-        kept.push_back(constraint);
-      }
-      ++row;
-    }
-  };
-  keep(model.dot_constraints(), data.dot_constraints);
-  keep(model.bilinear_constraints(), data.bilinear_constraints);
-  keep(model.linear_constraints(), data.linear_constraints);
-  return Model(std::move(data));
-}
-
 }  // namespace mbs

@@ -23,8 +23,4 @@ struct Structure {
 /// chains.
 Structure find_structure(const Model& model);
 
-/// The model without some of its constraints: `rows`, ascending. It has the same M, Q's constant
-/// part and start; springs, couples and driven values are left out.
-Model without_rows(const Model& model, const std::vector<int>& rows);
-
 }  // namespace mbs

@@ -8,9 +8,9 @@
 
 namespace mbs {
 
-/// A count or true/false for each term: gravity, fixed_points, driven_points, rods, bodies,
-/// springs, dampers, torsion_springs, couples, dot_constraints, bilinear_constraints,
-/// linear_constraints, stiffness, damping, driven_constraints.
+/// A count or true/false for each term: gravity (also of other constant forces), couples, springs
+/// (and dampers), torsion_springs, stiffness, damping, rods, bodies, dot_constraints,
+/// bilinear_constraints, linear_constraints, fixed_points, driven_points, driven_constraints.
 nlohmann::json terms_json(const Scene& scene);
 
 /// "gravity (Q), fixed points (2)": the terms that are there, or those that are not.

@@ -269,6 +269,31 @@ void applied_force(const Model& model, double t, Coordinates q, Coordinates v,
   }
 }
 
+std::vector<Torsion> torsions(const Model& model, double t, Coordinates q) {
+  std::vector<Torsion> result;
+  if (model.torsion_springs().empty()) return result;
+  const Motion motion(model, t, q);
+  for (const TorsionSpring& spring : model.torsion_springs()) {
+    double tilt = 0.0;
+    if (spring.axis >= 0) {
+      const Vector3 z = motion.axis(spring.axis);
+      for (const Vector3& d : {motion.r(spring.a, spring.b), motion.r(spring.c, spring.d)}) {
+        tilt = std::max(tilt, std::abs(dot(z, d)) / (norm(z) * norm(d)));
+      }
+    }
+    result.push_back({twist(spring, motion), tilt});
+  }
+  return result;
+}
+
+std::vector<double> mass_diagonal(const Model& model) {
+  std::vector<double> result(static_cast<std::size_t>(model.variables()));
+  for (const MassEntry& entry : model.mass()) {
+    if (entry.row == entry.col) result[static_cast<std::size_t>(entry.row)] = entry.value;
+  }
+  return result;
+}
+
 void mass_times(const Model& model, Coordinates x, std::span<double> y) {
   require_size(x.size(), model.variables(), "x");
   require_size(y.size(), model.variables(), "y");

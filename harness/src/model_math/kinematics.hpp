@@ -40,6 +40,17 @@ void constraint_curvature(const Model& model, double t, std::span<const double> 
 void applied_force(const Model& model, double t, std::span<const double> q,
                    std::span<const double> v, std::span<double> force);
 
+/// Where a torsion spring is within what Eq. (11) means.
+struct Torsion {
+  double twist = 0.0;  ///< theta - angle in -pi ... pi
+  double tilt = 0.0;   ///< largest |cosine| between its axis and what it turns; planar: 0
+};
+/// One for each torsion spring.
+std::vector<Torsion> torsions(const Model& model, double t, std::span<const double> q);
+
+/// M_ii (n), kg.
+std::vector<double> mass_diagonal(const Model& model);
+
 /// M x into `y` (variables()).
 void mass_times(const Model& model, std::span<const double> x, std::span<double> y);
 

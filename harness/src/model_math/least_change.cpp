@@ -20,14 +20,6 @@ using Sparse = Eigen::SparseMatrix<Real>;
 /// many of long double's nineteen digits; both errors are relative to x.
 constexpr Real kRegularization = 1e-11L;
 
-std::vector<Real> diagonal_of_mass(const Model& model) {
-  std::vector<Real> diagonal(static_cast<std::size_t>(model.variables()));
-  for (const MassEntry& entry : model.mass()) {
-    if (entry.row == entry.col) diagonal[static_cast<std::size_t>(entry.row)] = entry.value;
-  }
-  return diagonal;
-}
-
 }  // namespace
 
 struct LeastChange::Factors {
@@ -41,7 +33,7 @@ LeastChange::LeastChange(const Model& model, double t, std::span<const double> q
   const int n = factors_->n = model.variables();
   const int m = factors_->m = model.constraints();
   const auto is_held = [&](int i) { return !held.empty() && held[static_cast<std::size_t>(i)]; };
-  const std::vector<Real> diagonal = diagonal_of_mass(model);
+  const std::vector<double> diagonal = mass_diagonal(model);
   std::vector<Eigen::Triplet<Real>> entries;
   for (const MassEntry& entry : model.mass()) {
     const bool is_free = !is_held(entry.row) && !is_held(entry.col);

@@ -92,20 +92,31 @@ double smallest_constraint_eigenvalue(const Model& model, std::span<const double
   const int m = model.constraints();
   if (m == 0) return std::numeric_limits<double>::infinity();
   const SaddlePoint saddle_point(model, 0.0, q);
-  // Inverse iteration: the lower block of the solution is -(Phi_q M^-1 Phi_q^T + eps)^-1 y.
-  Vector y(m);
-  for (int k = 0; k < m; ++k) y[k] = 1.0L + 0.5L * std::sin(1.0L + k);
-  Real inverse = 0;
-  constexpr int kRounds = 30;
-  for (int round = 0; round < kRounds; ++round) {
-    y.normalize();
+  const Real epsilon = saddle_point.epsilon();
+  const auto solve = [&](const Vector& y) {  // (S + eps)^-1 y, S = Phi_q M^-1 Phi_q^T
     Vector right = Vector::Zero(n + m);
     right.tail(m) = y;
-    const Vector next = -saddle_point.solve(right).tail(m);
-    inverse = next.dot(y);
-    y = next;
-  }
-  return static_cast<double>(std::max(1 / inverse - saddle_point.epsilon(), Real{0}));
+    return Vector(-saddle_point.solve(right).tail(m));
+  };
+  // Inverse iteration. In range(S), that is without the null vectors of dependent rows, it goes on
+  // with S (S + eps)^-1 of what it found, which takes away what rounding brings in of them.
+  const auto smallest = [&](bool in_range) {
+    Vector y(m);
+    for (int k = 0; k < m; ++k) y[k] = 1.0L + 0.5L * std::sin(1.0L + k);
+    Real inverse = 0;
+    constexpr int kRounds = 30;
+    for (int round = 0; round < kRounds; ++round) {
+      if (in_range) y -= epsilon * solve(y);
+      y.normalize();
+      const Vector next = solve(y);
+      inverse = next.dot(y);
+      y = next;
+    }
+    return std::max(1 / inverse - epsilon, Real{0});
+  };
+  constexpr Real kNone = 1e-6L;  // of eps: at that, 1e-15 of the largest, rows depend on each other
+  const Real result = smallest(false);
+  return static_cast<double>(result > kNone * epsilon ? result : smallest(true));
 }
 
 }  // namespace mbs

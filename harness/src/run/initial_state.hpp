@@ -16,8 +16,9 @@ State consistent_state(const Model& model, std::span<const double> q, std::span<
 /// consistent_state() at the model's initial position and velocity.
 State initial_state(const Model& model);
 
-/// Smallest eigenvalue of Phi_q M^-1 Phi_q^T at q and t = 0 (m^2/kg), to a few per cent; infinity
-/// without constraints. It sets how fast the multiplier iteration contracts.
+/// Smallest eigenvalue above 0 of Phi_q M^-1 Phi_q^T at q and t = 0 (m^2/kg), to a few per cent;
+/// infinity without constraints. It sets how fast the multiplier iteration contracts: what rows
+/// that depend on each other add to it, eigenvalues of 0, no motion feels.
 double smallest_constraint_eigenvalue(const Model& model, std::span<const double> q);
 
 }  // namespace mbs

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "model_math/extent.hpp"
 #include "model_math/kinematics.hpp"
@@ -76,7 +77,12 @@ Judge::Judge(const Scene& scene, const State& initial, double start)
     force += std::abs(model.force()[i]);
     in_springs += model.force()[i] * initial.q[i];
   }
-  energy_scale_ = 1e-3 * (force * extent(model.points()) + std::max(in_springs, 0.0));
+  const double size = extent(model.points());
+  energy_scale_ = 1e-3 * (force * size + std::max(in_springs, 0.0));
+  double rest = 0.0;  // J, of a speed that is none; at rest without forces all else is rounding
+  for (const double mass : mass_diagonal(model)) rest += mass * std::pow(1e-6 * size, 2) / 2;
+  energy_scale_ = std::max(energy_scale_, rest);
+  for (const Torsion& torsion : torsions(model, start, initial.q)) twists_.push_back(torsion.twist);
   if (scene.four_bar_loops) {
     exact_.emplace(*scene.four_bar_loops);
     position_error_ = 0.0;
@@ -114,7 +120,29 @@ std::string Judge::judge(double t, const State& state) {
     return fmt::format("constraints violated by {:.2e} of their size (allowed {:g})", relative,
                        bounds_.constraint_violation);
   }
-  return lost;
+  const std::string turned = judge_torsion(t, state);
+  return turned.empty() ? lost : turned;
+}
+
+std::string Judge::judge_torsion(double t, const State& state) {
+  const auto now = torsions(scene_.model, t, state.q);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const TorsionSpring& spring = scene_.model.torsion_springs()[i];
+    if (!(now[i].tilt <= bounds_.tilt)) {
+      return fmt::format(
+          "{}: its axis is not perpendicular to what it turns, cosine {:.2e} "
+          "(allowed {:g})",
+          spring.name, now[i].tilt, bounds_.tilt);
+    }
+    twists_[i] += std::remainder(now[i].twist - twists_[i], 2 * std::numbers::pi);
+    if (spring.stiffness > 0.0 && !(std::abs(twists_[i]) <= std::numbers::pi)) {
+      return fmt::format(
+          "{}: it is more than half a turn from its free angle, where its torque "
+          "would change sign",
+          spring.name);
+    }
+  }
+  return "";
 }
 
 std::string Judge::judge_energy(double t, const State& state) {

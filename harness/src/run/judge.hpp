@@ -16,7 +16,8 @@ struct RunBounds {
   double position_error = 0.1;         ///< m, where an exact solution is known
   double energy_drift = 0.1;           ///< of the energy scale, see Judge; if energy is conserved
   double constraint_violation = 1e-2;  ///< |Phi| relative to the squared length it constrains
-  double pass_limit_share = 0.05;      ///< of the steps; a few near singular positions are normal
+  double tilt = 1e-2;              ///< |cosine| between a torsion spring's axis and what it turns
+  double pass_limit_share = 0.05;  ///< of the steps; a few near singular positions are normal
 };
 
 /// Figures of one state, and the worst so far; NaN never passes for small.
@@ -32,13 +33,16 @@ class Judge {
   [[nodiscard]] std::optional<double> position_error_max() const { return position_error_; }
   /// Largest |E - E_0| over the energy scale: the largest kinetic energy so far, but at least a
   /// thousandth of the work that the applied forces do over the scene's extent and of what springs
-  /// hold at the start. Dimensionless; none if the model is not conservative.
+  /// hold at the start, and that of a millionth of the extent a second, which is rest.
+  /// Dimensionless; none if the model is not conservative.
   [[nodiscard]] std::optional<double> energy_drift_max() const;
   /// Largest |Phi_k|, m^2 (m for linear constraints).
   [[nodiscard]] double constraint_violation_max() const { return violation_; }
 
  private:
   std::string judge_energy(double t, const State& state);
+  /// Whether Eq. (11) still means a spring: across its axis, and less than half a turn from rest.
+  std::string judge_torsion(double t, const State& state);
   /// Marks every figure as lost.
   void spoil();
 
@@ -47,6 +51,7 @@ class Judge {
   std::optional<FourBarExact> exact_;
   std::vector<double> phi_;
   std::vector<double> phi_scale_;
+  std::vector<double> twists_;  // of the torsion springs, continued; rad
   bool conservative_;
   double initial_energy_ = 0.0;
   double energy_scale_ = 0.0;

@@ -5,10 +5,11 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "model_math/kinematics.hpp"
+#include "run/constraint_force.hpp"
 #include "scene/output_columns.hpp"
 
 namespace mbs {
+
 OutputValues::OutputValues(const Scene& scene) : scene_(scene), motion_(scene) {
   for (const Output& output : scene.elements.outputs) {
     for (const std::string& column : columns_of(output, scene.model.dimension())) {
@@ -20,7 +21,6 @@ OutputValues::OutputValues(const Scene& scene) : scene_(scene), motion_(scene) {
 
 void OutputValues::follow(double t, const State& state) {
   const bool is_first = state_ == nullptr;
-  t_ = t;
   state_ = &state;
   motion_.set(t, state);
   for (std::size_t i = 0; i < angles_.size(); ++i) {
@@ -43,18 +43,27 @@ std::vector<double> OutputValues::values() const {
       result.push_back(scalar(i));
       continue;
     }
-    const Vector3 value = output.kind == Output::Kind::position ? motion_.position(output.point)
-                          : output.kind == Output::Kind::velocity
-                              ? motion_.velocity(output.point)
-                              : motion_.acceleration(output.point);
+    const Vector3 value = vector(output);
     for (std::size_t axis = 0; axis < dimension; ++axis) result.push_back(value[axis]);
   }
   return result;
 }
 
+Vector3 OutputValues::vector(const Output& output) const {
+  switch (output.kind) {
+    case Output::Kind::position:
+      return motion_.position(output.point);
+    case Output::Kind::velocity:
+      return motion_.velocity(output.point);
+    case Output::Kind::acceleration:
+      return motion_.acceleration(output.point);
+    default:
+      return constraint_vector(scene_, motion_, *state_, output);
+  }
+}
+
 double OutputValues::scalar(std::size_t index) const {
   const Output& output = scene_.elements.outputs[index];
-  const Model& model = scene_.model;
   switch (output.kind) {
     case Output::Kind::angle:
       return angles_[index];
@@ -63,13 +72,13 @@ double OutputValues::scalar(std::size_t index) const {
       return std::hypot(d[0], d[1], d[2]);
     }
     case Output::Kind::kinetic_energy:
-      return kinetic_energy(model, state_->v);
+      return motion_.kinetic_energy();
     case Output::Kind::potential_energy:
-      return potential_energy(model, t_, state_->q);
+      return motion_.potential_energy();
     case Output::Kind::total_energy:
-      return kinetic_energy(model, state_->v) + potential_energy(model, t_, state_->q);
+      return motion_.kinetic_energy() + motion_.potential_energy();
     case Output::Kind::constraint_force:
-      return constraint_force(output);
+      return constraint_scalar(scene_, motion_, *state_, output);
     default:
       throw std::logic_error("an output that is no single number");
   }
@@ -84,18 +93,6 @@ double OutputValues::angle(const Output& output) const {
   const Vector3 u = along(output.first), w = along(output.second);
   const Vector3 z = output.axis < 0 ? Vector3{0.0, 0.0, 1.0} : motion_.position(output.axis);
   return std::atan2(dot(z, cross(u, w)), dot(u, w));
-}
-
-double OutputValues::constraint_force(const Output& output) const {
-  const auto row = static_cast<std::size_t>(output.constraint);
-  const double lambda = state_->lambda[row];
-  const auto dots = scene_.model.dot_constraints();
-  if (row >= dots.size()) return lambda;
-  const DotConstraint& c = dots[row];
-  if (c.a != c.c || c.b != c.d) return lambda;
-  // -Phi_q^T lambda is -2 lambda (r_a - r_b) at a: a pull of 2 lambda |r_a - r_b| towards b.
-  const Vector3 d = along({c.b, c.a});
-  return 2.0 * lambda * std::hypot(d[0], d[1], d[2]);
 }
 
 }  // namespace mbs

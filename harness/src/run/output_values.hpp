@@ -11,8 +11,9 @@ namespace mbs {
 /// Scene::elements.outputs along a run; nothing else is computed.
 ///
 /// Columns: NAME.x, NAME.y (in 3D NAME.z) of a position, NAME.vx ... of a velocity, NAME.ax ... of
-/// an acceleration, NAME of anything else. Angles are those at the start, in -pi ... pi, continued:
-/// they count turns, provided that follow() sees states less than half a turn apart.
+/// an acceleration, NAME.x ... of the force on a point, NAME of anything else. Angles are those at
+/// the start, in -pi ... pi, continued: they count turns, provided that follow() sees states less
+/// than half a turn apart.
 class OutputValues {
  public:
   /// `scene` must outlive this.
@@ -23,19 +24,18 @@ class OutputValues {
   /// Takes the next state of the run; `state` must outlive values().
   void follow(double t, const State& state);
 
-  /// One number a column at the state last taken: m, m/s, m/s^2, rad, J, N.
+  /// One number a column at the state last taken: m, m/s, m/s^2, rad, J, N, N m.
   [[nodiscard]] std::vector<double> values() const;
 
  private:
   [[nodiscard]] Vector3 along(const Direction& direction) const;
   [[nodiscard]] double angle(const Output& output) const;
-  [[nodiscard]] double constraint_force(const Output& output) const;
+  [[nodiscard]] Vector3 vector(const Output& output) const;
   [[nodiscard]] double scalar(std::size_t index) const;
 
   const Scene& scene_;
   std::vector<std::string> columns_;
   SceneMotion motion_;
-  double t_ = 0.0;
   const State* state_ = nullptr;
   std::vector<double> angles_;  // continued, one an output; 0 where it is no angle
 };

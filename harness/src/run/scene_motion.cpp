@@ -3,12 +3,15 @@
 
 #include <algorithm>
 
+#include "model_math/kinematics.hpp"
+
 namespace mbs {
 
 SceneMotion::SceneMotion(const Scene& scene) : scene_(scene), known_(scene.model, 0.0) {}
 
 void SceneMotion::set(double t, const State& state) {
   known_.set_time(t);
+  t_ = t;
   state_ = &state;
 }
 
@@ -48,6 +51,30 @@ Vector3 SceneMotion::velocity(int index) const {
 }
 Vector3 SceneMotion::acceleration(int index) const {
   return motion(index, &State::a, [this](int point) { return known_.acceleration(point); });
+}
+
+double SceneMotion::kinetic_energy() const {
+  const Model& model = scene_.model;
+  const auto rate = [this](int point, int axis) {
+    return known_.velocity(point)[static_cast<std::size_t>(axis)];
+  };
+  double result = mbs::kinetic_energy(model, state_->v);
+  for (const DrivenMass& mass : model.driven_mass()) {
+    result += mass.value * state_->v[static_cast<std::size_t>(mass.coordinate)] *
+              rate(mass.point, mass.axis);
+  }
+  for (const auto& mass : scene_.elements.driven_energy.masses) {
+    result += mass.value * rate(mass.a, mass.axis_a) * rate(mass.b, mass.axis_b);
+  }
+  return result;
+}
+
+double SceneMotion::potential_energy() const {
+  double result = mbs::potential_energy(scene_.model, t_, state_->q);
+  for (const auto& [point, force] : scene_.elements.driven_energy.forces) {
+    result -= dot(force, known_.position(point));
+  }
+  return result;
 }
 
 }  // namespace mbs

@@ -31,6 +31,11 @@ class SceneMotion {
   [[nodiscard]] Vector3 velocity(int index) const;      ///< m/s
   [[nodiscard]] Vector3 acceleration(int index) const;  ///< m/s^2
 
+  /// Of all that moves, mass carried by driven points included, J.
+  [[nodiscard]] double kinetic_energy() const;
+  /// That of the model, and of the constant forces on driven points, zero where they are at 0; J.
+  [[nodiscard]] double potential_energy() const;
+
  private:
   template <class Known>
   [[nodiscard]] Vector3 motion(int index, const std::vector<double> State::*free,
@@ -38,6 +43,7 @@ class SceneMotion {
 
   const Scene& scene_;
   KnownMotion known_;
+  double t_ = 0.0;  // s
   const State* state_ = nullptr;
 };
 

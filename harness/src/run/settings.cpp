@@ -9,17 +9,29 @@
 #include <limits>
 #include <vector>
 
+#include "model_math/extent.hpp"
 #include "model_math/kinematics.hpp"
 #include "run/initial_state.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
 
+namespace {
+
+double largest_coordinate(const Model& model) {
+  double result = 0.0;
+  for (const double x : model.initial_position()) result = std::max(result, std::abs(x));
+  return result;
+}
+
+}  // namespace
+
+double rounding_length(const Model& model) {
+  return std::min(largest_coordinate(model), extent(model.points()));
+}
+
 double mean_constraint_eigenvalue(const Model& model) {
-  std::vector<double> diagonal(static_cast<std::size_t>(model.variables()));
-  for (const MassEntry& entry : model.mass()) {
-    if (entry.row == entry.col) diagonal[static_cast<std::size_t>(entry.row)] = entry.value;
-  }
+  const std::vector<double> diagonal = mass_diagonal(model);
   double trace = 0.0;
   for (const JacobianEntry& entry : jacobian(model, 0.0, model.initial_position())) {
     trace += entry.value * entry.value / diagonal[static_cast<std::size_t>(entry.col)];
@@ -47,15 +59,12 @@ double parse_penalty(const std::string& text, const Model& model, double step) {
 
 double automatic_tolerance(const Model& model, double step, double penalty) {
   const double wanted = std::min(1e-9 * std::pow(step / 1.25e-3, 4), 1e-6);
-  double size = 0.0;
-  for (const double coordinate : model.initial_position()) {
-    size = std::max(size, std::abs(coordinate));
-  }
+  const double largest = largest_coordinate(model), size = rounding_length(model);
   const double stiffness = model.constraints() == 0
                                ? 0.0
                                : penalty * step * step / 4 * mean_constraint_eigenvalue(model);
   constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
-  return std::max(wanted, 10 * kUnit * size * std::sqrt(1 + stiffness));
+  return std::max({wanted, 10 * kUnit * size * std::sqrt(1 + stiffness), 10 * kUnit * largest});
 }
 
 }  // namespace mbs

@@ -9,12 +9,12 @@ namespace mbs {
 
 /// The penalty factor `auto`: alpha = (4 / dt^2) clamp(30 / s_min, 4e3 / s_mean, 1e7 / s_mean).
 ///
-/// s_min is the smallest eigenvalue of S = Phi_q M^-1 Phi_q^T at the start, s_mean the mean of its
-/// diagonal with the diagonal of M (m^2/kg). The multiplier iteration contracts by 1 / (1 + alpha
-/// dt^2/4 s): the first term asks for a factor of 31 of the slowest mode, the lower bound for 4000
-/// of the mean one, which singular positions need, and the upper bound stays clear of cancellation.
-/// harness/README.md has the measurements behind the three numbers. 1 for a model without
-/// constraints.
+/// s_min is the smallest eigenvalue above 0 of S = Phi_q M^-1 Phi_q^T at the start, s_mean the mean
+/// of its diagonal with the diagonal of M (m^2/kg). The multiplier iteration contracts by 1 / (1 +
+/// alpha dt^2/4 s): the first term asks for a factor of 31 of the slowest mode, the lower bound for
+/// 4000 of the mean one, which singular positions need, and the upper bound stays clear of
+/// cancellation. harness/README.md has the measurements behind the three numbers. 1 for a model
+/// without constraints.
 double automatic_penalty(const Model& model, double step);
 
 /// s_mean of the above, m^2/kg; not a number for a model without constraints.
@@ -23,10 +23,14 @@ double mean_constraint_eigenvalue(const Model& model);
 /// "auto" or a number > 0; `step` in s. Throws UsageError.
 double parse_penalty(const std::string& text, const Model& model, double step);
 
+/// The lesser of max|q| and the scene's extent, m: constraints see differences of points, so that
+/// this is what their rounding is relative to.
+double rounding_length(const Model& model);
+
 /// The tolerance `auto`, m: 1e-9 at 1.25e-3 s and proportional to step^4, at most 1e-6, so that
 /// what Newton leaves stays below the integrator's own error at every step; but not below ten times
-/// the rounding noise of a Newton step, u max|q| sqrt(1 + alpha dt^2/4 s_mean), which it could not
-/// reach.
+/// the rounding noise of a Newton step, which it could not reach: u max|q|, and in the constraints
+/// u l_r sqrt(1 + alpha dt^2/4 s_mean) with l_r = rounding_length().
 double automatic_tolerance(const Model& model, double step, double penalty);
 
 }  // namespace mbs

@@ -37,7 +37,6 @@ class BodyLowering {
     for (std::size_t i = 0; i < body_.items.size(); ++i) {
       if (point(i).index < 0) lower_marker(i);
     }
-    scene_.remember(body_.node, first_row_);
   }
 
   /// A force on a point of the body that is no coordinate.
@@ -52,7 +51,6 @@ class BodyLowering {
  private:
   using Edge = RowWriter::Edge;
   using Part = RowWriter::Part;
-  using Row = RowWriter::Row;
 
   [[nodiscard]] DraftPoint& point(std::size_t item) const {
     return draft_.point(body_.items[item].point);
@@ -132,9 +130,9 @@ class BodyLowering {
         } else if (is_fixed_k || is_fixed_l) {
           const std::size_t fixed = is_fixed_k ? k : l, moving = is_fixed_k ? l : k;
           if (is_said(of_edges(fixed, moving))) continue;
-          keep(scene_.rows_.linear(
-              label(fixed, moving),
-              scene_.fixed_dot(scene_.along(direction(fixed)), direction(moving)), value));
+          scene_.rows_.linear(label(fixed, moving),
+                              scene_.fixed_dot(scene_.along(direction(fixed)), direction(moving)),
+                              value);
         } else {
           lower_product(k, l, value);
         }
@@ -156,7 +154,7 @@ class BodyLowering {
     const bool are_points = !point(body_.basis[k]).is_vector && !point(body_.basis[l]).is_vector;
     if (k == l || !are_points) {
       if (!is_said(of_edges(k, l))) {
-        keep(scene_.rows_.dot(label(k, l), edge(k), edge(l), value));
+        scene_.rows_.dot(label(k, l), edge(k), edge(l), value);
       }
       return;
     }
@@ -164,7 +162,7 @@ class BodyLowering {
     if (is_said({a, b})) return;
     const Vector3 between = local_edge(k) - local_edge(l);
     const Edge apart{draft_.point(a).index, draft_.point(b).index};
-    keep(scene_.rows_.dot(label(k, l), apart, apart, dot(between, between)));
+    scene_.rows_.dot(label(k, l), apart, apart, dot(between, between));
   }
 
   [[nodiscard]] std::vector<int> of_edges(std::size_t k, std::size_t l) const {
@@ -195,8 +193,8 @@ class BodyLowering {
                            -scale * block[row][static_cast<std::size_t>(col)]});
         }
       }
-      keep(scene_.rows_.linear(
-          fmt::format("{} {}.{}", title(), printable(point(item).name), "xyz"[axis]), parts, 0.0));
+      scene_.rows_.linear(
+          fmt::format("{} {}.{}", title(), printable(point(item).name), "xyz"[axis]), parts, 0.0);
     }
   }
 
@@ -227,10 +225,6 @@ class BodyLowering {
     return holder >= 0;
   }
 
-  void keep(Row row) {
-    if (first_row_.kind == Row::Kind::none) first_row_ = row;
-  }
-
   [[nodiscard]] std::string title() const {
     return body_.node.path() + ' ' + in_quotes(body_.name);
   }
@@ -250,7 +244,6 @@ class BodyLowering {
   DraftBody& body_;
   const std::vector<bool>& is_done_;
   BodyMass algebra_;
-  Row first_row_;
 };
 
 /// Bodies with more further items come first: these say most, and nothing of it can be left out.

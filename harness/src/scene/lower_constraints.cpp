@@ -13,6 +13,12 @@ namespace {
 
 using Type = DraftConstraint::Type;
 
+double norm_of(const std::vector<DraftConstraint::Term>& terms) {
+  double norm = 0.0;
+  for (const DraftConstraint::Term& term : terms) norm = std::hypot(norm, term.coefficient);
+  return norm;
+}
+
 }  // namespace
 
 void Lowering::lower_constraint(const DraftConstraint& constraint) {
@@ -42,13 +48,32 @@ void Lowering::lower_constraint(const DraftConstraint& constraint) {
       lower_linear(constraint);
       break;
   }
-  Row first{Row::Kind::linear, linears};
-  if (model().dot_constraints.size() > dots) {
-    first = {Row::Kind::dot, dots};
-  } else if (model().bilinear_constraints.size() > bilinears) {
-    first = {Row::Kind::bilinear, bilinears};
+  std::vector<Row> rows;
+  const auto add = [&rows](Row::Kind kind, std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) rows.push_back({kind, i});
+  };
+  add(Row::Kind::dot, dots, model().dot_constraints.size());
+  add(Row::Kind::bilinear, bilinears, model().bilinear_constraints.size());
+  add(Row::Kind::linear, linears, model().linear_constraints.size());
+  remember(constraint.node, force_of(constraint, std::move(rows)));
+}
+
+Lowering::Force Lowering::force_of(const DraftConstraint& constraint, std::vector<Row> rows) {
+  switch (constraint.type) {
+    case Type::distance:
+      return {Output::Force::tension, std::move(rows)};
+    case Type::angle:
+    case Type::perpendicular:
+      return {Output::Force::torque, std::move(rows), constraint.first, constraint.second};
+    case Type::coincident:
+    case Type::on_line:
+      return {Output::Force::vector, std::move(rows), {constraint.points[1], constraint.points[0]}};
+    case Type::dot:
+      break;
+    case Type::linear:  // of Phi as given: its row is divided by this
+      return {Output::Force::multiplier, std::move(rows), {}, {}, 1.0 / norm_of(constraint.terms)};
   }
-  remember(constraint.node, first);
+  return {Output::Force::multiplier, std::move(rows)};
 }
 
 void Lowering::lower_distance(const DraftConstraint& constraint) {
@@ -66,6 +91,8 @@ void Lowering::lower_distance(const DraftConstraint& constraint) {
   const DraftDirection between{constraint.points[0], constraint.points[1]};
   refuse_same_dot(constraint.node, between, between);
   rows_.dot(constraint.name, {a, b}, {a, b}, squared);
+  const auto name = constraint.node.find("name");
+  lowered_.data.elements.distances.push_back({name ? name->text() : constraint.name, a, b});
   if (length.is_constant()) lengths_.emplace(std::minmax(a, b), length.at(0.0).value);
 }
 
@@ -131,9 +158,9 @@ void Lowering::lower_dot(const DraftConstraint& constraint) {
 /// To coefficients of length 1, so that what the author multiplied them with changes neither the
 /// row's weight in the penalty nor how its violation, then in metres, is judged.
 void Lowering::lower_linear(const DraftConstraint& constraint) {
-  double norm = 0.0, start = 0.0;
+  const double norm = norm_of(constraint.terms);
+  double start = 0.0;
   for (const DraftConstraint::Term& term : constraint.terms) {
-    norm = std::hypot(norm, term.coefficient);
     start += term.coefficient * position(term.point)[static_cast<std::size_t>(term.axis)];
   }
   std::vector<Part> parts;

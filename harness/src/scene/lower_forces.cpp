@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "printable.hpp"
 #include "scene/lowering.hpp"
@@ -48,6 +49,9 @@ void Lowering::lower_spring(const DraftSpring& spring) {
 }
 
 void Lowering::lower_torsion_spring(const DraftTorsionSpring& spring) {
+  if (spring.angle && std::abs(*spring.angle) > std::numbers::pi) {
+    spring.node.get("angle").fail("an angle in rad of -pi to pi");
+  }
   if (!spring.angle) lowered_.relaxed_torsion_springs.push_back(model().torsion_springs.size());
   const Edge from = edge(spring.from), to = edge(spring.to);
   model().torsion_springs.push_back({from.a, from.b, to.a, to.b,

@@ -23,6 +23,7 @@ Lowered Lowering::run() {
   for (const DraftConstraint& constraint : draft_.constraints) lower_constraint(constraint);
   lower_forces();
   mass_->finish();
+  lowered_.data.elements.driven_energy = mass_->driven_energy();
   rows_.finish();
   lower_elements();
   lower_outputs();
@@ -79,7 +80,8 @@ void Lowering::lower_rods() {
     if (!(squared > 0.0)) rod.node.get("length").fail("a length in m above 0, as is its square");
     const int a = index(rod.a), b = index(rod.b);
     refuse_same_dot(rod.node, {rod.a, rod.b}, {rod.a, rod.b});
-    remember(rod.node, {Row::Kind::dot, model().dot_constraints.size()});
+    remember(rod.node,
+             {Output::Force::tension, {{Row::Kind::dot, model().dot_constraints.size()}}});
     mass_->add_rod({a, b, rod.mass, squared, rod.name}, draft_.gravity);
     lengths_.emplace(std::minmax(a, b), std::sqrt(squared));
     const auto name = rod.node.find("name");
@@ -118,27 +120,35 @@ void Lowering::lower_elements() {
     }
     lowered_.data.elements.bodies.push_back(std::move(element));
   }
+  for (std::size_t i = 0; i < draft_.points.size(); ++i) {
+    const DraftPoint& point = draft_.points[i];
+    const bool is_named = point.node && !point.is_own;
+    if (is_named || (point.index < 0 && point.marker < 0)) continue;
+    lowered_.data.elements.helpers.push_back(element_index(static_cast<int>(i)));
+  }
 }
 
 void Lowering::lower_outputs() {
   for (const DraftOutput& asked : draft_.outputs) {
     Output output = asked.output;
+    if (output.kind == Output::Kind::constraint_force) {
+      const auto found = forces_.find(asked.constraint);
+      if (found == forces_.end()) {
+        std::vector<std::string> names;
+        for (const auto& [name, force] : forces_) names.push_back(name);
+        std::sort(names.begin(), names.end());
+        asked.node.get("constraint_force").fail_name("a rod or constraint", names);
+      }
+      const Force& force = found->second;
+      output.force = force.kind;
+      for (const Row row : force.rows) output.rows.push_back(rows_.place(row));
+      output.first = {force.first.from, force.first.to};
+      output.second = {force.second.from, force.second.to};
+      output.factor = force.factor;
+    }
     for (int* point : {&output.point, &output.first.from, &output.first.to, &output.second.from,
                        &output.second.to, &output.axis}) {
       if (*point >= 0) *point = element_index(*point);
-    }
-    if (output.kind == Output::Kind::constraint_force) {
-      const auto row = row_of_.find(asked.constraint);
-      if (row == row_of_.end() || row->second.kind == Row::Kind::none) {
-        std::vector<std::string> names;
-        for (const auto& [name, known] : row_of_) {
-          if (known.kind != Row::Kind::none) names.push_back(name);
-        }
-        std::sort(names.begin(), names.end());
-        asked.node.get("constraint_force")
-            .fail_name("a rod, body or constraint with a force", names);
-      }
-      output.constraint = rows_.place(row->second);
     }
     lowered_.data.elements.outputs.push_back(std::move(output));
   }
@@ -194,8 +204,8 @@ int Lowering::add_hidden(const std::string& name, bool is_vector) {
   return index;
 }
 
-void Lowering::remember(const JsonNode& node, Row row) {
-  if (const auto name = node.find("name")) row_of_.emplace(name->text(), row);
+void Lowering::remember(const JsonNode& node, Force force) {
+  if (const auto name = node.find("name")) forces_.emplace(name->text(), std::move(force));
 }
 
 Lowered lower(SceneDraft& draft) { return Lowering(draft).run(); }

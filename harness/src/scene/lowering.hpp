@@ -34,6 +34,13 @@ class Lowering {
   using Row = RowWriter::Row;
   using Edge = RowWriter::Edge;
   using Part = RowWriter::Part;
+  /// What an output of the force of a rod or constraint needs.
+  struct Force {
+    Output::Force kind = Output::Force::multiplier;
+    std::vector<Row> rows = {};
+    DraftDirection first = {}, second = {};
+    double factor = 1.0;
+  };
 
   // lowering.cpp
   void number_points();
@@ -55,7 +62,7 @@ class Lowering {
   int zero();
   /// A fixed point of the model's own; its index there.
   int add_hidden(const std::string& name, bool is_vector);
-  void remember(const JsonNode& node, Row row);  // for constraint forces by name
+  void remember(const JsonNode& node, Force force);  // for outputs by name
 
   // lower_bodies.cpp
   friend class BodyLowering;
@@ -63,6 +70,7 @@ class Lowering {
 
   // lower_constraints.cpp
   void lower_constraint(const DraftConstraint& constraint);
+  [[nodiscard]] static Force force_of(const DraftConstraint& constraint, std::vector<Row> rows);
   void lower_distance(const DraftConstraint& constraint);
   void lower_angle(const DraftConstraint& constraint);
   void lower_fixed_angle(const DraftConstraint& constraint, const TimeFunction& angle);
@@ -98,7 +106,7 @@ class Lowering {
   RowWriter rows_;
   std::optional<MassWriter> mass_;
   int zero_ = -1;
-  std::unordered_map<std::string, Row> row_of_;     // first row of a rod, body or constraint
+  std::unordered_map<std::string, Force> forces_;   // of rods and constraints
   std::map<std::pair<int, int>, double> lengths_;   // constant ones, by indices into the model
   std::map<std::array<int, 4>, std::string> dots_;  // path of the first such constraint
   struct Known {

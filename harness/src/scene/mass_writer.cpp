@@ -38,6 +38,9 @@ void MassWriter::add(int a, int b, const Matrix3& B) {
         data_.driven_mass.push_back({first.offset + row, b, col, value});
       } else if (value != 0.0 && !second.is_fixed() && is_driven(a)) {
         data_.driven_mass.push_back({second.offset + col, a, row, value});
+      } else if (value != 0.0 && is_driven(a) && is_driven(b)) {
+        const double share = a == b && row == col ? 0.5 : 1.0;  // others stand for two entries
+        driven_energy_.masses.push_back({a, row, b, col, share * value});
       }
     }
   }
@@ -45,6 +48,7 @@ void MassWriter::add(int a, int b, const Matrix3& B) {
 
 void MassWriter::push(int point, const Vector3& force) {
   const Point& at = data_.points[static_cast<std::size_t>(point)];
+  if (is_driven(point)) driven_energy_.forces.push_back({point, force});
   if (at.is_fixed()) return;
   for (int axis = 0; axis < data_.dimension; ++axis) {
     data_.force[static_cast<std::size_t>(at.offset + axis)] +=

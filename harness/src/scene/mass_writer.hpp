@@ -5,6 +5,7 @@
 
 #include "mbs/model.hpp"
 #include "model_math/vector3.hpp"
+#include "scene/scene.hpp"
 
 namespace mbs {
 
@@ -25,7 +26,7 @@ class MassWriter {
   /// Adds to twice the kinetic energy r_a' . B r_a' (a = b, B symmetric) or
   /// r_a' . B r_b' + r_b' . B^T r_a', B in kg. Fixed points drop out, driven ones give DrivenMass.
   void add(int a, int b, const Matrix3& B);
-  /// Adds a force (N) to Q; on fixed and driven points it has no effect.
+  /// Adds a force (N) to Q; on fixed points it has no effect, on driven ones energy alone.
   void push(int point, const Vector3& force);
 
   void add_point_mass(int point, double mass, const Vector3& gravity);
@@ -34,6 +35,8 @@ class MassWriter {
   void add_rod(Rod rod, const Vector3& gravity);
 
   [[nodiscard]] bool is_driven(int point) const { return driven_[static_cast<std::size_t>(point)]; }
+
+  [[nodiscard]] const DrivenEnergy& driven_energy() const { return driven_energy_; }
 
   /// Sums up the entries of each position into data.mass, the whole diagonal included.
   void finish();
@@ -44,6 +47,7 @@ class MassWriter {
   ModelData& data_;
   std::vector<MassEntry> entries_;
   std::vector<bool> driven_;
+  DrivenEnergy driven_energy_;
 };
 
 }  // namespace mbs

@@ -11,6 +11,8 @@ const char* vector_prefix(const Output& output) {
       return ".v";
     case Output::Kind::acceleration:
       return ".a";
+    case Output::Kind::constraint_force:
+      return output.force == Output::Force::vector ? "." : nullptr;
     default:
       return nullptr;
   }

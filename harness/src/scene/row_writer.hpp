@@ -23,7 +23,7 @@ class RowWriter {
   };
   /// A constraint that is written: its place in Phi is known once all are.
   struct Row {
-    enum class Kind { none, dot, bilinear, linear } kind = Kind::none;
+    enum class Kind { dot, bilinear, linear } kind = Kind::dot;
     std::size_t index = 0;  ///< in the list of its kind
   };
 

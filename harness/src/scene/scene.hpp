@@ -47,15 +47,39 @@ struct Output {
     kinetic_energy,
     potential_energy,
     total_energy,      ///< J
-    constraint_force,  ///< of `constraint`: N for a distance (tension positive), else its
-                       ///< multiplier
+    constraint_force,  ///< of the constraint whose rows are `rows`; `force` says what of it
+  };
+  enum class Force {
+    tension,     ///< of a distance, N: the pull of its ends on each other
+    torque,      ///< of an angle, N m: on `second`, about z (3D: about first x second)
+    vector,      ///< N: on the point first.to, which is held relative to first.from
+    multiplier,  ///< `factor` times lambda
   };
   std::string name;
   Kind kind = Kind::position;
   int point = -1;  ///< index into Model::points(), or past its end into Elements::markers
   Direction first = {}, second = {};
-  int axis = -1;        ///< index into Model::points()
-  int constraint = -1;  ///< index into Phi
+  int axis = -1;  ///< index into Model::points()
+  Force force = Force::tension;
+  std::vector<int> rows = {};  ///< indices into Phi
+  double factor = 1.0;
+};
+
+/// What the energy has beyond the Model's: M and Q end at driven points.
+struct DrivenEnergy {
+  /// Adds value * (velocity of a along axis_a) * (velocity of b along axis_b) to the kinetic
+  /// energy.
+  struct Mass {
+    int a = 0, axis_a = 0, b = 0, axis_b = 0;  ///< driven points, indices into Model::points()
+    double value = 0.0;                        ///< kg
+  };
+  /// A constant force on a driven point.
+  struct Force {
+    int point = 0;
+    std::array<double, 3> force{};  ///< N
+  };
+  std::vector<Mass> masses;
+  std::vector<Force> forces;
 };
 
 /// A function of time that the scene's author gave, and what a run may make of it.
@@ -83,10 +107,13 @@ struct Elements {
     std::vector<int> vectors;  ///< indices into Model::points()
   };
   std::vector<Rod> rods;
+  std::vector<Rod> distances;  ///< constraints
   std::vector<Body> bodies;
   std::vector<Marker> markers;
+  std::vector<int> helpers;  ///< points and vectors that the scene does not name; as in bodies
   std::vector<Output> outputs;
   std::vector<Driver> drivers = {};
+  DrivenEnergy driven_energy;
 };
 
 /// What the assembly of the start changed.

@@ -1,0 +1,33 @@
+// Compares files where they exist, names where they do not.
+#include "mbs/file_names.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "printable.hpp"
+#include "usage_error.hpp"
+
+namespace mbs {
+
+namespace fs = std::filesystem;
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  // Absolute first: a relative name of which no part exists would stay relative.
+  const auto name = [&error](const std::string& path) {
+    return fs::weakly_canonical(fs::absolute(path, error), error);
+  };
+  return name(a) == name(b);
+}
+
+void require_not_scene(const std::string& option, const std::string& path,
+                       const std::string& scene) {
+  std::error_code error;
+  if (path.empty() || !fs::exists(scene, error) || !is_same_file(path, scene)) return;
+  throw UsageError(fmt::format("{}: found {}, the scene's own file, allowed is another", option,
+                               in_quotes(path)));
+}
+
+}  // namespace mbs

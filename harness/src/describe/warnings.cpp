@@ -1,0 +1,127 @@
+// Estimates against settings.
+#include "describe/warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "model_math/kinematics.hpp"
+#include "model_math/vector3.hpp"
+
+namespace mbs {
+namespace {
+
+/// Diagonals of K and C of Eq. (11).
+class SpringDiagonal {
+ public:
+  explicit SpringDiagonal(const Model& model)
+      : model_(model),
+        stiffness(static_cast<std::size_t>(model.variables()), 0.0),
+        damping(stiffness) {
+    for (const Spring& spring : model.springs()) add_spring(spring);
+    for (const TorsionSpring& spring : model.torsion_springs()) {
+      add_turning(spring, spring.a, spring.b);
+      add_turning(spring, spring.c, spring.d);
+    }
+  }
+
+ private:
+  [[nodiscard]] const Point& point(int index) const {
+    return model_.points()[static_cast<std::size_t>(index)];
+  }
+  void add(int index, const Vector3& k, const Vector3& c) {
+    if (point(index).is_fixed()) return;
+    for (int axis = 0; axis < model_.dimension(); ++axis) {
+      const auto i = static_cast<std::size_t>(point(index).offset + axis);
+      stiffness[i] += k[static_cast<std::size_t>(axis)];
+      damping[i] += c[static_cast<std::size_t>(axis)];
+    }
+  }
+  void add_spring(const Spring& spring) {
+    const Vector3 d = point(spring.a).position - point(spring.b).position;
+    const double length = norm(d);
+    const Vector3 e = (length > 0.0 ? 1.0 / length : 0.0) * d;
+    const double across =
+        length > 0.0 ? std::max(0.0, spring.stiffness * (1.0 - spring.length / length)) : 0.0;
+    Vector3 k{}, c{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      k[i] = spring.stiffness * e[i] * e[i] + across * (1.0 - e[i] * e[i]);
+      c[i] = spring.damping * e[i] * e[i];
+    }
+    add(spring.a, k, c);
+    add(spring.b, k, c);
+  }
+  void add_turning(const TorsionSpring& spring, int a, int b) {
+    const Vector3 w = point(a).position - point(b).position;
+    const Vector3 z =
+        spring.axis < 0 ? Vector3{0.0, 0.0, 1.0} : Vector3(point(spring.axis).position);
+    const Vector3 g = (1.0 / dot(w, w)) * cross(z, w);
+    Vector3 k{}, c{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      k[i] = spring.stiffness * g[i] * g[i];
+      c[i] = spring.damping * g[i] * g[i];
+    }
+    add(a, k, c);
+    add(b, k, c);
+  }
+
+  const Model& model_;
+
+ public:
+  std::vector<double> stiffness, damping;  // N/m, N s/m
+};
+
+}  // namespace
+
+std::string penalty_warning(const PenaltyWindow& window, double penalty, double step) {
+  const auto far = [&](const char* side, double bound, const char* what) {
+    return fmt::format(
+        "the penalty factor {:.2g} is far {} {:.2g}, the {} at step {:g} s (an "
+        "estimate: mbs describe)",
+        penalty, side, bound, what, step);
+  };
+  if (penalty < window.lower / kFarBelow) {
+    return far("below", window.lower, "least that is sure to hold the constraints");
+  }
+  if (penalty > window.upper * kFarAbove) {
+    return far("above", window.upper, "most without loss of accuracy");
+  }
+  return "";
+}
+
+double shortest_period(const Model& model) {
+  const SpringDiagonal diagonal(model);
+  const std::vector<double> mass = mass_diagonal(model);
+  double fastest = 0.0;  // omega^2, 1/s^2
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    const double k = diagonal.stiffness[i], c = diagonal.damping[i];
+    if (c * c < 4.0 * k * mass[i]) fastest = std::max(fastest, k / mass[i]);
+  }
+  return 2.0 * std::numbers::pi / std::sqrt(fastest);
+}
+
+std::string period_warning(const Model& model, double step) {
+  const double period = shortest_period(model);
+  if (step <= kLongestShare * period) return "";
+  return fmt::format(
+      "the step {:g} s is above a tenth of the shortest period of the springs, {:.2g} "
+      "s (an estimate): how they swing is not resolved",
+      step, period);
+}
+
+std::vector<std::string> setting_warnings(const Model& model, const StepSettings& settings) {
+  std::vector<std::string> result;
+  const auto add = [&result](std::string warning) {
+    if (!warning.empty()) result.push_back(std::move(warning));
+  };
+  if (model.constraints() > 0 && model.variables() <= kMostVariablesToWarn) {
+    const PenaltyWindow window = penalty_window(model, find_structure(model), settings.step);
+    add(penalty_warning(window, settings.penalty, settings.step));
+  }
+  add(period_warning(model, settings.step));
+  return result;
+}
+
+}  // namespace mbs

@@ -1,0 +1,36 @@
+// What about the settings of a run is likely to spoil it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "describe/penalty_window.hpp"
+#include "mbs/simulation.hpp"
+
+namespace mbs {
+
+/// A scene of more variables is not warned about its penalty factor: that would take over a second.
+inline constexpr int kMostVariablesToWarn = 20'000;
+
+/// How far outside is worth a warning: the window is right to a factor of about ten, and mechanisms
+/// that meet no singular position work well below it.
+inline constexpr double kFarBelow = 100.0, kFarAbove = 10.0;
+
+/// Longest step as a share of the shortest period of springs; there the period is 3 % off.
+inline constexpr double kLongestShare = 0.1;
+
+/// Whether `penalty` is beyond the window, which is for `step` (s), that far; one line, empty if
+/// not.
+std::string penalty_warning(const PenaltyWindow& window, double penalty, double step);
+
+/// 2 pi sqrt(M_ii / K_ii) at the start, the least of the coordinates that swing (C_ii^2 < 4 K_ii
+/// M_ii), s; infinite without springs. An estimate.
+double shortest_period(const Model& model);
+
+/// Whether `step` (s) is above kLongestShare of shortest_period(); one line, empty if not.
+std::string period_warning(const Model& model, double step);
+
+/// All of these, one line each.
+std::vector<std::string> setting_warnings(const Model& model, const StepSettings& settings);
+
+}  // namespace mbs
