@@ -221,6 +221,21 @@ TEST(AssembleStart, DrivenValuesHoldAtTheStart) {
   EXPECT_NEAR(data.model.initial_velocity[0], 0.5 / (2 * 1.05), 1e-13);
 }
 
+// A crank's given velocity is a little off the circle once its pin has moved; the heavy rest must
+// not slow it down, however much lighter the pin is.
+TEST(AssembleStart, GivenVelocitiesChangeLast) {
+  SceneData data = Frame{
+      {{"O", 0, 0, false}, {"E", 0.71, 0.7, true}, {"P", 2, 0, true, 100.0}},
+      {{0, 1, 1.0},
+       {1, 2, 1.5}}}.build(0.1);
+  data.model.initial_velocity = {-0.7, 0.7, 0.0, 0.0};
+  assemble_start(data, "test");
+  EXPECT_LT(rate_violation(data), 1e-14);
+  const double speed = std::hypot(data.model.initial_velocity[0], data.model.initial_velocity[1]);
+  EXPECT_NEAR(speed, 0.7 * std::sqrt(2.0), 1e-3);
+  EXPECT_GT(std::abs(data.model.initial_velocity[2]), 0.1);
+}
+
 TEST(AssembleStart, RefusesADriverThatTheStartCannotFollow) {
   // Stretched along x, pulled further along x.
   SceneData data = Frame{

@@ -234,7 +234,8 @@ TEST_F(SimulateProgram, NeverWritesOverItsSceneOrOneTableOverTheOther) {
   fs::create_symlink(scene, link);
   const std::string run = "'" + scene + "' --duration 0.01 ";
   for (const std::string& file : {scene, folder.file("./s.json"), link}) {
-    expect_refusal(run + "--output '" + file + "'", "--output: found '" + file + "', the scene's");
+    expect_refusal(run + "--output '" + file + "'",
+                   "--output: found \"" + file + "\", the scene's");
     expect_refusal(run + "--trajectory '" + file + "'", "--trajectory: found");
     const auto check = test::run_mbs("check --json '" + file + "' '" + scene + "'");
     expect_one_line(check, "check", "--json: found");

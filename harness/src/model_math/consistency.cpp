@@ -224,12 +224,12 @@ Violation move_onto_constraints(const Model& model, double t, std::vector<double
 }
 
 Violation make_consistent(const Model& model, double t, std::span<const double> q,
-                          std::vector<double>& v, const std::vector<bool>& held) {
+                          std::vector<double>& v, const std::vector<double>& weights) {
   const double given = largest_of(v);  // v may have to vanish: what is left is then rounding of it
   std::vector<double> rates = rates_at(model, t, q, v);
   Violation rest = worst_of(rates, sizes_of_rates(model, t, q, given));
   if (rest.ratio <= kMet || !std::isfinite(rest.ratio)) return rest;
-  const LeastChange least(model, t, q, held);
+  const LeastChange least(model, t, q, weights);
   constexpr int kMostRounds = 5;  // the first solves, the others remove the rounding of the first
   for (int i = 0; i < kMostRounds && rest.ratio > kReached; ++i) {
     const std::vector<double> next = sum(v, 1.0, least.solve(negative(rates)));

@@ -33,10 +33,10 @@ Violation velocity_violation(const Model& model, double t, std::span<const doubl
 /// start is too far away; q is then the best that was found.
 Violation move_onto_constraints(const Model& model, double t, std::vector<double>& q);
 
-/// Changes v (n, m/s) by the smallest in the norm of M so that Phi_q v = -Phi_t; coordinates marked
-/// in `held` (empty: none) keep theirs. A consistent v is left bit for bit as it is. Returns what
+/// Changes v (n, m/s) by the smallest in the norm of M so that Phi_q v = -Phi_t, with `weights` as
+/// LeastChange has them. A consistent v is left bit for bit as it is. Returns what
 /// remains, where the terms count as those of the v given if that is the faster.
 Violation make_consistent(const Model& model, double t, std::span<const double> q,
-                          std::vector<double>& v, const std::vector<bool>& held = {});
+                          std::vector<double>& v, const std::vector<double>& weights = {});
 
 }  // namespace mbs

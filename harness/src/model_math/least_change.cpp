@@ -28,25 +28,30 @@ struct LeastChange::Factors {
 };
 
 LeastChange::LeastChange(const Model& model, double t, std::span<const double> q,
-                         const std::vector<bool>& held, double damping)
+                         const std::vector<double>& weights, double damping)
     : factors_(std::make_unique<Factors>()) {
   const int n = factors_->n = model.variables();
   const int m = factors_->m = model.constraints();
-  const auto is_held = [&](int i) { return !held.empty() && held[static_cast<std::size_t>(i)]; };
+  const auto weight = [&](int i) {
+    return weights.empty() ? 1.0 : weights[static_cast<std::size_t>(i)];
+  };
+  const auto is_held = [&](int i) { return std::isinf(weight(i)); };
   const std::vector<double> diagonal = mass_diagonal(model);
   std::vector<Eigen::Triplet<Real>> entries;
   for (const MassEntry& entry : model.mass()) {
     const bool is_free = !is_held(entry.row) && !is_held(entry.col);
     if (entry.value == 0.0 || (!is_free && entry.row != entry.col)) continue;
-    entries.emplace_back(entry.row, entry.col, entry.value);
+    const double factor = is_free ? weight(entry.row) * weight(entry.col) : 1.0;
+    entries.emplace_back(entry.row, entry.col, factor * entry.value);
   }
   std::vector<Real> size(static_cast<std::size_t>(m), 0);
   for (const JacobianEntry& entry : jacobian(model, t, q)) {
     if (!std::isfinite(entry.value)) throw std::invalid_argument("Phi_q is not finite");
     if (is_held(entry.col) || entry.value == 0.0) continue;
     entries.emplace_back(n + entry.row, entry.col, entry.value);
-    size[static_cast<std::size_t>(entry.row)] += entry.value * static_cast<Real>(entry.value) /
-                                                 diagonal[static_cast<std::size_t>(entry.col)];
+    const Real scaled = entry.value / weight(entry.col);
+    size[static_cast<std::size_t>(entry.row)] +=
+        scaled * scaled / diagonal[static_cast<std::size_t>(entry.col)];
   }
   const Real epsilon = std::max(kRegularization, static_cast<Real>(damping));
   for (int k = 0; k < m; ++k) {

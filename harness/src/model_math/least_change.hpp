@@ -17,12 +17,12 @@ namespace mbs {
 /// least squares, Quart. Appl. Math. 2, 164-168.
 class LeastChange {
  public:
-  /// Coordinates marked in `held` (n flags; empty: none) keep x = 0. With a `damping` above 0, x
-  /// minimises x.M x + sum of (squared residual k) / (damping * own k) instead, where own k is
+  /// M counts as diag(weights) M diag(weights) (n; empty: all 1); an infinite weight keeps x = 0.
+  /// With a `damping` above 0, x minimises x.M x + sum of (squared residual k) / (damping * own k) instead, where own k is
   /// the diagonal of Phi_q M^-1 Phi_q^T with the diagonal of M [Levenberg, 1944]: steps then stay
   /// short where Phi_q is ill-conditioned. Throws std::invalid_argument if Phi_q is not finite.
   LeastChange(const Model& model, double t, std::span<const double> q,
-              const std::vector<bool>& held = {}, double damping = 0.0);
+              const std::vector<double>& weights = {}, double damping = 0.0);
   ~LeastChange();
   LeastChange(const LeastChange&) = delete;
   LeastChange& operator=(const LeastChange&) = delete;

@@ -139,7 +139,7 @@ class Assembly {
     return result;
   }
 
-  /// Velocities given (not zero) stay if the others can follow; else all change.
+  /// Velocities given (not zero) stay if the others can follow; else they change last.
   void assemble_velocities() {
     const Violation before = velocity_violation(model_, 0.0, q_, v_);
     if (before.ratio > kMet) make_velocities_consistent();
@@ -147,18 +147,23 @@ class Assembly {
   }
 
   void make_velocities_consistent() {
-    std::vector<bool> held(v_.size(), false);
+    constexpr double kHeld = std::numeric_limits<double>::infinity();
+    constexpr double kFirm = 1e3;  // a millionth of the change that the others make
+    std::vector<double> weights(v_.size(), 1.0);
     for (const Point& point : model_.points()) {
       if (!point.is_fixed() && norm(part(point, given_)) > 0.0) {
-        std::fill_n(held.begin() + point.offset, model_.dimension(), true);
+        std::fill_n(weights.begin() + point.offset, model_.dimension(), kHeld);
       }
     }
     Violation rest{std::numeric_limits<double>::infinity()};
-    if (std::ranges::find(held, true) != held.end()) {
-      rest = make_consistent(model_, 0.0, q_, v_, held);
+    if (std::ranges::find(weights, kHeld) != weights.end()) {
+      rest = make_consistent(model_, 0.0, q_, v_, weights);
     }
     if (!(rest.ratio <= kAssembled)) v_ = given_;  // else only rounding is left to remove
-    if (!(rest.ratio <= kMet)) rest = make_consistent(model_, 0.0, q_, v_);
+    if (!(rest.ratio <= kMet)) {
+      std::ranges::replace(weights, kHeld, kFirm);
+      rest = make_consistent(model_, 0.0, q_, v_, weights);
+    }
     if (rest.ratio <= kAssembled) return;
     fail(
         fmt::format("the velocities cannot be made consistent: the start is a singular position "

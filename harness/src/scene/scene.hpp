@@ -173,7 +173,7 @@ SceneData parse_scene(std::string_view json, const std::string& where);
 /// Moves data.model's start onto its constraints: positions onto Phi(q, 0) = 0, then velocities
 /// onto Phi_q v = -Phi_t, each by the smallest change in the norm of M (Gauss-Newton; redundant
 /// constraints are fine). Velocities given, that is not zero, stay as they are if the others can
-/// follow. A start on its constraints to rounding is left bit for bit. What the file gives of
+/// follow, and change a millionth as easily as those if not. A start on its constraints to rounding is left bit for bit. What the file gives of
 /// points that are no coordinates counts like theirs. Fills data.assembly. Throws UsageError,
 /// prefixed by `where`, naming the constraint and by how much it fails, if that does not converge,
 /// if a point would move by more than data.largest_correction (a unit vector: by more than its
