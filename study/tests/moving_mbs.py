@@ -56,9 +56,9 @@ def place(scene, t):
 def elements(scene):
     points = place(scene, 0.0)
     names = list(points)
-    listed = {"points": [{"name": name, "kind": kind, "position": list(at)}
+    listed = {"points": [{"name": name, "kind": kind, "helper": False, "position": list(at)}
                          for name, (kind, at) in points.items()],
-              "rods": [], "bodies": [], "springs": [], "torsion_springs": [], "outputs": []}
+              "rods": [], "distances": [], "bodies": [], "springs": [], "torsion_springs": [], "outputs": []}
     if scene.startswith("chain:"):
         listed["rods"] = [{"name": "", "between": [a, b]} for a, b in zip(names, names[1:])]
     elif scene == "top":
@@ -122,9 +122,7 @@ def main():
     if command == "simulate":
         return simulate(scene)
     description = {"dimension": PLACES.get(scene, 2), "variables": 4, "constraints": 3,
-                   "degrees_of_freedom": 1}
-    if scene == "short":
-        description["drivers_end"] = 0.5
+                   "degrees_of_freedom": 1, "drivers_end": 0.5 if scene == "short" else None}
     if scene != "old":
         description["elements"] = elements(scene)
     print(json.dumps(description))

@@ -26,7 +26,7 @@ def view(folder, *arguments, program=STAND_IN):
 
 
 def scene_of(name):
-    return from_description({"dimension": moving_mbs.PLACES.get(name, 2),
+    return from_description({"dimension": moving_mbs.PLACES.get(name, 2), "drivers_end": None,
                              "elements": moving_mbs.elements(name)}, name)
 
 
@@ -187,7 +187,7 @@ def test_driven_motion_is_shown_as_long_as_it_is_known(tmp_path):
 
 
 def test_no_name_in_a_scene_can_leave_its_element(tmp_path):
-    description = {"dimension": 2, "elements": moving_mbs.elements("crank")}
+    description = {"dimension": 2, "drivers_end": None, "elements": moving_mbs.elements("crank")}
     scene = from_description(description, "</title><script>alert(1)</script>")
     scene.points = [(name.replace("O", "</script><b>"), kind) for name, kind in scene.points]
     motion = trajectory.read(csv_of(tmp_path, "crank"), scene_of("crank"), 100)
@@ -219,14 +219,23 @@ def test_a_bodys_own_helper_points_are_not_drawn(tmp_path):
     names = {"U": "K.x", "V": "V", "W": "K.w"}
     for point in listed["points"]:
         point["name"] = names.get(point["name"], point["name"])
+        point["helper"] = point["name"].startswith("K.")
     listed["rods"][0]["between"], listed["springs"] = ["T", "K.w"], []
-    scene = from_description({"dimension": 3, "elements": listed}, "top")
+    scene = from_description({"dimension": 3, "drivers_end": None, "elements": listed}, "top")
     kinds = dict(scene.points)
     # The author's own V stays; K.w is the end of a rod: what is drawn needs it.
     assert kinds["K.x"] == "hidden" and kinds["V"] == kinds["K.w"] == "free"
     motion = trajectory.read(csv_of(tmp_path, "top"), scene_of("top"), 100)
     hidden = [name for name, _ in scene.points].index("K.x")
     assert hidden not in {*picture.places(scene), *picture.traces(scene, motion)}
+
+
+def test_distances_are_drawn_where_no_rod_is():
+    listed = moving_mbs.elements("crank")
+    listed["distances"] = [{"name": "same", "between": ["E", "O"]},
+                           {"name": "tie", "between": ["C", "P"]}]
+    scene = from_description({"dimension": 2, "drivers_end": None, "elements": listed}, "crank")
+    assert [rod.name for rod in scene.rods] == ["crank", "tie"]
 
 
 @pytest.mark.parametrize("name, place", [("crank", "O"), ("top", "O")])

@@ -59,8 +59,7 @@ def test_a_scene_of_a_short_driver_table_is_shown_as_long_as_it_is_known(tmp_pat
         "rods": [{"name": "rod", "between": ["R", "B"], "mass": 1}]}))
     described = json.loads(subprocess.run([PROGRAM, "describe", tmp_path / "short.json", "--json"],
                                           check=True, capture_output=True).stdout)
-    if "drivers_end" not in described:
-        pytest.skip("mbs describe --json does not tell yet when driven motion ends (drivers_end)")
+    assert described["drivers_end"] == pytest.approx(0.5)
     done = view(tmp_path, "short.json", program=PROGRAM)
     assert done.returncode == 0, done.stderr
     assert data_of(tmp_path / "short.html")[0]["times"][-1] == pytest.approx(0.5)

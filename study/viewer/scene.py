@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from study.pipeline.errors import StudyError
 
 KINDS = ("free", "fixed", "driven", "vector", "marker")
-HIDDEN = "hidden"  # a point that body K1 got for itself, K1.x, and nothing else names: not drawn
+HIDDEN = "hidden"  # a point that the scene does not name and no element needs: not drawn
 NO_PLACES = ("vector", HIDDEN)
 
 
@@ -20,7 +20,7 @@ class Element:
 @dataclass
 class Scene:
     """Points are (name, kind); `start` has their positions at t = 0, one row each, m. Torsion springs are
-    pairs of directions, each from a point to a point; `outputs` names what the author asked for."""
+    pairs of directions, each from a point to a point; a distance is drawn like a rod; `outputs` names what the author asked for."""
     name: str
     dimension: int
     points: list
@@ -39,9 +39,14 @@ def from_description(description, name):
     try:
         elements, dimension = description["elements"], int(description["dimension"])
         points = [(point["name"], point["kind"]) for point in elements["points"]]
+        end = description["drivers_end"]
+        helpers = [bool(point["helper"]) for point in elements["points"]]
         start = [[float(x) for x in point["position"]] for point in elements["points"]]
         index = {name: place for place, (name, _) in enumerate(points)}
         rods = [_pair(index, rod) for rod in elements["rods"]]
+        joined = {frozenset(rod.points) for rod in rods}
+        rods += [link for link in (_pair(index, item) for item in elements["distances"])
+                 if frozenset(link.points) not in joined]
         springs = [_pair(index, spring) for spring in elements["springs"]]
         bodies = [Element(body["name"], [index[point] for point in body["points"]],
                           [index[vector] for vector in body.get("vectors", [])])
@@ -56,11 +61,8 @@ def from_description(description, name):
         raise StudyError(f"`mbs describe {name} --json` gives dimension {dimension} and kinds of "
                          f"points {', '.join(unknown) or 'known'}: its points do not fit")
     used = {point for element in (*rods, *springs, *bodies) for point in element.points}
-    owners = {body.name for body in bodies}
-    points = [(name, HIDDEN if kind == "free" and place not in used
-               and name.rpartition(".")[0] in owners else kind)
+    points = [(name, HIDDEN if kind == "free" and helpers[place] and place not in used else kind)
               for place, (name, kind) in enumerate(points)]
-    end = description.get("drivers_end")
     return Scene(name, dimension, points, start, rods, bodies, springs, torsion_springs,
                  list(elements.get("outputs", [])), _facts(description),
                  math.inf if end is None else float(end))
