@@ -15,7 +15,7 @@ def test_smoke_on_the_real_program(tmp_path):
 
     def run(*arguments):
         return subprocess.run([ROOT / "study" / arguments[0], *arguments[1:]], text=True,
-                              capture_output=True, env=environment, timeout=300)
+                              capture_output=True, env=environment, timeout=900)
     first = run("run", "--profile", "smoke", "--results", results)
     assert first.returncode == 0, first.stderr
     tidy = pandas.read_csv(results / "tidy.csv")
