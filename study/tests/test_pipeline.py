@@ -8,6 +8,7 @@ import time
 
 import pandas
 import pytest
+import yaml
 
 from study.pipeline import builds, child, collect, prepare, profile as profiles, refine
 from study.pipeline.job import open_study
@@ -60,8 +61,9 @@ def test_resume_makes_only_what_is_missing(results):
 
 
 def test_misbehaviour_is_kept_as_data(tmp_path, monkeypatch):
-    text = (profiles.FOLDER / "smoke.yaml").read_text()
-    (tmp_path / "smoke.yaml").write_text(text.replace("_seconds: 20", "_seconds: 1"))
+    smoke = yaml.safe_load((profiles.FOLDER / "smoke.yaml").read_text())
+    smoke["limits"].update(pilot_seconds=1, cell_seconds=1, check_seconds=1)
+    (tmp_path / "smoke.yaml").write_text(yaml.safe_dump(smoke))
     monkeypatch.setattr(profiles, "FOLDER", tmp_path)
     monkeypatch.setenv("MBS_PROGRAM", str(FAKE))
     monkeypatch.setenv("FAKE_BAD", "1")
