@@ -23,8 +23,10 @@ struct StepOptions {
   std::string penalty = "auto";
   std::string tolerance = "auto";
   int max_passes = 20;
+  std::string scheme, multipliers, tangent, projections, precision;  ///< empty: the default
+  int projections_every = 1;
 
-  /// Adds --step, --penalty, --tolerance, --max-passes and --blas to `command`.
+  /// Adds an option for every one of StepSettings, and --blas, to `command`.
   void add_to(CLI::App& command);
   /// Throws UsageError if a value is out of range.
   [[nodiscard]] StepSettings resolve(const Model& model) const;

@@ -1,5 +1,6 @@
 // mbs list: what this build offers, and what it lacks and why.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -7,6 +8,7 @@
 #include "environment/blas.hpp"
 #include "mbs/commands.hpp"
 #include "registry/registry.hpp"
+#include "run/setting_names.hpp"
 
 namespace mbs {
 namespace {
@@ -34,7 +36,8 @@ nlohmann::json list_json() {
                           {"description", variant.description},
                           {"dense", variant.dense},
                           {"unsymmetric", variant.unsymmetric},
-                          {"operations", variant.operations != nullptr}});
+                          {"operations", variant.operations != nullptr},
+                          {"settings", served_settings(variant.serves)}});
     }
     implementations.push_back({{"folder", entry.folder},
                                {"description", implementation.description},
@@ -59,6 +62,8 @@ void print_list() {
       fmt::print("{:<24} {}; {} ({} {}, {})\n", entry.folder + "/" + variant.name,
                  implementation.description, variant.description, implementation.library,
                  implementation.version, implementation.licence);
+      const std::vector<std::string> served = served_settings(variant.serves);
+      if (!served.empty()) fmt::print("{:<24} also {}\n", "", fmt::join(served, ", "));
     }
   }
   fmt::print("\nBLAS and LAPACK (--blas NAME):\n");

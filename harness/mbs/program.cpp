@@ -10,6 +10,7 @@
 #include "environment/build_info.hpp"
 #include "mbs/bench_command.hpp"
 #include "mbs/commands.hpp"
+#include "run/setting_names.hpp"
 #include "run/settings.hpp"
 #include "usage_error.hpp"
 
@@ -21,14 +22,33 @@ constexpr const char* kScenes =
     "non-zeros in M until a share F of the tangent is filled, 0 < F <= 1), or a JSON file.";
 
 /// A positive, finite number from "auto" or text.
-double parse_tolerance(const std::string& text, const Model& model, double step, double penalty) {
-  if (text == "auto") return automatic_tolerance(model, step, penalty);
+double parse_tolerance(const std::string& text, const Model& model, const StepSettings& settings) {
+  if (text == "auto") return automatic_tolerance(model, settings);
   double value = 0.0;
   if (!CLI::detail::lexical_cast(text, value) || !(value > 0.0) || !(value < 1e300)) {
     throw UsageError(
         fmt::format("--tolerance is '{}': it must be 'auto' or a number above 0 (m)", text));
   }
   return value;
+}
+
+/// An option whose value is one of the names of a choice.
+template <class Choice>
+void add_choice(CLI::App& command, const std::string& option, std::string& value,
+                const std::string& what) {
+  value = choice_names<Choice>().front();
+  command.add_option(option, value, what)
+      ->capture_default_str()
+      ->check(CLI::IsMember(choice_names<Choice>()));
+}
+
+/// What add_choice() left in `name`; the default if it was never called.
+template <class Choice>
+Choice choice_of(const std::string& name) {
+  for (const auto& [known, value] : choices<Choice>()) {
+    if (known == name) return value;
+  }
+  return choices<Choice>().front().second;
 }
 
 bool is_subcommand(const CLI::App& app, const std::string& name) {
@@ -60,6 +80,16 @@ void StepOptions::add_to(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--max-passes", max_passes, "passes a step at most, 1 to 1000")
       ->capture_default_str();
+  add_choice<Scheme>(command, "--scheme", scheme, "how a step advances the state");
+  add_choice<MultiplierUpdate>(command, "--multipliers", multipliers,
+                               "when Newton updates lambda, in the penalty form");
+  add_choice<TangentReuse>(command, "--tangent", tangent, "when the tangent is factorized");
+  add_choice<Projections>(command, "--projections", projections,
+                          "what Eq. (6) corrects after a step");
+  command
+      .add_option("--projections-every", projections_every, "project every K-th step only, K >= 1")
+      ->capture_default_str();
+  add_choice<Precision>(command, "--precision", precision, "what a step computes in");
   add_blas_option(command);
 }
 
@@ -73,14 +103,26 @@ StepSettings StepOptions::resolve(const Model& model) const {
   if (max_passes < 1 || max_passes > 1000) {
     throw UsageError(fmt::format("--max-passes is {}: it must be 1 to 1000", max_passes));
   }
-  const double alpha = parse_penalty(penalty, model, step);
+  StepSettings settings;
+  settings.step = step;
+  settings.max_passes = max_passes;
+  settings.scheme = choice_of<Scheme>(scheme);
+  settings.multipliers = choice_of<MultiplierUpdate>(multipliers);
+  settings.tangent = choice_of<TangentReuse>(tangent);
+  settings.projections = choice_of<Projections>(projections);
+  settings.projections_every = projections_every;
+  settings.precision = choice_of<Precision>(precision);
+  require_combination(settings);
+  const double alpha = parse_penalty(penalty, model, settings);
   if (!(alpha > 0.0) || !std::isfinite(alpha)) {
     throw UsageError(
         fmt::format("--penalty auto gives {:g} for this scene and step {:g} s: its "
                     "lengths or masses are out of range; name a number",
                     alpha, step));
   }
-  return {step, alpha, parse_tolerance(tolerance, model, step, alpha), max_passes};
+  settings.penalty = alpha;
+  settings.tolerance = parse_tolerance(tolerance, model, settings);
+  return settings;
 }
 
 int run_program(int argc, char** argv) {

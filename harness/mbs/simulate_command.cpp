@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -24,7 +23,6 @@ struct SimulateOptions {
   std::string implementation;
   StepOptions step;
   double duration = 20.0;
-  std::string projections = "both";
   std::string trajectory;
   std::string output;
   long every = 1;
@@ -51,9 +49,6 @@ class Progress {
   bool shown_;
   long percent_ = -1;
 };
-
-const std::map<std::string, Projections> kProjections{
-    {"none", Projections::none}, {"velocity", Projections::velocity}, {"both", Projections::both}};
 
 /// Runs, and writes the files that were asked for.
 RunSummary run_with_files(const SimulateOptions& options, const Scene& scene,
@@ -100,8 +95,7 @@ int simulate(const SimulateOptions& options) {
   }
   require_files(options);
   const Scene scene = load_scene(options.scene);
-  RunSettings settings{options.step.resolve(scene.model), options.duration};
-  settings.step.projections = kProjections.at(options.projections);
+  const RunSettings settings{options.step.resolve(scene.model), options.duration};
   require_duration(scene, settings);
   const std::vector<std::string> warnings = setting_warnings(scene.model, settings.step);
   const RunSummary summary = run_with_files(options, scene, *variants[0].variant, settings);
@@ -133,11 +127,6 @@ void add_simulate_command(CLI::App& app, int& status) {
       ->required();
   options->step.add_to(*command);
   command->add_option("--duration", options->duration, "simulated time, s")->capture_default_str();
-  std::vector<std::string> choices;
-  for (const auto& [name, value] : kProjections) choices.push_back(name);
-  command->add_option("--projections", options->projections, "what Eq. (6) corrects after a step")
-      ->capture_default_str()
-      ->check(CLI::IsMember(choices));
   const auto is_file_name = [](const std::string& path) {
     return path.empty() ? std::string("is empty: it must be a file name") : std::string();
   };

@@ -8,21 +8,10 @@
 #include <optional>
 
 #include "describe/describe.hpp"
+#include "run/setting_names.hpp"
 
 namespace mbs {
 namespace {
-
-const char* to_string(Projections projections) {
-  switch (projections) {
-    case Projections::none:
-      return "none";
-    case Projections::velocity:
-      return "velocity";
-    case Projections::both:
-      return "both";
-  }
-  return "unknown";
-}
 
 nlohmann::json finite_or_null(std::optional<double> value) {
   if (!value || !std::isfinite(*value)) return nullptr;
@@ -34,32 +23,31 @@ nlohmann::json finite_or_null(std::optional<double> value) {
 nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
                             const RunSettings& settings, const RunSummary& summary) {
   const double steps = static_cast<double>(std::max(summary.steps, 1L));
-  return {{"scene", scene.name},
-          {"implementation", variant.name},
-          {"variables", scene.model.variables()},
-          {"constraints", scene.model.constraints()},
-          {"tangent_nonzeros", tangent_nonzeros(scene.model)},
-          {"step", settings.step.step},
-          {"duration", settings.duration},
-          {"penalty", settings.step.penalty},
-          {"tolerance", settings.step.tolerance},
-          {"max_passes", settings.step.max_passes},
-          {"projections", to_string(settings.step.projections)},
-          {"assembly", assembly_json(scene.assembly)},
-          {"status", to_string(summary.status)},
-          {"status_reason", summary.reason},
-          {"failed_at", finite_or_null(summary.failed_at)},
-          {"steps", summary.steps},
-          {"steps_at_limit", summary.steps_at_limit},
-          {"passes_per_step", static_cast<double>(summary.passes) / steps},
-          {"position_error_max", finite_or_null(summary.position_error_max)},
-          {"energy_drift_max", finite_or_null(summary.energy_drift_max)},
-          {"constraint_violation_max", finite_or_null(summary.constraint_violation_max)},
-          {"setup_us", summary.setup_us},
-          {"step_us",
-           {{"median", summary.step_us_median},
-            {"p99", summary.step_us_p99},
-            {"max", summary.step_us_max}}}};
+  nlohmann::json json = settings_json(settings.step);
+  json.update({{"scene", scene.name},
+               {"implementation", variant.name},
+               {"variables", scene.model.variables()},
+               {"constraints", scene.model.constraints()},
+               {"tangent_nonzeros", tangent_nonzeros(scene.model)},
+               {"duration", settings.duration},
+               {"other_settings", other_settings(settings.step)},
+               {"assembly", assembly_json(scene.assembly)},
+               {"status", to_string(summary.status)},
+               {"status_reason", summary.reason},
+               {"failed_at", finite_or_null(summary.failed_at)},
+               {"steps", summary.steps},
+               {"steps_at_limit", summary.steps_at_limit},
+               {"passes_per_step", static_cast<double>(summary.passes) / steps},
+               {"factorizations_per_step", static_cast<double>(summary.factorizations) / steps},
+               {"position_error_max", finite_or_null(summary.position_error_max)},
+               {"energy_drift_max", finite_or_null(summary.energy_drift_max)},
+               {"constraint_violation_max", finite_or_null(summary.constraint_violation_max)},
+               {"setup_us", summary.setup_us},
+               {"step_us",
+                {{"median", summary.step_us_median},
+                 {"p99", summary.step_us_p99},
+                 {"max", summary.step_us_max}}}});
+  return json;
 }
 
 std::string summary_text(const nlohmann::json& json) {
@@ -77,8 +65,8 @@ std::string summary_text(const nlohmann::json& json) {
   text += fmt::format(
       "  settings               step {:g} s, penalty {:.4g}, tolerance {:g} m{}\n",
       json["step"].get<double>(), json["penalty"].get<double>(), json["tolerance"].get<double>(),
-      json["projections"] == "both" ? std::string()
-                                    : ", projections " + json["projections"].get<std::string>());
+      json["other_settings"] == "" ? std::string()
+                                   : ", " + json["other_settings"].get<std::string>());
   text += fmt::format("  start                  {}\n", assembly_text(json["assembly"]));
   text += fmt::format("  steps                  {}, {:.3f} passes each, {} at the pass limit\n",
                       json["steps"].get<long>(), json["passes_per_step"].get<double>(),

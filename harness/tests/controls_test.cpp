@@ -77,7 +77,7 @@ struct Bench {
   StepSettings settings = [this] {
     StepSettings result;
     result.penalty = automatic_penalty(scene.model, result.step);
-    result.tolerance = automatic_tolerance(scene.model, result.step, result.penalty);
+    result.tolerance = automatic_tolerance(scene.model, result);
     return result;
   }();
   ReferenceRun reference = run_reference(scene, settings);

@@ -44,8 +44,8 @@ std::vector<int> random_envelope(int n, int width, std::mt19937& random) {
   return first;
 }
 
-EnvelopeCholesky stored(const Matrix& A, const std::vector<int>& first) {
-  EnvelopeCholesky result(first);
+EnvelopeLdlt stored(const Matrix& A, const std::vector<int>& first) {
+  EnvelopeLdlt result(first);
   result.set_zero();
   for (int i = 0; i < static_cast<int>(first.size()); ++i) {
     for (int j = first[static_cast<std::size_t>(i)]; j <= i; ++j) result.at(i, j) = A(i, j);
@@ -53,14 +53,14 @@ EnvelopeCholesky stored(const Matrix& A, const std::vector<int>& first) {
   return result;
 }
 
-TEST(EnvelopeCholesky, SolvesLikeEigen) {
+TEST(EnvelopeLdlt, SolvesLikeEigen) {
   std::mt19937 random(1);
   for (const int n : {1, 2, 7, 40}) {
     for (const int width : {0, 1, 3, n}) {
       const std::vector<int> first = random_envelope(n, width, random);
       const Matrix A = random_matrix(first, 0.5, random);
-      EnvelopeCholesky factor = stored(A, first);
-      ASSERT_TRUE(factor.factorize());
+      EnvelopeLdlt factor = stored(A, first);
+      ASSERT_TRUE(factor.factorize(0));
       std::vector<Real> b(static_cast<std::size_t>(n));
       for (Real& value : b) value = std::uniform_real_distribution<double>(-1, 1)(random);
       const Vector right = Eigen::Map<const Vector>(b.data(), n);
@@ -73,17 +73,17 @@ TEST(EnvelopeCholesky, SolvesLikeEigen) {
   }
 }
 
-TEST(EnvelopeCholesky, CanBeFilledAndFactorizedAgain) {
+TEST(EnvelopeLdlt, CanBeFilledAndFactorizedAgain) {
   std::mt19937 random(2);
   const std::vector<int> first = random_envelope(20, 6, random);
   const Matrix A = random_matrix(first, 0.5, random);
-  EnvelopeCholesky factor = stored(random_matrix(first, 2.0, random), first);
-  ASSERT_TRUE(factor.factorize());
+  EnvelopeLdlt factor = stored(random_matrix(first, 2.0, random), first);
+  ASSERT_TRUE(factor.factorize(0));
   factor.set_zero();
   for (int i = 0; i < 20; ++i) {
     for (int j = first[static_cast<std::size_t>(i)]; j <= i; ++j) factor.at(i, j) += A(i, j);
   }
-  ASSERT_TRUE(factor.factorize());
+  ASSERT_TRUE(factor.factorize(0));
   std::vector<Real> b(20, 1.0L);
   factor.solve(b);
   EXPECT_LT(
@@ -91,19 +91,19 @@ TEST(EnvelopeCholesky, CanBeFilledAndFactorizedAgain) {
       1e-17);
 }
 
-TEST(EnvelopeCholesky, RefusesWhatIsNotPositiveDefinite) {
+TEST(EnvelopeLdlt, RefusesWhatIsNotPositiveDefinite) {
   std::mt19937 random(3);
   const std::vector<int> first = random_envelope(30, 8, random);
   const Matrix A = random_matrix(first, 0.5, random);
   const Real smallest = Eigen::SelfAdjointEigenSolver<Matrix>(A).eigenvalues()[0];
   for (const double factor : {0.99, 1.01, 3.0}) {
     const Matrix shifted = A - factor * smallest * Matrix::Identity(30, 30);
-    EXPECT_EQ(stored(shifted, first).factorize(), factor < 1.0) << factor;
+    EXPECT_EQ(stored(shifted, first).factorize(0), factor < 1.0) << factor;
   }
   Matrix spoiled = A;
   spoiled(17, 17) = std::numeric_limits<Real>::quiet_NaN();
-  EXPECT_FALSE(stored(spoiled, first).factorize());
-  EXPECT_FALSE(stored(Matrix::Zero(30, 30), first).factorize());
+  EXPECT_FALSE(stored(spoiled, first).factorize(0));
+  EXPECT_FALSE(stored(Matrix::Zero(30, 30), first).factorize(0));
 }
 
 /// Settings that keep alpha dt^2 fixed and what Newton leaves below the integrator's own error.

@@ -73,14 +73,14 @@ TEST(AutomaticPenalty, IsOneWithoutConstraints) {
 TEST(AutomaticTolerance, IsTheDocumentedRule) {
   const Model model(four_bar(10));
   const double penalty = automatic_penalty(model, kStep);
-  EXPECT_DOUBLE_EQ(automatic_tolerance(model, kStep, penalty), 1e-9);
-  EXPECT_DOUBLE_EQ(automatic_tolerance(model, 2 * kStep, penalty / 4), 16e-9);
-  EXPECT_DOUBLE_EQ(automatic_tolerance(model, 1.0, 1.0), 1e-6);
+  EXPECT_DOUBLE_EQ(automatic_tolerance(model, {.step = kStep, .penalty = penalty}), 1e-9);
+  EXPECT_DOUBLE_EQ(automatic_tolerance(model, {.step = 2 * kStep, .penalty = penalty / 4}), 16e-9);
+  EXPECT_DOUBLE_EQ(automatic_tolerance(model, {.step = 1.0, .penalty = 1.0}), 1e-6);
   const double unit = std::ldexp(1.0, -53), step = 1e-5, alpha = 1e12;
   const double noise =
       10 * unit * 10.0 * std::sqrt(1 + alpha * step * step / 4 * spectrum_of(model).mean);
   EXPECT_GT(noise, 1e-9 * std::pow(step / kStep, 4));
-  EXPECT_NEAR(automatic_tolerance(model, step, alpha), noise, 1e-9 * noise);
+  EXPECT_NEAR(automatic_tolerance(model, {.step = step, .penalty = alpha}), noise, 1e-9 * noise);
 }
 
 TEST(AutomaticTolerance, FarFromTheOriginIsTheRoundingOfCoordinates) {
@@ -91,19 +91,21 @@ TEST(AutomaticTolerance, FarFromTheOriginIsTheRoundingOfCoordinates) {
   data.dot_constraints = {{0, 1, 0, 1, 1.0, "rod"}};
   const Model model(std::move(data));
   EXPECT_EQ(rounding_length(model), 1.0);
-  EXPECT_NEAR(automatic_tolerance(model, kStep, 1e9), 10 * std::ldexp(1.0, -53) * 1e6, 1e-14);
+  EXPECT_NEAR(automatic_tolerance(model, {.step = kStep, .penalty = 1e9}),
+              10 * std::ldexp(1.0, -53) * 1e6, 1e-14);
 }
 
 TEST(AutomaticTolerance, WithoutConstraints) {
-  EXPECT_DOUBLE_EQ(automatic_tolerance(test::free_fall().model, kStep, 1.0), 1e-9);
+  EXPECT_DOUBLE_EQ(automatic_tolerance(test::free_fall().model, {.step = kStep, .penalty = 1.0}),
+                   1e-9);
 }
 
 TEST(ParsePenalty, TakesNumbersAndAuto) {
   const Model model(four_bar(2));
-  EXPECT_EQ(parse_penalty("1e8", model, kStep), 1e8);
-  EXPECT_EQ(parse_penalty("0.5", model, kStep), 0.5);
-  EXPECT_EQ(parse_penalty("123456", model, kStep), 123456.0);
-  EXPECT_EQ(parse_penalty("auto", model, kStep), automatic_penalty(model, kStep));
+  EXPECT_EQ(parse_penalty("1e8", model, {.step = kStep}), 1e8);
+  EXPECT_EQ(parse_penalty("0.5", model, {.step = kStep}), 0.5);
+  EXPECT_EQ(parse_penalty("123456", model, {.step = kStep}), 123456.0);
+  EXPECT_EQ(parse_penalty("auto", model, {.step = kStep}), automatic_penalty(model, kStep));
 }
 
 TEST(ParsePenalty, RefusesEverythingElse) {
@@ -112,7 +114,7 @@ TEST(ParsePenalty, RefusesEverythingElse) {
        {"",     " ",     "auto ",  "Auto", "0",    "-0",   "-1",  "nan",  "-nan", "inf",
         "-inf", "1e400", "1e-400", "1e8x", " 1e8", "1e8 ", "1,5", "0x10", "--",   "e8"}) {
     try {
-      parse_penalty(text, model, kStep);
+      parse_penalty(text, model, {.step = kStep});
       ADD_FAILURE() << '"' << text << "\" was taken";
     } catch (const UsageError& error) {
       expect_parts(error.what(), {"--penalty", std::string("'") + text + "'", "'auto'", "above 0"});

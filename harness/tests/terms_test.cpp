@@ -15,7 +15,7 @@ StepSettings settings_for(const Model& model, Projections projections) {
   StepSettings settings;
   settings.step = 2.5e-4;  // 800 steps: short enough that no driver forces what geometry forbids
   settings.penalty = automatic_penalty(model, settings.step);
-  settings.tolerance = automatic_tolerance(model, settings.step, settings.penalty);
+  settings.tolerance = automatic_tolerance(model, settings);
   settings.projections = projections;
   return settings;
 }

@@ -10,6 +10,19 @@
 
 namespace mbs {
 
+/// Which settings beyond the defaults of StepSettings a variant honours, alone and in every
+/// combination that paper/README.md, "Which settings go together", allows. The harness refuses all
+/// else by name, so that no implementation has to.
+struct Serves {
+  bool saddle_point = false;       ///< Scheme::saddle_point
+  bool rattle = false;             ///< Scheme::rattle, rattle4 and rattle6
+  bool multiplier_update = false;  ///< MultiplierUpdate::converged
+  bool tangent_reuse = false;      ///< TangentReuse::step and kept
+  bool projections_every = false;  ///< more than 1
+  bool single_precision = false;   ///< Precision::single_precision
+  bool mixed_precision = false;    ///< Precision::mixed
+};
+
 /// One way of running an implementation, named "folder/name".
 struct Variant {
   std::string name;         ///< lower case, for instance "refactor"
@@ -22,6 +35,7 @@ struct Variant {
   bool dense = false;  ///< stores and factorizes all n^2 positions of the tangent
   /// Its solver takes unsymmetric matrices too, which other formulations than this one give.
   bool unsymmetric = false;
+  Serves serves = {};
   /// The operations of Table 2 alone, as this variant's step does them; nullptr: not offered.
   std::unique_ptr<Operations> (*operations)(const Model& model) = nullptr;
 };

@@ -10,6 +10,15 @@
 
 namespace mbs {
 
+/// How a step advances the state: paper/README.md, "The step" and "Other schemes".
+enum class Scheme {
+  penalty,       ///< trapezoidal rule, T of Eq. (5)
+  saddle_point,  ///< trapezoidal rule, Eq. (12)
+  rattle,        ///< second order, one saddle-point factorization
+  rattle4,       ///< fourth order, five stages of rattle
+  rattle6,       ///< sixth order, seven stages of rattle
+};
+
 /// Which projections end a step.
 enum class Projections {
   none,      ///< v and a stay what Eq. (2) gave
@@ -17,13 +26,39 @@ enum class Projections {
   both,      ///< Eq. (6) for v, then for a
 };
 
-/// Settings of the time stepping, fixed for the lifetime of a Simulation.
+/// When lambda is updated; penalty form only.
+enum class MultiplierUpdate {
+  every_pass,
+  converged,  ///< when Newton has converged at the present lambda
+};
+
+/// When the tangent is factorized; not for rattle, which does so once a stage.
+enum class TangentReuse {
+  none,  ///< every pass factorizes
+  step,  ///< the first pass of a step does
+  kept,  ///< kept over steps until convergence slows
+};
+
+/// What a step computes in.
+enum class Precision {
+  double_precision,
+  single_precision,  ///< state, residual and factors are float; only time is double
+  mixed,  ///< factors and solves in float; state and residual in double, projections refined
+};
+
+/// Settings of the time stepping, fixed for the lifetime of a Simulation. A variant serves what its
+/// mbs::Serves says; the defaults are "The step" of the paper, which all serve.
 struct StepSettings {
   double step = 1.25e-3;    ///< Delta t, s
   double penalty = 1e8;     ///< alpha, kg/(m^2 s^2); of linear rows, Phi in m, N/m
   double tolerance = 1e-9;  ///< converged once max |Delta q| <= tolerance, m
   int max_passes = 20;      ///< passes a step at most; the last state is kept and stepping goes on
   Projections projections = Projections::both;
+  int projections_every = 1;  ///< steps; the others keep what Eq. (2) gave
+  Scheme scheme = Scheme::penalty;
+  MultiplierUpdate multipliers = MultiplierUpdate::every_pass;
+  TangentReuse tangent = TangentReuse::none;
+  Precision precision = Precision::double_precision;
 };
 
 /// The full dynamic state at one instant.
@@ -43,7 +78,8 @@ enum class StepStatus {
 
 struct StepOutcome {
   StepStatus status = StepStatus::converged;
-  int passes = 0;  ///< passes done in this step, >= 1
+  int passes = 0;           ///< passes done in this step, >= 1
+  int factorizations = -1;  ///< done in this step; -1: one a pass
 };
 
 /// Thrown by a factory when the implementation cannot simulate this model; `what()` says why.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "run/judge.hpp"
+#include "run/setting_names.hpp"
 
 namespace mbs {
 namespace {
@@ -84,7 +85,7 @@ void Measurement::set_up(int samples) {
   for (int i = 0; i < samples; ++i) {
     simulation_.reset();
     const auto begin = Clock::now();
-    simulation_ = task_.variant.create(task_.scene.model, task_.settings);
+    simulation_ = create_simulation(task_.variant, task_.scene.model, task_.settings);
     simulation_->set_state(task_.stretch.initial);
     times.push_back(1e6 * seconds_since(begin));
   }

@@ -10,6 +10,7 @@
 
 #include "check/exact_checks.hpp"
 #include "printable.hpp"
+#include "run/setting_names.hpp"
 
 namespace mbs {
 namespace {
@@ -37,7 +38,7 @@ double largest(const Values& x) {
 /// One step from the state of each probe; value = worst difference in units of its tolerance.
 Check lock_step(const NamedVariant& variant, const Model& model, const StepSettings& settings,
                 const ReferenceRun& reference) {
-  const auto simulation = variant.variant->create(model, settings);
+  const auto simulation = create_simulation(*variant.variant, model, settings);
   double worst = 0.0;
   std::string detail = "no difference";
   State state;
@@ -93,7 +94,7 @@ std::vector<Check> free_running(const NamedVariant& variant, const Model& model,
                                 double seconds) {
   // Far above what rounding grows to, far below the method's own error of about 1e-6 m and more.
   constexpr double kTolerance = 1e-7;
-  const auto simulation = variant.variant->create(model, settings);
+  const auto simulation = create_simulation(*variant.variant, model, settings);
   simulation->set_state(reference.stretch.initial);
   const double h = settings.step;
   const auto time = [&](std::size_t i) { return reference.stretch.start + (i + 1.0) * h; };

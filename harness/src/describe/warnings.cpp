@@ -116,7 +116,8 @@ std::vector<std::string> setting_warnings(const Model& model, const StepSettings
   const auto add = [&result](std::string warning) {
     if (!warning.empty()) result.push_back(std::move(warning));
   };
-  if (model.constraints() > 0 && model.variables() <= kMostVariablesToWarn) {
+  if (settings.scheme == Scheme::penalty && model.constraints() > 0 &&
+      model.variables() <= kMostVariablesToWarn) {
     const PenaltyWindow window = penalty_window(model, find_structure(model), settings.step);
     add(penalty_warning(window, settings.penalty, settings.step));
   }

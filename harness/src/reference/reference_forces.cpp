@@ -103,9 +103,10 @@ void ReferenceSimulation::add_element(const Element& element) {
       const Real sign = i == j ? 1 : -1;  // of a transverse block: a spring has two points
       for (int k = 0; k < dimension; ++k) {
         for (int l = 0; l < dimension; ++l) {
-          if (row + k < col + l) continue;
+          const int place = place_[row + k], other = place_[col + l];
+          if (place < other) continue;
           const Real identity = k == l ? sign : 0;
-          tangent_.at(row + k, col + l) +=
+          matrix_.at(place, other) +=
               element.weight * x[k] * y[l] + element.transverse * (identity - x[k] * y[l]);
         }
       }

@@ -14,8 +14,9 @@ ReferenceSimulation::ReferenceSimulation(const Model& model, const StepSettings&
       settings_(settings),
       n_(model.variables()),
       m_(model.constraints()),
-      known_(model, 0.0),
-      tangent_(envelope()) {}
+      known_(model, 0.0) {
+  set_up_matrix();
+}
 
 namespace {
 
@@ -166,6 +167,15 @@ ReferenceSimulation::Vector ReferenceSimulation::mass_times(const Vector& x) con
   return y;
 }
 
+ReferenceSimulation::Vector ReferenceSimulation::times(const std::vector<Row>& rows,
+                                                       const Vector& x) const {
+  Vector y(m_, Real{0});
+  for (int k = 0; k < m_; ++k) {
+    for (const Entry& entry : rows[k]) y[k] += entry.value * x[entry.coordinate];
+  }
+  return y;
+}
+
 ReferenceSimulation::Vector ReferenceSimulation::transpose_times(const std::vector<Row>& rows,
                                                                  const Vector& x) const {
   Vector y(n_, Real{0});
@@ -175,54 +185,115 @@ ReferenceSimulation::Vector ReferenceSimulation::transpose_times(const std::vect
   return y;
 }
 
-std::vector<int> ReferenceSimulation::envelope() const {
-  std::vector<int> first(n_);
-  std::iota(first.begin(), first.end(), 0);
-  for (const MassEntry& entry : model_.mass()) {
-    if (entry.value != 0.0) first[entry.row] = std::min(first[entry.row], entry.col);
-  }
-  const auto couple = [&first](const std::vector<int>& coordinates) {
-    if (coordinates.empty()) return;
-    const int lowest = *std::min_element(coordinates.begin(), coordinates.end());
-    for (const int i : coordinates) first[i] = std::min(first[i], lowest);
-  };
-  const auto couple_points = [&](std::initializer_list<int> points) {
-    std::vector<int> coordinates;
+void ReferenceSimulation::set_up_matrix() {
+  // Which coordinates each constraint and element couples.
+  std::vector<std::vector<int>> constraints, elements;
+  const auto coordinates = [&](std::initializer_list<int> points) {
+    std::vector<int> result;
     for (const int point : points) {
       for (int k = 0; offset(point) >= 0 && k < model_.dimension(); ++k) {
-        coordinates.push_back(offset(point) + k);
+        result.push_back(offset(point) + k);
       }
     }
-    couple(coordinates);
+    return result;
   };
-  for_quadratic(model_, [&](const auto& c) { couple_points({c.a, c.b, c.c, c.d}); });
-  for (const Spring& spring : model_.springs()) couple_points({spring.a, spring.b});
-  for (const TorsionSpring& s : model_.torsion_springs()) couple_points({s.a, s.b, s.c, s.d});
+  for_quadratic(model_, [&](const auto& c) {
+    constraints.push_back(coordinates({c.a, c.b, c.c, c.d}));
+  });
   for (const LinearConstraint& c : model_.linear_constraints()) {
-    std::vector<int> coordinates;
-    for (const auto& term : c.terms) coordinates.push_back(term.coordinate);
-    couple(coordinates);
+    constraints.emplace_back();
+    for (const auto& term : c.terms) constraints.back().push_back(term.coordinate);
   }
-  return first;
+  for (const Spring& s : model_.springs()) elements.push_back(coordinates({s.a, s.b}));
+  for (const TorsionSpring& s : model_.torsion_springs()) {
+    elements.push_back(coordinates({s.a, s.b, s.c, s.d}));
+  }
+
+  // Each multiplier follows the last coordinate that it is coupled with.
+  std::vector<std::pair<int, int>> order;  // coordinate, and 0 or 1 + the multiplier
+  for (int i = 0; i < n_; ++i) order.emplace_back(i, 0);
+  for (int k = 0; is_saddle() && k < m_; ++k) {
+    int last = -1;
+    for (const int i : constraints[k]) last = std::max(last, i);
+    order.emplace_back(last, 1 + k);
+  }
+  std::sort(order.begin(), order.end());
+  place_.resize(order.size());
+  for (int place = 0; place < static_cast<int>(order.size()); ++place) {
+    const auto [coordinate, multiplier] = order[place];
+    place_[multiplier == 0 ? coordinate : n_ + multiplier - 1] = place;
+  }
+
+  std::vector<int> first(order.size());
+  std::iota(first.begin(), first.end(), 0);
+  const auto couple = [&](const std::vector<int>& unknowns) {
+    int lowest = std::numeric_limits<int>::max();
+    for (const int i : unknowns) lowest = std::min(lowest, place_[i]);
+    for (const int i : unknowns) first[place_[i]] = std::min(first[place_[i]], lowest);
+  };
+  for (const MassEntry& entry : model_.mass()) {
+    if (entry.value != 0.0) couple({entry.row, entry.col});
+  }
+  for (const auto& element : elements) couple(element);
+  for (int k = 0; k < m_; ++k) {
+    if (!is_saddle()) {
+      couple(constraints[k]);
+      continue;
+    }
+    for (const int i : constraints[k]) couple({i, n_ + k});
+  }
+  matrix_ = EnvelopeLdlt(std::move(first));
 }
 
-void ReferenceSimulation::assemble_tangent(const std::vector<Row>& rows) {
-  const Real scale = Real{settings_.step} * settings_.step / 4 * settings_.penalty;
-  tangent_.set_zero();
+void ReferenceSimulation::assemble(const std::vector<Row>& rows) {
+  const Real scale = Real{settings_.step} * settings_.step / 4 * settings_.penalty;  // 1 / eps
+  const auto add = [this](int i, int k, Real value) {
+    matrix_.at(std::max(place_[i], place_[k]), std::min(place_[i], place_[k])) += value;
+  };
+  matrix_.set_zero();
   for (const MassEntry& entry : model_.mass()) {
-    if (entry.value != 0.0) tangent_.at(entry.row, entry.col) += entry.value;
+    if (entry.value != 0.0) add(entry.row, entry.col, entry.value);
   }
-  for (const Row& row : rows) {  // Eq. (5)
-    for (const Entry& x : row) {
-      for (const Entry& y : row) {
-        if (x.coordinate >= y.coordinate) {
-          tangent_.at(x.coordinate, y.coordinate) += scale * x.value * y.value;
+  for (int k = 0; k < m_; ++k) {
+    if (is_saddle()) add(n_ + k, n_ + k, -1 / scale);  // Eqs. (12), (14)
+    for (const Entry& x : rows[k]) {
+      if (is_saddle()) add(n_ + k, x.coordinate, x.value);
+      for (const Entry& y : rows[k]) {  // Eq. (5)
+        if (!is_saddle() && x.coordinate >= y.coordinate) {
+          add(x.coordinate, y.coordinate, scale * x.value * y.value);
         }
       }
     }
   }
+  if (is_rattle()) return;
   last_elements_ = elements();
   for (const Element& element : last_elements_) add_element(element);
+}
+
+bool ReferenceSimulation::factorize(const std::vector<Row>& rows) {
+  assemble(rows);
+  return matrix_.factorize(is_saddle() ? m_ : 0);
+}
+
+ReferenceSimulation::Solution ReferenceSimulation::solve(const std::vector<Row>& rows,
+                                                         const Vector& top,
+                                                         const Vector& bottom) const {
+  if (!is_saddle()) {
+    const Real scale = Real{settings_.step} * settings_.step / 4 * settings_.penalty;
+    const Vector term = transpose_times(rows, bottom);
+    Vector x = top;
+    for (int i = 0; i < n_; ++i) x[i] += scale * term[i];
+    matrix_.solve(x);
+    return {x, {}};
+  }
+  Vector both(n_ + m_);
+  for (int i = 0; i < n_; ++i) both[place_[i]] = top[i];
+  for (int k = 0; k < m_; ++k) both[place_[n_ + k]] = bottom[k];
+  matrix_.solve(both);
+  Solution result{Vector(n_), Vector(m_)};
+  for (int i = 0; i < n_; ++i) result.x[i] = both[place_[i]];
+  for (int k = 0; k < m_; ++k) result.y[k] = both[place_[n_ + k]];
+  return result;
 }
 
 void ReferenceSimulation::do_set_state(const State& state) {
@@ -231,6 +302,11 @@ void ReferenceSimulation::do_set_state(const State& state) {
   a_.assign(state.a.begin(), state.a.end());
   lambda_.assign(state.lambda.begin(), state.lambda.end());
   known_.set_time(time());
+  steps_ = 0;
+  due_ = true;
+  if (!is_rattle()) return;
+  const std::vector<Row> rows = jacobian();
+  if (factorize(rows)) rattle_acceleration(rows);
 }
 
 void ReferenceSimulation::do_get_state(State& state) const {
@@ -242,78 +318,25 @@ void ReferenceSimulation::do_get_state(State& state) const {
 }
 
 StepOutcome ReferenceSimulation::do_step() {
-  const Real h = settings_.step;
-  const Real alpha = settings_.penalty;
+  ++steps_;
   known_.set_time(time());
-  for (int i = 0; i < n_; ++i) {  // predictor, and Eq. (2) on the difference
-    const Real difference = h * v_[i] + h * h / 2 * a_[i];
-    const Real v = v_[i];
-    q_[i] += difference;
-    v_[i] = 2 / h * difference - v;
-    a_[i] = 4 / (h * h) * difference - 4 / h * v - a_[i];
-  }
-  for (int pass = 1; pass <= settings_.max_passes; ++pass) {
-    const Vector phi = constraints();
-    const std::vector<Row> rows = jacobian();
-    Vector force = lambda_;
-    for (int k = 0; k < m_; ++k) force[k] += alpha * phi[k];
-    const Vector inertia = mass_times(a_);
-    const Vector applied = applied_force();
-    Vector delta = transpose_times(rows, force);
-    for (int i = 0; i < n_; ++i) {  // minus f of Eq. (3)
-      delta[i] = -h * h / 4 * (inertia[i] + delta[i] - applied[i]);
-    }
-    assemble_tangent(rows);
-    if (!tangent_.factorize()) return {StepStatus::factorization_failed, pass};
-    tangent_.solve(delta);  // Eq. (4)
-
-    bool converged = true;
-    for (int i = 0; i < n_; ++i) {
-      q_[i] += delta[i];
-      v_[i] += 2 / h * delta[i];        // Eq. (2)
-      a_[i] += 4 / (h * h) * delta[i];  // Eq. (2)
-      if (!(std::abs(delta[i]) <= settings_.tolerance)) converged = false;
-    }
-    const Vector phi_after = constraints();
-    for (int k = 0; k < m_; ++k) lambda_[k] += alpha * phi_after[k];  // Eq. (1)
-
-    if (converged || pass == settings_.max_passes) {
-      project();
-      return {converged ? StepStatus::converged : StepStatus::pass_limit, pass};
-    }
-  }
-  return {StepStatus::pass_limit, 0};  // max_passes < 1: nothing was done
-}
-
-void ReferenceSimulation::project() {
-  if (settings_.projections == Projections::none) return;
-  const Real factor = Real{settings_.step} * settings_.step / 4 * settings_.penalty;
-  const std::vector<Row> rows = jacobian();
-  const auto projected = [&](const Vector& x, const Vector& rate) {  // Eq. (6)
-    Vector right = weighted_mass_times(x);
-    const Vector term = transpose_times(rows, rate);
-    for (int i = 0; i < n_; ++i) right[i] -= factor * term[i];
-    tangent_.solve(right);
-    return right;
-  };
-  v_ = projected(v_, partial_rate());
-  if (settings_.projections == Projections::both) a_ = projected(a_, curvature());
+  return is_rattle() ? rattle_step() : trapezoidal_step();
 }
 
 double ReferenceSimulation::tangent_condition() {
-  assemble_tangent(jacobian());
-  EnvelopeCholesky factor = tangent_;
-  if (!factor.factorize()) return std::numeric_limits<double>::infinity();
-  const std::vector<Row> rows = jacobian();
+  StepSettings settings = settings_;
+  settings.scheme = Scheme::penalty;
+  ReferenceSimulation penalty_form(model_, settings);
+  penalty_form.q_ = q_;
+  penalty_form.v_ = v_;
+  penalty_form.known_.set_time(time());
+  const std::vector<Row> rows = penalty_form.jacobian();
+  if (!penalty_form.factorize(rows)) return std::numeric_limits<double>::infinity();
   const Real scale = Real{settings_.step} * settings_.step / 4 * settings_.penalty;
   const auto multiply = [&](const Vector& x) {  // T x, Eq. (5), without the factor
-    Vector projected(m_, Real{0});
-    for (int k = 0; k < m_; ++k) {
-      for (const Entry& entry : rows[k]) projected[k] += scale * entry.value * x[entry.coordinate];
-    }
-    Vector y = transpose_times(rows, projected);
-    const Vector inertia = weighted_mass_times(x);
-    for (int i = 0; i < n_; ++i) y[i] += inertia[i];
+    Vector y = transpose_times(rows, times(rows, x));
+    const Vector inertia = penalty_form.weighted_mass_times(x);
+    for (int i = 0; i < n_; ++i) y[i] = inertia[i] + scale * y[i];
     return y;
   };
   const auto iterate = [this](auto&& apply) {  // power iteration: largest eigenvalue of `apply`
@@ -329,7 +352,7 @@ double ReferenceSimulation::tangent_condition() {
   };
   const Real largest = iterate(multiply);
   const Real inverse_smallest = iterate([&](Vector x) {
-    factor.solve(x);
+    penalty_form.matrix_.solve(x);
     return x;
   });
   return static_cast<double>(largest * inverse_smallest);

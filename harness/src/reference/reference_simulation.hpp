@@ -6,12 +6,20 @@
 
 #include "mbs/simulation.hpp"
 #include "model_math/known_motion.hpp"
-#include "reference/envelope_cholesky.hpp"
+#include "reference/envelope_ldlt.hpp"
 
 namespace mbs {
 
-/// "The step" of paper/README.md, literally, in 80-bit arithmetic. Used for nothing but checking.
-/// Stored zeros of M are skipped: they do not change the physics.
+/// "The step", "Other schemes" and "Other settings" of paper/README.md, literally, in 80-bit
+/// arithmetic; `precision` only refines the projections where mixed does. Used for nothing but
+/// checking. Stored zeros of M are skipped: they do not change the physics.
+///
+/// All of its systems of equations are one, Eqs. (12) to (15),
+///
+///   [ T_0    Phi_q^T ] [x]   [ top    ]
+///   [ Phi_q  -eps    ] [y] = [ bottom ]
+///
+/// which the penalty form solves as T x = top + Phi_q^T bottom / eps, the others as it stands.
 class ReferenceSimulation final : public Simulation {
  public:
   using Real = long double;
@@ -65,21 +73,53 @@ class ReferenceSimulation final : public Simulation {
   [[nodiscard]] Element torsion_element(const TorsionSpring& spring) const;
   [[nodiscard]] std::vector<Element> elements() const;
   [[nodiscard]] Vector mass_times(const Vector& x) const;
-  /// [M + dt/2 C + dt^2/4 K] x with the C and K of the last pass.
+  /// T_0 x with the C and K of the last pass.
   [[nodiscard]] Vector weighted_mass_times(const Vector& x) const;
+  [[nodiscard]] Vector times(const std::vector<Row>& rows, const Vector& x) const;
   [[nodiscard]] Vector transpose_times(const std::vector<Row>& rows, const Vector& x) const;
-  [[nodiscard]] std::vector<int> envelope() const;
-  void add_element(const Element& element);  // to the tangent
-  void assemble_tangent(const std::vector<Row>& rows);
-  void project();
+
+  struct Solution {
+    Vector x, y;  // n; m, empty in the penalty form
+  };
+  [[nodiscard]] bool is_saddle() const { return settings_.scheme != Scheme::penalty; }
+  [[nodiscard]] bool is_rattle() const {
+    return is_saddle() && settings_.scheme != Scheme::saddle_point;
+  }
+  void set_up_matrix();
+  /// T, or the matrix of (12) or (14), at the present state.
+  [[nodiscard]] bool factorize(const std::vector<Row>& rows);
+  void assemble(const std::vector<Row>& rows);
+  void add_element(const Element& element);  // to the matrix
+  [[nodiscard]] Solution solve(const std::vector<Row>& rows, const Vector& top,
+                               const Vector& bottom) const;
+
+  StepOutcome trapezoidal_step();
+  void predict();
+  /// Projections of the step; adds to `factorizations`. False if a factorization failed.
+  [[nodiscard]] bool project(int& factorizations);
+  /// Eq. (15): x until Phi_q x + rate vanishes to `small`.
+  [[nodiscard]] bool refine(const std::vector<Row>& rows, Vector& x, const Vector& rate, Real small,
+                            int& factorizations);
+
+  StepOutcome rattle_step();
+  struct StageOutcome {
+    StepStatus status = StepStatus::converged;
+    int passes = 0;
+  };
+  StageOutcome rattle_stage(Real h);
+  /// Step 5 of a stage: a and lambda at (q, v).
+  void rattle_acceleration(const std::vector<Row>& rows);
 
   const Model& model_;
   StepSettings settings_;
   int n_, m_;
   Vector q_, v_, a_, lambda_;
   KnownMotion known_;
-  std::vector<Element> last_elements_;  // those in the tangent
-  EnvelopeCholesky tangent_;
+  long steps_ = 0;                      // since the last set_state()
+  std::vector<Element> last_elements_;  // those in the matrix
+  std::vector<int> place_;              // of q[i], then of y[k], in the matrix
+  EnvelopeLdlt matrix_{{}};
+  bool due_ = true;  // TangentReuse::kept: the factors are to be renewed
 };
 
 }  // namespace mbs

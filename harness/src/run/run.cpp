@@ -11,6 +11,7 @@
 #include "printable.hpp"
 #include "run/driver_end.hpp"
 #include "run/initial_state.hpp"
+#include "run/setting_names.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -49,6 +50,7 @@ void step_through(Simulation& simulation, State& state, const RunSettings& setti
     times.push_back(static_cast<float>(microseconds(Clock::now() - begin)));
     summary.steps = i;
     summary.passes += outcome.passes;
+    summary.factorizations += outcome.factorizations < 0 ? outcome.passes : outcome.factorizations;
     if (outcome.status == StepStatus::pass_limit) ++summary.steps_at_limit;
     if (outcome.status == StepStatus::factorization_failed) {
       return fail(summary, RunStatus::diverged, "the tangent matrix could not be factorized", t);
@@ -124,7 +126,7 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
   std::vector<float> times;
   try {
     const auto begin = Clock::now();
-    const auto simulation = variant.create(scene.model, settings.step);
+    const auto simulation = create_simulation(variant, scene.model, settings.step);
     simulation->set_state(state);
     summary.setup_us = microseconds(Clock::now() - begin);
     if (observer) observer(0, 0.0, state);

@@ -31,6 +31,7 @@ struct RunSummary {
   std::optional<double> failed_at;  ///< s, if not ok and it has an instant
   long steps = 0;                   ///< done
   long passes = 0;
+  long factorizations = 0;
   long steps_at_limit = 0;
   double setup_us = 0.0;  ///< the factory and the first set_state()
   double step_us_median = 0.0, step_us_p99 = 0.0, step_us_max = 0.0;

@@ -39,15 +39,17 @@ double mean_constraint_eigenvalue(const Model& model) {
   return trace / model.constraints();
 }
 
-double automatic_penalty(const Model& model, double step) {
+double automatic_penalty(const Model& model, double step, Scheme scheme) {
   if (model.constraints() == 0) return 1.0;
   const double mean = mean_constraint_eigenvalue(model);
+  if (scheme == Scheme::saddle_point) return 4 / (step * step) * 1e8 / mean;
+  if (scheme != Scheme::penalty) return 4 / (step * step) * 2e4 / mean;
   const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
   return 4 / (step * step) * std::clamp(30 / smallest, 4e3 / mean, 1e7 / mean);
 }
 
-double parse_penalty(const std::string& text, const Model& model, double step) {
-  if (text == "auto") return automatic_penalty(model, step);
+double parse_penalty(const std::string& text, const Model& model, const StepSettings& settings) {
+  if (text == "auto") return automatic_penalty(model, settings.step, settings.scheme);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
@@ -57,14 +59,17 @@ double parse_penalty(const std::string& text, const Model& model, double step) {
   return value;
 }
 
-double automatic_tolerance(const Model& model, double step, double penalty) {
+double automatic_tolerance(const Model& model, const StepSettings& settings) {
+  const double step = settings.step;
   const double wanted = std::min(1e-9 * std::pow(step / 1.25e-3, 4), 1e-6);
   const double largest = largest_coordinate(model), size = rounding_length(model);
-  const double stiffness = model.constraints() == 0
-                               ? 0.0
-                               : penalty * step * step / 4 * mean_constraint_eigenvalue(model);
-  constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
-  return std::max({wanted, 10 * kUnit * size * std::sqrt(1 + stiffness), 10 * kUnit * largest});
+  const double stiffness = model.constraints() == 0 ? 0.0
+                                                    : settings.penalty * step * step / 4 *
+                                                          mean_constraint_eigenvalue(model);
+  const double unit = settings.precision == Precision::single_precision
+                          ? std::numeric_limits<float>::epsilon() / 2
+                          : std::numeric_limits<double>::epsilon() / 2;
+  return std::max({wanted, 10 * unit * size * std::sqrt(1 + stiffness), 10 * unit * largest});
 }
 
 }  // namespace mbs

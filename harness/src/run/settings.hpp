@@ -15,13 +15,16 @@ namespace mbs {
 /// 4000 of the mean one, which singular positions need, and the upper bound stays clear of
 /// cancellation. harness/README.md has the measurements behind the three numbers. 1 for a model
 /// without constraints.
-double automatic_penalty(const Model& model, double step);
+///
+/// The saddle-point form: (4 / dt^2) 1e8 / s_mean, which is eps = 1e-8 s_mean. RATTLE: (4 / dt^2)
+/// 2e4 / s_mean: a smaller eps does not survive the poles of the multipliers at singular positions.
+double automatic_penalty(const Model& model, double step, Scheme scheme = Scheme::penalty);
 
 /// s_mean of the above, m^2/kg; not a number for a model without constraints.
 double mean_constraint_eigenvalue(const Model& model);
 
-/// "auto" or a number > 0; `step` in s. Throws UsageError.
-double parse_penalty(const std::string& text, const Model& model, double step);
+/// "auto" or a number > 0, for the step and scheme of `settings`. Throws UsageError.
+double parse_penalty(const std::string& text, const Model& model, const StepSettings& settings);
 
 /// The lesser of max|q| and the scene's extent, m: constraints see differences of points, so that
 /// this is what their rounding is relative to.
@@ -30,7 +33,8 @@ double rounding_length(const Model& model);
 /// The tolerance `auto`, m: 1e-9 at 1.25e-3 s and proportional to step^4, at most 1e-6, so that
 /// what Newton leaves stays below the integrator's own error at every step; but not below ten times
 /// the rounding noise of a Newton step, which it could not reach: u max|q|, and in the constraints
-/// u l_r sqrt(1 + alpha dt^2/4 s_mean) with l_r = rounding_length().
-double automatic_tolerance(const Model& model, double step, double penalty);
+/// u l_r sqrt(1 + alpha dt^2/4 s_mean) with l_r = rounding_length(); u is that of the precision.
+/// For the step, penalty and precision of `settings`.
+double automatic_tolerance(const Model& model, const StepSettings& settings);
 
 }  // namespace mbs

@@ -1,4 +1,4 @@
-// Cholesky factorization of a symmetric positive definite matrix in envelope (skyline) storage.
+// L D L^T factorization without pivoting of a symmetric matrix in envelope (skyline) storage.
 #pragma once
 
 #include <cstddef>
@@ -7,23 +7,25 @@
 namespace mbs {
 
 /// Row i of the lower triangle holds the columns first[i] ... i. Elimination makes no entries
-/// outside this envelope, which is why the storage is so simple.
+/// outside this envelope, which is why the storage is so simple. For positive definite and for
+/// quasi-definite matrices, which have such factors in every order.
 ///
 /// Example: rows [4], [2 5], [. 1 3] with first = {0, 0, 1} are stored as 4 | 2 5 | 1 3.
-class EnvelopeCholesky {
+class EnvelopeLdlt {
  public:
   using Real = long double;
 
   /// `first[i]` <= i is the first column of row i.
-  explicit EnvelopeCholesky(std::vector<int> first);
+  explicit EnvelopeLdlt(std::vector<int> first);
 
   void set_zero();
   /// Entry (row, col) with first[row] <= col <= row.
   Real& at(int row, int col) { return values_[start_[row] + static_cast<std::size_t>(col)]; }
 
-  /// Replaces the matrix by its factor L with A = L L^T; false if A is not positive definite.
-  [[nodiscard]] bool factorize();
-  /// Overwrites b by the solution of L L^T x = b.
+  /// Replaces the matrix by its factors L and D; false unless D has exactly `negative` negative
+  /// entries and is otherwise positive.
+  [[nodiscard]] bool factorize(int negative);
+  /// Overwrites b by the solution of L D L^T x = b.
   void solve(std::vector<Real>& b) const;
 
  private:

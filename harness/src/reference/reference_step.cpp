@@ -1,0 +1,131 @@
+// The trapezoidal rule of the reference, in penalty and in saddle-point form.
+#include <algorithm>
+#include <cmath>
+
+#include "reference/reference_simulation.hpp"
+
+namespace mbs {
+namespace {
+
+using Real = ReferenceSimulation::Real;
+
+/// max |x|; NaN if x holds one.
+Real largest(const ReferenceSimulation::Vector& x) {
+  Real result = 0;
+  for (const Real value : x) {
+    if (!(std::abs(value) <= result)) result = std::abs(value);
+    if (std::isnan(result)) break;
+  }
+  return result;
+}
+
+ReferenceSimulation::Vector negative(ReferenceSimulation::Vector x) {
+  for (Real& value : x) value = -value;
+  return x;
+}
+
+}  // namespace
+
+/// Predictor, and Eq. (2) on the difference.
+void ReferenceSimulation::predict() {
+  const Real h = settings_.step;
+  for (int i = 0; i < n_; ++i) {
+    const Real difference = h * v_[i] + h * h / 2 * a_[i];
+    const Real v = v_[i];
+    q_[i] += difference;
+    v_[i] = 2 / h * difference - v;
+    a_[i] = 4 / (h * h) * difference - 4 / h * v - a_[i];
+  }
+}
+
+StepOutcome ReferenceSimulation::trapezoidal_step() {
+  const Real h = settings_.step;
+  const Real alpha = settings_.penalty;
+  StepOutcome outcome{StepStatus::pass_limit, 0, 0};
+  predict();
+  Real last = 0;         // max |Delta q| of the pass before
+  bool updated = false;  // lambda was, after the pass before, as Newton had converged
+  while (outcome.passes < settings_.max_passes && outcome.status != StepStatus::converged) {
+    ++outcome.passes;
+    const Vector phi = constraints();
+    const std::vector<Row> rows = jacobian();
+    const bool wanted = settings_.tangent == TangentReuse::none ||
+                        (settings_.tangent == TangentReuse::step && outcome.passes == 1) ||
+                        (settings_.tangent == TangentReuse::kept && due_);
+    if (wanted) {
+      ++outcome.factorizations;
+      if (!factorize(rows)) {
+        outcome.status = StepStatus::factorization_failed;
+        return outcome;
+      }
+      due_ = false;
+    }
+    const Vector inertia = mass_times(a_);
+    const Vector applied = applied_force();
+    Vector top = transpose_times(rows, lambda_);
+    for (int i = 0; i < n_; ++i) {  // minus f_0 of Eq. (12)
+      top[i] = -h * h / 4 * (inertia[i] + top[i] - applied[i]);
+    }
+    const Solution delta = solve(rows, top, negative(phi));  // Eqs. (4), (12)
+    for (int i = 0; i < n_; ++i) {
+      q_[i] += delta.x[i];
+      v_[i] += 2 / h * delta.x[i];        // Eq. (2)
+      a_[i] += 4 / (h * h) * delta.x[i];  // Eq. (2)
+    }
+    const Real change = largest(delta.x);
+    const bool small = change <= settings_.tolerance;
+    if (is_saddle()) {
+      for (int k = 0; k < m_; ++k) lambda_[k] += 4 / (h * h) * delta.y[k];
+    } else if (settings_.multipliers == MultiplierUpdate::every_pass || small) {
+      const Vector phi_after = constraints();
+      for (int k = 0; k < m_; ++k) lambda_[k] += alpha * phi_after[k];  // Eq. (1)
+    }
+    if (outcome.passes >= 2 && !small && !(change <= last / 4)) due_ = true;
+    last = change;
+    if (small && (updated || settings_.multipliers == MultiplierUpdate::every_pass)) {
+      outcome.status = StepStatus::converged;
+    }
+    updated = small;
+  }
+  if (!project(outcome.factorizations)) outcome.status = StepStatus::factorization_failed;
+  if (outcome.status == StepStatus::pass_limit) due_ = true;
+  return outcome;
+}
+
+bool ReferenceSimulation::project(int& factorizations) {
+  if (settings_.projections == Projections::none) return true;
+  if (steps_ % settings_.projections_every != 0) return true;
+  const Real h = settings_.step, tolerance = settings_.tolerance;
+  const bool both = settings_.projections == Projections::both;
+  const std::vector<Row> rows = jacobian();
+  if (settings_.tangent != TangentReuse::none || settings_.precision == Precision::mixed) {
+    if (!refine(rows, v_, partial_rate(), 2 / h * tolerance, factorizations)) return false;
+    return !both || refine(rows, a_, curvature(), 4 / (h * h) * tolerance, factorizations);
+  }
+  v_ = solve(rows, weighted_mass_times(v_), negative(partial_rate())).x;  // Eqs. (6), (13)
+  if (both) a_ = solve(rows, weighted_mass_times(a_), negative(curvature())).x;
+  return true;
+}
+
+bool ReferenceSimulation::refine(const std::vector<Row>& rows, Vector& x, const Vector& rate,
+                                 Real small, int& factorizations) {
+  constexpr int kMost = 5;
+  Real last = 0;
+  for (int round = 1; round <= kMost; ++round) {
+    Vector bottom = times(rows, x);
+    for (int k = 0; k < m_; ++k) bottom[k] = -(bottom[k] + rate[k]);
+    Vector delta = solve(rows, Vector(n_, Real{0}), bottom).x;  // Eq. (15)
+    if (round >= 2 && !(largest(delta) <= last / 2)) {
+      if (settings_.tangent != TangentReuse::kept) return true;
+      ++factorizations;
+      if (!factorize(rows)) return false;
+      delta = solve(rows, Vector(n_, Real{0}), bottom).x;
+    }
+    for (int i = 0; i < n_; ++i) x[i] += delta[i];
+    last = largest(delta);
+    if (last <= small) return true;
+  }
+  return true;
+}
+
+}  // namespace mbs
