@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -118,24 +120,44 @@ std::string other_settings(const StepSettings& s) {
   return fmt::format("{}", fmt::join(options, " "));
 }
 
-std::unique_ptr<Simulation> create_simulation(const Variant& variant, const Model& model,
-                                              const StepSettings& s) {
-  const Serves& serves = variant.serves;
-  const auto require = [](bool served, const std::string& option) {
-    if (!served) throw Unsupported("it does not offer " + option + " (mbs list tells who does)");
+std::string why_not_served(const Serves& serves, const StepSettings& s) {
+  const bool scheme = s.scheme == Scheme::penalty        ? true
+                      : s.scheme == Scheme::saddle_point ? serves.saddle_point
+                                                         : serves.rattle;
+  if (!scheme) return "--scheme " + name_of(s.scheme);
+  if (s.multipliers != MultiplierUpdate::every_pass && !serves.multiplier_update) {
+    return "--multipliers " + name_of(s.multipliers);
+  }
+  if (s.tangent != TangentReuse::none && !serves.tangent_reuse) {
+    return "--tangent " + name_of(s.tangent);
+  }
+  if (s.projections_every != 1 && !serves.projections_every) return "--projections-every";
+  const bool precision = s.precision == Precision::double_precision   ? true
+                         : s.precision == Precision::single_precision ? serves.single_precision
+                                                                      : serves.mixed_precision;
+  return precision ? "" : "--precision " + name_of(s.precision);
+}
+
+std::string why_unsuited(const Model& model, const StepSettings& settings) {
+  if (!is_rattle(settings.scheme)) return "";
+  const std::string only = "--scheme " + name_of(settings.scheme) + " is for scenes without ";
+  if (!model.driven_points().empty() || !model.driven_values().empty()) return only + "drivers";
+  const auto damped = [](const auto& springs) {
+    return std::ranges::any_of(springs, [](const auto& s) { return s.damping > 0.0; });
   };
-  require(s.scheme == Scheme::penalty ||
-              (s.scheme == Scheme::saddle_point ? serves.saddle_point : serves.rattle),
-          "--scheme " + name_of(s.scheme));
-  require(s.multipliers == MultiplierUpdate::every_pass || serves.multiplier_update,
-          "--multipliers " + name_of(s.multipliers));
-  require(s.tangent == TangentReuse::none || serves.tangent_reuse,
-          "--tangent " + name_of(s.tangent));
-  require(s.projections_every == 1 || serves.projections_every, "--projections-every");
-  require(s.precision != Precision::single_precision || serves.single_precision,
-          "--precision single");
-  require(s.precision != Precision::mixed || serves.mixed_precision, "--precision mixed");
-  return variant.create(model, s);
+  if (damped(model.springs()) || damped(model.torsion_springs())) return only + "dampers";
+  return "";
+}
+
+std::unique_ptr<Simulation> create_simulation(const Variant& variant, const Model& model,
+                                              const StepSettings& settings) {
+  const std::string unsuited = why_unsuited(model, settings);
+  if (!unsuited.empty()) throw Unsupported(unsuited);
+  const std::string missing = why_not_served(variant.serves, settings);
+  if (!missing.empty()) {
+    throw Unsupported("it does not offer " + missing + " (mbs list tells who does)");
+  }
+  return variant.create(model, settings);
 }
 
 std::vector<std::string> served_settings(const Serves& serves) {

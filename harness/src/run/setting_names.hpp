@@ -41,7 +41,13 @@ std::string other_settings(const StepSettings& settings);
 /// Every setting under the name of its option, with _ for -.
 nlohmann::json settings_json(const StepSettings& settings);
 
-/// variant.create(), or Unsupported if the variant does not serve one of the settings, by name.
+/// Which setting a variant that serves `serves` does not offer, for people; empty if none.
+std::string why_not_served(const Serves& serves, const StepSettings& settings);
+
+/// Why no implementation can simulate `model` with `settings`; empty if nothing forbids it.
+std::string why_unsuited(const Model& model, const StepSettings& settings);
+
+/// variant.create(), or Unsupported with why_unsuited() or why_not_served().
 std::unique_ptr<Simulation> create_simulation(const Variant& variant, const Model& model,
                                               const StepSettings& settings);
 

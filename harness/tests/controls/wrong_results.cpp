@@ -148,7 +148,10 @@ std::unique_ptr<Simulation> create_wrong(const Model& model, const StepSettings&
 
 std::vector<Variant> wrong_results() {
   return {
-      {"reference", "no defect", create_wrong<WrappedReference>},
+      {.name = "reference",
+       .description = "no defect",
+       .create = create_wrong<WrappedReference>,
+       .serves = {true, true, true, true, true, true, true}},
       {"returns_at_once", "step() computes nothing and says converged",
        create_wrong<ReturnsAtOnce>},
       {"nan_after_100", "the state is NaN after 100 steps", create_wrong<NanAfter100>},
