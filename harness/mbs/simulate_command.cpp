@@ -106,7 +106,9 @@ int simulate(const SimulateOptions& options) {
   } else {
     fmt::print("{}", summary_text(json));
   }
-  if (summary.status == RunStatus::ok) {
+  const bool degraded = summary.status == RunStatus::degraded;
+  if (degraded) fmt::print(stderr, "mbs: degraded: {}\n", summary.reason);
+  if (degraded || summary.status == RunStatus::ok) {
     for (const std::string& warning : warnings) fmt::print(stderr, "mbs: warning: {}\n", warning);
     return 0;
   }

@@ -43,6 +43,7 @@ nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
                {"energy_drift_max", finite_or_null(summary.energy_drift_max)},
                {"constraint_violation_max", finite_or_null(summary.constraint_violation_max)},
                {"setup_us", summary.setup_us},
+               {"judge_us", summary.judge_us},
                {"step_us",
                 {{"median", summary.step_us_median},
                  {"p99", summary.step_us_p99},
@@ -75,6 +76,8 @@ std::string summary_text(const nlohmann::json& json) {
   text += fmt::format("  energy drift max       {}\n", number("energy_drift_max", " of its scale"));
   text += fmt::format("  constraint violation   {}\n", number("constraint_violation_max", " m^2"));
   text += fmt::format("  set-up                 {:.1f} us\n", json["setup_us"].get<double>());
+  text +=
+      fmt::format("  judging                {:.2f} us a step\n", json["judge_us"].get<double>());
   text += fmt::format("  step                   {:.2f} us median, {:.2f} p99, {:.2f} max\n",
                       json["step_us"]["median"].get<double>(), json["step_us"]["p99"].get<double>(),
                       json["step_us"]["max"].get<double>());

@@ -59,6 +59,17 @@ double FourBarExact::position_error(double t, std::span<const double> q) const {
   return static_cast<double>(worst);
 }
 
+double FourBarExact::distance_from_branch(std::span<const double> q) const {
+  double worst = 0.0;
+  for (int i = 1; i <= loops_; ++i) {
+    const auto j = static_cast<std::size_t>(2 * i);
+    const double distance = std::hypot(q[j] - i - q[0], q[j + 1] - q[1]);
+    if (!std::isfinite(distance)) return std::numeric_limits<double>::quiet_NaN();
+    worst = std::max(worst, distance);
+  }
+  return worst;
+}
+
 double FourBarExact::first_singular_time() const {
   const long double eighth = boost::math::constants::pi<long double>() / 4;
   return static_cast<double>(2 * (quarter_ - boost::math::ellint_1(modulus_, eighth)) / w_);

@@ -27,6 +27,10 @@ class FourBarExact {
   /// Largest distance of a point B_i in `q` from its exact place at time t, m; NaN if q holds one.
   [[nodiscard]] double position_error(double t, std::span<const double> q) const;
 
+  /// Largest difference of B_i - A_i from B_0 - A_0, m: 0 on the parallelogram branch, up to 2 m
+  /// off it. Moderate on it too where constraints are violated. NaN if `q` holds one.
+  [[nodiscard]] double distance_from_branch(std::span<const double> q) const;
+
   /// First time at which all rods lie on one line, cos phi = 0 (s).
   [[nodiscard]] double first_singular_time() const;
 

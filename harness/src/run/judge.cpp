@@ -2,6 +2,7 @@
 #include "run/judge.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -106,12 +107,17 @@ std::string Judge::judge(double t, const State& state) {
     violation_ = std::max(violation_, std::abs(phi_[k]));
     relative = std::max(relative, std::abs(phi_[k]) / phi_scale_[k]);
   }
+  relative_violation_ = std::max(relative_violation_, relative);
   const std::string lost = judge_energy(t, state);
   if (!std::isfinite(energy_difference_)) return lost;
   if (exact_) {
     const double error = exact_->position_error(t, state.q);
     position_error_ = std::max(*position_error_, error);
     if (!(error <= bounds_.position_error)) {
+      const double apart = exact_->distance_from_branch(state.q);
+      off_branch_ = apart > bounds_.position_error && lost.empty() &&
+                    relative <= bounds_.constraint_violation;
+      if (off_branch_) return fmt::format("rods that are parallel differ by {:.2e} m", apart);
       return fmt::format("position error {:.2e} m against the exact solution (allowed {:g})", error,
                          bounds_.position_error);
     }
@@ -162,8 +168,21 @@ std::string Judge::judge_energy(double t, const State& state) {
 }
 
 void Judge::spoil() {
-  violation_ = energy_difference_ = std::numeric_limits<double>::infinity();
+  violation_ = relative_violation_ = energy_difference_ = std::numeric_limits<double>::infinity();
   if (exact_) position_error_ = std::numeric_limits<double>::infinity();
+}
+
+std::string Judge::degradation() const {
+  constexpr AccurateBounds accurate;
+  std::vector<std::string> beyond;
+  const auto add = [&beyond](double value, double bound, const char* what) {
+    if (!(value <= bound))
+      beyond.push_back(fmt::format("{} {:.1e} (ok to {:g})", what, value, bound));
+  };
+  add(position_error_.value_or(0.0), accurate.position_error, "position error");
+  add(energy_drift_max().value_or(0.0), accurate.energy_drift, "energy drift");
+  add(relative_violation_, accurate.constraint_violation, "constraint violation");
+  return fmt::format("{}", fmt::join(beyond, ", "));
 }
 
 std::optional<double> Judge::energy_drift_max() const {

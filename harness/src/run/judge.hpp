@@ -20,6 +20,14 @@ struct RunBounds {
   double pass_limit_share = 0.05;  ///< of the steps; a few near singular positions are normal
 };
 
+/// Within these a run is `ok`, between them and RunBounds it is `degraded`: on the N-four-bar a
+/// hundredth of a rod's length.
+struct AccurateBounds {
+  double position_error = 1e-2;  ///< m, where an exact solution is known
+  double energy_drift = 1e-2;    ///< as RunBounds
+  double constraint_violation = 1e-4;
+};
+
 /// Figures of one state, and the worst so far; NaN never passes for small.
 class Judge {
  public:
@@ -28,6 +36,12 @@ class Judge {
 
   /// Judges the state at time t. Returns the reason if the solution is lost, empty if not.
   std::string judge(double t, const State& state);
+
+  /// Whether the state that judge() refused satisfies the constraints and conserves energy, but is
+  /// on another branch of the motion than the exact one.
+  [[nodiscard]] bool off_branch() const { return off_branch_; }
+  /// The worst figures that are beyond AccurateBounds, for people; empty if none is.
+  [[nodiscard]] std::string degradation() const;
 
   /// Largest distance of a point from the exact motion, m; none if no exact solution is known.
   [[nodiscard]] std::optional<double> position_error_max() const { return position_error_; }
@@ -57,7 +71,9 @@ class Judge {
   double energy_scale_ = 0.0;
   double energy_difference_ = 0.0;
   std::optional<double> position_error_;
-  double violation_ = 0.0;
+  double violation_ = 0.0;           // m^2, m
+  double relative_violation_ = 0.0;  // as RunBounds
+  bool off_branch_ = false;
 };
 
 }  // namespace mbs

@@ -43,6 +43,7 @@ void step_through(Simulation& simulation, State& state, const RunSettings& setti
                   const Observer& observer, RunSummary& summary, std::vector<float>& times) {
   const long steps = count_steps(settings);
   times.reserve(static_cast<std::size_t>(steps));
+  double judge_us = 0.0;
   for (long i = 1; i <= steps; ++i) {
     const double t = i * settings.step.step;
     const auto begin = Clock::now();
@@ -55,9 +56,15 @@ void step_through(Simulation& simulation, State& state, const RunSettings& setti
     if (outcome.status == StepStatus::factorization_failed) {
       return fail(summary, RunStatus::diverged, "the tangent matrix could not be factorized", t);
     }
+    const auto judging = Clock::now();
     simulation.get_state(state);
     const std::string lost = judge.judge(t, state);
-    if (!lost.empty()) return fail(summary, RunStatus::diverged, lost, t);
+    judge_us += microseconds(Clock::now() - judging);
+    summary.judge_us = judge_us / static_cast<double>(i);
+    if (!lost.empty()) {
+      return fail(summary, judge.off_branch() ? RunStatus::wrong_branch : RunStatus::diverged, lost,
+                  t);
+    }
     if (observer) observer(i, t, state);
   }
   const double share = static_cast<double>(summary.steps_at_limit) / static_cast<double>(steps);
@@ -66,7 +73,10 @@ void step_through(Simulation& simulation, State& state, const RunSettings& setti
     summary.reason = fmt::format("{} of {} steps ended at the limit of {} passes (allowed {:g} %)",
                                  summary.steps_at_limit, steps, settings.step.max_passes,
                                  100 * RunBounds{}.pass_limit_share);
+    return;
   }
+  summary.reason = judge.degradation();
+  if (!summary.reason.empty()) summary.status = RunStatus::degraded;
 }
 
 }  // namespace
@@ -75,10 +85,14 @@ std::string to_string(RunStatus status) {
   switch (status) {
     case RunStatus::ok:
       return "ok";
+    case RunStatus::degraded:
+      return "degraded";
     case RunStatus::not_converged:
       return "not-converged";
     case RunStatus::diverged:
       return "diverged";
+    case RunStatus::wrong_branch:
+      return "wrong-branch";
     case RunStatus::unsupported:
       return "unsupported";
   }

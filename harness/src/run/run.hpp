@@ -11,13 +11,15 @@
 namespace mbs {
 
 enum class RunStatus {
-  ok,             ///< the whole duration was simulated within RunBounds
+  ok,             ///< the whole duration was simulated within AccurateBounds
+  degraded,       ///< ... within RunBounds; the reason says what is beyond AccurateBounds
   not_converged,  ///< more steps than RunBounds allows ended at the pass limit
   diverged,       ///< the solution was lost: not finite, beyond RunBounds, or the step threw
+  wrong_branch,   ///< it went on as another assembly of the mechanism, which the constraints allow
   unsupported,    ///< the implementation cannot simulate this scene
 };
 
-/// "ok", "not-converged", "diverged", "unsupported".
+/// "ok", "degraded", "not-converged", "diverged", "wrong-branch", "unsupported".
 std::string to_string(RunStatus status);
 
 struct RunSettings {
@@ -34,6 +36,7 @@ struct RunSummary {
   long factorizations = 0;
   long steps_at_limit = 0;
   double setup_us = 0.0;  ///< the factory and the first set_state()
+  double judge_us = 0.0;  ///< mean a step: copying the state out and judging it
   double step_us_median = 0.0, step_us_p99 = 0.0, step_us_max = 0.0;
   std::optional<double> position_error_max;  ///< m
   std::optional<double> energy_drift_max;    ///< none if the model is not conservative
