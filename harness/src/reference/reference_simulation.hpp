@@ -97,7 +97,7 @@ class ReferenceSimulation final : public Simulation {
   void predict();
   /// Projections of the step; adds to `factorizations`. False if a factorization failed.
   [[nodiscard]] bool project(int& factorizations);
-  /// Eq. (15): x until Phi_q x + rate vanishes to `small`.
+  /// Eq. (15): x from x* on, until a correction is at most `small`.
   [[nodiscard]] bool refine(const std::vector<Row>& rows, Vector& x, const Vector& rate, Real small,
                             int& factorizations);
 

@@ -110,19 +110,28 @@ bool ReferenceSimulation::project(int& factorizations) {
 bool ReferenceSimulation::refine(const std::vector<Row>& rows, Vector& x, const Vector& rate,
                                  Real small, int& factorizations) {
   constexpr int kMost = 5;
+  const Real eps = 4 / (Real{settings_.penalty} * settings_.step * settings_.step);
+  const Vector start = x;
+  Vector y(m_, Real{0});
   Real last = 0;
   for (int round = 1; round <= kMost; ++round) {
+    Vector top(n_);  // the residual of Eqs. (6), (13)
+    for (int i = 0; i < n_; ++i) top[i] = start[i] - x[i];
+    top = weighted_mass_times(top);
     Vector bottom = times(rows, x);
-    for (int k = 0; k < m_; ++k) bottom[k] = -(bottom[k] + rate[k]);
-    Vector delta = solve(rows, Vector(n_, Real{0}), bottom).x;  // Eq. (15)
-    if (round >= 2 && !(largest(delta) <= last / 2)) {
+    const Vector along = transpose_times(rows, y);
+    for (int i = 0; i < n_; ++i) top[i] -= along[i];
+    for (int k = 0; k < m_; ++k) bottom[k] = eps * y[k] - (bottom[k] + rate[k]);
+    Solution delta = solve(rows, top, bottom);  // Eq. (15)
+    if (round >= 2 && !(largest(delta.x) <= last / 2)) {
       if (settings_.tangent != TangentReuse::kept) return true;
       ++factorizations;
       if (!factorize(rows)) return false;
-      delta = solve(rows, Vector(n_, Real{0}), bottom).x;
+      delta = solve(rows, top, bottom);
     }
-    for (int i = 0; i < n_; ++i) x[i] += delta[i];
-    last = largest(delta);
+    for (int i = 0; i < n_; ++i) x[i] += delta.x[i];
+    for (int k = 0; is_saddle() && k < m_; ++k) y[k] += delta.y[k];
+    last = largest(delta.x);
     if (last <= small) return true;
   }
   return true;
