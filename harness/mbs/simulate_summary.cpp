@@ -52,8 +52,8 @@ nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
 }
 
 std::string summary_text(const nlohmann::json& json) {
-  const auto number = [&json](const char* key, const char* unit) {
-    return json[key].is_null() ? std::string("none")
+  const auto number = [&json](const char* key, const char* unit, const char* without) {
+    return json[key].is_null() ? std::string(json["status"] == "diverged" ? "none" : without)
                                : fmt::format("{:.3g}{}", json[key].get<double>(), unit);
   };
   std::string text = fmt::format("{} on {}\n", json["implementation"].get<std::string>(),
@@ -69,12 +69,19 @@ std::string summary_text(const nlohmann::json& json) {
       json["other_settings"] == "" ? std::string()
                                    : ", " + json["other_settings"].get<std::string>());
   text += fmt::format("  start                  {}\n", assembly_text(json["assembly"]));
-  text += fmt::format("  steps                  {}, {:.3f} passes each, {} at the pass limit\n",
-                      json["steps"].get<long>(), json["passes_per_step"].get<double>(),
-                      json["steps_at_limit"].get<long>());
-  text += fmt::format("  position error max     {}\n", number("position_error_max", " m"));
-  text += fmt::format("  energy drift max       {}\n", number("energy_drift_max", " of its scale"));
-  text += fmt::format("  constraint violation   {}\n", number("constraint_violation_max", " m^2"));
+  const double passes = json["passes_per_step"], factorizations = json["factorizations_per_step"];
+  text += fmt::format(
+      "  steps                  {}, {:.3f} passes{} each, {} at the pass limit\n",
+      json["steps"].get<long>(), passes,
+      factorizations == passes ? "" : fmt::format(" and {:.3f} factorizations", factorizations),
+      json["steps_at_limit"].get<long>());
+  text += fmt::format(
+      "  position error max     {}\n",
+      number("position_error_max", " m", "not known: no exact motion of this scene is"));
+  text += fmt::format("  energy drift max       {}\n",
+                      number("energy_drift_max", " of its scale", "none: energy is not conserved"));
+  text += fmt::format("  constraint violation   {}\n",
+                      number("constraint_violation_max", " m^2", "lost"));
   text += fmt::format("  set-up                 {:.1f} us\n", json["setup_us"].get<double>());
   text +=
       fmt::format("  judging                {:.2f} us a step\n", json["judge_us"].get<double>());

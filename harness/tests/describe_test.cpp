@@ -11,6 +11,7 @@
 #include "describe/penalty_window.hpp"
 #include "describe/structure.hpp"
 #include "describe/warnings.hpp"
+#include "run/settings.hpp"
 #include "support/sample_models.hpp"
 
 namespace mbs {
@@ -236,6 +237,8 @@ TEST(Describe, ListsDistancesBesideBodiesAndMarksHelpers) {
   EXPECT_EQ(elements["distances"][0]["name"], "rope");
   EXPECT_EQ(elements["distances"][0]["between"], nlohmann::json::array({"B", "C"}));
   EXPECT_TRUE(elements["rods"].empty());
+  EXPECT_EQ(d["fixed_points"], 1);
+  EXPECT_EQ(d["driven_points"], 1);
   int helpers = 0;
   for (const auto& point : elements["points"]) {
     const std::string name = point["name"];
@@ -262,6 +265,39 @@ TEST(Warnings, TellOfPenaltyFactorsFarOutsideTheWindow) {
   // Automatic, at a step for which it is not made.
   EXPECT_FALSE(describe_json(load_scene("four-bar:40"), 2e-2)["warnings"].empty());
   EXPECT_TRUE(describe_json(load_scene("four-bar:40"), kStep)["warnings"].empty());
+}
+
+TEST(Warnings, SayWhereNoPenaltyFactorSuits) {
+  const Model model(four_bar(1000));
+  StepSettings settings;
+  settings.step = 1e-5;
+  settings.penalty = 1e14;
+  const auto warnings = setting_warnings(model, settings);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("--scheme saddle-point"), std::string::npos) << warnings[0];
+  settings.scheme = Scheme::saddle_point;
+  EXPECT_TRUE(setting_warnings(model, settings).empty());
+}
+
+TEST(Warnings, TellOfSingularStarts) {
+  const auto warnings = [](const char* text) {
+    StepSettings settings;
+    const Model model(parse_scene(text, "test.json").model);
+    settings.penalty = automatic_penalty(model, settings.step);
+    std::string all;
+    for (const std::string& warning : setting_warnings(model, settings)) all += warning + "\n";
+    return all;
+  };
+  EXPECT_NE(warnings(R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "B", "position": [1, 0]}, {"name": "C", "position": [2, 0]},
+      {"name": "D", "position": [3, 0], "fixed": true}],
+    "rods": [{"between": ["A", "B"], "mass": 1}, {"name": "last", "between": ["B", "C"], "mass": 1},
+             {"between": ["C", "D"], "mass": 1}]})")
+                .find("singular position"),
+            std::string::npos);
+  EXPECT_EQ(warnings(R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "B", "position": [1, 0]}], "rods": [{"between": ["A", "B"], "mass": 1}]})"),
+            "");
 }
 
 /// 1 kg on a spring of 1e4 N/m along x, `damping` in N s/m.

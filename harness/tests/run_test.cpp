@@ -156,7 +156,9 @@ TEST(Judge, NamesWhatIsLost) {
   EXPECT_NEAR(*position.position_error_max(), 0.2, 1e-12);
   state = initial;
   state.q[1] += 0.05;
-  EXPECT_TRUE(Judge(scene, initial, 0.0).judge(0.0, state).starts_with("constraints violated by"));
+  const std::string violated = Judge(scene, initial, 0.0).judge(0.0, state);
+  EXPECT_TRUE(violated.starts_with("constraints violated by")) << violated;
+  EXPECT_TRUE(violated.ends_with(", A0-B0 most")) << violated;
   state = initial;
   for (double& velocity : state.v) velocity *= 3.0;
   EXPECT_TRUE(Judge(scene, initial, 0.0).judge(0.0, state).starts_with("energy drifted by"));

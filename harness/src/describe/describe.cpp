@@ -2,6 +2,7 @@
 #include "describe/describe.hpp"
 
 #include <cmath>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -30,16 +31,26 @@ json names_of(const Model& model, const std::vector<int>& rows) {
   return names;
 }
 
-void add_points(json& result, const Model& model) {
-  std::ptrdiff_t free_points = 0, free_vectors = 0, fixed = 0;
-  for (const Point& point : model.points()) {
-    ++(point.is_fixed() ? fixed : point.is_vector ? free_vectors : free_points);
+/// Those that the scene names: helpers of the lowering are no answer to what it asks for.
+void add_points(json& result, const Scene& scene) {
+  const auto points = scene.model.points();
+  std::vector<char> counts(points.size(), true), driven(points.size(), false);
+  for (const int index : scene.elements.helpers) {
+    if (static_cast<std::size_t>(index) < points.size())
+      counts[static_cast<std::size_t>(index)] = false;
   }
-  const auto driven = static_cast<std::ptrdiff_t>(model.driven_points().size());
-  result["free_points"] = free_points;
-  result["free_vectors"] = free_vectors;
-  result["fixed_points"] = fixed - driven;
-  result["driven_points"] = driven;
+  for (const DrivenPoint& point : scene.model.driven_points()) {
+    driven[static_cast<std::size_t>(point.point)] = true;
+  }
+  std::map<std::string, int> found{{"free_points", 0},   {"free_vectors", 0},
+                                   {"fixed_points", 0},  {"fixed_vectors", 0},
+                                   {"driven_points", 0}, {"driven_vectors", 0}};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!counts[i] && points[i].is_fixed()) continue;
+    const std::string how = driven[i] ? "driven" : points[i].is_fixed() ? "fixed" : "free";
+    ++found[how + (points[i].is_vector ? "_vectors" : "_points")];
+  }
+  for (const auto& [key, count] : found) result[key] = count;
 }
 
 void add_structure(json& result, const Model& model, const Structure& structure) {
@@ -117,7 +128,7 @@ json describe_json(const Scene& scene, double step) {
       {"drivers_end", finite_or_null(driver_end(model))},
       {"artificial_fill", fill_json(scene.fill)},
       {"elements", elements_json(scene)}};
-  add_points(result, model);
+  add_points(result, scene);
   add_structure(result, model, structure);
   add_settings(result, model, structure, step);
   return result;

@@ -10,8 +10,9 @@ namespace mbs {
 
 /// The description for programs; `step` (s) is what the penalty window is for. Keys:
 ///
-/// - scene, dimension, variables, constraints, free_points, free_vectors, fixed_points,
-/// driven_points;
+/// - scene, dimension, variables, constraints; free_points, free_vectors: those that own the
+///   variables; fixed_points, fixed_vectors, driven_points, driven_vectors: those that the scene
+///   names;
 /// - jacobian_rank (null if that was too much work), degrees_of_freedom, degrees_of_freedom_from
 ///   ("n - rank" or "n - m"), redundant_constraints [names], singular_start {rank, constraints} or
 ///   false, null if unknown;

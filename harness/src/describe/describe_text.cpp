@@ -38,6 +38,8 @@ std::string points_text(const json& d) {
   };
   add("free_vectors", "free unit vector(s)");
   add("driven_points", "driven");
+  add("driven_vectors", "driven unit vector(s)");
+  add("fixed_vectors", "fixed unit vector(s)");
   return fmt::format("{} ({} and {} fixed point(s) in {} dimensions)", d["variables"].get<int>(),
                      text, d["fixed_points"].get<long>(), d["dimension"].get<int>());
 }

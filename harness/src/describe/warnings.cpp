@@ -9,6 +9,7 @@
 
 #include "model_math/kinematics.hpp"
 #include "model_math/vector3.hpp"
+#include "scene/row_names.hpp"
 
 namespace mbs {
 namespace {
@@ -82,6 +83,13 @@ std::string penalty_warning(const PenaltyWindow& window, double penalty, double 
         "estimate: mbs describe)",
         penalty, side, bound, what, step);
   };
+  if (window.lower > window.upper * kFarAbove) {
+    return fmt::format(
+        "no penalty factor suits this scene at step {:g} s, least {:.2g} and most {:.2g} "
+        "(estimates: "
+        "mbs describe); --scheme saddle-point does not depend on one",
+        step, window.lower, window.upper);
+  }
   if (penalty < window.lower / kFarBelow) {
     return far("below", window.lower, "least that is sure to hold the constraints");
   }
@@ -111,15 +119,26 @@ std::string period_warning(const Model& model, double step) {
       step, period);
 }
 
+std::string start_warning(const Model& model, const Structure& structure) {
+  if (structure.singular != true) return "";
+  return fmt::format(
+      "the start is a singular position: {} hold(s) nothing there that others do not (mbs "
+      "describe)",
+      row_name(model, structure.singular_rows.front()));
+}
+
 std::vector<std::string> setting_warnings(const Model& model, const StepSettings& settings) {
   std::vector<std::string> result;
   const auto add = [&result](std::string warning) {
     if (!warning.empty()) result.push_back(std::move(warning));
   };
-  if (settings.scheme == Scheme::penalty && model.constraints() > 0 &&
-      model.variables() <= kMostVariablesToWarn) {
-    const PenaltyWindow window = penalty_window(model, find_structure(model), settings.step);
-    add(penalty_warning(window, settings.penalty, settings.step));
+  if (model.constraints() > 0 && model.variables() <= kMostVariablesToWarn) {
+    const Structure structure = find_structure(model);
+    add(start_warning(model, structure));
+    if (settings.scheme == Scheme::penalty) {
+      const PenaltyWindow window = penalty_window(model, structure, settings.step);
+      add(penalty_warning(window, settings.penalty, settings.step));
+    }
   }
   add(period_warning(model, settings.step));
   return result;

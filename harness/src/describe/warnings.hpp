@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "describe/penalty_window.hpp"
+#include "describe/structure.hpp"
 #include "mbs/simulation.hpp"
 
 namespace mbs {
@@ -19,8 +20,8 @@ inline constexpr double kFarBelow = 100.0, kFarAbove = 10.0;
 /// Longest step as a share of the shortest period of springs; there the period is 3 % off.
 inline constexpr double kLongestShare = 0.1;
 
-/// Whether `penalty` is beyond the window, which is for `step` (s), that far; one line, empty if
-/// not.
+/// Whether `penalty` is beyond the window, which is for `step` (s), that far, or whether the window
+/// is empty by as much; one line, empty if not.
 std::string penalty_warning(const PenaltyWindow& window, double penalty, double step);
 
 /// 2 pi sqrt(M_ii / K_ii) at the start, the least of the coordinates that swing (C_ii^2 < 4 K_ii
@@ -29,6 +30,9 @@ double shortest_period(const Model& model);
 
 /// Whether `step` (s) is above kLongestShare of shortest_period(); one line, empty if not.
 std::string period_warning(const Model& model, double step);
+
+/// Whether the start is a singular position; one line, empty if not.
+std::string start_warning(const Model& model, const Structure& structure);
 
 /// All of these, one line each.
 std::vector<std::string> setting_warnings(const Model& model, const StepSettings& settings);

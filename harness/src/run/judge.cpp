@@ -13,6 +13,7 @@
 #include "model_math/kinematics.hpp"
 #include "model_math/known_motion.hpp"
 #include "model_math/vector3.hpp"
+#include "scene/row_names.hpp"
 
 namespace mbs {
 namespace {
@@ -98,6 +99,7 @@ std::string Judge::judge(double t, const State& state) {
   }
   evaluate_constraints(scene_.model, t, state.q, phi_);
   double relative = 0.0;
+  std::size_t worst = 0;
   for (std::size_t k = 0; k < phi_.size(); ++k) {
     // max() would drop a NaN that finite but huge coordinates make.
     if (!std::isfinite(phi_[k])) {
@@ -105,7 +107,10 @@ std::string Judge::judge(double t, const State& state) {
       return "the state is too large to be judged";
     }
     violation_ = std::max(violation_, std::abs(phi_[k]));
-    relative = std::max(relative, std::abs(phi_[k]) / phi_scale_[k]);
+    if (std::abs(phi_[k]) / phi_scale_[k] > relative) {
+      relative = std::abs(phi_[k]) / phi_scale_[k];
+      worst = k;
+    }
   }
   relative_violation_ = std::max(relative_violation_, relative);
   const std::string lost = judge_energy(t, state);
@@ -123,8 +128,9 @@ std::string Judge::judge(double t, const State& state) {
     }
   }
   if (!(relative <= bounds_.constraint_violation)) {
-    return fmt::format("constraints violated by {:.2e} of their size (allowed {:g})", relative,
-                       bounds_.constraint_violation);
+    return fmt::format("constraints violated by {:.2e} of their size (allowed {:g}), {} most",
+                       relative, bounds_.constraint_violation,
+                       row_name(scene_.model, static_cast<int>(worst)));
   }
   const std::string turned = judge_torsion(t, state);
   return turned.empty() ? lost : turned;
