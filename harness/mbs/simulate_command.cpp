@@ -26,6 +26,7 @@ struct SimulateOptions {
   std::string trajectory;
   std::string output;
   long every = 1;
+  int judge_every = RunSettings{}.judge_every;
   bool json = false;
 };
 
@@ -95,7 +96,8 @@ int simulate(const SimulateOptions& options) {
   }
   require_files(options);
   const Scene scene = load_scene(options.scene);
-  const RunSettings settings{options.step.resolve(scene.model), options.duration};
+  const RunSettings settings{options.step.resolve(scene.model), options.duration,
+                             options.judge_every};
   require_duration(scene, settings);
   const std::vector<std::string> warnings = setting_warnings(scene.model, settings.step);
   const RunSummary summary = run_with_files(options, scene, *variants[0].variant, settings);
@@ -141,6 +143,10 @@ void add_simulate_command(CLI::App& app, int& status) {
                    "write the scene's \"outputs\", and nothing else, to this CSV file")
       ->check(is_file_name);
   command->add_option("--every", options->every, "write every K-th step only, K >= 1")
+      ->capture_default_str();
+  command
+      ->add_option("--judge-every", options->judge_every,
+                   "judge the state after every K-th step and the last, K >= 1")
       ->capture_default_str();
   command->add_flag("--json", options->json, "print the summary as JSON");
   command->callback([options, &status] { status = simulate(*options); });

@@ -245,7 +245,8 @@ TEST(ControlsProgram, BenchKeepsTheRowOfTheOneThatFails) {
 TEST(ControlsProgram, SimulateNeverCallsNanOk) {
   const auto run = test::run_program(
       MBS_CONTROLS,
-      "simulate four-bar:2 --implementation control/nan_after_100 --duration 1 --json");
+      "simulate four-bar:2 --implementation control/nan_after_100 --duration 1 --json "
+      "--judge-every 1");
   EXPECT_EQ(run.status, 1);
   const auto summary = nlohmann::json::parse(run.output);
   EXPECT_EQ(summary.at("status"), "diverged");

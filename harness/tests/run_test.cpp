@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "controls/controls.hpp"
+#include "model_math/kinematics.hpp"
 #include "run/settings.hpp"
 #include "run/stretch.hpp"
 #include "support/sample_models.hpp"
@@ -96,9 +97,40 @@ TEST(Run, TellsThatTooSoftOrTooStiffAPenaltyDiverges) {
       EXPECT_NE(summary.reason, "");
       ASSERT_TRUE(summary.failed_at);
       EXPECT_GT(*summary.failed_at, 0.0);
-      EXPECT_NEAR(*summary.failed_at, 1.25e-3 * static_cast<double>(summary.steps), 1e-9);
+      const double judged = 1.25e-3 * static_cast<double>(summary.steps);
+      EXPECT_LE(*summary.failed_at, judged + 1e-9);
+      EXPECT_GT(*summary.failed_at, judged - 1.25e-3 * settings.judge_every);
     }
   }
+}
+
+TEST(Run, FindsTheFirstLostStepHoweverSeldomItJudges) {
+  const Scene scene = load_scene("four-bar:5");
+  RunSettings settings = settings_for(scene, 6.0);
+  settings.step.penalty = 1e14;
+  settings.judge_every = 1;
+  const RunSummary every = run(scene, control("reference"), settings);
+  ASSERT_NE(every.status, RunStatus::ok);
+  for (const int judge_every : {7, 100, 100'000}) {
+    settings.judge_every = judge_every;
+    const RunSummary seldom = run(scene, control("reference"), settings);
+    EXPECT_EQ(seldom.status, every.status) << judge_every;
+    EXPECT_EQ(seldom.failed_at, every.failed_at) << judge_every;
+    EXPECT_EQ(seldom.reason, every.reason) << judge_every;
+  }
+}
+
+TEST(Run, SaysByHowMuchItIsDegraded) {
+  const Scene scene = load_scene("four-bar:1");
+  RunSettings settings = settings_for(scene, 10.0);
+  settings.step.step = 1e-2;
+  settings.step.penalty = automatic_penalty(scene.model, settings.step.step);
+  const RunSummary summary = run(scene, control("reference"), settings);
+  EXPECT_EQ(summary.status, RunStatus::degraded);
+  EXPECT_TRUE(summary.reason.starts_with("position error ")) << summary.reason;
+  EXPECT_TRUE(summary.reason.ends_with(" (ok to 0.01)")) << summary.reason;
+  EXPECT_GT(*summary.position_error_max, AccurateBounds{}.position_error);
+  EXPECT_FALSE(summary.failed_at);
 }
 
 TEST(Run, TellsThatStepsDidNotConverge) {
@@ -118,7 +150,9 @@ TEST(Run, NeverCallsNanOk) {
   const Scene without = test::spatial_pendulum();
   for (const Scene* scene : {&with_exact, &without}) {
     for (const auto& [name, step] : {std::pair("nan_after_100", 101L), {"nan_velocity", 1L}}) {
-      const RunSummary summary = run(*scene, control(name), settings_for(*scene, 0.5));
+      RunSettings settings = settings_for(*scene, 0.5);
+      settings.judge_every = 1;
+      const RunSummary summary = run(*scene, control(name), settings);
       EXPECT_EQ(summary.status, RunStatus::diverged) << name;
       EXPECT_EQ(summary.reason, "the state is not finite");
       EXPECT_EQ(summary.steps, step);
@@ -162,6 +196,33 @@ TEST(Judge, NamesWhatIsLost) {
   state = initial;
   for (double& velocity : state.v) velocity *= 3.0;
   EXPECT_TRUE(Judge(scene, initial, 0.0).judge(0.0, state).starts_with("energy drifted by"));
+}
+
+// From A1 a rod of 1 m reaches A0 too: with B1 there, all lengths hold for any B0.
+TEST(Judge, TellsAnotherBranchFromALateMotion) {
+  const Scene scene = load_scene("four-bar:1");
+  const State initial = make_stretch(scene, 1.25e-3, 1, 0.0).initial;
+  const double cosine = std::sqrt(0.75), sine = 0.5;
+  State state = initial;
+  const auto with_energy = [&](std::vector<double> q, std::vector<double> v) {
+    state.q = std::move(q);
+    const Model& model = scene.model;
+    const double wanted =
+        energy(model, 0.0, initial.q, initial.v) - potential_energy(model, 0.0, state.q);
+    const double factor = std::sqrt(wanted / kinetic_energy(model, v));
+    for (double& value : v) value *= factor;
+    state.v = std::move(v);
+    Judge judge(scene, initial, 0.0);
+    const std::string lost = judge.judge(0.0, state);
+    return std::pair(judge.off_branch(), lost);
+  };
+  const auto [other, parallel] = with_energy({cosine, sine, 0.0, 0.0}, {sine, -cosine, 0.0, 0.0});
+  EXPECT_TRUE(other) << parallel;
+  EXPECT_TRUE(parallel.starts_with("rods that are parallel differ by")) << parallel;
+  const auto [same, late] =
+      with_energy({cosine, sine, 1 + cosine, sine}, {sine, -cosine, sine, -cosine});
+  EXPECT_FALSE(same);
+  EXPECT_TRUE(late.starts_with("position error")) << late;
 }
 
 /// A mass on a spring along x, stretched by 0.5 m; `damping` in N s/m.
@@ -336,7 +397,9 @@ TEST(Run, TellsThatASceneIsUnsupported) {
 TEST(Run, NamesEachStatus) {
   EXPECT_EQ(to_string(RunStatus::ok), "ok");
   EXPECT_EQ(to_string(RunStatus::not_converged), "not-converged");
+  EXPECT_EQ(to_string(RunStatus::degraded), "degraded");
   EXPECT_EQ(to_string(RunStatus::diverged), "diverged");
+  EXPECT_EQ(to_string(RunStatus::wrong_branch), "wrong-branch");
   EXPECT_EQ(to_string(RunStatus::unsupported), "unsupported");
 }
 

@@ -60,7 +60,7 @@ class Judge {
   /// Marks every figure as lost.
   void spoil();
 
-  const Scene& scene_;
+  const Scene* scene_;  // a pointer, so that judges can be copied
   RunBounds bounds_;
   std::optional<FourBarExact> exact_;
   std::vector<double> phi_;

@@ -38,44 +38,83 @@ void fail(RunSummary& summary, RunStatus status, std::string reason, double t) {
   summary.failed_at = t;
 }
 
-/// Steps until the end or the first refused state.
-void step_through(Simulation& simulation, State& state, const RunSettings& settings, Judge& judge,
-                  const Observer& observer, RunSummary& summary, std::vector<float>& times) {
-  const long steps = count_steps(settings);
+/// What one run is made of.
+struct Context {
+  Simulation& simulation;
+  const RunSettings& settings;
+  Judge& judge;
+  RunSummary& summary;
+  [[nodiscard]] double time(long step) const { return step * settings.step.step; }
+};
+
+/// The last step at which the solution was not lost.
+struct LastGood {
+  long step;
+  State state;
+  Judge judge;
+};
+
+/// The solution was found lost at `step`, for `reason`. Does the steps
+/// between again and judges each, so that the summary has the first that was lost.
+void locate_loss(const Context& run, const LastGood& good, long step, const std::string& reason) {
+  const auto lost = [&run](long at, const Judge& judge, const std::string& why) {
+    fail(run.summary, judge.off_branch() ? RunStatus::wrong_branch : RunStatus::diverged, why,
+         run.time(at));
+  };
+  lost(step, run.judge, reason);
+  if (good.step + 1 == step) return;
+  Judge judge = good.judge;
+  State state = good.state;
+  run.simulation.set_state(state);
+  for (long i = good.step + 1; i <= step; ++i) {
+    if (run.simulation.step().status == StepStatus::factorization_failed) return;
+    run.simulation.get_state(state);
+    const std::string first = judge.judge(run.time(i), state);
+    if (!first.empty()) return lost(i, judge, first);
+  }
+}
+
+/// Steps until the end or until the solution is lost.
+void step_through(const Context& run, State& state, const Observer& observer,
+                  std::vector<float>& times) {
+  RunSummary& summary = run.summary;
+  const long steps = count_steps(run.settings);
   times.reserve(static_cast<std::size_t>(steps));
+  LastGood good{0, state, run.judge};
   double judge_us = 0.0;
   for (long i = 1; i <= steps; ++i) {
-    const double t = i * settings.step.step;
     const auto begin = Clock::now();
-    const StepOutcome outcome = simulation.step();
-    times.push_back(static_cast<float>(microseconds(Clock::now() - begin)));
+    const StepOutcome outcome = run.simulation.step();
+    const auto end = Clock::now();
+    times.push_back(static_cast<float>(microseconds(end - begin)));
     summary.steps = i;
     summary.passes += outcome.passes;
     summary.factorizations += outcome.factorizations < 0 ? outcome.passes : outcome.factorizations;
     if (outcome.status == StepStatus::pass_limit) ++summary.steps_at_limit;
     if (outcome.status == StepStatus::factorization_failed) {
-      return fail(summary, RunStatus::diverged, "the tangent matrix could not be factorized", t);
+      return locate_loss(run, good, i, "the tangent matrix could not be factorized");
     }
-    const auto judging = Clock::now();
-    simulation.get_state(state);
-    const std::string lost = judge.judge(t, state);
-    judge_us += microseconds(Clock::now() - judging);
+    if (i % run.settings.judge_every == 0 || i == steps) {
+      run.simulation.get_state(state);
+      const std::string lost = run.judge.judge(run.time(i), state);
+      if (!lost.empty()) return locate_loss(run, good, i, lost);
+      good = {i, state, run.judge};
+      judge_us += microseconds(Clock::now() - end);
+    } else if (observer) {
+      run.simulation.get_state(state);
+    }
     summary.judge_us = judge_us / static_cast<double>(i);
-    if (!lost.empty()) {
-      return fail(summary, judge.off_branch() ? RunStatus::wrong_branch : RunStatus::diverged, lost,
-                  t);
-    }
-    if (observer) observer(i, t, state);
+    if (observer) observer(i, run.time(i), state);
   }
   const double share = static_cast<double>(summary.steps_at_limit) / static_cast<double>(steps);
   if (share > RunBounds{}.pass_limit_share) {
     summary.status = RunStatus::not_converged;
     summary.reason = fmt::format("{} of {} steps ended at the limit of {} passes (allowed {:g} %)",
-                                 summary.steps_at_limit, steps, settings.step.max_passes,
+                                 summary.steps_at_limit, steps, run.settings.step.max_passes,
                                  100 * RunBounds{}.pass_limit_share);
     return;
   }
-  summary.reason = judge.degradation();
+  summary.reason = run.judge.degradation();
   if (!summary.reason.empty()) summary.status = RunStatus::degraded;
 }
 
@@ -108,6 +147,10 @@ long count_steps(const RunSettings& settings) {
   };
   require(settings.step.step, "--step", " s");
   require(settings.duration, "--duration", " s");
+  if (settings.judge_every < 1) {
+    throw UsageError(
+        fmt::format("--judge-every is {}: it must be at least 1", settings.judge_every));
+  }
   require(settings.step.penalty, "--penalty", "");
   require(settings.step.tolerance, "--tolerance", " m");
   if (settings.step.max_passes < 1 || settings.step.max_passes > 1000) {
@@ -144,7 +187,7 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
     simulation->set_state(state);
     summary.setup_us = microseconds(Clock::now() - begin);
     if (observer) observer(0, 0.0, state);
-    step_through(*simulation, state, settings, judge, observer, summary, times);
+    step_through({*simulation, settings, judge, summary}, state, observer, times);
   } catch (const Unsupported& reason) {
     summary.status = RunStatus::unsupported;
     summary.reason = printable(reason.what(), 1000);

@@ -25,6 +25,9 @@ std::string to_string(RunStatus status);
 struct RunSettings {
   StepSettings step;
   double duration = 20.0;  ///< s; rounded to a whole number of steps
+  /// Steps between two judgements; the last step is judged too. Where one finds the solution lost,
+  /// the steps since the one before are done again to find the first that was.
+  int judge_every = 32;
 };
 
 struct RunSummary {
@@ -36,7 +39,7 @@ struct RunSummary {
   long factorizations = 0;
   long steps_at_limit = 0;
   double setup_us = 0.0;  ///< the factory and the first set_state()
-  double judge_us = 0.0;  ///< mean a step: copying the state out and judging it
+  double judge_us = 0.0;  ///< mean a step: what copying states out and judging them takes
   double step_us_median = 0.0, step_us_p99 = 0.0, step_us_max = 0.0;
   std::optional<double> position_error_max;  ///< m
   std::optional<double> energy_drift_max;    ///< none if the model is not conservative
