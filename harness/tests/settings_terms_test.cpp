@@ -13,6 +13,13 @@
 namespace mbs {
 namespace {
 
+/// Sanitizers make the reference slow: with them one variant a folder and two models must do.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kFewer = true;
+#else
+constexpr bool kFewer = false;
+#endif
+
 struct Setting {
   std::string name;
   StepSettings settings;
@@ -79,6 +86,9 @@ class SettingsTerms : public ::testing::TestWithParam<Case> {};
 TEST_P(SettingsTerms, Agree) {
   const auto& [variant, setting] = GetParam();
   for (const test::TermModel& term : test::term_models()) {
+    // For the trapezoidal rule, and for RATTLE.
+    const bool telling = term.name == "everything, spatial" || term.name == "couples, planar";
+    if (kFewer && !telling) continue;
     SCOPED_TRACE(term.name);
     const Scene scene{term.name, term.model, {}, {}};
     StepSettings settings = setting.settings;
@@ -92,14 +102,11 @@ TEST_P(SettingsTerms, Agree) {
   }
 }
 
-/// Sanitizers make the reference slow: with them one variant a folder must do.
 std::vector<Case> cases() {
   std::vector<Case> result;
   const RegistryEntry* last = nullptr;
   for (const NamedVariant& variant : all_variants()) {
-#if defined(__SANITIZE_ADDRESS__)
-    if (variant.entry == last) continue;
-#endif
+    if (kFewer && variant.entry == last) continue;
     last = variant.entry;
     for (const Setting& setting : all_settings()) {
       if (why_not_served(variant.variant->serves, setting.settings).empty()) {
