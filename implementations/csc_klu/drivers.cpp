@@ -45,6 +45,21 @@ void Drivers<dim>::subtract_values(double* phi) const {
 }
 
 template <int dim>
+void Drivers<dim>::place(const Derivatives& derivatives, double* x) const {
+  const double* moved = derivatives.points.data() + dim;
+  for (const auto& point : pattern_.points) {
+    for (int k = 0; k < dim; ++k) x[point.offset + k] = *moved++;
+  }
+}
+
+template <int dim>
+void Drivers<dim>::subtract_values(const Derivatives& derivatives, double* z) const {
+  for (std::size_t j = 0; j < values_.size(); ++j) {
+    z[pattern_.values[j].row] -= derivatives.values[j + 1];  // Eqs. (7), (8)
+  }
+}
+
+template <int dim>
 void Drivers<dim>::subtract_inertia(double factor, double* right) const {
   for (const auto& mass : pattern_.masses) {
     right[mass.coordinate] -= factor * mass.value * accelerations_.points[mass.acceleration];

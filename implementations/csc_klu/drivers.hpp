@@ -20,6 +20,12 @@ class Drivers {
   void sample(double t, double* q, double* v1, double* v2);
   /// phi (m) -= driven values, which the Jacobian took as zero.
   void subtract_values(double* phi) const;
+  /// Writes the velocity, or acceleration, of driven points to the extended x.
+  void place_rates(double* x) const { place(rates_, x); }
+  void place_accelerations(double* x) const { place(accelerations_, x); }
+  /// z (m) -= first, or second, derivatives of driven values.
+  void subtract_value_rates(double* z) const { subtract_values(rates_, z); }
+  void subtract_value_accelerations(double* z) const { subtract_values(accelerations_, z); }
   /// right (n) -= factor times driven mass times acceleration.
   void subtract_inertia(double factor, double* right) const;
   /// y (n) -= factor Phi_q^T Phi_t, at the positions q that the Jacobian was evaluated at.
@@ -40,6 +46,8 @@ class Drivers {
 
   void subtract(const Jacobian<dim>& jacobian, const double* q, const Derivatives& derivatives,
                 double factor, double* y);
+  void place(const Derivatives& derivatives, double* x) const;
+  void subtract_values(const Derivatives& derivatives, double* z) const;
 
   const DriverPattern<dim>& pattern_;
   const JacobianPattern<dim>& jacobian_pattern_;

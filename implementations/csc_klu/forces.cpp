@@ -88,6 +88,13 @@ void Forces<dim>::evaluate_couples(const double* q, double* right) {
 }
 
 template <int dim>
+void Forces<dim>::copy_stiffness(const Forces& other) {
+  std::ranges::copy(other.gradient_, gradient_.begin());
+  std::ranges::copy(other.along_, along_.begin());
+  std::ranges::copy(other.across_, across_.begin());
+}
+
+template <int dim>
 void Forces<dim>::add_product(const double* x, double* y) const {
   int begin = 0;
   for (std::size_t element = 0; element < stiff_ends_.size(); ++element) {

@@ -21,6 +21,8 @@ class Forces {
   /// Evaluates all elements at the extended positions q and velocities v, and adds their share of
   /// dt^2/4 Q to `right` (n).
   void evaluate(const double* q, const double* v, double* right);
+  /// Takes C and K over from another one on the same pattern.
+  void copy_stiffness(const Forces& other);
   /// y (n) += (dt/2 C + dt^2/4 K) x with what evaluate() found; x is n.
   void add_product(const double* x, double* y) const;
 

@@ -8,6 +8,16 @@
 
 namespace mbs::csc_klu {
 
+namespace {
+
+constexpr Serves kServes = {.saddle_point = true,
+                            .rattle = true,
+                            .multiplier_update = true,
+                            .tangent_reuse = true,
+                            .projections_every = true};
+
+}  // namespace
+
 Implementation implementation() {
   return {
       .description = "hand-rolled compressed sparse columns, sparse LU with precomputed schedules",
@@ -18,16 +28,19 @@ Implementation implementation() {
                     .description = "AMD ordering and pivots of the initial position, refactorized",
                     .create = create_simulation<Refactorization>,
                     .unsymmetric = true,
+                    .serves = kServes,
                     .operations = create_operations},
                    {.name = "factor",
                     .description = "AMD ordering of the pattern, pivots chosen anew in every pass",
                     .create = create_simulation<Factorization>,
                     .allocates = "klu_factor makes a new numeric object; KLU cannot reuse one",
-                    .unsymmetric = true},
+                    .unsymmetric = true,
+                    .serves = kServes},
                    {.name = "guarded",
                     .description = "refactorized until a solution's backward error asks for pivots",
                     .create = create_simulation<GuardedRefactorization>,
-                    .unsymmetric = true}},
+                    .unsymmetric = true,
+                    .serves = kServes}},
   };
 }
 

@@ -95,6 +95,34 @@ void Jacobian<dim>::velocity_term(const double* v, double factor, double* z) con
   }
 }
 
+template <int dim>
+void Jacobian<dim>::add_rates(const double* q, const double* x, double* z) const {
+  for (const auto& distance : pattern_.distances) {
+    const Vector<dim> d = difference<dim>(q, distance.a, distance.b);
+    *z++ += 2.0 * dot(d, difference<dim>(x, distance.a, distance.b));  // Eq. (7)
+  }
+  for (const auto& other : pattern_.dots) {
+    const Vector<dim> u = difference<dim>(q, other.a, other.b);
+    const Vector<dim> w = difference<dim>(q, other.c, other.d);
+    *z++ += dot(difference<dim>(x, other.a, other.b), w) +
+            dot(u, difference<dim>(x, other.c, other.d));  // Eq. (7)
+  }
+  for (const auto& bilinear : pattern_.bilinears) {
+    const Vector<dim> u = difference<dim>(q, bilinear.a, bilinear.b);
+    const Vector<dim> w = difference<dim>(q, bilinear.c, bilinear.d);
+    const Vector<dim> u_x = difference<dim>(x, bilinear.a, bilinear.b);
+    const Vector<dim> w_x = difference<dim>(x, bilinear.c, bilinear.d);
+    *z++ += dot(u_x, product(bilinear.B, w)) + dot(u, product(bilinear.B, w_x));  // Eq. (7)
+  }
+  int k = 0;
+  for (const auto& linear : pattern_.linears) {
+    for (; k < linear.terms_end; ++k) {
+      *z += pattern_.linear_terms[k].coefficient * x[pattern_.linear_terms[k].coordinate];
+    }
+    ++z;  // Eq. (8)
+  }
+}
+
 template class Jacobian<2>;
 template class Jacobian<3>;
 

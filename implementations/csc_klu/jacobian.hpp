@@ -23,6 +23,10 @@ class Jacobian {
   /// Phi-dot_q v + Phi-dot_t.
   void velocity_term(const double* v, double factor, double* z) const;
 
+  /// z (m) += the derivative of Phi when the extended positions q move at the extended rates x:
+  /// Phi_q x, and for driven points their share of Phi_t.
+  void add_rates(const double* q, const double* x, double* z) const;
+
   [[nodiscard]] const double* block(int k) const { return values_.data() + dim * k; }
 
  private:

@@ -46,7 +46,8 @@ bool are_positive(std::span<const double> pivots) {
 bool are_regular(std::span<const double> pivots) {
   long long bad = 0;
   for (const double pivot : pivots) {
-    bad |= !(std::abs(pivot) > 0.0) | !(std::abs(pivot) <= std::numeric_limits<double>::max());
+    const double size = std::abs(pivot);
+    bad |= !(size > 0.0) | !(size <= std::numeric_limits<double>::max());
   }
   return bad == 0;
 }
@@ -54,22 +55,30 @@ bool are_regular(std::span<const double> pivots) {
 }  // namespace
 
 struct LuFactors::Handles {
-  Handles(const Pattern& pattern, double pivot_tolerance)
+  Handles(const Pattern& pattern, double pivot_tolerance, const Structure& structure)
       : common(settings(pivot_tolerance)),
+        is_definite(structure.kind == Structure::Kind::definite),
         columns(pattern.columns()),
         column_begin(const_cast<int*>(pattern.column_begin.data())),  // KLU's C interface only
         row(const_cast<int*>(pattern.row.data())),                    // reads them
-        symbolic(klu_analyze(columns, column_begin, row, &common), {&common}),
+        symbolic(analyze(structure.order), {&common}),
         numeric(nullptr, {&common}) {
-    if (!symbolic) throw Unsupported("klu_analyze refused the tangent matrix");
+    if (!symbolic) throw Unsupported("klu_analyze refused the matrix");
+  }
+
+  klu_symbolic* analyze(std::span<const int> order) {
+    if (order.empty()) return klu_analyze(columns, column_begin, row, &common);
+    int* const given = const_cast<int*>(order.data());
+    return klu_analyze_given(columns, column_begin, row, given, given, &common);
   }
 
   [[nodiscard]] bool are_valid() const {
     const std::span pivots(static_cast<const double*>(numeric->Udiag), columns);
-    return common.noffdiag == 0 ? are_positive(pivots) : are_regular(pivots);
+    return is_definite && common.noffdiag == 0 ? are_positive(pivots) : are_regular(pivots);
   }
 
   klu_common common;
+  const bool is_definite;
   int columns;
   int* column_begin;
   int* row;
@@ -77,8 +86,8 @@ struct LuFactors::Handles {
   std::unique_ptr<klu_numeric, NumericDeleter> numeric;
 };
 
-LuFactors::LuFactors(const Pattern& pattern, double pivot_tolerance)
-    : klu_(std::make_unique<Handles>(pattern, pivot_tolerance)) {}
+LuFactors::LuFactors(const Pattern& pattern, double pivot_tolerance, const Structure& structure)
+    : klu_(std::make_unique<Handles>(pattern, pivot_tolerance, structure)) {}
 
 LuFactors::~LuFactors() = default;
 

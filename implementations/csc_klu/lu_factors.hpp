@@ -10,16 +10,29 @@
 
 namespace mbs::csc_klu {
 
+/// What is known of a symmetric matrix before it is factorized.
+struct Structure {
+  enum class Kind {
+    definite,        ///< positive definite
+    quasi_definite,  ///< [A B^T; B -C], A and C positive definite
+  };
+  Kind kind = Kind::definite;
+  /// Row and column to eliminate first, second, ...; empty: AMD's order. Not needed later.
+  std::span<const int> order = {};
+};
+
 /// LU factors of a symmetric matrix on one pattern, and the analysis that they need.
 ///
-/// Factors are valid if every pivot is finite and not zero; as long as all pivots are on the
-/// diagonal they have to be positive too, which is the test for a positive definite matrix. Once
-/// there are pivots off the diagonal nothing is said about definiteness.
+/// Factors are valid if every pivot is finite and not zero; pivots of a definite matrix have to be
+/// positive too as long as all of them are on the diagonal, which is the test for definiteness.
+/// Once there are pivots off the diagonal nothing is said about it. Quasi-definite matrices have
+/// pivots of both signs, known beforehand: a wrong one is a rounding error, which rows that depend
+/// on each other allow and survive.
 class LuFactors {
  public:
   /// Orders and analyses `pattern`, which has to outlive this. `pivot_tolerance`, 0 to 1: factor()
   /// takes the diagonal entry unless it is smaller than that part of the largest of its column.
-  LuFactors(const Pattern& pattern, double pivot_tolerance);
+  LuFactors(const Pattern& pattern, double pivot_tolerance, const Structure& structure);
   ~LuFactors();
 
   /// Chooses pivots for `values` (entries of the pattern) and factorizes; allocates. False if the

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 namespace mbs::csc_klu {
 
@@ -29,6 +30,18 @@ inline bool correct(int n, double h, double tolerance, const double* __restrict 
     a[i] += (4.0 / (h * h)) * increment[i];  // Eq. (2)
   }
   return beyond == 0;
+}
+
+/// The largest absolute value of x (n); NaN if x has one.
+inline double largest(int n, const double* x) {
+  double found = 0.0;
+  long long unordered = 0;
+  for (int i = 0; i < n; ++i) {
+    const double size = std::abs(x[i]);
+    unordered |= size != size;
+    found = size > found ? size : found;
+  }
+  return unordered == 0 ? found : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace mbs::csc_klu

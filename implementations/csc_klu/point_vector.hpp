@@ -45,6 +45,14 @@ std::array<double, dim> transposed_product(const std::array<std::array<double, d
   return y;
 }
 
+/// y = base + factor x, one column of a block, read before it is written: y may be base.
+template <std::size_t dim>
+void add_column(const double* base, const std::array<double, dim>& x, double factor, double* y) {
+  std::array<double, dim> sum;
+  for (std::size_t k = 0; k < dim; ++k) sum[k] = base[k] + factor * x[k];
+  for (std::size_t k = 0; k < dim; ++k) y[k] = sum[k];
+}
+
 /// factor z x w; planar, z = (0, 0, 1) and the argument is not read.
 inline Vector<2> cross(const double*, const Vector<2>& w, double factor) {
   return {-factor * w[1], factor * w[0]};

@@ -1,15 +1,15 @@
-// The step of paper/README.md over sparse storage, for any solver of the tangent matrix.
+// The step of paper/README.md over sparse storage, and the choice of a scheme.
 #include "simulation.hpp"
 
-#include <algorithm>
+#include <span>
 #include <vector>
 
-#include "drivers.hpp"
-#include "forces.hpp"
-#include "jacobian.hpp"
+#include "equations.hpp"
 #include "newmark.hpp"
+#include "rattle.hpp"
 #include "storage.hpp"
 #include "tangent.hpp"
+#include "trapezoidal.hpp"
 
 namespace mbs::csc_klu {
 namespace {
@@ -20,58 +20,29 @@ class NewtonSimulation final : public Simulation {
   NewtonSimulation(const Model& model, const StepSettings& settings)
       : Simulation(model, settings),
         settings_(settings),
-        weight_(settings.step * settings.step / 4.0),
-        n_(model.variables()),
-        m_(model.constraints()),
-        mass_(model),
-        jacobian_pattern_(model),
-        jacobian_(jacobian_pattern_),
-        force_pattern_(model),
-        forces_(force_pattern_, settings.step),
-        has_forces_(forces_.any()),
-        driver_pattern_(model, jacobian_pattern_),
-        drivers_(driver_pattern_, jacobian_pattern_),
-        has_drivers_(drivers_.any()),
-        tangent_pattern_(model, jacobian_pattern_, force_pattern_),
+        equations_(model, settings.step),
+        tangent_pattern_(model, equations_.jacobian_pattern, equations_.force_pattern),
         tangent_(tangent_pattern_, mass_values(model, tangent_pattern_.pattern),
-                 weight_ * settings.penalty),
-        weighted_force_(model.force().begin(), model.force().end()),
-        q_(model.initial_position().begin(), model.initial_position().end()),
-        v_(model.initial_velocity().begin(), model.initial_velocity().end()),
-        a_(n_, 0.0),
-        lambda_(m_, 0.0),
-        phi_(m_, 0.0),
-        reaction_(m_, 0.0),
-        right_a_(n_, 0.0),
-        solver_(tangent_.pattern(), initial_tangent(model)) {
-    for (double& force : weighted_force_) force *= weight_;
-  }
+                 equations_.weight * settings.penalty),
+        right_v_(equations_.v),
+        right_a_(equations_.n, 0.0),
+        solver_(tangent_.pattern(), assemble_tangent()) {}
 
  private:
-  void do_set_state(const State& state) override {
-    std::ranges::copy(state.q, q_.begin());
-    std::ranges::copy(state.v, v_.begin());
-    std::ranges::copy(state.a, a_.begin());
-    for (int i = 0; i < m_; ++i) lambda_[i] = state.lambda[jacobian_pattern_.model_row[i]];
-  }
-
-  void do_get_state(State& state) const override {
-    std::copy_n(q_.begin(), n_, state.q.begin());
-    std::copy_n(v_.begin(), n_, state.v.begin());
-    std::ranges::copy(a_, state.a.begin());
-    for (int i = 0; i < m_; ++i) state.lambda[jacobian_pattern_.model_row[i]] = lambda_[i];
-  }
+  void do_set_state(const State& state) override { equations_.set_state(state); }
+  void do_get_state(State& state) const override { equations_.get_state(state); }
 
   StepOutcome do_step() override {
-    if (has_drivers_) drivers_.sample(time(), q_.data(), v_.data(), right_v_.data());
-    predict(n_, settings_.step, q_.data(), v_.data(), a_.data());
+    Equations<dim>& e = equations_;
+    if (e.has_drivers) e.drivers.sample(time(), e.q.data(), e.v.data(), right_v_.data());
+    predict(e.n, settings_.step, e.q.data(), e.v.data(), e.a.data());
     phases_.enter(Phase::evaluation);
-    evaluate_constraints();
+    e.evaluate_constraints();
     StepOutcome outcome{StepStatus::pass_limit, 0};
     do {
       ++outcome.passes;
       phases_.enter(Phase::evaluation);
-      evaluate_residual();
+      e.evaluate_residual(settings_.penalty, right_a_.data());
       phases_.enter(Phase::assembly);
       assemble_tangent();
       phases_.enter(Phase::factorization);
@@ -82,125 +53,81 @@ class NewtonSimulation final : public Simulation {
       phases_.enter(Phase::solve);
       solver_.solve(right_a_);
       phases_.enter(Phase::other);
-      if (correct(n_, settings_.step, settings_.tolerance, right_a_.data(), q_.data(), v_.data(),
-                  a_.data())) {
+      if (correct(e.n, settings_.step, settings_.tolerance, right_a_.data(), e.q.data(), e.v.data(),
+                  e.a.data())) {
         outcome.status = StepStatus::converged;
       }
       phases_.enter(Phase::evaluation);
-      evaluate_constraints();
+      e.evaluate_constraints();
       phases_.enter(Phase::other);
-      update_multipliers();
+      e.update_multipliers(settings_.penalty);
     } while (outcome.status != StepStatus::converged && outcome.passes < settings_.max_passes);
     if (settings_.projections != Projections::none) project();
     phases_.enter(Phase::other);
     return outcome;
   }
 
-  /// Completes the extended vectors and evaluates T at the start.
-  std::span<const double> initial_tangent(const Model& model) {
-    const std::vector<double> fixed = fixed_coordinates(model);
-    q_.insert(q_.end(), fixed.begin(), fixed.end());
-    v_.resize(q_.size(), 0.0);
-    right_v_.resize(q_.size(), 0.0);
-    if (has_drivers_) drivers_.sample(0.0, q_.data(), v_.data(), right_v_.data());
-    evaluate_constraints();
-    if (has_forces_) forces_.evaluate(q_.data(), v_.data(), right_a_.data());
-    assemble_tangent();
+  std::span<const double> assemble_tangent() {
+    tangent_.assemble(equations_.jacobian);
+    if (equations_.has_forces) tangent_.add(equations_.forces);
     return tangent_.values();
-  }
-
-  void evaluate_constraints() {
-    jacobian_.evaluate(q_.data(), phi_.data());
-    if (has_drivers_) drivers_.subtract_values(phi_.data());
-  }
-
-  void assemble_tangent() {
-    tangent_.assemble(jacobian_);
-    if (has_forces_) tangent_.add(forces_);
-  }
-
-  /// The right-hand side -f of Eq. (4), in right_a_.
-  void evaluate_residual() {
-    const double alpha = settings_.penalty;
-    const double* __restrict const phi = phi_.data();
-    const double* __restrict const lambda = lambda_.data();
-    double* __restrict const reaction = reaction_.data();
-    for (int i = 0; i < m_; ++i) reaction[i] = weight_ * (lambda[i] + alpha * phi[i]);  // Eq. (3)
-
-    mass_.multiply(a_.data(), right_a_.data());
-    const double* __restrict const force = weighted_force_.data();
-    double* __restrict const right = right_a_.data();
-    for (int i = 0; i < n_; ++i) right[i] = force[i] - weight_ * right[i];  // Eq. (3)
-    jacobian_.subtract_transposed_product(reaction, right);                 // Eq. (3)
-    if (has_forces_) forces_.evaluate(q_.data(), v_.data(), right);
-    if (has_drivers_) drivers_.subtract_inertia(weight_, right);
-  }
-
-  void update_multipliers() {
-    const double alpha = settings_.penalty;
-    const double* __restrict const phi = phi_.data();
-    double* __restrict const lambda = lambda_.data();
-    for (int i = 0; i < m_; ++i) lambda[i] += alpha * phi[i];  // Eq. (1)
   }
 
   /// Eq. (6) with the last factors; the solutions are solved for in the buffers that become v, a.
   void project() {
+    Equations<dim>& e = equations_;
     const bool both = settings_.projections == Projections::both;
-    const double factor = weight_ * settings_.penalty;
+    const double factor = e.weight * settings_.penalty;
     phases_.enter(Phase::projection);
     if (both) {
-      mass_.multiply(v_.data(), a_.data(), right_v_.data(), right_a_.data());
+      e.mass.multiply(e.v.data(), e.a.data(), right_v_.data(), right_a_.data());
     } else {
-      mass_.multiply(v_.data(), right_v_.data());
+      e.mass.multiply(e.v.data(), right_v_.data());
     }
-    if (has_forces_) forces_.add_product(v_.data(), right_v_.data());
-    if (has_forces_ && both) forces_.add_product(a_.data(), right_a_.data());
-    if (has_drivers_) drivers_.subtract_rates(jacobian_, q_.data(), factor, right_v_.data());
+    if (e.has_forces) e.forces.add_product(e.v.data(), right_v_.data());
+    if (e.has_forces && both) e.forces.add_product(e.a.data(), right_a_.data());
+    if (e.has_drivers) e.drivers.subtract_rates(e.jacobian, e.q.data(), factor, right_v_.data());
     phases_.enter(Phase::solve);
-    solver_.solve({right_v_.data(), static_cast<std::size_t>(n_)});
-    v_.swap(right_v_);
+    solver_.solve({right_v_.data(), right_a_.size()});
+    e.v.swap(right_v_);
     if (!both) return;
     phases_.enter(Phase::projection);
-    jacobian_.velocity_term(v_.data(), factor, reaction_.data());
-    jacobian_.subtract_transposed_quadratics(reaction_.data(), right_a_.data());
-    if (has_drivers_) {
-      drivers_.subtract_accelerations(jacobian_, q_.data(), factor, right_a_.data());
+    e.jacobian.velocity_term(e.v.data(), factor, e.reaction.data());
+    e.jacobian.subtract_transposed_quadratics(e.reaction.data(), right_a_.data());
+    if (e.has_drivers) {
+      e.drivers.subtract_accelerations(e.jacobian, e.q.data(), factor, right_a_.data());
     }
     phases_.enter(Phase::solve);
     solver_.solve(right_a_);
-    a_.swap(right_a_);
+    e.a.swap(right_a_);
   }
 
   const StepSettings settings_;
-  const double weight_;  ///< dt^2/4, s^2
-  const int n_, m_;
-
-  const MassMatrix mass_;
-  const JacobianPattern<dim> jacobian_pattern_;
-  Jacobian<dim> jacobian_;
-  const ForcePattern force_pattern_;
-  Forces<dim> forces_;
-  const bool has_forces_;
-  const DriverPattern<dim> driver_pattern_;
-  Drivers<dim> drivers_;
-  const bool has_drivers_;
+  Equations<dim> equations_;
   const TangentPattern<dim> tangent_pattern_;
   Tangent<dim> tangent_;
-
-  std::vector<double> weighted_force_;  ///< dt^2/4 times the constant part of Q (n)
-  std::vector<double> q_, v_;           ///< extended by the fixed points and their velocity
-  std::vector<double> a_;               ///< n
-  std::vector<double> lambda_, phi_;    ///< m, in the order of JacobianPattern
-  std::vector<double> reaction_;        ///< m; what Phi_q^T multiplies
-  std::vector<double> right_v_;         ///< extended; right-hand side and solution for v'
-  std::vector<double> right_a_;         ///< n; the same for Delta q and a'
+  std::vector<double> right_v_;  ///< extended; right-hand side and solution for v'
+  std::vector<double> right_a_;  ///< n; the same for Delta q and a'
   Solver solver_;
 };
+
+/// Whether "The step" is asked for, with no setting of its own.
+bool is_default(const StepSettings& settings) {
+  return settings.scheme == Scheme::penalty && settings.projections_every == 1 &&
+         settings.multipliers == MultiplierUpdate::every_pass &&
+         settings.tangent == TangentReuse::none;
+}
+
+bool is_trapezoidal(const StepSettings& settings) {
+  return settings.scheme == Scheme::penalty || settings.scheme == Scheme::saddle_point;
+}
 
 }  // namespace
 
 template <TangentSolver Solver>
 std::unique_ptr<Simulation> create_simulation(const Model& model, const StepSettings& settings) {
+  if (!is_trapezoidal(settings)) return create_rattle<Solver>(model, settings);
+  if (!is_default(settings)) return create_trapezoidal<Solver>(model, settings);
   if (model.dimension() == 2) return std::make_unique<NewtonSimulation<2, Solver>>(model, settings);
   return std::make_unique<NewtonSimulation<3, Solver>>(model, settings);
 }

@@ -1,4 +1,4 @@
-// The step of paper/README.md over sparse storage, for any solver of the tangent matrix.
+// The step of paper/README.md over sparse storage, and the choice of a scheme.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,8 @@
 
 namespace mbs::csc_klu {
 
-/// Sets a simulation up; `model` outlives it. Instantiated in simulation.cpp for every solver.
+/// Sets a simulation up, of the class that `settings` ask for; `model` outlives it. Instantiated in
+/// simulation.cpp for every solver.
 template <TangentSolver Solver>
 [[nodiscard]] std::unique_ptr<Simulation> create_simulation(const Model& model,
                                                             const StepSettings& settings);

@@ -1,4 +1,4 @@
-// The solvers of the tangent matrix, one for each variant: what happens to pivots over time.
+// The solvers of a scheme's matrix, one for each variant: what happens to pivots over time.
 #include "solver.hpp"
 
 #include <algorithm>
@@ -8,8 +8,9 @@ namespace mbs::csc_klu {
 
 // In all constructors: if these values fail, the first step tries again.
 
-Refactorization::Refactorization(const Pattern& pattern, std::span<const double> values)
-    : factors_(pattern, 0.0) {
+Refactorization::Refactorization(const Pattern& pattern, std::span<const double> values,
+                                 const Structure& structure)
+    : factors_(pattern, 0.0, structure) {
   (void)factors_.factor(values);
 }
 
@@ -17,16 +18,18 @@ bool Refactorization::factorize(std::span<const double> values) {
   return factors_.exist() ? factors_.refactor(values) : factors_.factor(values);
 }
 
-Factorization::Factorization(const Pattern& pattern, std::span<const double> values)
-    : factors_(pattern, kPivotTolerance) {
+Factorization::Factorization(const Pattern& pattern, std::span<const double> values,
+                             const Structure& structure)
+    : factors_(pattern, kPivotTolerance, structure) {
   (void)factors_.factor(values);
 }
 
 GuardedRefactorization::GuardedRefactorization(const Pattern& pattern,
-                                               std::span<const double> values, Guard guard)
+                                               std::span<const double> values,
+                                               const Structure& structure, Guard guard)
     : pattern_(pattern),
       bound_(guard.backward_error),
-      factors_(pattern, guard.pivot_tolerance),
+      factors_(pattern, guard.pivot_tolerance, structure),
       values_(values),
       right_(pattern.columns()),
       residual_(pattern.columns()) {

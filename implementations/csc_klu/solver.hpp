@@ -1,4 +1,4 @@
-// The solvers of the tangent matrix, one for each variant: what happens to pivots over time.
+// The solvers of a scheme's matrix, one for each variant: what happens to pivots over time.
 #pragma once
 
 #include <concepts>
@@ -12,22 +12,25 @@ namespace mbs::csc_klu {
 
 /// What the simulation asks of a solver; every variant is a simulation with another one.
 ///
-/// Constructed from a pattern, which has to outlive it, and first values on it. factorize() takes
-/// new values, which have to stay until the last solve() with them; false if the matrix is not
-/// positive definite, singular or not finite (another call may succeed). solve() replaces a
-/// right-hand side (n) by the solution with the factors of the last success.
+/// Constructed from a pattern, which has to outlive it, first values on it and what is known of the
+/// matrix. factorize() takes new values, which have to stay until the last solve() with them; false
+/// if the matrix is singular, not finite or, unless it is said to be quasi-definite, not positive
+/// definite (another call may succeed). solve() replaces a right-hand side (of all columns) by the
+/// solution with the factors of the last success.
 template <class Solver>
-concept TangentSolver = std::constructible_from<Solver, const Pattern&, std::span<const double>> &&
-    requires(Solver solver, std::span<const double> values, std::span<double> x) {
+concept TangentSolver = std::constructible_from < Solver,
+        const Pattern&, std::span<const double>,
+const Structure& > &&requires(Solver solver, std::span<const double> values, std::span<double> x) {
   { solver.factorize(values) } -> std::same_as<bool>;
   solver.solve(x);
 };
 
 /// `refactor`: ordering and pivots stay as they were found at set-up. All pivots are diagonal,
-/// which is stable for every positive definite matrix.
+/// which is stable for every positive definite matrix, and for quasi-definite ones in a good order.
 class Refactorization {
  public:
-  Refactorization(const Pattern& pattern, std::span<const double> values);
+  Refactorization(const Pattern& pattern, std::span<const double> values,
+                  const Structure& structure = {});
   [[nodiscard]] bool factorize(std::span<const double> values);
   void solve(std::span<double> x) { factors_.solve(x); }
 
@@ -41,7 +44,8 @@ inline constexpr double kPivotTolerance = 1e-3;
 /// `factor`: new pivots at every call; only the ordering stays.
 class Factorization {
  public:
-  Factorization(const Pattern& pattern, std::span<const double> values);
+  Factorization(const Pattern& pattern, std::span<const double> values,
+                const Structure& structure = {});
   [[nodiscard]] bool factorize(std::span<const double> values) { return factors_.factor(values); }
   void solve(std::span<double> x) { factors_.solve(x); }
 
@@ -65,7 +69,8 @@ struct Guard {
 ///   solver.repivotings();  // 0: the pivots of `first` were good enough for `values`
 class GuardedRefactorization {
  public:
-  GuardedRefactorization(const Pattern& pattern, std::span<const double> values, Guard guard = {});
+  GuardedRefactorization(const Pattern& pattern, std::span<const double> values,
+                         const Structure& structure = {}, Guard guard = {});
   [[nodiscard]] bool factorize(std::span<const double> values);
   void solve(std::span<double> x);
 

@@ -109,7 +109,7 @@ int main() {
   TangentSequence sequence;
   const Pattern& pattern = sequence.pattern();
   const auto guarded = [&](Guard guard) {
-    return GuardedRefactorization(pattern, sequence.at(1.5), guard);
+    return GuardedRefactorization(pattern, sequence.at(1.5), {}, guard);
   };
   Refactorization diagonal(pattern, sequence.at(1.5));
   Factorization fresh(pattern, sequence.at(1.5));

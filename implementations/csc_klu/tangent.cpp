@@ -4,18 +4,9 @@
 #include <array>
 #include <utility>
 
+#include "point_vector.hpp"
+
 namespace mbs::csc_klu {
-namespace {
-
-/// y = base + factor x, one column of a block, read before it is written: y may be base.
-template <int dim>
-void add_column(const double* base, const std::array<double, dim>& x, double factor, double* y) {
-  std::array<double, dim> sum;
-  for (int k = 0; k < dim; ++k) sum[k] = base[k] + factor * x[k];
-  for (int k = 0; k < dim; ++k) y[k] = sum[k];
-}
-
-}  // namespace
 
 template <int dim>
 Tangent<dim>::Tangent(const TangentPattern<dim>& pattern, std::vector<double> base, double factor)
@@ -40,7 +31,7 @@ void Tangent<dim>::assemble(const Jacobian<dim>& jacobian) {
     }
     for (int col = 0; col < dim; ++col) {
       const int at = diagonal.columns[col];
-      add_column<dim>(constant + at, product[col], factor_, value + at);  // Eq. (5)
+      add_column(constant + at, product[col], factor_, value + at);  // Eq. (5)
     }
   }
   const auto couple = [&](const auto& coupling, const double* base) {
@@ -49,31 +40,12 @@ void Tangent<dim>::assemble(const Jacobian<dim>& jacobian) {
     for (int k = 0; k < dim; ++k) right[k] = jacobian.block(coupling.right)[k];
     for (int col = 0; col < dim; ++col) {
       const int above = coupling.above[col], below = coupling.below[col];
-      add_column<dim>(base + above, left, factor_ * right[col], value + above);  // Eq. (5)
-      add_column<dim>(base + below, right, factor_ * left[col], value + below);  // Eq. (5)
+      add_column(base + above, left, factor_ * right[col], value + above);  // Eq. (5)
+      add_column(base + below, right, factor_ * left[col], value + below);  // Eq. (5)
     }
   };
   for (const auto& coupling : pattern_.couplings) couple(coupling, constant);
   for (const auto& coupling : pattern_.further_couplings) couple(coupling, value);
-}
-
-template <int dim>
-void Tangent<dim>::add(const Forces<dim>& forces) {
-  double* const value = values_.data();
-  const auto add_share = [&](const auto& share, const double* base) {
-    const double along = forces.along(share.element);
-    const double across = forces.across(share.element) * share.sign;
-    std::array<double, dim> left, right;
-    for (int k = 0; k < dim; ++k) left[k] = forces.gradient(share.left)[k];
-    for (int k = 0; k < dim; ++k) right[k] = forces.gradient(share.right)[k];
-    for (int col = 0; col < dim; ++col) {
-      const int at = share.columns[col];
-      add_column<dim>(base + at, left, along * right[col], value + at);  // Eq. (5)
-      value[at + col] += across;                                         // Eq. (5)
-    }
-  };
-  for (const auto& share : pattern_.shares) add_share(share, constant_.data());
-  for (const auto& share : pattern_.further_shares) add_share(share, value);
 }
 
 template class Tangent<2>;

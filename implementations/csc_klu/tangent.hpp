@@ -21,7 +21,9 @@ class Tangent {
   /// Updates the values for a new Phi_q.
   void assemble(const Jacobian<dim>& jacobian);
   /// Adds dt/2 C + dt^2/4 K; after every assemble(), if there are forces.
-  void add(const Forces<dim>& forces);
+  void add(const Forces<dim>& forces) {
+    pattern_.shares.add(forces, constant_.data(), values_.data());  // Eq. (5)
+  }
 
   [[nodiscard]] const Pattern& pattern() const { return pattern_.pattern; }
   [[nodiscard]] std::span<const double> values() const { return values_; }

@@ -116,13 +116,8 @@ TangentPattern<dim>::TangentPattern(const Model& model, const JacobianPattern<di
   visit_linear(jacobian, [&](int row, int col, double product) {
     constants.push_back({pattern.offset(row, col), product});
   });
-  const ElementBlock* before = nullptr;
-  for (const ElementBlock& block : elements) {
-    const bool repeated = before != nullptr && before->p == block.p && before->q == block.q;
-    (repeated || is_written(jacobian, pairs, block.p, block.q) ? further_shares : shares)
-        .push_back({block.element, block.left, block.right, block.sign, columns(block.p, block.q)});
-    before = &block;
-  }
+  shares = ElementShares<dim>(elements, pattern,
+                              [&](int p, int q) { return is_written(jacobian, pairs, p, q); });
 }
 
 template struct TangentPattern<2>;

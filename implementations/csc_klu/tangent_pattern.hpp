@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "element_shares.hpp"
 #include "force_pattern.hpp"
 #include "jacobian_pattern.hpp"
 #include "storage.hpp"
@@ -11,8 +12,7 @@
 namespace mbs::csc_klu {
 
 /// The union pattern of M, Phi_q^T Phi_q, C and K, and what updates it. For Phi_q^T Phi_q: for
-/// every dim x dim block of it which Jacobian blocks to multiply and where the values go. For C and
-/// K: for every pair of an element's ends which gradients to multiply and where the values go.
+/// every dim x dim block of it which Jacobian blocks to multiply and where the values go.
 template <int dim>
 struct TangentPattern {
   using Columns = std::array<int, dim>;  ///< offset of the first row of each column of a block
@@ -33,12 +33,6 @@ struct TangentPattern {
     int at;  ///< offset
     double product;
   };
-  /// Block (p, q) of an element's share, any p and q: one product of the gradients of two ends.
-  struct Share {
-    int element, left, right;  ///< an element with C and K of a ForcePattern, and two of its ends
-    double sign;               ///< what S S^T of Forces has there; 0 for torsion springs
-    Columns columns;
-  };
 
   TangentPattern(const Model& model, const JacobianPattern<dim>& jacobian,
                  const ForcePattern& forces);
@@ -48,8 +42,7 @@ struct TangentPattern {
   std::vector<Coupling> couplings;          ///< the first product for each pair of points
   std::vector<Coupling> further_couplings;  ///< more products for pairs that have them
   std::vector<Constant> constants;          ///< all of the linear constraints' Phi_q^T Phi_q
-  std::vector<Share> shares;                ///< the first of each block without constraints
-  std::vector<Share> further_shares;        ///< all others
+  ElementShares<dim> shares;                ///< C and K
 };
 
 }  // namespace mbs::csc_klu

@@ -1,0 +1,18 @@
+// In which order to eliminate the saddle-point matrix, found once.
+#pragma once
+
+#include <vector>
+
+#include "storage.hpp"
+
+namespace mbs::csc_klu {
+
+/// An order for the matrix of Eq. (12) on `saddle`, n coordinates before its multipliers: AMD's for
+/// the coordinates of T, every multiplier right after the last of its coordinates. So it never is
+/// -eps alone that becomes a pivot, by which 1/eps Phi_q^T Phi_q would come into T_0 as it does in
+/// the penalty form, but -(eps + Phi_q S^-1 Phi_q^T) with the row of the constraint whole.
+///
+/// Example, one coordinate x and one multiplier: x, then the multiplier.
+[[nodiscard]] std::vector<int> interleaved_order(const Pattern& saddle, int n);
+
+}  // namespace mbs::csc_klu

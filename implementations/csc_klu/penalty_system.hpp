@@ -1,0 +1,57 @@
+// Newton's linear system in penalty form: Eqs. (4), (5), (6) and (15).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "equations.hpp"
+#include "solver.hpp"
+#include "tangent.hpp"
+
+namespace mbs::csc_klu {
+
+/// T and a right-hand side of n numbers; see NewtonSystem.
+template <int dim, TangentSolver Solver>
+class PenaltySystem {
+ public:
+  PenaltySystem(const Model& model, const StepSettings& settings, Equations<dim>& equations)
+      : penalty_(settings.penalty),
+        equations_(equations),
+        pattern_(model, equations.jacobian_pattern, equations.force_pattern),
+        tangent_(pattern_, mass_values(model, pattern_.pattern), equations.weight * penalty_),
+        right_(equations.n, 0.0),
+        weighted_(equations.m, 0.0),
+        solver_(pattern_.pattern, assemble()) {}
+
+  std::span<const double> assemble() {
+    tangent_.assemble(equations_.jacobian);
+    if (equations_.has_forces) tangent_.add(equations_.forces);
+    return tangent_.values();
+  }
+  [[nodiscard]] bool factorize() { return solver_.factorize(tangent_.values()); }
+
+  void evaluate_residual() { equations_.evaluate_residual(penalty_, right_.data()); }
+  void include_constraints(std::span<const double> rates) {
+    const double factor = equations_.weight * penalty_;
+    for (int i = 0; i < equations_.m; ++i) weighted_[i] = factor * rates[i];
+    equations_.jacobian.subtract_transposed_product(weighted_.data(), right_.data());
+  }
+  void reset_reactions() {}
+  void include_reactions() {}
+  void update_reactions() {}
+  void solve() { solver_.solve(right_); }
+  [[nodiscard]] std::span<double> right() { return right_; }
+
+  void update_multipliers() { equations_.update_multipliers(penalty_); }
+
+ private:
+  const double penalty_;
+  Equations<dim>& equations_;
+  const TangentPattern<dim> pattern_;
+  Tangent<dim> tangent_;
+  std::vector<double> right_;     ///< n
+  std::vector<double> weighted_;  ///< m
+  Solver solver_;
+};
+
+}  // namespace mbs::csc_klu

@@ -1,0 +1,80 @@
+// The pattern of the saddle-point matrix and where its values are, found once.
+#include "saddle_pattern.hpp"
+
+#include <utility>
+
+#include "elimination_order.hpp"
+
+namespace mbs::csc_klu {
+namespace {
+
+/// Calls visit(multiplier, coordinate, coefficient) for every term of a linear constraint.
+template <int dim, class Visit>
+void visit_linear(const JacobianPattern<dim>& jacobian, int n, Visit visit) {
+  int multiplier = n + jacobian.quadratics(), k = 0;
+  for (const auto& linear : jacobian.linears) {
+    for (; k < linear.terms_end; ++k) {
+      visit(multiplier, jacobian.linear_terms[k].coordinate, jacobian.linear_terms[k].coefficient);
+    }
+    ++multiplier;
+  }
+}
+
+/// Calls visit(multiplier, coordinate) with the first coordinate of every Jacobian block.
+template <int dim, class Visit>
+void visit_blocks(const JacobianPattern<dim>& jacobian, int n, Visit visit) {
+  for (int p = 0; p < jacobian.points(); ++p) {
+    for (int block = jacobian.block_begin[p]; block < jacobian.block_begin[p + 1]; ++block) {
+      visit(n + jacobian.block_row[block], dim * p);
+    }
+  }
+}
+
+template <int dim>
+Pattern saddle_pattern(const Model& model, const JacobianPattern<dim>& jacobian,
+                       const std::vector<ElementBlock>& elements) {
+  const int n = model.variables(), size = n + model.constraints();
+  std::vector<Pattern::Position> positions = mass_positions(model);
+  for (const ElementBlock& block : elements) {
+    for (int col = dim * block.q; col < dim * block.q + dim; ++col) {
+      for (int k = 0; k < dim; ++k) positions.push_back({dim * block.p + k, col});
+    }
+  }
+  const auto add_both = [&](int multiplier, int coordinate) {
+    positions.push_back({multiplier, coordinate});
+    positions.push_back({coordinate, multiplier});
+  };
+  visit_blocks(jacobian, n, [&](int multiplier, int coordinate) {
+    for (int k = 0; k < dim; ++k) add_both(multiplier, coordinate + k);
+  });
+  visit_linear(jacobian, n,
+               [&](int multiplier, int coordinate, double) { add_both(multiplier, coordinate); });
+  for (int i = n; i < size; ++i) positions.push_back({i, i});
+  return Pattern(size, std::move(positions));
+}
+
+}  // namespace
+
+template <int dim>
+SaddlePattern<dim>::SaddlePattern(const Model& model, const JacobianPattern<dim>& jacobian,
+                                  const std::vector<ElementBlock>& elements)
+    : pattern(saddle_pattern(model, jacobian, elements)),
+      order(interleaved_order(pattern, model.variables())),
+      shares(elements, pattern, [](int, int) { return false; }) {
+  const int n = model.variables();
+  visit_blocks(jacobian, n, [&](int multiplier, int coordinate) {
+    Block block{multiplier - n, pattern.offset(coordinate, multiplier), {}};
+    for (int k = 0; k < dim; ++k) block.below[k] = pattern.offset(multiplier, coordinate + k);
+    blocks.push_back(block);
+  });
+  visit_linear(jacobian, n, [&](int multiplier, int coordinate, double coefficient) {
+    constants.push_back({multiplier - n, pattern.offset(coordinate, multiplier),
+                         pattern.offset(multiplier, coordinate), coefficient});
+  });
+  for (int i = n; i < pattern.columns(); ++i) diagonal.push_back(pattern.offset(i, i));
+}
+
+template struct SaddlePattern<2>;
+template struct SaddlePattern<3>;
+
+}  // namespace mbs::csc_klu

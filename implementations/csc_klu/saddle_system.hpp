@@ -1,0 +1,86 @@
+// Newton's linear system in saddle-point form: Eqs. (12), (13) and, for RATTLE, (14).
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "equations.hpp"
+#include "saddle_matrix.hpp"
+#include "solver.hpp"
+
+namespace mbs::csc_klu {
+
+/// The matrix of Eq. (12) and a right-hand side of n + m numbers; see NewtonSystem.
+template <int dim, TangentSolver Solver>
+class SaddleSystem {
+ public:
+  SaddleSystem(const Model& model, const StepSettings& settings, Equations<dim>& equations)
+      : SaddleSystem(model, settings, equations, element_blocks(equations.force_pattern, dim)) {}
+
+  /// `elements`: those that give C and K; without any, T_0 is M.
+  SaddleSystem(const Model& model, const StepSettings& settings, Equations<dim>& equations,
+               const std::vector<ElementBlock>& elements)
+      : equations_(equations),
+        has_elements_(!elements.empty()),
+        multiplier_factor_(4.0 / (settings.step * settings.step)),
+        epsilon_(multiplier_factor_ / settings.penalty),
+        pattern_(model, equations.jacobian_pattern, elements),
+        scales_(multiplier_scales(model, equations.jacobian_pattern, equations.jacobian)),
+        matrix_(pattern_, model, epsilon_, scales_),
+        right_(equations.n + equations.m, 0.0),
+        nu_(equations.m, 0.0),
+        solver_(pattern_.pattern, assemble(),
+                Structure{Structure::Kind::quasi_definite, pattern_.order}) {}
+
+  std::span<const double> assemble() {
+    matrix_.assemble(equations_.jacobian);
+    if (has_elements_) matrix_.assemble(equations_.forces);
+    return matrix_.values();
+  }
+  [[nodiscard]] bool factorize() { return solver_.factorize(matrix_.values()); }
+
+  void evaluate_residual() {
+    equations_.evaluate_residual(0.0, right_.data());
+    include_constraints(equations_.phi);
+  }
+  void include_constraints(std::span<const double> rates) {
+    double* const lower = right_.data() + equations_.n;
+    for (int i = 0; i < equations_.m; ++i) lower[i] = -scales_[i] * rates[i];  // Eqs. (12), (13)
+  }
+  void reset_reactions() { std::ranges::fill(nu_, 0.0); }
+  void include_reactions() {
+    equations_.jacobian.subtract_transposed_product(nu_.data(), right_.data());
+    double* const lower = right_.data() + equations_.n;
+    for (int i = 0; i < equations_.m; ++i) lower[i] += scales_[i] * epsilon_ * nu_[i];
+  }
+  void update_reactions() {
+    for (int i = 0; i < equations_.m; ++i) nu_[i] += multipliers()[i];
+  }
+  void solve() {
+    solver_.solve(right_);
+    double* const lower = right_.data() + equations_.n;
+    for (int i = 0; i < equations_.m; ++i) lower[i] *= scales_[i];
+  }
+  [[nodiscard]] std::span<double> right() { return right_; }
+  [[nodiscard]] const double* multipliers() const { return right_.data() + equations_.n; }
+
+  void update_multipliers() {
+    const double* const mu = multipliers();
+    for (int i = 0; i < equations_.m; ++i) equations_.lambda[i] += multiplier_factor_ * mu[i];
+  }
+
+ private:
+  Equations<dim>& equations_;
+  const bool has_elements_;
+  const double multiplier_factor_;  ///< 4/dt^2, 1/s^2
+  const double epsilon_;
+  const SaddlePattern<dim> pattern_;
+  const std::vector<double> scales_;  ///< m
+  SaddleMatrix<dim> matrix_;
+  std::vector<double> right_;  ///< n + m
+  std::vector<double> nu_;     ///< m; of a refined projection
+  Solver solver_;
+};
+
+}  // namespace mbs::csc_klu

@@ -1,0 +1,164 @@
+// The trapezoidal step with all settings: saddle-point form, kept factors, refined projections.
+#include "trapezoidal.hpp"
+
+#include "equations.hpp"
+#include "newmark.hpp"
+#include "newton_system.hpp"
+#include "penalty_system.hpp"
+#include "projection.hpp"
+#include "saddle_system.hpp"
+
+namespace mbs::csc_klu {
+namespace {
+
+template <int dim, NewtonSystem System>
+class TrapezoidalSimulation final : public Simulation {
+ public:
+  TrapezoidalSimulation(const Model& model, const StepSettings& settings)
+      : Simulation(model, settings),
+        settings_(settings),
+        equations_(model, settings.step),
+        system_(model, settings, equations_),
+        projection_(settings.step, equations_, system_, phases_) {}
+
+ private:
+  void do_set_state(const State& state) override {
+    equations_.set_state(state);
+    is_due_ = true;
+    unprojected_ = 0;
+  }
+  void do_get_state(State& state) const override { equations_.get_state(state); }
+
+  StepOutcome do_step() override {
+    Equations<dim>& e = equations_;
+    if (e.has_drivers) e.drivers.sample(time(), e.q.data(), e.v.data(), e.v.data());
+    predict(e.n, settings_.step, e.q.data(), e.v.data(), e.a.data());
+    phases_.enter(Phase::evaluation);
+    e.evaluate_constraints();
+    if (settings_.tangent != TangentReuse::kept) is_due_ = true;
+    is_updated_ = false;
+    StepOutcome outcome{StepStatus::pass_limit, 0, 0};
+    if (!iterate(outcome) || (ends_projected() && !project(outcome))) {
+      outcome.status = StepStatus::factorization_failed;
+    }
+    phases_.enter(Phase::other);
+    if (outcome.status != StepStatus::converged) is_due_ = true;
+    return outcome;
+  }
+
+  /// All passes of a step; false if a factorization failed.
+  bool iterate(StepOutcome& outcome) {
+    Equations<dim>& e = equations_;
+    double before = 0.0;
+    do {
+      ++outcome.passes;
+      phases_.enter(Phase::evaluation);
+      system_.evaluate_residual();
+      if (is_due_ && !factorize(outcome)) return false;
+      phases_.enter(Phase::solve);
+      system_.solve();
+      phases_.enter(Phase::other);
+      const double size = largest(e.n, system_.right().data());
+      const bool is_within = correct(e.n, settings_.step, settings_.tolerance,
+                                     system_.right().data(), e.q.data(), e.v.data(), e.a.data());
+      const bool is_slow = outcome.passes > 1 && !is_within && !(size <= before / 4.0);
+      before = size;
+      phases_.enter(Phase::evaluation);
+      e.evaluate_constraints();
+      phases_.enter(Phase::other);
+      if (update_multipliers(is_within)) outcome.status = StepStatus::converged;
+      if (settings_.tangent == TangentReuse::none) is_due_ = true;
+      if (settings_.tangent == TangentReuse::kept && is_slow) is_due_ = true;
+    } while (outcome.status != StepStatus::converged && outcome.passes < settings_.max_passes);
+    return true;
+  }
+
+  /// After a pass; true if the step has converged.
+  bool update_multipliers(bool is_within) {
+    if (settings_.multipliers == MultiplierUpdate::every_pass) {
+      system_.update_multipliers();
+      return is_within;
+    }
+    const bool has_converged = is_within && is_updated_;
+    if (is_within) system_.update_multipliers();
+    is_updated_ = is_within;
+    return has_converged;
+  }
+
+  /// Assembles with Phi_q, C and K as they are.
+  bool factorize(StepOutcome& outcome) {
+    phases_.enter(Phase::assembly);
+    system_.assemble();
+    projection_.keep_stiffness();
+    phases_.enter(Phase::factorization);
+    ++outcome.factorizations;
+    is_due_ = !system_.factorize();
+    return !is_due_;
+  }
+
+  bool ends_projected() {
+    if (++unprojected_ < settings_.projections_every) return false;
+    unprojected_ = 0;
+    return settings_.projections != Projections::none;
+  }
+
+  /// False if a factorization failed.
+  bool project(StepOutcome& outcome) {
+    Equations<dim>& e = equations_;
+    using Rates = ConstraintRates<dim>;
+    const double h = settings_.step, tolerance = settings_.tolerance;
+    const bool both = settings_.projections == Projections::both;
+    if (settings_.tangent == TangentReuse::none) {
+      projection_.solve(&Rates::partial_velocity, e.v.data());
+      if (both) projection_.solve(&Rates::partial_acceleration, e.a.data());
+      return true;
+    }
+    const auto repair = [&] {
+      if (settings_.tangent != TangentReuse::kept) return Repair::none;
+      return factorize_at_end(outcome) ? Repair::done : Repair::failed;
+    };
+    return projection_.refine(&Rates::velocity, e.v.data(), (2.0 / h) * tolerance, repair) &&
+           (!both || projection_.refine(&Rates::acceleration, e.a.data(),
+                                        (4.0 / (h * h)) * tolerance, repair));
+  }
+
+  /// With C and K, too, of the final q'; what comes with them, Q, nobody needs.
+  bool factorize_at_end(StepOutcome& outcome) {
+    Equations<dim>& e = equations_;
+    if (e.has_forces) e.forces.evaluate(e.q.data(), e.v.data(), system_.right().data());
+    return factorize(outcome);
+  }
+
+  const StepSettings settings_;
+  Equations<dim> equations_;
+  System system_;
+  Projection<dim, System> projection_;
+  bool is_due_ = true;       ///< the next pass factorizes
+  bool is_updated_ = false;  ///< the pass before updated lambda
+  int unprojected_ = 0;      ///< steps since the last one that projections_every asked for
+};
+
+template <int dim, TangentSolver Solver>
+std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
+  using Penalty = TrapezoidalSimulation<dim, PenaltySystem<dim, Solver>>;
+  using Saddle = TrapezoidalSimulation<dim, SaddleSystem<dim, Solver>>;
+  if (settings.scheme == Scheme::penalty) return std::make_unique<Penalty>(model, settings);
+  return std::make_unique<Saddle>(model, settings);
+}
+
+}  // namespace
+
+template <TangentSolver Solver>
+std::unique_ptr<Simulation> create_trapezoidal(const Model& model, const StepSettings& settings) {
+  return model.dimension() == 2 ? create<2, Solver>(model, settings)
+                                : create<3, Solver>(model, settings);
+}
+
+template std::unique_ptr<Simulation> create_trapezoidal<Refactorization>(const Model&,
+                                                                         const StepSettings&);
+template std::unique_ptr<Simulation> create_trapezoidal<Factorization>(const Model&,
+                                                                       const StepSettings&);
+template std::unique_ptr<Simulation> create_trapezoidal<GuardedRefactorization>(
+    const Model&, const StepSettings&);
+
+}  // namespace mbs::csc_klu
