@@ -13,8 +13,8 @@ import pytest
 from study.pipeline.errors import StudyError
 from study.tests import moving_mbs
 from study.tests.conftest import ROOT
-from study.viewer import picture, program, trajectory
-from study.viewer.scene import from_description
+from study.viewer import picture, program, sheet, trajectory
+from study.viewer.scene import from_description, upward
 
 STAND_IN = Path(moving_mbs.__file__)
 
@@ -192,7 +192,7 @@ def test_no_name_in_a_scene_can_leave_its_element(tmp_path):
     scene.points = [(name.replace("O", "</script><b>"), kind) for name, kind in scene.points]
     motion = trajectory.read(csv_of(tmp_path, "crank"), scene_of("crank"), 100)
     from study.viewer.page import render
-    text = render(scene, motion, "<i>", 1)
+    text = render(scene, motion, "<i>", [0, 1, 0])
     assert "<b>" not in text and "alert(1)</script>" not in text and "<i>" not in text
 
 
@@ -211,6 +211,47 @@ def test_vectors_sit_on_shared_points_or_amid_their_body(tmp_path):
     assert picture.arrows(scene, motion)[0].at == [index[name] for name in "OTUV"]
     scene.bodies.append(type(scene.bodies[0])("L", [index["W"], index["T"]], [index["a"]]))
     assert picture.arrows(scene, motion)[0].at == [index["T"]]
+
+
+def sheet_of(monkeypatch, scene, motion, window=None):
+    """The axes of the sheet, before they are closed."""
+    drawn = []
+    monkeypatch.setattr(sheet.plt, "close", drawn.append)
+    sheet.draw(scene, motion, [0, 1, 0], window)
+    return [axes for axes in drawn[-1].axes if axes.get_title(loc="left").strip()]
+
+
+def test_every_arrow_is_in_every_instant_of_the_sheet(tmp_path, monkeypatch):
+    scene = scene_of("top")
+    path = csv_of(tmp_path, "top", times=[0.05 * k for k in range(60)])
+    motion = trajectory.read(path, scene, 99)
+    arrow, = picture.arrows(scene, motion)
+    monkeypatch.setattr(picture, "arrows", lambda *_: [picture.Arrow(arrow.vector, arrow.at, 2.0)])
+    for axes in sheet_of(monkeypatch, scene, motion):
+        tip, = (text.xy for text in axes.texts if text.xycoords == "data")
+        (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+        assert left < tip[0] < right and bottom < tip[1] < top
+
+
+def test_the_sheet_shows_the_whole_motion_unless_a_window_is_asked_for(tmp_path, monkeypatch):
+    scene = scene_of("crank")
+    path = csv_of(tmp_path, "crank", times=[0.05 * k for k in range(201)])
+    motion = trajectory.read(path, scene, 999)
+    titles = [[axes.get_title(loc="left") for axes in sheet_of(monkeypatch, scene, motion, window)]
+              for window in (None, (1, 3))]
+    assert [(found[0], found[-1]) for found in titles] == [("0.0 s", "10.0 s"), ("1.00 s", "3.00 s")]
+
+
+@pytest.mark.parametrize("text, up", [
+    ('{"gravity": [0, 0, -9.81]}', [0, 0, 1]), ('{"gravity": [0, 0, 9.81]}', [0, 0, -1]),
+    ('{"gravity": [-9, 0.1, 4]}', [1, 0, 0]), ('{"gravity": [0, 0, 0]}', [0, 1, 0]),
+    ('// "gravity": /*\n{"points": [{"name": "a//b/*"}], /* here:\n*/ "gravity": [0, 0, -1.6]}',
+     [0, 0, 1]), ("{}", [0, 1, 0]), ("no JSON", [0, 1, 0])])
+def test_up_is_against_gravity(tmp_path, text, up):
+    path = tmp_path / "scene.json"
+    path.write_text(text)
+    assert upward(path) == up
+    assert upward("four-bar:3") == [0, 1, 0]
 
 
 def test_a_bodys_own_helper_points_are_not_drawn(tmp_path):

@@ -73,6 +73,18 @@ def test_a_duration_that_takes_too_many_steps_is_refused(tmp_path, duration):
     assert done.returncode == 2 and "steps" in done.stderr and "at most 1e+08" in done.stderr
 
 
+@pytest.mark.parametrize("asked, up", [([], [0, 0, 1]), (["--up", "x"], [1, 0, 0])])
+def test_a_scene_in_space_stands_upright(tmp_path, asked, up):
+    (tmp_path / "pendulum.json").write_text(json.dumps({
+        "dimension": 3, "gravity": [0, 0, -9.81],
+        "points": [{"name": "A", "position": [0, 0, 0], "fixed": True},
+                   {"name": "B", "position": [0.6, 0, -0.8]}],
+        "rods": [{"name": "rod", "between": ["A", "B"], "mass": 1}]}))
+    done = view(tmp_path, "pendulum.json", "--duration", "0.5", *asked, program=PROGRAM)
+    assert done.returncode == 0, done.stderr
+    assert data_of(tmp_path / "pendulum.html")[0]["up"] == up
+
+
 def test_outputs_and_torsion_springs_of_a_scene_are_shown(tmp_path):
     done = view(tmp_path, ROOT / "harness/scenes/examples/spatial_joints.json", "--duration", "0.5",
                 "--output", "page.html", "--png", "sheet.png", program=PROGRAM)

@@ -25,7 +25,7 @@ def draw_instant(axes, scene, at, depth, arrows, wires, typical):
     for order, (_, draw, points, colour) in enumerate(items):
         draw(axes, at[points], colour, width, 2 + order / len(items), scene.dimension)
     for start, along in arrows:
-        axes.annotate("", start + along, start, zorder=3.5, arrowprops={
+        axes.annotate("", start + along, start, zorder=3.5, annotation_clip=False, arrowprops={
             "arrowstyle": "-|>", "color": ACCENT, "linewidth": 1, "shrinkA": 0, "shrinkB": 0,
             "mutation_scale": 7})
     for wire in wires:

@@ -23,6 +23,7 @@ def view(arguments):
     options = _options(arguments)
     need_modules("matplotlib", "jinja2")
     from study.viewer import program, trajectory  # they need the modules
+    from study.viewer.scene import upward
     scene = program.describe(options.scene)
     if not scene.points:
         raise StudyError(f"{options.scene} has no points to show")
@@ -41,7 +42,8 @@ def view(arguments):
                 motion.outputs = trajectory.read_outputs(outputs, scene, frames)
     if not motion.curves:
         print("the trajectory has no energy and constraint columns: the page leaves the curves out")
-    _write(options, scene, motion, note)
+    up = [int(axis == options.up) for axis in "xyz"] if options.up else upward(options.scene)
+    _write(options, scene, motion, note, up)
     return 0
 
 
@@ -54,8 +56,9 @@ def _options(arguments):
     parser.add_argument("--output", metavar="FILE.html", help="the page (SCENE.html, here)")
     parser.add_argument("--png", metavar="FILE.png", help="write a contact sheet of the motion too")
     parser.add_argument("--window", nargs=2, type=_number, metavar="S",
-                        help="first and last time of the sheet (about one swing from the start)")
-    parser.add_argument("--up", choices="xyz", default="y", help="axis that points up in 3D (y)")
+                        help="first and last time of the sheet (all of the motion)")
+    parser.add_argument("--up", choices="xyz", help="axis that points up in 3D (against "
+                        "gravity; y without gravity)")
     parser.add_argument("--frames", type=int, default=600, help="at most in the page (600)")
     parser.add_argument("--open", action="store_true", help="open the page in a browser")
     own = parser.add_argument_group("without TRAJECTORY")
@@ -109,9 +112,8 @@ def _check(options):
                                 f"there is no directory {path.parent}"))
 
 
-def _write(options, scene, motion, note):
+def _write(options, scene, motion, note, up):
     from study.viewer import page, sheet
-    up = "xyz".index(options.up)
     outputs = [(options.output, page.render(scene, motion, note, up).encode())]
     if options.png:
         outputs.append((options.png, sheet.draw(scene, motion, up, options.window)))

@@ -1,12 +1,16 @@
 # What there is to draw: the elements that `mbs describe SCENE --json` lists.
+import json
 import math
+import re
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from study.pipeline.errors import StudyError
 
 KINDS = ("free", "fixed", "driven", "vector", "marker")
 HIDDEN = "hidden"  # a point that the scene does not name and no element needs: not drawn
 NO_PLACES = ("vector", HIDDEN)
+COMMENTS = re.compile(r'("(?:[^"\\]|\\.)*")|//[^\n]*|/\*.*?\*/', re.DOTALL)  # and texts, which stay
 
 
 @dataclass
@@ -81,3 +85,16 @@ def _facts(description):
     counts = [(description.get(key), name) for key, name in names]
     return ", ".join(f"{count} {name if count == 1 else plurals.get(name, name + 's')}"
                      for count, name in counts if count is not None)
+
+
+def upward(path):
+    """Of a scene file in space: the unit vector, of those along an axis, that points most against its
+    gravity; y where it has none."""
+    try:
+        text = COMMENTS.sub(lambda found: found[1] or " ", Path(path).read_text(encoding="utf-8"))
+        gravity = json.loads(text).get("gravity", [])
+    except (OSError, ValueError):
+        gravity = []  # no file of this kind: `mbs describe` says what is wrong with it
+    axis = max(range(len(gravity)), key=lambda i: abs(gravity[i]), default=1)
+    sign = -1 if gravity and gravity[axis] > 0 else 1
+    return [sign * (i == axis) for i in range(3)] if any(gravity) else [0, 1, 0]

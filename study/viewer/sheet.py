@@ -13,18 +13,24 @@ FRAMES = 8
 INCHES = 10.0   # width of the sheet
 TALLEST = 7.5   # inches
 TITLE = 0.3     # inches over each instant
-WAYS = 2.3      # the sheet ends when a point has gone so many times its own extent
 TRACES = ("#d1365b", "#00936b")
 AZIMUTH, ELEVATION, DISTANCE = 0.6, 0.35, 4.0  # as the page starts; the last in radii
 
 
 def draw(scene, motion, up, window=None):
-    """The PNG file as bytes. `window` is the first and last time, s, or None for the first swing
-    or so. Raises StudyError if the motion has nothing in the window."""
-    inside, frames = _choose_frames(scene, motion, window)
+    """The PNG file as bytes. `up` is the unit vector that points up in space; `window` the first
+    and last time, s, or None for all of the motion. Raises StudyError if the motion has nothing in
+    the window."""
+    inside, frames = _choose_frames(motion, window)
     flat, depth = _flatten(motion.positions, scene, motion, up)
     axes_of_space = _paper(scene, up)[0]
-    low, high = _limits(scene, flat[inside])
+    arrows, traced = picture.arrows(scene, motion), picture.traces(scene, motion)
+    coils = picture.coils(scene, motion)
+    starts = [flat[:, arrow.at].mean(axis=1) for arrow in arrows]
+    alongs = [arrow.length * motion.positions[:, arrow.vector] @ axes_of_space for arrow in arrows]
+    shown = numpy.concatenate([flat[:, picture.places(scene)], *(
+        (start + along)[:, None] for start, along in zip(starts, alongs))], axis=1)
+    low, high = _limits(shown[inside])
     figure, all_axes = _grid(len(frames), high - low)
     for axes in all_axes:
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", xticks=[],
@@ -33,8 +39,6 @@ def draw(scene, motion, up, window=None):
     figure.draw_without_rendering()  # lays the axes out: springs are drawn in points of paper
     points_a_metre = all_axes[0].get_window_extent().width / figure.dpi * 72 / (high - low)[0]
     typical = picture.typical_length(scene, motion) * points_a_metre
-    arrows, traced = picture.arrows(scene, motion), picture.traces(scene, motion)
-    coils = picture.coils(scene, motion)
     span = motion.times[frames[-1]] - motion.times[frames[0]]
     digits = max(0, int(1 - numpy.floor(numpy.log10(span))) + 1)
     for axes, frame in zip(all_axes, frames):
@@ -42,11 +46,10 @@ def draw(scene, motion, up, window=None):
             axes.plot(*flat[inside, point].T, color=colour, alpha=0.25, linewidth=0.8, zorder=1)
             axes.plot(*flat[inside[0]:frame + 1, point].T, color=colour, alpha=0.7, linewidth=1,
                       zorder=1)
-        tips = [(flat[frame, arrow.at].mean(axis=0), arrow.length * motion.positions[
-            frame, arrow.vector] @ axes_of_space) for arrow in arrows]
         wires = [_flatten(picture.spiral(coil, motion.positions[frame]), scene, motion, up)[0]
                  for coil in coils]
-        draw_instant(axes, scene, flat[frame], depth[frame], tips, wires, typical)
+        at_once = [(start[frame], along[frame]) for start, along in zip(starts, alongs)]
+        draw_instant(axes, scene, flat[frame], depth[frame], at_once, wires, typical)
         axes.set_title(f"{motion.times[frame]:.{digits}f} s", fontsize=9, loc="left", pad=3,
                        color=INK)
     if scene.dimension == 2:
@@ -59,9 +62,9 @@ def draw(scene, motion, up, window=None):
     return out.getvalue()
 
 
-def _choose_frames(scene, motion, window):
+def _choose_frames(motion, window):
     """Indices of all frames in the window, and of those to draw."""
-    first, last = window or (motion.times[0], _first_swing(scene, motion))
+    first, last = window or (motion.times[0], motion.times[-1])
     inside = numpy.flatnonzero((motion.times >= first) & (motion.times <= last))
     if len(inside) < 2:
         raise StudyError(f"--window {first:g} {last:g}: the motion has fewer than two frames "
@@ -71,22 +74,13 @@ def _choose_frames(scene, motion, window):
                            for t in wanted})
 
 
-def _first_swing(scene, motion):
-    """When the point that goes farthest has gone WAYS times the diagonal of where it gets to."""
-    ways = picture.ways(scene, motion)
-    point = ways[-1].argmax()
-    extent = numpy.linalg.norm(numpy.ptp(motion.positions[:, point], axis=0))
-    later = numpy.flatnonzero(ways[:, point] >= WAYS * extent) if extent > 0 else []
-    return motion.times[max(later[0], 1)] if len(later) else motion.times[-1]
-
-
 def _paper(scene, up):
     """What turns a vector into one on the paper (dimension, 2), and the direction out of the paper:
     nothing in the plane, or the first view of the page."""
     if scene.dimension == 2:
         return numpy.eye(2), numpy.zeros(2)
-    upward = numpy.eye(3)[up]
-    towards = numpy.array([0.0, -1, 0]) if up == 2 else numpy.array([0.0, 0, 1])
+    upward = numpy.array(up, float)
+    towards = numpy.array([0.0, -1, 0]) if upward[2] else numpy.array([0.0, 0, 1])
     level = numpy.sin(AZIMUTH) * numpy.cross(upward, towards) + numpy.cos(AZIMUTH) * towards
     back = numpy.cos(ELEVATION) * level + numpy.sin(ELEVATION) * upward
     right = numpy.cross(upward, level)
@@ -105,8 +99,8 @@ def _flatten(positions, scene, motion, up):
     return offset @ paper * (distance / depth)[..., None], depth
 
 
-def _limits(scene, flat):
-    shown = flat[:, picture.places(scene)]
+def _limits(shown):
+    """Lowest and highest corner of a picture that holds all of `shown` (…, 2), and a margin."""
     low, high = shown.min(axis=(0, 1)), shown.max(axis=(0, 1))
     size = (high - low).max() or 1.0
     half = 0.6 * numpy.maximum(high - low, 0.08 * size) + 0.02 * size

@@ -11,11 +11,11 @@ const screenAt = new Float64Array(3 * points.length);  // x, y in pixels; depth,
 const size = data.high.map((high, axis) => high - data.low[axis]);
 const radius = Math.hypot(...size) / 2 || 1;
 const middle = [0, 1, 2].map((axis) => ((data.low[axis] ?? 0) + (data.high[axis] ?? 0)) / 2);
-const up = isSpatial ? data.up : 1;
+const upward = isSpatial ? data.up : [0, 1, 0];
+const up = upward.findIndex((x) => x !== 0);
 const frontward = up === 2 ? [0, -1, 0] : [0, 0, 1];  // towards the camera at azimuth 0
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                          a[0] * b[1] - a[1] * b[0]];
-const upward = [0, 1, 2].map((axis) => (axis === up ? 1 : 0));
 const sideward = cross(upward, frontward);
 
 const focal = () => 1.7 * Math.min(camera.width, camera.height);

@@ -46,7 +46,8 @@ function drawRules(pen) {
   pen.fillText("x, m", 6, height - 5);
 }
 
-const floorLevel = data.low[up] - (isSpatial ? 0.06 * radius : 0);
+const floorLevel = upward[up] > 0 ? data.low[up] - (isSpatial ? 0.06 * radius : 0)
+                                  : data.high[up] + 0.06 * radius;
 const levelAxes = [0, 1, 2].filter((axis) => axis !== up);
 
 function drawFloor(pen) {
