@@ -13,15 +13,31 @@ from study.pipeline.prepare import (continues, digest, digest_of_scene, need_mod
                                     only_one_measuring, registry, run_record, set_up, writable)
 
 
+class _Parser(argparse.ArgumentParser):
+    """Its help ends with the names of the problems, read only when it is asked for."""
+
+    def format_help(self):
+        try:
+            from study.scene_study import problems
+        except ImportError:
+            self.epilog = "Names of the problems: study/problems.yaml."
+        else:
+            self.formatter_class = argparse.RawDescriptionHelpFormatter
+            self.epilog = "problems, by any of their names:\n" + "\n".join(
+                "  " + " | ".join(problem.names) for problem in problems.read_list()[1])
+        return super().format_help()
+
+
 def scenes(arguments):
-    parser = argparse.ArgumentParser(prog="study/scenes", description="Standard problems: gate, "
-                                     "accuracy, conserved energy. Modelling: what each piece costs. "
-                                     "Writes tables and scenes.html; about ten minutes.")
+    parser = _Parser(prog="study/scenes", description="Standard problems: gate, accuracy, conserved "
+                     "energy. Modelling: what each piece costs.\n"
+                     "Writes tables and scenes.html; about ten minutes.")
     parser.add_argument("--results", metavar="DIR", help="results directory (results/local/scenes)")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
                         help="only these implementations (folder or folder/variant)")
     parser.add_argument("--problems", nargs="+", metavar="NAME",
-                        help="only these standard problems; none: no problem")
+                        help="only these standard problems, by name, title or scene file as listed "
+                        "below; none: no problem")
     parser.add_argument("--rounds", type=int, default=7,
                         help="rounds of the modelling measurement, 0 for none (7)")
     parser.add_argument("--stored", action="store_true",
@@ -44,7 +60,7 @@ def scenes(arguments):
 
 def _run(layout, options):
     from study.scene_study import modelling, problems  # they need the modules
-    compared, listed = problems.read_list()
+    preferred, listed = problems.read_list()
     chosen = _choose(listed, options.problems)
     if not options.stored:
         _start(layout, options.only, {problems.LIST.name: digest(problems.LIST)} | {
@@ -52,6 +68,7 @@ def _run(layout, options):
     run = read_run(layout)
     contenders = [one for one in from_json(run["contenders"]).values()
                   if one.ranked and not one.missing]
+    compared = problems.compared_of(preferred, [one.name for one in contenders])
     raw, tell = layout.results / "raw", _Teller()
     if options.stored:
         tell.quiet = True
@@ -79,12 +96,12 @@ def _run(layout, options):
 def _choose(listed, names):
     if names is None:
         return listed
-    known = {problem.name.lower(): problem for problem in listed}
+    known = {name.lower(): problem for problem in listed for name in problem.names}
     unknown = [name for name in names if name.lower() not in known and name.lower() != "none"]
     if unknown:
         raise StudyError(f"--problems: unknown problem '{unknown[0]}'; known: "
                          f"{', '.join(problem.name for problem in listed)}")
-    return [known[name.lower()] for name in names if name.lower() in known]
+    return list(dict.fromkeys(known[name.lower()] for name in names if name.lower() in known))
 
 
 def _start(layout, only, inputs):

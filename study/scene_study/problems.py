@@ -21,6 +21,7 @@ from study.scene_study.references import EXTRAPOLATED, KNOWN, PUBLISHED, kind
 LIST = Path(__file__).resolve().parent.parent / "problems.yaml"
 SECONDS = 600  # a run at most
 CHECK_SECONDS = 120
+NOT_JUDGED = "not judged"  # the precision of what has nothing to be compared with
 ORDER_NOISE = 1e-9  # differences of successive steps below this share of a component are rounding
 
 
@@ -48,6 +49,12 @@ class Problem:
                 "--max-passes", f"{self.max_passes}"]
 
     @property
+    def names(self):
+        """What the user may call it: names, title, scene file."""
+        every = (self.name, self.title, Path(self.scene).stem)
+        return tuple({name.lower(): name for name in every}.values())
+
+    @property
     def file_name(self):
         return self.name.replace(" ", "-").lower()
 
@@ -67,6 +74,16 @@ def read_list():
         if problem.known == EXTRAPOLATED and len(problem.steps) != 3:
             raise StudyError(f"{LIST}: {problem.name}: extrapolation needs three steps")
     return data["compared"], listed
+
+
+def compared_of(preferred, names):
+    """The two of `names` that run every problem at every step, of different folders: the preferred
+    ones, others where these do not take part; fewer where there are no two."""
+    chosen = [name for name in preferred if name in names]
+    for name in names:
+        if len(chosen) < 2 and name.split("/")[0] not in {one.split("/")[0] for one in chosen}:
+            chosen.append(name)
+    return chosen
 
 
 def run_problem(problem, raw, contenders, compared, contexts, tell, stored=False):
@@ -124,7 +141,7 @@ def known_solution(problem, found, judged_one, compared):
         solution = KNOWN[problem.known](times)
         return {name: values for name, values in solution.items()
                 if name.split(".")[0] in problem.judged}
-    other = next(name for name in compared if name != judged_one)
+    other = next((name for name in compared if name != judged_one), None)
     finer, finest = (found["runs"].get((other, step)) for step in problem.steps[1:])
     if any(record is None or runs.status(record)[0] != "ok" for record in (finer, finest)):
         return None
@@ -147,7 +164,8 @@ def rows(problem, found, compared, layout_relative):
         status, reason = runs.status(record)
         row = {"problem": problem.name, "title": problem.title, "scene": problem.scene,
                "implementation": name, "step": step, "duration": problem.duration,
-               "known": problem.known, "reference": kind(problem.known), "status": status, "reason": reason}
+               "known": problem.known, "reference": kind(problem.known), "status": status, "reason": reason,
+               "error_rms": numpy.nan, "error_max": numpy.nan, "precision": NOT_JUDGED}
         if "summary" in record:
             summary = record["summary"]
             row |= {key: summary[key] for key in (

@@ -11,7 +11,7 @@ import pytest
 from study.pipeline.errors import StudyError
 from study.scene_study import mechanics, metric, modelling, problems, references
 from study.scene_study.extrapolate import extrapolate, observed_order
-from study.scene_study.main import scenes
+from study.scene_study.main import _choose, scenes
 from study.tests.conftest import FAKE, ROOT
 
 GRAVITY = references.GRAVITY
@@ -210,6 +210,47 @@ def test_a_results_directory_is_of_one_selection_and_one_state_of_the_scenes(
         (tmp_path / edited).write_text((tmp_path / edited).read_text() + "\n")
     with pytest.raises(StudyError, match=rf"holds results of something else \({what}\)"):
         runs_nothing(*more)
+
+
+@pytest.mark.parametrize("names, chosen", [
+    (["A01"], ["A01"]), (["a01_pendulum"], ["A01"]), (["SIMPLE pendulum", "a01"], ["A01"]),
+    (["four-bar:40", "grid_10"], ["A02", "grid"]), (["none"], []), (None, None)])
+def test_a_problem_is_known_by_name_title_and_scene_file(names, chosen):
+    listed = problems.read_list()[1]
+    assert [problem.name for problem in _choose(listed, names)] == (
+        chosen if names else [problem.name for problem in listed])
+
+
+def test_no_two_problems_share_a_name():
+    names = [name.lower() for problem in problems.read_list()[1] for name in problem.names]
+    assert len(names) == len(set(names))
+
+
+def test_help_lists_the_problems():
+    done = run("--help")
+    assert done.returncode == 0
+    for name in ("A01", "Simple pendulum", "a01_pendulum", "half_car"):
+        assert name in done.stdout
+
+
+@pytest.mark.parametrize("names, compared", [
+    (["d/one", "k/a", "c/b"], ["k/a", "c/b"]), (["d/one", "k/x", "c/b"], ["c/b", "d/one"]),
+    (["d/one", "d/two"], ["d/one"]), (["k/x", "k/a"], ["k/a"])])
+def test_two_of_those_that_take_part_are_compared(names, compared):
+    assert problems.compared_of(["k/a", "c/b"], names) == compared
+
+
+def test_the_report_names_who_ran_the_problems(tmp_path):
+    results = tmp_path / "scenes"
+    done = run("--results", results, "--only", "eigen_dense", "--problems", "a03_andrews",
+               "Slider-Crank", "--rounds", "0", TMPDIR=str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    page = (results / "scenes.html").read_text()
+    table = page.split("<h2>Standard problems</h2>")[1].split("</tbody>")[0]
+    assert "run by eigen_dense/llt, at its finest step" in table and "csc_" not in table
+    assert table.count('<td class="s">eigen_dense/llt</td>') == 2
+    # Self-convergence needs another one: alone, it is not judged.
+    assert ">not judged</span>" in table and ">high</span>" in table
 
 
 def test_unknown_problem_is_named(tmp_path):
