@@ -1,7 +1,7 @@
 # Claims about the tangent's fill and the maps: F5, F6, F7.
 from analysis import paper
 from analysis.compare import best_ratio, fastest
-from analysis.ledger import at_least, at_most, of, tested, untested
+from analysis.ledger import at_least, at_most, more_than, of, tested, untested
 from analysis.loader import FAILURES
 from analysis.maps import paired_rank
 from analysis.text import number
@@ -14,7 +14,7 @@ FULL_FILL = 90       # %, LAPACK's region of Figure 7
 FIGURE6 = 100        # variables
 LARGE = 160          # variables; Figure 7's own range begins behind Figure 4's
 CELLS_NEEDED = {"F6": 4, "F7": 2}  # timed cells that a region needs
-HALF = 50            # %, a system owns a region if it wins at least this share of its cells
+HALF = 50            # %, a system owns a region if it wins more than this share of its cells
 
 
 def over_fill(results):
@@ -66,8 +66,8 @@ def _over_fill(results, head, system, size):
 
 
 def regions(results):
-    """F6, F7. Rules: a system wins at least half of the cells of its region, ranked among
-    the stand-ins of the paper's systems; undecided cells count against it for the low bound and
+    """F6, F7. Rules: a system wins more than half of the cells of its region, ranked among
+    the stand-ins of the paper's systems (half of them is a draw: undecided); undecided cells count against it for the low bound and
     for it for the high bound. F6 also: no cell at all is won by a dense version."""
     small, large = (10, FIGURE6), (LARGE + 1, 1e9)
     beyond = (901, 1e9)
@@ -87,7 +87,7 @@ def regions(results):
                 dense, large, (FULL_FILL, 100.1))]
 
 
-def _region(results, figure, claim, names, sizes, fills, rule=at_least(HALF), quoted="region"):
+def _region(results, figure, claim, names, sizes, fills, rule=more_than(HALF), quoted="region"):
     samples = results.samples()
     samples = samples[samples.stage != "refined"]  # refined cells crowd where winners change
     standing = {name for system in paper.SYSTEMS for name in paper.members(results, system)}

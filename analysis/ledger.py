@@ -12,22 +12,27 @@ def at_least(bound):
     return bound, math.inf
 
 
+def more_than(bound):
+    """As at_least, but the bound itself decides nothing."""
+    return bound, math.inf, bound
+
+
 def at_most(bound):
     return -math.inf, bound
 
 
 def verdict(low, high, rule):
     """Confirmed if the whole interval obeys the rule, refuted if none of it does; an interval
-    that includes a bound of the rule decides nothing."""
-    lowest, highest = rule
-    if lowest <= low and high <= highest:
+    that includes a bound of the rule decides nothing, nor does the open bound of `more_than`."""
+    lowest, highest, *undecided = rule
+    if lowest <= low and high <= highest and low not in undecided:
         return CONFIRMED
     return REFUTED if high < lowest or low > highest else UNTESTED
 
 
 def tested(identity, claim, paper, measured, rule, where, why, unit="×"):
-    """A row from what was measured. `measured`: (value, low, high) in `unit`; `rule`: (lowest,
-    highest) in the same unit; `why`: a sentence from this run's numbers."""
+    """A row from what was measured. `measured`: (value, low, high) in `unit`; `rule`: of at_least, more_than
+    or at_most, or (lowest, highest), in the same unit; `why`: a sentence from this run's numbers."""
     value, low, high = measured
     found = verdict(low, high, rule)
     if found == UNTESTED:
@@ -45,9 +50,9 @@ def untested(identity, claim, paper, why, rule=None, unit="×"):
 
 
 def rule_text(rule, unit):
-    lowest, highest = rule
+    lowest, highest, *undecided = rule
     if math.isinf(highest):
-        return f"at least {number(lowest)}{unit}"
+        return f"{'more than' if undecided else 'at least'} {number(lowest)}{unit}"
     if math.isinf(lowest):
         return f"at most {number(highest)}{unit}"
     return f"{number(lowest)} to {number(highest)}{unit}"

@@ -28,8 +28,10 @@ CAPTIONS = {  # in the order of the page
     "f5_fill": "Figure 5. Time of a step over the tangent's fill near 100 variables: every sparse "
                "solver and the fastest dense version; crossings with their intervals.",
     "f6_map": "Figure 6. Best implementation over size and fill, 10 to 100 variables. A winner is "
-              "declared only if the 95 % interval of its ratio to the second excludes 1.",
-    "f7_map": "Figure 7. The same over all sizes.",
+              "declared only if the 95 % interval of its ratio to the second excludes 1. Fills above the "
+              "lowest cell of a column are artificial, and harder on sparse solvers than those of a "
+              "mechanism.",
+    "f7_map": "Figure 7. The same over all sizes. Here too fills above the lowest cells are artificial.",
     "map_families": "The same map from the viewpoint of families of implementations.",
     "regret_map": "What is lost by always using one implementation: its time over the best time "
                   "of each cell.",

@@ -11,7 +11,7 @@ from analysis.claims_maps import over_fill, regions
 from analysis.claims_solvers import pivoting, solvers, sparse_against_dense
 from analysis.claims_starting import starting_sparse, table1, table2_claims
 from analysis.ledger import (COLUMNS, CONFIRMED, REFUTED, UNTESTED, at_least, at_most,
-                             verdict)
+                             more_than, verdict)
 from analysis.tests.conftest import write
 from analysis.tests.synthetic import cell, failed, operation, phases, results
 
@@ -36,7 +36,9 @@ def outcome(rows, *words):
 @pytest.mark.parametrize("low, high, rule, expected", [
     (3, 4, at_least(3), CONFIRMED), (2, 2.9, at_least(3), REFUTED), (2, 4, at_least(3), UNTESTED),
     (1, 2, at_most(2), CONFIRMED), (2.1, 3, at_most(2), REFUTED), (40, 60, (30, 50), UNTESTED),
-    (35, 45, (30, 50), CONFIRMED), (10, 20, (30, 50), REFUTED)])
+    (35, 45, (30, 50), CONFIRMED), (10, 20, (30, 50), REFUTED), (50, 50, more_than(50), UNTESTED),
+    (50, 60, more_than(50), UNTESTED), (51, 60, more_than(50), CONFIRMED),
+    (40, 49, more_than(50), REFUTED)])
 def test_verdict_needs_the_whole_interval(low, high, rule, expected):
     assert verdict(low, high, rule) == expected
 
@@ -183,12 +185,23 @@ def test_regions_count_undecided_cells_both_ways(tmp_path):
     rows += cell(KLU, 22, 2, 2, fill=0.2, stage="refined")
     found = regions(load(tmp_path, rows))
     assert outcome(found, "KLU wins") == (CONFIRMED, "100 %")
-    assert outcome(found, "WSMP wins at high") == (CONFIRMED, "50 %")
+    assert outcome(found, "WSMP wins at high") == (UNTESTED, "50 %")
     wsmp = next(row for row in found if "high fill" in row["claim"])
     assert (wsmp["low"], wsmp["high"]) == ("50", "100")
     dense = next(row for row in found if "dense wins nowhere" in row["claim"])
     assert (dense["low"], dense["high"], dense["verdict"]) == ("0", "25", UNTESTED)
     assert outcome(found, "above 900")[0] == UNTESTED
+
+
+def test_half_of_a_region_is_a_draw(tmp_path):
+    rows = []
+    for size in (1000, 2000, 3000, 4000):
+        klu, cholmod = (1, 2) if size < 2500 else (2, 1)
+        rows += cell(KLU, size, klu, klu) + cell(SIMPLICIAL, size, cholmod, cholmod)
+    row = next(row for row in regions(load(tmp_path, rows)) if "above 900" in row["claim"])
+    assert (row["verdict"], row["ours"], row["rule"]) == (UNTESTED, "50 %", "more than 50 %")
+    rows += cell(KLU, 5000, 2, 2) + cell(SIMPLICIAL, 5000, 1, 1)
+    assert outcome(regions(load(tmp_path, rows)), "above 900") == (CONFIRMED, "60 %")
 
 
 def test_summary_by_size_fill_and_price(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 from analysis import bounds
 from analysis import tables as report_tables
 from analysis.loader import load
-from analysis.report import render
+from analysis.report import CAPTIONS, render
 from analysis.summary import by_size
 from analysis.tests.conftest import timing, write
 from analysis.text import number
@@ -91,6 +91,15 @@ def test_report_is_self_contained_and_escaped(tables):
     assert not re.search(r'(src|href)="(?!data:|#)', page)
     assert re.search(r"n = 10: <b>a/x</b>,\s+1.98 times ahead of the second", page)
     assert page.count("cannot be tested here") >= 12
+
+
+def test_the_answer_says_whose_fill_it_is_and_that_higher_ones_are_artificial(tables):
+    page = render(tables[0])
+    answer, maps = page.split('class="answer"')[1].split("</section>")
+    for text in (answer, maps.split('id="maps"')[1].split("<h2")[0]):
+        assert "N-four-bar" in text and "artificial" in text and "real mechanism" in text
+    assert "own fill” on this page is the\nfour-bar's" in answer and "mbs bench scene.json" in answer
+    assert "artificial" in CAPTIONS["f6_map"] and "artificial" in CAPTIONS["f7_map"]
 
 
 def test_report_of_nothing_timed(tables):
