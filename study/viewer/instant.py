@@ -37,7 +37,7 @@ def draw_instant(axes, scene, at, depth, arrows, wires, typical):
 
 def draw_triad(axes, axes_of_space):
     """The directions of x, y, z, in the lower left corner."""
-    corner = numpy.array([22.0, 20.0])  # points
+    corner = numpy.array([22.0, 25.0])  # points
     for name, along, colour in zip("xyz", axes_of_space, ("#c9403a", "#3c8d40", "#3a6fc9")):
         axes.annotate("", corner + 14 * along, corner, xycoords="axes points",
                       textcoords="axes points", arrowprops={
