@@ -33,8 +33,9 @@ void use(const mbs::SceneData& data) {
   require(mbs::kinetic_energy(model, v) >= 0.0, "M is not positive definite");
   const auto known = static_cast<int>(model.points().size() + data.elements.markers.size());
   for (const mbs::Output& output : data.elements.outputs) {
-    require(output.point < known && output.constraint < model.constraints(),
-            "an output refers to nothing");
+    bool refers = output.point < known;
+    for (const int row : output.rows) refers = refers && row >= 0 && row < model.constraints();
+    require(refers, "an output refers to nothing");
   }
 }
 

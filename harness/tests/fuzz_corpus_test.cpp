@@ -1,0 +1,34 @@
+// The fuzz target on its corpus and on the shipped scenes, so that it stays true without a fuzzer.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size);
+
+namespace mbs {
+namespace {
+
+TEST(FuzzCorpus, IsScenesOrOneLineEach) {
+  int files = 0;
+  for (const char* folder : {"harness/fuzz/corpus", "harness/scenes/examples", "harness/scenes"}) {
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::filesystem::path(MBS_ROOT) / folder)) {
+      if (entry.path().extension() != ".json") continue;
+      SCOPED_TRACE(entry.path().string());
+      std::ifstream file(entry.path(), std::ios::binary);
+      const std::string text{std::istreambuf_iterator<char>(file), {}};
+      // It aborts at what should not be.
+      EXPECT_EQ(
+          LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()),
+          0);
+      ++files;
+    }
+  }
+  EXPECT_GT(files, 5);
+}
+
+}  // namespace
+}  // namespace mbs
