@@ -85,14 +85,15 @@ void Assembly<Scalar>::leading(Eigen::MatrixX<MatrixScalar>& T) const {
 }
 
 template <typename Scalar>
-void Assembly<Scalar>::mass_product(const Vector& x, Vector& y) const {
+void Assembly<Scalar>::leading_product(const Vector& x, Vector& y) const {
   y.noalias() = M_ * x.head(variables_);
+  if (!forces_.empty()) forces_.add_product(x, y);
 }
 
 template <typename Scalar>
-void Assembly<Scalar>::leading_product(const Vector& x, Vector& y) const {
-  mass_product(x, y);
-  if (!forces_.empty()) forces_.add_product(x, y);
+void Assembly<Scalar>::kept_leading_product(const Vector& x, Vector& y) const {
+  y.noalias() = M_ * x;
+  forces_.add_kept_product(x, y);
 }
 
 template <typename Scalar>

@@ -59,10 +59,10 @@ class Assembly {
   /// T₀ of Eq. (12) into the lower triangle of T (n×n, kg); the other half is scratch.
   template <typename MatrixScalar>
   void leading(Eigen::MatrixX<MatrixScalar>& T) const;
-  /// T₀ x into y (n), of x the first n elements.
-  void leading_product(const Vector& x, Vector& y) const;
-  /// M x into y (n), of x the first n elements.
-  void mass_product(const Vector& x, Vector& y) const;
+  /// Keeps C and K for kept_leading_product().
+  void keep_leading() { forces_.keep(); }
+  /// T₀ x into y (n), with the C and K of the last keep_leading() and x of n elements.
+  void kept_leading_product(const Vector& x, Vector& y) const;
 
   /// Φt (m) at q, in a buffer that the next call of any of these four overwrites.
   const Vector& velocity_term(const Vector& q);
@@ -82,6 +82,9 @@ class Assembly {
   void project_acceleration(const Vector& q, const Vector& v, const Vector& a, Vector& rhs);
 
  private:
+  /// T₀ x into y (n), of x the first n elements.
+  void leading_product(const Vector& x, Vector& y) const;
+
   using Index = Eigen::Index;
 
   Index variables_;

@@ -32,7 +32,12 @@ class Forces {
   void add_tangent(Eigen::MatrixX<MatrixScalar>& T) const;
 
   /// y (n) += the last W times x, of which the first n elements are read.
-  void add_product(const Vector& x, Vector& y) const;
+  void add_product(const Vector& x, Vector& y) const { add_product(elements_, x, y); }
+
+  /// Keeps the last W for add_kept_product() apart from what evaluate() overwrites.
+  void keep() { kept_ = elements_; }
+  /// y (n) += the kept W times x (n).
+  void add_kept_product(const Vector& x, Vector& y) const { add_product(kept_, x, y); }
 
  private:
   using Index = Eigen::Index;
@@ -51,6 +56,7 @@ class Forces {
     Scalar torque;
   };
 
+  void add_product(const std::vector<Element<Scalar>>& elements, const Vector& x, Vector& y) const;
   void lower_springs(const Model& model, const Layout& layout);
   void lower_torsion_springs(const Model& model, const Layout& layout);
   void lower_couples(const Model& model, const Layout& layout);
@@ -70,6 +76,7 @@ class Forces {
   std::vector<LinearSpring> springs_;
   std::vector<AngularSpring> torsion_springs_;
   std::vector<Element<Scalar>> elements_;  ///< one a spring, then one a torsion spring
+  std::vector<Element<Scalar>> kept_;      ///< those of the last keep()
   std::vector<Torque> couples_;
 };
 

@@ -50,32 +50,34 @@ bool is_trapezoidal(Scheme scheme) {
 bool is_plain(const StepSettings& settings) {
   return settings.scheme == Scheme::penalty &&
          settings.multipliers == MultiplierUpdate::every_pass &&
-         settings.tangent == TangentReuse::none && settings.projections_every == 1;
+         settings.tangent == TangentReuse::none && settings.projections_every == 1 &&
+         settings.precision == Precision::double_precision;
+}
+
+/// `Penalty` and `Saddle` are the linear systems that go with the precision.
+template <typename Penalty, typename Saddle>
+std::unique_ptr<mbs::Simulation> create_newton(const Model& model, const StepSettings& settings) {
+  if (settings.scheme == Scheme::penalty) return std::make_unique<Newton<Penalty>>(model, settings);
+  return std::make_unique<Newton<Saddle>>(model, settings);
 }
 
 template <typename Scalar>
 std::unique_ptr<mbs::Simulation> create_in(const Model& model, const StepSettings& settings) {
   if (!is_trapezoidal(settings.scheme)) return std::make_unique<Rattle<Scalar>>(model, settings);
-  if (is_plain(settings)) return std::make_unique<Simulation<Scalar>>(model, settings);
-  if (settings.scheme == Scheme::penalty) {
-    return std::make_unique<Newton<PenaltySystem<Scalar, Solver<Scalar>>>>(model, settings);
-  }
-  return std::make_unique<Newton<SaddleSystem<Scalar, SaddleSolver<Scalar>>>>(model, settings);
-}
-
-std::unique_ptr<mbs::Simulation> create_mixed(const Model& model, const StepSettings& settings) {
-  using Penalty = PenaltySystem<double, Rounded<Solver<float>>>;
-  using Saddle = SaddleSystem<double, Rounded<SaddleSolver<float>>>;
-  if (settings.scheme == Scheme::penalty) return std::make_unique<Newton<Penalty>>(model, settings);
-  return std::make_unique<Newton<Saddle>>(model, settings);
+  using Penalty = PenaltySystem<Scalar, Solver<Scalar>>;
+  using Saddle = SaddleSystem<Scalar, SaddleSolver<Scalar>>;
+  return create_newton<Penalty, Saddle>(model, settings);
 }
 
 std::unique_ptr<mbs::Simulation> create(const Model& model, const StepSettings& settings) {
   require_size(model, settings.scheme);
   if (!is_trapezoidal(settings.scheme)) require_no_drivers_or_dampers(model);
-  if (settings.precision == Precision::mixed) return create_mixed(model, settings);
-  return settings.precision == Precision::single_precision ? create_in<float>(model, settings)
-                                                           : create_in<double>(model, settings);
+  if (is_plain(settings)) return std::make_unique<Simulation>(model, settings);
+  if (settings.precision == Precision::single_precision) return create_in<float>(model, settings);
+  if (settings.precision == Precision::double_precision) return create_in<double>(model, settings);
+  using Penalty = PenaltySystem<double, Rounded<Solver<float>>>;
+  using Saddle = SaddleSystem<double, Rounded<SaddleSolver<float>>>;
+  return create_newton<Penalty, Saddle>(model, settings);
 }
 
 std::string eigen_version() {

@@ -10,15 +10,25 @@
 
 namespace mbs::eigen_dense {
 
+namespace {
+
+constexpr int kRefinements = 5;  // solves of a refined projection at most
+
+}  // namespace
+
 template <typename System>
 Newton<System>::Newton(const Model& model, const StepSettings& settings)
     : mbs::Simulation(model, settings),
       settings_(settings),
-      refined_(settings.tangent != TangentReuse::none || settings.precision == Precision::mixed),
+      solves_(settings.tangent == TangentReuse::none && settings.precision != Precision::mixed
+                  ? 1
+                  : kRefinements),
       layout_(model),
       system_(model, settings, layout_),
       motion_(model, layout_),
-      schedule_(settings.tangent) {}
+      schedule_(settings.tangent),
+      start_(Vector::Zero(model.variables())),
+      change_(start_) {}
 
 template <typename System>
 void Newton<System>::do_set_state(const State& state) {
@@ -94,18 +104,36 @@ bool Newton<System>::project(StepOutcome& outcome) {
   if (++unprojected_ < settings_.projections_every) return true;
   unprojected_ = 0;
   if (settings_.projections == Projections::none) return true;
-  const bool both = settings_.projections == Projections::both;
-  if (refined_) {
-    const double bound = 2 / settings_.step * settings_.tolerance;
-    return refine(&System::refine_velocity, motion_.v, bound, outcome) &&
-           (!both ||
-            refine(&System::refine_acceleration, motion_.a, 2 / settings_.step * bound, outcome));
+  const double bound = 2 / settings_.step * settings_.tolerance;
+  if (!project(&System::project_velocity, motion_.v, bound, outcome)) return false;
+  if (settings_.projections == Projections::velocity) return true;
+  return project(&System::project_acceleration, motion_.a, 2 / settings_.step * bound, outcome);
+}
+
+template <typename System>
+bool Newton<System>::project(MakeRightHandSide make, Vector& target, double tolerance,
+                             StepOutcome& outcome) {
+  auto x = target.head(motion_.a.size());
+  start_ = x;
+  phases_.enter(Phase::projection);
+  system_.begin_projection();
+  double size_before = 0.0;
+  for (int k = 0; k < solves_; ++k) {
+    solve(make);
+    double size = largest(system_.correction());
+    if (k > 0 && !(size <= size_before / 2)) {  // a NaN is slower, too
+      if (!schedule_.keeps()) return true;
+      if (!factorize_here(outcome)) return false;
+      solve(make);  // the same right-hand side
+      size = largest(system_.correction());
+    }
+    x += system_.correction();  // Eq. (15)
+    if (size <= tolerance || k + 1 == solves_) return true;
+    size_before = size;
+    phases_.enter(Phase::projection);
+    change_ = start_ - x;
+    system_.continue_projection(change_);
   }
-  solve(&System::project_velocity);  // Eq. (6) or (13)
-  motion_.v.head(motion_.a.size()) = system_.correction();
-  if (!both) return true;
-  solve(&System::project_acceleration);  // Eq. (6) or (13)
-  motion_.a = system_.correction();
   return true;
 }
 
@@ -118,25 +146,10 @@ void Newton<System>::solve(MakeRightHandSide make) {
 }
 
 template <typename System>
-bool Newton<System>::refine(MakeRightHandSide make, Eigen::VectorX<Scalar>& target,
-                            double tolerance, StepOutcome& outcome) {
-  double size_before = 0.0;
-  for (int k = 0; k < 5; ++k) {
-    solve(make);  // Eq. (15)
-    double size = largest(system_.correction());
-    if (k > 0 && !(size <= size_before / 2)) {  // a NaN is slower, too
-      if (!schedule_.keeps()) return true;
-      phases_.enter(Phase::evaluation);
-      system_.residual(motion_);  // for C and K at the final q'
-      if (!factorize(outcome)) return false;
-      solve(make);
-      size = largest(system_.correction());
-    }
-    target.head(motion_.a.size()) += system_.correction();
-    if (size <= tolerance) return true;
-    size_before = size;
-  }
-  return true;
+bool Newton<System>::factorize_here(StepOutcome& outcome) {
+  phases_.enter(Phase::evaluation);
+  system_.assembly().scaled_force(motion_.q, motion_.v, change_);  // for C and K alone
+  return factorize(outcome);
 }
 
 template class Newton<PenaltySystem<double, Solver<double>>>;

@@ -20,6 +20,7 @@ class Newton final : public mbs::Simulation {
 
  private:
   using Scalar = typename System::Scalar;
+  using Vector = Eigen::VectorX<Scalar>;
   using MakeRightHandSide = void (System::*)(const Motion<Scalar>&);
 
   void do_set_state(const State& state) override;
@@ -28,26 +29,30 @@ class Newton final : public mbs::Simulation {
 
   // All false: a factorization failed.
   [[nodiscard]] bool factorize(StepOutcome& outcome);
+  /// The same at the final q', where C and K have not been evaluated yet; overwrites change_.
+  [[nodiscard]] bool factorize_here(StepOutcome& outcome);
   /// The passes of a step; sets the outcome's status and counts.
   [[nodiscard]] bool iterate(StepOutcome& outcome);
   /// One pass without the multiplier update. Leaves the phase at `other`; `small` says whether
   /// max|Δq| is within the tolerance.
   [[nodiscard]] bool pass(StepOutcome& outcome, bool& small);
   [[nodiscard]] bool project(StepOutcome& outcome);
-  /// Refines v' or a', as `make` asks for, until max|δ| ≤ tolerance: Eq. (15).
-  [[nodiscard]] bool refine(MakeRightHandSide make, Eigen::VectorX<Scalar>& target,
-                            double tolerance, StepOutcome& outcome);
+  /// Projects v' or a', as `make` asks for, until max|δ| ≤ tolerance: Eq. (15). With new factors
+  /// its first solve is Eq. (6) or (13), and the only one.
+  [[nodiscard]] bool project(MakeRightHandSide make, Vector& target, double tolerance,
+                             StepOutcome& outcome);
 
   /// Makes a right-hand side and solves. Leaves the phase at `solve`.
   void solve(MakeRightHandSide make);
 
   StepSettings settings_;
-  bool refined_;  ///< whether projections are
+  int solves_;  ///< of a projection at most
   Layout layout_;
   System system_;
   Motion<Scalar> motion_;
   TangentSchedule schedule_;
-  int unprojected_ = 0;  ///< steps since the last projected one
+  Vector start_, change_;  ///< n; v* or a* of a projection, v* − v' or a* − a'
+  int unprojected_ = 0;    ///< steps since the last projected one
 };
 
 }  // namespace mbs::eigen_dense

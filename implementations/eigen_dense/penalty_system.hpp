@@ -1,4 +1,4 @@
-// The linear systems of the penalty form: Eqs. (4), (6) and (15).
+// The linear systems of the penalty form: Eqs. (4) and (15).
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,8 @@ class PenaltySystem {
       : penalty_(Scalar(settings.penalty)),
         assembly_(model, settings, layout),
         solver_(model.variables()),
-        x_(Vector::Zero(model.variables())) {}
+        lag_(Vector::Zero(model.variables())),
+        x_(lag_) {}
 
   Assembly<Scalar>& assembly() { return assembly_; }
 
@@ -37,25 +38,23 @@ class PenaltySystem {
     } else {
       assembly_.tangent(solver_.matrix(), jacobian_);
     }
+    assembly_.keep_leading();
   }
   [[nodiscard]] bool factorize() { return solver_.factorize(); }
 
-  /// The right-hand sides of Eq. (6) for v', then for a' with that v'.
+  /// The right-hand sides of Eq. (15) for v', then for a' with that v'.
   void project_velocity(const Motion<Scalar>& motion) {
-    assembly_.project_velocity(motion.q, motion.v, x_);
-  }
-  void project_acceleration(const Motion<Scalar>& motion) {
-    assembly_.project_acceleration(motion.q, motion.v, motion.a, x_);
-  }
-  /// Those of Eq. (15).
-  void refine_velocity(const Motion<Scalar>& motion) {
-    x_.setZero();
+    x_ = lag_;
     assembly_.subtract_penalty(assembly_.velocity_error(motion.q, motion.v), x_);
   }
-  void refine_acceleration(const Motion<Scalar>& motion) {
-    x_.setZero();
+  void project_acceleration(const Motion<Scalar>& motion) {
+    x_ = lag_;
     assembly_.subtract_penalty(assembly_.acceleration_error(motion.q, motion.v, motion.a), x_);
   }
+  /// To be called before the first projection of a vector and between the following ones, with
+  /// v* − v' or a* − a' in `change` (n).
+  void begin_projection() { lag_.setZero(); }
+  void continue_projection(const Vector& change) { assembly_.kept_leading_product(change, lag_); }
 
   void solve() { solver_.solve(x_); }
   [[nodiscard]] const Vector& correction() const { return x_; }
@@ -69,6 +68,7 @@ class PenaltySystem {
   Assembly<Scalar> assembly_;
   LinearSolver solver_;
   Eigen::MatrixXf jacobian_;  ///< Φqᵀ in float, if only the matrix is; else 0×0
+  Vector lag_;                ///< n; T₀ times v* − v' or a* − a'
   Vector x_;                  ///< n; right-hand side, then solution
 };
 

@@ -38,12 +38,11 @@ Rattle<Scalar>::Rattle(const Model& model, const StepSettings& settings)
       solver_(model.variables(), model.constraints(),
               Scalar(4 / (settings.penalty * settings.step * settings.step))),
       motion_(model, layout_),
-      zero_upper_(Vector::Zero(model.variables())),
-      zero_lower_(Vector::Zero(model.constraints())),
-      start_(zero_upper_),
-      mean_velocity_(zero_upper_),
-      momentum_(zero_upper_),
-      force_(zero_upper_),
+      zero_(Vector::Zero(model.variables())),
+      start_(zero_),
+      change_(zero_),
+      force_(zero_),
+      impulse_(zero_),
       x_(Vector::Zero(model.variables() + model.constraints())) {
   for (const double share : stage_shares(settings.scheme)) {
     stages_.push_back(Scalar(share * settings.step));
@@ -84,24 +83,27 @@ bool Rattle<Scalar>::stage(Scalar h, StepOutcome& outcome) {
   return true;
 }
 
+// Keeps q' − q apart from q', which is rounded to the last digit of q: in float those digits would
+// drive w away from the motion.
 template <typename Scalar>
 void Rattle<Scalar>::move(Scalar h, StepOutcome& outcome) {
   phases_.enter(Phase::other);
   const auto n = motion_.a.size();
   auto q = motion_.q.head(n);
   start_ = q;
-  q += h * motion_.v.head(n) + h * h / 2 * motion_.a;
+  change_ = h * motion_.v.head(n) + h * h / 2 * motion_.a;
+  q = start_ + change_;
   bool converged = false;
   for (int pass = 0; pass < settings_.max_passes && !converged; ++pass) {
     ++outcome.passes;
     phases_.enter(Phase::evaluation);
     assembly_.evaluate(motion_.q);
-    solve(zero_upper_, assembly_.Phi());  // Eq. (14) at the stage's start
-    q += upper();
+    solve(zero_, assembly_.Phi());  // Eq. (14) at the stage's start
+    change_ += upper();
+    q = start_ + change_;
     converged = largest(upper()) <= Scalar(settings_.tolerance);
   }
   if (!converged) outcome.status = StepStatus::pass_limit;
-  mean_velocity_ = (q - start_) / h;
 }
 
 template <typename Scalar>
@@ -117,19 +119,20 @@ void Rattle<Scalar>::refresh() {
   phases_.enter(Phase::other);
 }
 
+// Solves for v' − w instead of v': [(h/2) Q; −Φq w] for [M w + (h/2) Q; 0] on the right.
 template <typename Scalar>
 void Rattle<Scalar>::find_velocity(Scalar h) {
-  const auto n = motion_.a.size();
   const Scalar bound = Scalar(2 / settings_.step * settings_.tolerance);
+  auto v = motion_.v.head(motion_.a.size());
   phases_.enter(Phase::projection);
-  assembly_.mass_product(mean_velocity_, momentum_);
-  momentum_ += h / 2 * force_;
-  solve(momentum_, zero_lower_);
-  motion_.v.head(n) = upper();
+  v = change_ / h;
+  impulse_ = h / 2 * force_;
+  solve(impulse_, assembly_.velocity_error(motion_.q, motion_.v));
+  v += upper();
   for (int k = 0; k < kRefinements; ++k) {
     phases_.enter(Phase::projection);
-    solve(zero_upper_, assembly_.velocity_error(motion_.q, motion_.v));
-    motion_.v.head(n) += upper();
+    solve(zero_, assembly_.velocity_error(motion_.q, motion_.v));
+    v += upper();
     if (largest(upper()) <= bound) break;
   }
 }
@@ -143,7 +146,7 @@ void Rattle<Scalar>::find_acceleration() {
   motion_.lambda = lower();
   for (int k = 0; k < kRefinements; ++k) {
     phases_.enter(Phase::projection);
-    solve(zero_upper_, assembly_.acceleration_error(motion_.q, motion_.v, motion_.a));
+    solve(zero_, assembly_.acceleration_error(motion_.q, motion_.v, motion_.a));
     motion_.a += upper();
     motion_.lambda += lower();
     if (largest(upper()) <= bound) break;

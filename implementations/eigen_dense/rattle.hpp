@@ -47,12 +47,12 @@ class Rattle final : public mbs::Simulation {
   SaddleSolver<Scalar> solver_;
   Motion<Scalar> motion_;
   bool factorized_ = false;
-  Vector zero_upper_, zero_lower_;  ///< n, m
-  Vector start_;                    ///< n, m; q at the start of a stage
-  Vector mean_velocity_;            ///< n, m/s; w
-  Vector momentum_;                 ///< n, kg m/s; M w + (h/2) Q
-  Vector force_;                    ///< n, N; Q
-  Vector x_;                        ///< n + m; right-hand side, then solution
+  Vector zero_;     ///< n
+  Vector start_;    ///< n, m; q at the start of a stage
+  Vector change_;   ///< n, m; q' − q
+  Vector force_;    ///< n, N; Q
+  Vector impulse_;  ///< n, N s; (h/2) Q
+  Vector x_;        ///< n + m; right-hand side, then solution
 };
 
 }  // namespace mbs::eigen_dense

@@ -1,4 +1,4 @@
-// The linear systems of the saddle-point form: Eqs. (12) and (13).
+// The linear systems of the saddle-point form: Eqs. (12) and (15).
 #pragma once
 
 #include <Eigen/Core>
@@ -17,10 +17,11 @@ class SaddleSystem {
 
   SaddleSystem(const Model& model, const StepSettings& settings, const Layout& layout)
       : multiplier_factor_(Scalar(4 / (settings.step * settings.step))),
+        epsilon_(Scalar(4 / (settings.penalty * settings.step * settings.step))),
         assembly_(model, settings, layout),
-        solver_(model.variables(), model.constraints(),
-                MatrixScalar(4 / (settings.penalty * settings.step * settings.step))),
+        solver_(model.variables(), model.constraints(), MatrixScalar(epsilon_)),
         upper_(Vector::Zero(model.variables())),
+        nu_(Vector::Zero(model.constraints())),
         x_(Vector::Zero(model.variables() + model.constraints())) {
     if (!assembly_.constant_leading()) return;
     assembly_.leading(solver_.leading());
@@ -38,29 +39,31 @@ class SaddleSystem {
   void assemble() {
     if (!assembly_.constant_leading()) assembly_.leading(solver_.leading());
     solver_.coupling() = assembly_.jacobian_transposed().template cast<MatrixScalar>();
+    assembly_.keep_leading();
   }
   [[nodiscard]] bool factorize() {
     if (!assembly_.constant_leading()) solver_.factorize_leading();
     return solver_.factorize();
   }
 
-  /// The right-hand sides of Eq. (13) for v', then for a' with that v'.
+  /// The right-hand sides of Eq. (15) for v', then for a' with that v'.
   void project_velocity(const Motion<Scalar>& motion) {
-    assembly_.leading_product(motion.v, upper_);
-    fill(assembly_.velocity_term(motion.q));
+    fill_projection(assembly_.velocity_error(motion.q, motion.v));
   }
   void project_acceleration(const Motion<Scalar>& motion) {
-    assembly_.leading_product(motion.a, upper_);
-    fill(assembly_.acceleration_term(motion.q, motion.v));
+    fill_projection(assembly_.acceleration_error(motion.q, motion.v, motion.a));
   }
-  /// Those of the refined projections.
-  void refine_velocity(const Motion<Scalar>& motion) {
+  /// To be called before the first projection of a vector and between the following ones, with
+  /// v* − v' or a* − a' in `change` (n).
+  void begin_projection() {
     upper_.setZero();
-    fill(assembly_.velocity_error(motion.q, motion.v));
+    nu_.setZero();
   }
-  void refine_acceleration(const Motion<Scalar>& motion) {
-    upper_.setZero();
-    fill(assembly_.acceleration_error(motion.q, motion.v, motion.a));
+  void continue_projection(const Vector& change) {
+    assembly_.kept_leading_product(change, upper_);
+    if (nu_.size() == 0) return;
+    nu_ += x_.tail(nu_.size());
+    upper_.noalias() -= assembly_.jacobian_transposed() * nu_;
   }
 
   void solve() { solver_.solve(x_); }
@@ -78,10 +81,17 @@ class SaddleSystem {
     x_.tail(minus_lower.size()) = -minus_lower;
   }
 
+  void fill_projection(const Vector& error) {
+    fill(error);
+    x_.tail(nu_.size()) += epsilon_ * nu_;
+  }
+
   Scalar multiplier_factor_;  ///< 4/Δt², 1/s²
+  Scalar epsilon_;            ///< ε of Eq. (12)
   Assembly<Scalar> assembly_;
   LinearSolver solver_;
   Vector upper_;  ///< n; the upper part of a right-hand side
+  Vector nu_;     ///< m; ν of a projection
   Vector x_;      ///< n + m; right-hand side, then solution
 };
 

@@ -1,23 +1,21 @@
-// The simulation with default settings, in double or float: the step of paper/README.md.
+// The simulation with default settings: the step of paper/README.md and no choices.
 #include "simulation.hpp"
 
 namespace mbs::eigen_dense {
 
-template <typename Scalar>
-Simulation<Scalar>::Simulation(const Model& model, const StepSettings& settings)
+Simulation::Simulation(const Model& model, const StepSettings& settings)
     : mbs::Simulation(model, settings),
       settings_(settings),
       layout_(model),
       assembly_(model, settings, layout_),
       solver_(model.variables()),
       motion_(model, layout_),
-      solution_(Eigen::VectorX<Scalar>::Zero(model.variables())) {}
+      solution_(Eigen::VectorXd::Zero(model.variables())) {}
 
-template <typename Scalar>
-StepOutcome Simulation<Scalar>::do_step() {
+StepOutcome Simulation::do_step() {
   phases_.enter(Phase::other);
   if (assembly_.driven()) assembly_.drive(time(), motion_.q, motion_.v);
-  motion_.predict(Scalar(settings_.step));
+  motion_.predict(settings_.step);
   phases_.enter(Phase::evaluation);
   assembly_.evaluate(motion_.q);
   StepOutcome outcome{StepStatus::pass_limit, 0};
@@ -33,8 +31,7 @@ StepOutcome Simulation<Scalar>::do_step() {
   return outcome;
 }
 
-template <typename Scalar>
-bool Simulation<Scalar>::pass(bool& converged) {
+bool Simulation::pass(bool& converged) {
   phases_.enter(Phase::evaluation);
   assembly_.residual(motion_.q, motion_.v, motion_.a, motion_.lambda, solution_);
   phases_.enter(Phase::assembly);
@@ -46,17 +43,15 @@ bool Simulation<Scalar>::pass(bool& converged) {
   phases_.enter(Phase::other);
   if (!factorized) return false;
 
-  converged =
-      motion_.correct(solution_.data(), Scalar(settings_.step), Scalar(settings_.tolerance));
+  converged = motion_.correct(solution_.data(), settings_.step, settings_.tolerance);
   phases_.enter(Phase::evaluation);
   assembly_.evaluate(motion_.q);
   phases_.enter(Phase::other);
-  motion_.lambda += Scalar(settings_.penalty) * assembly_.Phi();  // Eq. (1)
+  motion_.lambda += settings_.penalty * assembly_.Phi();  // Eq. (1)
   return true;
 }
 
-template <typename Scalar>
-void Simulation<Scalar>::project() {
+void Simulation::project() {
   if (settings_.projections == Projections::none) return;
   phases_.enter(Phase::projection);
   assembly_.project_velocity(motion_.q, motion_.v, solution_);
@@ -72,8 +67,5 @@ void Simulation<Scalar>::project() {
   }
   phases_.enter(Phase::other);
 }
-
-template class Simulation<double>;
-template class Simulation<float>;
 
 }  // namespace mbs::eigen_dense

@@ -1,4 +1,4 @@
-// The simulation with default settings, in double or float: the step of paper/README.md.
+// The simulation with default settings: the step of paper/README.md and no choices.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,6 @@
 namespace mbs::eigen_dense {
 
 /// Penalty form, multipliers and tangent new in every pass, every step projected.
-template <typename Scalar>
 class Simulation final : public mbs::Simulation {
  public:
   Simulation(const Model& model, const StepSettings& settings);
@@ -30,10 +29,10 @@ class Simulation final : public mbs::Simulation {
 
   StepSettings settings_;
   Layout layout_;
-  Assembly<Scalar> assembly_;
-  Solver<Scalar> solver_;
-  Motion<Scalar> motion_;
-  Eigen::VectorX<Scalar> solution_;  ///< n; right-hand side, then solution of a linear system
+  Assembly<double> assembly_;
+  Solver<double> solver_;
+  Motion<double> motion_;
+  Eigen::VectorXd solution_;  ///< n; right-hand side, then solution of a linear system
 };
 
 }  // namespace mbs::eigen_dense
