@@ -59,6 +59,8 @@ class Assembly {
   /// T₀ of Eq. (12) into the lower triangle of T (n×n, kg); the other half is scratch.
   template <typename MatrixScalar>
   void leading(Eigen::MatrixX<MatrixScalar>& T) const;
+  /// T₀ x into y (n), of x the first n elements.
+  void leading_product(const Vector& x, Vector& y) const;
   /// Keeps C and K for kept_leading_product().
   void keep_leading() { forces_.keep(); }
   /// T₀ x into y (n), with the C and K of the last keep_leading() and x of n elements.
@@ -82,9 +84,6 @@ class Assembly {
   void project_acceleration(const Vector& q, const Vector& v, const Vector& a, Vector& rhs);
 
  private:
-  /// T₀ x into y (n), of x the first n elements.
-  void leading_product(const Vector& x, Vector& y) const;
-
   using Index = Eigen::Index;
 
   Index variables_;

@@ -10,6 +10,7 @@
 #include "penalty_system.hpp"
 #include "rattle.hpp"
 #include "rounded.hpp"
+#include "saddle_lu.hpp"
 #include "saddle_solver.hpp"
 #include "saddle_system.hpp"
 #include "simulation.hpp"
@@ -76,7 +77,7 @@ std::unique_ptr<mbs::Simulation> create(const Model& model, const StepSettings& 
   if (settings.precision == Precision::single_precision) return create_in<float>(model, settings);
   if (settings.precision == Precision::double_precision) return create_in<double>(model, settings);
   using Penalty = PenaltySystem<double, Rounded<Solver<float>>>;
-  using Saddle = SaddleSystem<double, Rounded<SaddleSolver<float>>>;
+  using Saddle = SaddleSystem<double, Rounded<SaddleLu>>;
   return create_newton<Penalty, Saddle>(model, settings);
 }
 

@@ -4,6 +4,7 @@
 #include "largest.hpp"
 #include "penalty_system.hpp"
 #include "rounded.hpp"
+#include "saddle_lu.hpp"
 #include "saddle_solver.hpp"
 #include "saddle_system.hpp"
 #include "solver.hpp"
@@ -12,7 +13,14 @@ namespace mbs::eigen_dense {
 
 namespace {
 
-constexpr int kRefinements = 5;  // solves of a refined projection at most
+/// How often Eq. (15) is solved at most; 0: Eq. (6) or (13) is instead. In single precision the
+/// penalty form with new factors solves it once: that is Eq. (6) up to what the last Δq changes in
+/// Φq, but T, whose condition leaves few digits, then acts on the correction of v* and a* alone.
+int refinements(const StepSettings& settings) {
+  if (settings.tangent != TangentReuse::none || settings.precision == Precision::mixed) return 5;
+  const bool penalty = settings.scheme == Scheme::penalty;
+  return penalty && settings.precision == Precision::single_precision ? 1 : 0;
+}
 
 }  // namespace
 
@@ -20,9 +28,7 @@ template <typename System>
 Newton<System>::Newton(const Model& model, const StepSettings& settings)
     : mbs::Simulation(model, settings),
       settings_(settings),
-      solves_(settings.tangent == TangentReuse::none && settings.precision != Precision::mixed
-                  ? 1
-                  : kRefinements),
+      refinements_(refinements(settings)),
       layout_(model),
       system_(model, settings, layout_),
       motion_(model, layout_),
@@ -104,35 +110,44 @@ bool Newton<System>::project(StepOutcome& outcome) {
   if (++unprojected_ < settings_.projections_every) return true;
   unprojected_ = 0;
   if (settings_.projections == Projections::none) return true;
-  const double bound = 2 / settings_.step * settings_.tolerance;
-  if (!project(&System::project_velocity, motion_.v, bound, outcome)) return false;
-  if (settings_.projections == Projections::velocity) return true;
-  return project(&System::project_acceleration, motion_.a, 2 / settings_.step * bound, outcome);
+  const bool both = settings_.projections == Projections::both;
+  if (refinements_ > 0) {
+    const double bound = 2 / settings_.step * settings_.tolerance;
+    return refine(&System::refine_velocity, motion_.v, bound, outcome) &&
+           (!both ||
+            refine(&System::refine_acceleration, motion_.a, 2 / settings_.step * bound, outcome));
+  }
+  solve(&System::project_velocity);  // Eq. (6) or (13)
+  motion_.v.head(motion_.a.size()) = system_.correction();
+  if (!both) return true;
+  solve(&System::project_acceleration);  // Eq. (6) or (13)
+  motion_.a = system_.correction();
+  return true;
 }
 
 template <typename System>
-bool Newton<System>::project(MakeRightHandSide make, Vector& target, double tolerance,
-                             StepOutcome& outcome) {
+bool Newton<System>::refine(MakeRightHandSide make, Vector& target, double tolerance,
+                            StepOutcome& outcome) {
   auto x = target.head(motion_.a.size());
   start_ = x;
   phases_.enter(Phase::projection);
-  system_.begin_projection();
+  system_.begin_refinement();
   double size_before = 0.0;
-  for (int k = 0; k < solves_; ++k) {
+  for (int k = 1; k <= refinements_; ++k) {
     solve(make);
     double size = largest(system_.correction());
-    if (k > 0 && !(size <= size_before / 2)) {  // a NaN is slower, too
+    if (k > 1 && !(size <= size_before / 2)) {  // a NaN is slower, too
       if (!schedule_.keeps()) return true;
       if (!factorize_here(outcome)) return false;
       solve(make);  // the same right-hand side
       size = largest(system_.correction());
     }
     x += system_.correction();  // Eq. (15)
-    if (size <= tolerance || k + 1 == solves_) return true;
+    if (size <= tolerance || k == refinements_) return true;
     size_before = size;
     phases_.enter(Phase::projection);
     change_ = start_ - x;
-    system_.continue_projection(change_);
+    system_.continue_refinement(change_);
   }
   return true;
 }
@@ -157,6 +172,6 @@ template class Newton<PenaltySystem<float, Solver<float>>>;
 template class Newton<PenaltySystem<double, Rounded<Solver<float>>>>;
 template class Newton<SaddleSystem<double, SaddleSolver<double>>>;
 template class Newton<SaddleSystem<float, SaddleSolver<float>>>;
-template class Newton<SaddleSystem<double, Rounded<SaddleSolver<float>>>>;
+template class Newton<SaddleSystem<double, Rounded<SaddleLu>>>;
 
 }  // namespace mbs::eigen_dense

@@ -37,21 +37,20 @@ class Newton final : public mbs::Simulation {
   /// max|Δq| is within the tolerance.
   [[nodiscard]] bool pass(StepOutcome& outcome, bool& small);
   [[nodiscard]] bool project(StepOutcome& outcome);
-  /// Projects v' or a', as `make` asks for, until max|δ| ≤ tolerance: Eq. (15). With new factors
-  /// its first solve is Eq. (6) or (13), and the only one.
-  [[nodiscard]] bool project(MakeRightHandSide make, Vector& target, double tolerance,
-                             StepOutcome& outcome);
+  /// Refines v' or a', as `make` asks for, until max|δ| ≤ tolerance: Eq. (15).
+  [[nodiscard]] bool refine(MakeRightHandSide make, Vector& target, double tolerance,
+                            StepOutcome& outcome);
 
   /// Makes a right-hand side and solves. Leaves the phase at `solve`.
   void solve(MakeRightHandSide make);
 
   StepSettings settings_;
-  int solves_;  ///< of a projection at most
+  int refinements_;
   Layout layout_;
   System system_;
   Motion<Scalar> motion_;
   TangentSchedule schedule_;
-  Vector start_, change_;  ///< n; v* or a* of a projection, v* − v' or a* − a'
+  Vector start_, change_;  ///< n; v* or a* of a refinement, v* − v' or a* − a'
   int unprojected_ = 0;    ///< steps since the last projected one
 };
 

@@ -1,4 +1,4 @@
-// The linear systems of the penalty form: Eqs. (4) and (15).
+// The linear systems of the penalty form: Eqs. (4), (6) and (15).
 #pragma once
 
 #include <Eigen/Core>
@@ -42,19 +42,27 @@ class PenaltySystem {
   }
   [[nodiscard]] bool factorize() { return solver_.factorize(); }
 
-  /// The right-hand sides of Eq. (15) for v', then for a' with that v'.
+  /// The right-hand sides of Eq. (6) for v', then for a' with that v'.
   void project_velocity(const Motion<Scalar>& motion) {
+    assembly_.project_velocity(motion.q, motion.v, x_);
+  }
+  void project_acceleration(const Motion<Scalar>& motion) {
+    assembly_.project_acceleration(motion.q, motion.v, motion.a, x_);
+  }
+
+  /// Those of Eq. (15).
+  void refine_velocity(const Motion<Scalar>& motion) {
     x_ = lag_;
     assembly_.subtract_penalty(assembly_.velocity_error(motion.q, motion.v), x_);
   }
-  void project_acceleration(const Motion<Scalar>& motion) {
+  void refine_acceleration(const Motion<Scalar>& motion) {
     x_ = lag_;
     assembly_.subtract_penalty(assembly_.acceleration_error(motion.q, motion.v, motion.a), x_);
   }
-  /// To be called before the first projection of a vector and between the following ones, with
+  /// To be called before the first refinement of a vector and between the following ones, with
   /// v* − v' or a* − a' in `change` (n).
-  void begin_projection() { lag_.setZero(); }
-  void continue_projection(const Vector& change) { assembly_.kept_leading_product(change, lag_); }
+  void begin_refinement() { lag_.setZero(); }
+  void continue_refinement(const Vector& change) { assembly_.kept_leading_product(change, lag_); }
 
   void solve() { solver_.solve(x_); }
   [[nodiscard]] const Vector& correction() const { return x_; }

@@ -1,4 +1,4 @@
-// The linear systems of the saddle-point form: Eqs. (12) and (15).
+// The linear systems of the saddle-point form: Eqs. (12), (13) and (15).
 #pragma once
 
 #include <Eigen/Core>
@@ -46,20 +46,30 @@ class SaddleSystem {
     return solver_.factorize();
   }
 
-  /// The right-hand sides of Eq. (15) for v', then for a' with that v'.
+  /// The right-hand sides of Eq. (13) for v', then for a' with that v'.
   void project_velocity(const Motion<Scalar>& motion) {
-    fill_projection(assembly_.velocity_error(motion.q, motion.v));
+    assembly_.leading_product(motion.v, upper_);
+    fill(assembly_.velocity_term(motion.q));
   }
   void project_acceleration(const Motion<Scalar>& motion) {
-    fill_projection(assembly_.acceleration_error(motion.q, motion.v, motion.a));
+    assembly_.leading_product(motion.a, upper_);
+    fill(assembly_.acceleration_term(motion.q, motion.v));
   }
-  /// To be called before the first projection of a vector and between the following ones, with
+
+  /// Those of Eq. (15).
+  void refine_velocity(const Motion<Scalar>& motion) {
+    fill_refinement(assembly_.velocity_error(motion.q, motion.v));
+  }
+  void refine_acceleration(const Motion<Scalar>& motion) {
+    fill_refinement(assembly_.acceleration_error(motion.q, motion.v, motion.a));
+  }
+  /// To be called before the first refinement of a vector and between the following ones, with
   /// v* − v' or a* − a' in `change` (n).
-  void begin_projection() {
+  void begin_refinement() {
     upper_.setZero();
     nu_.setZero();
   }
-  void continue_projection(const Vector& change) {
+  void continue_refinement(const Vector& change) {
     assembly_.kept_leading_product(change, upper_);
     if (nu_.size() == 0) return;
     nu_ += x_.tail(nu_.size());
@@ -81,7 +91,7 @@ class SaddleSystem {
     x_.tail(minus_lower.size()) = -minus_lower;
   }
 
-  void fill_projection(const Vector& error) {
+  void fill_refinement(const Vector& error) {
     fill(error);
     x_.tail(nu_.size()) += epsilon_ * nu_;
   }
