@@ -1,8 +1,4 @@
 // What the equations need of M, the Jacobian and the forces, stored densely.
-#ifdef __GNUC__  // GCC 12 warns wrongly about its own AVX-512 intrinsics (GCC bug 105593)
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-
 #include "assembly.hpp"
 
 #include "rank_update.hpp"

@@ -1,8 +1,4 @@
 // Dense Cholesky factorization of the tangent matrix, in place.
-#ifdef __GNUC__  // GCC 12 warns wrongly about its own AVX-512 intrinsics (GCC bug 105593)
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-
 #include "solver.hpp"
 
 #include <Eigen/Cholesky>
