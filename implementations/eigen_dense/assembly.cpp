@@ -1,101 +1,152 @@
-// The residual, the tangent matrix and the right-hand sides of the projections, stored densely.
-#ifdef __GNUC__  // GCC 12 warns wrongly about its own AVX-512 intrinsics (GCC bug 105593)
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-
+// What the equations need of M, the Jacobian and the forces, stored densely.
 #include "assembly.hpp"
 
-#include <algorithm>
+#include "rank_update.hpp"
 
 namespace mbs::eigen_dense {
 
-namespace {
-
-/// Up to here Eigen's general product, which does both triangles, beats its rank-k update.
-constexpr Eigen::Index kGeneralProductLimit = 28;
-
-/// Depth of a rank-k update whose packed operands, depth×n, still fit Eigen's stack buffers.
-Eigen::Index stack_depth(Eigen::Index variables) {
-  const Eigen::Index limit = EIGEN_STACK_ALLOCATION_LIMIT / sizeof(double);
-  return std::max<Eigen::Index>(8, limit / std::max<Eigen::Index>(1, variables) / 8 * 8);
-}
-
-}  // namespace
-
-Assembly::Assembly(const Model& model, const StepSettings& settings, const Layout& layout)
+template <typename Scalar>
+Assembly<Scalar>::Assembly(const Model& model, const StepSettings& settings, const Layout& layout)
     : variables_(model.variables()),
-      penalty_(settings.penalty),
-      scale_(settings.step * settings.step / 4),
-      slice_depth_(stack_depth(variables_)),
+      penalty_(Scalar(settings.penalty)),
+      scale_(Scalar(settings.step * settings.step / 4)),
       constraints_(model, layout),
       drivers_(model, layout),
       forces_(model, settings, layout),
-      M_(Eigen::MatrixXd::Zero(variables_, variables_)),
-      scaled_force_(scale_ * Eigen::Map<const Eigen::VectorXd>(model.force().data(), variables_)),
-      multiplier_(Eigen::VectorXd::Zero(model.constraints())),
-      acceleration_term_(Eigen::VectorXd::Zero(model.constraints())) {
+      M_(Matrix::Zero(variables_, variables_)),
+      scaled_force_(
+          scale_ *
+          Eigen::Map<const Eigen::VectorXd>(model.force().data(), variables_).cast<Scalar>()),
+      multiplier_(Vector::Zero(model.constraints())),
+      term_(Vector::Zero(model.constraints())) {
   for (const MassEntry& entry : model.mass()) {
-    M_(entry.row, entry.col) = M_(entry.col, entry.row) = entry.value;
+    M_(entry.row, entry.col) = M_(entry.col, entry.row) = Scalar(entry.value);
   }
   if (model.linear_constraints().empty()) return;
   M_and_linear_ = M_;
   constraints_.add_linear_share(scale_ * penalty_, M_and_linear_);  // Eq. (5)
 }
 
-void Assembly::evaluate(const Eigen::VectorXd& q) {
+template <typename Scalar>
+void Assembly<Scalar>::evaluate(const Vector& q) {
   constraints_.evaluate(q);
   drivers_.subtract_values(constraints_.Phi());
 }
 
-void Assembly::residual(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
-                        const Eigen::VectorXd& a, const Eigen::VectorXd& lambda,
-                        Eigen::VectorXd& rhs) {
+template <typename Scalar>
+void Assembly<Scalar>::scaled_force(const Vector& q, const Vector& v, Vector& rhs) {
   rhs = scaled_force_;
   drivers_.add_force(scale_, rhs);
   if (!forces_.empty()) forces_.evaluate(q, v, rhs);
-  rhs.noalias() -= scale_ * (M_ * a);  // Eq. (3), by Eq. (2)
-  if (Phi().size() == 0) return;
-  multiplier_ = lambda + penalty_ * Phi();
-  rhs.noalias() -= scale_ * (constraints_.jacobian_transposed() * multiplier_);
 }
 
-// A rank-k update deeper than slice_depth_ is done in slices of the constraints.
-void Assembly::tangent(Eigen::MatrixXd& T) const {
-  const Index depth = constraints_.quadratic();
+template <typename Scalar>
+void Assembly<Scalar>::residual(const Vector& q, const Vector& v, const Vector& a,
+                                const Vector& lambda, Vector& rhs) {
+  multiplier_ = lambda + penalty_ * Phi();
+  plain_residual(q, v, a, multiplier_, rhs);
+}
+
+template <typename Scalar>
+void Assembly<Scalar>::plain_residual(const Vector& q, const Vector& v, const Vector& a,
+                                      const Vector& lambda, Vector& rhs) {
+  scaled_force(q, v, rhs);
+  rhs.noalias() -= scale_ * (M_ * a);  // Eq. (3), by Eq. (2)
+  if (Phi().size() == 0) return;
+  rhs.noalias() -= scale_ * (constraints_.jacobian_transposed() * lambda);
+}
+
+template <typename Scalar>
+void Assembly<Scalar>::tangent(Matrix& T) const {
   T = M_and_linear_.size() == 0 ? M_ : M_and_linear_;
-  const double factor = scale_ * penalty_;
   const auto Jt = constraints_.jacobian_transposed();
-  if (variables_ <= kGeneralProductLimit && depth > 0) {
-    const auto quadratic = Jt.leftCols(depth);
-    T.noalias() += factor * quadratic * quadratic.transpose();  // Eq. (5)
-  } else {
-    for (Index k = 0; k < depth; k += slice_depth_) {
-      const auto slice = Jt.middleCols(k, std::min(slice_depth_, depth - k));
-      T.selfadjointView<Eigen::Lower>().rankUpdate(slice, factor);  // Eq. (5)
-    }
-  }
+  rank_update(Jt.leftCols(constraints_.quadratic()), scale_ * penalty_, T);  // Eq. (5)
   if (!forces_.empty()) forces_.add_tangent(T);
 }
 
-void Assembly::project_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
-                                Eigen::VectorXd& rhs) {
-  rhs.noalias() = M_ * v.head(variables_);  // Eq. (6)
-  if (!forces_.empty()) forces_.add_product(v, rhs);
-  if (drivers_.empty()) return;
-  acceleration_term_.setZero();
-  drivers_.add_velocity_term(q, acceleration_term_);
-  rhs.noalias() -= scale_ * penalty_ * (constraints_.jacobian_transposed() * acceleration_term_);
+template <typename Scalar>
+void Assembly<Scalar>::tangent(Eigen::MatrixXf& T, Eigen::MatrixXf& jacobian) const {
+  T = (M_and_linear_.size() == 0 ? M_ : M_and_linear_).template cast<float>();
+  const auto Jt = constraints_.jacobian_transposed();
+  jacobian = Jt.leftCols(constraints_.quadratic()).template cast<float>();
+  rank_update(jacobian, float(scale_ * penalty_), T);  // Eq. (5)
+  if (!forces_.empty()) forces_.add_tangent(T);
 }
 
-void Assembly::project_acceleration(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
-                                    const Eigen::VectorXd& a, Eigen::VectorXd& rhs) {
-  rhs.noalias() = M_ * a;  // Eq. (6)
-  if (!forces_.empty()) forces_.add_product(a, rhs);
-  if (constraints_.quadratic() == 0 && drivers_.empty()) return;
-  if (!drivers_.empty()) acceleration_term_.setZero();
-  constraints_.velocity_term(v, acceleration_term_);
-  if (!drivers_.empty()) drivers_.add_acceleration_term(q, acceleration_term_);
-  rhs.noalias() -= scale_ * penalty_ * (constraints_.jacobian_transposed() * acceleration_term_);
+template <typename Scalar>
+template <typename MatrixScalar>
+void Assembly<Scalar>::leading(Eigen::MatrixX<MatrixScalar>& T) const {
+  T = M_.template cast<MatrixScalar>();
+  forces_.add_tangent(T);  // Eq. (12)
 }
+
+template <typename Scalar>
+void Assembly<Scalar>::leading_product(const Vector& x, Vector& y) const {
+  y.noalias() = M_ * x.head(variables_);
+  if (!forces_.empty()) forces_.add_product(x, y);
+}
+
+template <typename Scalar>
+void Assembly<Scalar>::kept_leading_product(const Vector& x, Vector& y) const {
+  y.noalias() = M_ * x;
+  forces_.add_kept_product(x, y);
+}
+
+template <typename Scalar>
+const Eigen::VectorX<Scalar>& Assembly<Scalar>::velocity_term(const Vector& q) {
+  term_.setZero();
+  if (!drivers_.empty()) drivers_.add_velocity_term(q, term_);
+  return term_;
+}
+
+template <typename Scalar>
+const Eigen::VectorX<Scalar>& Assembly<Scalar>::acceleration_term(const Vector& q,
+                                                                  const Vector& v) {
+  term_.setZero();  // the rows of linear constraints are not written by the next line
+  constraints_.velocity_term(v, term_);
+  if (!drivers_.empty()) drivers_.add_acceleration_term(q, term_);
+  return term_;
+}
+
+template <typename Scalar>
+const Eigen::VectorX<Scalar>& Assembly<Scalar>::velocity_error(const Vector& q, const Vector& v) {
+  velocity_term(q);
+  term_.noalias() += constraints_.jacobian_transposed().transpose() * v.head(variables_);
+  return term_;
+}
+
+template <typename Scalar>
+const Eigen::VectorX<Scalar>& Assembly<Scalar>::acceleration_error(const Vector& q, const Vector& v,
+                                                                   const Vector& a) {
+  acceleration_term(q, v);
+  term_.noalias() += constraints_.jacobian_transposed().transpose() * a;
+  return term_;
+}
+
+template <typename Scalar>
+void Assembly<Scalar>::subtract_penalty(const Vector& term, Vector& rhs) const {
+  if (term.size() == 0) return;
+  rhs.noalias() -= scale_ * penalty_ * (constraints_.jacobian_transposed() * term);
+}
+
+template <typename Scalar>
+void Assembly<Scalar>::project_velocity(const Vector& q, const Vector& v, Vector& rhs) {
+  leading_product(v, rhs);  // Eq. (6)
+  if (!drivers_.empty()) subtract_penalty(velocity_term(q), rhs);
+}
+
+template <typename Scalar>
+void Assembly<Scalar>::project_acceleration(const Vector& q, const Vector& v, const Vector& a,
+                                            Vector& rhs) {
+  leading_product(a, rhs);  // Eq. (6)
+  if (constraints_.quadratic() == 0 && drivers_.empty()) return;
+  subtract_penalty(acceleration_term(q, v), rhs);
+}
+
+template class Assembly<double>;
+template class Assembly<float>;
+template void Assembly<double>::leading(Eigen::MatrixX<double>&) const;
+template void Assembly<double>::leading(Eigen::MatrixX<float>&) const;
+template void Assembly<float>::leading(Eigen::MatrixX<float>&) const;
 
 }  // namespace mbs::eigen_dense

@@ -1,4 +1,4 @@
-// The residual, the tangent matrix and the right-hand sides of the projections, stored densely.
+// What the equations need of M, the Jacobian and the forces, stored densely.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,53 +14,91 @@ namespace mbs::eigen_dense {
 
 /// Evaluates the equations of paper/README.md for one model, M and the Jacobian being full
 /// matrices. With n variables and m constraints; q and v are extended vectors, see Layout.
+/// T₀ = M + W, W = (Δt/2) C + (Δt²/4) K; C and K are those of the last scaled_force() or
+/// residual().
+template <typename Scalar>
 class Assembly {
  public:
+  using Vector = Eigen::VectorX<Scalar>;
+  using Matrix = Eigen::MatrixX<Scalar>;
+
   Assembly(const Model& model, const StepSettings& settings, const Layout& layout);
 
   /// Whether drive() has to be called in every step, before all else.
   [[nodiscard]] bool driven() const { return !drivers_.empty(); }
   /// Takes the drivers' values at time t (s) and puts the driven points into q and v.
-  void drive(double t, Eigen::VectorXd& q, Eigen::VectorXd& v) { drivers_.drive(t, q, v); }
+  void drive(double t, Vector& q, Vector& v) { drivers_.drive(t, q, v); }
 
   /// Phi and Phi_q at q (m). All other methods use this Phi_q.
-  void evaluate(const Eigen::VectorXd& q);
+  void evaluate(const Vector& q);
 
   /// Phi (m) of the last evaluate().
-  [[nodiscard]] const Eigen::VectorXd& Phi() const { return constraints_.Phi(); }
+  [[nodiscard]] const Vector& Phi() const { return constraints_.Phi(); }
+  /// Φqᵀ (n×m) of the last evaluate().
+  [[nodiscard]] auto jacobian_transposed() const { return constraints_.jacobian_transposed(); }
 
-  /// −f of Eq. (3) into rhs (n, kg m), with a' in a (n, m/s²) and lambda (m). C and K are from now
-  /// on those of this q and v.
-  void residual(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::VectorXd& a,
-                const Eigen::VectorXd& lambda, Eigen::VectorXd& rhs);
+  /// (Δt²/4) Q at q and v into rhs (n, kg m).
+  void scaled_force(const Vector& q, const Vector& v, Vector& rhs);
+
+  /// −f of Eq. (3) into rhs (n, kg m), with a' in a (n, m/s²) and lambda (m).
+  void residual(const Vector& q, const Vector& v, const Vector& a, const Vector& lambda,
+                Vector& rhs);
+  /// The same without α Φ: −f₀ of Eq. (12).
+  void plain_residual(const Vector& q, const Vector& v, const Vector& a, const Vector& lambda,
+                      Vector& rhs);
 
   /// T of Eq. (5) into the lower triangle of T (n×n, kg); the other half is scratch.
-  void tangent(Eigen::MatrixXd& T) const;
+  void tangent(Matrix& T) const;
+  /// The same in float, with room for a copy of the Jacobian in `jacobian`.
+  void tangent(Eigen::MatrixXf& T, Eigen::MatrixXf& jacobian) const;
+
+  /// M into M (n×n, kg).
+  void mass(Matrix& M) const { M = M_; }
+  /// Whether T₀ is M always.
+  [[nodiscard]] bool constant_leading() const { return !forces_.has_tangent(); }
+  /// T₀ of Eq. (12) into the lower triangle of T (n×n, kg); the other half is scratch.
+  template <typename MatrixScalar>
+  void leading(Eigen::MatrixX<MatrixScalar>& T) const;
+  /// T₀ x into y (n), of x the first n elements.
+  void leading_product(const Vector& x, Vector& y) const;
+  /// Keeps C and K for kept_leading_product().
+  void keep_leading() { forces_.keep(); }
+  /// T₀ x into y (n), with the C and K of the last keep_leading() and x of n elements.
+  void kept_leading_product(const Vector& x, Vector& y) const;
+
+  /// Φt (m) at q, in a buffer that the next call of any of these four overwrites.
+  const Vector& velocity_term(const Vector& q);
+  /// Φ̇q v + Φ̇t (m), likewise.
+  const Vector& acceleration_term(const Vector& q, const Vector& v);
+  /// Φq v + Φt (m), likewise: by how much v misses its constraints.
+  const Vector& velocity_error(const Vector& q, const Vector& v);
+  /// Φq a + Φ̇q v + Φ̇t (m), likewise.
+  const Vector& acceleration_error(const Vector& q, const Vector& v, const Vector& a);
+
+  /// rhs (n) −= (Δt²/4) α Φqᵀ term, with term (m) of Eqs. (6) and (15).
+  void subtract_penalty(const Vector& term, Vector& rhs) const;
 
   /// The right-hand side of Eq. (6) for v' into rhs (n), with v* in v.
-  void project_velocity(const Eigen::VectorXd& q, const Eigen::VectorXd& v, Eigen::VectorXd& rhs);
-
+  void project_velocity(const Vector& q, const Vector& v, Vector& rhs);
   /// The right-hand side of Eq. (6) for a' into rhs (n), with the projected v' and a* in a (n).
-  void project_acceleration(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
-                            const Eigen::VectorXd& a, Eigen::VectorXd& rhs);
+  void project_acceleration(const Vector& q, const Vector& v, const Vector& a, Vector& rhs);
 
  private:
   using Index = Eigen::Index;
 
   Index variables_;
-  double penalty_;
-  double scale_;       ///< Δt²/4, s²
-  Index slice_depth_;  ///< columns that one rank-k update takes, see tangent()
+  Scalar penalty_;
+  Scalar scale_;  ///< Δt²/4, s²
 
-  Constraints constraints_;
-  Drivers drivers_;
-  Forces forces_;
+  Constraints<Scalar> constraints_;
+  Drivers<Scalar> drivers_;
+  Forces<Scalar> forces_;
 
-  Eigen::MatrixXd M_;             ///< n×n, both triangles, kg
-  Eigen::MatrixXd M_and_linear_;  ///< M + (Δt²/4) α Φqᵀ Φq of linear constraints; else 0×0
-  Eigen::VectorXd scaled_force_;  ///< (Δt²/4) Q, its constant part
-  Eigen::VectorXd multiplier_;    ///< lambda + alpha Phi
-  Eigen::VectorXd acceleration_term_;  ///< Φ̇q v + Φ̇t, and Φt before that
+  Matrix M_;             ///< n×n, both triangles, kg
+  Matrix M_and_linear_;  ///< M + (Δt²/4) α Φqᵀ Φq of linear constraints; else 0×0
+  Vector scaled_force_;  ///< (Δt²/4) Q, its constant part
+  Vector multiplier_;    ///< lambda + alpha Phi
+  Vector term_;          ///< what the four functions return
 };
 
 }  // namespace mbs::eigen_dense

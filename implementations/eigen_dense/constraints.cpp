@@ -5,12 +5,13 @@
 
 namespace mbs::eigen_dense {
 
-Constraints::Constraints(const Model& model, const Layout& layout)
+template <typename Scalar>
+Constraints<Scalar>::Constraints(const Model& model, const Layout& layout)
     : variables_(layout.variables()),
       dimension_(layout.dimension()),
       quadratic_(model.constraints() - static_cast<Index>(model.linear_constraints().size())),
-      Phi_(Eigen::VectorXd::Zero(model.constraints())),
-      jacobian_(Eigen::VectorXd::Zero(variables_ * Phi_.size() + dimension_)) {
+      Phi_(Vector::Zero(model.constraints())),
+      jacobian_(Vector::Zero(variables_ * Phi_.size() + dimension_)) {
   Index row = 0;
   for (const auto& constraint : model.dot_constraints()) lower_dot(constraint, row++, layout);
   for (const auto& constraint : model.bilinear_constraints()) {
@@ -20,21 +21,25 @@ Constraints::Constraints(const Model& model, const Layout& layout)
   clear_driven_values(model);
 }
 
+template <typename Scalar>
 template <typename Constraint>
-Constraints::Dot Constraints::slotted(const Constraint& constraint, Index row,
-                                      const Layout& layout) const {
+typename Constraints<Scalar>::Dot Constraints<Scalar>::slotted(const Constraint& constraint,
+                                                               Index row,
+                                                               const Layout& layout) const {
   const int a = constraint.a, b = constraint.b, c = constraint.c, d = constraint.d;
-  Dot dot{layout.start(a), layout.start(b), layout.start(c), layout.start(d), {}, row,
-          constraint.value};
-  dot.slots.fill({variables_ * Phi_.size(), 0.0, 0.0});
+  Dot dot{layout.start(a),         layout.start(b), layout.start(c), layout.start(d), {}, row,
+          Scalar(constraint.value)};
+  dot.slots.fill({variables_ * Phi_.size(), 0, 0});
   std::size_t k = 0;
   for (const Share& share : layout.shares({a, b, c, d})) {
-    dot.slots[k++] = {row * variables_ + share.start, share.in_w, share.in_u};
+    dot.slots[k++] = {row * variables_ + share.start, Scalar(share.in_w), Scalar(share.in_u)};
   }
   return dot;
 }
 
-void Constraints::lower_dot(const DotConstraint& constraint, Index row, const Layout& layout) {
+template <typename Scalar>
+void Constraints<Scalar>::lower_dot(const DotConstraint& constraint, Index row,
+                                    const Layout& layout) {
   if (constraint.a != constraint.c || constraint.b != constraint.d) {
     dots_.push_back(slotted(constraint, row, layout));
     return;
@@ -43,72 +48,77 @@ void Constraints::lower_dot(const DotConstraint& constraint, Index row, const La
   const auto to = [&](Index start) {
     return start < variables_ ? row * variables_ + start : variables_ * Phi_.size();
   };
-  distances_.push_back({a, b, to(a), to(b), row, constraint.value});
+  distances_.push_back({a, b, to(a), to(b), row, Scalar(constraint.value)});
 }
 
-void Constraints::lower_bilinear(const BilinearConstraint& constraint, Index row,
-                                 const Layout& layout) {
-  Bilinear bilinear{slotted(constraint, row, layout), Eigen::Matrix3d::Zero()};
+template <typename Scalar>
+void Constraints<Scalar>::lower_bilinear(const BilinearConstraint& constraint, Index row,
+                                         const Layout& layout) {
+  Bilinear bilinear{slotted(constraint, row, layout), Eigen::Matrix<Scalar, 3, 3>::Zero()};
   for (int i = 0; i < dimension_; ++i) {
-    for (int j = 0; j < dimension_; ++j) bilinear.B(i, j) = constraint.B[i][j];
+    for (int j = 0; j < dimension_; ++j) bilinear.B(i, j) = Scalar(constraint.B[i][j]);
   }
   bilinears_.push_back(bilinear);
 }
 
-void Constraints::lower_linear(const LinearConstraint& constraint, Index row) {
+template <typename Scalar>
+void Constraints<Scalar>::lower_linear(const LinearConstraint& constraint, Index row) {
   const Index begin = static_cast<Index>(terms_.size());
-  terms_.insert(terms_.end(), constraint.terms.begin(), constraint.terms.end());
-  linears_.push_back({begin, static_cast<Index>(terms_.size()), row, constraint.value});
   for (const auto& [coordinate, coefficient] : constraint.terms) {
-    jacobian_[row * variables_ + coordinate] = coefficient;  // Eq. (8), once and for all
+    terms_.push_back({coordinate, Scalar(coefficient)});
+    jacobian_[row * variables_ + coordinate] = Scalar(coefficient);  // Eq. (8), once and for all
   }
+  linears_.push_back({begin, static_cast<Index>(terms_.size()), row, Scalar(constraint.value)});
 }
 
-void Constraints::clear_driven_values(const Model& model) {
+template <typename Scalar>
+void Constraints<Scalar>::clear_driven_values(const Model& model) {
   if (model.driven_values().empty()) return;
-  std::vector<double*> values(Phi_.size());
+  std::vector<Scalar*> values(Phi_.size());
   for (Distance& distance : distances_) values[distance.row] = &distance.value;
   for (Dot& dot : dots_) values[dot.row] = &dot.value;
   for (Bilinear& bilinear : bilinears_) values[bilinear.dot.row] = &bilinear.dot.value;
   for (Linear& linear : linears_) values[linear.row] = &linear.value;
-  for (const DrivenValue& driven : model.driven_values()) *values[driven.constraint] = 0.0;
+  for (const DrivenValue& driven : model.driven_values()) *values[driven.constraint] = 0;
 }
 
+template <typename Scalar>
 template <int dimension>
-void Constraints::evaluate_quadratic(const double* q) {
-  using Vector = Eigen::Matrix<double, dimension, 1>;
-  double* const jacobian = jacobian_.data();
-  double* const Phi = Phi_.data();
+void Constraints<Scalar>::evaluate_quadratic(const Scalar* q) {
+  using Point = Eigen::Matrix<Scalar, dimension, 1>;
+  Scalar* const jacobian = jacobian_.data();
+  Scalar* const Phi = Phi_.data();
   for (const Distance& distance : distances_) {  // Eq. (7) with a = c, b = d
-    const Vector ab = difference<dimension>(q, distance.a, distance.b);
+    const Point ab = difference<dimension>(q, distance.a, distance.b);
     Phi[distance.row] = ab.squaredNorm() - distance.value;
-    Eigen::Map<Vector>(jacobian + distance.to_a) = 2.0 * ab;
-    Eigen::Map<Vector>(jacobian + distance.to_b) = -2.0 * ab;
+    Eigen::Map<Point>(jacobian + distance.to_a) = Scalar(2) * ab;
+    Eigen::Map<Point>(jacobian + distance.to_b) = Scalar(-2) * ab;
   }
-  const auto write_slots = [jacobian](const Dot& dot, const Vector& ab, const Vector& cd) {
-    for (const Dot::Slot& slot : dot.slots) {
-      Eigen::Map<Vector>(jacobian + slot.to) = slot.ab * ab + slot.cd * cd;
+  const auto write_slots = [jacobian](const Dot& dot, const Point& ab, const Point& cd) {
+    for (const auto& slot : dot.slots) {
+      Eigen::Map<Point>(jacobian + slot.to) = slot.ab * ab + slot.cd * cd;
     }
   };
   for (const Dot& dot : dots_) {  // Eq. (7)
-    const Vector ab = difference<dimension>(q, dot.a, dot.b);
-    const Vector cd = difference<dimension>(q, dot.c, dot.d);
+    const Point ab = difference<dimension>(q, dot.a, dot.b);
+    const Point cd = difference<dimension>(q, dot.c, dot.d);
     Phi[dot.row] = ab.dot(cd) - dot.value;
     write_slots(dot, ab, cd);
   }
   for (const auto& [dot, full_B] : bilinears_) {  // Eq. (7)
     const auto B = full_B.template topLeftCorner<dimension, dimension>();
-    const Vector ab = difference<dimension>(q, dot.a, dot.b);
-    const Vector Bcd = B * difference<dimension>(q, dot.c, dot.d);
+    const Point ab = difference<dimension>(q, dot.a, dot.b);
+    const Point Bcd = B * difference<dimension>(q, dot.c, dot.d);
     Phi[dot.row] = ab.dot(Bcd) - dot.value;
     write_slots(dot, B.transpose() * ab, Bcd);
   }
 }
 
-void Constraints::evaluate(const Eigen::VectorXd& q) {
+template <typename Scalar>
+void Constraints<Scalar>::evaluate(const Vector& q) {
   dimension_ == 2 ? evaluate_quadratic<2>(q.data()) : evaluate_quadratic<3>(q.data());
   for (const Linear& linear : linears_) {  // Eq. (8)
-    double sum = -linear.value;
+    Scalar sum = -linear.value;
     for (Index k = linear.begin; k < linear.end; ++k) {
       sum += terms_[k].coefficient * q[terms_[k].coordinate];
     }
@@ -116,28 +126,32 @@ void Constraints::evaluate(const Eigen::VectorXd& q) {
   }
 }
 
+template <typename Scalar>
 template <int dimension>
-void Constraints::evaluate_velocity_term(const double* v, double* term) const {
+void Constraints<Scalar>::evaluate_velocity_term(const Scalar* v, Scalar* term) const {
   for (const Distance& distance : distances_) {  // Eq. (7)
-    term[distance.row] = 2.0 * difference<dimension>(v, distance.a, distance.b).squaredNorm();
+    term[distance.row] = Scalar(2) * difference<dimension>(v, distance.a, distance.b).squaredNorm();
   }
   for (const Dot& dot : dots_) {
     term[dot.row] =
-        2.0 * difference<dimension>(v, dot.a, dot.b).dot(difference<dimension>(v, dot.c, dot.d));
+        Scalar(2) *
+        difference<dimension>(v, dot.a, dot.b).dot(difference<dimension>(v, dot.c, dot.d));
   }
   for (const auto& [dot, B] : bilinears_) {
-    term[dot.row] = 2.0 * difference<dimension>(v, dot.a, dot.b)
-                              .dot(B.template topLeftCorner<dimension, dimension>() *
-                                   difference<dimension>(v, dot.c, dot.d));
+    term[dot.row] = Scalar(2) * difference<dimension>(v, dot.a, dot.b)
+                                    .dot(B.template topLeftCorner<dimension, dimension>() *
+                                         difference<dimension>(v, dot.c, dot.d));
   }
 }
 
-void Constraints::velocity_term(const Eigen::VectorXd& v, Eigen::VectorXd& term) const {
+template <typename Scalar>
+void Constraints<Scalar>::velocity_term(const Vector& v, Vector& term) const {
   dimension_ == 2 ? evaluate_velocity_term<2>(v.data(), term.data())
                   : evaluate_velocity_term<3>(v.data(), term.data());
 }
 
-void Constraints::add_linear_share(double factor, Eigen::MatrixXd& T) const {
+template <typename Scalar>
+void Constraints<Scalar>::add_linear_share(Scalar factor, Matrix& T) const {
   for (const Linear& linear : linears_) {
     for (Index j = linear.begin; j < linear.end; ++j) {
       for (Index i = linear.begin; i < linear.end; ++i) {
@@ -147,5 +161,8 @@ void Constraints::add_linear_share(double factor, Eigen::MatrixXd& T) const {
     }
   }
 }
+
+template class Constraints<double>;
+template class Constraints<float>;
 
 }  // namespace mbs::eigen_dense

@@ -13,24 +13,28 @@ namespace mbs::eigen_dense {
 /// Evaluates Eqs. (7) and (8). The Jacobian is stored transposed, n×m, a constraint a column; the
 /// columns of the linear constraints come last and are constant. Entries for fixed points go to a
 /// scratch place behind the last column. Values driven by time count as zero here, see Drivers.
+template <typename Scalar>
 class Constraints {
  public:
+  using Vector = Eigen::VectorX<Scalar>;
+  using Matrix = Eigen::MatrixX<Scalar>;
+
   Constraints(const Model& model, const Layout& layout);
 
   /// Phi and Phi_q at the extended position q (m).
-  void evaluate(const Eigen::VectorXd& q);
+  void evaluate(const Vector& q);
 
   /// 2 u̇·B ẇ of Eq. (7) into `term` (m, m²/s²), with v extended; not the rows of linear ones.
-  void velocity_term(const Eigen::VectorXd& v, Eigen::VectorXd& term) const;
+  void velocity_term(const Vector& v, Vector& term) const;
 
   /// Adds factor × the share of the linear constraints in Φqᵀ Φq to both triangles of T (n×n).
-  void add_linear_share(double factor, Eigen::MatrixXd& T) const;
+  void add_linear_share(Scalar factor, Matrix& T) const;
 
   /// Of the last evaluate() (m).
-  [[nodiscard]] const Eigen::VectorXd& Phi() const { return Phi_; }
-  [[nodiscard]] Eigen::VectorXd& Phi() { return Phi_; }
+  [[nodiscard]] const Vector& Phi() const { return Phi_; }
+  [[nodiscard]] Vector& Phi() { return Phi_; }
   /// n×m, of the last evaluate().
-  [[nodiscard]] Eigen::Map<const Eigen::MatrixXd> jacobian_transposed() const {
+  [[nodiscard]] Eigen::Map<const Matrix> jacobian_transposed() const {
     return {jacobian_.data(), variables_, Phi_.size()};
   }
   /// How many constraints are not linear: the first ones.
@@ -44,30 +48,35 @@ class Constraints {
     Index a, b;
     Index to_a, to_b;
     Index row;
-    double value;
+    Scalar value;
   };
   /// (r_a − r_b)·(r_c − r_d) − value. Each distinct free point has a slot, whose Jacobian entries
   /// are ab (r_a − r_b) + cd (r_c − r_d); a slot left over writes zeros to the scratch place.
   struct Dot {
     struct Slot {
       Index to;
-      double ab, cd;
+      Scalar ab, cd;
     };
     Index a, b, c, d;
     std::array<Slot, 4> slots;
     Index row;
-    double value;
+    Scalar value;
   };
   /// The same with B: entries are ab Bᵀ (r_a − r_b) + cd B (r_c − r_d).
   struct Bilinear {
     Dot dot;
-    Eigen::Matrix3d B;
+    Eigen::Matrix<Scalar, 3, 3> B;
   };
   /// Σ coefficient q[coordinate] − value over terms [begin, end); its Jacobian is constant.
   struct Linear {
     Index begin, end;
     Index row;
-    double value;
+    Scalar value;
+  };
+
+  struct Term {
+    Index coordinate;
+    Scalar coefficient;
   };
 
   void lower_dot(const DotConstraint& constraint, Index row, const Layout& layout);
@@ -77,9 +86,9 @@ class Constraints {
   Dot slotted(const Constraint& constraint, Index row, const Layout& layout) const;
   void clear_driven_values(const Model& model);
   template <int dimension>
-  void evaluate_quadratic(const double* q);
+  void evaluate_quadratic(const Scalar* q);
   template <int dimension>
-  void evaluate_velocity_term(const double* v, double* term) const;
+  void evaluate_velocity_term(const Scalar* v, Scalar* term) const;
 
   Index variables_;
   int dimension_;
@@ -88,9 +97,9 @@ class Constraints {
   std::vector<Dot> dots_;
   std::vector<Bilinear> bilinears_;
   std::vector<Linear> linears_;
-  std::vector<LinearConstraint::Term> terms_;
-  Eigen::VectorXd Phi_;
-  Eigen::VectorXd jacobian_;  ///< n×m column-major, then the scratch place
+  std::vector<Term> terms_;
+  Vector Phi_;
+  Vector jacobian_;  ///< n×m column-major, then the scratch place
 };
 
 }  // namespace mbs::eigen_dense

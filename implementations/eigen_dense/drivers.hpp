@@ -11,27 +11,30 @@
 namespace mbs::eigen_dense {
 
 /// Samples the drivers of a model once a step and gives their shares in Φ, Q, Φt and Φ̇t.
+template <typename Scalar>
 class Drivers {
  public:
+  using Vector = Eigen::VectorX<Scalar>;
+
   Drivers(const Model& model, const Layout& layout);
 
   /// Whether nothing is driven; all other methods are then without effect.
   [[nodiscard]] bool empty() const { return points_.empty() && values_.empty(); }
 
   /// Takes all values at time t (s) and puts the driven points into the extended q and v.
-  void drive(double t, Eigen::VectorXd& q, Eigen::VectorXd& v);
+  void drive(double t, Vector& q, Vector& v);
 
   /// Phi (m) −= the driven values.
-  void subtract_values(Eigen::VectorXd& Phi) const;
+  void subtract_values(Vector& Phi) const;
 
   /// rhs (n) += factor × the driven mass's part of Q.
-  void add_force(double factor, Eigen::VectorXd& rhs) const;
+  void add_force(Scalar factor, Vector& rhs) const;
 
   /// term (m) += Φt at the extended position q.
-  void add_velocity_term(const Eigen::VectorXd& q, Eigen::VectorXd& term) const;
+  void add_velocity_term(const Vector& q, Vector& term) const;
 
   /// term (m) += u_p''·B w + u·B w_p'' − s̈ of Eqs. (7) and (8) at the extended position q.
-  void add_acceleration_term(const Eigen::VectorXd& q, Eigen::VectorXd& term) const;
+  void add_acceleration_term(const Vector& q, Vector& term) const;
 
  private:
   using Index = Eigen::Index;
@@ -48,28 +51,27 @@ class Drivers {
   struct Mass {
     Index coordinate;
     Index source;  ///< where the acceleration is, in an extended vector
-    double value;
+    Scalar value;
   };
   /// A constraint with a driven point.
   struct Quadratic {
     Index a, b, c, d;
-    Eigen::Matrix3d B;  ///< the unit matrix if it is a dot constraint
+    Eigen::Matrix<Scalar, 3, 3> B;  ///< the unit matrix if it is a dot constraint
     Index row;
   };
 
   void lower_constraints(const Model& model, const Layout& layout);
   /// term += u_p·B w + u·B w_p with the rates of the driven points in `rates`, extended.
   template <int dimension>
-  void add_products(const double* q, const double* rates, double* term) const;
-  void add_products(const Eigen::VectorXd& q, const Eigen::VectorXd& rates,
-                    Eigen::VectorXd& term) const;
+  void add_products(const Scalar* q, const Scalar* rates, Scalar* term) const;
+  void add_products(const Vector& q, const Vector& rates, Vector& term) const;
 
   int dimension_;
   std::vector<MovedPoint> points_;
   std::vector<Value> values_;
   std::vector<Mass> mass_;
   std::vector<Quadratic> quadratics_;
-  Eigen::VectorXd velocity_, acceleration_;  ///< extended, zero but at driven points
+  Vector velocity_, acceleration_;  ///< extended, zero but at driven points
 };
 
 }  // namespace mbs::eigen_dense

@@ -6,7 +6,15 @@
 #include <memory>
 #include <string>
 
+#include "newton.hpp"
+#include "penalty_system.hpp"
+#include "rattle.hpp"
+#include "rounded.hpp"
+#include "saddle_lu.hpp"
+#include "saddle_solver.hpp"
+#include "saddle_system.hpp"
 #include "simulation.hpp"
+#include "solver.hpp"
 
 namespace mbs::eigen_dense {
 
@@ -15,13 +23,62 @@ namespace {
 /// No matrix larger than this is stored; there are three or four of them.
 constexpr double kMatrixLimit = 2.0 * 1024 * 1024 * 1024;  // bytes
 
-std::unique_ptr<mbs::Simulation> create(const Model& model, const StepSettings& settings) {
+void require_size(const Model& model, Scheme scheme) {
   const double columns = std::max(model.variables(), model.constraints());
-  if (sizeof(double) * columns * model.variables() > kMatrixLimit) {
-    throw Unsupported("a dense matrix of " + std::to_string(model.variables()) +
-                      " variables would exceed 2 GiB");
+  const double rows = scheme == Scheme::penalty ? model.variables() : columns;
+  if (sizeof(double) * columns * rows <= kMatrixLimit) return;
+  throw Unsupported("a dense matrix of " + std::to_string(model.variables()) +
+                    " variables would exceed 2 GiB");
+}
+
+/// RATTLE as it stands in paper/README.md knows neither.
+void require_no_drivers_or_dampers(const Model& model) {
+  if (!model.driven_points().empty() || !model.driven_values().empty()) {
+    throw Unsupported("RATTLE does not serve drivers");
   }
-  return std::make_unique<Simulation>(model, settings);
+  const auto damps = [](const auto& spring) { return spring.damping != 0.0; };
+  if (std::ranges::any_of(model.springs(), damps) ||
+      std::ranges::any_of(model.torsion_springs(), damps)) {
+    throw Unsupported("RATTLE does not serve dampers");
+  }
+}
+
+bool is_trapezoidal(Scheme scheme) {
+  return scheme == Scheme::penalty || scheme == Scheme::saddle_point;
+}
+
+/// Whether Simulation, which is the step without any choices, does.
+bool is_plain(const StepSettings& settings) {
+  return settings.scheme == Scheme::penalty &&
+         settings.multipliers == MultiplierUpdate::every_pass &&
+         settings.tangent == TangentReuse::none && settings.projections_every == 1 &&
+         settings.precision == Precision::double_precision;
+}
+
+/// `Penalty` and `Saddle` are the linear systems that go with the precision.
+template <typename Penalty, typename Saddle>
+std::unique_ptr<mbs::Simulation> create_newton(const Model& model, const StepSettings& settings) {
+  if (settings.scheme == Scheme::penalty) return std::make_unique<Newton<Penalty>>(model, settings);
+  return std::make_unique<Newton<Saddle>>(model, settings);
+}
+
+template <typename Scalar>
+std::unique_ptr<mbs::Simulation> create_in(const Model& model, const StepSettings& settings) {
+  if (!is_trapezoidal(settings.scheme)) return std::make_unique<Rattle<Scalar>>(model, settings);
+  using Penalty = PenaltySystem<Scalar, Solver<Scalar>>;
+  using Saddle = SaddleSystem<Scalar, SaddleSolver<Scalar>>;
+  return create_newton<Penalty, Saddle>(model, settings);
+}
+
+std::unique_ptr<mbs::Simulation> create(const Model& model, const StepSettings& settings) {
+  require_size(model, settings.scheme);
+  if (!is_trapezoidal(settings.scheme)) require_no_drivers_or_dampers(model);
+  if (is_plain(settings)) return std::make_unique<Simulation>(model, settings);
+  if (settings.precision == Precision::single_precision) return create_in<float>(model, settings);
+  if (settings.precision == Precision::double_precision) return create_in<double>(model, settings);
+  using Penalty = PenaltySystem<double, Rounded<Solver<float>>>;
+  using Saddle = SaddleSystem<double, Rounded<SaddleLu>>;
+  return create_newton<Penalty, Saddle>(model, settings);
 }
 
 std::string eigen_version() {
@@ -40,7 +97,14 @@ Implementation implementation() {
   description.variants = {{.name = "llt",
                            .description = "Cholesky in place on the lower triangle",
                            .create = create,
-                           .dense = true}};
+                           .dense = true,
+                           .serves = {.saddle_point = true,
+                                      .rattle = true,
+                                      .multiplier_update = true,
+                                      .tangent_reuse = true,
+                                      .projections_every = true,
+                                      .single_precision = true,
+                                      .mixed_precision = true}}};
   return description;
 }
 

@@ -54,9 +54,9 @@ class Layout {
 };
 
 /// The components of r_a − r_b, points given by their starts in r.
-template <int dimension>
-Eigen::Matrix<double, dimension, 1> difference(const double* r, Eigen::Index a, Eigen::Index b) {
-  using Vector = Eigen::Matrix<double, dimension, 1>;
+template <int dimension, typename Scalar>
+Eigen::Matrix<Scalar, dimension, 1> difference(const Scalar* r, Eigen::Index a, Eigen::Index b) {
+  using Vector = Eigen::Matrix<Scalar, dimension, 1>;
   return Eigen::Map<const Vector>(r + a) - Eigen::Map<const Vector>(r + b);
 }
 

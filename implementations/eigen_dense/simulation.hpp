@@ -1,4 +1,4 @@
-// One simulation: the state and the step of paper/README.md, over Assembly and Solver.
+// The simulation with default settings: the step of paper/README.md and no choices.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,36 +7,31 @@
 #include "layout.hpp"
 #include "mbs/model.hpp"
 #include "mbs/simulation.hpp"
+#include "motion.hpp"
 #include "solver.hpp"
 
 namespace mbs::eigen_dense {
 
-/// Holds q and v as extended vectors (see Layout), so that fixed points cost nothing in a step.
+/// Penalty form, multipliers and tangent new in every pass, every step projected.
 class Simulation final : public mbs::Simulation {
  public:
   Simulation(const Model& model, const StepSettings& settings);
 
  private:
-  void do_set_state(const State& state) override;
+  void do_set_state(const State& state) override { motion_.set(state); }
   StepOutcome do_step() override;
-  void do_get_state(State& state) const override;
+  void do_get_state(State& state) const override { motion_.get(state); }
 
-  void predict();
   /// One Newton pass, with the multiplier update. Leaves the phase at `other`. False if the
   /// factorization failed; `converged` says whether max|Δq| is within the tolerance.
   [[nodiscard]] bool pass(bool& converged);
-  /// Adds the solution Δq to q' and its multiples to v' and a'; whether max|Δq| ≤ tolerance.
-  [[nodiscard]] bool update();
   void project();
 
   StepSettings settings_;
   Layout layout_;
-  Assembly assembly_;
-  Solver solver_;
-
-  Eigen::VectorXd q_, v_;     ///< extended; m, m/s
-  Eigen::VectorXd a_;         ///< n, m/s²
-  Eigen::VectorXd lambda_;    ///< m
+  Assembly<double> assembly_;
+  Solver<double> solver_;
+  Motion<double> motion_;
   Eigen::VectorXd solution_;  ///< n; right-hand side, then solution of a linear system
 };
 

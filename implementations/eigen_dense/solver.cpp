@@ -1,8 +1,4 @@
 // Dense Cholesky factorization of the tangent matrix, in place.
-#ifdef __GNUC__  // GCC 12 warns wrongly about its own AVX-512 intrinsics (GCC bug 105593)
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-
 #include "solver.hpp"
 
 #include <Eigen/Cholesky>
@@ -19,17 +15,22 @@ constexpr Eigen::Index kUnblockedLimit = 128;
 
 // These kernels are what Eigen::LLT::compute() calls, without the norm that it evaluates first for
 // rcond(): 0.15 µs of 0.75 µs at n = 22.
-bool Solver::factorize() {
-  using Kernel = Eigen::internal::llt_inplace<double, Eigen::Lower>;
+template <typename Scalar>
+bool Solver<Scalar>::factorize() {
+  using Kernel = Eigen::internal::llt_inplace<Scalar, Eigen::Lower>;
   const Eigen::Index failed_column =
       matrix_.rows() <= kUnblockedLimit ? Kernel::unblocked(matrix_) : Kernel::blocked(matrix_);
   // A NaN passes the kernel's test of its pivots, but then spreads to all later ones.
   return failed_column < 0 && std::isfinite(matrix_.diagonal().sum());
 }
 
-void Solver::solve(Eigen::VectorXd& x) const {
-  matrix_.triangularView<Eigen::Lower>().solveInPlace(x);
-  matrix_.triangularView<Eigen::Lower>().adjoint().solveInPlace(x);
+template <typename Scalar>
+void Solver<Scalar>::solve(Vector& x) const {
+  matrix_.template triangularView<Eigen::Lower>().solveInPlace(x);
+  matrix_.template triangularView<Eigen::Lower>().adjoint().solveInPlace(x);
 }
+
+template class Solver<double>;
+template class Solver<float>;
 
 }  // namespace mbs::eigen_dense

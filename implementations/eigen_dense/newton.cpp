@@ -1,0 +1,177 @@
+// The trapezoidal schemes with every setting: passes, multipliers, tangent reuse, projections.
+#include "newton.hpp"
+
+#include "largest.hpp"
+#include "penalty_system.hpp"
+#include "rounded.hpp"
+#include "saddle_lu.hpp"
+#include "saddle_solver.hpp"
+#include "saddle_system.hpp"
+#include "solver.hpp"
+
+namespace mbs::eigen_dense {
+
+namespace {
+
+/// How often Eq. (15) is solved at most; 0: Eq. (6) or (13) is instead. In single precision the
+/// penalty form with new factors solves it once: that is Eq. (6) up to what the last Δq changes in
+/// Φq, but T, whose condition leaves few digits, then acts on the correction of v* and a* alone.
+int refinements(const StepSettings& settings) {
+  if (settings.tangent != TangentReuse::none || settings.precision == Precision::mixed) return 5;
+  const bool penalty = settings.scheme == Scheme::penalty;
+  return penalty && settings.precision == Precision::single_precision ? 1 : 0;
+}
+
+}  // namespace
+
+template <typename System>
+Newton<System>::Newton(const Model& model, const StepSettings& settings)
+    : mbs::Simulation(model, settings),
+      settings_(settings),
+      refinements_(refinements(settings)),
+      layout_(model),
+      system_(model, settings, layout_),
+      motion_(model, layout_),
+      schedule_(settings.tangent),
+      start_(Vector::Zero(model.variables())),
+      change_(start_) {}
+
+template <typename System>
+void Newton<System>::do_set_state(const State& state) {
+  motion_.set(state);
+  schedule_.set_state();
+  unprojected_ = 0;
+}
+
+template <typename System>
+StepOutcome Newton<System>::do_step() {
+  phases_.enter(Phase::other);
+  if (system_.assembly().driven()) system_.assembly().drive(time(), motion_.q, motion_.v);
+  motion_.predict(Scalar(settings_.step));
+  phases_.enter(Phase::evaluation);
+  system_.assembly().evaluate(motion_.q);
+  schedule_.begin_step();
+  StepOutcome outcome{StepStatus::pass_limit, 0, 0};
+  if (!iterate(outcome) || !project(outcome)) outcome.status = StepStatus::factorization_failed;
+  schedule_.end_step(outcome.status);
+  phases_.enter(Phase::other);
+  return outcome;
+}
+
+template <typename System>
+bool Newton<System>::iterate(StepOutcome& outcome) {
+  const bool every_pass = settings_.multipliers == MultiplierUpdate::every_pass;
+  bool was_small = false;  // of the pass before
+  while (outcome.passes < settings_.max_passes) {
+    ++outcome.passes;
+    bool small = false;
+    if (!pass(outcome, small)) return false;
+    if (every_pass || small) system_.update_multipliers(motion_.lambda);
+    if (small && (every_pass || was_small)) {
+      outcome.status = StepStatus::converged;
+      return true;
+    }
+    was_small = small;
+  }
+  return true;
+}
+
+template <typename System>
+bool Newton<System>::pass(StepOutcome& outcome, bool& small) {
+  phases_.enter(Phase::evaluation);
+  system_.residual(motion_);
+  if (schedule_.due() && !factorize(outcome)) return false;
+  phases_.enter(Phase::solve);
+  system_.solve();  // Eq. (4) or (12)
+  phases_.enter(Phase::other);
+  const auto& delta = system_.correction();
+  small = motion_.correct(delta.data(), Scalar(settings_.step), Scalar(settings_.tolerance));
+  schedule_.after_pass(largest(delta), small);
+  phases_.enter(Phase::evaluation);
+  system_.assembly().evaluate(motion_.q);
+  phases_.enter(Phase::other);
+  return true;
+}
+
+template <typename System>
+bool Newton<System>::factorize(StepOutcome& outcome) {
+  phases_.enter(Phase::assembly);
+  system_.assemble();
+  phases_.enter(Phase::factorization);
+  ++outcome.factorizations;
+  const bool factorized = system_.factorize();
+  if (factorized) schedule_.factorized();
+  phases_.enter(Phase::other);
+  return factorized;
+}
+
+template <typename System>
+bool Newton<System>::project(StepOutcome& outcome) {
+  if (++unprojected_ < settings_.projections_every) return true;
+  unprojected_ = 0;
+  if (settings_.projections == Projections::none) return true;
+  const bool both = settings_.projections == Projections::both;
+  if (refinements_ > 0) {
+    const double bound = 2 / settings_.step * settings_.tolerance;
+    return refine(&System::refine_velocity, motion_.v, bound, outcome) &&
+           (!both ||
+            refine(&System::refine_acceleration, motion_.a, 2 / settings_.step * bound, outcome));
+  }
+  solve(&System::project_velocity);  // Eq. (6) or (13)
+  motion_.v.head(motion_.a.size()) = system_.correction();
+  if (!both) return true;
+  solve(&System::project_acceleration);  // Eq. (6) or (13)
+  motion_.a = system_.correction();
+  return true;
+}
+
+template <typename System>
+bool Newton<System>::refine(MakeRightHandSide make, Vector& target, double tolerance,
+                            StepOutcome& outcome) {
+  auto x = target.head(motion_.a.size());
+  start_ = x;
+  phases_.enter(Phase::projection);
+  system_.begin_refinement();
+  double size_before = 0.0;
+  for (int k = 1; k <= refinements_; ++k) {
+    solve(make);
+    double size = largest(system_.correction());
+    if (k > 1 && !(size <= size_before / 2)) {  // a NaN is slower, too
+      if (!schedule_.keeps()) return true;
+      if (!factorize_here(outcome)) return false;
+      solve(make);  // the same right-hand side
+      size = largest(system_.correction());
+    }
+    x += system_.correction();  // Eq. (15)
+    if (size <= tolerance || k == refinements_) return true;
+    size_before = size;
+    phases_.enter(Phase::projection);
+    change_ = start_ - x;
+    system_.continue_refinement(change_);
+  }
+  return true;
+}
+
+template <typename System>
+void Newton<System>::solve(MakeRightHandSide make) {
+  phases_.enter(Phase::projection);
+  (system_.*make)(motion_);
+  phases_.enter(Phase::solve);
+  system_.solve();
+}
+
+template <typename System>
+bool Newton<System>::factorize_here(StepOutcome& outcome) {
+  phases_.enter(Phase::evaluation);
+  system_.assembly().scaled_force(motion_.q, motion_.v, change_);  // for C and K alone
+  return factorize(outcome);
+}
+
+template class Newton<PenaltySystem<double, Solver<double>>>;
+template class Newton<PenaltySystem<float, Solver<float>>>;
+template class Newton<PenaltySystem<double, Rounded<Solver<float>>>>;
+template class Newton<SaddleSystem<double, SaddleSolver<double>>>;
+template class Newton<SaddleSystem<float, SaddleSolver<float>>>;
+template class Newton<SaddleSystem<double, Rounded<SaddleLu>>>;
+
+}  // namespace mbs::eigen_dense

@@ -1,0 +1,83 @@
+// The linear systems of the penalty form: Eqs. (4), (6) and (15).
+#pragma once
+
+#include <Eigen/Core>
+#include <type_traits>
+
+#include "assembly.hpp"
+#include "motion.hpp"
+
+namespace mbs::eigen_dense {
+
+/// State and residual in Number, matrix and factors in what LinearSolver has: Solver, also Rounded.
+/// Every method that makes a right-hand side is followed by solve(); correction() is then the part
+/// of the solution that belongs to the coordinates. All use the last Assembly::evaluate().
+template <typename Number, typename LinearSolver>
+class PenaltySystem {
+ public:
+  using Scalar = Number;
+  using Vector = Eigen::VectorX<Scalar>;
+
+  PenaltySystem(const Model& model, const StepSettings& settings, const Layout& layout)
+      : penalty_(Scalar(settings.penalty)),
+        assembly_(model, settings, layout),
+        solver_(model.variables()),
+        lag_(Vector::Zero(model.variables())),
+        x_(lag_) {}
+
+  Assembly<Scalar>& assembly() { return assembly_; }
+
+  /// The right-hand side of Eq. (4). C and K are from now on those of this motion.
+  void residual(const Motion<Scalar>& motion) {
+    assembly_.residual(motion.q, motion.v, motion.a, motion.lambda, x_);
+  }
+  /// T of Eq. (5) with the last Jacobian, C and K.
+  void assemble() {
+    if constexpr (std::is_same_v<typename LinearSolver::Matrix, Eigen::MatrixX<Scalar>>) {
+      assembly_.tangent(solver_.matrix());
+    } else {
+      assembly_.tangent(solver_.matrix(), jacobian_);
+    }
+    assembly_.keep_leading();
+  }
+  [[nodiscard]] bool factorize() { return solver_.factorize(); }
+
+  /// The right-hand sides of Eq. (6) for v', then for a' with that v'.
+  void project_velocity(const Motion<Scalar>& motion) {
+    assembly_.project_velocity(motion.q, motion.v, x_);
+  }
+  void project_acceleration(const Motion<Scalar>& motion) {
+    assembly_.project_acceleration(motion.q, motion.v, motion.a, x_);
+  }
+
+  /// Those of Eq. (15).
+  void refine_velocity(const Motion<Scalar>& motion) {
+    x_ = lag_;
+    assembly_.subtract_penalty(assembly_.velocity_error(motion.q, motion.v), x_);
+  }
+  void refine_acceleration(const Motion<Scalar>& motion) {
+    x_ = lag_;
+    assembly_.subtract_penalty(assembly_.acceleration_error(motion.q, motion.v, motion.a), x_);
+  }
+  /// To be called before the first refinement of a vector and between the following ones, with
+  /// v* − v' or a* − a' in `change` (n).
+  void begin_refinement() { lag_.setZero(); }
+  void continue_refinement(const Vector& change) { assembly_.kept_leading_product(change, lag_); }
+
+  void solve() { solver_.solve(x_); }
+  [[nodiscard]] const Vector& correction() const { return x_; }
+  /// The update that belongs to a pass, Φ being that of the new q'.
+  void update_multipliers(Vector& lambda) const {
+    lambda += penalty_ * assembly_.Phi();
+  }  // Eq. (1)
+
+ private:
+  Scalar penalty_;
+  Assembly<Scalar> assembly_;
+  LinearSolver solver_;
+  Eigen::MatrixXf jacobian_;  ///< Φqᵀ in float, if only the matrix is; else 0×0
+  Vector lag_;                ///< n; T₀ times v* − v' or a* − a'
+  Vector x_;                  ///< n; right-hand side, then solution
+};
+
+}  // namespace mbs::eigen_dense
