@@ -1,93 +1,63 @@
-// Evaluation of the constraints and refresh of the tangent matrix.
+// Set-up and refresh of the tangent matrix.
 #include "assembly.hpp"
 
 namespace mbs::eigen_superlu {
 
-template <int kDimension, int kFreeEnds>
-void Assembly::evaluate_distances(const double* q, int first, int last) {
-  const int* a = ends_.data() + 2 * kDimension * first;
-  double* row = jacobian_.valuePtr() + jacobian_.outerIndexPtr()[first];
-  for (int k = first; k < last; ++k, a += 2 * kDimension, row += kFreeEnds * kDimension) {
-    double square = 0.0;
-    for (int axis = 0; axis < kDimension; ++axis) {
-      const double difference = q[a[axis]] - q[a[kDimension + axis]];
-      square += difference * difference;
-      row[axis] = 2.0 * difference;
-      if constexpr (kFreeEnds == 2) row[kDimension + axis] = -2.0 * difference;
+Tangent::Tangent(const Model& model, const Coordinates& coordinates, const Constraints& constraints,
+                 Triangle triangle, double penalty)
+    : triangle_(triangle), penalty_(penalty), matrix_(tangent_pattern(model, coordinates)) {
+  if (triangle == Triangle::upper) matrix_ = SparseMatrix(matrix_.triangularView<Eigen::Upper>());
+  make_runs(constraints);
+  add_linear_rows(constraints);
+  base_ = Eigen::Map<const Vector>(matrix_.valuePtr(), matrix_.nonZeros());
+}
+
+/// Slots and runs of the rows that change.
+void Tangent::make_runs(const Constraints& constraints) {
+  const RowSparseMatrix& jacobian = constraints.jacobian();
+  const int* starts = jacobian.outerIndexPtr();
+  int run_width = 0;
+  for (int row = 0; row < constraints.quadratic(); ++row) {
+    const int width = starts[row + 1] - starts[row];
+    if (width == 0) continue;
+    if (width != run_width) {
+      runs_.push_back(
+          {loop_for(triangle_, width), starts[row], static_cast<int>(slots_.size()), 0});
+      run_width = width;
     }
-    phi_[k] = square - value_[k];  // Eq. (7)
+    ++runs_.back().count;
+    append_slots(layout(),
+                 {jacobian.innerIndexPtr() + starts[row], static_cast<std::size_t>(width)}, slots_);
   }
 }
 
-template <int kDimension>
-void Assembly::evaluate_constraints(const double* q) {
-  evaluate_distances<kDimension, 1>(q, 0, to_ground_);
-  evaluate_distances<kDimension, 2>(q, to_ground_, distances_);
-  double* row = jacobian_.valuePtr() + jacobian_.outerIndexPtr()[distances_];
-  double u[kDimension], w[kDimension];
-  for (int k = distances_; k < products_; ++k) {
-    const PointPairs& pairs = dots_[k - distances_];
-    pairs.differences<kDimension>(q, u, w);
-    phi_[k] = inner<kDimension>(u, w) - value_[k];  // Eq. (7)
-    row = pairs.write_row<kDimension>(w, u, row);
-  }
-  for (int k = products_; k < quadratic_; ++k) {
-    const auto& [pairs, B] = bilinear_[k - products_];
-    double B_w[kDimension], u_B[kDimension];
-    pairs.template differences<kDimension>(q, u, w);
-    multiply<kDimension>(B, w, B_w);
-    multiply_transposed<kDimension>(B, u, u_B);
-    phi_[k] = inner<kDimension>(u, B_w) - value_[k];  // Eq. (7)
-    row = pairs.template write_row<kDimension>(B_w, u_B, row);
+/// The share of the linear constraints, once and for all.
+void Tangent::add_linear_rows(const Constraints& constraints) {
+  const RowSparseMatrix& jacobian = constraints.jacobian();
+  const int* starts = jacobian.outerIndexPtr();
+  std::vector<int> slots;
+  for (int row = constraints.quadratic(); row < jacobian.rows(); ++row) {
+    const std::span columns(jacobian.innerIndexPtr() + starts[row],
+                            jacobian.innerIndexPtr() + starts[row + 1]);
+    const double* values = jacobian.valuePtr() + starts[row];
+    slots.clear();
+    append_slots(layout(), columns, slots);
+    const int* slot = slots.data();
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const std::size_t end = triangle_ == Triangle::full ? columns.size() : i + 1;
+      for (std::size_t j = 0; j < end; ++j) {
+        matrix_.valuePtr()[*slot++] += penalty_ * values[i] * values[j];  // Eq. (5)
+      }
+    }
   }
 }
 
-void Assembly::evaluate(const Vector& q) {
-  dimension_ == 2 ? evaluate_constraints<2>(q.data()) : evaluate_constraints<3>(q.data());
-  if (const auto linear = jacobian_.rows() - quadratic_; linear > 0) {
-    auto phi = phi_.tail(linear);
-    phi = -value_.tail(linear);
-    phi.noalias() += jacobian_.bottomRows(linear) * q.head(jacobian_.cols());  // Eq. (8)
-  }
-}
-
-void Assembly::refresh_tangent() {
-  Eigen::Map<Vector>(tangent_.valuePtr(), base_.size()) = base_;
+void Tangent::refresh(const RowSparseMatrix& jacobian) {
+  Eigen::Map<Vector>(matrix_.valuePtr(), base_.size()) = base_;
   for (const Run& run : runs_) {  // Eq. (5)
-    run.add(jacobian_.valuePtr() + run.first_value, slots_.data() + run.first_slot, run.count,
-            penalty_, tangent_.valuePtr());
+    run.add(jacobian.valuePtr() + run.first_value, slots_.data() + run.first_slot, run.count,
+            penalty_, matrix_.valuePtr());
   }
-}
-
-template <int kDimension>
-void Assembly::evaluate_velocities(const double* v, double* result) const {
-  const int* a = ends_.data();
-  for (int k = 0; k < distances_; ++k, a += 2 * kDimension) {
-    double square = 0.0;
-    for (int axis = 0; axis < kDimension; ++axis) {
-      const double difference = v[a[axis]] - v[a[kDimension + axis]];
-      square += difference * difference;
-    }
-    result[k] = 2.0 * square;  // Eq. (7)
-  }
-  double u[kDimension], w[kDimension];
-  for (int k = distances_; k < products_; ++k) {
-    dots_[k - distances_].differences<kDimension>(v, u, w);
-    result[k] = 2.0 * inner<kDimension>(u, w);  // Eq. (7)
-  }
-  for (int k = products_; k < quadratic_; ++k) {
-    const auto& [pairs, B] = bilinear_[k - products_];
-    double B_w[kDimension];
-    pairs.template differences<kDimension>(v, u, w);
-    multiply<kDimension>(B, w, B_w);
-    result[k] = 2.0 * inner<kDimension>(u, B_w);  // Eq. (7)
-  }
-}
-
-void Assembly::velocity_terms(const Vector& v, Vector& result) const {
-  dimension_ == 2 ? evaluate_velocities<2>(v.data(), result.data())
-                  : evaluate_velocities<3>(v.data(), result.data());
-  result.tail(result.size() - quadratic_).setZero();  // Eq. (8)
 }
 
 }  // namespace mbs::eigen_superlu

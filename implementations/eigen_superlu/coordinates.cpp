@@ -2,6 +2,7 @@
 #include "coordinates.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace mbs::eigen_superlu {
@@ -17,6 +18,47 @@ std::vector<Eigen::Triplet<double>> mass_entries(const Model& model,
   }
   return entries;
 }
+
+/// The entries of a symmetric matrix while its pattern grows: at first those of M.
+class GrowingPattern {
+ public:
+  GrowingPattern(const Model& model, const Coordinates& coordinates)
+      : coordinates_(coordinates), entries_(mass_entries(model, coordinates)) {}
+
+  /// A position for every two unknowns of an item.
+  template <class Items>
+  void add(const Items& items) {
+    for (const auto& item : items) {
+      append_columns(coordinates_, ends_of(item), coupled_);
+      add_clique();
+    }
+  }
+  void add(std::span<const LinearConstraint> constraints) {
+    for (const LinearConstraint& constraint : constraints) {
+      for (const auto& term : constraint.terms) {
+        coupled_.push_back(coordinates_.of_unknown(term.coordinate));
+      }
+      add_clique();
+    }
+  }
+  [[nodiscard]] SparseMatrix matrix() const {
+    SparseMatrix matrix(coordinates_.variables(), coordinates_.variables());
+    matrix.setFromTriplets(entries_.begin(), entries_.end());
+    return matrix;
+  }
+
+ private:
+  void add_clique() {
+    for (const int row : coupled_) {
+      for (const int col : coupled_) entries_.emplace_back(row, col, 0.0);
+    }
+    coupled_.clear();
+  }
+
+  const Coordinates& coordinates_;
+  std::vector<Eigen::Triplet<double>> entries_;
+  std::vector<int> coupled_;
+};
 
 }  // namespace
 
@@ -67,34 +109,28 @@ RowSparseMatrix mass_matrix(const Model& model, const Coordinates& coordinates) 
   return mass;
 }
 
+SparseMatrix stiffness_pattern(const Model& model, const Coordinates& coordinates) {
+  GrowingPattern pattern(model, coordinates);
+  pattern.add(model.springs());
+  pattern.add(model.torsion_springs());
+  return pattern.matrix();
+}
+
 SparseMatrix tangent_pattern(const Model& model, const Coordinates& coordinates) {
-  auto entries = mass_entries(model, coordinates);
-  std::vector<int> coupled;
-  const auto add_clique = [&] {
-    for (const int row : coupled) {
-      for (const int col : coupled) entries.emplace_back(row, col, 0.0);
-    }
-    coupled.clear();
-  };
-  const auto add_items = [&](const auto& items) {
-    for (const auto& item : items) {
-      append_columns(coordinates, ends_of(item), coupled);
-      add_clique();
-    }
-  };
-  add_items(model.dot_constraints());
-  add_items(model.bilinear_constraints());
-  add_items(model.springs());
-  add_items(model.torsion_springs());
-  for (const LinearConstraint& constraint : model.linear_constraints()) {
-    for (const auto& term : constraint.terms) {
-      coupled.push_back(coordinates.of_unknown(term.coordinate));
-    }
-    add_clique();
-  }
-  SparseMatrix pattern(coordinates.variables(), coordinates.variables());
-  pattern.setFromTriplets(entries.begin(), entries.end());
-  return pattern;
+  GrowingPattern pattern(model, coordinates);
+  pattern.add(model.dot_constraints());
+  pattern.add(model.bilinear_constraints());
+  pattern.add(model.springs());
+  pattern.add(model.torsion_springs());
+  pattern.add(model.linear_constraints());
+  return pattern.matrix();
+}
+
+Coordinates numbered_by(const Model& model,
+                        std::vector<int> (*order)(const SparseMatrix& pattern)) {
+  std::vector<int> identity(model.variables());
+  std::iota(identity.begin(), identity.end(), 0);
+  return {model, order(tangent_pattern(model, {model, std::move(identity)}))};
 }
 
 }  // namespace mbs::eigen_superlu

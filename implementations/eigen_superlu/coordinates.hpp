@@ -71,8 +71,15 @@ void append_columns(const Coordinates& coordinates, std::span<const int> points,
 /// M: n x n, symmetric, both triangles, stored zeros included.
 RowSparseMatrix mass_matrix(const Model& model, const Coordinates& coordinates);
 
+/// M with a position for every entry of C and K, in the form of mass_matrix().
+SparseMatrix stiffness_pattern(const Model& model, const Coordinates& coordinates);
+
 /// M with a position for every entry of Phi_q^T Phi_q, C and K, Eq. (5): n x n, symmetric, both
 /// triangles.
 SparseMatrix tangent_pattern(const Model& model, const Coordinates& coordinates);
+
+/// The numbering of a model by `order`, which tells where each unknown of a tangent's pattern is
+/// eliminated.
+Coordinates numbered_by(const Model& model, std::vector<int> (*order)(const SparseMatrix& pattern));
 
 }  // namespace mbs::eigen_superlu

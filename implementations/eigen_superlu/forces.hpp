@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "coordinates.hpp"
-#include "solver.hpp"
+#include "rank_update.hpp"
 
 namespace mbs::eigen_superlu {
 
@@ -20,7 +20,7 @@ class Force {
 
   /// Adds the forces at `q`, `v` (extended; m, m/s) to `force` (n, N), Eq. (11).
   virtual void apply(const Vector& q, const Vector& v, Vector& force) = 0;
-  /// Adds (dt/2) C + (dt^2/4) K to the values of the tangent, Eq. (5).
+  /// Adds (dt/2) C + (dt^2/4) K to the values of the matrix laid out at set-up, Eq. (5).
   virtual void add_to_tangent(double* tangent) const = 0;
   /// Adds [(dt/2) C + (dt^2/4) K] x to `result` (n), Eq. (6); of `x` the first n entries count.
   virtual void add_product(const Vector& x, Vector& result) = 0;
@@ -28,12 +28,12 @@ class Force {
 
 using Forces = std::vector<std::unique_ptr<Force>>;
 
-/// What set-up of a force needs: `tangent` has its final pattern, `step` is dt (s).
+/// What set-up of a force needs: `layout` is that of the tangent or of what takes its place, `step`
+/// is dt (s).
 struct ForceSetup {
   const Model& model;
   const Coordinates& coordinates;
-  Triangle triangle;
-  const SparseMatrix& tangent;
+  Layout layout;
   double step;
 };
 

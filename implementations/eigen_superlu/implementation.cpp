@@ -1,6 +1,9 @@
 // What this folder offers: description and factories.
 #include "mbs/implementation.hpp"
 
+#include "adjustable_simulation.hpp"
+#include "rattle_simulation.hpp"
+#include "rounded_solver.hpp"
 #include "simulation.hpp"
 
 namespace mbs::eigen_superlu {
@@ -11,13 +14,43 @@ std::string versions() {
     return std::to_string(a) + "." + std::to_string(b) + "." + std::to_string(c);
   };
   return "Eigen " + dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION) +
-         ", SuperLU " + SuperluSolver::version();
+         ", SuperLU " + superlu_version();
 }
 
-template <class Solver>
-std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
-  return std::make_unique<SparseSimulation<Solver>>(model, settings);
+/// "The step" as it is where nothing else is asked for.
+template <class Solver, class Rounded, template <class> class Form>
+std::unique_ptr<Simulation> create_in(const Model& model, const StepSettings& settings) {
+  if (settings.precision == Precision::mixed) {
+    return std::make_unique<AdjustableSimulation<Form<Rounded>>>(model, settings);
+  }
+  if (settings.multipliers != MultiplierUpdate::every_pass ||
+      settings.tangent != TangentReuse::none || settings.projections_every != 1) {
+    return std::make_unique<AdjustableSimulation<Form<Solver>>>(model, settings);
+  }
+  return std::make_unique<SparseSimulation<Form<Solver>>>(model, settings);
 }
+
+template <template <class> class Solver>
+std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
+  switch (settings.scheme) {
+    case Scheme::penalty:
+      return create_in<Solver<double>, RoundedSolver<Solver>, PenaltyForm>(model, settings);
+    case Scheme::saddle_point:
+      return create_in<Solver<double>, RoundedSolver<Solver>, SaddleForm>(model, settings);
+    case Scheme::rattle:
+    case Scheme::rattle4:
+    case Scheme::rattle6:
+      break;
+  }
+  return std::make_unique<RattleSimulation<Solver<double>>>(model, settings);
+}
+
+constexpr Serves kServes{.saddle_point = true,
+                         .rattle = true,
+                         .multiplier_update = true,
+                         .tangent_reuse = true,
+                         .projections_every = true,
+                         .mixed_precision = true};
 
 }  // namespace
 
@@ -33,8 +66,12 @@ Implementation implementation() {
            .description = "supernodal LU with diagonal pivots; ordering, tree and storage reused",
            .create = create<SuperluSolver>,
            .allocates = "SuperLU's dgstrf and sp_dtrsv allocate their work space in every call",
-           .unsymmetric = true},
-          {"simplicial_ldlt", "Eigen's up-looking LDL^T, AMD ordering", create<SimplicialSolver>}}};
+           .unsymmetric = true,
+           .serves = kServes},
+          {.name = "simplicial_ldlt",
+           .description = "Eigen's up-looking LDL^T, AMD ordering",
+           .create = create<SimplicialSolver>,
+           .serves = kServes}}};
 }
 
 }  // namespace mbs::eigen_superlu

@@ -1,8 +1,8 @@
-// Set-up of an Assembly: constraints sorted by kind, patterns and slots.
+// Set-up of Constraints: sorting by kind, the pattern of Phi_q.
 #include <algorithm>
 #include <numeric>
 
-#include "assembly.hpp"
+#include "constraints.hpp"
 
 namespace mbs::eigen_superlu {
 namespace {
@@ -31,23 +31,16 @@ std::array<int, 4> ends_of_quadratic(const Model& model, std::size_t k) {
 
 }  // namespace
 
-Assembly::Assembly(const Model& model, const Coordinates& coordinates, Triangle triangle,
-                   double penalty)
+Constraints::Constraints(const Model& model, const Coordinates& coordinates)
     : dimension_(model.dimension()),
       order_(model.constraints()),
       value_(model.constraints()),
-      phi_(Vector::Zero(model.constraints())),
-      penalty_(penalty),
-      tangent_(tangent_pattern(model, coordinates)) {
-  if (triangle == Triangle::upper) tangent_ = SparseMatrix(tangent_.triangularView<Eigen::Upper>());
+      phi_(Vector::Zero(model.constraints())) {
   sort_rows(model, coordinates);
   make_jacobian(model, coordinates);
-  make_runs(triangle);
-  add_linear_rows(triangle);
-  base_ = Eigen::Map<const Vector>(tangent_.valuePtr(), tangent_.nonZeros());
 }
 
-void Assembly::sort_rows(const Model& model, const Coordinates& coordinates) {
+void Constraints::sort_rows(const Model& model, const Coordinates& coordinates) {
   const auto dots = model.dot_constraints();
   const auto bilinear = model.bilinear_constraints();
   const auto linear = model.linear_constraints();
@@ -78,7 +71,7 @@ void Assembly::sort_rows(const Model& model, const Coordinates& coordinates) {
   for (std::size_t k = 0; k < linear.size(); ++k) value_[quadratic_ + k] = linear[k].value;
 }
 
-void Assembly::add_distance(const Coordinates& coordinates, const DotConstraint& constraint) {
+void Constraints::add_distance(const Coordinates& coordinates, const DotConstraint& constraint) {
   const bool free = coordinates.is_free(constraint.a) && coordinates.is_free(constraint.b);
   const bool swapped = !coordinates.is_free(constraint.a);
   for (const int point :
@@ -93,7 +86,7 @@ void Assembly::add_distance(const Coordinates& coordinates, const DotConstraint&
 
 /// Columns of a row stay in the order of its points, which Eigen's products with vectors allow but
 /// its copies of sparse matrices do not: hence the arrays are filled directly.
-void Assembly::make_jacobian(const Model& model, const Coordinates& coordinates) {
+void Constraints::make_jacobian(const Model& model, const Coordinates& coordinates) {
   std::vector<int> starts{0}, columns;
   for (int row = 0; row < quadratic_; ++row) {
     append_columns(coordinates, ends_of_quadratic(model, order_[row]), columns);
@@ -112,44 +105,6 @@ void Assembly::make_jacobian(const Model& model, const Coordinates& coordinates)
   std::copy(starts.begin(), starts.end(), jacobian_.outerIndexPtr());
   std::copy(columns.begin(), columns.end(), jacobian_.innerIndexPtr());
   std::copy(values.begin(), values.end(), jacobian_.valuePtr());
-}
-
-/// Slots and runs of the rows that change.
-void Assembly::make_runs(Triangle triangle) {
-  const int* starts = jacobian_.outerIndexPtr();
-  int run_width = 0;
-  for (int row = 0; row < quadratic_; ++row) {
-    const int width = starts[row + 1] - starts[row];
-    if (width == 0) continue;
-    if (width != run_width) {
-      runs_.push_back({loop_for(triangle, width), starts[row], static_cast<int>(slots_.size()), 0});
-      run_width = width;
-    }
-    ++runs_.back().count;
-    append_slots(tangent_, triangle,
-                 {jacobian_.innerIndexPtr() + starts[row], static_cast<std::size_t>(width)},
-                 slots_);
-  }
-}
-
-/// The share of the linear constraints in the tangent, once and for all.
-void Assembly::add_linear_rows(Triangle triangle) {
-  const int* starts = jacobian_.outerIndexPtr();
-  std::vector<int> slots;
-  for (int row = quadratic_; row < jacobian_.rows(); ++row) {
-    const std::span columns(jacobian_.innerIndexPtr() + starts[row],
-                            jacobian_.innerIndexPtr() + starts[row + 1]);
-    const double* values = jacobian_.valuePtr() + starts[row];
-    slots.clear();
-    append_slots(tangent_, triangle, columns, slots);
-    const int* slot = slots.data();
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      const std::size_t end = triangle == Triangle::full ? columns.size() : i + 1;
-      for (std::size_t j = 0; j < end; ++j) {
-        tangent_.valuePtr()[*slot++] += penalty_ * values[i] * values[j];  // Eq. (5)
-      }
-    }
-  }
 }
 
 }  // namespace mbs::eigen_superlu

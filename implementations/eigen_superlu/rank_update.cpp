@@ -1,12 +1,10 @@
-// Where the products of rows go in the tangent.
+// Where the products of rows go in a matrix.
 #include "rank_update.hpp"
 
 #include <algorithm>
 
 namespace mbs::eigen_superlu {
-namespace {
 
-/// Where entry (row, col) is in the arrays of `matrix`.
 int slot_of(const SparseMatrix& matrix, int row, int col) {
   const int* rows = matrix.innerIndexPtr();
   const int* first = rows + matrix.outerIndexPtr()[col];
@@ -14,16 +12,18 @@ int slot_of(const SparseMatrix& matrix, int row, int col) {
   return static_cast<int>(std::lower_bound(first, last, row) - rows);
 }
 
-}  // namespace
-
-void append_slots(const SparseMatrix& tangent, Triangle triangle, std::span<const int> columns,
-                  std::vector<int>& slots) {
-  const bool full = triangle == Triangle::full;
+void append_slots(const Layout& layout, std::span<const int> columns, std::vector<int>& slots) {
+  if (layout.matrix == nullptr) return;
+  const bool full = layout.triangle == Triangle::full;
+  const auto place = [&](int column) {
+    return layout.place.empty() ? column : layout.place[column];
+  };
   for (std::size_t i = 0; i < columns.size(); ++i) {
+    const int row = place(columns[i]);
     for (std::size_t j = 0; j < (full ? columns.size() : i + 1); ++j) {
-      const auto [low, high] = std::minmax(columns[i], columns[j]);
-      slots.push_back(full ? slot_of(tangent, columns[i], columns[j])
-                           : slot_of(tangent, low, high));
+      const int col = place(columns[j]);
+      slots.push_back(full ? slot_of(*layout.matrix, row, col)
+                           : slot_of(*layout.matrix, std::min(row, col), std::max(row, col)));
     }
   }
 }

@@ -8,10 +8,19 @@
 
 namespace mbs::eigen_superlu {
 
-/// Appends where the products (i, j) of a row with entries in `columns` go in the arrays of
-/// `tangent`: for i ascending all j, or for the upper triangle alone those with j <= i.
-void append_slots(const SparseMatrix& tangent, Triangle triangle, std::span<const int> columns,
-                  std::vector<int>& slots);
+/// A symmetric matrix as those see it who add products of derivatives by unknowns to its values.
+struct Layout {
+  const SparseMatrix* matrix;  ///< in its final pattern; nullptr: nothing will be added
+  Triangle triangle;
+  std::span<const int> place;  ///< row and column of each unknown; empty: as Coordinates has them
+};
+
+/// Where entry (row, col) is in the arrays of `matrix`.
+int slot_of(const SparseMatrix& matrix, int row, int col);
+
+/// Appends where the products (i, j) of a row with entries in `columns` go in the arrays of a
+/// matrix: for i ascending all j, or for the upper triangle alone those with j <= i.
+void append_slots(const Layout& layout, std::span<const int> columns, std::vector<int>& slots);
 
 /// Adds penalty r^T r for each of `count` rows r of equal width, one after another in `rows`, to
 /// the values of the tangent; `slots` as append_slots() lists them for one row after another.

@@ -1,52 +1,47 @@
 // The time step on Eigen's sparse matrices, for either solver.
 #pragma once
 
-#include <optional>
-
-#include "assembly.hpp"
-#include "coordinates.hpp"
-#include "drivers.hpp"
-#include "forces.hpp"
 #include "mbs/simulation.hpp"
+#include "mechanism.hpp"
+#include "penalty_form.hpp"
+#include "rounded_solver.hpp"
+#include "saddle_form.hpp"
 #include "solver.hpp"
 
 namespace mbs::eigen_superlu {
 
-/// All vectors are in the solver's elimination order, rows in the order of Assembly; only get and
-/// set translate.
-template <class Solver>
-class SparseSimulation final : public Simulation {
+/// "The step" with its default settings, in the penalty or in the saddle-point form: every pass
+/// factorizes and updates lambda, every step is projected with the last factors.
+template <class Form>
+class SparseSimulation : public Simulation {
  public:
   SparseSimulation(const Model& model, const StepSettings& settings);
 
- private:
+ protected:
   void do_set_state(const State& state) override;
   StepOutcome do_step() override;
   void do_get_state(State& state) const override;
 
+  /// Drivers, q', v', a' and the constraints there.
   void predict();
-  void form_right_hand_side();
-  bool correct();
+  /// Applies delta and evaluates the constraints at the new q'; returns max |delta|.
+  double correct();
+  void update_multipliers();
   void project_velocities();
   void project_accelerations();
 
   StepSettings settings_;
-  double quarter_;  // dt^2/4
-  Coordinates coordinates_;
-  Assembly assembly_;
-  Solver solver_;
-  RowSparseMatrix mass_;  // both triangles: row products need no scattered stores
-  Vector force_;          // the part of Q that holds for a whole step
-  std::optional<Drivers> drivers_;
-  Forces forces_;  // the rest of Q
-
-  Vector q_, v_;  // extended by fixed points
-  Vector a_, lambda_;
-  Vector delta_;       // n: right-hand sides, overwritten by solutions
-  Vector multiplier_;  // m: what Phi_q^T is applied to
+  Mechanism mechanism_;
+  Form form_;
 };
 
-extern template class SparseSimulation<SimplicialSolver>;
-extern template class SparseSimulation<SuperluSolver>;
+extern template class SparseSimulation<PenaltyForm<SimplicialSolver<double>>>;
+extern template class SparseSimulation<PenaltyForm<SuperluSolver<double>>>;
+extern template class SparseSimulation<SaddleForm<SimplicialSolver<double>>>;
+extern template class SparseSimulation<SaddleForm<SuperluSolver<double>>>;
+extern template class SparseSimulation<PenaltyForm<RoundedSolver<SimplicialSolver>>>;
+extern template class SparseSimulation<PenaltyForm<RoundedSolver<SuperluSolver>>>;
+extern template class SparseSimulation<SaddleForm<RoundedSolver<SimplicialSolver>>>;
+extern template class SparseSimulation<SaddleForm<RoundedSolver<SuperluSolver>>>;
 
 }  // namespace mbs::eigen_superlu

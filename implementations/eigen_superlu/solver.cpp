@@ -2,10 +2,12 @@
 #include "solver.hpp"
 
 #include <Eigen/OrderingMethods>
+#include <numeric>
 
 namespace mbs::eigen_superlu {
 
-std::vector<int> SimplicialSolver::elimination_order(const SparseMatrix& pattern) {
+template <class Scalar>
+std::vector<int> SimplicialSolver<Scalar>::elimination_order(const SparseMatrix& pattern) {
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
   Eigen::AMDOrdering<int>()(pattern, order);
   std::vector<int> position(pattern.cols());
@@ -13,21 +15,38 @@ std::vector<int> SimplicialSolver::elimination_order(const SparseMatrix& pattern
   return position;
 }
 
-SimplicialSolver::SimplicialSolver(const SparseMatrix& tangent) : tangent_(tangent) {
-  factors_.analyzePattern(tangent_);
+template <class Scalar>
+std::vector<int> SimplicialSolver<Scalar>::equivalent_order(const SparseMatrix& pattern) {
+  std::vector<int> identity(pattern.cols());
+  std::iota(identity.begin(), identity.end(), 0);
+  return identity;
 }
 
-bool SimplicialSolver::factorize() {
-  factors_.refactorize(tangent_);
+template <class Scalar>
+SimplicialSolver<Scalar>::SimplicialSolver(const Values& matrix, Definiteness definiteness)
+    : matrix_(matrix), definiteness_(definiteness) {
+  factors_.analyzePattern(matrix_);
+}
+
+template <class Scalar>
+bool SimplicialSolver<Scalar>::factorize() {
+  factors_.refactorize(matrix_);
   // Eigen itself refuses nothing but a pivot that is exactly zero.
-  return factors_.info() == Eigen::Success &&
-         factors_.pivots().minCoeff<Eigen::PropagateNaN>() > 0.0;
+  if (factors_.info() != Eigen::Success) return false;
+  const Side& pivots = factors_.pivots();
+  return definiteness_ == Definiteness::positive
+             ? pivots.template minCoeff<Eigen::PropagateNaN>() > 0
+             : pivots.cwiseAbs().template minCoeff<Eigen::PropagateNaN>() > 0;
 }
 
-void SimplicialSolver::solve(Vector& x) const {
+template <class Scalar>
+void SimplicialSolver<Scalar>::solve(Side& x) const {
   factors_.matrixL().solveInPlace(x);
   x.array() /= factors_.pivots().array();
   factors_.matrixU().solveInPlace(x);
 }
+
+template class SimplicialSolver<double>;
+template class SimplicialSolver<float>;
 
 }  // namespace mbs::eigen_superlu

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "forces.hpp"
-#include "rank_update.hpp"
 
 namespace mbs::eigen_superlu {
 namespace {
@@ -48,7 +47,7 @@ Springs<kDimension, kFreeEnds, kTriangle>::Springs(const ForceSetup& setup,
     elements_.push_back(element);
     columns.clear();
     append_columns(setup.coordinates, std::array<int, 2>{a, b}, columns);
-    append_slots(setup.tangent, kTriangle, columns, slots_);
+    append_slots(setup.layout, columns, slots_);
   }
 }
 
@@ -114,7 +113,7 @@ void Springs<kDimension, kFreeEnds, kTriangle>::add_product(const Vector& x, Vec
 
 template <int kDimension, int kFreeEnds>
 std::unique_ptr<Force> make(const ForceSetup& setup, const std::vector<Spring>& springs) {
-  if (setup.triangle == Triangle::full) {
+  if (setup.layout.triangle == Triangle::full) {
     return std::make_unique<Springs<kDimension, kFreeEnds, Triangle::full>>(setup, springs);
   }
   return std::make_unique<Springs<kDimension, kFreeEnds, Triangle::upper>>(setup, springs);

@@ -1,63 +1,57 @@
-// SuperLU's factorization and solves on the arrays of the tangent matrix.
-#include <superlu/slu_ddefs.h>
-
+// SuperLU's factorization and solves on the arrays of the matrix.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "solver.hpp"
+#include "superlu_calls.hpp"
 
 namespace mbs::eigen_superlu {
 namespace {
 
-// Small panels and supernodes suit tangents of a few entries a column: the work space that dgstrf
+// Small panels and supernodes suit matrices of a few entries a column: the work space that dgstrf
 // clears each time is (m + 400) panel columns. Both stay below sp_ienv(1), which sizes statistics.
 constexpr int kPanelColumns = 1;
 constexpr int kRelaxedColumns = 6;
 
-superlu_options_t default_options() {
-  superlu_options_t options;
-  set_default_options(&options);
-  options.ColPerm = MMD_AT_PLUS_A;
-  options.DiagPivotThresh = 0.0;  // the diagonal, unless it is exactly zero
-  options.PrintStat = NO;
-  return options;
-}
-
-SuperMatrix described(Stype_t storage, const SparseMatrix& matrix, void* store) {
-  const auto n = static_cast<int>(matrix.cols());
-  return {storage, SLU_D, SLU_GE, n, n, store};
-}
-
 }  // namespace
 
-/// SuperLU's view of the tangent (nothing is copied, and SuperLU only reads it) and its factors.
-struct SuperluSolver::Handle {
-  explicit Handle(const SparseMatrix& matrix);
+/// SuperLU's view of the matrix (nothing is copied, and SuperLU only reads it) and its factors.
+template <class Scalar>
+struct SuperluSolver<Scalar>::Handle {
+  Handle(const Values& values, Definiteness kind);
   ~Handle();
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
 
   [[nodiscard]] bool finite() const;
-  [[nodiscard]] bool positive() const;
+  template <class Predicate>
+  [[nodiscard]] bool diagonal_pivots(Predicate is_right) const;
+  [[nodiscard]] bool pivots_right() const;
   void drop_factors();
 
-  const SparseMatrix& tangent;
-  superlu_options_t options = default_options();
+  const Values& matrix;
+  Definiteness definiteness;
+  superlu_options_t options = options_for_diagonal_pivots();
   std::vector<int> identity, perm_r, etree;  // of columns, of rows; column elimination tree
-  std::vector<int> diagonal;                 // where the diagonal of the tangent is stored
+  std::vector<int> diagonal;                 // where the diagonal of the matrix is stored
   NCPformat columns{};
   SuperMatrix view{}, lower{}, upper{};
   GlobalLU_t memory{};
   SuperLUStat_t statistics{};
 };
 
-SuperluSolver::Handle::Handle(const SparseMatrix& matrix)
-    : tangent(matrix), identity(matrix.cols()), perm_r(matrix.cols()), etree(matrix.cols()) {
+template <class Scalar>
+SuperluSolver<Scalar>::Handle::Handle(const Values& values, Definiteness kind)
+    : matrix(values),
+      definiteness(kind),
+      identity(values.cols()),
+      perm_r(values.cols()),
+      etree(values.cols()) {
   std::iota(identity.begin(), identity.end(), 0);
   int* starts = const_cast<int*>(matrix.outerIndexPtr());
   int* rows = const_cast<int*>(matrix.innerIndexPtr());
-  columns = {static_cast<int>(matrix.nonZeros()), const_cast<double*>(matrix.valuePtr()), rows,
+  columns = {static_cast<int>(matrix.nonZeros()), const_cast<Scalar*>(matrix.valuePtr()), rows,
              starts, starts + 1};
   view = described(SLU_NCP, matrix, &columns);
   sp_coletree(starts, starts + 1, rows, view.nrow, view.ncol, etree.data());
@@ -68,86 +62,94 @@ SuperluSolver::Handle::Handle(const SparseMatrix& matrix)
   StatInit(&statistics);
 }
 
-SuperluSolver::Handle::~Handle() {
+template <class Scalar>
+SuperluSolver<Scalar>::Handle::~Handle() {
   drop_factors();
   StatFree(&statistics);
 }
 
-void SuperluSolver::Handle::drop_factors() {
+template <class Scalar>
+void SuperluSolver<Scalar>::Handle::drop_factors() {
   if (lower.Store == nullptr) return;
   Destroy_SuperNode_Matrix(&lower);
   Destroy_CompCol_Matrix(&upper);
   lower = upper = {};
 }
 
-/// Whether all numbers are finite: a wrong one in Phi_q reaches the diagonal of Phi_q^T Phi_q.
-bool SuperluSolver::Handle::finite() const {
+/// Whether all numbers are finite: a wrong one in Phi_q reaches the diagonal of Phi_q^T Phi_q. In
+/// a saddle-point matrix it does not, and products of entries appear in the factorization alone.
+template <class Scalar>
+bool SuperluSolver<Scalar>::Handle::finite() const {
+  if (definiteness == Definiteness::quasi) {
+    return std::isfinite(
+        Eigen::Map<const Side>(matrix.valuePtr(), matrix.nonZeros()).squaredNorm());
+  }
   double trace = 0.0;
-  for (const int slot : diagonal) trace += tangent.valuePtr()[slot];
+  for (const int slot : diagonal) trace += matrix.valuePtr()[slot];
   return std::isfinite(trace);
 }
 
-/// Whether the pivots are positive and on the diagonal, hence the tangent positive definite.
-bool SuperluSolver::Handle::positive() const {
+/// Whether all pivots are right and on the diagonal.
+template <class Scalar>
+template <class Predicate>
+bool SuperluSolver<Scalar>::Handle::diagonal_pivots(Predicate is_right) const {
   const auto& store = *static_cast<const SCformat*>(lower.Store);
-  const auto* values = static_cast<const double*>(store.nzval);
-  bool positive = true;
+  const auto* values = static_cast<const Scalar*>(store.nzval);
+  bool right = true;
   for (int j = 0; j < lower.ncol; ++j) {
     const int row_in_supernode = j - store.sup_to_col[store.col_to_sup[j]];
-    positive &= values[store.nzval_colptr[j] + row_in_supernode] > 0.0 && perm_r[j] == j;
+    right &= is_right(values[store.nzval_colptr[j] + row_in_supernode]) && perm_r[j] == j;
   }
-  return positive;
+  return right;
 }
 
-std::vector<int> SuperluSolver::elimination_order(const SparseMatrix& pattern) {
-  NCformat columns{static_cast<int>(pattern.nonZeros()), const_cast<double*>(pattern.valuePtr()),
-                   const_cast<int*>(pattern.innerIndexPtr()),
-                   const_cast<int*>(pattern.outerIndexPtr())};
-  SuperMatrix view = described(SLU_NC, pattern, &columns), ordered{};
-  superlu_options_t options = default_options();
-  std::vector<int> perm_c(pattern.cols()), etree(pattern.cols());
-  get_perm_c(options.ColPerm, &view, perm_c.data());
-  sp_preorder(&options, &view, perm_c.data(), etree.data(), &ordered);
-  Destroy_CompCol_Permuted(&ordered);
-  return perm_c;
+template <class Scalar>
+bool SuperluSolver<Scalar>::Handle::pivots_right() const {
+  return definiteness == Definiteness::positive
+             ? diagonal_pivots([](Scalar pivot) { return pivot > 0; })
+             : diagonal_pivots([](Scalar pivot) { return std::abs(pivot) > 0; });
 }
 
-std::string SuperluSolver::version() {
-  return std::to_string(SUPERLU_MAJOR_VERSION) + "." + std::to_string(SUPERLU_MINOR_VERSION) + "." +
-         std::to_string(SUPERLU_PATCH_VERSION);
-}
-
-SuperluSolver::SuperluSolver(const SparseMatrix& tangent)
-    : handle_(std::make_unique<Handle>(tangent)) {
+template <class Scalar>
+SuperluSolver<Scalar>::SuperluSolver(const Values& matrix, Definiteness definiteness)
+    : handle_(std::make_unique<Handle>(matrix, definiteness)) {
   (void)factorize();
 }
 
-SuperluSolver::~SuperluSolver() = default;
+template <class Scalar>
+SuperluSolver<Scalar>::~SuperluSolver() = default;
 
-bool SuperluSolver::factorize() {
+template <class Scalar>
+bool SuperluSolver<Scalar>::factorize() {
   Handle& h = *handle_;
   // Pivoting past a NaN would leave the pattern that L and U have room for.
   if (!h.finite()) return false;
   h.options.Fact = h.lower.Store == nullptr ? DOFACT : SamePattern_SameRowPerm;
   int info = 0;
-  dgstrf(&h.options, &h.view, kRelaxedColumns, kPanelColumns, h.etree.data(), nullptr, 0,
-         h.identity.data(), h.perm_r.data(), &h.lower, &h.upper, &h.memory, &h.statistics, &info);
+  SuperluCalls<Scalar>::factorize(&h.options, &h.view, kRelaxedColumns, kPanelColumns,
+                                  h.etree.data(), nullptr, 0, h.identity.data(), h.perm_r.data(),
+                                  &h.lower, &h.upper, &h.memory, &h.statistics, &info);
   if (info > h.view.ncol) {  // out of memory: what the factors point to is not known
     h.lower.Store = h.upper.Store = nullptr;
     return false;
   }
-  if (info == 0 && h.positive()) return true;
+  if (info == 0 && h.pivots_right()) return true;
   h.drop_factors();
   return false;
 }
 
-/// T = L U is symmetric: U^T y = b and L^T x = y gather along columns and are faster than L, U.
-void SuperluSolver::solve(Vector& x) {
+/// The matrix is symmetric: U^T y = b and L^T x = y gather along columns and are faster than L, U.
+template <class Scalar>
+void SuperluSolver<Scalar>::solve(Side& x) {
   Handle& h = *handle_;
+  constexpr auto solve_triangular = SuperluCalls<Scalar>::solve_triangular;
   char lower[] = "L", upper[] = "U", transposed[] = "T", unit[] = "U", stored[] = "N";
   int info = 0;
-  sp_dtrsv(upper, transposed, stored, &h.lower, &h.upper, x.data(), &h.statistics, &info);
-  sp_dtrsv(lower, transposed, unit, &h.lower, &h.upper, x.data(), &h.statistics, &info);
+  solve_triangular(upper, transposed, stored, &h.lower, &h.upper, x.data(), &h.statistics, &info);
+  solve_triangular(lower, transposed, unit, &h.lower, &h.upper, x.data(), &h.statistics, &info);
 }
+
+template class SuperluSolver<double>;
+template class SuperluSolver<float>;
 
 }  // namespace mbs::eigen_superlu

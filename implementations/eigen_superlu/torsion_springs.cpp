@@ -5,7 +5,6 @@
 
 #include "forces.hpp"
 #include "point_pairs.hpp"
-#include "rank_update.hpp"
 #include "rotation.hpp"
 
 namespace mbs::eigen_superlu {
@@ -53,10 +52,10 @@ TorsionSprings<kDimension>::TorsionSprings(const ForceSetup& setup)
                          spring.stiffness,
                          spring.damping,
                          spring.angle,
-                         loop_for(setup.triangle, static_cast<int>(row.size())),
+                         loop_for(setup.layout.triangle, static_cast<int>(row.size())),
                          static_cast<int>(first),
                          static_cast<int>(slots_.size())});
-    append_slots(setup.tangent, setup.triangle, row, slots_);
+    append_slots(setup.layout, row, slots_);
   }
   gradients_.outerIndexPtr()[elements_.size()] = static_cast<int>(columns.size());
   gradients_.resizeNonZeros(static_cast<int>(columns.size()));
