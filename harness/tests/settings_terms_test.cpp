@@ -92,7 +92,8 @@ TEST_P(SettingsTerms, Agree) {
     SCOPED_TRACE(term.name);
     const Scene scene{term.name, term.model, {}, {}};
     StepSettings settings = setting.settings;
-    settings.penalty = automatic_penalty(scene.model, settings.step, settings.scheme);
+    settings.penalty =
+        automatic_penalty(scene.model, settings.step, settings.scheme, settings.precision);
     settings.tolerance = automatic_tolerance(scene.model, settings);
     const bool suited = why_unsuited(scene.model, settings).empty();
     ReferenceRun reference;

@@ -39,17 +39,21 @@ double mean_constraint_eigenvalue(const Model& model) {
   return trace / model.constraints();
 }
 
-double automatic_penalty(const Model& model, double step, Scheme scheme) {
+double automatic_penalty(const Model& model, double step, Scheme scheme, Precision precision) {
   if (model.constraints() == 0) return 1.0;
   const double mean = mean_constraint_eigenvalue(model);
-  if (scheme == Scheme::saddle_point) return 4 / (step * step) * 1e8 / mean;
+  if (scheme == Scheme::saddle_point) {
+    const double limit = precision == Precision::double_precision ? 2.5e8 : 1e6;
+    return 4 / (step * step) * limit / mean;
+  }
   if (scheme != Scheme::penalty) return 4 / (step * step) * 2e4 / mean;
   const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
   return 4 / (step * step) * std::clamp(30 / smallest, 4e3 / mean, 1e7 / mean);
 }
 
 double parse_penalty(const std::string& text, const Model& model, const StepSettings& settings) {
-  if (text == "auto") return automatic_penalty(model, settings.step, settings.scheme);
+  if (text == "auto")
+    return automatic_penalty(model, settings.step, settings.scheme, settings.precision);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||

@@ -16,9 +16,11 @@ namespace mbs {
 /// cancellation. harness/README.md has the measurements behind the three numbers. 1 for a model
 /// without constraints.
 ///
-/// The saddle-point form: (4 / dt^2) 1e8 / s_mean, which is eps = 1e-8 s_mean. RATTLE: (4 / dt^2)
+/// The saddle-point form: (4 / dt^2) 2.5e8 / s_mean, which is eps = 4e-9 s_mean; with factors in
+/// single precision 1e6 instead, since eps must be above their rounding. RATTLE: (4 / dt^2)
 /// 2e4 / s_mean: a smaller eps does not survive the poles of the multipliers at singular positions.
-double automatic_penalty(const Model& model, double step, Scheme scheme = Scheme::penalty);
+double automatic_penalty(const Model& model, double step, Scheme scheme = Scheme::penalty,
+                         Precision precision = Precision::double_precision);
 
 /// s_mean of the above, m^2/kg; not a number for a model without constraints.
 double mean_constraint_eigenvalue(const Model& model);
