@@ -143,7 +143,7 @@ def known_solution(problem, found, judged_one, compared):
                 if name.split(".")[0] in problem.judged}
     other = next((name for name in compared if name != judged_one), None)
     finer, finest = (found["runs"].get((other, step)) for step in problem.steps[1:])
-    if any(record is None or runs.status(record)[0] != "ok" for record in (finer, finest)):
+    if any(record is None or runs.status(record)[0] not in runs.FINISHED for record in (finer, finest)):
         return None
     return {column: extrapolate(_values(finer, column), _values(finest, column))
             for column in columns_of(problem, finest["outputs"])}
@@ -172,13 +172,13 @@ def rows(problem, found, compared, layout_relative):
                 "variables", "constraints", "penalty", "tolerance", "passes_per_step",
                 "steps_at_limit", "energy_drift_max", "constraint_violation_max", "setup_us")}
             row["step_us"] = summary["step_us"]["median"]
-        known = known_solution(problem, found, name, compared) if status == "ok" else None
+        known = known_solution(problem, found, name, compared) if status in runs.FINISHED else None
         if known:
             square, largest = metric.errors(
                 {column: _values(record, column) for column in known}, known)
             row |= {"error_rms": square, "error_max": largest,
                     "precision": metric.precision(square)}
-        if status == "ok" and problem.mirrored:
+        if status in runs.FINISHED and problem.mirrored:
             row["asymmetry"] = max(
                 max(abs(_values(record, f"{left}.x") + _values(record, f"{right}.x"))) +
                 max(abs(_values(record, f"{left}.y") - _values(record, f"{right}.y")))
@@ -203,7 +203,7 @@ def convergence_rows(problem, found, compared):
     published = PUBLISHED[problem.published]() if problem.published else {}
     for name in compared:
         records = [found["runs"].get((name, step)) for step in problem.steps]
-        if len(records) != 3 or any(record is None or runs.status(record)[0] != "ok"
+        if len(records) != 3 or any(record is None or runs.status(record)[0] not in runs.FINISHED
                                     for record in records):
             continue
         for column in columns_of(problem, records[0]["outputs"]):

@@ -46,6 +46,9 @@ def need(stored, path):
         raise StudyError(f"{path} is missing: the results are not complete; run study/scenes again")
 
 
+FINISHED = ("ok", "degraded")  # how a run ends that has all of its motion
+
+
 def status(record):
     """(status, reason) of a run."""
     if "failure" in record:
