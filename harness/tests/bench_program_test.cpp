@@ -154,6 +154,24 @@ void expect_refusal(const std::string& arguments, const std::string& word) {
   EXPECT_EQ(run.output, "");
 }
 
+TEST(BenchProgram, WhatIsUnsupportedIsARowAndNoFailure) {
+  const auto run = test::run_mbs(
+      "bench four-bar:1 --steps 5 --benchmark_min_time=0 --scheme saddle-point "
+      "--benchmark_format=json");
+  EXPECT_EQ(run.status, 0) << run.errors;
+  int unsupported = 0;
+  const auto json = nlohmann::json::parse(run.output);
+  for (const auto& row : json.at("benchmarks")) {
+    if (row.value("error_occurred", false)) {
+      EXPECT_EQ(row.at("error_message"),
+                "unsupported: it does not offer --scheme saddle-point (mbs list tells who does)");
+      ++unsupported;
+    }
+  }
+  EXPECT_GT(unsupported, 0);
+  EXPECT_LT(unsupported, static_cast<int>(json.at("benchmarks").size()) - 1);
+}
+
 TEST(BenchProgram, RefusesBadInput) {
   expect_refusal("--benchmark_fliter=x", "--benchmark_fliter");
   expect_refusal("--benchmark_filter", "--benchmark_filter");

@@ -22,10 +22,12 @@ class NullSimulation final : public Simulation {
 
 const Variant& null_variant() {
   static const Variant variant{
-      "null", "does nothing: the harness's own overhead",
-      [](const Model& model, const StepSettings&) -> std::unique_ptr<Simulation> {
+      .name = "null",
+      .description = "does nothing: the harness's own overhead",
+      .create = [](const Model& model, const StepSettings&) -> std::unique_ptr<Simulation> {
         return std::make_unique<NullSimulation>(model);
-      }};
+      },
+      .serves = {true, true, true, true, true, true, true}};
   return variant;
 }
 
