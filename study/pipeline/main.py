@@ -24,7 +24,7 @@ def main(arguments):
     command, *rest = arguments
     try:
         return {"run": run, "figures": figures, "compare": compare, "view": view,
-                "scenes": scenes, "against": against}[command](rest)
+                "scenes": scenes, "stability": stability, "against": against}[command](rest)
     except StudyError as error:
         print(f"study/{command}: {error}", file=sys.stderr)
         return 2
@@ -112,6 +112,11 @@ def view(arguments):
 def scenes(arguments):
     from study.scene_study.main import scenes as run_scenes
     return run_scenes(arguments)
+
+
+def stability(arguments):
+    from study.stability_study.main import stability as run_stability
+    return run_stability(arguments)
 
 
 def against(arguments):

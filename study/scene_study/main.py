@@ -63,13 +63,13 @@ def _run(layout, options):
     preferred, listed = problems.read_list()
     chosen = _choose(listed, options.problems)
     if not options.stored:
-        _start(layout, options.only, {problems.LIST.name: digest(problems.LIST)} | {
+        start(layout, "scenes", options.only, {problems.LIST.name: digest(problems.LIST)} | {
             problem.scene: digest_of_scene(problem.scene) for problem in listed})
     run = read_run(layout)
     contenders = [one for one in from_json(run["contenders"]).values()
                   if one.ranked and not one.missing]
     compared = problems.compared_of(preferred, [one.name for one in contenders])
-    raw, tell = layout.results / "raw", _Teller()
+    raw, tell = layout.results / "raw", Teller()
     if options.stored:
         tell.quiet = True
     found = {problem: problems.run_problem(problem, raw, contenders, compared, run["contexts"], tell,
@@ -104,11 +104,11 @@ def _choose(listed, names):
     return list(dict.fromkeys(known[name.lower()] for name in names if name.lower() in known))
 
 
-def _start(layout, only, inputs):
-    """Records build, machine, selection and digests of the `inputs`, or refuses a directory that holds
-    results of others."""
+def start(layout, name, only, inputs):
+    """Records for the study `name` build, machine, selection and what identifies the `inputs`, or
+    refuses a directory that holds results of others."""
     usual = profiles.load("quick")
-    profile = replace(usual, name="scenes", settings=usual.settings | {"alternatives": []})
+    profile = replace(usual, name=name, settings=usual.settings | {"alternatives": []})
     known = registry()
     record = run_record(layout, profile, only, known) | {"inputs": inputs}
     if not continues(layout, record, ("variants", "contenders", "programs", "inputs")):
@@ -116,7 +116,7 @@ def _start(layout, only, inputs):
         write_json(layout.run, record)
 
 
-class _Teller:
+class Teller:
     """One line that is rewritten on a terminal; a line now and then elsewhere."""
     quiet = False
 

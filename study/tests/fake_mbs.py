@@ -134,6 +134,7 @@ def check(scene):
 
 
 def simulate(scene):
+    misbehave(option("--implementation"))
     n = 2 * int(scene.split(":")[1]) + 2
     lost = option("--penalty") == "1e8" and n > 50
     name = option("--implementation")
@@ -148,11 +149,20 @@ def simulate(scene):
     sys.exit(lost)
 
 
+def describe(_):
+    step = float(option("--step"))
+    print(json.dumps({"penalty_window": {
+        "step": step, "automatic": 2e3 / step**2, "lower": 1e2 / step**2, "lower_from": "slowest mode",
+        "upper": 1e5 / step**2, "upper_from": "cancellation"}}))
+
+
 def registry():
     folders = {}
     for name in variants():
         variant = {"name": name, "description": f"fake {name}", "dense": "dense" in name,
                    "unsymmetric": False, "operations": name == "good_sparse/only"}
+        if name == "good_dense/first":
+            variant["settings"] = ["saddle-point", "single"]
         folders.setdefault(name.split("/")[0], []).append(variant)
     entries = [{"folder": folder, "description": "a fake", "library": "Fake", "version": "1.0",
                 "licence": "MIT", "available": True, "reason": "", "variants": found}
@@ -167,5 +177,6 @@ def registry():
 
 
 if __name__ == "__main__":
-    {"list": lambda _: registry(), "bench": bench, "check": check, "simulate": simulate}[
+    {"list": lambda _: registry(), "bench": bench, "check": check, "simulate": simulate,
+     "describe": describe}[
         sys.argv[1]](sys.argv[2])

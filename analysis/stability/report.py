@@ -1,0 +1,84 @@
+# stability.html: the maps, how to read them, the outcomes counted; one self-contained page.
+import base64
+from pathlib import Path
+
+import jinja2
+import matplotlib.pyplot as plt
+import pandas
+
+from analysis.loader import TableError, _json
+from analysis.stability.figure import draw
+from analysis.text import number
+
+ACCURATE = 1e-2  # m, the largest position error that "ok" allows
+
+
+def write(folder):
+    """Writes figures/SCHEME-PRECISION.svg and .png, and stability.html, from the tables in `folder`."""
+    folder = Path(folder)
+    table, windows = (_read(folder / f"{name}.csv") for name in ("stability", "windows"))
+    (folder / "figures").mkdir(exist_ok=True)
+    series = list(dict.fromkeys(zip(table.scheme, table.precision)))
+    figures = {}
+    for scheme, precision in series:
+        figure = draw(table, windows, scheme, precision)
+        for kind in ("svg", "png"):
+            path = folder / "figures" / f"{scheme}-{precision}.{kind}"
+            partial = path.with_name(path.name + ".partial")
+            figure.savefig(partial, format=kind, bbox_inches="tight",
+                           metadata={"Date": None} if kind == "svg" else None)
+            partial.replace(path)
+        plt.close(figure)
+        figures[scheme, precision] = base64.b64encode(
+            (folder / "figures" / f"{scheme}-{precision}.svg").read_bytes()).decode()
+    partial = folder / "stability.html.partial"
+    partial.write_text(render(table, _json(folder / "run.json"), figures), encoding="utf-8")
+    partial.replace(folder / "stability.html")
+
+
+def render(table, run, figures):
+    """The page; `figures`: {(scheme, precision): SVG in base 64}."""
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
+                                     autoescape=True, trim_blocks=True, lstrip_blocks=True,
+                                     undefined=jinja2.StrictUndefined)
+    environment.filters["number"] = number
+    parts = [{"scheme": scheme, "precision": precision, "figure": figure,
+              "rows": table[(table.scheme == scheme) & (table.precision == precision)]}
+             for (scheme, precision), figure in figures.items()]
+    for part in parts:
+        rows = part["rows"]
+        part |= {"implementation": rows.implementation.iloc[0],
+                 "counts": rows.status.value_counts().to_dict(), "valleys": valleys(rows),
+                 "automatic": rows[(rows.penalty_asked == "auto") & (rows.status != "ok")].to_dict(
+                     "records")}
+    scaled = table[table.penalty_asked != "auto"].alpha_dt2_4
+    return environment.get_template("stability.html.j2").render(
+        context=next(iter(run["contexts"].values())), inputs=run["inputs"], parts=parts,
+        least=scaled.min(), most=scaled.max(),
+        statuses=list(dict.fromkeys(["ok", "degraded", *sorted(table.status.unique())])),
+        limit=ACCURATE, total=len(table), inaccurate=inaccurate(table).to_dict("records"))
+
+
+def inaccurate(table):
+    """Rows that are "ok" without a position error of at most ACCURATE: there must be none."""
+    return table[(table.status == "ok") & ~(table.position_error_max <= ACCURATE)]
+
+
+def valleys(rows):
+    """{loops: {step: (least, largest, ok, between)}} of alpha step^2 / 4: the ends of the "ok" cells,
+    how many cells are ok and how many there are between the ends; None where none is ok."""
+    found = {}
+    grid = rows[rows.penalty_asked != "auto"]
+    for (loops, step), group in grid.groupby(["loops", "step"]):
+        good = group[group.status == "ok"].alpha_dt2_4
+        found.setdefault(loops, {})[step] = None if good.empty else (
+            good.min(), good.max(), len(good), int(group.alpha_dt2_4.between(good.min(),
+                                                                             good.max()).sum()))
+    return found
+
+
+def _read(path):
+    try:
+        return pandas.read_csv(path)
+    except (OSError, ValueError) as error:
+        raise TableError(f"{path}: cannot be read: {error}") from error

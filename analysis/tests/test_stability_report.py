@@ -1,0 +1,63 @@
+# The maps and the page of study/stability on a small table of every outcome.
+import matplotlib.pyplot as plt
+import pandas
+
+from analysis.stability.figure import category, draw
+from analysis.stability.report import inaccurate, render, valleys
+
+STATUSES = ("diverged", "ok", "ok", "degraded", "wrong-branch", "not-converged", "timeout", "crashed")
+
+
+def table():
+    rows = [{"loops": 2, "scheme": "penalty", "precision": "double", "implementation": "one/a",
+             "step": step, "penalty_asked": "x", "penalty": 4 * 10.0**power / step**2,
+             "alpha_dt2_4": 10.0**power, "status": status, "status_reason": "because",
+             "position_error_max": 1e-3 if status in ("ok", "degraded") else float("nan"),
+             "command": f"run {power}"}
+            for step in (1e-3, 2e-3) for power, status in enumerate(STATUSES)]
+    rows.append(rows[0] | {"penalty_asked": "auto", "penalty": 1e7, "alpha_dt2_4": 2.5})
+    return pandas.DataFrame(rows)
+
+
+def windows():
+    return pandas.DataFrame([{"loops": 2, "step": step, "lower": 1e6, "upper": 1e9}
+                             for step in (1e-3, 2e-3)])
+
+
+def page(rows):
+    context = {"compiler": "c", "commit": "0"}
+    return render(rows, {"contexts": {"own": context}, "inputs": {"duration": 2.0}},
+                  {("penalty", "double"): "AAAA"})
+
+
+def test_the_map_names_every_outcome_that_occurs():
+    figure = draw(table(), windows(), "penalty", "double")
+    [legend] = figure.legends
+    named = {text.get_text() for text in legend.get_texts()}
+    assert {category(status) for status in STATUSES} - {"ok"} <= named
+    assert {"estimated lower end", "estimated upper end", "automatic α", "the paper's setting"} <= named
+    plt.close(figure)
+
+
+def test_a_map_of_one_cell_can_be_drawn():
+    rows = table()
+    figure = draw(rows[(rows.step == 1e-3) & (rows.status == "timeout")], windows(), "penalty", "double")
+    plt.close(figure)
+
+
+def test_valleys_are_the_ends_of_what_is_ok():
+    rows = table()
+    assert valleys(rows) == {2: {1e-3: (10, 100, 2, 2), 2e-3: (10, 100, 2, 2)}}
+    rows.loc[rows.step == 2e-3, "status"] = ["ok", "diverged", "ok", *STATUSES[3:]]
+    assert valleys(rows)[2][2e-3] == (1, 100, 2, 3)
+    assert valleys(rows[rows.status == "timeout"]) == {2: {1e-3: None, 2e-3: None}}
+
+
+def test_the_page_counts_outcomes_and_accuses_what_is_ok_but_wrong():
+    rows = table()
+    assert inaccurate(rows).empty and "No run is “ok” with a position error above" in page(rows)
+    assert "diverged, because" in page(rows)  # the automatic penalty factor
+    rows.loc[1, "position_error_max"] = 0.02
+    assert "1 runs are “ok”" in page(rows) and "<code>run 1</code>" in page(rows)
+    rows.loc[1, "position_error_max"] = float("nan")
+    assert len(inaccurate(rows)) == 1

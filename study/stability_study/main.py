@@ -1,0 +1,129 @@
+# study/stability: the outcome of the N-four-bar over (step, penalty): table, figures and page.
+import argparse
+import math
+import os
+from multiprocessing.pool import ThreadPool
+from pathlib import Path
+
+from study.pipeline.contenders import from_json
+from study.pipeline.errors import StudyError
+from study.pipeline.layout import Layout, ROOT, read_run
+from study.pipeline.prepare import need_modules, only_one, registry, set_up, writable
+
+LOOPS, LARGE = (1, 2, 5, 10, 20, 40, 80), (200, 500)
+STEPS = tuple(1.25e-3 * 2.0**power for power in range(-3, 4))
+PENALTIES = tuple(10.0**power for power in range(13))
+IMPLEMENTATIONS = {"double": "csc_klu/refactor", "single": "eigen_dense/llt"}
+AT_ONCE = 2
+
+
+def stability(arguments):
+    parser = argparse.ArgumentParser(
+        prog="study/stability", description="Which penalty factors and steps simulate the N-four-bar "
+        "well, in each scheme and precision. Writes stability.csv, figures and stability.html; "
+        "about five minutes.")
+    parser.add_argument("--loops", nargs="+", type=_loops, metavar="N",
+                        help=f"numbers of loops ({' '.join(map(str, LOOPS))})")
+    parser.add_argument("--all", action="store_true",
+                        help=f"the default loops and {' '.join(map(str, LARGE))}")
+    parser.add_argument("--implementation", metavar="NAME", help="folder/variant for all runs "
+                        f"({IMPLEMENTATIONS['double']}; {IMPLEMENTATIONS['single']} in single "
+                        "precision); what it does not serve is left out")
+    parser.add_argument("--steps", nargs="+", type=_positive, default=STEPS, metavar="S",
+                        help="in seconds (1.25e-3 times powers of 2 from 1/8 to 8)")
+    parser.add_argument("--penalties", nargs="+", type=_positive, default=PENALTIES, metavar="B",
+                        help="values of alpha step^2 / 4, in kg/m^2 (1e0 to 1e12, decades)")
+    parser.add_argument("--duration", type=_positive, default=2.0, metavar="S",
+                        help="simulated time (2 s: past two singular positions)")
+    parser.add_argument("--time-limit", type=_positive, default=120.0, metavar="S",
+                        help="for one run (120 s); what takes longer is kept as a timeout")
+    parser.add_argument("--results", metavar="DIR",
+                        help="results directory (results/local/stability)")
+    parser.add_argument("--stored", action="store_true",
+                        help="figures and page again from stored tables, without running anything")
+    options = parser.parse_args(arguments)
+    if options.all and options.loops:
+        raise StudyError("--all and --loops exclude each other")
+    layout = Layout(Path(options.results).absolute() if options.results
+                    else ROOT / "results" / "local" / "stability")
+    if options.stored and not (layout.results / "stability.csv").exists():
+        raise StudyError(f"{layout.results} holds no results (no stability.csv)")
+    writable(layout.results)
+    with only_one(layout):
+        if "MBS_PROGRAM" not in os.environ and not options.stored:
+            set_up(layout)
+        need_modules("yaml", "pandas", "matplotlib", "jinja2")
+        if not options.stored:
+            _run(layout, options)
+        from analysis.loader import TableError  # they need the modules
+        from analysis.stability.report import write
+        try:
+            write(layout.results)
+        except TableError as error:
+            raise StudyError(str(error)) from error
+    print(f"report: {layout.results / 'stability.html'}")
+    return 0
+
+
+def _positive(text):
+    value = float(text)
+    if not 0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
+    return float(f"{value:g}")  # as it is passed on
+
+
+def _loops(text):
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text} is not a number of loops (1, 2, ...)")
+    return int(text)
+
+
+def _run(layout, options):
+    from study.scene_study.main import Teller, start
+    from study.stability_study import grid
+    variants = _variants(registry())
+    served = _served(variants, options.implementation)
+    start(layout, "stability", list(dict.fromkeys(served.values())),
+          {"duration": options.duration, "time_limit": options.time_limit})
+    run = read_run(layout)
+    contenders = from_json(run["contenders"])
+    loops = sorted(set(options.loops or LOOPS + (LARGE if options.all else ())))
+    steps, penalties = sorted(set(options.steps)), sorted(set(options.penalties))
+    cells = [grid.Cell(count, scheme, precision, contenders[name], step, penalty)
+             for count in loops for (scheme, precision), name in served.items()
+             if not variants[name]["dense"] or count <= grid.DENSE_LOOPS
+             for step in steps for penalty in [grid.AUTOMATIC, *penalties]]
+    if not cells:
+        raise StudyError(f"dense implementations run up to N = {grid.DENSE_LOOPS} only: no run is left")
+    windows = grid.windows(loops, steps)
+    tell, found = Teller(), {}
+    with ThreadPool(AT_ONCE) as pool:  # interrupted, it drops what has not begun
+        records = pool.imap(lambda cell: grid.run(cell, layout, run["contexts"], options.duration,
+                                                  options.time_limit), cells)
+        for number, (cell, record) in enumerate(zip(cells, records), start=1):
+            found[cell] = record
+            tell(f"N = {cell.loops}; {cell.scheme}; {cell.precision}: run {number} of {len(cells)}")
+    tell.end()
+    grid.write_table(layout.results / "windows.csv", windows)
+    grid.write_table(layout.results / "stability.csv",
+                     [grid.row(cell, record, layout) for cell, record in found.items()])
+
+
+def _variants(known):
+    """{name: what `mbs list --json` says of it}, of those that are available."""
+    return {variant["name"]: variant for entry in known["implementations"] if entry["available"]
+            for variant in entry["variants"]}
+
+
+def _served(variants, implementation):
+    """{(scheme, precision): implementation} of the default implementations or of the one named."""
+    served = {}
+    for precision, default in IMPLEMENTATIONS.items():
+        name = implementation or default
+        if name not in variants:
+            raise StudyError(f"unknown or unavailable implementation '{name}'; known: "
+                             f"{', '.join(variants)}")
+        settings = {"penalty", "double", *variants[name].get("settings", [])}
+        served |= {(scheme, precision): name for scheme in ("penalty", "saddle-point")
+                   if {scheme, precision} <= settings}
+    return served

@@ -1,0 +1,111 @@
+# study/stability: what runs on the fake program and how it is refused; two by two cells on the real one.
+import os
+import shutil
+import tempfile
+
+import pandas
+import pytest
+
+from study.pipeline.errors import StudyError
+from study.pipeline.layout import read_json
+from study.stability_study.main import stability
+from study.tests.conftest import FAKE, ROOT, study
+
+CELLS = ("--loops", "1", "--steps", "1.25e-3", "2.5e-3", "--penalties", "1e2", "1e3")
+SERIES = [("penalty", "double"), ("saddle-point", "double"), ("penalty", "single"),
+          ("saddle-point", "single")]
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    """study/stability on the fake program, four cells and the automatic penalty factor."""
+    monkeypatch.setenv("MBS_PROGRAM", str(FAKE))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    return lambda *more: stability([*CELLS, "--results", str(tmp_path / "results"), *more])
+
+
+def table(folder):
+    return pandas.read_csv(folder / "results" / "stability.csv")
+
+
+def test_what_is_served_is_run_and_can_be_drawn_again(run, tmp_path):
+    run("--implementation", "good_sparse/only")
+    assert set(zip(table(tmp_path).scheme, table(tmp_path).precision)) == {("penalty", "double")}
+    results = tmp_path / "results"
+    drawn = [*results.glob("figures/*.svg"), results / "stability.html"]
+    before = [path.read_bytes() for path in drawn]
+    shutil.rmtree(results / "raw")
+    run("--stored")
+    assert len(drawn) == 2 and before == [path.read_bytes() for path in drawn]
+    (results / "windows.csv").unlink()
+    with pytest.raises(StudyError, match="windows.csv: cannot be read"):
+        run("--stored")
+
+
+def test_dense_implementations_run_up_to_twenty_loops(run, tmp_path):
+    run("--implementation", "good_dense/first", "--loops", "20", "40", "--steps", "1e-3",
+        "--penalties", "1e2")
+    assert list(dict.fromkeys(zip(table(tmp_path).scheme, table(tmp_path).precision))) == SERIES
+    assert set(table(tmp_path).loops) == {20}
+    with pytest.raises(StudyError, match="up to N = 20 only"):
+        run("--implementation", "good_dense/first", "--loops", "40")
+
+
+def test_a_run_that_ends_is_kept_and_never_run_again(run, tmp_path):
+    run("--implementation", "good_sparse/only")
+    before = {path: path.stat().st_mtime_ns for path in (tmp_path / "results").rglob("raw/**/*.json")}
+    content = (tmp_path / "results" / "stability.csv").read_bytes()
+    next(iter(before)).unlink()
+    run("--implementation", "good_sparse/only")
+    after = {path: path.stat().st_mtime_ns for path in before}
+    assert len(before) == 6 and sum(after[path] != before[path] for path in before) == 1
+    assert (tmp_path / "results" / "stability.csv").read_bytes() == content
+    for row in table(tmp_path).itertuples():
+        command = read_json(tmp_path / "results" / row.raw_file)["command"]
+        assert row.command.split()[1:] == command[1:]
+    assert not list((tmp_path / "results").rglob("*.partial"))
+
+
+@pytest.mark.parametrize("name, status", [("bad/hang", "timeout"), ("bad/crash", "crashed")])
+def test_a_run_that_does_not_end_is_data(run, tmp_path, monkeypatch, name, status):
+    monkeypatch.setenv("FAKE_BAD", "1")
+    run("--implementation", name, "--steps", "1e-3", "--time-limit", "0.5")
+    assert set(table(tmp_path).status) == {status} and table(tmp_path).status_reason.notna().all()
+    assert status in (tmp_path / "results" / "stability.html").read_text()
+
+
+def test_a_results_directory_is_of_one_selection_and_program(run, monkeypatch):
+    run("--implementation", "good_sparse/only")
+    for more, what in ((("--implementation", "good_dense/first"), "variants"),
+                       (("--duration", "1"), "inputs")):
+        with pytest.raises(StudyError, match=rf"holds results of something else \({what}\)"):
+            run("--implementation", "good_sparse/only", *more)
+    monkeypatch.setenv("FAKE_COMMIT", "def5678")
+    with pytest.raises(StudyError, match="holds results of something else .commit 'abc1234'"):
+        run("--implementation", "good_sparse/only")
+
+
+@pytest.mark.parametrize("arguments, what", [
+    (["--loops", "0"], "0 is not a number of loops"), (["--loops", "x"], "x is not a number of loops"),
+    (["--steps", "-1"], "-1 is not a positive number"), (["--steps", "fast"], "'fast'"),
+    (["--implementation", "nobody"], "unknown or unavailable implementation 'nobody'; known: good_d"),
+    ([], "unknown or unavailable implementation 'csc_klu/refactor'"),
+    (["--all", "--loops", "1"], "exclude each other"), (["--stored"], "holds no results")])
+def test_what_is_wrong_is_said_in_a_line(tmp_path, arguments, what):
+    done = study("stability", "--results", tmp_path, *arguments)
+    assert done.returncode == 2 and what in done.stderr and "Traceback" not in done.stderr
+    assert not list(tmp_path.glob("*.json")) and not list(tmp_path.glob("*.csv"))
+
+
+def test_the_real_program(tmp_path):
+    program = os.environ.get("MBS_PROGRAM", str(ROOT / "build" / "mbs"))
+    choice = [*CELLS, "--duration", "0.1", "--results", tmp_path / "results"]
+    done = study("stability", *choice, MBS_PROGRAM=program)
+    assert done.returncode == 0, done.stderr
+    found = table(tmp_path)
+    assert len(found) == 4 * 6 and list(dict.fromkeys(zip(found.scheme, found.precision))) == SERIES
+    double = found[found.precision == "double"]
+    assert set(double.status) == {"ok"} and (double.position_error_max < 1e-3).all()
+    assert set(found.alpha_dt2_4[found.penalty_asked != "auto"]) == {1e2, 1e3}
+    assert (pandas.read_csv(tmp_path / "results" / "windows.csv").lower > 0).all()
+    assert len(list((tmp_path / "results" / "figures").iterdir())) == 8
