@@ -21,7 +21,7 @@ def stability(arguments):
     parser = argparse.ArgumentParser(
         prog="study/stability", description="Which penalty factors and steps simulate the N-four-bar "
         "well, in each scheme and precision. Writes stability.csv, figures and stability.html; "
-        "about five minutes.")
+        "about two minutes, with --all five.")
     parser.add_argument("--loops", nargs="+", type=_loops, metavar="N",
                         help=f"numbers of loops ({' '.join(map(str, LOOPS))})")
     parser.add_argument("--all", action="store_true",
