@@ -9,7 +9,7 @@ from matplotlib.patches import Patch, Rectangle
 from analysis.loader import TableError, load
 from analysis.maps import MapCell, map_cells
 from analysis.maps_drawing import cell_text, draw_grid
-from analysis.style import Look, missing
+from analysis.style import Look, missing, save
 
 AGREE, DIFFER, OPEN = "#8fc7b5", "#d1495b", "#e3e3e3"
 LABELS = {AGREE: "decided in both, same winner", DIFFER: "decided in both, other winner",
@@ -168,8 +168,7 @@ def main(arguments):
     print("\n".join(summary(pairs(*maps)) + differences(first, second)))
     figure = draw(Look(first), *maps)
     for output in arguments[2:]:
-        metadata = {"Date": None} if output.endswith(".svg") else None
-        figure.savefig(output, bbox_inches="tight", metadata=metadata)
+        save(figure, output)
     plt.close(figure)
 
 

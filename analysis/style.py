@@ -1,6 +1,7 @@
 # The common look of all figures, and the command line that every figure script has.
 import string
 import sys
+from pathlib import Path
 
 import matplotlib
 import matplotlib.pyplot as plt
@@ -141,6 +142,15 @@ def plain(value):
     return f"${'' if digits == '1' else digits + '·'}10^{{{int(power)}}}$"
 
 
+def save(figure, path):
+    """Writes a figure atomically, in the format of the suffix of `path`; equal figures give equal files."""
+    path = Path(path)
+    partial = path.with_name(path.name + ".partial")
+    figure.savefig(partial, format=path.suffix[1:] or "png", bbox_inches="tight",
+                   metadata={"Date": None} if path.suffix == ".svg" else None)
+    partial.replace(path)
+
+
 def figure_main(draw):
     """Runs `draw(results) -> Figure` for the command line RESULTS_DIR OUTPUT..."""
     if len(sys.argv) < 3:
@@ -150,6 +160,5 @@ def figure_main(draw):
     except TableError as error:
         sys.exit(f"error: {error}")
     for output in sys.argv[2:]:
-        metadata = {"Date": None} if output.endswith(".svg") else None
-        figure.savefig(output, bbox_inches="tight", metadata=metadata)
+        save(figure, output)
     plt.close(figure)

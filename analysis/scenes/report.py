@@ -7,6 +7,7 @@ import matplotlib.pyplot as plt
 
 from analysis.loader import _json
 from analysis.scenes import modelling_figure, tables
+from analysis.style import save
 from analysis.text import number
 
 SHEETS = Path(__file__).resolve().parents[2] / "harness" / "scenes" / "pictures"
@@ -21,8 +22,7 @@ def write(folder, compared):
     (folder / "figures").mkdir(exist_ok=True)
     figure = modelling_figure.draw(data["modelling"])
     for kind in ("svg", "png"):
-        figure.savefig(folder / "figures" / f"modelling.{kind}", bbox_inches="tight",
-                       metadata={"Date": None} if kind == "svg" else None)
+        save(figure, folder / "figures" / f"modelling.{kind}")
     plt.close(figure)
     page = render(folder, data, compared)
     partial = folder / "scenes.html.partial"

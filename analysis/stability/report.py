@@ -8,6 +8,7 @@ import pandas
 
 from analysis.loader import TableError, _json
 from analysis.stability.figure import draw
+from analysis.style import save
 from analysis.text import number
 
 ACCURATE = 1e-2  # m, the largest position error that "ok" allows
@@ -23,11 +24,7 @@ def write(folder):
     for scheme, precision in series:
         figure = draw(table, windows, scheme, precision)
         for kind in ("svg", "png"):
-            path = folder / "figures" / f"{scheme}-{precision}.{kind}"
-            partial = path.with_name(path.name + ".partial")
-            figure.savefig(partial, format=kind, bbox_inches="tight",
-                           metadata={"Date": None} if kind == "svg" else None)
-            partial.replace(path)
+            save(figure, folder / "figures" / f"{scheme}-{precision}.{kind}")
         plt.close(figure)
         figures[scheme, precision] = base64.b64encode(
             (folder / "figures" / f"{scheme}-{precision}.svg").read_bytes()).decode()

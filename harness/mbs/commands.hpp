@@ -19,12 +19,9 @@ void add_blas_option(CLI::App& command);
 
 /// Time-stepping options as typed; "auto" needs the model.
 struct StepOptions {
-  double step = 1.25e-3;
+  StepSettings settings;  ///< but for the next two
   std::string penalty = "auto";
   std::string tolerance = "auto";
-  int max_passes = 20;
-  std::string scheme, multipliers, tangent, projections, precision;  ///< empty: the default
-  int projections_every = 1;
 
   /// Adds an option for every one of StepSettings, and --blas, to `command`.
   void add_to(CLI::App& command);

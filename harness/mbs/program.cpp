@@ -34,21 +34,16 @@ double parse_tolerance(const std::string& text, const Model& model, const StepSe
 
 /// An option whose value is one of the names of a choice.
 template <class Choice>
-void add_choice(CLI::App& command, const std::string& option, std::string& value,
+void add_choice(CLI::App& command, const std::string& option, Choice& value,
                 const std::string& what) {
-  value = choice_names<Choice>().front();
-  command.add_option(option, value, what)
-      ->capture_default_str()
+  const auto take = [&value](const std::string& name) {
+    for (const auto& [known, choice] : choices<Choice>()) {
+      if (known == name) value = choice;
+    }
+  };
+  command.add_option_function<std::string>(option, take, what)
+      ->default_str(name_of(value))
       ->check(CLI::IsMember(choice_names<Choice>()));
-}
-
-/// What add_choice() left in `name`; the default if it was never called.
-template <class Choice>
-Choice choice_of(const std::string& name) {
-  for (const auto& [known, value] : choices<Choice>()) {
-    if (known == name) return value;
-  }
-  return choices<Choice>().front().second;
 }
 
 bool is_subcommand(const CLI::App& app, const std::string& name) {
@@ -71,25 +66,27 @@ void add_blas_option(CLI::App& command) {
 }
 
 void StepOptions::add_to(CLI::App& command) {
-  command.add_option("--step", step, "time step, s")->capture_default_str();
+  command.add_option("--step", settings.step, "time step, s")->capture_default_str();
   command.add_option("--penalty", penalty, "penalty factor alpha, or 'auto'")
       ->capture_default_str();
   command
       .add_option("--tolerance", tolerance,
                   "Newton stops at max |Delta q| below this, m, or 'auto'")
       ->capture_default_str();
-  command.add_option("--max-passes", max_passes, "passes a step at most, 1 to 1000")
+  command.add_option("--max-passes", settings.max_passes, "passes a step at most, 1 to 1000")
       ->capture_default_str();
-  add_choice<Scheme>(command, "--scheme", scheme, "how a step advances the state");
-  add_choice<MultiplierUpdate>(command, "--multipliers", multipliers,
+  add_choice<Scheme>(command, "--scheme", settings.scheme, "how a step advances the state");
+  add_choice<MultiplierUpdate>(command, "--multipliers", settings.multipliers,
                                "when Newton updates lambda, in the penalty form");
-  add_choice<TangentReuse>(command, "--tangent", tangent, "when the tangent is factorized");
-  add_choice<Projections>(command, "--projections", projections,
+  add_choice<TangentReuse>(command, "--tangent", settings.tangent,
+                           "when the tangent is factorized");
+  add_choice<Projections>(command, "--projections", settings.projections,
                           "what Eq. (6) corrects after a step");
   command
-      .add_option("--projections-every", projections_every, "project every K-th step only, K >= 1")
+      .add_option("--projections-every", settings.projections_every,
+                  "project every K-th step only, K >= 1")
       ->capture_default_str();
-  add_choice<Precision>(command, "--precision", precision, "what a step computes in");
+  add_choice<Precision>(command, "--precision", settings.precision, "what a step computes in");
   add_blas_option(command);
 }
 
@@ -99,30 +96,21 @@ void require_step(double step) {
 }
 
 StepSettings StepOptions::resolve(const Model& model) const {
-  require_step(step);
-  if (max_passes < 1 || max_passes > 1000) {
-    throw UsageError(fmt::format("--max-passes is {}: it must be 1 to 1000", max_passes));
+  StepSettings result = settings;
+  require_step(result.step);
+  if (result.max_passes < 1 || result.max_passes > 1000) {
+    throw UsageError(fmt::format("--max-passes is {}: it must be 1 to 1000", result.max_passes));
   }
-  StepSettings settings;
-  settings.step = step;
-  settings.max_passes = max_passes;
-  settings.scheme = choice_of<Scheme>(scheme);
-  settings.multipliers = choice_of<MultiplierUpdate>(multipliers);
-  settings.tangent = choice_of<TangentReuse>(tangent);
-  settings.projections = choice_of<Projections>(projections);
-  settings.projections_every = projections_every;
-  settings.precision = choice_of<Precision>(precision);
-  require_combination(settings);
-  const double alpha = parse_penalty(penalty, model, settings);
-  if (!(alpha > 0.0) || !std::isfinite(alpha)) {
+  require_combination(result);
+  result.penalty = parse_penalty(penalty, model, result);
+  if (!(result.penalty > 0.0) || !std::isfinite(result.penalty)) {
     throw UsageError(
         fmt::format("--penalty auto gives {:g} for this scene and step {:g} s: its "
                     "lengths or masses are out of range; name a number",
-                    alpha, step));
+                    result.penalty, result.step));
   }
-  settings.penalty = alpha;
-  settings.tolerance = parse_tolerance(tolerance, model, settings);
-  return settings;
+  result.tolerance = parse_tolerance(tolerance, model, result);
+  return result;
 }
 
 int run_program(int argc, char** argv) {

@@ -11,6 +11,7 @@
 #include "run/stretch.hpp"
 #include "scene/scene.hpp"
 #include "support/allocation_counter.hpp"
+#include "support/gtest_name.hpp"
 
 extern "C" void* malloc_in_library(std::size_t bytes);
 extern "C" void* new_in_library(std::size_t bytes);
@@ -94,7 +95,7 @@ long allocations_of_steps(const Variant& variant, const Scene& scene) {
   constexpr int kSteps = 120;
   constexpr int kWarmUp = 5;
   StepSettings settings;
-  settings.penalty = automatic_penalty(scene.model, settings.step);
+  settings.penalty = automatic_penalty(scene.model, settings);
   const Stretch stretch = make_stretch(scene, settings.step, kSteps);
   const auto simulation = variant.create(scene.model, settings);
   simulation->set_state(stretch.initial);
@@ -142,10 +143,7 @@ TEST_P(AllocationFreeStep, OnEveryScene) {
 }
 
 std::string test_name(const ::testing::TestParamInfo<NamedVariant>& info) {
-  std::string name = info.param.name;
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
-  return name;
+  return test::gtest_name(info.param.name);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, AllocationFreeStep, ::testing::ValuesIn(all_variants()), test_name);

@@ -76,7 +76,7 @@ struct Bench {
   Scene scene = load_scene("four-bar:10");
   StepSettings settings = [this] {
     StepSettings result;
-    result.penalty = automatic_penalty(scene.model, result.step);
+    result.penalty = automatic_penalty(scene.model, result);
     result.tolerance = automatic_tolerance(scene.model, result);
     return result;
   }();

@@ -283,7 +283,7 @@ TEST(Warnings, TellOfSingularStarts) {
   const auto warnings = [](const char* text) {
     StepSettings settings;
     const Model model(parse_scene(text, "test.json").model);
-    settings.penalty = automatic_penalty(model, settings.step);
+    settings.penalty = automatic_penalty(model, settings);
     std::string all;
     for (const std::string& warning : setting_warnings(model, settings)) all += warning + "\n";
     return all;

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+
+#include "support/program.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size);
 
@@ -18,8 +18,7 @@ TEST(FuzzCorpus, IsScenesOrOneLineEach) {
          std::filesystem::directory_iterator(std::filesystem::path(MBS_ROOT) / folder)) {
       if (entry.path().extension() != ".json") continue;
       SCOPED_TRACE(entry.path().string());
-      std::ifstream file(entry.path(), std::ios::binary);
-      const std::string text{std::istreambuf_iterator<char>(file), {}};
+      const std::string text = test::file_text(entry.path());
       // It aborts at what should not be.
       EXPECT_EQ(
           LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()),

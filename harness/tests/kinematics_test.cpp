@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
+#include "support/gtest_name.hpp"
 #include "support/term_models.hpp"
 
 namespace mbs {
@@ -137,13 +137,7 @@ TEST_P(Kinematics, DampersTakeEnergy) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Terms, Kinematics, ::testing::ValuesIn(test::term_models()),
-                         [](const auto& info) {
-                           std::string name = info.param.name;
-                           std::replace_if(
-                               name.begin(), name.end(),
-                               [](unsigned char c) { return !std::isalnum(c); }, '_');
-                           return name;
-                         });
+                         [](const auto& info) { return test::gtest_name(info.param.name); });
 
 }  // namespace
 }  // namespace mbs

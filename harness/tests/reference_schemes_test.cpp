@@ -17,7 +17,7 @@ StepSettings with_scheme(const Model& model, Scheme scheme, double step) {
   StepSettings settings;
   settings.scheme = scheme;
   settings.step = step;
-  settings.penalty = automatic_penalty(model, step, scheme);
+  settings.penalty = automatic_penalty(model, settings);
   settings.tolerance = 1e-15;
   settings.max_passes = 50;
   return settings;

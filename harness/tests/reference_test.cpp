@@ -109,7 +109,7 @@ TEST(EnvelopeLdlt, RefusesWhatIsNotPositiveDefinite) {
 /// Settings that keep alpha dt^2 fixed and what Newton leaves below the integrator's own error.
 StepSettings refined(const Model& model, double step) {
   constexpr double kBase = 1e-3;
-  return {step, automatic_penalty(model, kBase) * std::pow(kBase / step, 2),
+  return {step, automatic_penalty(model, {.step = kBase}) * std::pow(kBase / step, 2),
           1e-10 * std::pow(step / kBase, 4), 50};
 }
 

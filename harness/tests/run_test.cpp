@@ -28,7 +28,7 @@ Variant control(const std::string& name) {
 
 RunSettings settings_for(const Scene& scene, double duration) {
   RunSettings settings;
-  settings.step.penalty = automatic_penalty(scene.model, settings.step.step);
+  settings.step.penalty = automatic_penalty(scene.model, settings.step);
   settings.duration = duration;
   return settings;
 }
@@ -124,7 +124,7 @@ TEST(Run, SaysByHowMuchItIsDegraded) {
   const Scene scene = load_scene("four-bar:1");
   RunSettings settings = settings_for(scene, 10.0);
   settings.step.step = 1e-2;
-  settings.step.penalty = automatic_penalty(scene.model, settings.step.step);
+  settings.step.penalty = automatic_penalty(scene.model, settings.step);
   const RunSummary summary = run(scene, control("reference"), settings);
   EXPECT_EQ(summary.status, RunStatus::degraded);
   EXPECT_TRUE(summary.reason.starts_with("position error ")) << summary.reason;

@@ -40,7 +40,7 @@ TEST(AutomaticPenalty, IsTheDocumentedRule) {
     for (const double step : {1e-3, kStep, 1e-2}) {
       const double rule =
           4 / (step * step) * std::clamp(30 / s.smallest, 4e3 / s.mean, 1e7 / s.mean);
-      EXPECT_NEAR(automatic_penalty(model, step), rule, 0.05 * rule) << loops;
+      EXPECT_NEAR(automatic_penalty(model, {.step = step}), rule, 0.05 * rule) << loops;
     }
     (30 / s.smallest > 4e3 / s.mean ? middle : lower) = true;
   }
@@ -54,7 +54,7 @@ TEST(AutomaticPenalty, IsThatOfTheIndependentConstraintsWhereSomeAreRedundant) {
   const Spectrum s = spectrum_of(model);
   const double rule = 4 / (kStep * kStep) * 30 / s.smallest;  // neither bound
   EXPECT_LT(rule, 0.1 * 4 / (kStep * kStep) * 1e7 / s.mean);
-  EXPECT_NEAR(automatic_penalty(model, kStep), rule, 0.05 * rule);
+  EXPECT_NEAR(automatic_penalty(model, {.step = kStep}), rule, 0.05 * rule);
 }
 
 TEST(AutomaticPenalty, IsAsIfASingularStartWereRegular) {
@@ -63,16 +63,16 @@ TEST(AutomaticPenalty, IsAsIfASingularStartWereRegular) {
   std::ranges::fill(data.initial_velocity, 0.0);
   const Model model(std::move(data));
   const double lower = 4 / (kStep * kStep) * 4e3 / spectrum_of(model).mean;
-  EXPECT_NEAR(automatic_penalty(model, kStep), lower, 1e-6 * lower);
+  EXPECT_NEAR(automatic_penalty(model, {.step = kStep}), lower, 1e-6 * lower);
 }
 
 TEST(AutomaticPenalty, IsOneWithoutConstraints) {
-  EXPECT_EQ(automatic_penalty(test::free_fall().model, kStep), 1.0);
+  EXPECT_EQ(automatic_penalty(test::free_fall().model, {.step = kStep}), 1.0);
 }
 
 TEST(AutomaticTolerance, IsTheDocumentedRule) {
   const Model model(four_bar(10));
-  const double penalty = automatic_penalty(model, kStep);
+  const double penalty = automatic_penalty(model, {.step = kStep});
   EXPECT_DOUBLE_EQ(automatic_tolerance(model, {.step = kStep, .penalty = penalty}), 1e-9);
   EXPECT_DOUBLE_EQ(automatic_tolerance(model, {.step = 2 * kStep, .penalty = penalty / 4}), 16e-9);
   EXPECT_DOUBLE_EQ(automatic_tolerance(model, {.step = 1.0, .penalty = 1.0}), 1e-6);
@@ -105,7 +105,8 @@ TEST(ParsePenalty, TakesNumbersAndAuto) {
   EXPECT_EQ(parse_penalty("1e8", model, {.step = kStep}), 1e8);
   EXPECT_EQ(parse_penalty("0.5", model, {.step = kStep}), 0.5);
   EXPECT_EQ(parse_penalty("123456", model, {.step = kStep}), 123456.0);
-  EXPECT_EQ(parse_penalty("auto", model, {.step = kStep}), automatic_penalty(model, kStep));
+  EXPECT_EQ(parse_penalty("auto", model, {.step = kStep}),
+            automatic_penalty(model, {.step = kStep}));
 }
 
 TEST(ParsePenalty, RefusesEverythingElse) {

@@ -1,11 +1,10 @@
 // Every implementation on every term of the equations, against the reference.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "check/gate.hpp"
 #include "registry/registry.hpp"
 #include "run/settings.hpp"
+#include "support/gtest_name.hpp"
 #include "support/term_models.hpp"
 
 namespace mbs {
@@ -14,24 +13,17 @@ namespace {
 StepSettings settings_for(const Model& model, Projections projections) {
   StepSettings settings;
   settings.step = 2.5e-4;  // 800 steps: short enough that no driver forces what geometry forbids
-  settings.penalty = automatic_penalty(model, settings.step);
+  settings.penalty = automatic_penalty(model, settings);
   settings.tolerance = automatic_tolerance(model, settings);
   settings.projections = projections;
   return settings;
 }
 
-/// Sanitizers make the reference slow: with them the models that have every term must do.
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kFewer = true;
-#else
-constexpr bool kFewer = false;
-#endif
-
 class Terms : public ::testing::TestWithParam<NamedVariant> {};
 
 void expect_agreement(const NamedVariant& variant, Projections projections) {
   for (const test::TermModel& term : test::term_models()) {
-    if (kFewer && !term.name.starts_with("everything")) continue;
+    if (test::kSlowReference && !term.name.starts_with("everything")) continue;
     SCOPED_TRACE(term.name);
     const Scene scene{term.name, term.model, {}, {}};
     const StepSettings settings = settings_for(scene.model, projections);
@@ -46,10 +38,7 @@ TEST_P(Terms, AgreeWithoutProjections) { expect_agreement(GetParam(), Projection
 TEST_P(Terms, AgreeWithProjectedVelocities) { expect_agreement(GetParam(), Projections::velocity); }
 
 std::string test_name(const ::testing::TestParamInfo<NamedVariant>& info) {
-  std::string name = info.param.name;
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
-  return name;
+  return test::gtest_name(info.param.name);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Terms, ::testing::ValuesIn(all_variants()), test_name);

@@ -12,7 +12,7 @@ from pathlib import Path
 from study.pipeline import cells, child
 from study.pipeline.contenders import Contender
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import NULL, ROOT, Layout, program, read_json, write_json
+from study.pipeline.layout import NULL, ROOT, Layout, program, read_json, write_csv, write_json
 from study.pipeline.prepare import (continues, digest, digest_of_scene, need_modules, only_one,
                                     only_one_measuring, registry, select, set_up, writable)
 
@@ -106,7 +106,7 @@ def _measure(layout, options, programs, variants):
                 skipped.add((variant, scene))
         print(f"round {number} of {options.rounds} done", flush=True)
     table = pandas.DataFrame(rows)
-    table.to_csv(layout.results / "samples.csv", index=False)
+    write_csv(layout.results / "samples.csv", table)
     return table
 
 
@@ -154,7 +154,7 @@ def _tell(layout, samples, revision):
                      "new_us": median(group[group.tree == "new"].step_us),
                      "ratio": ratio, "low": low, "high": high, "reason": ""})
     table = pandas.DataFrame(rows)
-    table.to_csv(layout.results / "ratios.csv", index=False)
+    write_csv(layout.results / "ratios.csv", table)
     print(f"\ntime of a step, this tree / {revision[:10]} (95 % interval; below 1: faster now)")
     for row in rows:
         if row["reason"]:

@@ -5,7 +5,7 @@ import pandas
 
 from study.pipeline import cells
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import fingerprint, read_json, read_run, write_json
+from study.pipeline.layout import fingerprint, read_json, read_run, write_csv, write_json
 from study.pipeline.marks import mark_differing_passes, mark_lost_cells
 from study.pipeline.measure import operating, planned, processes
 from study.pipeline.profile import Scene
@@ -51,10 +51,7 @@ def collect(study, folder=None):
     for row in tables["tidy"][1]:
         row |= {key: machine[key] for key in ("machine", "commit", "dirty")}
     for name, (columns, rows) in tables.items():
-        path = folder / f"{name}.csv"
-        partial = path.with_suffix(".csv.partial")
-        pandas.DataFrame(rows, columns=columns).to_csv(partial, index=False)
-        partial.replace(path)
+        write_csv(folder / f"{name}.csv", pandas.DataFrame(rows, columns=columns))
     write_json(folder / "context.json", study.context(study.control))
 
 

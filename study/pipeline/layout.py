@@ -85,6 +85,13 @@ def write_json(path, data):
     os.replace(partial, path)
 
 
+def write_csv(path, table):
+    """The same for a pandas table."""
+    partial = path.with_name(path.name + ".partial")
+    table.to_csv(partial, index=False)
+    os.replace(partial, path)
+
+
 def fingerprint(context):
     """What must be equal for two results to be comparable: the machine and the build."""
     keys = ("machine", "commit", "dirty", "compiler", "flags", "build_type", "blas",

@@ -8,7 +8,7 @@ from pathlib import Path
 from study.pipeline import profile as profiles
 from study.pipeline.contenders import from_json
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, ROOT, read_run, write_json
+from study.pipeline.layout import Layout, ROOT, read_run, write_csv, write_json
 from study.pipeline.prepare import (continues, digest, digest_of_scene, need_modules, only_one,
                                     only_one_measuring, registry, run_record, set_up, writable)
 
@@ -84,10 +84,7 @@ def _run(layout, options):
         f"raw/modelling/round{number}/{name.replace('/', '.')}-{loops}-"
         f"{modelling.label(case)}.json"))
     for name, table in tables.items():
-        path = layout.results / f"{name}.csv"
-        partial = path.with_suffix(".csv.partial")
-        table.to_csv(partial, index=False)
-        partial.replace(path)
+        write_csv(layout.results / f"{name}.csv", table)
     from analysis.scenes.report import write
     write(layout.results, compared)
     print(f"report: {layout.results / 'scenes.html'}")

@@ -3,8 +3,6 @@ import json
 import shlex
 from dataclasses import dataclass
 
-import pandas
-
 from study.pipeline import child
 from study.pipeline.contenders import Contender
 from study.pipeline.errors import StudyError
@@ -77,10 +75,3 @@ def windows(loops, steps):
             found.append({"loops": count} | {key: window[key] for key in (
                 "step", "lower", "lower_from", "upper", "upper_from")})
     return found
-
-
-def write_table(path, rows):
-    """Writes a CSV file atomically."""
-    partial = path.with_suffix(".csv.partial")
-    pandas.DataFrame(rows).to_csv(partial, index=False)
-    partial.replace(path)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from study.pipeline.contenders import from_json
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, ROOT, read_run
+from study.pipeline.layout import Layout, ROOT, read_run, write_csv
 from study.pipeline.prepare import need_modules, only_one, registry, set_up, writable
 
 LOOPS, LARGE = (1, 2, 5, 10, 20, 40, 80), (200, 500)
@@ -79,6 +79,7 @@ def _loops(text):
 
 
 def _run(layout, options):
+    import pandas
     from study.scene_study.main import Teller, start
     from study.stability_study import grid
     variants = _variants(registry())
@@ -104,9 +105,9 @@ def _run(layout, options):
             found[cell] = record
             tell(f"N = {cell.loops}; {cell.scheme}; {cell.precision}: run {number} of {len(cells)}")
     tell.end()
-    grid.write_table(layout.results / "windows.csv", windows)
-    grid.write_table(layout.results / "stability.csv",
-                     [grid.row(cell, record, layout) for cell, record in found.items()])
+    write_csv(layout.results / "windows.csv", pandas.DataFrame(windows))
+    write_csv(layout.results / "stability.csv", pandas.DataFrame(
+        [grid.row(cell, record, layout) for cell, record in found.items()]))
 
 
 def _variants(known):

@@ -91,7 +91,7 @@ PenaltyWindow penalty_window(const Model& model, const Structure& structure, dou
   const double per_beta = 4.0 / (step * step);
   window.lower = per_beta * std::max(for_slowest, for_singular);
   window.upper = per_beta * std::min(for_newton, for_rounding);
-  window.automatic = automatic_penalty(model, step);
+  window.automatic = automatic_penalty(model, {.step = step});
   return window;
 }
 

@@ -39,21 +39,21 @@ double mean_constraint_eigenvalue(const Model& model) {
   return trace / model.constraints();
 }
 
-double automatic_penalty(const Model& model, double step, Scheme scheme, Precision precision) {
+double automatic_penalty(const Model& model, const StepSettings& settings) {
   if (model.constraints() == 0) return 1.0;
+  const double per_beta = 4 / (settings.step * settings.step);
   const double mean = mean_constraint_eigenvalue(model);
-  if (scheme == Scheme::saddle_point) {
-    const double limit = precision == Precision::double_precision ? 2.5e8 : 1e6;
-    return 4 / (step * step) * limit / mean;
+  if (settings.scheme == Scheme::saddle_point) {
+    const double limit = settings.precision == Precision::double_precision ? 2.5e8 : 1e6;
+    return per_beta * limit / mean;
   }
-  if (scheme != Scheme::penalty) return 4 / (step * step) * 2e4 / mean;
+  if (settings.scheme != Scheme::penalty) return per_beta * 2e4 / mean;
   const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
-  return 4 / (step * step) * std::clamp(30 / smallest, 4e3 / mean, 1e7 / mean);
+  return per_beta * std::clamp(30 / smallest, 4e3 / mean, 1e7 / mean);
 }
 
 double parse_penalty(const std::string& text, const Model& model, const StepSettings& settings) {
-  if (text == "auto")
-    return automatic_penalty(model, settings.step, settings.scheme, settings.precision);
+  if (text == "auto") return automatic_penalty(model, settings);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||

@@ -19,8 +19,8 @@ namespace mbs {
 /// The saddle-point form: (4 / dt^2) 2.5e8 / s_mean, which is eps = 4e-9 s_mean; with factors in
 /// single precision 1e6 instead, since eps must be above their rounding. RATTLE: (4 / dt^2)
 /// 2e4 / s_mean: a smaller eps does not survive the poles of the multipliers at singular positions.
-double automatic_penalty(const Model& model, double step, Scheme scheme = Scheme::penalty,
-                         Precision precision = Precision::double_precision);
+/// For the step, scheme and precision of `settings`.
+double automatic_penalty(const Model& model, const StepSettings& settings);
 
 /// s_mean of the above, m^2/kg; not a number for a model without constraints.
 double mean_constraint_eigenvalue(const Model& model);

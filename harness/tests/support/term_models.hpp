@@ -9,6 +9,13 @@
 
 namespace mbs::test {
 
+/// Sanitizers make the reference slow: with them a few models, and one variant a folder, must do.
+#if defined(__SANITIZE_ADDRESS__)
+inline constexpr bool kSlowReference = true;
+#else
+inline constexpr bool kSlowReference = false;
+#endif
+
 struct TermModel {
   std::string name;
   Model model;
