@@ -87,6 +87,8 @@ void StepOptions::add_to(CLI::App& command) {
                   "project every K-th step only, K >= 1")
       ->capture_default_str();
   add_choice<Precision>(command, "--precision", settings.precision, "what a step computes in");
+  command.add_flag("--geometric-stiffness", settings.geometric_stiffness,
+                   "add what the constraint forces change by to the tangent, Eq. (16)");
   add_blas_option(command);
 }
 

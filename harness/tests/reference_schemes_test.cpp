@@ -125,6 +125,14 @@ TEST(ReferenceSchemes, SettingsChangeTheWayAndNotTheMotion) {
   });
   expect_same(saddle_kept, "saddle-point, kept", 1e-7);  // five refinements at most
   EXPECT_LT(saddle_kept.factorizations, 150);
+  for (const Scheme scheme : {Scheme::penalty, Scheme::saddle_point}) {
+    const Motion exact = with([scheme](S& s) {
+      s.scheme = scheme;
+      s.geometric_stiffness = true;
+    });
+    expect_same(exact, "geometric stiffness");
+    EXPECT_LE(exact.passes, scheme == Scheme::penalty ? plain.passes : saddle.passes);
+  }
 }
 
 TEST(ReferenceSchemes, ProjectsEveryKthStepOnly) {

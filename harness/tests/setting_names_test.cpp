@@ -47,6 +47,7 @@ TEST(SettingNames, CombinationsThatDoNotGoTogetherAreRefusedByName) {
     EXPECT_NE(refusal({.scheme = scheme, .multipliers = MultiplierUpdate::converged}), "");
     EXPECT_NE(refusal({.scheme = scheme, .tangent = TangentReuse::kept}), "");
     EXPECT_NE(refusal({.scheme = scheme, .precision = Precision::mixed}), "");
+    EXPECT_NE(refusal({.scheme = scheme, .geometric_stiffness = true}), "");
     EXPECT_EQ(refusal({.scheme = scheme, .precision = Precision::single_precision}), "");
   }
   EXPECT_NE(refusal({.projections = Projections::none, .projections_every = 2}), "");
@@ -61,6 +62,7 @@ TEST(SettingNames, WhatAVariantDoesNotServeIsSaid) {
            {{.tangent = TangentReuse::step}, "--tangent every-step"},
            {{.projections_every = 2}, "--projections-every"},
            {{.precision = Precision::single_precision}, "--precision single"},
+           {{.geometric_stiffness = true}, "--geometric-stiffness"},
            {{.precision = Precision::mixed}, "--precision mixed"}}) {
     EXPECT_EQ(why_not_served(nothing, settings), option);
     EXPECT_EQ(why_not_served(everything, settings), "") << option;

@@ -42,6 +42,9 @@ std::vector<Setting> all_settings() {
       {"single_rattle", {.scheme = Scheme::rattle, .precision = single}},
       {"mixed", {.precision = mixed}},
       {"mixed_saddle_point", {.scheme = saddle, .precision = mixed}},
+      {"geometric", {.geometric_stiffness = true}},
+      {"geometric_kept", {.tangent = TangentReuse::kept, .geometric_stiffness = true}},
+      {"saddle_point_geometric", {.scheme = saddle, .geometric_stiffness = true}},
       {"mixed_kept", {.tangent = TangentReuse::kept, .precision = mixed}},
   };
   for (Setting& setting : all) setting.settings.step = kStep;

@@ -14,13 +14,14 @@ namespace mbs {
 /// combination that paper/README.md, "Which settings go together", allows. The harness refuses all
 /// else by name, so that no implementation has to.
 struct Serves {
-  bool saddle_point = false;       ///< Scheme::saddle_point
-  bool rattle = false;             ///< Scheme::rattle, rattle4 and rattle6
-  bool multiplier_update = false;  ///< MultiplierUpdate::converged
-  bool tangent_reuse = false;      ///< TangentReuse::step and kept
-  bool projections_every = false;  ///< more than 1
-  bool single_precision = false;   ///< Precision::single_precision
-  bool mixed_precision = false;    ///< Precision::mixed
+  bool saddle_point = false;         ///< Scheme::saddle_point
+  bool rattle = false;               ///< Scheme::rattle, rattle4 and rattle6
+  bool multiplier_update = false;    ///< MultiplierUpdate::converged
+  bool tangent_reuse = false;        ///< TangentReuse::step and kept
+  bool projections_every = false;    ///< more than 1
+  bool single_precision = false;     ///< Precision::single_precision
+  bool mixed_precision = false;      ///< Precision::mixed
+  bool geometric_stiffness = false;  ///< StepSettings::geometric_stiffness
 };
 
 /// One way of running an implementation, named "folder/name".

@@ -59,6 +59,7 @@ struct StepSettings {
   MultiplierUpdate multipliers = MultiplierUpdate::every_pass;
   TangentReuse tangent = TangentReuse::none;
   Precision precision = Precision::double_precision;
+  bool geometric_stiffness = false;  ///< Eq. (16) in the tangent, which makes it exact
 };
 
 /// The full dynamic state at one instant.

@@ -19,7 +19,7 @@ EnvelopeLdlt::EnvelopeLdlt(std::vector<int> first)
 
 void EnvelopeLdlt::set_zero() { std::fill(values_.begin(), values_.end(), Real{0}); }
 
-bool EnvelopeLdlt::factorize(int negative) {
+bool EnvelopeLdlt::factorize(std::optional<int> negative) {
   int found = 0;
   for (int i = 0; i < n_; ++i) {
     for (int j = first_[i]; j < i; ++j) {  // row i of L D
@@ -36,7 +36,7 @@ bool EnvelopeLdlt::factorize(int negative) {
     if (!(std::abs(pivot) > 0) || !std::isfinite(pivot)) return false;
     found += pivot < 0;
   }
-  return found == negative;
+  return found == negative.value_or(found);
 }
 
 void EnvelopeLdlt::solve(std::vector<Real>& b) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace mbs {
@@ -23,8 +24,8 @@ class EnvelopeLdlt {
   Real& at(int row, int col) { return values_[start_[row] + static_cast<std::size_t>(col)]; }
 
   /// Replaces the matrix by its factors L and D; false unless D has exactly `negative` negative
-  /// entries and is otherwise positive.
-  [[nodiscard]] bool factorize(int negative);
+  /// entries, or any number without one, and is otherwise positive.
+  [[nodiscard]] bool factorize(std::optional<int> negative);
   /// Overwrites b by the solution of L D L^T x = b.
   void solve(std::vector<Real>& b) const;
 

@@ -116,6 +116,7 @@ void ReferenceSimulation::add_element(const Element& element) {
 
 ReferenceSimulation::Vector ReferenceSimulation::weighted_mass_times(const Vector& x) const {
   Vector y = mass_times(x);
+  for (const MatrixEntry& entry : last_geometric_) y[entry.row] += entry.value * x[entry.col];
   const int dimension = model_.dimension();
   const auto at = [&](int point, int axis) { return x[offset(point) + axis]; };
   for (const Element& element : last_elements_) {

@@ -109,6 +109,34 @@ ReferenceSimulation::Vector ReferenceSimulation::constraints() const {
   return phi;
 }
 
+std::vector<ReferenceSimulation::MatrixEntry> ReferenceSimulation::geometric_stiffness() const {
+  std::vector<MatrixEntry> result;
+  if (!settings_.geometric_stiffness) return result;
+  const Real h = settings_.step;
+  const Vector phi = constraints();
+  int row = 0;
+  for_quadratic(model_, [&](const auto& c) {  // Eq. (16)
+    const Real g = lambda_[row] + (is_saddle() ? 0 : settings_.penalty * phi[row]);
+    ++row;
+    for (const auto& [x, x_sign] : {std::pair{c.a, 1}, std::pair{c.b, -1}}) {
+      for (const auto& [y, y_sign] : {std::pair{c.c, 1}, std::pair{c.d, -1}}) {
+        if (offset(x) < 0 || offset(y) < 0) continue;
+        for (int l = 0; l < model_.dimension(); ++l) {
+          Triple unit{};
+          unit[l] = h * h / 4 * g * x_sign * y_sign;
+          const Triple column = right(c, unit);
+          for (int k = 0; k < model_.dimension(); ++k) {
+            if (column[k] == 0) continue;
+            result.push_back({offset(x) + k, offset(y) + l, column[k]});
+            result.push_back({offset(y) + l, offset(x) + k, column[k]});
+          }
+        }
+      }
+    }
+  });
+  return result;
+}
+
 std::vector<ReferenceSimulation::Row> ReferenceSimulation::jacobian() const {
   std::vector<Row> rows;
   for_quadratic(model_, [&](const auto& c) {  // Eq. (7)
@@ -241,6 +269,7 @@ void ReferenceSimulation::set_up_matrix() {
       continue;
     }
     for (const int i : constraints[k]) couple({i, n_ + k});
+    if (settings_.geometric_stiffness) couple(constraints[k]);
   }
   matrix_ = EnvelopeLdlt(std::move(first));
 }
@@ -268,10 +297,15 @@ void ReferenceSimulation::assemble(const std::vector<Row>& rows) {
   if (is_rattle()) return;
   last_elements_ = elements();
   for (const Element& element : last_elements_) add_element(element);
+  last_geometric_ = geometric_stiffness();
+  for (const MatrixEntry& entry : last_geometric_) {
+    if (entry.row >= entry.col) add(entry.row, entry.col, entry.value);
+  }
 }
 
 bool ReferenceSimulation::factorize(const std::vector<Row>& rows) {
   assemble(rows);
+  if (settings_.geometric_stiffness) return matrix_.factorize({});
   return matrix_.factorize(is_saddle() ? m_ : 0);
 }
 

@@ -72,6 +72,12 @@ class ReferenceSimulation final : public Simulation {
   [[nodiscard]] Element spring_element(const Spring& spring) const;
   [[nodiscard]] Element torsion_element(const TorsionSpring& spring) const;
   [[nodiscard]] std::vector<Element> elements() const;
+  struct MatrixEntry {
+    int row, col;
+    Real value;
+  };
+  /// dt^2/4 times the sum of Eq. (16), all of its entries; none unless the setting asks for it.
+  [[nodiscard]] std::vector<MatrixEntry> geometric_stiffness() const;
   [[nodiscard]] Vector mass_times(const Vector& x) const;
   /// T_0 x with the C and K of the last pass.
   [[nodiscard]] Vector weighted_mass_times(const Vector& x) const;
@@ -117,7 +123,8 @@ class ReferenceSimulation final : public Simulation {
   KnownMotion known_;
   long steps_ = 0;                      // since the last set_state()
   std::vector<Element> last_elements_;  // those in the matrix
-  std::vector<int> place_;              // of q[i], then of y[k], in the matrix
+  std::vector<MatrixEntry> last_geometric_;
+  std::vector<int> place_;  // of q[i], then of y[k], in the matrix
   EnvelopeLdlt matrix_{{}};
   bool due_ = true;  // TangentReuse::kept: the factors are to be renewed
 };

@@ -84,6 +84,7 @@ void require_combination(const StepSettings& s) {
       refuse(fmt::format("--projections-every {}", s.projections_every), "1");
     }
     if (s.precision == Precision::mixed) refuse("--precision mixed", "double and single");
+    if (s.geometric_stiffness) refuse("--geometric-stiffness", "none: its tangent is exact");
   }
   if (s.projections == Projections::none && s.projections_every != 1) {
     throw UsageError("--projections none and --projections-every do not go together");
@@ -100,7 +101,8 @@ nlohmann::json settings_json(const StepSettings& s) {
           {"tangent", name_of(s.tangent)},
           {"projections", name_of(s.projections)},
           {"projections_every", s.projections_every},
-          {"precision", name_of(s.precision)}};
+          {"precision", name_of(s.precision)},
+          {"geometric_stiffness", s.geometric_stiffness}};
 }
 
 std::string other_settings(const StepSettings& s) {
@@ -117,6 +119,7 @@ std::string other_settings(const StepSettings& s) {
     options.push_back(fmt::format("--projections-every {}", s.projections_every));
   }
   add("precision", s.precision, usual.precision);
+  if (s.geometric_stiffness) options.emplace_back("--geometric-stiffness");
   return fmt::format("{}", fmt::join(options, " "));
 }
 
@@ -132,6 +135,7 @@ std::string why_not_served(const Serves& serves, const StepSettings& s) {
     return "--tangent " + name_of(s.tangent);
   }
   if (s.projections_every != 1 && !serves.projections_every) return "--projections-every";
+  if (s.geometric_stiffness && !serves.geometric_stiffness) return "--geometric-stiffness";
   const bool precision = s.precision == Precision::double_precision   ? true
                          : s.precision == Precision::single_precision ? serves.single_precision
                                                                       : serves.mixed_precision;
@@ -172,6 +176,7 @@ std::vector<std::string> served_settings(const Serves& serves) {
   add(serves.projections_every, "projections-every");
   add(serves.single_precision, "single");
   add(serves.mixed_precision, "mixed");
+  add(serves.geometric_stiffness, "geometric-stiffness");
   return result;
 }
 
