@@ -27,6 +27,8 @@ struct SimulateOptions {
   std::string output;
   long every = 1;
   int judge_every = RunSettings{}.judge_every;
+  bool half_step = false;
+  std::optional<double> deadline_us;
   bool json = false;
 };
 
@@ -96,8 +98,13 @@ int simulate(const SimulateOptions& options) {
   }
   require_files(options);
   const Scene scene = load_scene(options.scene);
-  const RunSettings settings{options.step.resolve(scene.model), options.duration,
-                             options.judge_every};
+  RunSettings settings{options.step.resolve(scene.model), options.duration, options.judge_every,
+                       std::nullopt, options.deadline_us};
+  if (options.half_step) {
+    StepOptions half = options.step;
+    half.settings.step /= 2;
+    settings.half_step = half.resolve(scene.model);
+  }
   require_duration(scene, settings);
   const std::vector<std::string> warnings = setting_warnings(scene.model, settings.step);
   const RunSummary summary = run_with_files(options, scene, *variants[0].variant, settings);
@@ -148,6 +155,10 @@ void add_simulate_command(CLI::App& app, int& status) {
       ->add_option("--judge-every", options->judge_every,
                    "judge the state after every K-th step and the last, K >= 1")
       ->capture_default_str();
+  command->add_flag("--half-step", options->half_step,
+                    "also simulate with half the step, and estimate the error by the difference");
+  command->add_option("--deadline-us", options->deadline_us,
+                      "count the steps that take longer, in microseconds");
   command->add_flag("--json", options->json, "print the summary as JSON");
   command->callback([options, &status] { status = simulate(*options); });
 }

@@ -40,14 +40,20 @@ nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
                {"passes_per_step", static_cast<double>(summary.passes) / steps},
                {"factorizations_per_step", static_cast<double>(summary.factorizations) / steps},
                {"position_error_max", finite_or_null(summary.position_error_max)},
+               {"position_error_estimate", finite_or_null(summary.position_error_estimate)},
                {"energy_drift_max", finite_or_null(summary.energy_drift_max)},
                {"constraint_violation_max", finite_or_null(summary.constraint_violation_max)},
                {"setup_us", summary.setup_us},
                {"judge_us", summary.judge_us},
                {"step_us",
-                {{"median", summary.step_us_median},
+                {{"mean", summary.step_us_mean},
+                 {"median", summary.step_us_median},
                  {"p99", summary.step_us_p99},
-                 {"max", summary.step_us_max}}}});
+                 {"p999", summary.step_us_p999},
+                 {"max", summary.step_us_max}}},
+               {"deadline_us", finite_or_null(settings.deadline_us)},
+               {"deadline_misses", nullptr}});
+  if (summary.deadline_misses) json["deadline_misses"] = *summary.deadline_misses;
   return json;
 }
 
@@ -78,6 +84,10 @@ std::string summary_text(const nlohmann::json& json) {
   text += fmt::format(
       "  position error max     {}\n",
       number("position_error_max", " m", "not known: no exact motion of this scene is"));
+  if (!json["position_error_estimate"].is_null()) {
+    text += fmt::format("  estimated error max    {:.3g} m, by half the step\n",
+                        json["position_error_estimate"].get<double>());
+  }
   text += fmt::format("  energy drift max       {}\n",
                       number("energy_drift_max", " of its scale", "none: energy is not conserved"));
   text += fmt::format("  constraint violation   {}\n",
@@ -88,6 +98,11 @@ std::string summary_text(const nlohmann::json& json) {
   text += fmt::format("  step                   {:.2f} us median, {:.2f} p99, {:.2f} max\n",
                       json["step_us"]["median"].get<double>(), json["step_us"]["p99"].get<double>(),
                       json["step_us"]["max"].get<double>());
+  if (!json["deadline_us"].is_null()) {
+    text += fmt::format("  deadline               {} of {} steps took more than {:g} us\n",
+                        json["deadline_misses"].get<long>(), json["steps"].get<long>(),
+                        json["deadline_us"].get<double>());
+  }
   return text;
 }
 

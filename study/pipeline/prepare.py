@@ -151,6 +151,18 @@ def registry():
                          ) from error
 
 
+def start_named(layout, name, only, inputs):
+    """Records for the study `name` build, machine, selection and what identifies the `inputs`, or
+    refuses a directory that holds results of others."""
+    usual = profiles.load("quick")
+    profile = replace(usual, name=name, settings=usual.settings | {"alternatives": []})
+    known = registry()
+    record = run_record(layout, profile, only, known) | {"inputs": inputs}
+    if not continues(layout, record, ("variants", "contenders", "programs", "inputs")):
+        write_json(layout.registry, known)
+        write_json(layout.run, record)
+
+
 def select(known, only):
     """Names "folder/variant" that `only` selects, in the registry's order; empty selects all."""
     entries = {entry["folder"]: entry for entry in known["implementations"]}

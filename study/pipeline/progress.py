@@ -1,5 +1,7 @@
-# How jobs tell the front what they do: lines of JSON in one file of the results directory.
+# How jobs tell the front what they do (lines of JSON in one file of the results directory), and how
+# a study that runs alone tells its user.
 import json
+import sys
 import time
 
 
@@ -39,3 +41,24 @@ class Reader:
         self.rest += self.file.read()
         *lines, self.rest = self.rest.split("\n")
         return [json.loads(line) for line in lines if line]
+
+
+class Teller:
+    """One line that is rewritten on a terminal; a line now and then elsewhere."""
+    quiet = False
+
+    def __init__(self):
+        self.terminal, self.last = sys.stdout.isatty(), ""
+
+    def __call__(self, text):
+        if self.quiet:
+            return
+        if self.terminal:
+            print(f"\r\033[K{text[:100]}", end="", flush=True)
+        elif text.split(":")[0].split(",")[0] != self.last:
+            self.last = text.split(":")[0].split(",")[0]
+            print(text, flush=True)
+
+    def end(self):
+        if self.terminal and not self.quiet:
+            print()

@@ -1,16 +1,14 @@
 # study/scenes: runs the standard problems and the cost of modelling, writes tables and a report.
 import argparse
 import os
-import sys
-from dataclasses import replace
 from pathlib import Path
 
-from study.pipeline import profile as profiles
 from study.pipeline.contenders import from_json
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, ROOT, read_run, write_csv, write_json
-from study.pipeline.prepare import (continues, digest, digest_of_scene, need_modules, only_one,
-                                    only_one_measuring, registry, run_record, set_up, writable)
+from study.pipeline.layout import Layout, ROOT, read_run, write_csv
+from study.pipeline.prepare import (digest, digest_of_scene, need_modules, only_one,
+                                    only_one_measuring, set_up, start_named, writable)
+from study.pipeline.progress import Teller
 
 
 class _Parser(argparse.ArgumentParser):
@@ -63,7 +61,7 @@ def _run(layout, options):
     preferred, listed = problems.read_list()
     chosen = _choose(listed, options.problems)
     if not options.stored:
-        start(layout, "scenes", options.only, {problems.LIST.name: digest(problems.LIST)} | {
+        start_named(layout, "scenes", options.only, {problems.LIST.name: digest(problems.LIST)} | {
             problem.scene: digest_of_scene(problem.scene) for problem in listed})
     run = read_run(layout)
     contenders = [one for one in from_json(run["contenders"]).values()
@@ -99,36 +97,3 @@ def _choose(listed, names):
         raise StudyError(f"--problems: unknown problem '{unknown[0]}'; known: "
                          f"{', '.join(problem.name for problem in listed)}")
     return list(dict.fromkeys(known[name.lower()] for name in names if name.lower() in known))
-
-
-def start(layout, name, only, inputs):
-    """Records for the study `name` build, machine, selection and what identifies the `inputs`, or
-    refuses a directory that holds results of others."""
-    usual = profiles.load("quick")
-    profile = replace(usual, name=name, settings=usual.settings | {"alternatives": []})
-    known = registry()
-    record = run_record(layout, profile, only, known) | {"inputs": inputs}
-    if not continues(layout, record, ("variants", "contenders", "programs", "inputs")):
-        write_json(layout.registry, known)
-        write_json(layout.run, record)
-
-
-class Teller:
-    """One line that is rewritten on a terminal; a line now and then elsewhere."""
-    quiet = False
-
-    def __init__(self):
-        self.terminal, self.last = sys.stdout.isatty(), ""
-
-    def __call__(self, text):
-        if self.quiet:
-            return
-        if self.terminal:
-            print(f"\r\033[K{text[:100]}", end="", flush=True)
-        elif text.split(":")[0].split(",")[0] != self.last:
-            self.last = text.split(":")[0].split(",")[0]
-            print(text, flush=True)
-
-    def end(self):
-        if self.terminal and not self.quiet:
-            print()

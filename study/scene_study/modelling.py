@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy
 import pandas
 
+from study.pipeline import runs
 from study.pipeline.layout import write_json
-from study.scene_study import metric, runs
+from study.scene_study import metric
 from study.scene_study.references import four_bar
 
 IMPLEMENTATIONS = ("csc_klu/refactor", "csc_cholmod/simplicial", "eigen_dense/llt")

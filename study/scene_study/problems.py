@@ -11,10 +11,10 @@ import numpy
 import pandas
 import yaml
 
-from study.pipeline import cells, child
+from study.pipeline import cells, child, runs
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_json
-from study.scene_study import metric, runs
+from study.scene_study import metric
 from study.scene_study.extrapolate import extrapolate, observed_order
 from study.scene_study.references import EXTRAPOLATED, KNOWN, PUBLISHED, kind
 

@@ -3,11 +3,10 @@ import json
 import shlex
 from dataclasses import dataclass
 
-from study.pipeline import child
+from study.pipeline import child, runs
 from study.pipeline.contenders import Contender
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import program
-from study.scene_study import runs
 
 AUTOMATIC = "auto"
 DENSE_LOOPS = 20  # a dense implementation runs up to this size

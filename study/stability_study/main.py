@@ -8,7 +8,8 @@ from pathlib import Path
 from study.pipeline.contenders import from_json
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import Layout, ROOT, read_run, write_csv
-from study.pipeline.prepare import need_modules, only_one, registry, set_up, writable
+from study.pipeline.prepare import need_modules, only_one, registry, set_up, start_named, writable
+from study.pipeline.progress import Teller
 
 LOOPS, LARGE = (1, 2, 5, 10, 20, 40, 80), (200, 500)
 STEPS = tuple(1.25e-3 * 2.0**power for power in range(-3, 4))
@@ -80,11 +81,10 @@ def _loops(text):
 
 def _run(layout, options):
     import pandas
-    from study.scene_study.main import Teller, start
     from study.stability_study import grid
     variants = _variants(registry())
     served = _served(variants, options.implementation)
-    start(layout, "stability", list(dict.fromkeys(served.values())),
+    start_named(layout, "stability", list(dict.fromkeys(served.values())),
           {"duration": options.duration, "time_limit": options.time_limit})
     run = read_run(layout)
     contenders = from_json(run["contenders"])

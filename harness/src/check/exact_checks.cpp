@@ -35,7 +35,10 @@ RunSummary run_with_step(const Scene& scene, const Variant& variant, const StepS
   settings.step = factor * base.step;
   settings.penalty = base.penalty / (factor * factor);
   settings.tolerance = 0.1 * base.tolerance * std::pow(factor, 4);
-  return run(scene, variant, {settings, kDuration});
+  RunSettings run_settings;
+  run_settings.step = settings;
+  run_settings.duration = kDuration;
+  return run(scene, variant, run_settings);
 }
 
 }  // namespace

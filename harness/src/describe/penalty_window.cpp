@@ -5,10 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <vector>
 
-#include "describe/shortest_lengths.hpp"
-#include "model_math/kinematics.hpp"
+#include "model_math/turning.hpp"
 #include "run/initial_state.hpp"
 #include "run/settings.hpp"
 
@@ -21,51 +19,6 @@ constexpr double kSingular = 3.0;      // beta s_row omega dt >= this
 constexpr double kNonlinear = 0.02;    // beta s_row (omega dt)^3 <= this
 constexpr double kCancellation = 0.4;  // u l_r sqrt(beta s_mean) <= this times l (omega dt)^4
 
-struct Turning {
-  double rate = 0.0;    // omega, 1/s
-  double length = 1.0;  // l of the point that turns fastest, m
-};
-
-/// The fastest of all points: what it moves at now, or after falling freely by the shortest length
-/// at it, over that length.
-Turning fastest_turning(const Model& model) {
-  const auto n = static_cast<std::size_t>(model.variables());
-  const std::vector<double> mass = mass_diagonal(model);
-  std::vector<double> force(n);
-  applied_force(model, 0.0, model.initial_position(), model.initial_velocity(), force);
-  const std::vector<double> length = shortest_lengths(model);
-  Turning result;
-  for (std::size_t k = 0; k < length.size(); ++k) {
-    const Point& point = model.points()[k];
-    if (point.is_fixed() || length[k] == 0.0) continue;
-    double speed = 0.0, acceleration = 0.0;
-    for (int axis = 0; axis < model.dimension(); ++axis) {
-      const auto i = static_cast<std::size_t>(point.offset + axis);
-      speed = std::hypot(speed, model.initial_velocity()[i]);
-      acceleration = std::hypot(acceleration, force[i] / mass[i]);
-    }
-    const double rate = std::max(speed / length[k], std::sqrt(2.0 * acceleration / length[k]));
-    if (rate > result.rate) result = {rate, length[k]};
-  }
-  return result;
-}
-
-/// s_row: the least of the diagonal of Phi_q M^-1 Phi_q^T with the diagonal of M, m^2/kg: the
-/// heaviest that a constraint moves. Light unit vectors make the mean a hundred times as much.
-double least_row(const Model& model) {
-  const std::vector<double> mass = mass_diagonal(model);
-  std::vector<double> diagonal(static_cast<std::size_t>(model.constraints()), 0.0);
-  for (const JacobianEntry& entry : jacobian(model, 0.0, model.initial_position())) {
-    diagonal[static_cast<std::size_t>(entry.row)] +=
-        entry.value * entry.value / mass[static_cast<std::size_t>(entry.col)];
-  }
-  double least = std::numeric_limits<double>::infinity();
-  for (const double value : diagonal) {
-    if (value > 0.0) least = std::min(least, value);
-  }
-  return least;
-}
-
 }  // namespace
 
 PenaltyWindow penalty_window(const Model& model, const Structure& structure, double step) {
@@ -74,7 +27,7 @@ PenaltyWindow penalty_window(const Model& model, const Structure& structure, dou
   const Turning fastest = fastest_turning(model);
   window.rate = fastest.rate > 0.0 ? fastest.rate : 2e-3 * std::numbers::pi / step;
   const double turn = window.rate * step;  // rad a step
-  const double row = least_row(model);
+  const double row = least_constraint_diagonal(model);
   double smallest = std::numeric_limits<double>::infinity();  // at a singular start it says nothing
   if (!structure.singular.value_or(true)) {
     smallest = smallest_constraint_eigenvalue(model, model.initial_position());

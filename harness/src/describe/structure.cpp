@@ -6,9 +6,9 @@
 #include <iterator>
 #include <random>
 
-#include "describe/shortest_lengths.hpp"
 #include "model_math/consistency.hpp"
 #include "model_math/jacobian_rank.hpp"
+#include "model_math/shortest_lengths.hpp"
 
 namespace mbs {
 namespace {

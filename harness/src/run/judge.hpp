@@ -24,7 +24,9 @@ struct RunBounds {
 /// hundredth of a rod's length.
 struct AccurateBounds {
   double position_error = 1e-2;  ///< m, where an exact solution is known
-  double energy_drift = 1e-2;    ///< as RunBounds
+  /// Of the scene's extent, where the error is estimated (HalfStepRun).
+  double estimated_error = 1e-2;
+  double energy_drift = 1e-2;  ///< as RunBounds
   double constraint_violation = 1e-4;
 };
 

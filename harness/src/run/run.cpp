@@ -7,9 +7,12 @@
 #include <chrono>
 #include <cmath>
 #include <new>
+#include <numeric>
 
+#include "model_math/extent.hpp"
 #include "printable.hpp"
 #include "run/driver_end.hpp"
+#include "run/half_step_run.hpp"
 #include "run/initial_state.hpp"
 #include "run/setting_names.hpp"
 #include "usage_error.hpp"
@@ -44,6 +47,7 @@ struct Context {
   const RunSettings& settings;
   Judge& judge;
   RunSummary& summary;
+  std::optional<HalfStepRun>& half;
   [[nodiscard]] double time(long step) const { return step * settings.step.step; }
 };
 
@@ -74,8 +78,8 @@ void locate_loss(const Context& run, const LastGood& good, long step, const std:
   }
 }
 
-/// Steps until the end or until the solution is lost.
-void step_through(const Context& run, State& state, const Observer& observer,
+/// Steps until the end or until the solution is lost. `size` is the scene's extent, m.
+void step_through(const Context& run, double size, State& state, const Observer& observer,
                   std::vector<float>& times) {
   RunSummary& summary = run.summary;
   const long steps = count_steps(run.settings);
@@ -83,7 +87,7 @@ void step_through(const Context& run, State& state, const Observer& observer,
   LastGood good{0, state, run.judge};
   double judge_us = 0.0;
   for (long i = 1; i <= steps; ++i) {
-    const auto begin = Clock::now();
+    auto begin = Clock::now();
     const StepOutcome outcome = run.simulation.step();
     const auto end = Clock::now();
     times.push_back(static_cast<float>(microseconds(end - begin)));
@@ -94,12 +98,15 @@ void step_through(const Context& run, State& state, const Observer& observer,
     if (outcome.status == StepStatus::factorization_failed) {
       return locate_loss(run, good, i, "the tangent matrix could not be factorized");
     }
+    if (run.half) run.half->advance();
     if (i % run.settings.judge_every == 0 || i == steps) {
+      begin = Clock::now();
       run.simulation.get_state(state);
       const std::string lost = run.judge.judge(run.time(i), state);
       if (!lost.empty()) return locate_loss(run, good, i, lost);
       good = {i, state, run.judge};
-      judge_us += microseconds(Clock::now() - end);
+      judge_us += microseconds(Clock::now() - begin);
+      if (run.half) run.half->compare(state);
     } else if (observer) {
       run.simulation.get_state(state);
     }
@@ -115,7 +122,28 @@ void step_through(const Context& run, State& state, const Observer& observer,
     return;
   }
   summary.reason = run.judge.degradation();
+  if (run.half && !(run.half->position_error_max() <= AccurateBounds{}.estimated_error * size)) {
+    summary.reason += fmt::format(
+        "{}estimated position error {:.1e} m (ok to {:g})", summary.reason.empty() ? "" : ", ",
+        run.half->position_error_max(), AccurateBounds{}.estimated_error * size);
+  }
   if (!summary.reason.empty()) summary.status = RunStatus::degraded;
+}
+
+/// Figures of the times of the steps, which it reorders.
+void summarize(RunSummary& summary, std::vector<float>& times, std::optional<double> deadline_us) {
+  summary.step_us_median = quantile(times, 0.5);
+  summary.step_us_p99 = quantile(times, 0.99);
+  summary.step_us_p999 = quantile(times, 0.999);
+  summary.step_us_max = quantile(times, 1.0);
+  if (!times.empty()) {
+    summary.step_us_mean =
+        std::accumulate(times.begin(), times.end(), 0.0) / static_cast<double>(times.size());
+  }
+  if (deadline_us) {
+    summary.deadline_misses =
+        std::ranges::count_if(times, [&](float us) { return us > *deadline_us; });
+  }
 }
 
 }  // namespace
@@ -151,6 +179,7 @@ long count_steps(const RunSettings& settings) {
     throw UsageError(
         fmt::format("--judge-every is {}: it must be at least 1", settings.judge_every));
   }
+  if (settings.deadline_us) require(*settings.deadline_us, "--deadline-us", "");
   require(settings.step.penalty, "--penalty", "");
   require(settings.step.tolerance, "--tolerance", " m");
   if (settings.step.max_passes < 1 || settings.step.max_passes > 1000) {
@@ -181,13 +210,16 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
   State state = initial_state(scene.model);
   Judge judge(scene, state, 0.0);
   std::vector<float> times;
+  std::optional<HalfStepRun> half;
   try {
     const auto begin = Clock::now();
     const auto simulation = create_simulation(variant, scene.model, settings.step);
     simulation->set_state(state);
     summary.setup_us = microseconds(Clock::now() - begin);
     if (observer) observer(0, 0.0, state);
-    step_through({*simulation, settings, judge, summary}, state, observer, times);
+    if (settings.half_step) half.emplace(scene, variant, *settings.half_step, state);
+    step_through({*simulation, settings, judge, summary, half}, extent(scene.model.points()), state,
+                 observer, times);
   } catch (const Unsupported& reason) {
     summary.status = RunStatus::unsupported;
     summary.reason = printable(reason.what(), 1000);
@@ -198,9 +230,8 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
     summary.reason = fmt::format("the implementation threw: {}", printable(error.what(), 1000));
     summary.failed_at = (summary.steps + 1) * settings.step.step;
   }
-  summary.step_us_median = quantile(times, 0.5);
-  summary.step_us_p99 = quantile(times, 0.99);
-  summary.step_us_max = quantile(times, 1.0);
+  summarize(summary, times, settings.deadline_us);
+  if (half) summary.position_error_estimate = half->position_error_max();
   summary.position_error_max = judge.position_error_max();
   summary.energy_drift_max = judge.energy_drift_max();
   summary.constraint_violation_max = judge.constraint_violation_max();

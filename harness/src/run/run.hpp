@@ -28,6 +28,10 @@ struct RunSettings {
   /// Steps between two judgements; the last step is judged too. Where one finds the solution lost,
   /// the steps since the one before are done again to find the first that was.
   int judge_every = 32;
+  /// What half the step is to be simulated with, beside the run, to estimate its error:
+  /// HalfStepRun.
+  std::optional<StepSettings> half_step;
+  std::optional<double> deadline_us;  ///< steps that take longer are counted
 };
 
 struct RunSummary {
@@ -40,9 +44,13 @@ struct RunSummary {
   long steps_at_limit = 0;
   double setup_us = 0.0;  ///< the factory and the first set_state()
   double judge_us = 0.0;  ///< mean a step: what copying states out and judging them takes
-  double step_us_median = 0.0, step_us_p99 = 0.0, step_us_max = 0.0;
-  std::optional<double> position_error_max;  ///< m
-  std::optional<double> energy_drift_max;    ///< none if the model is not conservative
+  /// Wall clock of a step.
+  double step_us_mean = 0.0, step_us_median = 0.0, step_us_p99 = 0.0, step_us_p999 = 0.0,
+         step_us_max = 0.0;
+  std::optional<long> deadline_misses;            ///< steps beyond RunSettings::deadline_us
+  std::optional<double> position_error_max;       ///< m
+  std::optional<double> position_error_estimate;  ///< m, with RunSettings::half_step
+  std::optional<double> energy_drift_max;         ///< none if the model is not conservative
   double constraint_violation_max = 0.0;
 };
 

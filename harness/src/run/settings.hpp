@@ -7,13 +7,23 @@
 
 namespace mbs {
 
-/// The penalty factor `auto`: alpha = (4 / dt^2) clamp(30 / s_min, 4e3 / s_mean, 1e7 / s_mean).
+/// The penalty factor `auto`: alpha = (4 / dt^2) beta, at turn = omega dt = 6.8e-3 rad a step
+///
+///   beta_0 = clamp(30 / s_min, 4e3 / s_mean, 1e7 / s_mean)
+///
+/// and, with x = turn / 6.8e-3,
+///
+///   beta = min(beta_0 / x^2, 1e7 / s_mean)                       for shorter steps,
+///   beta = min(beta_0 / sqrt(x), 0.6 / (s_row turn^3))           for longer ones,
+///                                                                 but at least beta_0 / 100.
 ///
 /// s_min is the smallest eigenvalue above 0 of S = Phi_q M^-1 Phi_q^T at the start, s_mean the mean
-/// of its diagonal with the diagonal of M (m^2/kg). The multiplier iteration contracts by 1 / (1 +
-/// alpha dt^2/4 s): the first term asks for a factor of 31 of the slowest mode, the lower bound for
-/// 4000 of the mean one, which singular positions need, and the upper bound stays clear of
-/// cancellation. harness/README.md has the measurements behind the three numbers. 1 for a model
+/// and s_row the least above 0 of its diagonal with the diagonal of M (m^2/kg); omega is
+/// fastest_turning(). The multiplier iteration contracts by 1 / (1 + beta s): the first term asks
+/// for a factor of 31 of the slowest mode, the lower bound for 4000 of the mean one, which singular
+/// positions need, and the upper bound stays clear of cancellation. The shorter a step, the nearer
+/// to a singular position the worst of them ends, where s is as turn^2; the longer, the more of the
+/// predictor's error alpha turns into forces. harness/README.md has the measurements. 1 for a model
 /// without constraints.
 ///
 /// The saddle-point form: (4 / dt^2) 2.5e8 / s_mean, which is eps = 4e-9 s_mean; with factors in
@@ -24,6 +34,10 @@ double automatic_penalty(const Model& model, const StepSettings& settings);
 
 /// s_mean of the above, m^2/kg; not a number for a model without constraints.
 double mean_constraint_eigenvalue(const Model& model);
+
+/// s_row of the above, m^2/kg: the heaviest that a constraint moves, where light unit vectors can
+/// make the mean a hundred times as much. Infinite for a model without constraints.
+double least_constraint_diagonal(const Model& model);
 
 /// "auto" or a number > 0, for the step and scheme of `settings`. Throws UsageError.
 double parse_penalty(const std::string& text, const Model& model, const StepSettings& settings);

@@ -1,5 +1,5 @@
 // The lengths that quadratic constraints measure.
-#include "describe/shortest_lengths.hpp"
+#include "model_math/shortest_lengths.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,39 @@
+// The same simulation with half the step, run beside it to estimate its error.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "registry/registry.hpp"
+#include "scene/scene.hpp"
+
+namespace mbs {
+
+/// Richardson's estimate: what a scheme of order p leaves is 2^p / (2^p - 1) times the difference
+/// to half the step, where both steps are short enough for its order to show. No exact solution is
+/// needed.
+class HalfStepRun {
+ public:
+  /// `half` is at half the step of the simulation beside it. `scene` must outlive this.
+  HalfStepRun(const Scene& scene, const Variant& variant, const StepSettings& half,
+              const State& initial);
+
+  /// Two half steps.
+  void advance();
+
+  /// Takes the whole-step simulation's state at the same time.
+  void compare(const State& whole);
+
+  /// Largest estimated distance of a point (not of unit vectors) so far, m; infinite once the
+  /// half-step simulation is lost.
+  [[nodiscard]] double position_error_max() const { return error_; }
+
+ private:
+  const Scene& scene_;
+  std::unique_ptr<Simulation> simulation_;
+  State state_;
+  double factor_;
+  double error_ = 0.0;
+};
+
+}  // namespace mbs
