@@ -13,6 +13,7 @@
 #include "mbs/simulate_summary.hpp"
 #include "mbs/trajectory.hpp"
 #include "run/run.hpp"
+#include "run/scaled_equations.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -28,6 +29,7 @@ struct SimulateOptions {
   long every = 1;
   int judge_every = RunSettings{}.judge_every;
   bool half_step = false;
+  bool scale_equations = false;
   std::optional<double> deadline_us;
   bool json = false;
 };
@@ -98,8 +100,13 @@ int simulate(const SimulateOptions& options) {
   }
   require_files(options);
   const Scene scene = load_scene(options.scene);
-  RunSettings settings{options.step.resolve(scene.model), options.duration, options.judge_every,
-                       std::nullopt, options.deadline_us};
+  if (options.half_step && options.scale_equations) {
+    throw UsageError("--half-step and --scale-equations do not go together");
+  }
+  const StepSettings step = options.step.resolve(
+      options.scale_equations ? ScaledEquations(scene.model).model() : scene.model);
+  RunSettings settings{step,         options.duration,        options.judge_every,
+                       std::nullopt, options.scale_equations, options.deadline_us};
   if (options.half_step) {
     StepOptions half = options.step;
     half.settings.step /= 2;
@@ -157,6 +164,8 @@ void add_simulate_command(CLI::App& app, int& status) {
       ->capture_default_str();
   command->add_flag("--half-step", options->half_step,
                     "also simulate with half the step, and estimate the error by the difference");
+  command->add_flag("--scale-equations", options->scale_equations,
+                    "multiply constraints by powers of two that make them weigh alike");
   command->add_option("--deadline-us", options->deadline_us,
                       "count the steps that take longer, in microseconds");
   command->add_flag("--json", options->json, "print the summary as JSON");

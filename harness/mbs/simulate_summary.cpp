@@ -51,8 +51,13 @@ nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
                  {"p99", summary.step_us_p99},
                  {"p999", summary.step_us_p999},
                  {"max", summary.step_us_max}}},
+               {"scale_equations", settings.scale_equations},
                {"deadline_us", finite_or_null(settings.deadline_us)},
                {"deadline_misses", nullptr}});
+  if (settings.scale_equations) {
+    std::string other = json["other_settings"];
+    json["other_settings"] = other + (other.empty() ? "" : " ") + "--scale-equations";
+  }
   if (summary.deadline_misses) json["deadline_misses"] = *summary.deadline_misses;
   return json;
 }

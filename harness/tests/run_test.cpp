@@ -426,6 +426,7 @@ TEST(CountSteps, RefusesWhatIsOutOfRange) {
   for (const double bad : {0.0, -1.0, kNaN, HUGE_VAL, -HUGE_VAL}) {
     expect_refusal([bad](RunSettings& s) { s.step.step = bad; }, "--step");
     expect_refusal([bad](RunSettings& s) { s.duration = bad; }, "--duration");
+    expect_refusal([bad](RunSettings& s) { s.deadline_us = bad; }, "--deadline-us");
     expect_refusal([bad](RunSettings& s) { s.step.penalty = bad; }, "--penalty");
     expect_refusal([bad](RunSettings& s) { s.step.tolerance = bad; }, "--tolerance");
   }

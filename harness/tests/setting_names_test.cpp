@@ -54,7 +54,7 @@ TEST(SettingNames, CombinationsThatDoNotGoTogetherAreRefusedByName) {
 }
 
 TEST(SettingNames, WhatAVariantDoesNotServeIsSaid) {
-  const Serves nothing, everything{true, true, true, true, true, true, true};
+  const Serves nothing, everything{true, true, true, true, true, true, true, true};
   for (const auto& [settings, option] : std::vector<std::pair<StepSettings, std::string>>{
            {{.scheme = Scheme::saddle_point}, "--scheme saddle-point"},
            {{.scheme = Scheme::rattle4}, "--scheme rattle4"},

@@ -106,6 +106,17 @@ TEST(AutomaticTolerance, FarFromTheOriginIsTheRoundingOfCoordinates) {
               10 * std::ldexp(1.0, -53) * 1e6, 1e-14);
 }
 
+TEST(AutomaticTolerance, IsInProportionToAShortRod) {
+  ModelData data;
+  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1e-3, 0, 0}}};
+  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
+  data.force = {0.0, -1e-2};
+  data.initial_velocity = {0.0, 0.0};
+  data.dot_constraints = {{0, 1, 0, 1, 1e-6, "rod"}};
+  EXPECT_DOUBLE_EQ(automatic_tolerance(Model(std::move(data)), {.step = kStep, .penalty = 1e9}),
+                   1e-12);
+}
+
 TEST(AutomaticTolerance, WithoutConstraints) {
   EXPECT_DOUBLE_EQ(automatic_tolerance(test::free_fall().model, {.step = kStep, .penalty = 1.0}),
                    1e-9);

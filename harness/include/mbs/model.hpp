@@ -179,6 +179,8 @@ class Model {
   /// Coordinates of the free points at t = 0 (n, m).
   [[nodiscard]] std::span<const double> initial_position() const { return initial_position_; }
   [[nodiscard]] std::span<const double> initial_velocity() const { return data_.initial_velocity; }
+  /// What it was made from, for making another one like it.
+  [[nodiscard]] const ModelData& data() const { return data_; }
 
  private:
   ModelData data_;

@@ -14,6 +14,7 @@
 #include "run/driver_end.hpp"
 #include "run/half_step_run.hpp"
 #include "run/initial_state.hpp"
+#include "run/scaled_equations.hpp"
 #include "run/setting_names.hpp"
 #include "usage_error.hpp"
 
@@ -211,9 +212,12 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
   Judge judge(scene, state, 0.0);
   std::vector<float> times;
   std::optional<HalfStepRun> half;
+  std::optional<ScaledEquations> scaled;
   try {
     const auto begin = Clock::now();
-    const auto simulation = create_simulation(variant, scene.model, settings.step);
+    if (settings.scale_equations) scaled.emplace(scene.model);
+    const auto simulation = scaled ? scaled->create(variant, scene.model, settings.step)
+                                   : create_simulation(variant, scene.model, settings.step);
     simulation->set_state(state);
     summary.setup_us = microseconds(Clock::now() - begin);
     if (observer) observer(0, 0.0, state);

@@ -31,6 +31,7 @@ struct RunSettings {
   /// What half the step is to be simulated with, beside the run, to estimate its error:
   /// HalfStepRun.
   std::optional<StepSettings> half_step;
+  bool scale_equations = false;       ///< simulate with ScaledEquations
   std::optional<double> deadline_us;  ///< steps that take longer are counted
 };
 

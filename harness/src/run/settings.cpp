@@ -32,9 +32,6 @@ double rounding_length(const Model& model) {
   return std::min(largest_coordinate(model), extent(model.points()));
 }
 
-namespace {
-
-/// Diagonal of Phi_q M^-1 Phi_q^T with the diagonal of M, at the start, m^2/kg.
 std::vector<double> constraint_diagonal(const Model& model) {
   const std::vector<double> mass = mass_diagonal(model);
   std::vector<double> diagonal(static_cast<std::size_t>(model.constraints()), 0.0);
@@ -44,6 +41,8 @@ std::vector<double> constraint_diagonal(const Model& model) {
   }
   return diagonal;
 }
+
+namespace {
 
 /// beta = alpha dt^2/4 of the penalty form, kg/m^2.
 double automatic_beta(const Model& model, double step) {
@@ -97,7 +96,8 @@ double parse_penalty(const std::string& text, const Model& model, const StepSett
 
 double automatic_tolerance(const Model& model, const StepSettings& settings) {
   const double step = settings.step;
-  const double wanted = std::min(1e-9 * std::pow(step / 1.25e-3, 4), 1e-6);
+  const double length = std::min(fastest_turning(model).length, 1.0);
+  const double wanted = length * std::min(1e-9 * std::pow(step / 1.25e-3, 4), 1e-6);
   const double largest = largest_coordinate(model), size = rounding_length(model);
   const double stiffness = model.constraints() == 0 ? 0.0
                                                     : settings.penalty * step * step / 4 *

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "mbs/simulation.hpp"
 
@@ -32,6 +33,9 @@ namespace mbs {
 /// For the step, scheme and precision of `settings`.
 double automatic_penalty(const Model& model, const StepSettings& settings);
 
+/// Diagonal of Phi_q M^-1 Phi_q^T with the diagonal of M, at the start (m), m^2/kg.
+std::vector<double> constraint_diagonal(const Model& model);
+
 /// s_mean of the above, m^2/kg; not a number for a model without constraints.
 double mean_constraint_eigenvalue(const Model& model);
 
@@ -46,8 +50,9 @@ double parse_penalty(const std::string& text, const Model& model, const StepSett
 /// this is what their rounding is relative to.
 double rounding_length(const Model& model);
 
-/// The tolerance `auto`, m: 1e-9 at 1.25e-3 s and proportional to step^4, at most 1e-6, so that
-/// what Newton leaves stays below the integrator's own error at every step; but not below ten times
+/// The tolerance `auto`, m: 1e-9 l at 1.25e-3 s and proportional to step^4, at most 1e-6 l, so that
+/// what Newton leaves stays below the integrator's own error at every step; l is that of
+/// fastest_turning(), at most 1 m. But not below ten times
 /// the rounding noise of a Newton step, which it could not reach: u max|q|, and in the constraints
 /// u l_r sqrt(1 + alpha dt^2/4 s_mean) with l_r = rounding_length(); u is that of the precision.
 /// For the step, penalty and precision of `settings`.

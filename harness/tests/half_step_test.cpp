@@ -1,0 +1,95 @@
+// The error estimate by half the step against the exact error, and what it does to the outcome.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "controls/controls.hpp"
+#include "run/run.hpp"
+#include "run/settings.hpp"
+#include "support/sample_models.hpp"
+
+namespace mbs {
+namespace {
+
+Variant reference() {
+  for (const Variant& variant : test::controls().variants) {
+    if (variant.name == "reference") return variant;
+  }
+  throw std::logic_error("the controls have no reference");
+}
+
+RunSettings with_half_step(const Scene& scene, Scheme scheme, double step, double duration) {
+  const auto resolved = [&](double h) {
+    StepSettings settings;
+    settings.scheme = scheme;
+    settings.step = h;
+    settings.penalty = automatic_penalty(scene.model, settings);
+    settings.tolerance = 1e-14;
+    return settings;
+  };
+  RunSettings settings;
+  settings.step = resolved(step);
+  settings.half_step = resolved(step / 2);
+  settings.duration = duration;
+  settings.judge_every = 1;
+  return settings;
+}
+
+TEST(HalfStep, EstimatesTheExactError) {
+  const Scene scene = load_scene("four-bar:2");
+  const struct {
+    Scheme scheme;
+    double step, duration;
+  } cases[] = {{Scheme::penalty, 2.5e-3, 2.0},
+               {Scheme::saddle_point, 2.5e-3, 2.0},
+               {Scheme::rattle, 2e-3, 0.6},
+               {Scheme::rattle4, 1e-2, 0.6},
+               {Scheme::rattle6, 2.5e-2, 0.6}};
+  for (const auto& [scheme, step, duration] : cases) {
+    const RunSummary summary =
+        run(scene, reference(), with_half_step(scene, scheme, step, duration));
+    ASSERT_TRUE(summary.position_error_estimate && summary.position_error_max);
+    EXPECT_NEAR(*summary.position_error_estimate / *summary.position_error_max, 1.0, 0.1)
+        << static_cast<int>(scheme);
+    EXPECT_EQ(summary.status, RunStatus::ok) << summary.reason;
+  }
+}
+
+TEST(HalfStep, DegradesARunWithoutAnExactSolution) {
+  const Scene scene = load_scene(MBS_ROOT "/harness/scenes/double_pendulum.json");
+  RunSettings settings = with_half_step(scene, Scheme::penalty, 2e-2, 5.0);
+  const RunSummary estimated = run(scene, reference(), settings);
+  EXPECT_EQ(estimated.status, RunStatus::degraded);
+  EXPECT_NE(estimated.reason.find("estimated position error"), std::string::npos)
+      << estimated.reason;
+  EXPECT_FALSE(estimated.position_error_max);
+  settings.half_step.reset();
+  EXPECT_FALSE(run(scene, reference(), settings).position_error_estimate);
+}
+
+TEST(HalfStep, IsInfiniteWhereTheHalfStepIsLost) {
+  const Scene scene = load_scene("four-bar:5");
+  RunSettings settings = with_half_step(scene, Scheme::penalty, 1e-3, 2.0);
+  settings.half_step->penalty = 1e30;
+  const RunSummary summary = run(scene, reference(), settings);
+  EXPECT_EQ(summary.status, RunStatus::degraded) << summary.reason;
+  EXPECT_FALSE(*summary.position_error_estimate < 1e-2);
+}
+
+TEST(Deadline, CountsTheStepsBeyondIt) {
+  const Scene scene = load_scene("four-bar:1");
+  RunSettings settings;
+  settings.step.penalty = automatic_penalty(scene.model, settings.step);
+  settings.duration = 0.25;
+  EXPECT_FALSE(run(scene, reference(), settings).deadline_misses);
+  settings.deadline_us = 1e-6;
+  EXPECT_EQ(run(scene, reference(), settings).deadline_misses, 200);
+  settings.deadline_us = 1e12;
+  const RunSummary summary = run(scene, reference(), settings);
+  EXPECT_EQ(summary.deadline_misses, 0);
+  EXPECT_LE(summary.step_us_p99, summary.step_us_p999);
+  EXPECT_GT(summary.step_us_mean, 0.0);
+}
+
+}  // namespace
+}  // namespace mbs

@@ -1,0 +1,86 @@
+// Constraints that weigh alike: the factors, and that the motion and the multipliers stay.
+#include "run/scaled_equations.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "controls/controls.hpp"
+#include "run/initial_state.hpp"
+#include "run/run.hpp"
+#include "run/setting_names.hpp"
+#include "run/settings.hpp"
+#include "support/sample_models.hpp"
+#include "support/term_models.hpp"
+
+namespace mbs {
+namespace {
+
+Variant reference() {
+  const std::vector<Variant> variants = test::controls().variants;
+  return *std::ranges::find(variants, "reference", &Variant::name);
+}
+
+TEST(ScaledEquations, BringTheDiagonalTogether) {
+  ModelData data = four_bar(4);
+  for (MassEntry& entry : data.mass) {
+    if (entry.row / 2 == 2 || entry.col / 2 == 2) entry.value *= entry.row == entry.col ? 1e6 : 1.0;
+  }
+  const Model model(std::move(data));
+  const auto spread = [](const Model& m) {
+    const std::vector<double> diagonal = constraint_diagonal(m);
+    return *std::ranges::max_element(diagonal) / *std::ranges::min_element(diagonal);
+  };
+  const ScaledEquations scaled(model);
+  EXPECT_GT(spread(model), 1e4);
+  EXPECT_LE(spread(scaled.model()), 4.0);
+  for (const double factor : scaled.factors()) {
+    EXPECT_EQ(std::exp2(std::round(std::log2(factor))), factor);
+  }
+}
+
+// In the saddle-point form eps hardly matters: all terms move as before, multipliers too.
+TEST(ScaledEquations, LeaveEveryTermsMotionAndMultipliers) {
+  for (const test::TermModel& term : test::term_models()) {
+    SCOPED_TRACE(term.name);
+    StepSettings settings;
+    settings.step = 2.5e-4;
+    settings.scheme = Scheme::saddle_point;
+    settings.tolerance = 1e-15;
+    settings.penalty = automatic_penalty(term.model, settings);
+    const ScaledEquations scaled(term.model);
+    const auto plain = create_simulation(reference(), term.model, settings);
+    settings.penalty = automatic_penalty(scaled.model(), settings);
+    const auto other = scaled.create(reference(), term.model, settings);
+    State state = initial_state(term.model), same = state;
+    plain->set_state(state);
+    other->set_state(state);
+    for (int i = 0; i < 20; ++i) {
+      ASSERT_NE(plain->step().status, StepStatus::factorization_failed);
+      ASSERT_NE(other->step().status, StepStatus::factorization_failed);
+    }
+    plain->get_state(state);
+    other->get_state(same);
+    double largest = 1.0;
+    for (const double x : state.lambda) largest = std::max(largest, std::abs(x));
+    for (std::size_t i = 0; i < state.q.size(); ++i) EXPECT_NEAR(state.q[i], same.q[i], 1e-9);
+    for (std::size_t k = 0; k < state.lambda.size(); ++k) {
+      EXPECT_NEAR(state.lambda[k], same.lambda[k], 1e-3 * largest) << k;
+    }
+  }
+}
+
+TEST(ScaledEquations, AreASettingOfARun) {
+  const Scene scene = load_scene("four-bar:3");
+  RunSettings settings;
+  settings.duration = 1.0;
+  settings.scale_equations = true;
+  settings.step.penalty = automatic_penalty(ScaledEquations(scene.model).model(), settings.step);
+  const RunSummary summary = run(scene, reference(), settings);
+  EXPECT_EQ(summary.status, RunStatus::ok) << summary.reason;
+  EXPECT_LT(*summary.position_error_max, 1e-4);
+}
+
+}  // namespace
+}  // namespace mbs
