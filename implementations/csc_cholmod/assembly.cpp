@@ -1,7 +1,6 @@
-// Schedules at set-up; in the step, products of short arrays and gathered sums.
+// Products of short arrays and gathered sums.
 #include "assembly.hpp"
 
-#include <cstddef>
 #include <utility>
 
 #include "schedule.hpp"
@@ -18,89 +17,52 @@ std::vector<double> constant_force(const Model& model, double factor,
 
 }  // namespace
 
-Assembly::Assembly(const Model& model, const StepSettings& settings, const HalfPattern& pattern,
-                   std::vector<int> number, Half half)
+Assembly::Assembly(const Model& model, const StepSettings& settings, std::vector<int> number,
+                   Half half)
     : quarter_(settings.step * settings.step / 4.0),
-      penalty_(settings.penalty),
       coordinates_(model, std::move(number)),
       lowered_(model, coordinates_),
       lowered_forces_(model, coordinates_),
-      pattern_(pattern.renumbered(half, coordinates_.number())),
       rows_schedule_(row_contributions(lowered_)),
-      tangent_schedule_(tangent_contributions(lowered_, lowered_forces_, pattern_)),
-      mass_(model, pattern_.half(), coordinates_.number()),
+      mass_(model, half, coordinates_.number()),
       constraints_(lowered_),
       forces_(lowered_forces_, settings),
       force_(constant_force(model, quarter_, coordinates_.number())),
       drivers_(model, settings, coordinates_, lowered_, force_),
-      constant_(mass_values(model, pattern_, coordinates_.number())),
-      products_(2 * (lowered_.products() + lowered_forces_.products())),
-      row_(lowered_.rows()) {
-  add_linear_products(lowered_.linear, pattern_, quarter_ * penalty_, constant_);
-  tangent_ = constant_;
-}
+      row_(lowered_.rows()) {}
 
 void Assembly::drive(double t, double* q, double* u) {
   drivers_.drive(t, q, u, constraints_.target(), force_.data());
 }
 
-void Assembly::update_multipliers(double* lambda) const {
-  const double* phi = constraints_.phi();
-  for (std::size_t k = 0; k < row_.size(); ++k) lambda[k] += penalty_ * phi[k];  // Eq. (1)
-}
-
-void Assembly::residual(const double* q, const double* u, const double* s, const double* lambda,
-                        double* result) {
-  const double* phi = constraints_.phi();
-  for (std::size_t k = 0; k < row_.size(); ++k) {
-    row_[k] = -quarter_ * (lambda[k] + penalty_ * phi[k]);
-  }
+void Assembly::balance(const double* q, const double* u, const double* s, double* result) {
   mass_.subtract_product(force_.data(), s, result);
   constraints_.multiply(row_.data());
-  rows_schedule_.sum(result, constraints_.forces(), result);  // Eq. (3)
+  rows_schedule_.sum(result, constraints_.forces(), result);
   if (!forces_.empty()) {
     forces_.evaluate(q, u);
     forces_.add_loads(q, result);
   }
 }
 
-void Assembly::refresh_tangent() {
-  constraints_.multiply_pairs(quarter_ * penalty_, products_.data());
-  if (!forces_.empty()) forces_.tangent(products_.data() + 2 * lowered_.products());
-  tangent_schedule_.sum(constant_.data(), products_.data(), tangent_.data());  // Eq. (5)
-}
-
-void Assembly::project_velocity(const double* q, const double* u, double* velocity) {
-  mass_.product(u, velocity);  // Eq. (6)
+void Assembly::multiply(const double* u, double* velocity) {
+  mass_.product(u, velocity);
   if (!forces_.empty()) forces_.add_product(u, velocity);
-  subtract_rates(q, velocity);
 }
 
-void Assembly::project_both(const double* q, const double* u, const double* s, double* velocity,
-                            double* acceleration) {
-  mass_.products(u, s, velocity, acceleration);  // Eq. (6)
+void Assembly::multiply(const double* u, const double* s, double* velocity, double* acceleration) {
+  mass_.products(u, s, velocity, acceleration);
   if (!forces_.empty()) {
     forces_.add_product(u, velocity);
     forces_.add_product(s, acceleration);
   }
-  subtract_rates(q, velocity);
 }
 
-void Assembly::subtract_rates(const double* q, double* velocity) {
+void Assembly::velocity_terms(const double* q, const double* u, double factor, double* result) {
+  constraints_.velocity_terms(u, factor, result);  // (dt^2/4) v v = u u
   for (const DrivenRow& row : drivers_.rows()) {
-    const double factor = -quarter_ * penalty_ * drivers_.rate(row, q);  // Eq. (6)
-    constraints_.add_row(row.row, factor, velocity);
+    result[row.row] += factor * drivers_.acceleration(row, q);
   }
-}
-
-void Assembly::subtract_velocity_terms(const double* q, const double* u, double* acceleration) {
-  // (dt^2/4)^2 v v = (dt^2/4) u u.
-  constraints_.velocity_terms(u, -quarter_ * penalty_, row_.data());
-  for (const DrivenRow& row : drivers_.rows()) {
-    row_[row.row] -= quarter_ * penalty_ * drivers_.acceleration(row, q);
-  }
-  constraints_.multiply(row_.data());
-  rows_schedule_.sum(acceleration, constraints_.forces(), acceleration);  // Eq. (6)
 }
 
 }  // namespace mbs::csc_cholmod

@@ -57,4 +57,12 @@ inline int product_number(int size, int i, int j) {
 /// How many there are.
 inline int product_count(int size) { return size * (size + 1) / 2; }
 
+/// Index of the product of entries e and f of a row among the products of `lowered`, which number
+/// products() without their signs, and as many negated ones behind them.
+template <typename Lowered>
+int signed_product(const Lowered& lowered, int row, const SignedEntry& e, const SignedEntry& f) {
+  const int sign = e.negative != f.negative ? lowered.products() : 0;
+  return lowered.product(row, e.value, f.value) + sign;
+}
+
 }  // namespace mbs::csc_cholmod

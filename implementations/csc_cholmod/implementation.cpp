@@ -4,6 +4,8 @@
 #include <memory>
 
 #include "operations.hpp"
+#include "penalty_form.hpp"
+#include "saddle_form.hpp"
 #include "simulation.hpp"
 #include "solver.hpp"
 
@@ -12,7 +14,10 @@ namespace {
 
 template <Factorization kFactorization>
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
-  return std::make_unique<CholmodSimulation>(model, settings, kFactorization);
+  if (settings.scheme == Scheme::saddle_point) {
+    return std::make_unique<CholmodSimulation<SaddleForm>>(model, settings, kFactorization);
+  }
+  return std::make_unique<CholmodSimulation<PenaltyForm>>(model, settings, kFactorization);
 }
 
 std::unique_ptr<Operations> create_operations(const Model& model) {
@@ -30,6 +35,7 @@ Implementation implementation() {
       .variants = {{.name = "simplicial",
                     .description = "entry by entry, LDL', without BLAS (LGPL-2.1-or-later)",
                     .create = create<Factorization::simplicial>,
+                    .serves = {.saddle_point = true},
                     .operations = create_operations},
                    {.name = "supernodal",
                     .description = "blocks of columns, LL', over BLAS (GPL-2.0-or-later)",

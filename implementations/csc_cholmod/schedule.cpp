@@ -18,14 +18,12 @@ void for_linear_pairs(const LinearBlock& linear, Visit visit) {
   }
 }
 
-/// Products of two entries of a row of `rows`; `first` is the number of the first product, and
-/// negated ones come products() later.
+/// Products of two entries of a row of `rows`; `first` is the number of the first product.
 template <typename Lowered>
 void add_products(const Lowered& lowered, const SignedRows& rows, int first,
                   const HalfPattern& pattern, std::vector<Contribution>& result) {
   for_pairs(rows, [&](int row, const SignedEntry& e, const SignedEntry& f) {
-    const int sign = e.negative != f.negative ? lowered.products() : 0;
-    const int source = first + lowered.product(row, e.value, f.value) + sign;
+    const int source = first + signed_product(lowered, row, e, f);
     result.push_back({pattern.index({e.column, f.column}), source});
   });
 }

@@ -4,88 +4,88 @@
 #include <algorithm>
 #include <cmath>
 
-#include "schedule.hpp"
+#include "penalty_form.hpp"
+#include "saddle_form.hpp"
 
 namespace mbs::csc_cholmod {
 
-CholmodSimulation::CholmodSimulation(const Model& model, const StepSettings& settings,
-                                     Factorization factorization)
-    : CholmodSimulation(model, settings, tangent_pattern(model), factorization) {}
-
-CholmodSimulation::CholmodSimulation(const Model& model, const StepSettings& settings,
-                                     const HalfPattern& pattern, Factorization factorization)
+template <typename Form>
+CholmodSimulation<Form>::CholmodSimulation(const Model& model, const StepSettings& settings,
+                                           Factorization factorization)
     : Simulation(model, settings),
       settings_(settings),
-      assembly_(model, settings, pattern, fill_reducing_order(pattern),
-                preferred_half(factorization)),
-      solver_(factorization, assembly_.pattern(), assembly_.tangent()),
-      q_(assembly_.coordinates().all()),
+      form_(model, settings, factorization),
+      q_(form_.coordinates().all()),
       v_(model.variables()),
       a_(model.variables()),
-      u_(assembly_.coordinates().all()),
+      u_(form_.coordinates().all()),
       s_(model.variables() + 1),
       lambda_(model.constraints()),
-      right_(model.variables()),
-      second_right_(model.variables()),
+      right_(form_.size()),
+      second_right_(form_.size()),
       delta_(model.variables()) {
-  const std::vector<double>& constants = assembly_.coordinates().constants();
+  const std::vector<double>& constants = form_.coordinates().constants();
   std::copy(constants.begin(), constants.end(), q_.begin() + model.variables());
 }
 
-void CholmodSimulation::do_set_state(const State& state) {
-  const std::vector<int>& place = assembly_.coordinates().number();
+template <typename Form>
+void CholmodSimulation<Form>::do_set_state(const State& state) {
+  const std::vector<int>& place = form_.coordinates().number();
   for (std::size_t i = 0; i < place.size(); ++i) {
     q_[place[i]] = state.q[i];
     v_[place[i]] = state.v[i];
     a_[place[i]] = state.a[i];
   }
   for (std::size_t k = 0; k < lambda_.size(); ++k) {
-    lambda_[assembly_.constraints().row(static_cast<int>(k))] = state.lambda[k];
+    lambda_[form_.constraints().row(static_cast<int>(k))] = state.lambda[k];
   }
 }
 
-void CholmodSimulation::do_get_state(State& state) const {
-  const std::vector<int>& place = assembly_.coordinates().number();
+template <typename Form>
+void CholmodSimulation<Form>::do_get_state(State& state) const {
+  const std::vector<int>& place = form_.coordinates().number();
   for (std::size_t i = 0; i < place.size(); ++i) {
     state.q[i] = q_[place[i]];
     state.v[i] = v_[place[i]];
     state.a[i] = a_[place[i]];
   }
   for (std::size_t k = 0; k < lambda_.size(); ++k) {
-    state.lambda[k] = lambda_[assembly_.constraints().row(static_cast<int>(k))];
+    state.lambda[k] = lambda_[form_.constraints().row(static_cast<int>(k))];
   }
 }
 
-StepOutcome CholmodSimulation::do_step() {
-  if (assembly_.has_drivers()) assembly_.drive(time(), q_.data(), u_.data());
+template <typename Form>
+StepOutcome CholmodSimulation<Form>::do_step() {
+  if (form_.has_drivers()) form_.drive(time(), q_.data(), u_.data());
   predict();
   phases_.enter(Phase::evaluation);
-  assembly_.evaluate(q_.data());
+  form_.evaluate(q_.data());
   StepOutcome outcome{StepStatus::pass_limit, 0};
   while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
     ++outcome.passes;
-    assembly_.residual(q_.data(), u_.data(), s_.data(), lambda_.data(), right_.data());
+    form_.residual(q_.data(), u_.data(), s_.data(), lambda_.data(), right_.data());
     phases_.enter(Phase::assembly);
-    assembly_.refresh_tangent();
+    form_.refresh_matrix();
     phases_.enter(Phase::factorization);
-    if (!solver_.factorize()) {
+    if (!form_.factorize()) {
       phases_.enter(Phase::other);
       return {StepStatus::factorization_failed, outcome.passes};
     }
     phases_.enter(Phase::solve);
-    solver_.solve(right_.data(), delta_.data());  // Eq. (4)
+    form_.solve(right_.data(), delta_.data());  // Eq. (4), (12)
     phases_.enter(Phase::other);
     if (update()) outcome.status = StepStatus::converged;
     phases_.enter(Phase::evaluation);
-    assembly_.evaluate(q_.data());  // serves the multipliers, the next pass and the projections
-    assembly_.update_multipliers(lambda_.data());
+    form_.evaluate(q_.data());  // serves the multipliers, the next pass and the projections
+    form_.update_multipliers(lambda_.data());
   }
   project();
   phases_.enter(Phase::other);
   return outcome;
 }
 
-void CholmodSimulation::predict() {
+template <typename Form>
+void CholmodSimulation<Form>::predict() {
   const double half = settings_.step / 2.0;
   const double quarter = half * half;
   double* __restrict q = q_.data();
@@ -102,7 +102,8 @@ void CholmodSimulation::predict() {
   }
 }
 
-bool CholmodSimulation::update() {
+template <typename Form>
+bool CholmodSimulation<Form>::update() {
   const double tolerance = settings_.tolerance;
   const double* __restrict delta = delta_.data();
   double* __restrict q = q_.data();
@@ -118,7 +119,8 @@ bool CholmodSimulation::update() {
   return beyond == 0;
 }
 
-void CholmodSimulation::project() {
+template <typename Form>
+void CholmodSimulation<Form>::project() {
   switch (settings_.projections) {
     case Projections::none:
       break;
@@ -138,22 +140,27 @@ void CholmodSimulation::project() {
   }
 }
 
-void CholmodSimulation::project_velocity() {
+template <typename Form>
+void CholmodSimulation<Form>::project_velocity() {
   phases_.enter(Phase::projection);
-  assembly_.project_velocity(q_.data(), u_.data(), right_.data());
+  form_.project_velocity(q_.data(), u_.data(), right_.data());
   phases_.enter(Phase::solve);
-  solver_.solve(right_.data(), u_.data());  // Eq. (6)
+  form_.solve(right_.data(), u_.data());  // Eq. (6), (13)
 }
 
-void CholmodSimulation::project_both() {
+template <typename Form>
+void CholmodSimulation<Form>::project_both() {
   phases_.enter(Phase::projection);
-  assembly_.project_both(q_.data(), u_.data(), s_.data(), right_.data(), second_right_.data());
+  form_.project_both(q_.data(), u_.data(), s_.data(), right_.data(), second_right_.data());
   phases_.enter(Phase::solve);
-  solver_.solve(right_.data(), u_.data());  // Eq. (6)
+  form_.solve(right_.data(), u_.data());  // Eq. (6), (13)
   phases_.enter(Phase::projection);
-  assembly_.subtract_velocity_terms(q_.data(), u_.data(), second_right_.data());
+  form_.complete_acceleration(q_.data(), u_.data(), second_right_.data());
   phases_.enter(Phase::solve);
-  solver_.solve(second_right_.data(), s_.data());  // Eq. (6)
+  form_.solve(second_right_.data(), s_.data());  // Eq. (6), (13)
 }
+
+template class CholmodSimulation<PenaltyForm>;
+template class CholmodSimulation<SaddleForm>;
 
 }  // namespace mbs::csc_cholmod

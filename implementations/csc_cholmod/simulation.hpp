@@ -1,18 +1,20 @@
-// One simulation: the step of paper/README.md over the assembly and the solver of this folder.
+// One simulation: the step of paper/README.md in one of the forms of this folder.
 #pragma once
 
 #include <vector>
 
-#include "assembly.hpp"
 #include "mbs/simulation.hpp"
 #include "solver.hpp"
 
 namespace mbs::csc_cholmod {
 
+/// `Form` is PenaltyForm or SaddleForm: matrices, right-hand sides and solves.
+///
 /// Keeps the state in this folder's order. Within a step velocities and accelerations are the
 /// lengths u = (dt/2) v and s = (dt^2/4) a, which turns Eq. (2) into
 ///
 ///   u' = (q' - q) - u,  s' = (q' - q) - 2 u - s,   and every pass adds Delta q to q', u' and s'.
+template <typename Form>
 class CholmodSimulation final : public Simulation {
  public:
   CholmodSimulation(const Model& model, const StepSettings& settings, Factorization factorization);
@@ -23,9 +25,6 @@ class CholmodSimulation final : public Simulation {
   void do_get_state(State& state) const override;
 
  private:
-  CholmodSimulation(const Model& model, const StepSettings& settings, const HalfPattern& pattern,
-                    Factorization factorization);
-
   void predict();
   /// q, u, s grow by Delta q. True if max |Delta q| <= tolerance; NaN is false.
   bool update();
@@ -34,14 +33,13 @@ class CholmodSimulation final : public Simulation {
   void project_both();
 
   StepSettings settings_;
-  Assembly assembly_;
-  Solver solver_;
+  Form form_;
   // All places for q and u (constants and driven points behind the unknowns), n and a zero for s,
   // else n.
   std::vector<double> q_, v_, a_;
   std::vector<double> u_, s_;
-  std::vector<double> lambda_;  ///< rows
-  std::vector<double> right_, second_right_;
+  std::vector<double> lambda_;                ///< rows
+  std::vector<double> right_, second_right_;  ///< form_.size()
   std::vector<double> delta_;
 };
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace mbs::csc_cholmod {
 namespace {
@@ -116,7 +117,8 @@ std::vector<int> fill_reducing_order(const HalfPattern& pattern) {
 }
 
 struct Solver::Cholmod {
-  Cholmod(Factorization factorization, const HalfPattern& pattern, const double* values)
+  Cholmod(Factorization factorization, const HalfPattern& pattern, const double* values,
+          const std::vector<int>& negative)
       : matrix(view(pattern, values)) {
     common.method[0].ordering = CHOLMOD_NATURAL;
     common.postorder = 0;
@@ -137,6 +139,7 @@ struct Solver::Cholmod {
       throw std::runtime_error("CHOLMOD has no memory for the factor");
     }
     find_diagonal();
+    split_diagonal(negative);
   }
   ~Cholmod() {
     cholmod_free_dense(&y, &common);
@@ -163,16 +166,24 @@ struct Solver::Cholmod {
     }
   }
 
+  /// Moves the positions of the `negative` unknowns.
+  void split_diagonal(const std::vector<int>& negative) {
+    for (int k : negative) negative_diagonal.push_back(std::exchange(diagonal[k], -1));
+    std::erase(diagonal, -1);
+  }
+
   Common common;
   cholmod_sparse matrix;
   cholmod_factor* factor = nullptr;
-  std::vector<int> diagonal;   ///< positions of L's or D's diagonal in factor->x
+  std::vector<int> diagonal;  ///< positions of L's or D's positive diagonal in factor->x
+  std::vector<int> negative_diagonal;
   cholmod_dense* y = nullptr;  ///< workspace of cholmod_solve2, kept between calls
   cholmod_dense* e = nullptr;
 };
 
-Solver::Solver(Factorization factorization, const HalfPattern& pattern, const double* values)
-    : cholmod_(std::make_unique<Cholmod>(factorization, pattern, values)) {}
+Solver::Solver(Factorization factorization, const HalfPattern& pattern, const double* values,
+               const std::vector<int>& negative)
+    : cholmod_(std::make_unique<Cholmod>(factorization, pattern, values, negative)) {}
 
 Solver::~Solver() = default;
 
@@ -183,11 +194,12 @@ bool Solver::factorize() {
   if (!cholmod_factorize(&c.matrix, c.factor, &c.common) || c.common.status != CHOLMOD_OK) {
     return false;
   }
-  // LDL' does not stop at a negative pivot, and no comparison of CHOLMOD's stops at a NaN.
+  // LDL' does not stop at a pivot of the wrong sign, and no comparison of CHOLMOD's stops at a NaN.
   const double* x = static_cast<const double*>(c.factor->x);
-  int positive = 1;
-  for (int d : c.diagonal) positive &= x[d] > 0.0;
-  return positive != 0;
+  int good = 1;
+  for (int d : c.diagonal) good &= x[d] > 0.0;
+  for (int d : c.negative_diagonal) good &= x[d] < 0.0;
+  return good != 0;
 }
 
 void Solver::solve(const double* b, double* x) {

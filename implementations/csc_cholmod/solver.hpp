@@ -21,17 +21,19 @@ Half preferred_half(Factorization factorization);
 /// tree.
 std::vector<int> fill_reducing_order(const HalfPattern& pattern);
 
-/// Cholesky factorization of one symmetric positive definite matrix after the other, all of one
-/// pattern, which is expected in fill-reducing order already: CHOLMOD then neither permutes nor
-/// copies the matrix.
+/// Cholesky factorization of one symmetric matrix after the other, positive definite or (LDL')
+/// quasi-definite, all of one pattern, which is expected in fill-reducing order already: CHOLMOD
+/// then neither permutes nor copies the matrix.
 class Solver {
  public:
   /// Analyses `pattern`, the preferred half of `factorization`. `pattern` and `values` (which may
-  /// change) must outlive this. Throws std::runtime_error if CHOLMOD cannot hold the factor.
-  Solver(Factorization factorization, const HalfPattern& pattern, const double* values);
+  /// change) must outlive this. `negative` lists the unknowns of the negative definite block.
+  /// Throws std::runtime_error if CHOLMOD cannot hold the factor.
+  Solver(Factorization factorization, const HalfPattern& pattern, const double* values,
+         const std::vector<int>& negative = {});
   ~Solver();
 
-  /// Factorizes the current values. False if they are not positive definite or not finite.
+  /// Factorizes the current values. False if a pivot has the wrong sign or is not finite.
   [[nodiscard]] bool factorize();
   /// x (n) = the factorized matrix \ b (n). They may be the same.
   void solve(const double* b, double* x);

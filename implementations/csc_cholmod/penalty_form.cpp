@@ -1,0 +1,81 @@
+// Schedules at set-up; in the step, one gathered sum writes T.
+#include "penalty_form.hpp"
+
+#include <cstddef>
+
+#include "schedule.hpp"
+
+namespace mbs::csc_cholmod {
+namespace {
+
+std::vector<double> constants(const Model& model, const std::vector<int>& number,
+                              const LinearBlock& linear, const HalfPattern& pattern,
+                              double factor) {
+  std::vector<double> result = mass_values(model, pattern, number);
+  add_linear_products(linear, pattern, factor, result);
+  return result;
+}
+
+}  // namespace
+
+PenaltyForm::PenaltyForm(const Model& model, const StepSettings& settings,
+                         Factorization factorization)
+    : PenaltyForm(model, settings, tangent_pattern(model), factorization) {}
+
+PenaltyForm::PenaltyForm(const Model& model, const StepSettings& settings,
+                         const HalfPattern& pattern, Factorization factorization)
+    : Assembly(model, settings, fill_reducing_order(pattern), preferred_half(factorization)),
+      penalty_(settings.penalty),
+      pattern_(pattern.renumbered(preferred_half(factorization), coordinates_.number())),
+      schedule_(tangent_contributions(lowered_, lowered_forces_, pattern_)),
+      constant_(
+          constants(model, coordinates_.number(), lowered_.linear, pattern_, quarter_ * penalty_)),
+      tangent_(constant_),
+      products_(2 * (lowered_.products() + lowered_forces_.products())),
+      solver_(factorization, pattern_, tangent_.data()) {}
+
+void PenaltyForm::residual(const double* q, const double* u, const double* s, const double* lambda,
+                           double* right) {
+  const double* phi = constraints_.phi();
+  for (std::size_t k = 0; k < row_.size(); ++k) {
+    row_[k] = -quarter_ * (lambda[k] + penalty_ * phi[k]);
+  }
+  balance(q, u, s, right);  // Eq. (3)
+}
+
+void PenaltyForm::refresh_matrix() {
+  constraints_.multiply_pairs(quarter_ * penalty_, products_.data());
+  if (!forces_.empty()) forces_.tangent(products_.data() + 2 * lowered_.products());
+  schedule_.sum(constant_.data(), products_.data(), tangent_.data());  // Eq. (5)
+}
+
+void PenaltyForm::update_multipliers(double* lambda) const {
+  const double* phi = constraints_.phi();
+  for (std::size_t k = 0; k < row_.size(); ++k) lambda[k] += penalty_ * phi[k];  // Eq. (1)
+}
+
+void PenaltyForm::project_velocity(const double* q, const double* u, double* velocity) {
+  multiply(u, velocity);  // Eq. (6)
+  subtract_rates(q, velocity);
+}
+
+void PenaltyForm::project_both(const double* q, const double* u, const double* s, double* velocity,
+                               double* acceleration) {
+  multiply(u, s, velocity, acceleration);  // Eq. (6)
+  subtract_rates(q, velocity);
+}
+
+void PenaltyForm::subtract_rates(const double* q, double* velocity) {
+  for (const DrivenRow& row : drivers_.rows()) {
+    const double factor = -quarter_ * penalty_ * drivers_.rate(row, q);  // Eq. (6)
+    constraints_.add_row(row.row, factor, velocity);
+  }
+}
+
+void PenaltyForm::complete_acceleration(const double* q, const double* u, double* acceleration) {
+  velocity_terms(q, u, -quarter_ * penalty_, row_.data());
+  constraints_.multiply(row_.data());
+  rows_schedule_.sum(acceleration, constraints_.forces(), acceleration);  // Eq. (6)
+}
+
+}  // namespace mbs::csc_cholmod

@@ -1,0 +1,53 @@
+// The penalty form: the tangent matrix of Eq. (5), its right-hand sides, and its solver.
+#pragma once
+
+#include <vector>
+
+#include "assembly.hpp"
+#include "solver.hpp"
+
+namespace mbs::csc_cholmod {
+
+/// Right-hand sides and solutions have the n unknowns in this folder's order, in which T is
+/// factorized too.
+class PenaltyForm : public Assembly {
+ public:
+  PenaltyForm(const Model& model, const StepSettings& settings, Factorization factorization);
+
+  /// Length of a right-hand side.
+  [[nodiscard]] int size() const { return coordinates_.unknowns(); }
+
+  /// right = -f, Eq. (3).
+  void residual(const double* q, const double* u, const double* s, const double* lambda,
+                double* right);
+  /// Refreshes T, Eq. (5), at the q of residual(): only values that depend on q are written.
+  void refresh_matrix();
+  [[nodiscard]] bool factorize() { return solver_.factorize(); }
+  /// x (n) = T \ right.
+  void solve(const double* right, double* x) { solver_.solve(right, x); }
+  /// lambda (rows) += alpha Phi.
+  void update_multipliers(double* lambda) const;
+
+  /// Eq. (6): velocity is the right-hand side for u.
+  void project_velocity(const double* q, const double* u, double* velocity);
+  /// Eq. (6): the same; acceleration to be completed once u is known.
+  void project_both(const double* q, const double* u, const double* s, double* velocity,
+                    double* acceleration);
+  /// Eq. (6): acceleration -= (dt^2/4)^2 alpha Phi_q^T (Phi-dot_q v + Phi-dot_t).
+  void complete_acceleration(const double* q, const double* u, double* acceleration);
+
+ private:
+  PenaltyForm(const Model& model, const StepSettings& settings, const HalfPattern& pattern,
+              Factorization factorization);
+  void subtract_rates(const double* q, double* velocity);
+
+  double penalty_;                ///< alpha
+  HalfPattern pattern_;           ///< of T, in this folder's order
+  GatherSchedule schedule_;       ///< of Phi_q^T Phi_q, C and K
+  std::vector<double> constant_;  ///< on pattern_: M and the linear constraints' part of T
+  std::vector<double> tangent_;   ///< on pattern_: T
+  std::vector<double> products_;  ///< summands of T, scratch
+  Solver solver_;
+};
+
+}  // namespace mbs::csc_cholmod

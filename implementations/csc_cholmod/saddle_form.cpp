@@ -1,0 +1,87 @@
+// Schedules at set-up; in the step, one gathered sum writes the matrix.
+#include "saddle_form.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "saddle_schedule.hpp"
+#include "schedule.hpp"
+
+namespace mbs::csc_cholmod {
+
+SaddleForm::SaddleForm(const Model& model, const StepSettings& settings,
+                       Factorization factorization)
+    : SaddleForm(model, settings, factorization, fill_reducing_order(tangent_pattern(model))) {}
+
+SaddleForm::SaddleForm(const Model& model, const StepSettings& settings,
+                       Factorization factorization, std::vector<int> number)
+    : Assembly(model, settings, std::move(number), preferred_half(factorization)),
+      place_(saddle_places(lowered_, coordinates_.unknowns())),
+      pattern_(saddle_pattern(model, coordinates_, lowered_, lowered_forces_, place_,
+                              preferred_half(factorization))),
+      schedule_(saddle_contributions(lowered_, lowered_forces_, place_, pattern_)),
+      constant_(saddle_constants(model, settings, coordinates_, lowered_, place_, pattern_)),
+      matrix_(constant_),
+      summands_(2 * (lowered_.values() + lowered_forces_.products())),
+      solution_(place_.size()),
+      solver_(factorization, pattern_, matrix_.data(),
+              {place_.begin() + coordinates_.unknowns(), place_.end()}) {}
+
+void SaddleForm::residual(const double* q, const double* u, const double* s, const double* lambda,
+                          double* right) {
+  for (std::size_t k = 0; k < row_.size(); ++k) row_[k] = -quarter_ * lambda[k];
+  balance(q, u, s, right);  // Eq. (12)
+  const double* phi = constraints_.phi();
+  double* __restrict rows = right + coordinates_.unknowns();
+  for (std::size_t k = 0; k < row_.size(); ++k) rows[k] = -phi[k];  // Eq. (12)
+}
+
+void SaddleForm::refresh_matrix() {
+  const int count = lowered_.values();
+  const double* __restrict values = constraints_.values();
+  double* __restrict plus = summands_.data();
+  double* __restrict minus = plus + count;
+  for (int i = 0; i < count; ++i) {
+    plus[i] = values[i];
+    minus[i] = -values[i];
+  }
+  if (!forces_.empty()) forces_.tangent(minus + count);
+  schedule_.sum(constant_.data(), summands_.data(), matrix_.data());  // Eq. (12)
+}
+
+void SaddleForm::solve(const double* right, double* x) {
+  for (std::size_t i = 0; i < place_.size(); ++i) solution_[place_[i]] = right[i];
+  solver_.solve(solution_.data(), solution_.data());
+  for (int i = 0; i < coordinates_.unknowns(); ++i) x[i] = solution_[place_[i]];
+}
+
+void SaddleForm::update_multipliers(double* lambda) const {
+  const int* place = place_.data() + coordinates_.unknowns();
+  for (std::size_t k = 0; k < row_.size(); ++k) {
+    lambda[k] += solution_[place[k]] / quarter_;  // Eq. (12)
+  }
+}
+
+void SaddleForm::project_velocity(const double* q, const double* u, double* velocity) {
+  multiply(u, velocity);  // Eq. (13)
+  set_rates(q, velocity);
+}
+
+void SaddleForm::project_both(const double* q, const double* u, const double* s, double* velocity,
+                              double* acceleration) {
+  multiply(u, s, velocity, acceleration);  // Eq. (13)
+  set_rates(q, velocity);
+}
+
+void SaddleForm::set_rates(const double* q, double* velocity) {
+  double* rows = velocity + coordinates_.unknowns();
+  std::fill(rows, rows + row_.size(), 0.0);
+  for (const DrivenRow& row : drivers_.rows()) rows[row.row] = -drivers_.rate(row, q);  // Eq. (13)
+}
+
+void SaddleForm::complete_acceleration(const double* q, const double* u, double* acceleration) {
+  velocity_terms(q, u, -1.0, acceleration + coordinates_.unknowns());  // Eq. (13)
+}
+
+}  // namespace mbs::csc_cholmod

@@ -1,0 +1,105 @@
+// Walks over rows of Phi_q and of gradients.
+#include "saddle_schedule.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "schedule.hpp"
+
+namespace mbs::csc_cholmod {
+namespace {
+
+/// Visits (row, column) of each entry of Phi_q, linear rows last.
+template <typename Visit>
+void for_jacobian(const LoweredConstraints& lowered, Visit visit) {
+  const SignedRows& rows = lowered.entries();
+  for (int row = 0; row < rows.rows(); ++row) {
+    for (const SignedEntry& e : rows[row]) visit(row, e.column);
+  }
+  const LinearBlock& linear = lowered.linear;
+  for (std::size_t t = 0; t < linear.row.size(); ++t) visit(linear.row[t], linear.column[t]);
+}
+
+/// Places of the model's unknowns, which the coordinates have numbered already.
+std::vector<int> model_places(const Coordinates& coordinates, const std::vector<int>& place) {
+  std::vector<int> result;
+  for (int number : coordinates.number()) result.push_back(place[number]);
+  return result;
+}
+
+}  // namespace
+
+std::vector<int> saddle_places(const LoweredConstraints& lowered, int unknowns) {
+  std::vector<int> after(lowered.rows());  // unknowns before each row
+  for_jacobian(lowered,
+               [&](int row, int column) { after[row] = std::max(after[row], column + 1); });
+  std::vector<int> next(unknowns + 1);  // place of the first row after so many unknowns
+  for (int count : after) {
+    if (count < unknowns) ++next[count + 1];
+  }
+  for (int i = 0; i < unknowns; ++i) next[i + 1] += next[i] + 1;
+  std::vector<int> place;
+  place.reserve(unknowns + lowered.rows());
+  for (int i = 0; i < unknowns; ++i) place.push_back(next[i + 1] - 1);
+  for (int count : after) place.push_back(next[count]++);
+  return place;
+}
+
+HalfPattern saddle_pattern(const Model& model, const Coordinates& coordinates,
+                           const LoweredConstraints& lowered, const LoweredForces& forces,
+                           const std::vector<int>& place, Half half) {
+  const int unknowns = coordinates.unknowns();
+  const std::vector<int> model_place = model_places(coordinates, place);
+  std::vector<Position> positions;
+  for (const MassEntry& e : model.mass()) {
+    positions.push_back({model_place[e.row], model_place[e.col]});
+  }
+  for_pairs(forces.gradients(), [&](int, const SignedEntry& e, const SignedEntry& f) {
+    positions.push_back({place[e.column], place[f.column]});
+  });
+  for_jacobian(lowered, [&](int row, int column) {
+    positions.push_back({place[unknowns + row], place[column]});
+  });
+  for (std::size_t k = unknowns; k < place.size(); ++k) positions.push_back({place[k], place[k]});
+  return HalfPattern(half, static_cast<int>(place.size()), positions);
+}
+
+std::vector<double> saddle_constants(const Model& model, const StepSettings& settings,
+                                     const Coordinates& coordinates,
+                                     const LoweredConstraints& lowered,
+                                     const std::vector<int>& place, const HalfPattern& pattern) {
+  const int unknowns = coordinates.unknowns();
+  const double epsilon = 4.0 / (settings.penalty * settings.step * settings.step);
+  std::vector<double> values = mass_values(model, pattern, model_places(coordinates, place));
+  for (std::size_t k = unknowns; k < place.size(); ++k) {
+    values[pattern.index({place[k], place[k]})] = -epsilon;  // Eq. (12)
+  }
+  const LinearBlock& linear = lowered.linear;
+  for (std::size_t t = 0; t < linear.row.size(); ++t) {
+    values[pattern.index({place[unknowns + linear.row[t]], place[linear.column[t]]})] =
+        linear.coefficient[t];  // Eq. (8)
+  }
+  return values;
+}
+
+std::vector<Contribution> saddle_contributions(const LoweredConstraints& lowered,
+                                               const LoweredForces& forces,
+                                               const std::vector<int>& place,
+                                               const HalfPattern& pattern) {
+  const int unknowns = static_cast<int>(place.size()) - lowered.rows();
+  const SignedRows& rows = lowered.entries();
+  std::vector<Contribution> result;
+  for (int row = 0; row < rows.rows(); ++row) {
+    for (const SignedEntry& e : rows[row]) {
+      const int target = pattern.index({place[unknowns + row], place[e.column]});
+      result.push_back({target, e.value + (e.negative ? lowered.values() : 0)});
+    }
+  }
+  for_pairs(forces.gradients(), [&](int row, const SignedEntry& e, const SignedEntry& f) {
+    const int source = 2 * lowered.values() + signed_product(forces, row, e, f);
+    result.push_back({pattern.index({place[e.column], place[f.column]}), source});
+  });
+  return result;
+}
+
+}  // namespace mbs::csc_cholmod
