@@ -138,3 +138,11 @@ def _json(path):
         return json.loads(path.read_text())
     except (OSError, ValueError) as error:
         raise TableError(f"{path}: cannot be read: {error}") from error
+
+
+def read_table(path):
+    """A CSV file as pandas takes it; TableError if it cannot."""
+    try:
+        return pandas.read_csv(path)
+    except (OSError, ValueError) as error:
+        raise TableError(f"{path}: cannot be read: {error}") from error

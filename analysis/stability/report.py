@@ -4,9 +4,8 @@ from pathlib import Path
 
 import jinja2
 import matplotlib.pyplot as plt
-import pandas
 
-from analysis.loader import TableError, _json
+from analysis.loader import _json, read_table
 from analysis.stability.figure import draw
 from analysis.style import save
 from analysis.text import number
@@ -17,7 +16,7 @@ ACCURATE = 1e-2  # m, the largest position error that "ok" allows
 def write(folder):
     """Writes figures/SCHEME-PRECISION.svg and .png, and stability.html, from the tables in `folder`."""
     folder = Path(folder)
-    table, windows = (_read(folder / f"{name}.csv") for name in ("stability", "windows"))
+    table, windows = (read_table(folder / f"{name}.csv") for name in ("stability", "windows"))
     (folder / "figures").mkdir(exist_ok=True)
     series = list(dict.fromkeys(zip(table.scheme, table.precision)))
     figures = {}
@@ -72,10 +71,3 @@ def valleys(rows):
             good.min(), good.max(), len(good), int(group.alpha_dt2_4.between(good.min(),
                                                                              good.max()).sum()))
     return found
-
-
-def _read(path):
-    try:
-        return pandas.read_csv(path)
-    except (OSError, ValueError) as error:
-        raise TableError(f"{path}: cannot be read: {error}") from error

@@ -24,7 +24,8 @@ def main(arguments):
     command, *rest = arguments
     try:
         return {"run": run, "figures": figures, "compare": compare, "view": view,
-                "scenes": scenes, "stability": stability, "against": against}[command](rest)
+                "scenes": scenes, "stability": stability, "realtime": realtime,
+                "against": against}[command](rest)
     except StudyError as error:
         print(f"study/{command}: {error}", file=sys.stderr)
         return 2
@@ -117,6 +118,11 @@ def scenes(arguments):
 def stability(arguments):
     from study.stability_study.main import stability as run_stability
     return run_stability(arguments)
+
+
+def realtime(arguments):
+    from study.realtime_study.main import realtime as run_realtime
+    return run_realtime(arguments)
 
 
 def against(arguments):

@@ -360,6 +360,7 @@ StepOutcome ReferenceSimulation::do_step() {
 double ReferenceSimulation::tangent_condition() {
   StepSettings settings = settings_;
   settings.scheme = Scheme::penalty;
+  settings.geometric_stiffness = false;
   ReferenceSimulation penalty_form(model_, settings);
   penalty_form.q_ = q_;
   penalty_form.v_ = v_;

@@ -1,0 +1,83 @@
+# One run against a deadline, and the search for the largest scene that keeps it.
+import math
+import shlex
+from dataclasses import dataclass
+
+from study.pipeline import runs
+from study.pipeline.contenders import Contender
+
+ALLOWED = 1e-3       # share of steps that may miss the deadline: an ordinary system interrupts some
+PILOT_STEPS = 2000   # of a run of the search, at most
+SECONDS = 300        # limit of a run
+LEAST, MOST = 1, 8000  # loops
+FINE = 2 ** 0.25     # the search ends when two sizes are this close
+
+
+@dataclass(frozen=True)
+class Case:
+    contender: Contender
+    scheme: str
+    step: float  # s, the deadline too
+
+
+def simulate(case, loops, layout, contexts, duration):
+    """The record of one run, its steps held against the step's length."""
+    path = (layout.results / "raw" / f"{case.contender.file_name}" /
+            f"{case.scheme}-{case.step:g}-{loops}-{duration:g}.json")
+    return runs.simulate(
+        path, case.contender, f"four-bar:{loops}", step=case.step, duration=duration, every=0,
+        context=contexts[case.contender.environment], seconds=SECONDS,
+        more=["--scheme", case.scheme, "--deadline-us", f"{1e6 * case.step:g}"]), path
+
+
+def in_real_time(record):
+    """Whether the run was simulated properly and in real time; else why not."""
+    status, reason = runs.status(record)
+    if status not in runs.FINISHED:
+        return False, f"{status}: {reason}"
+    summary = record["summary"]
+    share = summary["deadline_misses"] / summary["steps"]
+    if share > ALLOWED:
+        return False, f"{100 * share:.3g} % of the steps miss the deadline"
+    return True, ""
+
+
+def largest(case, layout, contexts, tell):
+    """The row of largest.csv: doubling, then bisection of the logarithm of N."""
+    good, bad, row, why = 0, None, {}, ""
+    while bad is None or bad > max(good + 1, FINE * good):
+        loops = (LEAST if good == 0 else min(2 * good, MOST)) if bad is None else (
+            max(good + 1, min(bad - 1, round(math.sqrt(max(good, 1) * bad)))))
+        tell(f"largest so far {good}, trying {loops}")
+        record, path = simulate(case, loops, layout, contexts, PILOT_STEPS * case.step)
+        fits, reason = in_real_time(record)
+        if fits:
+            good, row = loops, _figures(record, path, layout)
+            if loops == MOST:
+                break
+        else:
+            bad, why = loops, reason
+            if loops == LEAST:
+                break
+    return {"implementation": case.contender.variant, "scheme": case.scheme, "step": case.step,
+            "largest": good, "next": bad, "next_reason": why} | row
+
+
+def step_row(case, loops, layout, contexts, duration):
+    """The row of steps.csv."""
+    record, path = simulate(case, loops, layout, contexts, duration)
+    fits, reason = in_real_time(record)
+    return {"implementation": case.contender.variant, "scheme": case.scheme, "step": case.step,
+            "loops": loops, "in_real_time": fits, "reason": reason} | _figures(record, path, layout)
+
+
+def _figures(record, path, layout):
+    summary = record.get("summary", {})
+    times = summary.get("step_us", {})
+    status, _ = runs.status(record)
+    return {"status": status} | {f"{key}_us": times.get(key) for key in
+                                 ("mean", "median", "p99", "p999", "max")} | {
+        key: summary.get(key) for key in ("judge_us", "steps", "deadline_us", "deadline_misses",
+                                          "passes_per_step", "position_error_max")} | {
+        "raw_file": layout.relative(path),
+        "command": shlex.join(["build/mbs", *record["command"][1:]])}
