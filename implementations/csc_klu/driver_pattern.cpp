@@ -1,36 +1,10 @@
 // Where driven points and values enter the equations, found once from the model.
 #include "driver_pattern.hpp"
 
-#include <span>
-
 #include "extended_points.hpp"
+#include "quadratic_form.hpp"
 
 namespace mbs::csc_klu {
-namespace {
-
-/// What Row needs of a dot or bilinear constraint.
-template <int dim>
-struct Form {
-  std::array<int, 4> abcd;
-  SmallMatrix<dim> B;
-};
-
-/// The quadratic constraint at position `row` of the model.
-template <int dim>
-Form<dim> form_of(const Model& model, int row) {
-  const std::span<const DotConstraint> dots = model.dot_constraints();
-  if (row < std::ssize(dots)) {
-    const DotConstraint& dot = dots[row];
-    SmallMatrix<dim> identity{};
-    for (int k = 0; k < dim; ++k) identity[k][k] = 1.0;
-    return {{dot.a, dot.b, dot.c, dot.d}, identity};
-  }
-  const BilinearConstraint& bilinear = model.bilinear_constraints()[row - std::ssize(dots)];
-  return {{bilinear.a, bilinear.b, bilinear.c, bilinear.d}, small_matrix<dim>(bilinear.B)};
-}
-
-}  // namespace
-
 template <int dim>
 DriverPattern<dim>::DriverPattern(const Model& model, const JacobianPattern<dim>& jacobian) {
   if (model.driven_points().empty() && model.driven_values().empty()) return;
@@ -60,7 +34,7 @@ void DriverPattern<dim>::find_rows(const Model& model, const JacobianPattern<dim
   const std::vector<int> offset = extended_offsets(model);
   std::vector<int> index(jacobian.quadratics(), -1);
   for (int i = 0; i < jacobian.quadratics(); ++i) {
-    const Form<dim> form = form_of<dim>(model, jacobian.model_row[i]);
+    const QuadraticForm<dim> form = quadratic_form<dim>(model, jacobian.model_row[i]);
     Row row{{}, {}, value_of_row[i], form.B};
     for (int k = 0; k < 4; ++k) {
       row.at[k] = offset[form.abcd[k]];

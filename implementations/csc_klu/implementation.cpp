@@ -16,6 +16,12 @@ constexpr Serves kServes = {.saddle_point = true,
                             .tangent_reuse = true,
                             .projections_every = true};
 
+/// Of variants that may leave the diagonal, where pivots of an indefinite matrix can be zero.
+constexpr Serves with_geometric_stiffness(Serves serves) {
+  serves.geometric_stiffness = true;
+  return serves;
+}
+
 }  // namespace
 
 Implementation implementation() {
@@ -35,12 +41,12 @@ Implementation implementation() {
                     .create = create_simulation<Factorization>,
                     .allocates = "klu_factor makes a new numeric object; KLU cannot reuse one",
                     .unsymmetric = true,
-                    .serves = kServes},
+                    .serves = with_geometric_stiffness(kServes)},
                    {.name = "guarded",
                     .description = "refactorized until a solution's backward error asks for pivots",
                     .create = create_simulation<GuardedRefactorization>,
                     .unsymmetric = true,
-                    .serves = kServes}},
+                    .serves = with_geometric_stiffness(kServes)}},
   };
 }
 

@@ -13,8 +13,8 @@ namespace mbs::csc_klu {
 /// What is known of a symmetric matrix before it is factorized.
 struct Structure {
   enum class Kind {
-    definite,        ///< positive definite
-    quasi_definite,  ///< [A B^T; B -C], A and C positive definite
+    definite,    ///< positive definite
+    indefinite,  ///< anything else, quasi-definite or not
   };
   Kind kind = Kind::definite;
   /// Row and column to eliminate first, second, ...; empty: AMD's order. Not needed later.
@@ -25,9 +25,9 @@ struct Structure {
 ///
 /// Factors are valid if every pivot is finite and not zero; pivots of a definite matrix have to be
 /// positive too as long as all of them are on the diagonal, which is the test for definiteness.
-/// Once there are pivots off the diagonal nothing is said about it. Quasi-definite matrices have
-/// pivots of both signs, known beforehand: a wrong one is a rounding error, which rows that depend
-/// on each other allow and survive.
+/// Once there are pivots off the diagonal nothing is said about it. Indefinite matrices have pivots
+/// of both signs. Those of quasi-definite ones are known beforehand, but a wrong one is a rounding
+/// error, which rows that depend on each other allow and survive.
 class LuFactors {
  public:
   /// Orders and analyses `pattern`, which has to outlive this. `pivot_tolerance`, 0 to 1: factor()

@@ -15,7 +15,8 @@ namespace mbs::csc_klu {
 ///   system.update_multipliers();          // lambda, by Phi at the new q' or by the solution
 ///
 /// For projections right() takes n numbers first; include_constraints(z) completes them by
-/// -dt^2/4 alpha Phi_q^T z, Eqs. (6) and (15), or by -z, Eq. (13); z has m numbers. Refined ones
+/// -dt^2/4 alpha Phi_q^T z, Eqs. (6) and (15), or by -z, Eq. (13); z has m numbers.
+/// include_geometric_stiffness(x) adds what Eq. (16) has in T_0 x; x has n numbers. Refined ones
 /// have nu in saddle-point form: reset_reactions() makes it zero, include_reactions() puts its
 /// share into right(), update_reactions() adds what a solution has of it.
 template <class System>
@@ -26,6 +27,7 @@ concept NewtonSystem = requires(System system, std::span<const double> z) {
   system.solve();
   system.update_multipliers();
   system.include_constraints(z);
+  system.include_geometric_stiffness(z.data());
   system.reset_reactions();
   system.include_reactions();
   system.update_reactions();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "equations.hpp"
+#include "geometric_stiffness.hpp"
 #include "solver.hpp"
 #include "tangent.hpp"
 
@@ -19,13 +20,22 @@ class PenaltySystem {
         equations_(equations),
         pattern_(model, equations.jacobian_pattern, equations.force_pattern),
         tangent_(pattern_, mass_values(model, pattern_.pattern), equations.weight * penalty_),
+        hessians_(needed_hessians(model, settings, equations.jacobian_pattern)),
+        geometric_(hessians_, pattern_.pattern, equations.weight),
         right_(equations.n, 0.0),
         weighted_(equations.m, 0.0),
-        solver_(pattern_.pattern, assemble()) {}
+        solver_(
+            pattern_.pattern, assemble(),
+            Structure{geometric_.any() ? Structure::Kind::indefinite : Structure::Kind::definite}) {
+  }
 
   std::span<const double> assemble() {
     tangent_.assemble(equations_.jacobian);
     if (equations_.has_forces) tangent_.add(equations_.forces);
+    if (geometric_.any()) {
+      geometric_.evaluate(penalty_, equations_.lambda, equations_.phi);
+      tangent_.add(geometric_);
+    }
     return tangent_.values();
   }
   [[nodiscard]] bool factorize() { return solver_.factorize(tangent_.values()); }
@@ -36,6 +46,7 @@ class PenaltySystem {
     for (int i = 0; i < equations_.m; ++i) weighted_[i] = factor * rates[i];
     equations_.jacobian.subtract_transposed_product(weighted_.data(), right_.data());
   }
+  void include_geometric_stiffness(const double* x) { geometric_.add_product(x, right_.data()); }
   void reset_reactions() {}
   void include_reactions() {}
   void update_reactions() {}
@@ -49,6 +60,8 @@ class PenaltySystem {
   Equations<dim>& equations_;
   const TangentPattern<dim> pattern_;
   Tangent<dim> tangent_;
+  const std::vector<HessianEntry> hessians_;
+  GeometricStiffness geometric_;  ///< perhaps of nothing
   std::vector<double> right_;     ///< n
   std::vector<double> weighted_;  ///< m
   Solver solver_;

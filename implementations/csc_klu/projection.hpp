@@ -103,6 +103,7 @@ class Projection {
   void multiply_constant_part(const double* x) {
     equations_.mass.multiply(x, system_.right().data());
     if (equations_.has_forces) stiffness_.add_product(x, system_.right().data());
+    system_.include_geometric_stiffness(x);
   }
 
   const Equations<dim>& equations_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "forces.hpp"
+#include "geometric_stiffness.hpp"
 #include "jacobian.hpp"
 #include "saddle_pattern.hpp"
 
@@ -19,7 +20,7 @@ template <int dim>
                                                     const Jacobian<dim>& jacobian);
 
 /// [T_0 Phi_q^T s; s Phi_q -s eps s], both triangles. M, s eps s and linear constraints are written
-/// once, here; a pass rewrites the Jacobian's blocks and what springs touch.
+/// once, here; a pass rewrites the Jacobian's blocks and what springs and Eq. (16) touch.
 template <int dim>
 class SaddleMatrix {
  public:
@@ -33,6 +34,9 @@ class SaddleMatrix {
   void assemble(const Forces<dim>& forces) {
     pattern_.shares.add(forces, mass_.data(), values_.data());  // Eq. (12)
   }
+  /// With Eq. (16): first this, then springs, then add().
+  void reset(const GeometricStiffness& stiffness) { stiffness.reset(mass_, values_); }
+  void add(const GeometricStiffness& stiffness) { stiffness.add(values_); }
 
   [[nodiscard]] std::span<const double> values() const { return values_; }
 

@@ -32,7 +32,8 @@ void visit_blocks(const JacobianPattern<dim>& jacobian, int n, Visit visit) {
 
 template <int dim>
 Pattern saddle_pattern(const Model& model, const JacobianPattern<dim>& jacobian,
-                       const std::vector<ElementBlock>& elements) {
+                       const std::vector<ElementBlock>& elements,
+                       const std::vector<HessianEntry>& hessians) {
   const int n = model.variables(), size = n + model.constraints();
   std::vector<Pattern::Position> positions = mass_positions(model);
   for (const ElementBlock& block : elements) {
@@ -40,6 +41,7 @@ Pattern saddle_pattern(const Model& model, const JacobianPattern<dim>& jacobian,
       for (int k = 0; k < dim; ++k) positions.push_back({dim * block.p + k, col});
     }
   }
+  for (const HessianEntry& entry : hessians) positions.push_back({entry.row, entry.col});
   const auto add_both = [&](int multiplier, int coordinate) {
     positions.push_back({multiplier, coordinate});
     positions.push_back({coordinate, multiplier});
@@ -57,8 +59,9 @@ Pattern saddle_pattern(const Model& model, const JacobianPattern<dim>& jacobian,
 
 template <int dim>
 SaddlePattern<dim>::SaddlePattern(const Model& model, const JacobianPattern<dim>& jacobian,
-                                  const std::vector<ElementBlock>& elements)
-    : pattern(saddle_pattern(model, jacobian, elements)),
+                                  const std::vector<ElementBlock>& elements,
+                                  const std::vector<HessianEntry>& hessians)
+    : pattern(saddle_pattern(model, jacobian, elements, hessians)),
       order(interleaved_order(pattern, model.variables())),
       shares(elements, pattern, [](int, int) { return false; }) {
   const int n = model.variables();

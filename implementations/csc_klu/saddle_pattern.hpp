@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "element_shares.hpp"
+#include "hessians.hpp"
 #include "jacobian_pattern.hpp"
 #include "storage.hpp"
 
@@ -28,9 +29,10 @@ struct SaddlePattern {
     double coefficient;
   };
 
-  /// `elements`: those that give C and K.
+  /// `elements`: those that give C and K; `hessians`: what Eq. (16) adds to K, or nothing.
   SaddlePattern(const Model& model, const JacobianPattern<dim>& jacobian,
-                const std::vector<ElementBlock>& elements);
+                const std::vector<ElementBlock>& elements,
+                const std::vector<HessianEntry>& hessians);
 
   Pattern pattern;
   std::vector<int> order;           ///< of elimination

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "equations.hpp"
+#include "geometric_stiffness.hpp"
 #include "saddle_matrix.hpp"
 #include "solver.hpp"
 
@@ -25,17 +26,24 @@ class SaddleSystem {
         has_elements_(!elements.empty()),
         multiplier_factor_(4.0 / (settings.step * settings.step)),
         epsilon_(multiplier_factor_ / settings.penalty),
-        pattern_(model, equations.jacobian_pattern, elements),
+        hessians_(needed_hessians(model, settings, equations.jacobian_pattern)),
+        pattern_(model, equations.jacobian_pattern, elements, hessians_),
+        geometric_(hessians_, pattern_.pattern, equations.weight),
         scales_(multiplier_scales(model, equations.jacobian_pattern, equations.jacobian)),
         matrix_(pattern_, model, epsilon_, scales_),
         right_(equations.n + equations.m, 0.0),
         nu_(equations.m, 0.0),
         solver_(pattern_.pattern, assemble(),
-                Structure{Structure::Kind::quasi_definite, pattern_.order}) {}
+                Structure{Structure::Kind::indefinite, pattern_.order}) {}
 
   std::span<const double> assemble() {
     matrix_.assemble(equations_.jacobian);
+    if (geometric_.any()) matrix_.reset(geometric_);
     if (has_elements_) matrix_.assemble(equations_.forces);
+    if (geometric_.any()) {
+      geometric_.evaluate(0.0, equations_.lambda, equations_.phi);
+      matrix_.add(geometric_);
+    }
     return matrix_.values();
   }
   [[nodiscard]] bool factorize() { return solver_.factorize(matrix_.values()); }
@@ -48,6 +56,7 @@ class SaddleSystem {
     double* const lower = right_.data() + equations_.n;
     for (int i = 0; i < equations_.m; ++i) lower[i] = -scales_[i] * rates[i];  // Eqs. (12), (13)
   }
+  void include_geometric_stiffness(const double* x) { geometric_.add_product(x, right_.data()); }
   void reset_reactions() { std::ranges::fill(nu_, 0.0); }
   void include_reactions() {
     equations_.jacobian.subtract_transposed_product(nu_.data(), right_.data());
@@ -75,7 +84,9 @@ class SaddleSystem {
   const bool has_elements_;
   const double multiplier_factor_;  ///< 4/dt^2, 1/s^2
   const double epsilon_;
+  const std::vector<HessianEntry> hessians_;
   const SaddlePattern<dim> pattern_;
+  GeometricStiffness geometric_;      ///< perhaps of nothing
   const std::vector<double> scales_;  ///< m
   SaddleMatrix<dim> matrix_;
   std::vector<double> right_;  ///< n + m

@@ -115,7 +115,7 @@ class NewtonSimulation final : public Simulation {
 bool is_default(const StepSettings& settings) {
   return settings.scheme == Scheme::penalty && settings.projections_every == 1 &&
          settings.multipliers == MultiplierUpdate::every_pass &&
-         settings.tangent == TangentReuse::none;
+         settings.tangent == TangentReuse::none && !settings.geometric_stiffness;
 }
 
 bool is_trapezoidal(const StepSettings& settings) {

@@ -9,8 +9,8 @@ namespace mbs::csc_klu {
 // In all constructors: if these values fail, the first step tries again.
 
 Refactorization::Refactorization(const Pattern& pattern, std::span<const double> values,
-                                 const Structure& structure)
-    : factors_(pattern, 0.0, structure) {
+                                 const Structure& structure, double pivot_tolerance)
+    : factors_(pattern, pivot_tolerance, structure) {
   (void)factors_.factor(values);
 }
 
@@ -19,8 +19,8 @@ bool Refactorization::factorize(std::span<const double> values) {
 }
 
 Factorization::Factorization(const Pattern& pattern, std::span<const double> values,
-                             const Structure& structure)
-    : factors_(pattern, kPivotTolerance, structure) {
+                             const Structure& structure, double pivot_tolerance)
+    : factors_(pattern, pivot_tolerance, structure) {
   (void)factors_.factor(values);
 }
 

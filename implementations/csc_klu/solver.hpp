@@ -14,7 +14,7 @@ namespace mbs::csc_klu {
 ///
 /// Constructed from a pattern, which has to outlive it, first values on it and what is known of the
 /// matrix. factorize() takes new values, which have to stay until the last solve() with them; false
-/// if the matrix is singular, not finite or, unless it is said to be quasi-definite, not positive
+/// if the matrix is singular, not finite or, unless it is said to be indefinite, not positive
 /// definite (another call may succeed). solve() replaces a right-hand side (of all columns) by the
 /// solution with the factors of the last success.
 template <class Solver>
@@ -25,12 +25,17 @@ const Structure& > &&requires(Solver solver, std::span<const double> values, std
   solver.solve(x);
 };
 
+/// Pivots on the diagonal, unless one is zero; see LuFactors for the rule.
+inline constexpr double kDiagonalPivots = 0.0;
+/// KLU's default: the diagonal entry is the pivot unless a thousand times smaller than another.
+inline constexpr double kPivotTolerance = 1e-3;
+
 /// `refactor`: ordering and pivots stay as they were found at set-up. All pivots are diagonal,
 /// which is stable for every positive definite matrix, and for quasi-definite ones in a good order.
 class Refactorization {
  public:
   Refactorization(const Pattern& pattern, std::span<const double> values,
-                  const Structure& structure = {});
+                  const Structure& structure = {}, double pivot_tolerance = kDiagonalPivots);
   [[nodiscard]] bool factorize(std::span<const double> values);
   void solve(std::span<double> x) { factors_.solve(x); }
 
@@ -38,14 +43,11 @@ class Refactorization {
   LuFactors factors_;
 };
 
-/// KLU's default: the diagonal entry is the pivot unless a thousand times smaller than another.
-inline constexpr double kPivotTolerance = 1e-3;
-
 /// `factor`: new pivots at every call; only the ordering stays.
 class Factorization {
  public:
   Factorization(const Pattern& pattern, std::span<const double> values,
-                const Structure& structure = {});
+                const Structure& structure = {}, double pivot_tolerance = kPivotTolerance);
   [[nodiscard]] bool factorize(std::span<const double> values) { return factors_.factor(values); }
   void solve(std::span<double> x) { factors_.solve(x); }
 

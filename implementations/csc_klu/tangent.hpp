@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "forces.hpp"
+#include "geometric_stiffness.hpp"
 #include "jacobian.hpp"
 #include "tangent_pattern.hpp"
 
@@ -24,6 +25,8 @@ class Tangent {
   void add(const Forces<dim>& forces) {
     pattern_.shares.add(forces, constant_.data(), values_.data());  // Eq. (5)
   }
+  /// Adds the share of Eq. (16); after all else.
+  void add(const GeometricStiffness& stiffness) { stiffness.add(values_); }
 
   [[nodiscard]] const Pattern& pattern() const { return pattern_.pattern; }
   [[nodiscard]] std::span<const double> values() const { return values_; }
