@@ -1,8 +1,7 @@
-// Set-up of an Assembly: constraints in assembly_symbolic.cpp, M and T in tangent_symbolic.cpp.
+// Set-up of an Assembly.
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "assembly.hpp"
@@ -20,15 +19,6 @@ class Assembly::Builder {
   void build(double step);
 
  private:
-  /// One of the products that sum up to an entry of T, or just an entry (left = -1).
-  struct Product {
-    std::int64_t entry;  // column * n + row
-    int left, right;
-    bool operator<(const Product& other) const {
-      return entry != other.entry ? entry < other.entry : left < other.left;
-    }
-  };
-
   void collect_rows();
   void compress_jacobian();
   [[nodiscard]] int place(int row, int column) const;
@@ -38,13 +28,7 @@ class Assembly::Builder {
   void lower_gradients(const Dot& dot);
   void lower_linear();
   void attach_drivers();
-
   void build_mass();
-  void build_tangent();
-  void schedule(const std::vector<Product>& products);
-  void fill_constant();
-  void locate_forces();
-  [[nodiscard]] int entry(int row, int column) const;
 
   Assembly& self_;
   const Model& model_;

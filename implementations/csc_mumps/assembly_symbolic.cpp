@@ -1,4 +1,4 @@
-// Set-up of the constraints: pattern of Phi_q, order of writing, constant rows, drivers.
+// Set-up of the constraints (pattern of Phi_q, order of writing, constant rows), M and drivers.
 #include <algorithm>
 #include <utility>
 
@@ -6,16 +6,14 @@
 
 namespace mbs::csc_mumps {
 
-Assembly::Assembly(const Model& model, double step, double penalty)
+Assembly::Assembly(const Model& model, double step)
     : variables_(model.variables()),
       dimension_(model.dimension()),
       quarter_(step * step / 4.0),
-      penalty_(penalty),
       force_(model.force()),
       linear_row_(
           static_cast<int>(model.dot_constraints().size() + model.bilinear_constraints().size())),
-      phi_(model.constraints()),
-      weights_(model.constraints()) {
+      phi_(model.constraints()) {
   Builder(*this, model).build(step);
 }
 
@@ -27,7 +25,6 @@ void Assembly::Builder::build(double step) {
   self_.forces_ = Forces(model_, points_, step);
   attach_drivers();
   build_mass();
-  build_tangent();
   self_.fixed_coordinates_ = std::move(points_.fixed);
 }
 
@@ -47,26 +44,25 @@ void Assembly::Builder::collect_rows() {
 }
 
 void Assembly::Builder::compress_jacobian() {
-  std::vector<int>& start = self_.column_start_;
+  std::vector<int>& start = self_.jacobian_pattern_.start;
   start.assign(self_.variables_ + 1, 0);
   for (const auto& columns : columns_of_) {
     for (int column : columns) ++start[column + 1];
   }
   for (int j = 0; j < self_.variables_; ++j) start[j + 1] += start[j];
-  self_.row_.resize(start.back());
+  self_.jacobian_pattern_.row.resize(start.back());
   self_.jacobian_.resize(start.back() + 1);
   std::vector<int> next(start.begin(), start.end() - 1);
   for (int row = 0; row < static_cast<int>(columns_of_.size()); ++row) {
-    for (int column : columns_of_[row]) self_.row_[next[column]++] = row;
+    for (int column : columns_of_[row]) self_.jacobian_pattern_.row[next[column]++] = row;
   }
 }
 
 /// Where Phi_q(row, column) is in jacobian_; the entry behind the last one for fixed points.
 int Assembly::Builder::place(int row, int column) const {
-  if (!points_.is_free(column)) return static_cast<int>(self_.row_.size());
-  const auto first = self_.row_.begin();
-  const auto end = first + self_.column_start_[column + 1];
-  return static_cast<int>(std::lower_bound(first + self_.column_start_[column], end, row) - first);
+  const ColumnPattern& pattern = self_.jacobian_pattern_;
+  return points_.is_free(column) ? pattern.entry(row, column)
+                                 : static_cast<int>(pattern.row.size());
 }
 
 std::array<int, Assembly::kPointsOfDot> Assembly::Builder::offsets(int a, int b, int c,
@@ -133,6 +129,18 @@ void Assembly::Builder::lower_linear() {
     self_.linear_start_.push_back(static_cast<int>(self_.linear_terms_.size()));
     self_.linear_value_.push_back(linear.value);
     ++row;
+  }
+}
+
+void Assembly::Builder::build_mass() {
+  self_.mass_pattern_.start.assign(self_.variables_ + 1, 0);
+  for (const MassEntry& entry : model_.mass()) {
+    ++self_.mass_pattern_.start[entry.col + 1];
+    self_.mass_pattern_.row.push_back(entry.row);
+    self_.mass_.push_back(entry.value);
+  }
+  for (int j = 0; j < self_.variables_; ++j) {
+    self_.mass_pattern_.start[j + 1] += self_.mass_pattern_.start[j];
   }
 }
 

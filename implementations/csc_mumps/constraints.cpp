@@ -76,28 +76,34 @@ void Assembly::evaluate_linear(const double* q) {
   }
 }
 
-/// weights_ = dPhi_q/dt v, Eq. (7); none of linear constraints, Eq. (8).
-void Assembly::evaluate_weights(const double* v) {
-  dimension_ == 2 ? evaluate_weights_in<2>(v) : evaluate_weights_in<3>(v);
-  std::fill(weights_.begin() + linear_row_, weights_.end(), 0.0);
+void Assembly::velocity_terms(const double* q, double* phi_t) const {
+  std::fill(phi_t, phi_t + phi_.size(), 0.0);
+  if (!drivers_.empty()) drivers_.add_velocity(q, phi_t);
 }
 
+void Assembly::acceleration_terms(const double* q, const double* v, double* free_part) const {
+  dimension_ == 2 ? evaluate_squares<2>(v, free_part) : evaluate_squares<3>(v, free_part);
+  std::fill(free_part + linear_row_, free_part + phi_.size(), 0.0);  // Eq. (8)
+  if (!drivers_.empty()) drivers_.add_acceleration(q, free_part);
+}
+
+/// result = dPhi_q/dt v, Eq. (7), of all but linear constraints.
 template <int kDimension>
-void Assembly::evaluate_weights_in(const double* v) {
+void Assembly::evaluate_squares(const double* v, double* result) const {
   for (const Distance& distance : distances_) {
     double square = 0.0;
     for (int axis = 0; axis < kDimension; ++axis) {
       const double edge = v[distance.first + axis] - v[distance.second + axis];
       square += edge * edge;
     }
-    weights_[distance.row] = 2.0 * square;
+    result[distance.row] = 2.0 * square;
   }
   for (const Dot& dot : dots_) {
     double product = 0.0;
     for (int axis = 0; axis < kDimension; ++axis) {
       product += (v[dot.a + axis] - v[dot.b + axis]) * (v[dot.c + axis] - v[dot.d + axis]);
     }
-    weights_[dot.row] = 2.0 * product;
+    result[dot.row] = 2.0 * product;
   }
   for (const Bilinear& bilinear : bilinears_) {
     double product = 0.0;
@@ -107,7 +113,7 @@ void Assembly::evaluate_weights_in(const double* v) {
                    (v[bilinear.c + j] - v[bilinear.d + j]);
       }
     }
-    weights_[bilinear.row] = 2.0 * product;
+    result[bilinear.row] = 2.0 * product;
   }
 }
 

@@ -124,8 +124,7 @@ void Forces::apply(int row, double force, double* right) const {
   for (int k = start_[row]; k < start_[row + 1]; ++k) right[column_[k]] += force * gradient_[k];
 }
 
-void Forces::add_to_tangent(double* tangent) const {
-  const int* place = place_in_tangent_.data();
+void Forces::add_to_tangent(const int* place, double* tangent) const {
   for (int row = 0; row < coupling_rows(); ++row) {
     const int count = start_[row + 1] - start_[row];
     const double* g = gradient_.data() + start_[row];

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <initializer_list>
-#include <span>
-#include <utility>
 #include <vector>
 
 #include "mbs/model.hpp"
@@ -22,18 +20,21 @@ class Forces {
 
   [[nodiscard]] bool empty() const { return start_.size() < 2; }
 
-  /// The elements that couple coordinates in T, and these coordinates, ascending.
-  [[nodiscard]] int coupling_rows() const { return static_cast<int>(rank_.size()); }
-  [[nodiscard]] std::span<const int> columns(int row) const {
-    return std::span(column_).subspan(start_[row], start_[row + 1] - start_[row]);
+  /// visit(row, column), row >= column, of every entry that each element has in T.
+  template <class Visit>
+  void visit_couplings(Visit visit) const {
+    for (int row = 0; row < coupling_rows(); ++row) {
+      for (int i = start_[row]; i < start_[row + 1]; ++i) {
+        for (int j = start_[row]; j <= i; ++j) visit(column_[i], column_[j]);
+      }
+    }
   }
-  /// Takes the places in T of all pairs (columns(row)[i], columns(row)[j]), i outer, j <= i.
-  void set_places(std::vector<int> places) { place_in_tangent_ = std::move(places); }
 
   /// Gradients and factors at q, v (extended); right (n) -= Q of the elements.
   void evaluate(const double* q, const double* v, double* right);
-  /// tangent += (Delta t / 2) C + (Delta t^2 / 4) K, with the gradients evaluated last.
-  void add_to_tangent(double* tangent) const;
+  /// tangent += (Delta t / 2) C + (Delta t^2 / 4) K, with the gradients evaluated last; `place` has
+  /// the place in it of each entry, in the order of visit_couplings().
+  void add_to_tangent(const int* place, double* tangent) const;
   /// y (n) += [(Delta t / 2) C + (Delta t^2 / 4) K] x (n), with the gradients evaluated last.
   void multiply(const double* x, double* y) const;
 
@@ -53,6 +54,8 @@ class Forces {
     double torque;
   };
 
+  /// The elements that couple coordinates in T come first.
+  [[nodiscard]] int coupling_rows() const { return static_cast<int>(rank_.size()); }
   void add_row(const ExtendedPoints& points, std::initializer_list<int> row);
   template <int kDimension>
   const int* evaluate_springs(const double* q, const double* v, const int* place, double* right);
@@ -77,7 +80,6 @@ class Forces {
 
   std::vector<double> rank_;        // a coupling row: factor of g g'
   std::vector<double> transverse_;  // a spring: factor of the identity in its 2 x 2 blocks
-  std::vector<int> place_in_tangent_;
 };
 
 }  // namespace mbs::csc_mumps

@@ -12,10 +12,13 @@ Implementation implementation() {
   self.library = "MUMPS";
   self.version = MultifrontalSolver::version();
   self.licence = "CECILL-C";
-  self.variants.push_back({.name = "spd",
-                           .description = "SYM = 1: no pivoting, AMD ordering, analysis once",
-                           .create = make_simulation,
-                           .allocates = "MUMPS allocates its workspaces anew in every call"});
+  self.variants.push_back(
+      {.name = "spd",
+       .description =
+           "SYM = 1: no pivoting, AMD ordering, analysis once (saddle-point form: SYM = 2)",
+       .create = make_simulation,
+       .allocates = "MUMPS allocates its workspaces anew in every call",
+       .serves = {.saddle_point = true}});
   return self;
 }
 

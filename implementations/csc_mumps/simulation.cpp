@@ -1,26 +1,32 @@
-// Prediction, Newton passes with multiplier updates, projections.
+// Prediction, Newton passes, correction; which form they serve is chosen here, once.
 #include "simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "penalty_simulation.hpp"
+#include "saddle_point_simulation.hpp"
+
 namespace mbs::csc_mumps {
 
 std::unique_ptr<Simulation> make_simulation(const Model& model, const StepSettings& settings) {
-  return std::make_unique<CscMumpsSimulation>(model, settings);
+  if (settings.scheme == Scheme::saddle_point) {
+    return std::make_unique<SaddlePointSimulation>(model, settings);
+  }
+  return std::make_unique<PenaltySimulation>(model, settings);
 }
 
-CscMumpsSimulation::CscMumpsSimulation(const Model& model, const StepSettings& settings)
+CscMumpsSimulation::CscMumpsSimulation(const Model& model, const StepSettings& settings,
+                                       int unknowns)
     : Simulation(model, settings),
       variables_(model.variables()),
       settings_(settings),
       velocity_factor_(2.0 / settings.step),
       acceleration_factor_(4.0 / (settings.step * settings.step)),
-      assembly_(model, settings.step, settings.penalty),
-      solver_(assembly_.pattern(), assembly_.tangent()),
+      assembly_(model, settings.step),
       a_(variables_, 0.0),
       lambda_(model.constraints(), 0.0),
-      x_(variables_, 0.0) {
+      x_(unknowns, 0.0) {
   const std::span<const double> fixed = assembly_.fixed_coordinates();
   q_.assign(model.initial_position().begin(), model.initial_position().end());
   q_.insert(q_.end(), fixed.begin(), fixed.end());
@@ -72,22 +78,17 @@ void CscMumpsSimulation::predict() {
 }
 
 CscMumpsSimulation::Pass CscMumpsSimulation::newton_pass() {
-  phases_.enter(Phase::evaluation);
-  assembly_.newton_right(q_.data(), v_.data(), a_.data(), lambda_.data(), x_.data());
-  phases_.enter(Phase::assembly);
-  if (!assembly_.evaluate_tangent()) return Pass::failed;
-  phases_.enter(Phase::factorization);  // with the solution in it: one call does both
-  if (!solver_.factorize_and_solve(x_)) return Pass::failed;  // Eq. (4)
+  if (!solve_newton()) return Pass::failed;
   phases_.enter(Phase::other);
   const bool converged = correct();
   phases_.enter(Phase::evaluation);
   assembly_.evaluate_constraints(q_.data());
   phases_.enter(Phase::other);
-  raise_multipliers();
+  update_multipliers();
   return converged ? Pass::converged : Pass::unconverged;
 }
 
-/// Applies Delta q = x_. True if all of it is within the tolerance; a NaN is not.
+/// Applies Delta q, the beginning of x_. True if all of it is within the tolerance; a NaN is not.
 bool CscMumpsSimulation::correct() {
   int outside = 0;
   for (int i = 0; i < variables_; ++i) {
@@ -98,29 +99,6 @@ bool CscMumpsSimulation::correct() {
     a_[i] += acceleration_factor_ * change;  // Eq. (2)
   }
   return outside == 0;
-}
-
-void CscMumpsSimulation::raise_multipliers() {
-  const double* phi = assembly_.phi();
-  for (std::size_t i = 0; i < lambda_.size(); ++i) lambda_[i] += settings_.penalty * phi[i];
-}
-
-/// Eq. (6): v, then a, as far as asked for, with the factors of the last pass. False if the solver
-/// gave up.
-bool CscMumpsSimulation::project() {
-  if (settings_.projections == Projections::none) return true;
-  phases_.enter(Phase::projection);
-  assembly_.velocity_right(q_.data(), v_.data(), x_.data());
-  phases_.enter(Phase::solve);
-  if (!solver_.solve(x_)) return false;
-  phases_.enter(Phase::projection);
-  std::copy(x_.begin(), x_.end(), v_.begin());
-  if (settings_.projections == Projections::velocity) return true;
-  assembly_.acceleration_right(q_.data(), v_.data(), a_.data(), x_.data());
-  phases_.enter(Phase::solve);
-  if (!solver_.solve(x_)) return false;
-  a_.swap(x_);
-  return true;
 }
 
 }  // namespace mbs::csc_mumps

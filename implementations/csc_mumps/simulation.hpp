@@ -1,4 +1,4 @@
-// One time step of paper/README.md with compressed sparse columns and a multifrontal solver.
+// One time step of paper/README.md, as far as it is the same for both forms of the equations.
 #pragma once
 
 #include <memory>
@@ -6,21 +6,40 @@
 
 #include "assembly.hpp"
 #include "mbs/simulation.hpp"
-#include "solver.hpp"
 
 namespace mbs::csc_mumps {
 
 /// The factory of the registry. Throws Unsupported if MUMPS cannot be set up for `model`.
 std::unique_ptr<Simulation> make_simulation(const Model& model, const StepSettings& settings);
 
+/// Prediction, the loop of passes, the correction. What a pass solves is up to the form.
 class CscMumpsSimulation : public Simulation {
  public:
-  CscMumpsSimulation(const Model& model, const StepSettings& settings);
+  /// `unknowns`: order of the form's matrix, n or more.
+  CscMumpsSimulation(const Model& model, const StepSettings& settings, int unknowns);
 
  protected:
   void do_set_state(const State& state) override;
   StepOutcome do_step() override;
   void do_get_state(State& state) const override;
+
+  /// Makes x_ begin with Delta q, for the constraints evaluated at q_. False if the matrix cannot
+  /// be factorized.
+  virtual bool solve_newton() = 0;
+  /// After the correction, with the constraints evaluated at the new q_.
+  virtual void update_multipliers() = 0;
+  /// Solves for v_, then for a_, as far as asked for, with the factors of the last pass. False if
+  /// the solver gave up.
+  virtual bool project() = 0;
+
+  const int variables_;
+  const StepSettings settings_;
+  const double velocity_factor_;      // 2 / Delta t
+  const double acceleration_factor_;  // 4 / Delta t^2
+  Assembly assembly_;
+  std::vector<double> q_, v_;       // extended; v_ ends in driven velocities, or zeros
+  std::vector<double> a_, lambda_;  // n, m
+  std::vector<double> x_;           // unknowns; handed to the solver and got back from it
 
  private:
   /// What one Newton pass came to.
@@ -29,18 +48,6 @@ class CscMumpsSimulation : public Simulation {
   void predict();
   Pass newton_pass();
   bool correct();
-  void raise_multipliers();
-  bool project();
-
-  const int variables_;
-  const StepSettings settings_;
-  const double velocity_factor_;      // 2 / Delta t
-  const double acceleration_factor_;  // 4 / Delta t^2
-  Assembly assembly_;
-  MultifrontalSolver solver_;
-  std::vector<double> q_, v_;       // extended; v_ ends in driven velocities, or zeros
-  std::vector<double> a_, lambda_;  // n, m
-  std::vector<double> x_;           // n; handed to the solver and got back from it
 };
 
 }  // namespace mbs::csc_mumps

@@ -1,0 +1,65 @@
+// Right-hand sides and solutions of the penalty form.
+#include "penalty_simulation.hpp"
+
+#include <algorithm>
+
+namespace mbs::csc_mumps {
+
+namespace {
+
+Triplets triplets_of(const ColumnPattern& pattern) {
+  Triplets result{pattern.columns(), {}, {}};
+  result.add(pattern);
+  return result;
+}
+
+}  // namespace
+
+PenaltySimulation::PenaltySimulation(const Model& model, const StepSettings& settings)
+    : CscMumpsSimulation(model, settings, model.variables()),
+      reaction_factor_(settings.step * settings.step / 4.0 * settings.penalty),
+      tangent_(model, assembly_, settings),
+      solver_(triplets_of(tangent_.pattern()), tangent_.values()),
+      weights_(model.constraints(), 0.0) {}
+
+bool PenaltySimulation::solve_newton() {
+  phases_.enter(Phase::evaluation);
+  const double* phi = assembly_.phi().data();
+  for (std::size_t i = 0; i < weights_.size(); ++i) {
+    weights_[i] = lambda_[i] + settings_.penalty * phi[i];
+  }
+  assembly_.balance(q_.data(), v_.data(), a_.data(), weights_.data(), x_.data());  // Eq. (3)
+  phases_.enter(Phase::assembly);
+  if (!tangent_.evaluate()) return false;
+  phases_.enter(Phase::factorization);     // with the solution in it: one call does both
+  return solver_.factorize_and_solve(x_);  // Eq. (4)
+}
+
+void PenaltySimulation::update_multipliers() {
+  const double* phi = assembly_.phi().data();
+  for (std::size_t i = 0; i < lambda_.size(); ++i) lambda_[i] += settings_.penalty * phi[i];
+}
+
+bool PenaltySimulation::project() {
+  if (settings_.projections == Projections::none) return true;
+  phases_.enter(Phase::projection);
+  assembly_.multiply_inertia(v_.data(), x_.data());  // Eq. (6)
+  if (assembly_.is_driven()) {
+    assembly_.velocity_terms(q_.data(), weights_.data());
+    assembly_.subtract_reaction(reaction_factor_, weights_.data(), x_.data());
+  }
+  phases_.enter(Phase::solve);
+  if (!solver_.solve(x_)) return false;
+  phases_.enter(Phase::projection);
+  std::copy(x_.begin(), x_.end(), v_.begin());
+  if (settings_.projections == Projections::velocity) return true;
+  assembly_.acceleration_terms(q_.data(), v_.data(), weights_.data());
+  assembly_.multiply_inertia(a_.data(), x_.data());  // Eq. (6)
+  assembly_.subtract_reaction(reaction_factor_, weights_.data(), x_.data());
+  phases_.enter(Phase::solve);
+  if (!solver_.solve(x_)) return false;
+  a_.swap(x_);
+  return true;
+}
+
+}  // namespace mbs::csc_mumps
