@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "coupling.hpp"
 #include "force_layout.hpp"
 #include "mbs/model.hpp"
-#include "symbolic.hpp"
 #include "vectors.hpp"
 
 namespace mbs::csc_umfpack {
@@ -25,7 +25,7 @@ class Forces {
 
   /// y (n) += (Delta t^2 / 4) (Q - force() - driven mass), Eq. (11), at x and v laid out alike.
   void evaluate(const double* x, const double* v, double* y);
-  /// T += (Delta t / 2) C + (Delta t^2 / 4) K, into the places of the schedule.
+  /// T += (Delta t / 2) C + (Delta t^2 / 4) K, into the places that element_places() gave.
   void add_tangent(const std::vector<Place<D>>& places, double* T) const;
   /// y[k] += [(Delta t / 2) C + (Delta t^2 / 4) K] x[k] for Count vectors (n).
   template <std::size_t Count>

@@ -6,14 +6,22 @@
 #include <memory>
 #include <string>
 
+#include "penalty_system.hpp"
+#include "saddle_point_system.hpp"
 #include "simulation.hpp"
 
 namespace mbs::csc_umfpack {
 namespace {
 
+template <template <int> class System>
+std::unique_ptr<Simulation> create_with(const Model& model, const StepSettings& settings) {
+  if (model.dimension() == 2) return std::make_unique<CscUmfpack<2, System>>(model, settings);
+  return std::make_unique<CscUmfpack<3, System>>(model, settings);
+}
+
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
-  if (model.dimension() == 2) return std::make_unique<CscUmfpack<2>>(model, settings);
-  return std::make_unique<CscUmfpack<3>>(model, settings);
+  return settings.scheme == Scheme::saddle_point ? create_with<SaddlePointSystem>(model, settings)
+                                                 : create_with<PenaltySystem>(model, settings);
 }
 
 std::string version() {
@@ -35,7 +43,8 @@ Implementation implementation() {
                     .description = "one symbolic analysis (symmetric strategy, AMD), no scaling, "
                                    "diagonal pivots, a numeric factorization every pass",
                     .create = create,
-                    .unsymmetric = true}},
+                    .unsymmetric = true,
+                    .serves = {.saddle_point = true}}},
   };
 }
 

@@ -1,13 +1,15 @@
-// Set-up: the patterns of M and T.
+// Set-up: the patterns of M, T and the saddle-point matrix.
 #include "pattern.hpp"
 
 #include <algorithm>
 #include <numeric>
 
 namespace mbs::csc_umfpack {
-namespace {
+int SparsityPattern::position(int row, int col) const {
+  const auto first = rows.begin() + starts[col], last = rows.begin() + starts[col + 1];
+  return static_cast<int>(std::lower_bound(first, last, row) - rows.begin());
+}
 
-/// For every number below `n`, the lists that it is in.
 Lists transpose(const Lists& lists, int n) {
   Lists result;
   result.starts.assign(n + 1, 0);
@@ -19,13 +21,6 @@ Lists transpose(const Lists& lists, int n) {
     for (const int item : lists[r]) result.items[next[item]++] = r;
   }
   return result;
-}
-
-}  // namespace
-
-int SparsityPattern::position(int row, int col) const {
-  const auto first = rows.begin() + starts[col], last = rows.begin() + starts[col + 1];
-  return static_cast<int>(std::lower_bound(first, last, row) - rows.begin());
 }
 
 SparsityPattern mass_pattern(const Model& model) {
@@ -61,6 +56,25 @@ SparsityPattern union_pattern(const SparsityPattern& mass, const Lists& coupled)
     for (int k = mass.starts[col]; k < mass.starts[col + 1]; ++k) add(mass.rows[k]);
     for (const int r : incident[col]) std::ranges::for_each(coupled[r], add);
     std::sort(result.rows.begin() + result.starts.back(), result.rows.end());
+    result.starts.push_back(static_cast<int>(result.rows.size()));
+  }
+  return result;
+}
+
+SparsityPattern bordered_pattern(const SparsityPattern& A, const Lists& rows) {
+  const int n = A.variables();
+  const Lists incident = transpose(rows, n);
+  SparsityPattern result;
+  result.starts.push_back(0);
+  for (int col = 0; col < n; ++col) {
+    result.rows.insert(result.rows.end(), A.rows.begin() + A.starts[col],
+                       A.rows.begin() + A.starts[col + 1]);
+    for (const int r : incident[col]) result.rows.push_back(n + r);
+    result.starts.push_back(static_cast<int>(result.rows.size()));
+  }
+  for (int r = 0; r < rows.count(); ++r) {
+    result.rows.insert(result.rows.end(), rows[r].begin(), rows[r].end());
+    result.rows.push_back(n + r);
     result.starts.push_back(static_cast<int>(result.rows.size()));
   }
   return result;

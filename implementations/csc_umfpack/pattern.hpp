@@ -1,4 +1,4 @@
-// Where the entries of M and T are.
+// Where the entries of M, T and the saddle-point matrix are.
 #pragma once
 
 #include <span>
@@ -38,5 +38,11 @@ SparsityPattern mass_pattern(const Model& model);
 
 /// The pattern of M and of all pairs of numbers that are in one of the lists.
 SparsityPattern union_pattern(const SparsityPattern& mass, const Lists& coupled);
+
+/// The pattern of [A J^T; J D] with diagonal D. `rows` are those of J, numbers in each ascending.
+SparsityPattern bordered_pattern(const SparsityPattern& A, const Lists& rows);
+
+/// For every number below `n`, the lists that it is in.
+Lists transpose(const Lists& lists, int n);
 
 }  // namespace mbs::csc_umfpack

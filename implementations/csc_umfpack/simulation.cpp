@@ -5,22 +5,23 @@
 #include <cmath>
 #include <cstddef>
 
+#include "penalty_system.hpp"
+#include "saddle_point_system.hpp"
+
 namespace mbs::csc_umfpack {
 
-template <int D>
-CscUmfpack<D>::CscUmfpack(const Model& model, const StepSettings& settings)
+template <int D, template <int> class System>
+CscUmfpack<D, System>::CscUmfpack(const Model& model, const StepSettings& settings)
     : Simulation(model, settings),
       settings_(settings),
       n_(model.variables()),
       m_(model.constraints()),
       quarter_(settings.step * settings.step / 4.0),
-      factor_(quarter_ * settings.penalty),
       points_(model),
       mass_(model),
       jacobian_(model, points_),
       forces_(model, points_, settings.step),
-      tangent_(mass_, jacobian_.layout(), forces_.layout(), factor_),
-      solver_(tangent_.pattern()),
+      system_(mass_, jacobian_, forces_, settings),
       drivers_(model, points_, jacobian_.layout()),
       force_(model.force().begin(), model.force().end()),
       q_(n_ + points_.fixed.size(), 0.0),
@@ -28,15 +29,14 @@ CscUmfpack<D>::CscUmfpack(const Model& model, const StepSettings& settings)
       a_(n_),
       lambda_(m_),
       Phi_(m_),
-      row_factors_(m_),
-      rhs_(n_),
-      rhs_a_(n_),
+      rhs_(system_.size()),
+      rhs_a_(system_.size()),
       delta_q_(n_) {
   std::ranges::copy(points_.fixed, q_.begin() + n_);
 }
 
-template <int D>
-void CscUmfpack<D>::do_set_state(const State& state) {
+template <int D, template <int> class System>
+void CscUmfpack<D, System>::do_set_state(const State& state) {
   std::ranges::copy(state.q, q_.begin());
   std::ranges::copy(state.v, v_.begin());
   std::ranges::copy(state.a, a_.begin());
@@ -44,8 +44,8 @@ void CscUmfpack<D>::do_set_state(const State& state) {
   for (int row = 0; row < m_; ++row) lambda_[row] = state.lambda[order[row]];
 }
 
-template <int D>
-void CscUmfpack<D>::do_get_state(State& state) const {
+template <int D, template <int> class System>
+void CscUmfpack<D, System>::do_get_state(State& state) const {
   std::copy_n(q_.begin(), n_, state.q.begin());
   std::copy_n(v_.begin(), n_, state.v.begin());
   std::ranges::copy(a_, state.a.begin());
@@ -53,8 +53,8 @@ void CscUmfpack<D>::do_get_state(State& state) const {
   for (int row = 0; row < m_; ++row) state.lambda[order[row]] = lambda_[row];
 }
 
-template <int D>
-StepOutcome CscUmfpack<D>::do_step() {
+template <int D, template <int> class System>
+StepOutcome CscUmfpack<D, System>::do_step() {
   if (!drivers_.empty()) drive();
   predict();
   StepOutcome outcome{StepStatus::pass_limit, 0};
@@ -62,14 +62,14 @@ StepOutcome CscUmfpack<D>::do_step() {
     ++outcome.passes;
     evaluate_residual();
     phases_.enter(Phase::assembly);
-    tangent_.update(jacobian_, forces_);
+    system_.assemble();
     phases_.enter(Phase::factorization);
-    if (!solver_.factorize(tangent_.values())) {
+    if (!system_.factorize()) {
       phases_.enter(Phase::other);
       return {StepStatus::factorization_failed, outcome.passes};
     }
     phases_.enter(Phase::solve);
-    solver_.solve(rhs_.data(), delta_q_.data());  // Eq. (4)
+    system_.solve(rhs_.data(), delta_q_.data());  // Eq. (4) or (12)
     phases_.enter(Phase::other);
     if (correct()) outcome.status = StepStatus::converged;
     update_multipliers();
@@ -80,16 +80,16 @@ StepOutcome CscUmfpack<D>::do_step() {
   return outcome;
 }
 
-template <int D>
-void CscUmfpack<D>::drive() {
+template <int D, template <int> class System>
+void CscUmfpack<D, System>::drive() {
   drivers_.sample(time());
   drivers_.move(q_.data(), v_.data());
   drivers_.set_values(jacobian_);
   drivers_.set_force(force_.data());
 }
 
-template <int D>
-void CscUmfpack<D>::predict() {
+template <int D, template <int> class System>
+void CscUmfpack<D, System>::predict() {
   const double h = settings_.step;
   double *q = q_.data(), *v = v_.data(), *a = a_.data();
   for (int i = 0; i < n_; ++i) {
@@ -103,18 +103,15 @@ void CscUmfpack<D>::predict() {
   jacobian_.evaluate(q, Phi_.data());
 }
 
-template <int D>
-void CscUmfpack<D>::evaluate_residual() {
-  for (int row = 0; row < m_; ++row) {
-    row_factors_[row] = quarter_ * (lambda_[row] + settings_.penalty * Phi_[row]);
-  }
+template <int D, template <int> class System>
+void CscUmfpack<D, System>::evaluate_residual() {
   mass_.residual(a_.data(), force_.data(), quarter_, rhs_.data());
   forces_.evaluate(q_.data(), v_.data(), rhs_.data());
-  jacobian_.subtract_transpose_product(row_factors_.data(), rhs_.data());  // -f, Eq. (3)
+  system_.add_constraints(lambda_.data(), Phi_.data(), rhs_.data());
 }
 
-template <int D>
-bool CscUmfpack<D>::correct() {
+template <int D, template <int> class System>
+bool CscUmfpack<D, System>::correct() {
   const double to_v = 2.0 / settings_.step, to_a = to_v * to_v;
   const double tolerance = settings_.tolerance;
   double *q = q_.data(), *v = v_.data(), *a = a_.data();
@@ -129,46 +126,35 @@ bool CscUmfpack<D>::correct() {
   return outside == 0;
 }
 
-template <int D>
-void CscUmfpack<D>::update_multipliers() {
+template <int D, template <int> class System>
+void CscUmfpack<D, System>::update_multipliers() {
   phases_.enter(Phase::evaluation);
   jacobian_.evaluate(q_.data(), Phi_.data());
-  for (int row = 0; row < m_; ++row) lambda_[row] += settings_.penalty * Phi_[row];  // Eq. (1)
+  system_.update_multipliers(Phi_.data(), lambda_.data());
 }
 
-template <int D>
+template <int D, template <int> class System>
 template <std::size_t Count>
-void CscUmfpack<D>::project() {
+void CscUmfpack<D, System>::project() {
   phases_.enter(Phase::projection);
   const double* moving[] = {v_.data(), a_.data()};
   double* sides[] = {rhs_.data(), rhs_a_.data()};
   mass_.multiply<Count>(moving, sides);
   forces_.template add_product<Count>(moving, sides);
-  project_velocity();
-  if constexpr (Count == 2) project_acceleration();
-}
-
-template <int D>
-void CscUmfpack<D>::project_velocity() {
-  if (!drivers_.empty()) {
-    drivers_.rates(q_.data(), factor_, row_factors_);
-    jacobian_.subtract_transpose_product(row_factors_.data(), rhs_.data());
+  system_.add_rates(drivers_, q_.data(), rhs_.data());
+  phases_.enter(Phase::solve);
+  system_.solve(rhs_.data(), v_.data());  // Eq. (6) or (13)
+  if constexpr (Count == 2) {
+    phases_.enter(Phase::projection);
+    system_.add_accelerations(drivers_, q_.data(), v_.data(), rhs_a_.data());
+    phases_.enter(Phase::solve);
+    system_.solve(rhs_a_.data(), a_.data());  // Eq. (6) or (13)
   }
-  phases_.enter(Phase::solve);
-  solver_.solve(rhs_.data(), v_.data());  // Eq. (6)
 }
 
-template <int D>
-void CscUmfpack<D>::project_acceleration() {
-  phases_.enter(Phase::projection);
-  jacobian_.velocity_term(v_.data(), factor_, row_factors_.data());
-  if (!drivers_.empty()) drivers_.add_accelerations(q_.data(), factor_, row_factors_);
-  jacobian_.subtract_transpose_product(row_factors_.data(), rhs_a_.data());
-  phases_.enter(Phase::solve);
-  solver_.solve(rhs_a_.data(), a_.data());  // Eq. (6)
-}
-
-template class CscUmfpack<2>;
-template class CscUmfpack<3>;
+template class CscUmfpack<2, PenaltySystem>;
+template class CscUmfpack<3, PenaltySystem>;
+template class CscUmfpack<2, SaddlePointSystem>;
+template class CscUmfpack<3, SaddlePointSystem>;
 
 }  // namespace mbs::csc_umfpack

@@ -9,11 +9,11 @@
 #include "forces.hpp"
 #include "jacobian.hpp"
 #include "mbs/simulation.hpp"
-#include "solver.hpp"
 
 namespace mbs::csc_umfpack {
 
-template <int D>
+/// `System` is PenaltySystem or SaddlePointSystem: the linear system of passes and projections.
+template <int D, template <int> class System>
 class CscUmfpack final : public Simulation {
  public:
   CscUmfpack(const Model& model, const StepSettings& settings);
@@ -27,42 +27,37 @@ class CscUmfpack final : public Simulation {
   void drive();
   /// Step 1: q, v, a at the end of the step; Phi and Phi_q there.
   void predict();
-  /// rhs = -f, Eq. (3), from q, v, a, lambda, Phi and Phi_q; the elements' values for T.
+  /// The right-hand side of a pass from q, v, a, lambda, Phi and Phi_q; the elements' values.
   void evaluate_residual();
   /// Adds Delta q to the motion. True if all |Delta q| are within the tolerance, no NaN among them.
   [[nodiscard]] bool correct();
-  /// Phi and Phi_q at the new q, and lambda by Eq. (1).
+  /// Phi, Phi_q and lambda at the new q.
   void update_multipliers();
-  /// Step 3, Eq. (6): the first Count of the projections.
+  /// Step 3: the first Count of the projections.
   template <std::size_t Count>
   void project();
-  void project_velocity();
-  void project_acceleration();
 
   const StepSettings settings_;
   const int n_;
   const int m_;
   const double quarter_;  ///< Delta t^2 / 4, s^2
-  const double factor_;   ///< (Delta t^2 / 4) alpha, kg / m^2
 
   const PointLayout points_;
   MassMatrix mass_;
   Jacobian<D> jacobian_;
   Forces<D> forces_;
-  Tangent<D> tangent_;
-  Solver solver_;
+  System<D> system_;
   Drivers<D> drivers_;
   std::vector<double> force_;  ///< n, Q without elements: constant during a step
 
-  std::vector<double> q_;            ///< n, then the fixed points: x of the layout
-  std::vector<double> v_;            ///< n, then those of the fixed points
-  std::vector<double> a_;            ///< n
-  std::vector<double> lambda_;       ///< m, rows of the layout
-  std::vector<double> Phi_;          ///< m, rows of the layout
-  std::vector<double> row_factors_;  ///< m, what multiplies the rows of Phi_q
-  std::vector<double> rhs_;          ///< n
-  std::vector<double> rhs_a_;        ///< n, right-hand side for a' in Eq. (6)
-  std::vector<double> delta_q_;      ///< n
+  std::vector<double> q_;        ///< n, then the fixed points: x of the layout
+  std::vector<double> v_;        ///< n, then those of the fixed points
+  std::vector<double> a_;        ///< n
+  std::vector<double> lambda_;   ///< m, rows of the layout
+  std::vector<double> Phi_;      ///< m, rows of the layout
+  std::vector<double> rhs_;      ///< of the system
+  std::vector<double> rhs_a_;    ///< of the system, for a' in Eq. (6) or (13)
+  std::vector<double> delta_q_;  ///< n
 };
 
 }  // namespace mbs::csc_umfpack

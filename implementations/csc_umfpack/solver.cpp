@@ -18,13 +18,13 @@ void Solver::FreeNumeric::operator()(void* numeric) const {
   umfpack_di_free_numeric(&numeric);
 }
 
-Solver::Solver(const SparsityPattern& pattern)
+Solver::Solver(const SparsityPattern& pattern, const std::vector<int>& order)
     : pattern_(pattern), integers_(pattern.variables()), reals_(pattern.variables()) {
   umfpack_di_defaults(control_.data());
   control_[UMFPACK_PRL] = 0;
   control_[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
   control_[UMFPACK_ORDERING] = UMFPACK_ORDERING_AMD;
-  // T is positive definite: the diagonal will do as pivots, whatever the scale of its rows.
+  // The diagonal will do as pivots, whatever the scale of rows.
   control_[UMFPACK_SYM_PIVOT_TOLERANCE] = 0.0;
   control_[UMFPACK_SCALE] = UMFPACK_SCALE_NONE;
   control_[UMFPACK_BLOCK_SIZE] = 16;  // columns of a front that are put off; fronts are small here
@@ -32,21 +32,23 @@ Solver::Solver(const SparsityPattern& pattern)
 
   const int n = pattern.variables();
   void* symbolic = nullptr;
-  const int status = umfpack_di_symbolic(n, n, pattern.starts.data(), pattern.rows.data(), nullptr,
-                                         &symbolic, control_.data(), info_.data());
+  const int *starts = pattern.starts.data(), *rows = pattern.rows.data();
+  const int status = order.empty() ? umfpack_di_symbolic(n, n, starts, rows, nullptr, &symbolic,
+                                                         control_.data(), info_.data())
+                                   : umfpack_di_qsymbolic(n, n, starts, rows, nullptr, order.data(),
+                                                          &symbolic, control_.data(), info_.data());
   symbolic_.reset(symbolic);
   if (status != UMFPACK_OK) {
-    throw Unsupported("UMFPACK refuses to analyse the tangent matrix, status " +
-                      std::to_string(status));
+    throw Unsupported("UMFPACK refuses to analyse the matrix, status " + std::to_string(status));
   }
 }
 
-bool Solver::factorize(const double* T) {
+bool Solver::factorize(const double* A) {
   numeric_.reset();
   memory_.reset();
   const NumericMemory::Use use(memory_);
   void* numeric = nullptr;
-  const int status = umfpack_di_numeric(pattern_.starts.data(), pattern_.rows.data(), T,
+  const int status = umfpack_di_numeric(pattern_.starts.data(), pattern_.rows.data(), A,
                                         symbolic_.get(), &numeric, control_.data(), info_.data());
   numeric_.reset(numeric);
   return status == UMFPACK_OK;  // UMFPACK_WARNING_singular_matrix is a failure too

@@ -6,21 +6,23 @@
 #include <vector>
 
 #include "numeric_memory.hpp"
-#include "symbolic.hpp"
+#include "pattern.hpp"
 
 namespace mbs::csc_umfpack {
 
-/// Solves T x = b, where T is symmetric positive definite and has the pattern that the solver was
-/// made from, which must outlive it.
+/// Solves A x = b, where A is symmetric and has the pattern that the solver was made from, which
+/// must outlive it. Pivots are taken from the diagonal: A is positive definite, or quasi-definite
+/// and given with an order in which its diagonal will do.
 class Solver {
  public:
-  /// Analyses the pattern. Throws Unsupported if UMFPACK refuses it.
-  explicit Solver(const SparsityPattern& pattern);
+  /// Analyses the pattern. `order` lists what to eliminate from first to last; empty: AMD's order.
+  /// Throws Unsupported if UMFPACK refuses the pattern.
+  explicit Solver(const SparsityPattern& pattern, const std::vector<int>& order = {});
 
-  /// `T` are values in the order of the pattern. False if T is singular or not finite, or if memory
+  /// `A` are values in the order of the pattern. False if A is singular or not finite, or if memory
   /// runs out; solve() must not be called then.
-  [[nodiscard]] bool factorize(const double* T);
-  /// x = T^-1 b with the last factorization; x and b (n) do not overlap.
+  [[nodiscard]] bool factorize(const double* A);
+  /// x = A^-1 b with the last factorization; x and b (n) do not overlap.
   void solve(const double* b, double* x);
 
  private:

@@ -3,43 +3,14 @@
 
 #include <algorithm>
 #include <numeric>
-#include <span>
 
 namespace mbs::csc_umfpack {
 namespace {
 
-/// The free points of every spring and torsion spring, as ranges of ForceLayout::ends.
-std::vector<std::span<const PointLayout::Signs>> elements(const ForceLayout& forces) {
-  std::vector<std::span<const PointLayout::Signs>> result;
-  const auto add = [&](const auto& element) {
-    result.push_back(std::span(forces.ends).subspan(element.first, element.last - element.first));
-  };
-  std::ranges::for_each(forces.springs, add);
-  std::ranges::for_each(forces.torsion_springs, add);
-  return result;
-}
-
 /// The sets of coordinates that T couples: those of every row of Phi_q and of every element.
 Lists coupled_coordinates(const JacobianLayout& layout, const ForceLayout& forces, int dimension) {
-  Lists sets;
-  const auto add_point = [&](int offset) {
-    for (int k = 0; k < dimension; ++k) sets.items.push_back(offset + k);
-  };
-  const int block_rows = layout.rows() - static_cast<int>(layout.linears.size());
-  auto block = layout.blocks.begin();
-  for (int row = 0; row < block_rows; ++row, sets.end_list()) {
-    for (; block != layout.blocks.end() && block->row == row; ++block) add_point(block->offset);
-  }
-  for (const auto& linear : layout.linears) {
-    for (int t = linear.first; t < linear.last; ++t) {
-      sets.items.push_back(layout.terms[t].coordinate);
-    }
-    sets.end_list();
-  }
-  for (const auto& element : elements(forces)) {
-    for (const auto& end : element) add_point(end.offset);
-    sets.end_list();
-  }
+  Lists sets = row_coordinates(layout, dimension);
+  add_element_coordinates(forces, dimension, sets);
   return sets;
 }
 
@@ -99,34 +70,20 @@ std::vector<Product> products(const std::vector<JacobianLayout::Block>& blocks,
 template <int D>
 TangentSchedule<D>::TangentSchedule(const SparsityPattern& mass, const JacobianLayout& layout,
                                     const ForceLayout& forces)
-    : pattern(union_pattern(mass, coupled_coordinates(layout, forces, D))) {
+    : pattern(union_pattern(mass, coupled_coordinates(layout, forces, D))),
+      places(element_places<D>(pattern, forces)) {
   Product last{-1, -1};
   for (const Product& product : products(layout.blocks, forces, mass.variables())) {
     std::vector<Block>& kind = product.row == product.col ? diagonal : lower;
     if (!product.same_block(last)) {
       const int first = static_cast<int>(pairs.size());
-      kind.push_back({first, first, place(product.row, product.col)});
+      kind.push_back({first, first, {pattern, product.row, product.col}});
       last = product;
     }
     if (product.row_block == Product::kNone) continue;
     pairs.push_back({product.row_block, product.col_block});
     kind.back().last = static_cast<int>(pairs.size());
   }
-  for (const auto& ends : elements(forces)) {
-    for (auto i = ends.begin(); i != ends.end(); ++i) {
-      for (auto j = ends.begin(); j != i + 1; ++j) places.push_back(place(i->offset, j->offset));
-    }
-  }
-}
-
-template <int D>
-Place<D> TangentSchedule<D>::place(int row, int col) const {
-  Place<D> result;
-  for (int k = 0; k < D; ++k) {
-    result.position[k] = pattern.position(row, col + k);
-    result.mirrored[k] = pattern.position(col, row + k);
-  }
-  return result;
 }
 
 template struct TangentSchedule<2>;

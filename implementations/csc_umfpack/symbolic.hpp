@@ -4,21 +4,14 @@
 // the layouts hold all searching and all branching, so that the step has none.
 #pragma once
 
-#include <array>
 #include <vector>
 
+#include "coupling.hpp"
 #include "force_layout.hpp"
 #include "layout.hpp"
 #include "pattern.hpp"
 
 namespace mbs::csc_umfpack {
-
-/// Where a D x D block of T and its transposed block are; the same place on the diagonal.
-template <int D>
-struct Place {
-  std::array<int, D> position{};  ///< where each of its columns starts, in the values of T
-  std::array<int, D> mirrored{};  ///< the same for the transposed block
-};
 
 /// The pattern of T, the union of those of M, Phi_q^T Phi_q, C and K, and two schedules. The rank-k
 /// update: for every D x D block of T that constraints or elements reach, which pairs of blocks of
@@ -41,11 +34,7 @@ struct TangentSchedule {
   SparsityPattern pattern;
   std::vector<Block> diagonal, lower;  ///< pairs of `diagonal` come first
   std::vector<Pair> pairs;
-  /// For springs, then torsion springs: (end i, end j) with j = 0 ... i, for every end i.
-  std::vector<Place<D>> places;
-
- private:
-  [[nodiscard]] Place<D> place(int row, int col) const;  ///< by first coordinates
+  std::vector<Place<D>> places;  ///< of the elements, see element_places()
 };
 
 }  // namespace mbs::csc_umfpack

@@ -1,0 +1,38 @@
+// Set-up: calls AMD and merges the multipliers into its order.
+#include "elimination_order.hpp"
+
+#include <amd.h>
+
+#include <algorithm>
+#include <string>
+
+#include "mbs/simulation.hpp"
+
+namespace mbs::csc_umfpack {
+
+std::vector<int> elimination_order(const SparsityPattern& T, const Lists& rows) {
+  const int n = T.variables();
+  std::vector<int> coordinates(n);
+  const int status =
+      amd_order(n, T.starts.data(), T.rows.data(), coordinates.data(), nullptr, nullptr);
+  if (status != AMD_OK) {
+    throw Unsupported("AMD cannot order the tangent matrix, status " + std::to_string(status));
+  }
+  std::vector<int> places(n);
+  for (int k = 0; k < n; ++k) places[coordinates[k]] = k + 1;
+  Lists last;  // for every row, the place after which its multiplier can follow; 0: at once
+  for (int row = 0; row < rows.count(); ++row, last.end_list()) {
+    int place = 0;
+    for (const int coordinate : rows[row]) place = std::max(place, places[coordinate]);
+    last.items.push_back(place);
+  }
+  const Lists ready = transpose(last, n + 1);
+  std::vector<int> order;
+  for (int place = 0; place <= n; ++place) {
+    if (place > 0) order.push_back(coordinates[place - 1]);
+    for (const int row : ready[place]) order.push_back(n + row);
+  }
+  return order;
+}
+
+}  // namespace mbs::csc_umfpack

@@ -1,0 +1,20 @@
+// The order in which the saddle-point matrix is eliminated.
+#pragma once
+
+#include <vector>
+
+#include "pattern.hpp"
+
+namespace mbs::csc_umfpack {
+
+/// AMD's order of the coordinates on the pattern of T, with every multiplier put right after the
+/// last of the coordinates that its row of Phi_q has. Multipliers are numbered after the
+/// coordinates.
+///
+/// A multiplier's pivot is then -(epsilon + Phi_q (...)^-1 Phi_q^T), of the size of its row. Before
+/// its coordinates it would be epsilon alone, whose inverse is the penalty form's alpha.
+///
+/// Example: coordinates in the order 1, 0, 2 and rows {0, 1}, {2} give 1, 0, 3, 2, 4.
+std::vector<int> elimination_order(const SparsityPattern& T, const Lists& rows);
+
+}  // namespace mbs::csc_umfpack

@@ -1,0 +1,51 @@
+// The linear system of the penalty form: Eqs. (1) and (3) to (6) as far as alpha is in them.
+#pragma once
+
+#include <vector>
+
+#include "assembly.hpp"
+#include "drivers.hpp"
+#include "forces.hpp"
+#include "jacobian.hpp"
+#include "mbs/simulation.hpp"
+#include "solver.hpp"
+
+namespace mbs::csc_umfpack {
+
+/// T and its factors, and what the constraints put into right-hand sides. What it is made from must
+/// outlive it; `jacobian` and `forces` are read as they are at each call.
+template <int D>
+class PenaltySystem {
+ public:
+  PenaltySystem(const MassMatrix& mass, const Jacobian<D>& jacobian, const Forces<D>& forces,
+                const StepSettings& settings);
+
+  /// Length of right-hand sides; the first n numbers are those of the coordinates.
+  [[nodiscard]] int size() const { return tangent_.pattern().variables(); }
+
+  /// Completes the right-hand side of Eq. (4), which has what is free of constraints.
+  void add_constraints(const double* lambda, const double* Phi, double* rhs);
+  void assemble() { tangent_.update(jacobian_, forces_); }
+  [[nodiscard]] bool factorize() { return solver_.factorize(tangent_.values()); }
+  /// x (n) = the solution for the coordinates.
+  void solve(const double* rhs, double* x) { solver_.solve(rhs, x); }
+  /// Eq. (1), with Phi of the new q'.
+  void update_multipliers(const double* Phi, double* lambda) const;
+
+  /// Complete the right-hand sides of Eq. (6), which have T_0 v* and T_0 a*; q and v are laid out
+  /// as x of the layout.
+  void add_rates(const Drivers<D>& drivers, const double* q, double* rhs);
+  void add_accelerations(const Drivers<D>& drivers, const double* q, const double* v, double* rhs);
+
+ private:
+  const Jacobian<D>& jacobian_;
+  const Forces<D>& forces_;
+  const double penalty_;  ///< alpha
+  const double quarter_;  ///< Delta t^2 / 4, s^2
+  const double factor_;   ///< (Delta t^2 / 4) alpha, kg / m^2
+  Tangent<D> tangent_;
+  Solver solver_;
+  std::vector<double> row_factors_;  ///< m, what multiplies the rows of Phi_q
+};
+
+}  // namespace mbs::csc_umfpack

@@ -1,0 +1,58 @@
+// Right-hand sides and solutions of the saddle-point form.
+#include "saddle_point_system.hpp"
+
+#include <algorithm>
+
+namespace mbs::csc_umfpack {
+
+template <int D>
+SaddlePointSystem<D>::SaddlePointSystem(const MassMatrix& mass, const Jacobian<D>& jacobian,
+                                        const Forces<D>& forces, const StepSettings& settings)
+    : jacobian_(jacobian),
+      forces_(forces),
+      n_(mass.pattern().variables()),
+      m_(jacobian.layout().rows()),
+      quarter_(settings.step * settings.step / 4.0),
+      matrix_(mass, jacobian.layout(), forces.layout(), 1.0 / (quarter_ * settings.penalty)),
+      solver_(matrix_.pattern(), matrix_.order()),
+      row_factors_(m_),
+      solution_(n_ + m_) {}
+
+template <int D>
+void SaddlePointSystem<D>::add_constraints(const double* lambda, const double* Phi, double* rhs) {
+  for (int row = 0; row < m_; ++row) {
+    row_factors_[row] = quarter_ * lambda[row];
+    rhs[n_ + row] = -Phi[row];  // Eq. (12)
+  }
+  jacobian_.subtract_transpose_product(row_factors_.data(), rhs);  // -f_0, Eq. (12)
+}
+
+template <int D>
+void SaddlePointSystem<D>::solve(const double* rhs, double* x) {
+  solver_.solve(rhs, solution_.data());
+  std::copy_n(solution_.begin(), n_, x);
+}
+
+template <int D>
+void SaddlePointSystem<D>::update_multipliers(const double*, double* lambda) const {
+  const double* mu = solution_.data() + n_;
+  for (int row = 0; row < m_; ++row) lambda[row] += mu[row] / quarter_;
+}
+
+template <int D>
+void SaddlePointSystem<D>::add_rates(const Drivers<D>& drivers, const double* q,
+                                     double* rhs) const {
+  drivers.rates(q, -1.0, {rhs + n_, rhs + n_ + m_});  // Eq. (13)
+}
+
+template <int D>
+void SaddlePointSystem<D>::add_accelerations(const Drivers<D>& drivers, const double* q,
+                                             const double* v, double* rhs) const {
+  jacobian_.velocity_term(v, -1.0, rhs + n_);                          // Eq. (13)
+  if (!drivers.empty()) drivers.add_accelerations(q, -1.0, rhs + n_);  // Eq. (13)
+}
+
+template class SaddlePointSystem<2>;
+template class SaddlePointSystem<3>;
+
+}  // namespace mbs::csc_umfpack
