@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "lu_solver.hpp"
 #include "newton.hpp"
 #include "penalty_system.hpp"
 #include "rattle.hpp"
@@ -23,9 +24,12 @@ namespace {
 /// No matrix larger than this is stored; there are three or four of them.
 constexpr double kMatrixLimit = 2.0 * 1024 * 1024 * 1024;  // bytes
 
-void require_size(const Model& model, Scheme scheme) {
-  const double columns = std::max(model.variables(), model.constraints());
-  const double rows = scheme == Scheme::penalty ? model.variables() : columns;
+void require_size(const Model& model, const StepSettings& settings) {
+  const bool whole = settings.scheme == Scheme::saddle_point &&
+                     (settings.geometric_stiffness || settings.precision == Precision::mixed);
+  const double n = model.variables(), m = model.constraints();
+  const double columns = whole ? n + m : std::max(n, m);  // `whole` is SaddleLu's
+  const double rows = settings.scheme == Scheme::penalty ? n : columns;
   if (sizeof(double) * columns * rows <= kMatrixLimit) return;
   throw Unsupported("a dense matrix of " + std::to_string(model.variables()) +
                     " variables would exceed 2 GiB");
@@ -52,7 +56,7 @@ bool is_plain(const StepSettings& settings) {
   return settings.scheme == Scheme::penalty &&
          settings.multipliers == MultiplierUpdate::every_pass &&
          settings.tangent == TangentReuse::none && settings.projections_every == 1 &&
-         settings.precision == Precision::double_precision;
+         settings.precision == Precision::double_precision && !settings.geometric_stiffness;
 }
 
 /// `Penalty` and `Saddle` are the linear systems that go with the precision.
@@ -67,18 +71,28 @@ std::unique_ptr<mbs::Simulation> create_in(const Model& model, const StepSetting
   if (!is_trapezoidal(settings.scheme)) return std::make_unique<Rattle<Scalar>>(model, settings);
   using Penalty = PenaltySystem<Scalar, Solver<Scalar>>;
   using Saddle = SaddleSystem<Scalar, SaddleSolver<Scalar>>;
-  return create_newton<Penalty, Saddle>(model, settings);
+  using ExactPenalty = ExactPenaltySystem<Scalar, LuSolver<Scalar>>;
+  using ExactSaddle = ExactSaddleSystem<Scalar, SaddleLu<Scalar>>;
+  return settings.geometric_stiffness ? create_newton<ExactPenalty, ExactSaddle>(model, settings)
+                                      : create_newton<Penalty, Saddle>(model, settings);
+}
+
+std::unique_ptr<mbs::Simulation> create_mixed(const Model& model, const StepSettings& settings) {
+  using Penalty = PenaltySystem<double, Rounded<Solver<float>>>;
+  using Saddle = SaddleSystem<double, Rounded<SaddleLu<float>>>;
+  using ExactPenalty = ExactPenaltySystem<double, Rounded<LuSolver<float>>>;
+  using ExactSaddle = ExactSaddleSystem<double, Rounded<SaddleLu<float>>>;
+  return settings.geometric_stiffness ? create_newton<ExactPenalty, ExactSaddle>(model, settings)
+                                      : create_newton<Penalty, Saddle>(model, settings);
 }
 
 std::unique_ptr<mbs::Simulation> create(const Model& model, const StepSettings& settings) {
-  require_size(model, settings.scheme);
+  require_size(model, settings);
   if (!is_trapezoidal(settings.scheme)) require_no_drivers_or_dampers(model);
   if (is_plain(settings)) return std::make_unique<Simulation>(model, settings);
   if (settings.precision == Precision::single_precision) return create_in<float>(model, settings);
-  if (settings.precision == Precision::double_precision) return create_in<double>(model, settings);
-  using Penalty = PenaltySystem<double, Rounded<Solver<float>>>;
-  using Saddle = SaddleSystem<double, Rounded<SaddleLu>>;
-  return create_newton<Penalty, Saddle>(model, settings);
+  if (settings.precision == Precision::mixed) return create_mixed(model, settings);
+  return create_in<double>(model, settings);
 }
 
 std::string eigen_version() {
@@ -104,7 +118,8 @@ Implementation implementation() {
                                       .tangent_reuse = true,
                                       .projections_every = true,
                                       .single_precision = true,
-                                      .mixed_precision = true}}};
+                                      .mixed_precision = true,
+                                      .geometric_stiffness = true}}};
   return description;
 }
 

@@ -2,6 +2,7 @@
 #include "newton.hpp"
 
 #include "largest.hpp"
+#include "lu_solver.hpp"
 #include "penalty_system.hpp"
 #include "rounded.hpp"
 #include "saddle_lu.hpp"
@@ -96,7 +97,7 @@ bool Newton<System>::pass(StepOutcome& outcome, bool& small) {
 template <typename System>
 bool Newton<System>::factorize(StepOutcome& outcome) {
   phases_.enter(Phase::assembly);
-  system_.assemble();
+  system_.assemble(motion_.lambda);
   phases_.enter(Phase::factorization);
   ++outcome.factorizations;
   const bool factorized = system_.factorize();
@@ -172,6 +173,13 @@ template class Newton<PenaltySystem<float, Solver<float>>>;
 template class Newton<PenaltySystem<double, Rounded<Solver<float>>>>;
 template class Newton<SaddleSystem<double, SaddleSolver<double>>>;
 template class Newton<SaddleSystem<float, SaddleSolver<float>>>;
-template class Newton<SaddleSystem<double, Rounded<SaddleLu>>>;
+template class Newton<SaddleSystem<double, Rounded<SaddleLu<float>>>>;
+
+template class Newton<ExactPenaltySystem<double, LuSolver<double>>>;
+template class Newton<ExactPenaltySystem<float, LuSolver<float>>>;
+template class Newton<ExactPenaltySystem<double, Rounded<LuSolver<float>>>>;
+template class Newton<ExactSaddleSystem<double, SaddleLu<double>>>;
+template class Newton<ExactSaddleSystem<float, SaddleLu<float>>>;
+template class Newton<ExactSaddleSystem<double, Rounded<SaddleLu<float>>>>;
 
 }  // namespace mbs::eigen_dense

@@ -1,27 +1,28 @@
-// Dense LU factorization with partial pivoting of the saddle-point matrix of Eq. (12), in float.
+// Dense LU factorization of the saddle-point matrix of Eq. (12), put together.
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
+
+#include "lu_solver.hpp"
 
 namespace mbs::eigen_dense {
 
-/// What SaddleSolver does, by rows interchanged: it keeps in float what the squares in S lose near
-/// singular positions. Not to be copied or moved, as its parts refer to each other.
+/// What SaddleSolver does, by rows interchanged: T₀ need not be definite, and float keeps what the
+/// squares in S lose near singular positions.
+template <typename Scalar>
 class SaddleLu {
  public:
-  using Scalar = float;
-  using Vector = Eigen::VectorXf;
-  using Matrix = Eigen::MatrixXf;
+  using Vector = Eigen::VectorX<Scalar>;
+  using Matrix = Eigen::MatrixX<Scalar>;
 
-  SaddleLu(Eigen::Index variables, Eigen::Index constraints, float epsilon);
-  SaddleLu(const SaddleLu&) = delete;
-  SaddleLu& operator=(const SaddleLu&) = delete;
+  SaddleLu(Eigen::Index variables, Eigen::Index constraints, Scalar epsilon);
 
   /// Where to write T₀ (n×n, kg; lower triangle read).
   Matrix& leading() { return leading_; }
   /// Where to write Φqᵀ (n×m) before every factorize().
-  auto coupling() { return matrix_.topRightCorner(leading_.rows(), constraints_); }
+  auto coupling() {
+    return whole_.matrix().bottomLeftCorner(constraints_, leading_.rows()).transpose();
+  }
 
   /// There is nothing to be done for T₀ alone.
   void factorize_leading() {}
@@ -30,15 +31,13 @@ class SaddleLu {
   [[nodiscard]] bool factorize();
 
   /// x (n + m) holds the right-hand side on entry and the solution on return.
-  void solve(Vector& x);
+  void solve(Vector& x) { whole_.solve(x); }
 
  private:
   Eigen::Index constraints_;
-  float epsilon_;
-  Matrix leading_;                              ///< T₀
-  Matrix matrix_;                               ///< the whole, then its factors
-  Eigen::PartialPivLU<Eigen::Ref<Matrix>> lu_;  ///< works in matrix_
-  Vector solution_;
+  Scalar epsilon_;
+  Matrix leading_;  ///< T₀
+  LuSolver<Scalar> whole_;
 };
 
 }  // namespace mbs::eigen_dense

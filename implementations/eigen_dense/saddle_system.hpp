@@ -4,12 +4,14 @@
 #include <Eigen/Core>
 
 #include "assembly.hpp"
+#include "geometric_stiffness.hpp"
 #include "motion.hpp"
 
 namespace mbs::eigen_dense {
 
-/// The same interface as PenaltySystem, with SaddleSolver, also Rounded, for LinearSolver.
-template <typename Number, typename LinearSolver>
+/// The same interface as PenaltySystem, with SaddleSolver or SaddleLu for LinearSolver, also
+/// Rounded.
+template <typename Number, typename LinearSolver, typename Stiffness = NoGeometricStiffness>
 class SaddleSystem {
  public:
   using Scalar = Number;
@@ -19,11 +21,12 @@ class SaddleSystem {
       : multiplier_factor_(Scalar(4 / (settings.step * settings.step))),
         epsilon_(Scalar(4 / (settings.penalty * settings.step * settings.step))),
         assembly_(model, settings, layout),
+        stiffness_(model, settings, layout),
         solver_(model.variables(), model.constraints(), MatrixScalar(epsilon_)),
         upper_(Vector::Zero(model.variables())),
         nu_(Vector::Zero(model.constraints())),
         x_(Vector::Zero(model.variables() + model.constraints())) {
-    if (!assembly_.constant_leading()) return;
+    if (!constant_leading()) return;
     assembly_.leading(solver_.leading());
     solver_.factorize_leading();
   }
@@ -36,23 +39,29 @@ class SaddleSystem {
     fill(assembly_.Phi());
   }
   /// The matrix of Eq. (12) with the last Jacobian, C and K.
-  void assemble() {
-    if (!assembly_.constant_leading()) assembly_.leading(solver_.leading());
+  void assemble(const Vector& lambda) {
+    if (!constant_leading()) {
+      assembly_.leading(solver_.leading());
+      stiffness_.keep(lambda);  // Eq. (16)
+      stiffness_.add_tangent(solver_.leading());
+    }
     solver_.coupling() = assembly_.jacobian_transposed().template cast<MatrixScalar>();
     assembly_.keep_leading();
   }
   [[nodiscard]] bool factorize() {
-    if (!assembly_.constant_leading()) solver_.factorize_leading();
+    if (!constant_leading()) solver_.factorize_leading();
     return solver_.factorize();
   }
 
   /// The right-hand sides of Eq. (13) for v', then for a' with that v'.
   void project_velocity(const Motion<Scalar>& motion) {
     assembly_.leading_product(motion.v, upper_);
+    stiffness_.add_product(motion.v, upper_);
     fill(assembly_.velocity_term(motion.q));
   }
   void project_acceleration(const Motion<Scalar>& motion) {
     assembly_.leading_product(motion.a, upper_);
+    stiffness_.add_product(motion.a, upper_);
     fill(assembly_.acceleration_term(motion.q, motion.v));
   }
 
@@ -71,6 +80,7 @@ class SaddleSystem {
   }
   void continue_refinement(const Vector& change) {
     assembly_.kept_leading_product(change, upper_);
+    stiffness_.add_product(change, upper_);
     if (nu_.size() == 0) return;
     nu_ += x_.tail(nu_.size());
     upper_.noalias() -= assembly_.jacobian_transposed() * nu_;
@@ -86,6 +96,10 @@ class SaddleSystem {
  private:
   using MatrixScalar = typename LinearSolver::Matrix::Scalar;
 
+  [[nodiscard]] bool constant_leading() const {
+    return assembly_.constant_leading() && stiffness_.empty();
+  }
+
   void fill(const Vector& minus_lower) {
     x_.head(upper_.size()) = upper_;
     x_.tail(minus_lower.size()) = -minus_lower;
@@ -99,10 +113,15 @@ class SaddleSystem {
   Scalar multiplier_factor_;  ///< 4/Δt², 1/s²
   Scalar epsilon_;            ///< ε of Eq. (12)
   Assembly<Scalar> assembly_;
+  Stiffness stiffness_;
   LinearSolver solver_;
   Vector upper_;  ///< n; the upper part of a right-hand side
   Vector nu_;     ///< m; ν of a projection
   Vector x_;      ///< n + m; right-hand side, then solution
 };
+
+/// With the exact tangent.
+template <typename Number, typename LinearSolver>
+using ExactSaddleSystem = SaddleSystem<Number, LinearSolver, GeometricStiffness<Number>>;
 
 }  // namespace mbs::eigen_dense
