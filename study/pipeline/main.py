@@ -24,7 +24,8 @@ def main(arguments):
     command, *rest = arguments
     try:
         return {"run": run, "figures": figures, "compare": compare, "view": view,
-                "scenes": scenes, "stability": stability, "against": against}[command](rest)
+                "scenes": scenes, "stability": stability, "accuracy": accuracy,
+                "against": against}[command](rest)
     except StudyError as error:
         print(f"study/{command}: {error}", file=sys.stderr)
         return 2
@@ -112,6 +113,11 @@ def view(arguments):
 def scenes(arguments):
     from study.scene_study.main import scenes as run_scenes
     return run_scenes(arguments)
+
+
+def accuracy(arguments):
+    from study.accuracy_study.main import accuracy as run_accuracy
+    return run_accuracy(arguments)
 
 
 def stability(arguments):
