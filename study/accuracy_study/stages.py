@@ -6,8 +6,8 @@ from analysis.accuracy.winners import winners
 from study.accuracy_study import bench, estimate, fills, gate, pairs, regions, settings, subjects, work
 from study.pipeline.contenders import from_json
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import read_json, read_run, write_csv
-from study.pipeline.prepare import digest, digest_of_scene, select, start_named
+from study.pipeline.layout import read_run, write_csv
+from study.pipeline.prepare import digest, digest_of_scene, registry, select, start_named
 from study.pipeline.progress import Teller
 from study.scene_study import problems
 from study.scene_study.main import _choose as choose_problems
@@ -52,12 +52,12 @@ def sentence(choice):
 def run(layout, options):
     """Everything that `options` choose; tables in the results directory."""
     import pandas
+    choice, tell = choose(options, registry()), Teller()
     start_named(layout, "accuracy", options.only, {
         "duration": options.duration, "time_limit": options.time_limit,
         settings.LIST.name: digest(settings.LIST), problems.LIST.name: digest(problems.LIST)} | {
         one.scene: digest_of_scene(one.scene) for one in problems.read_list()[1]})
     recorded = read_run(layout)
-    choice, tell = choose(options, read_json(layout.registry)), Teller()
     print(sentence(choice), flush=True)
     place = bench.Bench(layout, recorded["contexts"], choice.time_limit)
     contenders = {one.variant: one for one in from_json(recorded["contenders"]).values()

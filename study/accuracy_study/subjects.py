@@ -111,7 +111,7 @@ def _extrapolated(entry, bench, default, base, contender):
 
 def _samples(duration, step):
     """(steps from sample to sample, intervals of the metric between) or () if the step meets none."""
-    ratio = Fraction(duration / metric.SAMPLES / step).limit_denominator(64)
+    ratio = Fraction(duration / metric.SAMPLES / step).limit_denominator(8)
     if abs(float(ratio) * step * metric.SAMPLES / duration - 1) > 1e-9:
         return ()
     return ratio.numerator, ratio.denominator
