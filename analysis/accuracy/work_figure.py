@@ -34,7 +34,7 @@ def draw(rows, look, dense, unit, title):
             _front(axes, rows, members)
             axes.set(xscale="log", yscale="log", xlabel="computation for a simulated second, s")
             axes.grid(True)
-    for axis in (panels[0].xaxis, panels[0].yaxis):
+    for axis in (panels[0].xaxis, panels[0].yaxis) if members else ():
         number_axis(axis)
     panels[0].set_ylabel(f"error, {unit}")
     figure.suptitle(title, x=0.01, ha="left", fontsize=13)

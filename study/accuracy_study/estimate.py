@@ -1,14 +1,15 @@
-# How long study/accuracy may take at most, roughly: every curve runs until its limit, none is pruned.
+# How long study/accuracy may take, roughly: what was left out as slow or of no use is an average of past runs.
 from study.accuracy_study import regions, subjects
 
 START = 0.02                # s a process
 SPARSE = 2.5e-7             # s a step and variable, an average of settings
 DENSE = 1e-10               # s a step and cubed variable, more than that
 GATE = 0.4                  # s an implementation and setting
-REPEATS = 1.3               # curves with the repeated runs near the front
-SCENE_CURVE = 3.0           # s a curve of a standard problem, and
-SCENE_REFERENCE = 15.0      # its reference
-CELL, PAIR = 8.0, 6.0       # s a size and fill of the regions; a pair of settings
+LEFT = {False: 0.5, True: 0.1}  # share of the work of all sparse, all dense curves that is done
+REPEATS = 1.2               # curves with the repeated runs near the front
+SCENE_CURVE = 0.5           # s a curve of a standard problem, and
+SCENE_REFERENCE = 6.0       # its reference
+CELL, PAIR = 12.0, 5.0      # s a size and fill of the regions; a pair of settings
 
 
 def total(choice):
@@ -17,7 +18,7 @@ def total(choice):
     loops = {count for part in ("work", "regions") if part in choice.parts
              for count in choice.loops[part]}
     seconds = GATE * len(each) + REPEATS * sum(
-        _curve(count, dense, choice) for count in loops for dense in each)
+        LEFT[dense] * _curve(count, dense, choice) for count in loops for dense in each)
     seconds += len(choice.problems) * (SCENE_REFERENCE + SCENE_CURVE * len(each))
     if "regions" in choice.parts:
         seconds += CELL * (1 + len(regions.FILLS)) * len(choice.loops["regions"])

@@ -27,10 +27,10 @@ def measure(bench, curves, entries, loops, tell):
     import pandas
     table = []
     for count in loops:
-        rows = curves[(curves.loops == count) & curves.status.isin(FINISHED)]
-        if rows.empty:
+        rows = curves[(curves.loops == count) & (curves["rounds"] > 0)]
+        if not rows.status.isin(FINISHED).any():
             continue
-        steps, natural = largest_steps(rows, entries), rows.fill.iloc[0]
+        steps, natural = largest_steps(rows, entries), rows.fill.dropna().iloc[0]
         for fill in (None, *(fill for fill in FILLS if fill > natural + 0.02)):
             subject = subjects.chain(count, max(DURATIONS), fill)
             tell(f"{subject.name}: pilots")
@@ -43,22 +43,30 @@ def measure(bench, curves, entries, loops, tell):
 
 
 def largest_steps(rows, entries):
-    """{(variant, setting): {required error: (the row of the largest step that meets it, whose it is)}}.
-    Who has no curve of a setting, being slow at natural fill, has that of the variant which needs the
-    smallest step in it."""
-    def met(mine):
-        return {error: mine[mine.error <= error].nlargest(1, "step") for error in ERRORS}
-    own = {key: met(mine) for key, mine in rows.groupby(["implementation", "setting"])}
+    """{(variant, setting): {required error: the row of the largest step that meets it}}. Where a curve of a
+    slow implementation was not followed so far, it has the row of the variant that needs the smallest step
+    in the same setting: they have agreed, and differ in rounding only."""
+    curves = dict(list(rows.groupby(["implementation", "setting"])))
     found = {}
     for variant, setting in entries.admitted():
-        others = [key for key in own if key[1] == setting.name]
+        own = curves.get((variant, setting.name))
+        others = [curve for key, curve in curves.items() if key[1] == setting.name and curve is not own]
         for error in ERRORS:
-            keys = [(variant, setting.name)] if (variant, setting.name) in own else others
-            meeting = [own[key][error] for key in keys]
-            if keys and not any(one.empty for one in meeting):
-                chosen = min(meeting, key=lambda one: one.step.iloc[0]).iloc[0]
+            chosen = _largest(own, error) if own is not None else None
+            if chosen is None:
+                smallest = numpy.inf if own is None else own.step.min()
+                borrowed = (_largest(curve[curve.step < smallest], error) for curve in others)
+                chosen = min((one for one in borrowed if one is not None), key=lambda one: one.step,
+                             default=None)
+            if chosen is not None:
                 found.setdefault((variant, setting.name), {})[error] = chosen
     return found
+
+
+def _largest(curve, error):
+    """The row of the largest step of a curve that meets `error`, or None."""
+    meeting = curve[curve.status.isin(FINISHED) & (curve.error <= error)]
+    return None if meeting.empty else meeting.loc[meeting.step.idxmax()]
 
 
 def _pilots(bench, subject, entries, steps):

@@ -45,7 +45,7 @@ def choose(options, known):
 
 def sentence(choice):
     curves, seconds = estimate.total(choice)
-    return (f"{len(choice.served)} implementations, at most {curves} curves: at most about "
+    return (f"{len(choice.served)} implementations, {curves} curves: about "
             f"{max(1, round(seconds / 60))} minutes on a quiet machine")
 
 

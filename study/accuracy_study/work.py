@@ -6,7 +6,9 @@ from study.accuracy_study.bench import left_out, row, time_of
 from study.pipeline import runs
 
 SLOW = 2.0   # whose default setting is this much slower than the fastest is not tried in others
-NEAR = 1.5   # runs up to this factor from the front are repeated
+FAR = 3.0    # a curve that is this far from the front, and comes no nearer, is not followed further
+NEAR = 1.5   # runs up to this factor from the front are repeated, if they are
+SHORT = 1.0  # s at most: longer ones are averages themselves
 ROUNDS = 3
 
 
@@ -16,7 +18,7 @@ def measure(bench, subject, entries, tell):
     table = []
     for variant, settings in entries.settings.items():
         tell(f"{subject.name}: {variant}, {settings[0].name}")
-        table += _curve(bench, subject, variant, settings[0], entries)
+        table += _curve(bench, subject, variant, settings[0], entries, table)
     slow = _slow(pandas.DataFrame(table), entries)
     for variant, settings in entries.settings.items():
         for setting in settings[1:]:
@@ -24,28 +26,24 @@ def measure(bench, subject, entries, tell):
             if variant in slow:
                 table.append(left_out(subject, variant, setting, numpy.nan, slow[variant]))
             else:
-                table += _curve(bench, subject, variant, setting, entries)
+                table += _curve(bench, subject, variant, setting, entries, table)
     table = pandas.DataFrame(table)
     _repeat(bench, subject, entries, table, tell)
     table["front"] = table.index.isin(pareto(table))
     return table
 
 
-def _curve(bench, subject, variant, setting, entries):
-    """The rows of a curve, from the largest step until a run would take too long, or rounding has won:
-    two halvings of the step in turn have not made the error smaller."""
+def _curve(bench, subject, variant, setting, entries, known):
+    """The rows of a curve from the largest step on, until a run would take too long or smaller steps are of no
+    use. `known`: rows of other curves."""
     reason = entries.refused.get((variant, setting.name))
     if reason:
         return [left_out(subject, variant, setting, numpy.nan, reason)]
     rows, ahead = [], 0.0
     for step in subject.steps:
-        if _rounding(rows):
-            rows.append(left_out(subject, variant, setting, step, "smaller steps do not make the error smaller"))
-            continue
-        if ahead > bench.time_limit:
-            said = (f"predicted to take {ahead:.1f} s, the limit is {bench.time_limit:g} s"
-                    if numpy.isfinite(ahead) else "the run at twice the step did not end")
-            rows.append(left_out(subject, variant, setting, step, said))
+        reason = _too_long(ahead, bench.time_limit) or _of_no_use(rows, known)
+        if reason:
+            rows.append(left_out(subject, variant, setting, step, reason))
             continue
         record = bench.run("work", subject, entries.contenders[variant], setting, step)
         rows.append(row(subject, variant, setting, step, record))
@@ -53,10 +51,28 @@ def _curve(bench, subject, variant, setting, entries):
     return rows
 
 
-def _rounding(rows):
-    """Whether the last three runs that were made have finished with errors that do not fall."""
-    errors = [row.get("error", numpy.nan) for row in rows if row["rounds"]][-3:]
-    return len(errors) == 3 and errors[0] <= errors[1] <= errors[2]
+def _too_long(ahead, limit):
+    if ahead <= limit:
+        return ""
+    return (f"predicted to take {ahead:.1f} s, the limit is {limit:g} s" if numpy.isfinite(ahead) else
+            "the run at twice the step did not end")
+
+
+def _of_no_use(rows, known):
+    """Why a curve is not followed further: two halvings of the step in turn have not made the error smaller, or
+    it is far from the front and no nearer than before."""
+    made = [one for one in rows if one["rounds"]][-3:]
+    if len(made) < 3 or any("error" not in one for one in made):
+        return ""
+    errors = [one["error"] for one in made]
+    if errors[0] <= errors[1] <= errors[2]:
+        return "smaller steps do not make the error smaller"
+    before, now = (one["time"] / min([other["time"] for other in [*known, *rows]
+                                      if other.get("error", numpy.inf) <= one["error"]])
+                   for one in made[1:])
+    if now > FAR and now > 0.8 * before:
+        return f"takes {now:.1f} times the front's time at its error, and comes no nearer"
+    return ""
 
 
 def _half_step(subject, step, record):
@@ -90,7 +106,8 @@ def _repeat(bench, subject, entries, table, tell):
     """Medians of ROUNDS runs in place of the single times near the front."""
     if "time" not in table:
         table[["time", "error"]] = numpy.nan
-    chosen = near(table, NEAR)
+    chosen = [index for index in near(table, NEAR)
+              if table.time[index] * subject.duration <= SHORT]
     times = {index: [table.time[index]] for index in chosen}
     for repeat in range(2, ROUNDS + 1):
         for place, index in enumerate(chosen, start=1):
