@@ -4,6 +4,7 @@ import matplotlib.pyplot as plt
 import matplotlib.patheffects as effects
 import numpy
 from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator
 
 from analysis.accuracy import names
 from analysis.accuracy.front import FINISHED, finished, pareto
@@ -36,6 +37,8 @@ def draw(rows, look, dense, unit, title):
             axes.grid(True)
     for axis in (panels[0].xaxis, panels[0].yaxis) if members else ():
         number_axis(axis)
+    if members and numpy.ptp(numpy.log10(panels[0].get_xlim())) > 1.5:
+        panels[0].xaxis.set_major_locator(LogLocator())  # the panels are narrow
     panels[0].set_ylabel(f"error, {unit}")
     figure.suptitle(title, x=0.01, ha="left", fontsize=13)
     _key(figure, members)
@@ -86,12 +89,15 @@ def _curve(axes, rows, line, label):
     done = finished(rows).sort_values("step")
     clipped = done.at_most.astype(bool)
     if done.empty:
-        axes.plot([], [], **line, label=f"{label}: no run finished")
+        lost = next((reason for status, reason in (("not-run", "left out"), ("unsupported", "unsupported"))
+                     if rows.status.isin((status, "not-run")).all()), "no run finished")
+        axes.plot([], [], **line, label=f"{label}: {lost}")
     else:
         axes.plot(done.time, done.error, **line, label=label)
     axes.plot(done.time[clipped], done.error[clipped], linestyle="none", marker="v", markersize=9,
               markerfacecolor="none", markeredgecolor=line["color"])
-    lost = rows[~rows.status.isin((*FINISHED, "not-run")) & rows.step_us.notna()]
+    # What is unsupported has made no step.
+    lost = rows[~rows.status.isin((*FINISHED, "not-run", "unsupported")) & (rows.step_us > 0)]
     times = 1e-6 * lost.step_us / lost.step
     axes.plot(times, numpy.full(len(lost), 0.985), "x", color=line["color"], markersize=5,
               transform=axes.get_xaxis_transform(), clip_on=False)

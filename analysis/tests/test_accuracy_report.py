@@ -30,6 +30,7 @@ def work():
         run("two/a", "saddle", 1.25e-3, 4.0, 1e-4, factorizations_per_step=2.0),
         run("two/a", "saddle kept", 1.25e-3, 3.0, 5e-4, "degraded", factorizations_per_step=0.5),
         run("two/a", "rattle4", 1e-3, 20.0, 1e-9, at_most=True),
+        run("two/a", "rattle6", 1e-2, 1e-9, 1.0, "unsupported"),
         run("one/a", "mixed", 1e-2, float("nan"), float("nan"), "not-run", step_us=float("nan"))])
 
 
@@ -84,7 +85,8 @@ def test_the_figure_names_the_front_and_what_did_not_finish():
     assert "kept: no run finished" in settings and "saddle" in settings
     assert figure.axes[1].get_title(loc="left") == "settings of two/a (sparse)"
     crosses = [line for line in figure.axes[1].get_lines() if line.get_marker() == "x" and len(line.get_xdata())]
-    assert crosses[0].get_xdata()[0] == pytest.approx(0.5)
+    assert [list(line.get_xdata()) for line in crosses] == [[pytest.approx(0.5)]]
+    assert "rattle6: unsupported" in settings
     plt.close(figure)
 
 

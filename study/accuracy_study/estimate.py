@@ -5,9 +5,9 @@ START = 0.02                # s a process
 SPARSE = 2.5e-7             # s a step and variable, an average of settings
 DENSE = 1e-10               # s a step and cubed variable, more than that
 GATE = 0.4                  # s an implementation and setting
-LEFT = {False: 0.5, True: 0.1}  # share of the work of all sparse, all dense curves that is done
+LEFT = {False: 0.35, True: 0.06}  # share of the work of all sparse, all dense curves that is done
 REPEATS = 1.2               # curves with the repeated runs near the front
-SCENE_CURVE = 0.5           # s a curve of a standard problem, and
+SCENE_CURVE = 0.2           # s a curve of a standard problem, and
 SCENE_REFERENCE = 6.0       # its reference
 CELL, PAIR = 12.0, 5.0      # s a size and fill of the regions; a pair of settings
 

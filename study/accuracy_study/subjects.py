@@ -86,10 +86,12 @@ def problem(entry, bench, default, reference_by):
         origin = "a hundred times the tolerance"
     known = {column: values for column, values in known.items()
              if column.split(".")[0] in entry.judged}
+    reference = (f"extrapolated runs of {reference_by.variant} (self-convergence)"
+                 if entry.known == EXTRAPOLATED else kind(entry.known))
     return Subject(entry.name, entry.title, entry.scene, entry.duration,
                    tuple(entry.steps[0] * factor for factor in AROUND
                          if _samples(entry.duration, entry.steps[0] * factor)),
-                   "relative", kind(entry.known), own, origin, base=base, known=known)
+                   "relative", reference, own, origin, base=base, known=known)
 
 
 def _extrapolated(entry, bench, default, base, contender):
