@@ -1,6 +1,7 @@
 # The Pareto front of error and time, and what lies close to it. Rows are those of work.csv.
 import numpy
 
+SAME = 0.02
 FINISHED = ("ok", "degraded")
 
 
@@ -10,18 +11,21 @@ def finished(rows):
 
 
 def pareto(rows):
-    """Index of the rows that nobody beats, the fastest first: every other run that is as fast has a larger
-    error. Of equal errors the fastest counts."""
-    ordered = finished(rows).sort_values(["time", "error"], kind="stable")
-    best = ordered.error.cummin()
-    return ordered.index[ordered.error < best.shift(fill_value=numpy.inf)]
+    """Index of the rows that nobody beats, the fastest first: every faster run has an error larger by more than
+    SAME. Errors that differ by less are those of one motion, of which the fastest run counts."""
+    found, smallest = [], numpy.inf
+    for row in finished(rows).sort_values(["time", "error"], kind="stable").itertuples():
+        if row.error < (1 - SAME) * smallest:
+            found.append(row.Index)
+            smallest = row.error
+    return found
 
 
 def near(rows, factor):
     """Index of the rows that take at most `factor` times as long as the front at their error."""
     done = finished(rows)
     front = done.loc[pareto(rows)]
-    return done.index[[row.time <= factor * front.time[front.error <= row.error].min()
+    return done.index[[row.time <= factor * front.time[(1 - SAME) * front.error <= row.error].min()
                        for row in done.itertuples()]]
 
 

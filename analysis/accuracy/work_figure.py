@@ -68,7 +68,7 @@ def front_members(rows):
 def _default_panel(axes, rows, look):
     for name, mine in rows.groupby("implementation", sort=False):
         _curve(axes, mine, look.line(name) | {"linewidth": 1.1, "markersize": 4.5}, name)
-    _legend(axes, 2)
+    _legend(axes, 3 if rows.implementation.nunique() > 12 else 2)
 
 
 def _settings_panel(axes, rows):
@@ -121,7 +121,7 @@ def _front(axes, rows, members):
 
 def _legend(axes, columns):
     axes.legend(fontsize=7.5, loc="upper left", bbox_to_anchor=(-0.02, -0.1), ncols=columns,
-                handlelength=2.5, labelspacing=0.3, columnspacing=1.0)
+                handlelength=2.0, labelspacing=0.3, columnspacing=0.7)
 
 
 def _key(figure, members):
@@ -137,5 +137,5 @@ def _key(figure, members):
                     label="upper edge: did not finish (status in work.csv)"),
              Line2D([], [], color=GREY, marker="v", markerfacecolor="none", linestyle="none",
                     label="at most: below the reference's own error")]
-    figure.legend(handles=[*marks, *entries], loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=4,
+    figure.legend(handles=[*marks, *entries], loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=4,
                   fontsize=8, handlelength=1.6, columnspacing=1.2)
