@@ -5,7 +5,7 @@ from matplotlib.patches import Patch, Rectangle
 from analysis.accuracy import names
 from analysis.maps_drawing import DECIDED, UNDECIDED
 
-NOBODY = "#f1f1f1"
+NOBODY = {"facecolor": "white", "edgecolor": "#bbbbbb", "hatch": "...", "linewidth": 0}
 SHORT = {"every-step": "every\nstep", "saddle every-step": "saddle\nevery step"}
 
 
@@ -22,6 +22,8 @@ def draw(winners, look):
     for axes, error in zip(panels.flat, errors):
         _panel(axes, winners[winners.required == error], sizes, levels, look)
         axes.set_title(f"error at most {error:g} m")
+    for axes in panels[:, 0]:
+        axes.set_ylabel("fill of the tangent")
     rest = panels.flat[len(errors):]
     for axes in rest:
         axes.set_axis_off()
@@ -36,10 +38,10 @@ def _panel(axes, rows, sizes, levels, look):
         x = sizes.index(row.variables)
         y = 0 if row.fill_asked != row.fill_asked else 1 + levels.index(row.fill_asked)
         nobody = row.implementation == "nobody"
-        axes.add_patch(Rectangle(
-            (x, y), 1, 1, edgecolor="white", linewidth=1.2,
-            facecolor=NOBODY if nobody else look.colour(row.implementation),
-            alpha=1 if nobody else DECIDED if row.decided else UNDECIDED))
+        fill = NOBODY if nobody else {
+            "edgecolor": "white", "linewidth": 1.2, "facecolor": look.colour(row.implementation),
+            "alpha": DECIDED if row.decided else UNDECIDED}
+        axes.add_patch(Rectangle((x, y), 1, 1, **fill))
         if not nobody and not row.decided:
             axes.add_patch(Rectangle((x, y), 1, 1, facecolor="none", edgecolor="#555555",
                                      linewidth=0, hatch="////"))
@@ -47,13 +49,12 @@ def _panel(axes, rows, sizes, levels, look):
             f"{SHORT.get(row.setting, row.setting.replace(' ', chr(10)))}\n{names.step(row.step)}")
         axes.text(x + 0.5, y + 0.5, text, ha="center", va="center", fontsize=6.6, linespacing=1.15,
                   color="#777777" if nobody else "black", zorder=6,
-                  bbox=None if nobody else {"boxstyle": "round,pad=0.15", "facecolor": "white",
-                                            "alpha": 0.72, "linewidth": 0})
+                  bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "linewidth": 0,
+                        "alpha": 1.0 if nobody else 0.72})
     axes.set(xlim=(0, len(sizes)), ylim=(0, len(levels) + 1), xlabel="variables n")
     axes.set_xticks([place + 0.5 for place in range(len(sizes))], [f"{size:g}" for size in sizes])
     axes.set_yticks([place + 0.5 for place in range(len(levels) + 1)],
                     ["own", *(f"{level:.0%}" for level in levels)])
-    axes.set_ylabel("fill of the tangent")
     axes.tick_params(length=0)
 
 
@@ -63,5 +64,5 @@ def _legend(winners, look):
                for name, count in won.items()]
     return [*handles, Patch(facecolor="#cccccc", hatch="////", edgecolor="#555555", linewidth=0,
                             label="undecided: another is within the spread"),
-            Patch(facecolor=NOBODY, label="nobody meets the error"),
+            Patch(**NOBODY, label="nobody meets the error"),
             Patch(facecolor="white", edgecolor="#bbbbbb", label="below the mechanism's own fill")]

@@ -20,8 +20,10 @@ def winners(regions):
 
 
 def _winner(cell):
-    """The fastest; undecided if the spread of the best of another implementation reaches its own."""
-    done = cell[cell.status.isin(FINISHED) & cell.time.notna()].sort_values("time", kind="stable")
+    """The fastest whose timed run meets the error, too; undecided if the spread of the best of another
+    implementation reaches its own."""
+    done = cell[cell.status.isin(FINISHED) & (cell.measured_error <= cell.required)
+                & cell.time.notna()].sort_values("time", kind="stable")
     if done.empty:
         return {"implementation": "nobody", "candidates": len(cell), "measured": 0}
     first = done.iloc[0]

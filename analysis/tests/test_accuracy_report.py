@@ -37,7 +37,7 @@ def work():
 def cell(implementation, time, required=1e-2, spread=0.1, **more):
     return {"loops": 2, "fill_asked": None, "natural_fill": 0.8, "fill": 0.8, "required": required,
             "implementation": implementation, "setting": "default", "step": 1e-2, "error": 5e-3,
-            "error_of": implementation, "status": "ok", "time": time, "time_low": time - spread,
+            "measured_error": required, "error_of": implementation, "status": "ok", "time": time, "time_low": time - spread,
             "time_high": time + spread, "duration": 1.0, "rounds": 3, "raw_file": "raw", "command": "c",
             "reason": None} | more
 
@@ -69,6 +69,7 @@ def test_a_winner_needs_to_be_clear_of_the_spread_of_other_implementations():
     assert near_one["decided"] is False and near_one["second"] == "two/a"
     same = of(cell("one/a", 1.0), cell("one/a", 1.1, setting="loose"), cell("two/a", 1.5))
     assert same["decided"] is True and same["as_fast"] == "loose" and same["margin"] == 1.5
+    assert of(cell("one/a", 1.0, measured_error=2e-2), cell("two/a", 1.5))["implementation"] == "two/a"
     lost = of(cell("one/a", 1.0, status="diverged"), cell("two/a", 2.0, reason="pruned", status=None))
     assert lost["implementation"] == "nobody" and lost["candidates"] == 2
 

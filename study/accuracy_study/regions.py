@@ -18,8 +18,8 @@ ERRORS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6)  # m
 ROUNDS, SEED = 3, 20080101
 PILOT_STEPS, PILOT_SECONDS = 12, 3.0
 SLOW, CLOSE = 4.0, 2.0       # pruned by the default setting's pilot; by the candidate's own
-DURATIONS = (5.0, 1.0, 0.2, 0.05)  # s; all but the last two cross the first singular position at 0.7 s
-RUN_SECONDS = 0.4            # the longest duration that is predicted to take less is taken
+DURATIONS = (1.0, 0.2, 0.05)  # s, or that of the curves; the first singular position is at 0.7 s
+RUN_SECONDS = 0.25           # the longest duration that is predicted to take less is taken
 
 
 def measure(bench, curves, entries, loops, tell):
@@ -32,7 +32,7 @@ def measure(bench, curves, entries, loops, tell):
             continue
         steps, natural = largest_steps(rows, entries), rows.fill.dropna().iloc[0]
         for fill in (None, *(fill for fill in FILLS if fill > natural + 0.02)):
-            subject = subjects.chain(count, max(DURATIONS), fill)
+            subject = subjects.chain(count, rows.duration.max(), fill)
             tell(f"{subject.name}: pilots")
             cells = _candidates(steps, _pilots(bench, subject, entries, steps))
             for cell in cells:
@@ -117,8 +117,8 @@ def _rounds(bench, subject, entries, cells, tell):
     """Measures who is left in interleaved rounds: adds times, status and raw files to `cells`."""
     left = [cell for cell in cells if not cell["reason"]]
     for cell in left:
-        cell["duration"] = _duration([c["predicted"] for c in left
-                                      if c["required"] == cell["required"]])
+        cell["duration"] = _duration(subject.duration, [
+            c["predicted"] for c in left if c["required"] == cell["required"]])
     shared = {}  # one measurement serves all required errors that the same step meets
     for cell in left:
         key = cell["implementation"], cell["setting"], cell["step"], cell["duration"]
@@ -136,12 +136,15 @@ def _rounds(bench, subject, entries, cells, tell):
             for cell in shared[variant, name, step, duration]:
                 cell |= {column: found.get(column) for column in (
                     "status", "status_reason", "fill", "raw_file", "command")}
+                cell["measured_error"] = found.get("error")
     for key, found in times.items():
         for cell in shared[key]:
             cell |= {"time": numpy.median(found), "time_low": min(found), "time_high": max(found),
                      "rounds": len(found)}
 
 
-def _duration(predicted):
-    """The longest duration that the slowest of a cell is predicted to finish soon enough."""
-    return next((one for one in DURATIONS if one * max(predicted) <= RUN_SECONDS), DURATIONS[-1])
+def _duration(known, predicted):
+    """The longest duration that the slowest of a cell is predicted to finish soon enough; errors are known up
+    to `known`."""
+    allowed = [known, *(one for one in DURATIONS if one < known)]
+    return next((one for one in allowed if one * max(predicted) <= RUN_SECONDS), allowed[-1])

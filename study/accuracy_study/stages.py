@@ -30,6 +30,9 @@ class Choice:
 def choose(options, known):
     names = select(known, options.only)
     wanted = choose_problems(problems.read_list()[1], options.problems)
+    chains = [one.name for one in wanted if one.scene.startswith("four-bar:")]
+    if options.problems and chains:
+        raise StudyError(f"--problems: {chains[0]} is an N-four-bar: name its size with --loops")
     sizes = {"work": LOOPS, "regions": regions.LOOPS, "forms": pairs.FORM_LOOPS,
              "precision": pairs.PRECISION_LOOPS}
     if options.loops:

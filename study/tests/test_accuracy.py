@@ -238,7 +238,7 @@ def test_settings_are_read_and_refused(tmp_path):
 @pytest.mark.parametrize("arguments, what", [
     (["--loops", "0"], "0 is not a number of loops"), (["--duration", "-1"], "-1 is not a positive number"),
     (["--parts", "all"], "invalid choice: 'all'"), (["--problems", "A99"], "unknown problem 'A99'; known: A01"),
-    (["--only", "nobody"], "unknown implementation 'nobody'"), (["--stored"], "holds no results")])
+    (["--problems", "A02"], "A02 is an N-four-bar"), (["--only", "nobody"], "unknown implementation 'nobody'"), (["--stored"], "holds no results")])
 def test_what_is_wrong_is_said_in_a_line(tmp_path, arguments, what):
     done = study("accuracy", "--results", tmp_path, *arguments)
     assert done.returncode == 2 and what in done.stderr and "Traceback" not in done.stderr
