@@ -96,8 +96,8 @@ def of_precision(precision):
         best = rows.loc[rows.low.idxmax()]
         same = rows[(rows.first_class == rows.second_class) & rows.first_class.notna()]
         said = [f"Lower precision is nowhere at least {GAIN:g} times faster at the same error class: the best of "
-                f"all is {number(best.ratio)} ({number(best.low)} to {number(best.high)}; {best.implementation}, {best.second}, n = "
-                f"{best.variables:.0f}), error {number(best.second_error, 2)} m against "
+                f"all is {number(best.ratio)} ({number(best.low)} to {number(best.high)}; "
+                f"{best.implementation}, {best.second}, n = {best.variables:.0f}), error {number(best.second_error, 2)} m against "
                 f"{number(best.first_error, 2)} m in double."]
         if len(same):
             said.append(f"{len(same)} of {len(rows)} pairs are in the same error class; the passes a step go "

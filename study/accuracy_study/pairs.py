@@ -11,7 +11,7 @@ from study.accuracy_study.regions import ERRORS
 
 STEP = 1.25e-3
 ROUNDS, SEED = 7, 20080101
-DURATIONS = (1.0, 0.2, 0.05)  # s; 1 s crosses the first singular position
+DURATIONS = (1.0, 0.2, 0.05, 0.0125)  # s; 1 s crosses the first singular position
 RUN_SECONDS, PILOT_STEPS, PILOT_SECONDS = 0.5, 8, 10.0
 FORMS = (("default", "saddle"),)
 PRECISIONS = (("default", "mixed"), ("default", "single"), ("saddle", "saddle mixed"))
@@ -74,6 +74,9 @@ def _duration(bench, subject, contender, kind, both):
         if "summary" not in record:
             return None, f"{one.name}: {record['failure']['reason']} for {PILOT_STEPS} steps"
         slowest = max(slowest, 1e-6 * record["summary"]["step_us"]["median"] / STEP)
+    least = DURATIONS[-1] * slowest
+    if least > bench.time_limit / 2:
+        return None, f"{DURATIONS[-1]:g} s would take {least:.1f} s, {2 * ROUNDS} times"
     return next((one for one in DURATIONS if one * slowest <= RUN_SECONDS), DURATIONS[-1]), ""
 
 

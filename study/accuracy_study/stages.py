@@ -109,10 +109,10 @@ def _work(place, entries, choice, store, tell):
                                              entries.contenders[compared[0]]))
         except StudyError as error:
             lost.append({"subject": problem.name, "title": problem.title, "reference": f"none: {error}"})
-    store("references", subjects.rows(measured) + lost)
+    store("references", pandas.DataFrame(subjects.rows(measured) + lost, columns=subjects.COLUMNS))
     tables = [work.measure(place, subject, entries, tell) for subject in measured]
     table = pandas.concat(tables, ignore_index=True) if tables else pandas.DataFrame(
-        columns=["subject", "status", "front"])
+        columns=["subject", "implementation", "setting", "step", "status", "error", "time", "rounds"])
     store("work", table)
     store("tangents", tangents(table))
     return table

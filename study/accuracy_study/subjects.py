@@ -21,6 +21,7 @@ AROUND = (4, 2, 1, 0.5, 0.25)  # a scene's own first step times these
 JUDGED_S = 1e-2  # the error of a four-bar is evaluated at these times, whatever the step
 ULP = 2.0**-52
 REFERENCE_SECONDS = 300
+COLUMNS = ("subject", "title", "scene", "reference", "own_error", "unit", "own_error_from", "duration")
 
 
 @dataclass(frozen=True)

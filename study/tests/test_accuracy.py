@@ -196,6 +196,13 @@ def test_the_gate_tells_who_disagrees_from_who_is_inaccurate(fake, monkeypatch):
     assert "--tolerance 1e-6" in loose[0]["command"]
 
 
+def test_pairs_alone(run, tmp_path, monkeypatch):
+    monkeypatch.setattr(pairs, "ROUNDS", 2)
+    run("--parts", "pairs")
+    assert len(table(tmp_path, "forms")) == 1 and len(table(tmp_path, "precision")) == 1
+    assert "A step of the saddle-point form takes" in (tmp_path / "results" / "accuracy.html").read_text()
+
+
 def test_a_check_that_dies_is_repeated_one_by_one(fake, monkeypatch):
     def killed(path, setting, group, context, final=False):
         names = [one.variant for one in group]
@@ -238,7 +245,8 @@ def test_settings_are_read_and_refused(tmp_path):
 @pytest.mark.parametrize("arguments, what", [
     (["--loops", "0"], "0 is not a number of loops"), (["--duration", "-1"], "-1 is not a positive number"),
     (["--parts", "all"], "invalid choice: 'all'"), (["--problems", "A99"], "unknown problem 'A99'; known: A01"),
-    (["--problems", "A02"], "A02 is an N-four-bar"), (["--only", "nobody"], "unknown implementation 'nobody'"), (["--stored"], "holds no results")])
+    (["--problems", "A02"], "A02 is an N-four-bar"), (["--stored"], "holds no results"),
+    (["--only", "nobody"], "unknown implementation 'nobody'")])
 def test_what_is_wrong_is_said_in_a_line(tmp_path, arguments, what):
     done = study("accuracy", "--results", tmp_path, *arguments)
     assert done.returncode == 2 and what in done.stderr and "Traceback" not in done.stderr
