@@ -25,6 +25,7 @@ def main(arguments):
     try:
         return {"run": run, "figures": figures, "compare": compare, "view": view,
                 "scenes": scenes, "stability": stability, "realtime": realtime,
+                "accuracy": accuracy,
                 "against": against}[command](rest)
     except StudyError as error:
         print(f"study/{command}: {error}", file=sys.stderr)
@@ -113,6 +114,11 @@ def view(arguments):
 def scenes(arguments):
     from study.scene_study.main import scenes as run_scenes
     return run_scenes(arguments)
+
+
+def accuracy(arguments):
+    from study.accuracy_study.main import accuracy as run_accuracy
+    return run_accuracy(arguments)
 
 
 def stability(arguments):
