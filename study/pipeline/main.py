@@ -24,7 +24,7 @@ def main(arguments):
     command, *rest = arguments
     try:
         return {"run": run, "figures": figures, "compare": compare, "view": view,
-                "scenes": scenes, "stability": stability, "against": against}[command](rest)
+                "scenes": scenes, "stability": stability, "against": against, "advise": advise}[command](rest)
     except StudyError as error:
         print(f"study/{command}: {error}", file=sys.stderr)
         return 2
@@ -117,6 +117,11 @@ def scenes(arguments):
 def stability(arguments):
     from study.stability_study.main import stability as run_stability
     return run_stability(arguments)
+
+
+def advise(arguments):
+    from study.advise_study.main import advise as run_advise
+    return run_advise(arguments)
 
 
 def against(arguments):
