@@ -137,13 +137,24 @@ def _verify(advice, run, left, tell):
             advice.cut_short.append("no time was left to verify another candidate")
             return
         tell(f"verification: {one.implementation}, {one.setting.label}, step {one.step:g} s")
-        row = run("verification", one.setting, one.implementation, one.step, question.duration,
+        row = {} | run("verification", one.setting, one.implementation, one.step, question.duration,
                   max(60.0, 5 * expected), half=True)
+        row |= {"estimate": _at_least(row, advice)}
         advice.verifications.append(row)
         if accepted(row, one.setting, question):
             advice.chosen, advice.verified = one, row
             return
         _reconsider(one, row, advice)
+
+
+def _at_least(row, advice):
+    """The estimate of a whole run, or a larger one that the same setting has at a shorter step: then the two
+    runs that gave it were wrong alike."""
+    if row["estimate"] is None or advice.pilot_duration < advice.question.duration:
+        return row["estimate"]
+    found = next(found for setting, found in advice.found.items() if setting.label == row["setting"])
+    return max([row["estimate"], *(pilot.estimate for pilot in found.pilots
+                                   if pilot.valid and pilot.step < row["step"])])
 
 
 def accepted(row, setting, question):
@@ -172,8 +183,7 @@ def _reconsider(one, row, advice):
         if failed > 4 or step < one.step / 8:
             other.drop(f"estimate {row['estimate']:.2g} m when verified over {question.duration:g} s")
         else:
-            # A step that does not meet the ends of a driver's table or of the run errs more.
-            other.step = tidy(step, question.duration, shorter=0.25)
+            other.step = tidy(step, question.duration)
 
 
 def expected_error(advice):

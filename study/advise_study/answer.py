@@ -6,6 +6,7 @@ from study.advise_study import timing
 from study.advise_study.advice import expected_error
 from study.advise_study.choice import allowed, counts, halvings
 from study.advise_study.settings import catalogue, fits, serving
+from study.pipeline.runs import FINISHED
 
 
 def as_json(advice, run, described, variants, layout):
@@ -81,10 +82,12 @@ def _runner_up(answer):
 
 
 def _best_reached(answer):
-    """The whole run, or the pilot, of the least estimate that counts."""
-    found = [{"setting": entry["setting"], "step": pilot["step"], "estimate": pilot["estimate"]}
-             for entry in answer["settings"] for pilot in entry["pilots"] if pilot["counts"]]
-    return None if answer["met"] else min(found, key=lambda one: one["estimate"], default=None)
+    """The pilot of the least estimate, one that counts if there is any."""
+    found = [{"setting": entry["setting"]} | {key: pilot[key] for key in ("step", "estimate", "counts")}
+             for entry in answer["settings"] for pilot in entry["pilots"]
+             if pilot["status"] in FINISHED and pilot["estimate"] is not None]
+    return None if answer["met"] else min(
+        found, key=lambda one: (not one["counts"], one["estimate"]), default=None)
 
 
 def _why_not(advice):
@@ -141,7 +144,8 @@ def _refusal_lines(answer):
     best = answer["best_reached"]
     lines = ["", f"No setting meets this: {answer['why_not']}."]
     if best:
-        lines.append(_row("best estimate", f"{number(best['estimate'])} m: {best['setting']}, step {best['step']:g} s"))
+        lines.append(_row("best estimate", f"{number(best['estimate'])} m: {best['setting']}, step {best['step']:g} s"
+                          + ("" if best["counts"] else ", not shown to be right by halving the step")))
     timed = [one for one in answer["candidates"] if one["rounds"]]
     if timed and answer["question"]["deadline_us"]:
         one = min(timed, key=lambda one: one["step_us"]["p99"])

@@ -7,6 +7,8 @@ from study.pipeline.runs import FINISHED
 LEAST_STEPS = 10   # of a whole run
 MOST_STEPS = 10**7
 NEGLIGIBLE = 0.01  # of the limit
+AIM = 0.95         # of the limit: what the step between two pilots is chosen for
+TIDY = 0.05        # share that a step may become shorter to be a tidy number
 JUMP = 8           # a pilot's step is at least this part of the one before it
 
 
@@ -111,7 +113,7 @@ def _between(step, longer, pilots, limit, order):
     here = next(pilot for pilot in pilots if pilot.step == step)
     slope = math.log2(longer.estimate / here.estimate) if longer.estimate > here.estimate else 1.0
     slope = max(slope, 1.0)
-    return step * min(2.0, (limit / max(here.estimate, 1e-300)) ** (1 / slope))
+    return step * min(2.0, max(1.0, (AIM * limit / max(here.estimate, 1e-300)) ** (1 / slope)))
 
 
 def _shorter(pilots, limit, order, fits):
@@ -135,13 +137,14 @@ def _shorter(pilots, limit, order, fits):
     return Next(step=least / factor)
 
 
-def tidy(step, duration, shorter=0.1):
-    """The longest step of three digits that fits whole into `duration`, if it is at most the share
-    `shorter` shorter than `step`; or else of two digits."""
+def tidy(step, duration):
+    """The longest step of three digits, at most 5 % shorter than `step`, that fits whole into `duration`;
+    or else of two digits; or else of three."""
     unit = 10.0 ** math.floor(math.log10(step) - 2)
     most = math.floor(step / unit * (1 + 1e-9))
-    for number in range(most, math.ceil((1 - shorter) * most) - 1, -1):
-        value = float(f"{number * unit:.6g}")
-        if abs(duration / value - round(duration / value)) < 1e-9 * duration / value:
-            return value
-    return float(f"{most // 10 * 10 * unit:.6g}")
+    numbers = range(most, math.ceil((1 - TIDY) * most) - 1, -1)
+    values = [float(f"{number * unit:.6g}") for number in numbers]
+    whole = [value for value in values
+             if abs(duration / value - round(duration / value)) < 1e-9 * duration / value]
+    short = [value for value, number in zip(values, numbers) if number % 10 == 0]
+    return [*whole, *short, *values][0]

@@ -6,7 +6,7 @@ from statistics import median
 from study.pipeline.runs import FINISHED
 
 ROUNDS, TIE_BREAKS = 3, 2
-SLOWER = (1.5, 1.25, 1.1)  # this times the best one's time drops out after the first, second, later rounds
+SLOWER = (2.0, 1.25, 1.1)  # this times the best one's time drops out after the first, second, later rounds
 STRETCH = 2.0              # simulated s of a timing: past singular positions, as far as there are such
 SHORTEST = 0.05            # wall s of its steps at least, if the whole duration has as many
 

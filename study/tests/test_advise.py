@@ -40,7 +40,7 @@ def choose(estimate, limit, start=1e-2, duration=1.0):
 def test_the_step_meets_the_limit_and_is_not_much_shorter_than_needed():
     for limit in (1e-1, 3e-3, 1e-5, 1e-7):
         after, found = choose(lambda step: 40 * step**2, limit)
-        assert 0.99 * limit <= 40 * after.chosen**2 <= limit * 1.0001 and len(found) <= 8
+        assert 0.9 * limit <= 40 * after.chosen**2 <= limit and len(found) <= 8
 
 
 def test_estimates_that_agree_by_chance_do_not_count():
@@ -77,9 +77,10 @@ def test_the_margin_is_what_first_order_leaves():
 
 
 @pytest.mark.parametrize("step, duration, expected", [
-    (2.77e-3, 5, 2.5e-3), (1.3e-3, 20, 1.28e-3), (1 / 3, 20, 0.33), (1e-2, 20, 1e-2), (3.19e-5, 0.03, 3e-5)])
+    (2.77e-3, 5, 2.7e-3), (2.6e-3, 5, 2.5e-3), (1.3e-3, 20, 1.28e-3), (1 / 3, 20, 0.33), (1e-2, 20, 1e-2),
+    (1.09e-3, 0.7, 1.09e-3), (3.19e-5, 0.03, 3.1e-5)])
 def test_steps_are_tidy(step, duration, expected):
-    assert tidy(step, duration) == pytest.approx(expected, rel=0.02) and tidy(step, duration) <= step
+    assert tidy(step, duration) == expected
 
 
 def search(errors, times, settings, **more):
@@ -122,10 +123,10 @@ def race(times, p99=1.0, deadline_us=None, left=lambda: 1.0):
 
 
 def test_slow_candidates_drop_out_and_close_ones_get_more_rounds():
-    whole, found, ranked = race({"a": [10] * 5, "b": [11, 9, 10.5, 11, 11], "c": [16], "d": [13] * 2})
+    whole, found, ranked = race({"a": [10] * 5, "b": [11, 9, 10.5, 11, 11], "c": [21], "d": [13] * 2})
     assert whole and [one.implementation for one in ranked] == ["a", "b"]
     assert [len(found[name].rows) for name in "abcd"] == [5, 5, 1, 2]
-    assert found["c"].reason == "1.60 times slower after round 1"
+    assert found["c"].reason == "2.10 times slower after round 1"
     _, found, _ = race({"a": [10] * 3, "b": [10.5] * 3})
     assert len(found["b"].rows) == 3  # the rounds tell them apart
 
