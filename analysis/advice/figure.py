@@ -48,28 +48,34 @@ def _bounds(axes, answer):
     """The error that was asked for, and the deadline as the time of a second at the advised step."""
     asked = answer["question"]
     axes.axhline(asked["error"], color="black", linewidth=1.0)
+    # Estimates must be lower, as they may be of a lower order than they assume.
+    axes.axhline(asked["error"] / 1.5, color="black", linewidth=0.8, linestyle=(0, (1, 2)),
+                 label="allowed estimate, 2nd order")
     axes.annotate(f"E = {number(asked['error'])} m", (0.005, asked["error"]), xytext=(0, 2),
                   xycoords=("axes fraction", "data"), textcoords="offset points", fontsize=8.5)
     if asked["deadline_us"] and answer["met"]:
         limit = asked["deadline_us"] / answer["advice"]["step"] / 1e3
         axes.axvline(limit, color="black", linewidth=1.0, linestyle=(0, (4, 2)))
-        axes.annotate(f"D = {asked['deadline_us']:g} µs a step", (limit, 0.01), xytext=(3, 0), rotation=90,
-                      xycoords=("data", "axes fraction"), textcoords="offset points", fontsize=8.5)
+        axes.annotate(f"D = {asked['deadline_us']:g} µs a step", (limit, 0.01), xytext=(3, 0),
+                      xycoords=("data", "axes fraction"), textcoords="offset points", rotation=90,
+                      fontsize=8.5)
 
 
 def _choice(axes, answer):
     if not answer["met"]:
-        axes.annotate("no setting meets this", (0.5, 0.96), xycoords="axes fraction", ha="center", va="top",
-                      fontsize=10)
+        axes.annotate("no setting meets this", (0.5, 0.96), xycoords="axes fraction", ha="center",
+                      va="top", fontsize=10)
         return
     told = answer["advice"]
     times = told["us_per_second"]
     axes.errorbar([times["median"] / 1e3], [told["error"]["estimate"]],
-                  xerr=[[(times["median"] - times["low"]) / 1e3], [(times["high"] - times["median"]) / 1e3]],
+                  xerr=[[(times["median"] - times["low"]) / 1e3],
+                        [(times["high"] - times["median"]) / 1e3]],
                   yerr=[[max(0.0, told["error"]["estimate"] - told["error"]["low"])],
                         [max(0.0, told["error"]["high"] - told["error"]["estimate"])]],
-                  color="black", marker="*", markersize=15, markeredgecolor="white", capsize=3, linestyle="none",
-                  label=f"advised: {told['implementation']},\n{told['setting']}, step {told['step']:g} s", zorder=5)
+                  color="black", marker="*", markersize=15, markeredgecolor="white", capsize=3,
+                  linestyle="none", zorder=5, label=f"advised: {told['implementation']},\n"
+                  f"{told['setting']}, step {told['step']:g} s")
 
 
 def write(figure, path):

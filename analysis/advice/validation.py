@@ -12,9 +12,11 @@ def verdict(table, most):
     slow = table[~(table.ratio <= most)]
     worst = table.ratio.max()
     held = missed.empty and slow.empty
-    named = [f"{row.scene} at {row.error:g} m" for row in table[~table.meets | ~(table.ratio <= most)].itertuples()]
+    failed = table[~table.meets | ~(table.ratio <= most)]
+    named = [f"{row.scene} at {row.error:g} m" for row in failed.itertuples()]
     return held, (f"{len(table) - len(missed)} of {len(table)} advised runs are as accurate as asked; "
-                  f"{len(table) - len(slow)} take at most {most:g} times the best found, the slowest {worst:.2f}"
+                  f"{len(table) - len(slow)} take at most {most:g} times the best found, the slowest "
+                  f"{worst:.2f}"
                   + ("" if held else f"; not so: {', '.join(named)}"))
 
 
@@ -30,7 +32,7 @@ def draw(table, most):
         right.plot(rows.error, rows.ratio, label=scene, **look)
         right.vlines(rows.error, rows.advised_low / rows.best_us_per_second,
                      rows.advised_high / rows.best_us_per_second, color=SPARSE[place], linewidth=0.8)
-    left.plot([], [], "o", markerfacecolor="white", markeredgecolor="#777777", linestyle="none", label="estimate")
+    left.plot([], [], "o", markerfacecolor="white", markeredgecolor="#777777", label="estimate")
     left.axhline(1.0, color="black", linewidth=1.0)
     right.axhline(most, color="black", linewidth=1.0)
     right.axhline(1.0, color="#777777", linewidth=0.8)

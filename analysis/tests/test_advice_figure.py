@@ -1,7 +1,9 @@
 # The picture of an advice on a small answer: the choice, what does not count, and no choice at all.
 import matplotlib.pyplot as plt
+import pandas
 
 from analysis.advice.figure import draw
+from analysis.advice.validation import draw as draw_validation, verdict
 
 
 def answer(met=True, deadline=None):
@@ -33,4 +35,24 @@ def test_no_setting_is_drawn_as_such():
     figure = draw(answer(met=False))
     assert "no setting meets this" in {text.get_text() for text in figure.axes[0].texts}
     assert not any(label.startswith("advised") for label in labels(figure))
+    plt.close(figure)
+
+
+def validation():
+    return pandas.DataFrame([{"scene": scene, "error": error, "estimate": 0.5 * error, "exact": 0.6 * error,
+                              "meets": True, "ratio": 1.2, "advised_low": 11.0, "advised_high": 13.0,
+                              "best_us_per_second": 10.0}
+                             for scene in ("four-bar:1", "four-bar:2") for error in (1e-2, 1e-3)])
+
+
+def test_the_validation_names_what_did_not_hold():
+    table = validation()
+    held, sentence = verdict(table, 1.5)
+    assert held and sentence.startswith("4 of 4 advised runs are as accurate as asked; 4 take at most 1.5")
+    table.loc[0, ["meets", "ratio"]] = [False, float("nan")]
+    table.loc[3, "ratio"] = 1.6
+    held, sentence = verdict(table, 1.5)
+    assert not held and sentence.endswith("not so: four-bar:1 at 0.01 m, four-bar:2 at 0.001 m")
+    figure = draw_validation(table, 1.5)
+    assert len(figure.axes) == 2
     plt.close(figure)

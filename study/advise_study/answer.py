@@ -1,4 +1,4 @@
-# The answer as JSON (its keys: study/README.md) and as text.
+# The answer as JSON (its keys: README.md) and as text.
 from dataclasses import asdict
 
 from analysis.text import number
@@ -50,7 +50,8 @@ def _advised(advice):
 
 def _setting(setting, advice, described, variants):
     found = advice.found.get(setting)
-    reason = fits(setting, described) or ("" if serving(setting, variants) else "no implementation serves it")
+    reason = fits(setting, described) or (
+        "" if serving(setting, variants) else "no implementation serves it")
     orders = halvings(found.pilots) if found else {}
     limit = allowed(advice.question.error, setting.order)
     return {"setting": setting.label, "step": found.chosen if found else None,
@@ -99,7 +100,7 @@ def _why_not(advice):
     if any(found.chosen for found in advice.found.values()):
         late = [one for one in advice.candidates if "99th percentile" in one.reason]
         return ("no step is done within the deadline" if late else "no candidate could be timed")
-    if advice.question.deadline_us and any("a step takes" in found.reason for found in advice.found.values()):
+    if any("a step takes" in found.reason for found in advice.found.values()):
         return "no step is done within the deadline"
     return "no setting reaches the error" + (" in the time there was" if advice.cut_short else "")
 
@@ -118,25 +119,33 @@ def _row(name, value):
     return f"  {name:22}{value}"
 
 
+def _spread(value, interval, unit):
+    return f"{number(value)} {unit} ({number(interval['low'])} to {number(interval['high'])})"
+
+
+def _who(one):
+    return f"{one['implementation']}, {one['setting']}, step {one['step']:g} s"
+
+
 def _advice_lines(answer):
     told, times = answer["advice"], answer["advice"]["us_per_second"]
     error, step = told["error"], told["step_us"]
     lines = ["", "Run this:", "", f"  {told['command']}", "",
              _row("implementation", told["implementation"]), _row("settings", told["setting"]),
-             _row("step", f"{told['step']:g} s"), _row("penalty factor", f"{number(told['penalty'], 4)}, automatic"),
+             _row("step", f"{told['step']:g} s"),
+             _row("penalty factor", f"{number(told['penalty'], 4)}, automatic"),
              _row("tolerance", f"{number(told['tolerance'])} m"), _row("precision", told["precision"]),
-             _row("expected error", f"{number(error['estimate'])} m ({number(error['low'])} to "
-                  f"{number(error['high'])}), verified over {answer['question']['duration']:g} s: {told['status']}"),
-             _row("time per step", f"{number(step['median'])} us ({number(step['low'])} to {number(step['high'])} in "
-                  f"{told['rounds']} rounds), 99th percentile {number(step['p99'])} us"),
-             _row("per simulated second", f"{number(times['median'] / 1e3)} ms ({number(times['low'] / 1e3)} to "
-                  f"{number(times['high'] / 1e3)})")]
+             _row("expected error", f"{_spread(error['estimate'], error, 'm')}, verified over "
+                  f"{answer['question']['duration']:g} s: {told['status']}"),
+             _row("time per step", f"{_spread(step['median'], step, 'us')} in {told['rounds']} round"
+                  f"{'s' * (told['rounds'] > 1)}, 99th percentile {number(step['p99'])} us"),
+             _row("per simulated second", _spread(times["median"] / 1e3, {
+                 key: times[key] / 1e3 for key in ("low", "high")}, "ms"))]
     if told["deadline_misses"] is not None:
         lines.append(_row("deadline", f"{told['deadline_misses']} of {told['steps']} steps took longer"))
     second = answer["runner_up"]
     if second:
-        lines += [_row("runner-up", f"{second['implementation']}, {second['setting']}, step {second['step']:g} s"),
-                  _row("", second["why"])]
+        lines += [_row("runner-up", _who(second)), _row("", second["why"])]
     return lines
 
 
@@ -144,13 +153,13 @@ def _refusal_lines(answer):
     best = answer["best_reached"]
     lines = ["", f"No setting meets this: {answer['why_not']}."]
     if best:
-        lines.append(_row("best estimate", f"{number(best['estimate'])} m: {best['setting']}, step {best['step']:g} s"
+        lines.append(_row("best estimate", f"{number(best['estimate'])} m: {best['setting']}, "
+                          f"step {best['step']:g} s"
                           + ("" if best["counts"] else ", not shown to be right by halving the step")))
     timed = [one for one in answer["candidates"] if one["rounds"]]
     if timed and answer["question"]["deadline_us"]:
         one = min(timed, key=lambda one: one["step_us"]["p99"])
-        lines.append(_row("fastest steps", f"99th percentile {number(one['step_us']['p99'])} us: "
-                          f"{one['implementation']}, {one['setting']}, step {one['step']:g} s"))
+        lines.append(_row("fastest steps", f"99th percentile {number(one['step_us']['p99'])} us: {_who(one)}"))
     return lines
 
 
@@ -158,4 +167,5 @@ def _tried(answer):
     runs = answer["runs"]
     settings = [entry for entry in answer["settings"] if entry["pilots"]]
     return (f"{len(settings)} settings in {sum(run['kind'] == 'pilots' for run in runs)} error pilots, "
-            f"{sum(bool(one['rounds']) for one in answer['candidates'])} candidates timed; {answer['seconds']:.0f} s")
+            f"{sum(bool(one['rounds']) for one in answer['candidates'])} candidates timed; "
+            f"{answer['seconds']:.0f} s")

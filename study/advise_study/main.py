@@ -27,6 +27,8 @@ def advise(arguments):
     need_modules("yaml", "pandas", "matplotlib", "jinja2")
     if options.plot and Path(options.plot).suffix not in (".svg", ".png"):
         raise StudyError(f"--plot {options.plot}: the name must end in .svg or .png")
+    if options.validate and (options.scene or options.error or options.plot or options.json):
+        raise StudyError("--validate has scenes and errors of its own: only --only and --results go with it")
     if options.validate:
         from study.advise_study.validate import validate
         return validate(options)
@@ -91,7 +93,7 @@ def _parser():
                         help="only these implementations (folder or folder/variant)")
     parser.add_argument("--budget", type=_positive, default=BUDGET, metavar="S",
                         help=f"for pilots and timings ({BUDGET:g} s); what is left out then is said")
-    parser.add_argument("--json", action="store_true", help="print everything as JSON (study/README.md)")
+    parser.add_argument("--json", action="store_true", help="print everything as JSON (study/advise_study/README.md)")
     parser.add_argument("--plot", metavar="FILE", help="draw the pilots and the choice (.svg or .png)")
     parser.add_argument("--results", metavar="DIR",
                         help="where raw files are kept (results/local/advice/, one folder a question)")
@@ -108,7 +110,7 @@ def _positive(text):
 
 
 def duration(scene, asked, described):
-    """The simulated time: what is asked for, or the usual one, if the scene (`mbs describe`) lasts that long."""
+    """The simulated time: what is asked for, or the usual one, if the scene lasts that long."""
     if described["free_points"] == 0:
         raise StudyError(f"{scene} has no free points: there is no position error to advise on")
     end = described["drivers_end"] or math.inf

@@ -39,7 +39,8 @@ def validate(options, loops=LOOPS, errors=ERRORS, duration=DURATION):
                 found, speeds = search(runner, variants, duration, errors, scene)
             searched += [{"scene": scene} | row for row in found]
             for error in errors:
-                rows.append(_compare(scene, error, duration, options, layout, runner, variants, found, speeds))
+                rows.append(_compare(scene, error, duration, options, layout, runner, variants,
+                                     found, speeds))
         write_csv(results / "searched.csv", pandas.DataFrame(searched))
         table = pandas.DataFrame(rows)
         write_csv(results / "validation.csv", table)
@@ -95,7 +96,8 @@ def fastest(found, error):
     """The fastest row of each setting that meets an error, fastest first, as far as they are near the best."""
     best = {}
     for row in (row for row in found if meets(row, error)):
-        if row["us_per_second"] < best.get(row["setting"], row)["us_per_second"] or row["setting"] not in best:
+        known = best.setdefault(row["setting"], row)
+        if row["us_per_second"] < known["us_per_second"]:
             best[row["setting"]] = row
     rows = sorted(best.values(), key=lambda row: row["us_per_second"])
     return [row for row in rows if row["us_per_second"] <= NEAR * rows[0]["us_per_second"]]
@@ -154,5 +156,6 @@ def _columns(prefix, one, lines):
         middle, low, high = one.us_per_second()
         command, raw_file = lines.get(_same(one), (None, None))
         values |= {"implementation": one.implementation, "setting": one.setting.label, "step": one.step,
-                   "us_per_second": middle, "low": low, "high": high, "command": command, "raw_file": raw_file}
+                   "us_per_second": middle, "low": low, "high": high, "command": command,
+                   "raw_file": raw_file}
     return {f"{prefix}_{key}": value for key, value in values.items()}

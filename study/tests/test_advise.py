@@ -11,6 +11,7 @@ from study.advise_study.choice import (Pilot, allowed, counts, interval, local_o
 from study.advise_study.search import Search
 from study.advise_study.settings import Setting, catalogue, fits, serving
 from study.advise_study.main import duration
+from study.advise_study.validate import fastest
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_json
 from study.tests.conftest import ROOT, study
@@ -149,6 +150,15 @@ def test_settings_are_served_by_name_and_fit_the_scene():
     assert len({setting.file_name for setting in catalogue()}) == len(catalogue())
 
 
+def test_the_search_keeps_the_fastest_row_of_each_setting_that_meets_an_error():
+    found = [{"setting": name, "status": status, "exact": exact, "us_per_second": time}
+             for name, status, exact, time in (
+                 ("a", "ok", 1e-3, 20.0), ("a", "degraded", 9e-3, 10.0), ("a", "ok", 2e-2, 5.0),
+                 ("b", "ok", 1e-3, 19.0), ("c", "ok", 1e-3, 21.0), ("d", "diverged", 1e-9, 1.0))]
+    assert [row["us_per_second"] for row in fastest(found, 1e-2)] == [10.0, 19.0]
+    assert fastest(found, 1e-4) == []
+
+
 @pytest.mark.parametrize("arguments, what", [
     (["four-bar:2"], "--error E are needed"), (["four-bar:2", "--error", "0"], "0 is not a positive number"),
     (["four-bar:2", "--error", "-1e-3"], "argument"), (["four-bar:2", "--error", "small"], "'small'"),
@@ -156,6 +166,7 @@ def test_settings_are_served_by_name_and_fit_the_scene():
     (["four-bar:2", "--error", "1", "--duration", "nan"], "nan is not a positive number"),
     (["nothing", "--error", "1"], 'scene "nothing": no such file'),
     (["four-bar:2", "--error", "1", "--only", "nobody"], "unknown implementation 'nobody'"),
+    (["four-bar:2", "--validate"], "--validate has scenes and errors of its own"),
     (["four-bar:2", "--error", "1", "--plot", "a.pdf"], "must end in .svg or .png")])
 def test_what_is_wrong_is_said_in_a_line(tmp_path, arguments, what):
     done = study("advise", *arguments, "--results", tmp_path / "results", **REAL)
