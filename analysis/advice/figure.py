@@ -1,9 +1,7 @@
 # The picture of an advice: error estimates of the pilots over time per simulated second, and the choice.
-import math
-
 import matplotlib.pyplot as plt
 
-from analysis.style import DASHES, GREY, MARKERS, SPARSE, DENSE, save
+from analysis.style import DASHES, DENSE, GREY, MARKERS, SPARSE, number_axis, save
 from analysis.text import number
 
 COLOURS = {"penalty": SPARSE[0], "saddle-point": SPARSE[1], "rattle": DENSE[1], "rattle4": SPARSE[2],
@@ -34,6 +32,7 @@ def draw(answer):
     axes.set_yscale("log")
     _bounds(axes, answer)
     _choice(axes, answer)
+    number_axis(axes.xaxis)
     axes.set_xlabel("time per simulated second, ms")
     axes.set_ylabel("estimated position error, m")
     axes.grid(True, which="major")

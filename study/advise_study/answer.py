@@ -102,7 +102,8 @@ def _why_not(advice):
         return ("no step is done within the deadline" if late else "no candidate could be timed")
     if any("a step takes" in found.reason for found in advice.found.values()):
         return "no step is done within the deadline"
-    return "no setting reaches the error" + (" in the time there was" if advice.cut_short else "")
+    return "no setting reaches the error" + (
+        f" within the budget of {advice.question.budget:g} s (--budget)" if advice.cut_short else "")
 
 
 def text(answer):

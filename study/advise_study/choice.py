@@ -7,7 +7,7 @@ from study.pipeline.runs import FINISHED
 LEAST_STEPS = 10   # of a whole run
 MOST_STEPS = 10**7
 NEGLIGIBLE = 0.01  # of the limit
-AIM = 0.95         # of the limit: what the step between two pilots is chosen for
+AIM = 0.9          # of the limit: what the step between two pilots is chosen for
 TIDY = 0.05        # share that a step may become shorter to be a tidy number
 JUMP = 8           # a pilot's step is at least this part of the one before it
 

@@ -126,7 +126,8 @@ def _compare(scene, error, duration, options, layout, run, variants, found, spee
             "exact": told["error"].get("exact"),
             "meets": bool(answer["met"] and told["error"]["exact"] <= error),
             "seconds": answer["seconds"]} | _columns("advised", advised, lines) | _columns("best", best, lines) | {
-            "best_exact": exact.get((best.setting.label, best.step), {}).get("exact") if best else None,
+            "best_exact": None if best is None else told["error"]["exact"] if best is advised
+            else exact[best.setting.label, best.step]["exact"],
             "ratio": advised.us_per_second()[0] / best.us_per_second()[0] if advised and best else None}
 
 
