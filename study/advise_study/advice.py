@@ -4,16 +4,15 @@ import time
 from dataclasses import dataclass, field
 
 from study.advise_study import timing
-from study.advise_study.choice import LEAST_STEPS, allowed, interval, local_order, tidy
+from study.advise_study.choice import LEAST_STEPS, tidy
 from study.advise_study.search import DOMINATED, Search
 from study.advise_study.settings import Setting, fits, serving
-from study.pipeline.runs import FINISHED
+from study.advise_study.verify import verify
 
 FIRST_STEP = 1e-2        # s; of the first pilot, where the run has enough such steps
 PROBE_STEPS = 100
 PROBE_FACTOR = 4         # an implementation this times slower than the best in the probe is not timed
 PILOT_SHARE, TIMING_SHARE = 0.55, 0.8  # of the budget: when pilots, when timings must be done
-VERIFICATIONS = 20
 
 
 @dataclass
@@ -53,7 +52,7 @@ def advise(question, settings, described, variants, run, tell):
               if not fits(setting, described) and set(serving(setting, variants)) & set(speeds)]
     _pilots(advice, usable, speeds, variants, run, start, left, tell)
     _race(advice, speeds, variants, run, left, tell)
-    _verify(advice, run, left, tell)
+    verify(advice, run, lambda: left(1.0), tell)
     advice.seconds = time.monotonic() - began
     return advice
 
@@ -122,73 +121,3 @@ def _race(advice, speeds, variants, run, left, tell):
         return run(f"round{number}", one.setting, one.implementation, one.step, length, limit)
     if not timing.race(advice.candidates, timed, lambda: left(TIMING_SHARE), question.deadline_us):
         advice.cut_short.append("no time was left for all rounds of timing")
-
-
-def _verify(advice, run, left, tell):
-    """Whole runs of the fastest candidate, until one is as accurate as asked."""
-    question = advice.question
-    for _ in range(VERIFICATIONS):
-        order = timing.ranked(advice.candidates, question.deadline_us)
-        if not order:
-            return
-        one = order[0]
-        expected = 3e-6 * one.us_per_second()[0] * question.duration
-        if advice.verifications and expected > left(1.0):
-            advice.cut_short.append("no time was left to verify another candidate")
-            return
-        tell(f"verification: {one.implementation}, {one.setting.label}, step {one.step:g} s")
-        row = {} | run("verification", one.setting, one.implementation, one.step, question.duration,
-                  max(60.0, 5 * expected), half=True)
-        row |= {"estimate": _at_least(row, advice)}
-        advice.verifications.append(row)
-        if accepted(row, one.setting, question):
-            advice.chosen, advice.verified = one, row
-            return
-        _reconsider(one, row, advice)
-
-
-def _at_least(row, advice):
-    """The estimate of a whole run, or a larger one that the same setting has at a shorter step: then the two
-    runs that gave it were wrong alike."""
-    if row["estimate"] is None or advice.pilot_duration < advice.question.duration:
-        return row["estimate"]
-    found = next(found for setting, found in advice.found.items() if setting.label == row["setting"])
-    return max([row["estimate"], *(pilot.estimate for pilot in found.pilots
-                                   if pilot.valid and pilot.step < row["step"])])
-
-
-def accepted(row, setting, question):
-    """Whether a whole run is as accurate, and as punctual, as asked."""
-    return (row["status"] in FINISHED and row["estimate"] is not None
-            and row["estimate"] <= allowed(question.error, setting.order)
-            and (not question.deadline_us or row["step_us_p99"] <= question.deadline_us))
-
-
-def _reconsider(one, row, advice):
-    """What follows from a whole run that was not good enough: a shorter step for all candidates of its
-    setting, their time scaled, or one candidate less."""
-    question, found = advice.question, advice.found[one.setting]
-    limit = allowed(question.error, one.setting.order)
-    if row["status"] not in FINISHED or row["estimate"] is None:
-        one.drop(f"{row['status']} when verified over {question.duration:g} s: {row['reason']}")
-        return
-    if row["estimate"] <= limit:
-        one.drop(f"99th percentile {row['step_us_p99']:.3g} us when verified: beyond the deadline")
-        return
-    failed = sum(other["setting"] == one.setting.label for other in advice.verifications)
-    step = one.step * 0.95 * (limit / row["estimate"]) ** (1 / one.setting.order)
-    if failed > 1 and advice.pilot_duration == question.duration and found.rung() < one.step:
-        step = found.rung()  # its pilot was good enough
-    for other in (other for other in advice.candidates if other.setting == one.setting):
-        if failed > 4 or step < one.step / 8:
-            other.drop(f"estimate {row['estimate']:.2g} m when verified over {question.duration:g} s")
-        else:
-            other.step = tidy(step, question.duration)
-
-
-def expected_error(advice):
-    """(estimate, low, high) of the chosen run, m, by the orders that its setting's pilots show."""
-    one, found = advice.chosen, advice.found[advice.chosen.setting]
-    observed = local_order(one.step, found.pilots, one.setting.order)
-    low, high = interval(advice.verified["estimate"], one.setting.order, observed)
-    return advice.verified["estimate"], low, high

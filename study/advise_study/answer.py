@@ -2,10 +2,9 @@
 from dataclasses import asdict
 
 from analysis.text import number
-from study.advise_study import timing
-from study.advise_study.advice import expected_error
 from study.advise_study.choice import allowed, counts, halvings
 from study.advise_study.settings import catalogue, fits, serving
+from study.advise_study.verify import expected_error
 from study.pipeline.runs import FINISHED
 
 

@@ -27,6 +27,8 @@ def advise(arguments):
     need_modules("yaml", "pandas", "matplotlib", "jinja2")
     if options.plot and Path(options.plot).suffix not in (".svg", ".png"):
         raise StudyError(f"--plot {options.plot}: the name must end in .svg or .png")
+    if options.plot and not Path(options.plot).absolute().parent.is_dir():
+        raise StudyError(f"--plot {options.plot}: there is no such directory")
     if options.validate and (options.scene or options.error or options.plot or options.json):
         raise StudyError("--validate has scenes and errors of its own: only --only and --results go with it")
     if options.validate:

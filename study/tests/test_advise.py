@@ -7,11 +7,13 @@ import shlex
 import pytest
 
 from study.advise_study import timing
+from study.advise_study.advice import Advice, Question
 from study.advise_study.choice import Pilot, allowed, counts, interval, local_order, next_step, tidy
 from study.advise_study.main import duration
-from study.advise_study.search import Search
+from study.advise_study.search import Found, Search
 from study.advise_study.settings import Setting, catalogue, fits, serving
 from study.advise_study.validate import fastest
+from study.advise_study.verify import verify
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_json
 from study.tests.conftest import ROOT, study
@@ -140,6 +142,45 @@ def test_a_deadline_is_for_the_99th_percentile():
     assert found["b"].reason == "no time was left to time it"
 
 
+def verified(estimate, p99=1.0, deadline_us=None):
+    """Advice on two implementations of a setting whose pilots at 10 and 5 ms were good; what was run."""
+    question = Question("bar", 1e-3, 1.0, deadline_us, 45.0)
+    advice = Advice(question, pilot_duration=1.0, candidates=[
+        timing.Candidate(PENALTY, name, 8e-3, [{"step_us": us, "step_us_p99": 1.0}] * 3)
+        for name, us in (("a", 10.0), ("b", 11.0))])
+    advice.found = {PENALTY: Found(PENALTY, pilots(8e-4, 2e-4), chosen=8e-3)}
+    ran = []
+
+    def run(kind, setting, name, step, *_, half):
+        ran.append((name, step))
+        return {"status": "ok", "reason": "", "setting": setting.label, "step": step, "step_us_p99": p99,
+                "estimate": estimate(step)}
+    verify(advice, run, lambda: 1.0, lambda text: None)
+    return advice, ran
+
+
+def test_a_candidate_that_fails_gets_a_shorter_step_and_then_one_that_is_known():
+    advice, ran = verified(lambda step: 10 * step**2)
+    assert ran == [("a", 8e-3)] and advice.chosen.implementation == "a"
+    advice, ran = verified(lambda step: 12 * step**2)
+    assert ran[0] == ("a", 8e-3) and ran[1][1] < 8e-3 and advice.verified["estimate"] <= allowed(1e-3, 2)
+    advice, ran = verified(lambda step: 2e-4 if step < 5.1e-3 else 9e-4)
+    assert ran[-1][1] == 5e-3 and len(ran) == 3 and advice.chosen
+    advice, _ = verified(lambda step: 1.0)
+    assert advice.chosen is None and all("when verified" in one.reason for one in advice.candidates)
+
+
+def test_an_estimate_below_that_of_a_shorter_step_is_raised():
+    advice, _ = verified(lambda step: 1e-5)
+    assert advice.verified["estimate"] == 2e-4  # the pilot's at 5 ms
+
+
+def test_the_deadline_is_verified_too():
+    advice, ran = verified(lambda step: 1e-4, p99=12.0, deadline_us=10.0)
+    assert advice.chosen is None and [name for name, _ in ran] == ["a", "b"]
+    assert advice.candidates[0].reason == "99th percentile 12 us when verified: beyond the deadline"
+
+
 def test_settings_are_served_by_name_and_fit_the_scene():
     variants = {"one/a": {"settings": []}, "two/b": {"settings": ["saddle-point", "mixed", "rattle"]}}
     assert serving(PENALTY, variants) == ["one/a", "two/b"]
@@ -166,6 +207,7 @@ def test_the_search_keeps_the_fastest_row_of_each_setting_that_meets_an_error():
     (["four-bar:2", "--error", "1", "--duration", "nan"], "nan is not a positive number"),
     (["nothing", "--error", "1"], 'scene "nothing": no such file'),
     (["four-bar:2", "--error", "1", "--only", "nobody"], "unknown implementation 'nobody'"),
+    (["four-bar:2", "--error", "1", "--plot", "nowhere/a.svg"], "there is no such directory"),
     (["four-bar:2", "--validate"], "--validate has scenes and errors of its own"),
     (["four-bar:2", "--error", "1", "--plot", "a.pdf"], "must end in .svg or .png")])
 def test_what_is_wrong_is_said_in_a_line(tmp_path, arguments, what):
