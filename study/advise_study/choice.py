@@ -83,7 +83,8 @@ def local_order(step, pilots, order):
 
 
 def next_step(pilots, limit, order, start, duration):
-    """The Next of a setting with these pilots, all on the ladder start·2^k; `limit` is for estimates."""
+    """The Next of a setting with these pilots, on the ladder start·2^k but for one half-way (√2) to a step
+    where the motion is lost; `limit` is for estimates."""
     def fits(step):
         return duration / MOST_STEPS <= step <= duration / LEAST_STEPS
     if not pilots:
@@ -92,12 +93,18 @@ def next_step(pilots, limit, order, start, duration):
 
     def find(step):
         return next((by_step[at] for at in by_step if close(at, step)), None)
-    good = sorted(step for step, pilot in by_step.items() if pilot.valid and pilot.estimate <= limit)
+    good = sorted(step for step, pilot in by_step.items() if pilot.valid and pilot.estimate <= limit
+                  and abs(math.remainder(math.log2(step / start), 1)) < 0.01)
     for step in reversed(good):  # the longest first
         if counts(step, pilots, limit):
             longer = find(2 * step)
             if longer is None and fits(2 * step):
                 return Next(step=2 * step)
+            between = find(math.sqrt(2) * step)
+            if longer and not longer.valid and between is None:
+                return Next(step=math.sqrt(2) * step)
+            if between and between.valid and by_step[step].estimate <= between.estimate <= limit:
+                return Next(chosen=between.step)
             return Next(chosen=_between(step, longer, pilots, limit, order))
         # Two halvings are needed to believe it; the longer step is the cheaper witness.
         for witness in (2 * step, step / 2):

@@ -92,10 +92,24 @@ def meets(row, error):
     return row["status"] in FINISHED and row["exact"] is not None and row["exact"] <= error
 
 
+def sustained(found, error):
+    """The rows that meet an error, if the next shorter step of their setting does too, or was left out: one
+    that does so alone is luck, as an estimate of errors cannot find it."""
+    return [row for row, shorter in zip(found, [*found[1:], {"setting": None}])
+            if meets(row, error) and (shorter["setting"] != row["setting"] or meets(shorter, error))]
+
+
+def luck(found, error, us_per_second):
+    """The fastest row that meets an error by luck in less time than `us_per_second`, or {}."""
+    good = sustained(found, error)
+    return min((row for row in found if meets(row, error) and row not in good
+                and row["us_per_second"] < us_per_second), key=lambda row: row["us_per_second"], default={})
+
+
 def fastest(found, error):
     """The fastest row of each setting that meets an error, fastest first, as far as they are near the best."""
     best = {}
-    for row in (row for row in found if meets(row, error)):
+    for row in sustained(found, error):
         known = best.setdefault(row["setting"], row)
         if row["us_per_second"] < known["us_per_second"]:
             best[row["setting"]] = row
@@ -121,6 +135,7 @@ def _compare(scene, error, duration, options, layout, run, variants, found, spee
     order = [one for one in timing.ranked(candidates) if _same(one) != (advised and _same(advised))]
     best = min([*order, *[one for one in [advised] if one and one.rows]], default=None,
                key=lambda one: one.us_per_second()[0])
+    lucky = luck(found, error, best.us_per_second()[0]) if best else {}
     told = answer["advice"] or {"error": {}}
     return {"scene": scene, "error": error, "met": answer["met"], "estimate": told["error"].get("estimate"),
             "exact": told["error"].get("exact"),
@@ -128,6 +143,8 @@ def _compare(scene, error, duration, options, layout, run, variants, found, spee
             "seconds": answer["seconds"]} | _columns("advised", advised, lines) | _columns("best", best, lines) | {
             "best_exact": None if best is None else told["error"]["exact"] if best is advised
             else exact[best.setting.label, best.step]["exact"],
+            "lucky_setting": lucky.get("setting"), "lucky_step": lucky.get("step"),
+            "lucky_exact": lucky.get("exact"), "lucky_us_per_second": lucky.get("us_per_second"),
             "ratio": advised.us_per_second()[0] / best.us_per_second()[0] if advised and best else None}
 
 

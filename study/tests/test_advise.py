@@ -12,7 +12,7 @@ from study.advise_study.choice import Pilot, allowed, counts, interval, local_or
 from study.advise_study.main import duration
 from study.advise_study.search import Found, Search
 from study.advise_study.settings import Setting, catalogue, fits, serving
-from study.advise_study.validate import fastest
+from study.advise_study.validate import fastest, luck
 from study.advise_study.verify import verify
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_json
@@ -67,7 +67,9 @@ def test_rounding_and_lost_runs_end_the_search():
     after, found = choose(lambda step: None, 1e-3)
     assert after.chosen is None and "diverged" in after.reason and len(found) < 30
     after, _ = choose(lambda step: None if step > 4e-3 else step**2, 1.0)
-    assert after.chosen == pytest.approx(2.5e-3)  # nothing is known between a good step and a lost one
+    assert after.chosen == pytest.approx(2.5e-3 * math.sqrt(2))  # half-way to a lost one, but no further
+    after, _ = choose(lambda step: None if step > 3e-3 else step**2, 1.0)
+    assert after.chosen == pytest.approx(2.5e-3)
 
 
 def test_the_margin_is_what_first_order_leaves():
@@ -194,10 +196,17 @@ def test_settings_are_served_by_name_and_fit_the_scene():
 def test_the_search_keeps_the_fastest_row_of_each_setting_that_meets_an_error():
     found = [{"setting": name, "status": status, "exact": exact, "us_per_second": time}
              for name, status, exact, time in (
-                 ("a", "ok", 1e-3, 20.0), ("a", "degraded", 9e-3, 10.0), ("a", "ok", 2e-2, 5.0),
+                 ("a", "ok", 2e-2, 5.0), ("a", "degraded", 9e-3, 10.0), ("a", "ok", 1e-3, 20.0),
                  ("b", "ok", 1e-3, 19.0), ("c", "ok", 1e-3, 21.0), ("d", "diverged", 1e-9, 1.0))]
     assert [row["us_per_second"] for row in fastest(found, 1e-2)] == [10.0, 19.0]
     assert fastest(found, 1e-4) == []
+
+
+def test_a_step_whose_next_shorter_one_fails_is_luck():
+    found = [{"setting": "a", "status": "ok", "exact": exact, "us_per_second": time}
+             for exact, time in ((0.9e-2, 5.0), (2e-2, 7.0), (8e-3, 10.0), (1e-3, 20.0))]
+    assert [row["us_per_second"] for row in fastest(found, 1e-2)] == [10.0]
+    assert luck(found, 1e-2, 10.0)["us_per_second"] == 5.0 and luck(found, 1e-2, 4.0) == {}
 
 
 @pytest.mark.parametrize("arguments, what", [
