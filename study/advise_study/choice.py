@@ -60,17 +60,16 @@ def close(one, other):
 
 
 def counts(step, pilots, limit=0.0):
-    """Whether the estimate at a step counts: a halving that begins or ends there shows an order of at least
-    1, or leaves both estimates below a hundredth of `limit` (a motion that steps hardly change shows no
-    order); and the one that begins there, if known, does not raise an estimate above that."""
+    """Whether the estimate at a step counts: the halving that begins there, or if that is not known the one
+    that ends there, shows an order of at least 1, or leaves both estimates below a hundredth of `limit` (a
+    motion that steps hardly change shows no order)."""
     small = {pilot.step for pilot in pilots if pilot.valid and pilot.estimate <= NEGLIGIBLE * limit}
-    shown = raised = False
+    begins = ends = None
     for at, order in halvings(pilots).items():
-        begins, ends = close(at, step), close(at, 2 * step)
-        negligible = at in small and any(close(at / 2, other) for other in small)
-        shown |= (begins or ends) and (order >= 1 or negligible)
-        raised |= begins and order < 0 and not negligible
-    return shown and not raised
+        shown = order >= 1 or (at in small and any(close(at / 2, other) for other in small))
+        begins = shown if close(at, step) else begins
+        ends = shown if close(at, 2 * step) else ends
+    return bool(ends if begins is None else begins)
 
 
 def local_order(step, pilots, order):

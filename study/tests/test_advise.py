@@ -53,6 +53,7 @@ def test_estimates_that_agree_by_chance_do_not_count():
     assert not counts(1e-2, pilots(1e-4)) and not counts(1e-2, pilots(1e-4, 0.1))
     assert not counts(1e-2, pilots(1e-4, 9e-5)) and counts(5e-3, pilots(1e-4, 4e-5))
     assert not counts(5e-3, pilots(4e-4, 1e-4, 2e-4))  # the next halving contradicts it
+    assert not counts(5e-3, pilots(4e-4, 1e-4, 8e-5))
 
 
 def test_a_motion_that_no_step_changes_shows_no_order_but_counts():
