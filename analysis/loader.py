@@ -140,7 +140,7 @@ def _json(path):
         raise TableError(f"{path}: cannot be read: {error}") from error
 
 
-def read_table(path):
+def plain_table(path):
     """A CSV file as pandas takes it; TableError if it cannot."""
     try:
         return pandas.read_csv(path)

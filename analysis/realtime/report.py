@@ -5,7 +5,7 @@ from pathlib import Path
 import jinja2
 import matplotlib.pyplot as plt
 
-from analysis.loader import _json, read_table
+from analysis.loader import _json, plain_table
 from analysis.realtime.figure import distributions, sizes
 from analysis.style import save
 from analysis.text import number
@@ -17,7 +17,7 @@ GUARD = 0.05
 def write(folder):
     """Writes figures/steps.svg and .png, largest.svg and .png, and realtime.html."""
     folder = Path(folder)
-    steps, largest = (read_table(folder / f"{name}.csv") for name in ("steps", "largest"))
+    steps, largest = (plain_table(folder / f"{name}.csv") for name in ("steps", "largest"))
     (folder / "figures").mkdir(exist_ok=True)
     figures = {}
     for name, figure in (("steps", distributions(steps)), ("largest", sizes(largest))):

@@ -5,7 +5,7 @@ from pathlib import Path
 import jinja2
 import matplotlib.pyplot as plt
 
-from analysis.loader import _json, read_table
+from analysis.loader import _json, plain_table
 from analysis.stability.figure import draw
 from analysis.style import save
 from analysis.text import number
@@ -16,7 +16,7 @@ ACCURATE = 1e-2  # m, the largest position error that "ok" allows
 def write(folder):
     """Writes figures/SCHEME-PRECISION.svg and .png, and stability.html, from the tables in `folder`."""
     folder = Path(folder)
-    table, windows = (read_table(folder / f"{name}.csv") for name in ("stability", "windows"))
+    table, windows = (plain_table(folder / f"{name}.csv") for name in ("stability", "windows"))
     (folder / "figures").mkdir(exist_ok=True)
     series = list(dict.fromkeys(zip(table.scheme, table.precision)))
     figures = {}

@@ -1,5 +1,5 @@
 // What README.md claims of stale pivots, checked against what was measured.
-#include "claims.hpp"
+#include "stale_pivots/claims.hpp"
 
 #include <functional>
 #include <initializer_list>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "measure.hpp"
+#include "stale_pivots/measure.hpp"
 
 namespace mbs::csc_klu::stale_pivots {
 

@@ -1,5 +1,5 @@
 // Backward errors, re-pivotings and times of every strategy on a sequence of matrices.
-#include "measure.hpp"
+#include "stale_pivots/measure.hpp"
 
 #include <algorithm>
 #include <chrono>

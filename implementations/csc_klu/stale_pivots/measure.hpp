@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sequences.hpp"
+#include "stale_pivots/sequences.hpp"
 
 namespace mbs::csc_klu::stale_pivots {
 

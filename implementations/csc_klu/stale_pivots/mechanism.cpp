@@ -1,5 +1,5 @@
 // The N-four-bar mechanism with what may change violently: masses, contacts, multipliers.
-#include "mechanism.hpp"
+#include "stale_pivots/mechanism.hpp"
 
 #include <cmath>
 #include <span>

@@ -4,10 +4,10 @@
 #include <string_view>
 #include <vector>
 
-#include "claims.hpp"
-#include "measure.hpp"
-#include "report.hpp"
-#include "sequences.hpp"
+#include "stale_pivots/claims.hpp"
+#include "stale_pivots/measure.hpp"
+#include "stale_pivots/report.hpp"
+#include "stale_pivots/sequences.hpp"
 
 int main(int argc, char** argv) {
   using namespace mbs::csc_klu::stale_pivots;

@@ -1,5 +1,5 @@
 // What the program prints: a readable table, or JSON.
-#include "report.hpp"
+#include "stale_pivots/report.hpp"
 
 #include <cstdio>
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "claims.hpp"
-#include "measure.hpp"
+#include "stale_pivots/claims.hpp"
+#include "stale_pivots/measure.hpp"
 
 namespace mbs::csc_klu::stale_pivots {
 

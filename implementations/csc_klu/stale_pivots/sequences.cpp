@@ -1,11 +1,11 @@
 // The sequences of matrices that the strategies are compared on, each on one pattern.
-#include "sequences.hpp"
+#include "stale_pivots/sequences.hpp"
 
 #include <cmath>
 #include <functional>
 #include <utility>
 
-#include "mechanism.hpp"
+#include "stale_pivots/mechanism.hpp"
 
 namespace mbs::csc_klu::stale_pivots {
 namespace {
