@@ -24,7 +24,7 @@ def main(arguments):
     command, *rest = arguments
     try:
         return {"run": run, "figures": figures, "compare": compare, "view": view,
-                "scenes": scenes, "stability": stability, "realtime": realtime,
+                "scenes": scenes, "stability": stability, "extremes": extremes, "realtime": realtime,
                 "against": against}[command](rest)
     except StudyError as error:
         print(f"study/{command}: {error}", file=sys.stderr)
@@ -113,6 +113,11 @@ def view(arguments):
 def scenes(arguments):
     from study.scene_study.main import scenes as run_scenes
     return run_scenes(arguments)
+
+
+def extremes(arguments):
+    from study.extremes_study.main import extremes as run_extremes
+    return run_extremes(arguments)
 
 
 def stability(arguments):

@@ -1,0 +1,99 @@
+# What all parts share: who takes part, the long-double reference, how a run becomes a row.
+import os
+import re
+import shlex
+from dataclasses import dataclass
+from multiprocessing.pool import ThreadPool
+from pathlib import Path
+
+import numpy
+
+from study.pipeline import runs
+from study.pipeline.errors import StudyError
+from study.pipeline.layout import Layout, ROOT
+
+AT_ONCE = 2
+FORMS = ("penalty", "saddle-point")
+CONTROLS = "harness/tests/controls/mbs_controls"
+STALE_PIVOTS = "implementations/csc_klu/csc_klu_stale_pivots"
+COLUMNS = re.compile(r"B\d+\.[xy]$")
+
+
+@dataclass(frozen=True)
+class Study:
+    layout: Layout
+    contenders: list      # who takes part, in the registry's order
+    settings: dict        # {name: what `mbs list --json` says of it}
+    contexts: dict
+    seconds: float        # time limit of a run
+    tell: object
+
+    def serves(self, contender, *needed):
+        return set(needed) <= {"penalty", *self.settings[contender.variant].get("settings", [])}
+
+    def context(self, contender):
+        return self.contexts.get(contender.environment) or next(iter(self.contexts.values()))
+
+
+class Reference:
+    """The long-double reference as a contender: it is among the harness's controls, not in `mbs`."""
+    variant, file_name, environment = "control/reference", "control.reference", "own|system"
+
+    @staticmethod
+    def call(command, *arguments):
+        return [built(CONTROLS), command, *arguments]
+
+
+def built(program):
+    """A program of the build other than `mbs`; MBS_BUILD names another build directory."""
+    folder = Path(os.environ.get("MBS_BUILD", "build"))
+    if not (ROOT / folder / program).exists():
+        raise StudyError(f"{folder / program} is missing: build it with study/test")
+    return str(folder / program)
+
+
+def side_by_side(study, what, function, items):
+    """[function(item)], two at once: for what is not timed. Interrupted, it drops what has not begun."""
+    done = []
+    with ThreadPool(AT_ONCE) as pool:
+        for number, result in enumerate(pool.imap(function, items), start=1):
+            done.append(result)
+            study.tell(f"{what}: run {number} of {len(items)}")
+    return done
+
+
+def path_of_scene(study, name, document):
+    """Where the scene is, relative to ROOT if it can be, so that its command runs from there."""
+    path = study.layout.results / "scenes" / f"{name}.json"
+    return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
+
+
+def command(record):
+    """The command of a raw file, to be typed where the repository is."""
+    program, *rest = record["command"]
+    folder = "build" if Path(program).name == "mbs" else f"build/{Path(CONTROLS).parent}"
+    return shlex.join([f"{folder}/{Path(program).name}", *rest])
+
+
+def outcome(record):
+    """(status, reason) of a run; `refused` where `mbs` said in a line that it would not run it."""
+    status, reason = runs.status(record)
+    if status == "crashed" and reason.startswith("exit status"):
+        return "refused", reason.partition(": ")[2] or reason
+    return status, reason
+
+
+def error_of(outputs, solutions, length):
+    """Largest distance of a point from where it should be at any time of `outputs`, in lengths; where several
+    motions are possible, from the nearest of them. NaN without outputs."""
+    if not outputs or not outputs.get("t"):
+        return float("nan")
+    return min(distances(outputs, solution, length).max() for solution in solutions)
+
+
+def distances(outputs, solution, length):
+    """At each time of `outputs`, the largest distance of a point from `solution`, in lengths."""
+    points = sorted({column.rpartition(".")[0] for column in solution})
+    found = [numpy.hypot(*((numpy.asarray(outputs[f"{point}.{axis}"]) - solution[f"{point}.{axis}"]) / length
+                           for axis in "xy")) for point in points]
+    return numpy.max(found, axis=0)
