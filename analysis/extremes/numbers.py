@@ -33,7 +33,7 @@ def costs(cost, folder, way):
 
 def passes(cost, folder, way):
     """[(loops, passes a step)]"""
-    own = cost[(cost.folder == folder) & (cost.way == way)] if len(cost) else cost
+    own = cost[(cost.folder == folder) & (cost.way == way)].dropna(subset="passes_per_step") if len(cost) else cost
     return [(int(loops), float(rows.passes_per_step.median())) for loops, rows in (
         own.groupby("loops") if len(own) else [])]
 

@@ -1,4 +1,6 @@
 # Ways out: for each way and implementation the region, cell by cell, and what its steps cost.
+from textwrap import fill
+
 import matplotlib.pyplot as plt
 from matplotlib.patches import Patch, Rectangle
 
@@ -9,7 +11,8 @@ COLOURS = {"safe": "#009E73", "silent": SILENT, "degraded": "#F2C14E", "lost": "
            "unsupported": "#ffffff"}
 WORDS = {"safe": "ok", "silent": "silently wrong", "lost": "did not get through",
          "unsupported": "not served or refused"}
-GAP, BLOCK = 1.0, 4.4  # between groups of columns; height of a way
+NOT_SERVED = ("unsupported", "refused")
+GAP, BLOCK = 2.0, 4.4  # between groups of columns; height of a way
 
 
 def draw(ways, cost):
@@ -46,13 +49,15 @@ def _groups(ways):
 def _what(row):
     if row.safe or row.silent:
         return "safe" if row.safe else "silent"
-    if row.status in ("unsupported", "refused"):
+    if row.status in NOT_SERVED:
         return "unsupported"
     return "degraded" if row.status == "degraded" else "lost"
 
 
 def _region(axes, rows, groups, top):
     used = set()
+    if rows.status.isin(NOT_SERVED).all():
+        return used
     for axis, values, sizes, left in groups:
         high = 3 / len(sizes)
         for row in rows[rows.axis == axis].itertuples():
@@ -67,12 +72,13 @@ def _region(axes, rows, groups, top):
 def _remark(axes, rows, cost, folder, way, groups, top):
     good, total = share(rows)
     right = groups[-1][3] + len(groups[-1][1]) + 0.5
-    if not total:
-        axes.text(groups[0][3] + 0.2, top + 1.5, rows.reason.iloc[0] if len(rows) else "not run", va="center",
-                  fontsize=8.5, color="#666666")
+    if rows.status.isin(NOT_SERVED).all():
+        axes.text(groups[0][3], top + 1.5, fill(rows.reason.iloc[0], 48), va="center", fontsize=8.5, color="#666666")
         return
-    times = [f"×{ratio:.2f}" for _, ratio in costs(cost, folder, way)]
-    axes.text(right, top + 1.5, f"{good} of {total}\n{', '.join(times) or 'no time'}", va="center", fontsize=8.5)
+    times = dict(costs(cost, folder, way))
+    axes.text(right, top + 1.5, "\n".join([f"{good} of {total} ok", *(
+        f"N = {loops:g}: ×{times[loops]:.2f}" if loops in times else f"N = {loops:g}: lost"
+        for loops in sorted(cost.loops.unique()))]), va="center", fontsize=8)
 
 
 def _frame(axes, folder, names, groups):

@@ -88,14 +88,13 @@ def _row(study, cell, form, contender, record, references):
         return row | {"status": NOT_RUN, "reason": f"dense: {cell.loops} loops are too many",
                       "class": CLASS, "silent": False}
     status, reason = tools.outcome(record)
-    outputs = record.get("outputs", {})
-    solutions, own, kind = truth(cell, references, outputs.get("t", []))
-    error = tools.error_of(outputs, solutions, cell.length) if solutions else float("nan")
+    solutions, own, kind = truth(cell, references, record.get("outputs", {}).get("t", []))
+    error = tools.error_of(record, solutions, cell.length)
     summary = record.get("summary", {})
     return row | {
         "status": status, "reason": reason, "failed_at": summary.get("failed_at"), "true_error": error,
         "truth": kind, "truth_error": own, "class": CLASS,
-        "silent": bool(status == "ok" and solutions and not error <= CLASS + own),
+        "silent": bool(solutions) and tools.is_silent(record, error, CLASS + own),
         "steps": cell.steps, "step": cell.step, "penalty": summary.get("penalty"),
         "passes_per_step": summary.get("passes_per_step"),
         "raw_file": study.layout.relative(_path(study, cell, form, contender)),

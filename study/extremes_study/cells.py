@@ -7,6 +7,7 @@ from study.extremes_study.motions import Chain, Flat
 
 STEP, STEPS, SAMPLES = 1.25e-3, 2000, 40
 DENSE_LOOPS = 200    # dense implementations run up to this size
+LONGEST = 5.0        # s of simulated time where the step is what is varied
 LENGTHY = 160000     # steps of 200 s
 SIZES = {1: STEPS, 10: STEPS, 100: STEPS, 1000: 100, 10000: 24}  # loops: steps
 LOOPS = 5            # where size is not what is varied
@@ -62,7 +63,7 @@ def _sizes():
 
 def _steps():
     return [_built_in("step", f"Δt = 1e{power:+03d} s", step=10.0**power,
-                      steps=min(STEPS, round(20 / 10.0**power))) for power in range(-6, 0)]
+                      steps=min(STEPS, round(LONGEST / 10.0**power))) for power in range(-6, 0)]
 
 
 def _penalties():

@@ -1,6 +1,5 @@
 # What all parts share: who takes part, the long-double reference, how a run becomes a row.
 import os
-import re
 import shlex
 from dataclasses import dataclass
 from multiprocessing.pool import ThreadPool
@@ -13,10 +12,10 @@ from study.pipeline.errors import StudyError
 from study.pipeline.layout import Layout, ROOT
 
 AT_ONCE = 2
+WHOLE = (*runs.FINISHED, "not-converged")  # these get to the end
 FORMS = ("penalty", "saddle-point")
 CONTROLS = "harness/tests/controls/mbs_controls"
 STALE_PIVOTS = "implementations/csc_klu/csc_klu_stale_pivots"
-COLUMNS = re.compile(r"B\d+\.[xy]$")
 
 
 @dataclass(frozen=True)
@@ -83,12 +82,18 @@ def outcome(record):
     return status, reason
 
 
-def error_of(outputs, solutions, length):
-    """Largest distance of a point from where it should be at any time of `outputs`, in lengths; where several
-    motions are possible, from the nearest of them. NaN without outputs."""
-    if not outputs or not outputs.get("t"):
+def error_of(record, solutions, length):
+    """Largest distance of a point from where it should be at any time of a run's outputs, in lengths; where several
+    motions are possible, from the nearest of them. NaN where it has not all of its motion, or nothing is known."""
+    outputs = record.get("outputs", {})
+    if outcome(record)[0] not in WHOLE or not solutions or not outputs.get("t"):
         return float("nan")
     return min(distances(outputs, solution, length).max() for solution in solutions)
+
+
+def is_silent(record, error, allowed):
+    """Whether a run is reported ok though its error is beyond what that allows; one without positions is."""
+    return outcome(record)[0] == "ok" and not error <= allowed
 
 
 def distances(outputs, solution, length):

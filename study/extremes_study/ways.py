@@ -84,6 +84,8 @@ def run(study):
     jobs = [(way, one, place) for (way, _), one in served.items() if one for place in places()]
     records = tools.side_by_side(study, "ways", lambda job: _record(study, *job), jobs)
     rows += [_row(study, *job, record) for job, record in zip(jobs, records)]
+    names = [way.name for way in WAYS]
+    rows.sort(key=lambda row: names.index(row["way"]))
     return {"ways": pandas.DataFrame(rows), "ways_cost": pandas.DataFrame(_costs(study, served)),
             "scaling": pandas.DataFrame(scaling.rows())}
 
@@ -111,11 +113,10 @@ def _record(study, way, one, place):
 
 def _row(study, way, one, place, record):
     status, reason = tools.outcome(record)
-    outputs = record.get("outputs", {})
-    error = tools.error_of(outputs, place.chain.solutions(outputs.get("t", [])), 1.0)
+    error = tools.error_of(record, place.chain.solutions(record.get("outputs", {}).get("t", [])), 1.0)
     return {"way": way.name, "implementation": one.variant, "axis": place.axis, "value": place.value,
             "loops": place.loops, "status": status, "reason": reason, "true_error": error,
-            "safe": status == "ok" and error <= CLASS, "silent": status == "ok" and not error <= CLASS,
+            "safe": status == "ok" and error <= CLASS, "silent": tools.is_silent(record, error, CLASS),
             "passes_per_step": record.get("summary", {}).get("passes_per_step"),
             "raw_file": study.layout.relative(_path(study, way, one, place.name)),
             "command": tools.command(record)}
