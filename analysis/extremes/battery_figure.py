@@ -37,12 +37,16 @@ def draw(table):
     for spine in axes.spines.values():
         spine.set_visible(False)
     _groups(axes, columns, cells, places)
-    silent = int(table.silent.sum())
-    figure.suptitle(f"{silent} silent wrong{'' if silent == 1 else 's'} in {len(table)} runs",
-                    x=0.01, y=1.0, ha="left", fontsize=13, color=SILENT if silent else "black")
+    figure.suptitle(title(table), x=0.01, y=1.0, ha="left", fontsize=13,
+                    color=SILENT if table.silent.any() else "black")
     figure.legend(handles=_legend(used), loc="upper center", bbox_to_anchor=(0.5, 0.06), ncols=5, fontsize=8.5,
                   title="number: exponent of the true error, in lengths of a link", title_fontsize=8.5)
     return figure
+
+
+def title(table):
+    silent = int(table.silent.sum())
+    return f"{silent} silent wrong{'' if silent == 1 else 's'} in {len(table)} runs"
 
 
 def kind(row):

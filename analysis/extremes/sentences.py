@@ -1,7 +1,7 @@
 # The sentences of extremes.html, computed from its tables.
 import numpy
 
-from analysis.extremes.numbers import FLOOR, INSTANTS, growth
+from analysis.extremes.numbers import FLOOR, INSTANTS, NEAR, growth
 from analysis.text import number
 
 
@@ -81,5 +81,10 @@ def jumps(found):
     if not near + far > 0:
         return "No growth was seen."
     time = numpy.nanmedian([one["time"] for one in found])
+    powers = [numpy.log(one["medians"][2] / one["medians"][1]) / numpy.log(20 / 5) for one in found
+              if one["medians"][1] > FLOOR]
+    verdict = ("rounding grows in jumps at singular positions" if near / (near + far) > 2 * time else
+               "singular positions are no jumps in it")
     return (f"{100 * near / (near + far):.0f} % of the growth (decades, summed over sizes and forms) happens within "
-            f"0.1 s of a singular position, which is {100 * time:.0f} % of the time.")
+            f"{NEAR:g} s of a singular position, which is {100 * time:.0f} % of the time: {verdict}. From 5 to 20 s the "
+            f"difference grows as the {min(powers):.1f}th to {max(powers):.1f}th power of time." if powers else "")
