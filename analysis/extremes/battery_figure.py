@@ -39,8 +39,8 @@ def draw(table):
     _groups(axes, columns, cells, places)
     figure.suptitle(title(table), x=0.01, y=1.0, ha="left", fontsize=13,
                     color=SILENT if table.silent.any() else "black")
-    figure.legend(handles=_legend(used), loc="upper center", bbox_to_anchor=(0.5, 0.06), ncols=5, fontsize=8.5,
-                  title="number: exponent of the true error, in lengths of a link", title_fontsize=8.5)
+    axes.legend(handles=_legend(used), loc="upper center", bbox_to_anchor=(0.4, -0.025), ncols=5, fontsize=8.5,
+                title="number: exponent of the true error, in lengths of a link", title_fontsize=8.5)
     return figure
 
 
@@ -78,7 +78,7 @@ def _draw_cell(axes, x, y, row):
     axes.add_patch(Rectangle((x, y), 1, 1, facecolor=colour, hatch=hatch, linewidth=0.4,
                              edgecolor="#b5b5b5" if hatch or what == "not run" else "white"))
     if what in ("ok", "silent", "degraded"):
-        axes.text(x + 0.5, y + 0.53, f"{power:d}".replace("-", "−"), ha="center", va="center", fontsize=6.5,
+        axes.text(x + 0.5, y + 0.53, "0" if row.true_error == 0 else f"{power:d}".replace("-", "−"), ha="center", va="center", fontsize=6.5,
                   color="white" if what == "silent" else "black")
     return what
 

@@ -70,11 +70,11 @@ def results(folder, **tables):
 def test_the_matrix_names_every_outcome_and_counts_what_is_silently_wrong():
     table = battery()
     figure = battery_figure.draw(table)
-    named = {text.get_text() for text in figure.legends[0].get_texts()}
+    named = {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
     assert set(STATUSES) <= named and battery_figure.title(table) == "0 silent wrongs in 72 runs"
     table.loc[0, "silent"], table.loc[4, "status"], table.loc[8, "true_error"] = True, "strange", 0.0
     figure = battery_figure.draw(table)
-    named = {text.get_text() for text in figure.legends[0].get_texts()}
+    named = {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
     assert {"silently wrong: ok beyond its class", "other failure"} <= named
     assert battery_figure.title(table) == "1 silent wrong in 72 runs"
     plt.close("all")

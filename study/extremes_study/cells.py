@@ -49,6 +49,12 @@ def battery():
             *_starts(), *_long(), *_denormals()]
 
 
+def _short(value):
+    """1e6 for 1000000, 1e-160 for 1e-160, 0.01 for 0.01."""
+    mantissa, _, power = f"{value:g}".partition("e")
+    return f"{mantissa}e{int(power)}" if power else mantissa
+
+
 def _built_in(axis, label, loops=LOOPS, **more):
     return Cell(axis, label, f"four-bar:{loops}", Chain(loops), **more)
 
@@ -62,7 +68,7 @@ def _sizes():
 
 
 def _steps():
-    return [_built_in("step", f"Δt = 1e{power:+03d} s", step=10.0**power,
+    return [_built_in("step", f"Δt = 1e{power} s", step=10.0**power,
                       steps=min(STEPS, round(LONGEST / 10.0**power))) for power in range(-6, 0)]
 
 
@@ -79,18 +85,18 @@ def _lengths():
     """Steps in proportion to sqrt(length), as the motion is; two with the usual step."""
     def chain(length):
         return Chain(LOOPS, length=length, rate=length**-0.5)
-    scaled = [_chain("length", f"{10.0**power:g} m", chain(10.0**power), step=STEP * 10.0**(power // 2))
+    scaled = [_chain("length", f"{_short(10.0**power)} m", chain(10.0**power), step=STEP * 10.0**(power // 2))
               for power in range(-6, 7, 2)]
-    usual = [_chain("length", f"{length:g} m, usual step", chain(length)) for length in (1e-2, 1e2)]
-    return [*scaled, *usual, *(_chain("offset", f"{offset:g} m", Chain(LOOPS, offset=offset))
+    usual = [_chain("length", f"{_short(length)} m, usual step", chain(length)) for length in (1e-2, 1e2)]
+    return [*scaled, *usual, *(_chain("offset", f"{_short(offset)} m", Chain(LOOPS, offset=offset))
                                for offset in (1e3, 1e6))]
 
 
 def _springs():
     found = []
     for stiffness in (1e6, 1e8, 1e10, 1e12):
-        found += [Cell("spring", f"loop, {stiffness:g} N/m", "", Chain(2), scenes.sprung_loop(stiffness)),
-                  Cell("spring", f"pendulum, {stiffness:g} N/m", "", None,
+        found += [Cell("spring", f"loop, {_short(stiffness)} N/m", "", Chain(2), scenes.sprung_loop(stiffness)),
+                  Cell("spring", f"pendulum, {_short(stiffness)} N/m", "", None,
                        scenes.sprung_pendulum(stiffness), steps=800)]
     return found
 
@@ -98,7 +104,7 @@ def _springs():
 def _redundant():
     return [Cell("redundant", "rod given twice", "", Chain(1), scenes.twin_rod(same_points=True)),
             Cell("redundant", "rod doubled", "", Chain(1), scenes.twin_rod(same_points=False)),
-            *(Cell("redundant", f"third rod at {shift:g} m", "", Chain(1), scenes.shifted_rod(shift))
+            *(Cell("redundant", f"third rod at {_short(shift)} m", "", Chain(1), scenes.shifted_rod(shift))
               for shift in (1e-3, 1e-5, 1e-7, 1e-9))]
 
 
@@ -118,9 +124,9 @@ def _long():
 
 def _denormals():
     tiny, short = 1e-310, 1e-160
-    return [_chain("denormal", f"masses {tiny:g} kg", Chain(1, rods=(tiny, tiny), couplers=(tiny,))),
-            _chain("denormal", f"a rod of {tiny:g} kg", Chain(1, rods=(1.0, tiny))),
-            Cell("denormal", f"a force of {tiny:g} N", "", Chain(1), scenes.with_force(tiny)),
-            _chain("denormal", f"gravity {tiny:g} m/s²", Chain(1, gravity=tiny)),
-            _chain("denormal", f"lengths {short:g} m", Chain(1, length=short, rate=short**-0.5),
+    return [_chain("denormal", f"masses {_short(tiny)} kg", Chain(1, rods=(tiny, tiny), couplers=(tiny,))),
+            _chain("denormal", f"a rod of {_short(tiny)} kg", Chain(1, rods=(1.0, tiny))),
+            Cell("denormal", f"a force of {_short(tiny)} N", "", Chain(1), scenes.with_force(tiny)),
+            _chain("denormal", f"gravity {_short(tiny)} m/s²", Chain(1, gravity=tiny)),
+            _chain("denormal", f"lengths {_short(short)} m", Chain(1, length=short, rate=short**-0.5),
                    step=STEP * short**0.5)]
