@@ -47,3 +47,16 @@ def growth(lines, singular):
     near = numpy.array([bool((abs(singular - middle) <= NEAR).any()) for middle in (t[1:] + t[:-1]) / 2])
     steps = numpy.diff(logs)
     return steps[near].sum(), steps[~near].sum(), near.mean()
+
+
+def with_speed(lines):
+    """Correlation of log(difference) with log(speed) over one line's second half, both without their trend over
+    log(t). Near 1, one motion is late: it is on the same path, and off by its speed times the lag."""
+    late = lines[(lines.t >= lines.t.max() / 2) & (lines.difference > FLOOR)]
+    if len(late) < 3:
+        return float("nan")
+    rests = []
+    for values in (late.difference, late.speed):
+        logs = numpy.log(values.to_numpy())
+        rests.append(logs - numpy.polyval(numpy.polyfit(numpy.log(late.t), logs, 1), numpy.log(late.t)))
+    return float(numpy.corrcoef(*rests)[0, 1]) if min(rest.std() for rest in rests) > 1e-9 else float("nan")

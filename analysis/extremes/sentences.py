@@ -1,7 +1,7 @@
 # The sentences of extremes.html, computed from its tables.
 import numpy
 
-from analysis.extremes.numbers import FLOOR, INSTANTS, NEAR, growth
+from analysis.extremes.numbers import FLOOR, INSTANTS, NEAR, growth, with_speed
 from analysis.text import number
 
 
@@ -61,30 +61,39 @@ def scaling(table):
 
 
 def roundoff(table, lines, singular):
-    """For each form and size: the differences, and how much of their growth is at singular positions."""
+    """For each form and size: the differences, how much of their growth is at singular positions, and whether
+    they follow the speed."""
     found = []
     for (form, loops), rows in table.groupby(["scheme", "loops"], sort=False):
         at = singular[singular.loops == loops].t.to_numpy()
-        shares = [growth(line, at) for _, line in lines[
-            (lines.scheme == form) & (lines.loops == loops)].groupby("implementation") if len(line) > 1]
-        near, far = (float(numpy.median([one[i] for one in shares])) if shares else float("nan") for i in (0, 1))
-        found.append({"scheme": form, "loops": loops, "near": near, "far": far,
-                      "time": float(numpy.median([one[2] for one in shares])) if shares else float("nan"),
+        own = [line for _, line in lines[(lines.scheme == form) & (lines.loops == loops)].groupby("implementation")
+               if len(line) > 1]
+        near, far, time = numpy.median([growth(line, at) for line in own], axis=0) if own else [float("nan")] * 3
+        found.append({"scheme": form, "loops": loops, "near": near, "far": far, "time": time,
+                      "with_speed": float(numpy.median([with_speed(line) for line in own])) if own else float("nan"),
                       "medians": [rows[key].clip(lower=FLOOR).median() for key in INSTANTS],
                       "largest": [rows[key].max() for key in INSTANTS]})
     return found
 
 
 def jumps(found):
-    """One sentence over all sizes and forms."""
+    """What is seen, over all sizes and forms."""
     near, far = (sum(one[key] for one in found if one[key] == one[key]) for key in ("near", "far"))
     if not near + far > 0:
-        return "No growth was seen."
+        return ["No growth was seen."]
     time = numpy.nanmedian([one["time"] for one in found])
+    verdict = ("it grows in jumps at singular positions" if near / (near + far) > 2 * time else
+               "singular positions are no jumps in it")
+    said = [f"{100 * near / (near + far):.0f} % of the growth (decades, summed over sizes and forms) happens within "
+            f"{NEAR:g} s of a singular position, which is {100 * time:.0f} % of the time: {verdict}."]
     powers = [numpy.log(one["medians"][2] / one["medians"][1]) / numpy.log(20 / 5) for one in found
               if one["medians"][1] > FLOOR]
-    verdict = ("rounding grows in jumps at singular positions" if near / (near + far) > 2 * time else
-               "singular positions are no jumps in it")
-    return (f"{100 * near / (near + far):.0f} % of the growth (decades, summed over sizes and forms) happens within "
-            f"{NEAR:g} s of a singular position, which is {100 * time:.0f} % of the time: {verdict}. From 5 to 20 s the "
-            f"difference grows as the {min(powers):.1f}th to {max(powers):.1f}th power of time." if powers else "")
+    if powers:
+        said.append(f"From 5 to 20 s it grows with a power of time between {min(powers):.1f} and {max(powers):.1f}.")
+    speeds = [one["with_speed"] for one in found if one["with_speed"] == one["with_speed"]]
+    if speeds:
+        said.append(f"Its correlation with the speed of the rods (logarithms without trend, second half) is "
+                    f"{min(speeds):.2f} to {max(speeds):.2f}: " + (
+                        "one motion is late on the same path, by a lag that grows." if min(speeds) > 0.8 else
+                        "it is not a lag alone."))
+    return said

@@ -50,7 +50,8 @@ def lines(jump):
     """A difference that grows tenfold in a second, or by four decades at 2 s."""
     t = numpy.linspace(0, 4, 401)
     found = 1e-12 * (10.0**(4 * (t > 2)) if jump else 10**t)
-    return pandas.DataFrame({"loops": 1, "scheme": "penalty", "implementation": "a/v", "t": t, "difference": found})
+    return pandas.DataFrame({"loops": 1, "scheme": "penalty", "implementation": "a/v", "t": t, "difference": found,
+                             "speed": 2 + numpy.cos(t)})
 
 
 def roundoff():
@@ -105,9 +106,19 @@ def test_growth_tells_jumps_from_what_grows_between():
     near, far, _ = numbers.growth(lines(jump=False), singular)
     assert near == pytest.approx(0.2, abs=0.02) and far == pytest.approx(3.8, abs=0.02)
     at = pandas.DataFrame({"loops": [1], "t": [2.0]})
-    assert "in jumps" in sentences.jumps(sentences.roundoff(roundoff(), lines(jump=True), at))
+    assert "in jumps" in sentences.jumps(sentences.roundoff(roundoff(), lines(jump=True), at))[0]
     smooth = sentences.jumps(sentences.roundoff(roundoff(), lines(jump=False), at))
-    assert "no jumps" in smooth and "2.0th power" in smooth
+    assert "no jumps" in smooth[0] and "between 2.0 and 2.0" in smooth[1]
+
+
+def test_a_lag_is_told_from_other_differences():
+    late = lines(jump=False)
+    late["t"] += 1e-3
+    late["difference"] = 1e-12 * late.t**2 * late.speed
+    assert numbers.with_speed(late) == pytest.approx(1, abs=1e-6)
+    late["difference"] = 1e-12 * late.t**2 / late.speed
+    assert numbers.with_speed(late) == pytest.approx(-1, abs=1e-6)
+    assert numpy.isnan(numbers.with_speed(late[:2]))
 
 
 def test_the_guard_is_compared_with_kept_pivots():

@@ -58,6 +58,11 @@ class Chain:
             sn = kappa * sn
         return -2 * sn * cn, 2 * sn**2 - 1
 
+    def speed(self, times):
+        """phi' at `times`, rad/s, without its sign: from the energy."""
+        square = self.rate**2 + 2 * self.k * (numpy.cos(self.angle) - self.phi(times)[1])
+        return numpy.maximum(square, 0)**0.5  # at rest it rounds to less
+
     def solutions(self, times):
         """[{column of a trajectory: values}]: the motion that is possible."""
         sine, cosine = self.phi(numpy.asarray(times, dtype=float))

@@ -1,4 +1,5 @@
 # The growth of roundoff: how far implementations are from the long-double reference of the same settings.
+import numpy
 import pandas
 
 from study.extremes_study import tools
@@ -29,12 +30,14 @@ def run(study):
                                           for instant in INSTANTS}
                     | {"raw_file": study.layout.relative(path), "command": tools.command(record)})
         growth.append(pandas.DataFrame({"loops": loops, "scheme": form, "implementation": one.variant,
-                                        "t": times, "difference": found}))
+                                        "t": times, "difference": found,
+                                        "speed": Chain(loops).speed(numpy.asarray(times, dtype=float))}))
     singular = [{"loops": loops, "t": t} for loops in LOOPS
                 for t in singular_times(Chain(loops), DURATION)]
     return {"roundoff": pandas.DataFrame(rows), "singular": pandas.DataFrame(singular),
             "roundoff_growth": pandas.concat(growth, ignore_index=True) if growth else
-            pandas.DataFrame(columns=["loops", "scheme", "implementation", "t", "difference"])}
+            pandas.DataFrame(columns=["loops", "scheme", "implementation", "t", "difference",
+                                  "speed"])}
 
 
 def differences(record, reference):

@@ -26,9 +26,10 @@ CHAINS = [Chain(3, angle=numpy.pi / 2, rate=0.0), Chain(3, angle=numpy.pi / 2, r
 
 @pytest.mark.parametrize("chain", CHAINS)
 def test_motions_solve_their_equation_of_motion(chain):
-    angles = solve_ivp(lambda _, y: [y[1], chain.k * numpy.sin(y[0])], (0, 3), [chain.angle, chain.rate],
-                       t_eval=TIMES, rtol=1e-10, atol=1e-12, method="DOP853").y[0]
+    angles, rates = solve_ivp(lambda _, y: [y[1], chain.k * numpy.sin(y[0])], (0, 3), [chain.angle, chain.rate],
+                       t_eval=TIMES, rtol=1e-10, atol=1e-12, method="DOP853").y
     sine, cosine = chain.phi(TIMES)
+    assert chain.speed(TIMES)**2 == pytest.approx(rates**2, rel=1e-6, abs=1e-6)
     assert abs(sine - numpy.sin(angles)).max() < 1e-7 and abs(cosine - numpy.cos(angles)).max() < 1e-7
 
 
