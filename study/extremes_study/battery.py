@@ -24,8 +24,9 @@ def run(study):
     unknown = [cell for cell in cells if cell.motion is None]
     finer = [(cell, factor) for cell in unknown for factor in FINER]
     references = dict(zip(finer, tools.side_by_side(
-        study, "battery, reference", lambda job: _reference(study, *job), finer)))
-    found = tools.side_by_side(study, "battery", lambda job: _record(study, *job), jobs)
+        study, lambda job: "battery reference", lambda job: _reference(study, *job), finer)))
+    found = tools.side_by_side(study, lambda job: f"battery {job[0].axis}",
+                               lambda job: _record(study, *job), jobs)
     return {"battery": pandas.DataFrame(
         [_row(study, *job, record, references) for job, record in zip(jobs, found)])}
 

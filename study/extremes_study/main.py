@@ -16,6 +16,7 @@ PARTS = {"battery": "every implementation at the extremes, against the true moti
          "pivots": "kept pivots on matrices that change violently",
          "roundoff": "difference from the long-double reference over 20 s"}
 TIMED = {"ways", "pivots"}
+NEEDED = {"battery": "CONTROLS", "roundoff": "CONTROLS", "pivots": "STALE_PIVOTS"}  # of tools.py, beside `mbs`
 
 
 def extremes(arguments):
@@ -64,6 +65,8 @@ def _positive(text):
 
 def _run(layout, options):
     from study.extremes_study import battery, pivots, roundoff, tools, ways
+    for part in (part for part in options.parts if part in NEEDED):
+        tools.built(getattr(tools, NEEDED[part]))
     start_named(layout, "extremes", options.only, {"time_limit": options.time_limit})
     run = read_run(layout)
     settings = {variant["name"]: variant for entry in registry()["implementations"]

@@ -17,8 +17,9 @@ def run(study):
     asked = [(loops, form) for loops in LOOPS for form in tools.FORMS]
     jobs = [(*key, one) for key in asked for one in study.contenders if study.serves(one, key[1])]
     references = dict(zip(asked, tools.side_by_side(
-        study, "roundoff, reference", lambda key: _record(study, *key, reference), asked)))
-    tools.side_by_side(study, "roundoff", lambda job: _record(study, *job) and None, jobs)
+        study, lambda key: "roundoff reference", lambda key: _record(study, *key, reference), asked)))
+    tools.side_by_side(study, lambda job: f"roundoff N = {job[0]}",
+                       lambda job: _record(study, *job) and None, jobs)
     rows, growth = [], []
     for loops, form, one in jobs:
         path = _path(study, loops, form, one)

@@ -1,5 +1,4 @@
 # What all parts share: who takes part, the long-double reference, how a run becomes a row.
-import os
 import shlex
 from dataclasses import dataclass
 from multiprocessing.pool import ThreadPool
@@ -9,7 +8,7 @@ import numpy
 
 from study.pipeline import runs
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, ROOT
+from study.pipeline.layout import Layout, ROOT, program as mbs
 
 AT_ONCE = 2
 WHOLE = (*runs.FINISHED, "not-converged")  # these get to the end
@@ -44,20 +43,21 @@ class Reference:
 
 
 def built(program):
-    """A program of the build other than `mbs`; MBS_BUILD names another build directory."""
-    folder = Path(os.environ.get("MBS_BUILD", "build"))
-    if not (ROOT / folder / program).exists():
-        raise StudyError(f"{folder / program} is missing: build it with study/test")
-    return str(folder / program)
+    """Another program of the build that `mbs` is of."""
+    path = Path(mbs()).parent / program
+    if not (ROOT / path).exists():
+        raise StudyError(f"{path} is missing: build it with study/setup")
+    return str(path)
 
 
 def side_by_side(study, what, function, items):
-    """[function(item)], two at once: for what is not timed. Interrupted, it drops what has not begun."""
+    """[function(item)], two at once: for what is not timed; `what(item)` is told. Interrupted, it drops what has
+    not begun."""
     done = []
     with ThreadPool(AT_ONCE) as pool:
-        for number, result in enumerate(pool.imap(function, items), start=1):
+        for item, result in zip(items, pool.imap(function, items)):
             done.append(result)
-            study.tell(f"{what}: run {number} of {len(items)}")
+            study.tell(f"{what(item)}: run {len(done)} of {len(items)}")
     return done
 
 

@@ -82,7 +82,8 @@ def run(study):
                     rows.append({"way": way.name, "implementation": folder, "status": "unsupported",
                                  "reason": f"no variant serves {', '.join(way.needed)}"})
     jobs = [(way, one, place) for (way, _), one in served.items() if one for place in places()]
-    records = tools.side_by_side(study, "ways", lambda job: _record(study, *job), jobs)
+    records = tools.side_by_side(study, lambda job: f"ways {job[0].name}", lambda job: _record(study, *job),
+                                 jobs)
     rows += [_row(study, *job, record) for job, record in zip(jobs, records)]
     names = [way.name for way in WAYS]
     rows.sort(key=lambda row: names.index(row["way"]))
@@ -138,5 +139,5 @@ def _costs(study, served):
                      "step_us": summary.get("step_us", {}).get("mean"),
                      "passes_per_step": summary.get("passes_per_step"),
                      "raw_file": study.layout.relative(path), "command": tools.command(record)})
-        study.tell(f"ways, times: run {done} of {len(jobs)}")
+        study.tell(f"ways times: run {done} of {len(jobs)}")
     return rows

@@ -2,7 +2,6 @@
 import json
 import os
 import subprocess
-import tempfile
 from types import SimpleNamespace
 
 import numpy
@@ -141,7 +140,7 @@ def stale(folder, text):
 
 def test_stale_pivots_are_kept_as_the_program_gave_them(tmp_path, monkeypatch):
     row = dict.fromkeys(pivots.COLUMNS, 1) | {"sequence": "upright"}
-    monkeypatch.setenv("MBS_BUILD", str(tmp_path / "b"))
+    monkeypatch.setenv("MBS_PROGRAM", str(tmp_path / "b" / "mbs"))
     place = tools.Study(Layout(tmp_path), [], {}, {"own": {}}, 1.0, lambda text: None)
     with pytest.raises(StudyError, match="csc_klu_stale_pivots is missing"):
         pivots.run(place)
@@ -151,15 +150,62 @@ def test_stale_pivots_are_kept_as_the_program_gave_them(tmp_path, monkeypatch):
     (tmp_path / "b" / tools.STALE_PIVOTS).unlink()
     assert pivots.run(place)["pivots"].equals(tables["pivots"])  # never run again
     stale(tmp_path / "c", json.dumps({"rows": [{"sequence": "x"}]}))
-    monkeypatch.setenv("MBS_BUILD", str(tmp_path / "c"))
+    monkeypatch.setenv("MBS_PROGRAM", str(tmp_path / "c" / "mbs"))
     with pytest.raises(StudyError, match="its rows lack form"):
         pivots.run(tools.Study(Layout(tmp_path / "d"), [], {}, {"own": {}}, 1.0, lambda text: None))
 
 
 @pytest.mark.parametrize("arguments, what", [
     (["--parts", "all"], "invalid choice: 'all'"), (["--time-limit", "0"], "0 is not a positive number"),
-    (["--stored"], "holds no results"), (["--only", "nobody"], "unknown implementation 'nobody'")])
+    (["--stored"], "holds no results"),
+    (["--parts", "ways", "--only", "nobody"], "unknown implementation 'nobody'"),
+    (["--parts", "ways", "pivots"], "csc_klu_stale_pivots is missing")])
 def test_what_is_wrong_is_said_in_a_line(tmp_path, arguments, what):
     done = study("extremes", "--results", tmp_path, *arguments)
     assert done.returncode == 2 and what in done.stderr and "Traceback" not in done.stderr
     assert not list(tmp_path.glob("*.csv"))
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    """A study of one implementation of the real program."""
+    monkeypatch.setenv("MBS_PROGRAM", os.environ.get("MBS_PROGRAM", str(ROOT / "build" / "mbs")))
+    one = Contender("csc_klu/refactor", "csc_klu/refactor")
+    return tools.Study(Layout(tmp_path), [one], {one.variant: {"dense": False, "settings": ["saddle-point"]}},
+                       {one.environment: {}}, 20.0, lambda text: None)
+
+
+def test_the_battery_on_the_real_program_is_resumed(place, monkeypatch):
+    cells = [Cell("loops", "N = 1", "four-bar:1", Chain(1), steps=80),
+             Cell("length", "1e4 m", "", Chain(2, length=1e4, rate=1e-2),
+                  Chain(2, length=1e4, rate=1e-2).document(), step=0.125, steps=80, length=1e4),
+             Cell("redundant", "rod given twice", "", Chain(1), scenes.twin_rod(same_points=True), steps=80),
+             Cell("step", "too long", "four-bar:1", Chain(1), step=0.5, steps=80)]
+    monkeypatch.setattr(battery, "battery", lambda: cells)
+    table = battery.run(place)["battery"]
+    assert list(table.scheme) == 4 * ["penalty", "saddle-point"] and not table.silent.any()
+    assert list(table.status[:6]) == 4 * ["ok"] + 2 * ["refused"] and (table.true_error[:4] < 1e-4).all()
+    assert (table.status[6:] == "diverged").all() and table.failed_at[6:].notna().all()
+    assert "allowed is one rod" in table.reason[4]
+    files = [place.layout.results / name for name in table.raw_file]
+    before = [path.stat().st_mtime_ns for path in files[1:]]
+    files[0].unlink()
+    again = battery.run(place)["battery"]
+    assert again.equals(table) and before == [path.stat().st_mtime_ns for path in files[1:]]
+    command = again.command[0].replace("build/mbs", os.environ["MBS_PROGRAM"], 1).replace("OUTPUT.csv", os.devnull)
+    assert subprocess.run(command, shell=True, cwd=ROOT, capture_output=True).returncode == 0
+
+
+def test_ways_on_the_real_program(place, monkeypatch):
+    monkeypatch.setattr(ways, "WAYS", ways.WAYS[:2] + ways.WAYS[4:6])
+    monkeypatch.setattr(ways, "STEPS", (5e-3,))
+    monkeypatch.setattr(ways, "LOOPS", (2,))
+    monkeypatch.setattr(ways, "DURATION", 0.1)
+    tables = ways.run(place)
+    found = tables["ways"]
+    assert list(dict.fromkeys(found.way)) == ["α = 1e8", "α auto", "exact tangent", "saddle-point"]
+    assert list(found[found.way == "exact tangent"].status) == ["unsupported"]
+    assert found[(found.axis == "step")].safe.astype(bool).all()
+    cost = tables["ways_cost"]
+    assert len(cost) == 3 * 2 * ways.ROUNDS and (cost.step_us > 0).all()
+    assert list(cost.way[:3]) == ["α = 1e8", "α auto", "saddle-point"]  # in turn
