@@ -2,6 +2,7 @@
 import numpy
 
 PLAIN = "α auto"
+NOT_SERVED = ("unsupported", "refused")
 NEAR = 0.1          # s on either side of a singular position
 FLOOR = 1e-17       # m; differences below it are none
 INSTANTS = ("at_1_s", "at_5_s", "at_20_s")
@@ -10,6 +11,13 @@ INSTANTS = ("at_1_s", "at_5_s", "at_20_s")
 def folders(ways):
     """Folders of ways.csv, in its order."""
     return list(dict.fromkeys(ways.implementation.str.split("/").str[0]))
+
+
+def not_served(rows):
+    """Why none of the rows of a way and implementation was run; "" if one was."""
+    if len(rows) and not rows.status.isin(NOT_SERVED).all():
+        return ""
+    return rows.reason.iloc[0] if len(rows) else "not run"
 
 
 def share(rows):

@@ -66,17 +66,16 @@ def _battery(battery):
     return {"said": said, "nobody": nobody, "total": len(battery), "unlike": sentences.unlike(battery),
             "counts": battery.groupby("scheme", sort=False).status.value_counts().unstack(fill_value=0).to_dict("index"),
             "statuses": list(dict.fromkeys(["ok", "degraded", *sorted(battery.status.unique())])),
-            "silent": battery[battery.silent].to_dict("records"),
+            "silent": sentences.silent(battery),
             "unjudged": battery[(battery.status == "ok") & battery.true_error.isna()].to_dict("records")}
 
 
 def _ways(ways, ways_cost, scaling):
-    rows = [{"way": way, "folder": folder, "share": numbers.share(own), "reason": own.reason.iloc[0] if len(own) else "",
+    rows = [{"way": way, "folder": folder, "share": numbers.share(own), "reason": numbers.not_served(own),
              "costs": numbers.costs(ways_cost, folder, way), "passes": numbers.passes(ways_cost, folder, way)}
             for way in dict.fromkeys(ways.way) for folder in numbers.folders(ways)
             for own in [ways[(ways.way == way) & (ways.implementation.str.split("/").str[0] == folder)]]]
-    silent = ways[ways.silent == True]  # noqa: E712: empty where a way is not served
-    return {"rows": rows, "silent": silent.to_dict("records"), "scaling": sentences.scaling(scaling)}
+    return {"rows": rows, "silent": sentences.silent(ways), "scaling": sentences.scaling(scaling)}
 
 
 def _pivots(pivots, pivots_claims):

@@ -12,13 +12,22 @@ def battery(table):
     for (axis, value), rows in ran.groupby(["axis", "value"], sort=False):
         good = rows.status == "ok"
         if not (good & ~rows.silent).any():
-            counts = ", ".join(f"{count} {status}" for status, count in rows.status.value_counts().items())
+            outcomes = rows.status.mask(rows.silent, "silently wrong").value_counts()
+            counts = ", ".join(f"{count} {status}" for status, count in outcomes.items())
             nobody.append(f"{axis}, {value}: {counts}")
     good = ((table.status == "ok") & ~table.silent).sum()
     found.append(f"{good} of {len(ran)} runs are ok and right; {int(table.silent.sum())} are ok and wrong.")
     for form, rows in ran.groupby("scheme", sort=False):
         found.append(f"{form} form: ok and right in {((rows.status == 'ok') & ~rows.silent).sum()} of {len(rows)}.")
     return found, nobody
+
+
+def silent(rows):
+    """What is ok and wrong, a cell of battery.csv or ways.csv an entry: its runs, errors and first command."""
+    return [{"axis": axis, "value": value, "runs": len(group), "least": group.true_error.min(),
+             "most": group.true_error.max(), "implementation": group.implementation.iloc[0],
+             "command": group.command.iloc[0]}
+            for (axis, value), group in rows[rows.silent == True].groupby(["axis", "value"], sort=False)]  # noqa: E712
 
 
 def unlike(table):

@@ -5,13 +5,12 @@ import matplotlib.pyplot as plt
 from matplotlib.patches import Patch, Rectangle
 
 from analysis.extremes.battery_figure import SILENT
-from analysis.extremes.numbers import costs, folders, share
+from analysis.extremes.numbers import NOT_SERVED, costs, folders, not_served, share
 
 COLOURS = {"safe": "#009E73", "silent": SILENT, "degraded": "#F2C14E", "lost": "#c4c4c4",
            "unsupported": "#ffffff"}
 WORDS = {"safe": "ok", "silent": "silently wrong", "lost": "did not get through",
          "unsupported": "not served or refused"}
-NOT_SERVED = ("unsupported", "refused")
 GAP, BLOCK = 2.0, 4.4  # between groups of columns; height of a way
 
 
@@ -56,7 +55,7 @@ def _what(row):
 
 def _region(axes, rows, groups, top):
     used = set()
-    if rows.status.isin(NOT_SERVED).all():
+    if not_served(rows):
         return used
     for axis, values, sizes, left in groups:
         high = 3 / len(sizes)
@@ -72,8 +71,8 @@ def _region(axes, rows, groups, top):
 def _remark(axes, rows, cost, folder, way, groups, top):
     good, total = share(rows)
     right = groups[-1][3] + len(groups[-1][1]) + 0.5
-    if rows.status.isin(NOT_SERVED).all():
-        axes.text(groups[0][3], top + 1.5, fill(rows.reason.iloc[0], 48), va="center", fontsize=8.5, color="#666666")
+    if not_served(rows):
+        axes.text(groups[0][3], top + 1.5, fill(not_served(rows), 48), va="center", fontsize=8.5, color="#666666")
         return
     times = dict(costs(cost, folder, way))
     axes.text(right, top + 1.5, "\n".join([f"{good} of {total} ok", *(

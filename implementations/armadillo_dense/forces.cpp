@@ -46,13 +46,13 @@ void Forces::evaluate(const arma::vec& x, const arma::vec& v, arma::vec& rhs) {
   }
 }
 
-void Forces::add_to(arma::mat& T) const {
+void Forces::add_to(double* T, arma::uword height) const {
   if (layout_.dimension == 2) {
-    springs_.add_to<2>(T.memptr());
-    torsion_springs_.add_to<2>(T.memptr());
+    springs_.add_to<2>(T, height);
+    torsion_springs_.add_to<2>(T, height);
   } else {
-    springs_.add_to<3>(T.memptr());
-    torsion_springs_.add_to<3>(T.memptr());
+    springs_.add_to<3>(T, height);
+    torsion_springs_.add_to<3>(T, height);
   }
 }
 

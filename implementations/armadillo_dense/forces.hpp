@@ -24,8 +24,9 @@ class Forces {
 
   /// rhs (n) += h Q at extended positions x and velocities v.
   void evaluate(const arma::vec& x, const arma::vec& v, arma::vec& rhs);
-  /// Lower triangle of T (n x n) += h K + (Δt/2) C of the last evaluate().
-  void add_to(arma::mat& T) const;
+  /// T (n x n in columns of `height`; its lower triangle counts) += h K + (Δt/2) C of the last
+  /// evaluate().
+  void add_to(double* T, arma::uword height) const;
   /// y (n) += (h K + (Δt/2) C) x, with the first n entries of x, of the last evaluate().
   void add_product(const arma::vec& x, arma::vec& y) const;
 

@@ -10,19 +10,24 @@ namespace mbs::armadillo_dense {
 
 Implementation implementation() {
   return {
-      .description = "dense column-major storage, Cholesky by LAPACK, products by BLAS",
+      .description = "dense column-major storage, factorizations by LAPACK, products by BLAS",
       .library = "Armadillo",
       .version = arma::arma_version::as_string(),
       .licence = "Apache-2.0",
       .variants = {{
           .name = "potrf",
-          .description = "tangent by dsyrk, Cholesky by dpotrf, in place",
+          .description =
+              "tangent by dsyrk, Cholesky by dpotrf, in place; saddle-point form by dsytrf",
           .create = [](const Model& model,
                        const StepSettings& settings) -> std::unique_ptr<mbs::Simulation> {
-            require_storable(model);
-            return std::make_unique<DenseSimulation>(model, settings);
+            require_storable(model, settings.scheme);
+            if (settings.scheme == Scheme::saddle_point) {
+              return std::make_unique<DenseSimulation<SaddlePointSystem>>(model, settings);
+            }
+            return std::make_unique<DenseSimulation<PenaltySystem>>(model, settings);
           },
           .dense = true,
+          .serves = {.saddle_point = true},
       }},
   };
 }

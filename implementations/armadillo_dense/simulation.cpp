@@ -6,68 +6,69 @@
 
 namespace mbs::armadillo_dense {
 
-DenseSimulation::DenseSimulation(const Model& model, const StepSettings& settings)
+template <class System>
+DenseSimulation<System>::DenseSimulation(const Model& model, const StepSettings& settings)
     : mbs::Simulation(model, settings),
       settings_(settings),
-      assembly_(model, settings),
-      solver_(model.variables()),
+      system_(model, settings),
       n_(model.variables()),
       m_(model.constraints()),
-      q_(assembly_.layout().positions(model)),
-      v_(assembly_.layout().zeros()),
+      q_(system_.layout().positions(model)),
+      v_(system_.layout().zeros()),
       a_(n_, arma::fill::zeros),
-      lambda_(m_, arma::fill::zeros),
-      mu_(m_, arma::fill::zeros),
-      rhs_(n_, arma::fill::zeros) {
+      lambda_(m_, arma::fill::zeros) {
   std::ranges::copy(model.initial_velocity(), v_.begin());
 }
 
-void DenseSimulation::do_set_state(const State& state) {
+template <class System>
+void DenseSimulation<System>::do_set_state(const State& state) {
   std::ranges::copy(state.q, q_.begin());
   std::ranges::copy(state.v, v_.begin());
   std::ranges::copy(state.a, a_.begin());
   std::ranges::copy(state.lambda, lambda_.begin());
 }
 
-void DenseSimulation::do_get_state(State& state) const {
+template <class System>
+void DenseSimulation<System>::do_get_state(State& state) const {
   std::copy_n(q_.begin(), n_, state.q.begin());
   std::copy_n(v_.begin(), n_, state.v.begin());
   std::copy_n(a_.begin(), n_, state.a.begin());
   std::copy_n(lambda_.begin(), m_, state.lambda.begin());
 }
 
-StepOutcome DenseSimulation::do_step() {
-  if (assembly_.is_driven()) assembly_.drive(time(), q_, v_);
+template <class System>
+StepOutcome DenseSimulation<System>::do_step() {
+  if (system_.is_driven()) system_.drive(time(), q_, v_);
   predict();
   phases_.enter(Phase::evaluation);
-  assembly_.evaluate(q_);
+  system_.evaluate(q_);
   StepOutcome outcome{.status = StepStatus::pass_limit, .passes = 0};
   while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
     ++outcome.passes;
     phases_.enter(Phase::evaluation);
-    mu_ = lambda_ + settings_.penalty * assembly_.phi();
-    assembly_.negative_residual(q_, v_, a_, mu_, rhs_);
+    system_.residual(q_, v_, a_, lambda_);
     phases_.enter(Phase::assembly);
-    assembly_.tangent(solver_.matrix());
+    system_.assemble();
     phases_.enter(Phase::factorization);
-    if (!solver_.factorize()) {
+    if (!system_.factorize()) {
       phases_.enter(Phase::other);
       return {.status = StepStatus::factorization_failed, .passes = outcome.passes};
     }
     phases_.enter(Phase::solve);
-    solver_.solve(rhs_);  // Eq. (4)
+    system_.solve();  // Eq. (4) or (12)
     phases_.enter(Phase::other);
     if (correct()) outcome.status = StepStatus::converged;
     phases_.enter(Phase::evaluation);
-    assembly_.evaluate(q_);
+    system_.evaluate(q_);
     phases_.enter(Phase::other);
-    lambda_ += settings_.penalty * assembly_.phi();  // Eq. (1)
+    system_.update(lambda_);
   }
   project();
   return outcome;
 }
 
-void DenseSimulation::predict() {
+template <class System>
+void DenseSimulation<System>::predict() {
   const double step = settings_.step;
   const double half_square = step * step / 2.0;
   const double two = 2.0 / step;
@@ -85,14 +86,15 @@ void DenseSimulation::predict() {
   }
 }
 
-bool DenseSimulation::correct() {
+template <class System>
+bool DenseSimulation<System>::correct() {
   const double tolerance = settings_.tolerance;
   const double two = 2.0 / settings_.step;
   const double four_square = 4.0 / (settings_.step * settings_.step);
   double* __restrict const q = q_.memptr();
   double* __restrict const v = v_.memptr();
   double* __restrict const a = a_.memptr();
-  const double* __restrict const delta = rhs_.memptr();
+  const double* __restrict const delta = system_.solution().memptr();
   bool converged = true;
   for (arma::uword i = 0; i < n_; ++i) {
     q[i] += delta[i];
@@ -103,23 +105,27 @@ bool DenseSimulation::correct() {
   return converged;
 }
 
-void DenseSimulation::project() {
+template <class System>
+void DenseSimulation<System>::project() {
   if (settings_.projections == Projections::none) return;
   phases_.enter(Phase::projection);
-  assembly_.velocity_projection(q_, v_, rhs_);
+  system_.velocity_projection(q_, v_);
   phases_.enter(Phase::solve);
-  solver_.solve(rhs_);  // Eq. (6)
+  system_.solve();  // Eq. (6) or (13)
   phases_.enter(Phase::projection);
-  std::copy_n(rhs_.begin(), n_, v_.begin());
+  std::copy_n(system_.solution().begin(), n_, v_.begin());
   if (settings_.projections == Projections::velocity) {
     phases_.enter(Phase::other);
     return;
   }
-  assembly_.acceleration_projection(q_, v_, a_, rhs_);
+  system_.acceleration_projection(q_, v_, a_);
   phases_.enter(Phase::solve);
-  solver_.solve(rhs_);  // Eq. (6)
+  system_.solve();  // Eq. (6) or (13)
   phases_.enter(Phase::other);
-  a_ = rhs_;
+  a_ = system_.solution();
 }
+
+template class DenseSimulation<PenaltySystem>;
+template class DenseSimulation<SaddlePointSystem>;
 
 }  // namespace mbs::armadillo_dense

@@ -3,14 +3,16 @@
 
 #include <armadillo>
 
-#include "assembly.hpp"
 #include "mbs/simulation.hpp"
-#include "solver.hpp"
+#include "penalty_system.hpp"
+#include "saddle_point_system.hpp"
 
 namespace mbs::armadillo_dense {
 
-/// One simulation with a dense tangent matrix: Assembly fills it, CholeskySolver factorizes it in
-/// place. All storage is allocated by the constructor.
+/// One simulation with a dense matrix. System is PenaltySystem or SaddlePointSystem: it evaluates
+/// the model, makes the linear systems of its scheme and solves them. All storage is allocated by
+/// the constructor.
+template <class System>
 class DenseSimulation final : public mbs::Simulation {
  public:
   DenseSimulation(const Model& model, const StepSettings& settings);
@@ -21,21 +23,21 @@ class DenseSimulation final : public mbs::Simulation {
   void do_get_state(State& state) const override;
 
   void predict();
-  /// Applies Δq (rhs_) to q', v' and a'; whether max|Δq| <= tolerance (false with a NaN).
+  /// Applies the solution Δq to q', v' and a'; whether max|Δq| <= tolerance (false with a NaN).
   [[nodiscard]] bool correct();
-  /// Eq. (6) as far as settings ask for it.
+  /// Eq. (6) or (13) as far as settings ask for it.
   void project();
 
   StepSettings settings_;
-  Assembly assembly_;
-  CholeskySolver solver_;
+  System system_;
   arma::uword n_, m_;
   arma::vec q_;       ///< extended (see Layout), m
   arma::vec v_;       ///< extended, m/s
   arma::vec a_;       ///< n, m/s²
   arma::vec lambda_;  ///< m
-  arma::vec mu_;      ///< m, lambda + alpha Phi
-  arma::vec rhs_;     ///< n, right-hand side, then solution
 };
+
+extern template class DenseSimulation<PenaltySystem>;
+extern template class DenseSimulation<SaddlePointSystem>;
 
 }  // namespace mbs::armadillo_dense

@@ -9,7 +9,7 @@
 namespace mbs::armadillo_dense {
 
 Springs::Springs(const Model& model, const Layout& layout, const StepSettings& settings)
-    : n_(layout.n), h_(settings.step * settings.step / 4.0) {
+    : h_(settings.step * settings.step / 4.0) {
   for (const Spring& spring : model.springs()) {
     Element element{.a = layout.starts[spring.a],
                     .b = layout.starts[spring.b],
@@ -54,18 +54,18 @@ void Springs::evaluate(const double* x, const double* v, double* rhs) {
 }
 
 template <int dimension>
-void Springs::add_to(double* T) const {
+void Springs::add_to(double* T, arma::uword height) const {
   for (const Element& spring : springs_) {  // Eqs. (5), (11)
     for (int j = 0; j < spring.count; ++j) {
       for (int i = j; i < spring.count; ++i) {
-        double* const block = T + arma::uword(spring.ends[j]) * n_ + spring.ends[i];
+        double* const block = T + arma::uword(spring.ends[j]) * height + spring.ends[i];
         const double sign = spring.sign[i] * spring.sign[j];
         for (int column = 0; column < dimension; ++column) {
           const double along = sign * spring.axial * spring.e[column];
           for (int row = 0; row < dimension; ++row) {
-            block[arma::uword(column) * n_ + row] += along * spring.e[row];
+            block[arma::uword(column) * height + row] += along * spring.e[row];
           }
-          block[arma::uword(column) * n_ + column] += sign * spring.transverse;
+          block[arma::uword(column) * height + column] += sign * spring.transverse;
         }
       }
     }
@@ -91,8 +91,8 @@ void Springs::add_product(const double* x, double* y) const {
 
 template void Springs::evaluate<2>(const double*, const double*, double*);
 template void Springs::evaluate<3>(const double*, const double*, double*);
-template void Springs::add_to<2>(double*) const;
-template void Springs::add_to<3>(double*) const;
+template void Springs::add_to<2>(double*, arma::uword) const;
+template void Springs::add_to<3>(double*, arma::uword) const;
 template void Springs::add_product<2>(const double*, double*) const;
 template void Springs::add_product<3>(const double*, double*) const;
 

@@ -22,9 +22,10 @@ class Springs {
   /// rhs (n) += h Q at extended positions x and velocities v.
   template <int dimension>
   void evaluate(const double* x, const double* v, double* rhs);
-  /// T (n x n, column-major; its lower triangle counts) += h K + (Δt/2) C of the last evaluate().
+  /// T (n x n in columns of `height`; its lower triangle counts) += h K + (Δt/2) C of the last
+  /// evaluate().
   template <int dimension>
-  void add_to(double* T) const;
+  void add_to(double* T, arma::uword height) const;
   /// y (n) += (h K + (Δt/2) C) x (n), of the last evaluate().
   template <int dimension>
   void add_product(const double* x, double* y) const;
@@ -41,7 +42,6 @@ class Springs {
     double axial, transverse;
   };
 
-  arma::uword n_;
   double h_;  ///< Δt²/4, s²
   std::vector<Element> springs_;
 };

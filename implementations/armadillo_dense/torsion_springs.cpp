@@ -10,7 +10,7 @@ namespace mbs::armadillo_dense {
 
 TorsionSprings::TorsionSprings(const Model& model, const Layout& layout,
                                const StepSettings& settings)
-    : n_(layout.n), half_step_(settings.step / 2.0), h_(settings.step * settings.step / 4.0) {
+    : half_step_(settings.step / 2.0), h_(settings.step * settings.step / 4.0) {
   for (const TorsionSpring& spring : model.torsion_springs()) {
     const Element element = lower(spring, layout);
     if (element.count > 0) springs_.push_back(element);
@@ -71,13 +71,13 @@ void TorsionSprings::evaluate(const double* x, const double* v, double* rhs) {
 }
 
 template <int dimension>
-void TorsionSprings::add_to(double* T) const {
+void TorsionSprings::add_to(double* T, arma::uword height) const {
   for (const Element& spring :
        springs_) {  // Eqs. (5), (11); ends ascend, so these are lower blocks
     for (int j = 0; j < spring.count; ++j) {
       const End& right = spring.ends[j];
       for (int column = 0; column < dimension; ++column) {
-        double* const target = T + arma::uword(right.start + column) * n_;
+        double* const target = T + arma::uword(right.start + column) * height;
         const double factor = spring.weight * right.g[column];
         for (int i = j; i < spring.count; ++i) {
           const End& left = spring.ends[i];
@@ -107,8 +107,8 @@ void TorsionSprings::add_product(const double* x, double* y) const {
 
 template void TorsionSprings::evaluate<2>(const double*, const double*, double*);
 template void TorsionSprings::evaluate<3>(const double*, const double*, double*);
-template void TorsionSprings::add_to<2>(double*) const;
-template void TorsionSprings::add_to<3>(double*) const;
+template void TorsionSprings::add_to<2>(double*, arma::uword) const;
+template void TorsionSprings::add_to<3>(double*, arma::uword) const;
 template void TorsionSprings::add_product<2>(const double*, double*) const;
 template void TorsionSprings::add_product<3>(const double*, double*) const;
 

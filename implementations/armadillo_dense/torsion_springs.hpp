@@ -22,9 +22,10 @@ class TorsionSprings {
   /// rhs (n) += h Q at extended positions x and velocities v.
   template <int dimension>
   void evaluate(const double* x, const double* v, double* rhs);
-  /// T (n x n, column-major; its lower triangle counts) += h K + (Δt/2) C of the last evaluate().
+  /// T (n x n in columns of `height`; its lower triangle counts) += h K + (Δt/2) C of the last
+  /// evaluate().
   template <int dimension>
-  void add_to(double* T) const;
+  void add_to(double* T, arma::uword height) const;
   /// y (n) += (h K + (Δt/2) C) x (n), of the last evaluate().
   template <int dimension>
   void add_product(const double* x, double* y) const;
@@ -47,7 +48,6 @@ class TorsionSprings {
 
   [[nodiscard]] Element lower(const TorsionSpring& spring, const Layout& layout) const;
 
-  arma::uword n_;
   double half_step_;  ///< Δt/2, s
   double h_;          ///< Δt²/4, s²
   std::vector<Element> springs_;

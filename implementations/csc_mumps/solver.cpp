@@ -16,7 +16,7 @@ constexpr int kAmalgamations[] = {5, 24, 50};
 constexpr double kFrontTime = 2.0;
 constexpr double kOperationTime = 1e-4;
 // Of quasi-definite matrices; README.md, "The order of the saddle-point matrix".
-constexpr double kPivotThreshold = 0.01;
+constexpr double kPivotThreshold = 1e-4;
 constexpr int kMostSlack = 100000;  // percent
 
 }  // namespace

@@ -29,6 +29,7 @@ Solver::Solver(const SparsityPattern& pattern, const std::vector<int>& order)
   control_[UMFPACK_SCALE] = UMFPACK_SCALE_NONE;
   control_[UMFPACK_BLOCK_SIZE] = 16;  // columns of a front that are put off; fronts are small here
   control_[UMFPACK_IRSTEP] = 0;
+  control_[UMFPACK_ALLOC_INIT] = 1.0;  // less makes the saddle-point matrix reallocate every pass
 
   const int n = pattern.variables();
   void* symbolic = nullptr;

@@ -77,7 +77,7 @@ def _penalties():
 
 
 def _masses():
-    return [_chain("mass ratio", f"1e{power:+d}", scenes.unlike_masses(LOOPS, 10.0**power))
+    return [_chain("mass ratio", f"1e{power}", scenes.unlike_masses(LOOPS, 10.0**power))
             for power in (-9, -6, -3, 3, 6, 9)]
 
 

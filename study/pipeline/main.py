@@ -1,5 +1,6 @@
 # The command lines of study/run, study/figures and study/compare, and the way into study/view.
 import argparse
+import importlib
 import os
 import re
 import shlex
@@ -20,12 +21,18 @@ class Parser(argparse.ArgumentParser):
         raise StudyError(f"{message} (see {self.prog} --help)")
 
 
+STUDIES = {"view": "study.viewer.main", "scenes": "study.scene_study.main",
+           "stability": "study.stability_study.main", "accuracy": "study.accuracy_study.main",
+           "realtime": "study.realtime_study.main", "extremes": "study.extremes_study.main",
+           "advise": "study.advise_study.main", "against": "study.pipeline.against"}
+
+
 def main(arguments):
     command, *rest = arguments
     try:
-        return {"run": run, "figures": figures, "compare": compare, "view": view,
-                "scenes": scenes, "stability": stability, "extremes": extremes, "realtime": realtime,
-                "against": against}[command](rest)
+        if command in STUDIES:  # imported only now: they need modules that others do without
+            return getattr(importlib.import_module(STUDIES[command]), command)(rest)
+        return {"run": run, "figures": figures, "compare": compare}[command](rest)
     except StudyError as error:
         print(f"study/{command}: {error}", file=sys.stderr)
         return 2
@@ -103,36 +110,6 @@ def compare(arguments):
     repeat([options.first, options.second, *options.output])
     print(f"figure: {', '.join(options.output)}")
     return 0
-
-
-def view(arguments):
-    from study.viewer.main import view as show
-    return show(arguments)
-
-
-def scenes(arguments):
-    from study.scene_study.main import scenes as run_scenes
-    return run_scenes(arguments)
-
-
-def extremes(arguments):
-    from study.extremes_study.main import extremes as run_extremes
-    return run_extremes(arguments)
-
-
-def stability(arguments):
-    from study.stability_study.main import stability as run_stability
-    return run_stability(arguments)
-
-
-def realtime(arguments):
-    from study.realtime_study.main import realtime as run_realtime
-    return run_realtime(arguments)
-
-
-def against(arguments):
-    from study.pipeline.against import against as run_against
-    return run_against(arguments)
 
 
 def list_choices():

@@ -2,10 +2,13 @@
 # integrated with step control: they share neither coordinates, mass matrix nor constraints with `mbs`.
 #
 # Each function takes times (s) and returns {column of an output file: values}; numbers are the scenes'.
+from contextlib import contextmanager
+
 import numpy
 from scipy.integrate import solve_ivp
 
 GRAVITY = 9.81  # m/s^2
+TOLERANCE = 1e-12  # relative and absolute, of the integrations
 
 
 def grid(times, size, lean=0.5):
@@ -163,9 +166,20 @@ def _pull(between, rate, stiffness, damping, free):
     return along * (stiffness * (length - free) + damping * (along.conjugate() * rate).real)
 
 
-def _integrate(derivative, times, start, method="DOP853", tolerance=1e-12):
-    return solve_ivp(derivative, (0, times[-1]), start, method, times, rtol=tolerance,
-                     atol=tolerance).y
+@contextmanager
+def tolerance(value):
+    """Inside, solutions are integrated to another tolerance: what that changes is about their error."""
+    global TOLERANCE
+    usual, TOLERANCE = TOLERANCE, value
+    try:
+        yield
+    finally:
+        TOLERANCE = usual
+
+
+def _integrate(derivative, times, start, method="DOP853"):
+    return solve_ivp(derivative, (0, times[-1]), start, method, times, rtol=TOLERANCE,
+                     atol=TOLERANCE).y
 
 
 def _columns(axes, **places):

@@ -1,0 +1,108 @@
+# accuracy.html: error against time, the regions for a required error, settings side by side; self-contained.
+import base64
+from pathlib import Path
+
+import jinja2
+import matplotlib.pyplot as plt
+import pandas
+
+from analysis.accuracy import names, pairs_figure, regions_figure, sentences, work_figure
+from analysis.loader import TableError, _json
+from analysis.style import save
+from analysis.text import number
+
+NEEDED = ("work", "gate", "references")
+OTHERS = ("regions", "winners", "fills", "forms", "precision", "tangents")  # of parts that were run
+
+
+def load(folder):
+    """{name: DataFrame}; empty where a part was not run."""
+    tables = {}
+    for name in (*NEEDED, *OTHERS):
+        path = Path(folder) / f"{name}.csv"
+        try:
+            tables[name] = pandas.read_csv(path)
+        except (FileNotFoundError, pandas.errors.EmptyDataError) as error:
+            if name in NEEDED:
+                raise TableError(f"{path}: cannot be read: {error}") from error
+            tables[name] = pandas.DataFrame()
+        except (OSError, ValueError) as error:
+            raise TableError(f"{path}: cannot be read: {error}") from error
+    return tables
+
+
+def write(folder):
+    """Writes figures/*.svg and .png, and accuracy.html, from the tables in `folder`."""
+    folder = Path(folder)
+    tables = load(folder)
+    registry = _json(folder / "implementations.json")["implementations"]
+    (folder / "figures").mkdir(exist_ok=True)
+    figures = {}
+    for name, figure in _figures(tables, registry):
+        for kind in ("svg", "png"):
+            save(figure, folder / "figures" / f"{name}.{kind}")
+        plt.close(figure)
+        figures[name] = base64.b64encode((folder / "figures" / f"{name}.svg").read_bytes()).decode()
+    partial = folder / "accuracy.html.partial"
+    partial.write_text(render(tables, _json(folder / "run.json"), figures), encoding="utf-8")
+    partial.replace(folder / "accuracy.html")
+
+
+def file_name(subject):
+    return "work-" + subject.replace(":", "-").replace(" ", "-").lower()
+
+
+def _figures(tables, registry):
+    """(name, figure) of what there are tables for."""
+    look = names.look(registry)
+    dense = {variant["name"]: bool(variant.get("dense")) for entry in registry
+             for variant in entry["variants"]}
+    references = tables["references"].set_index("subject")
+    for subject, rows in tables["work"].groupby("subject", sort=False):
+        about = references.loc[subject]
+        title = (f"{about.title}, n = {rows.variables.dropna().iloc[0]:.0f}, {about.duration:g} s"
+                 if rows.variables.notna().any() else about.title)
+        unit = "largest of position, m" if about.unit == "m" else "root mean square, relative"
+        yield file_name(subject), work_figure.draw(rows, look, dense, unit, title)
+    if not tables["winners"].empty:
+        yield "regions", regions_figure.draw(tables["winners"], look)
+    for name, title, goal in (
+            ("forms", "The saddle-point form beside the penalty form", None),
+            ("precision", "Lower precision beside double; hollow: another error class", pairs_figure.GAIN)):
+        if "ratio" in tables[name] and tables[name].ratio.notna().any():
+            yield name, pairs_figure.draw(tables[name], look, title, goal)
+
+
+def render(tables, run, figures):
+    """The page; `figures`: {name: SVG in base 64}."""
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
+                                     autoescape=True, trim_blocks=True, lstrip_blocks=True,
+                                     undefined=jinja2.StrictUndefined)
+    environment.filters |= {"number": number, "step": names.step}
+    work, gate = tables["work"], tables["gate"]
+    references = tables["references"].to_dict("records")
+    by_subject = dict(list(work.groupby("subject", sort=False)))
+    parts = [{"about": about, "figure": figures.get(file_name(about["subject"])),
+              "says": sentences.of_subject(by_subject[about["subject"]]),
+              "statuses": by_subject[about["subject"]].status.value_counts().to_dict()}
+             for about in references if about["subject"] in by_subject]
+    return environment.get_template("accuracy.html.j2").render(
+        context=next(iter(run["contexts"].values())), inputs=run["inputs"], parts=parts,
+        chains=[part for part in parts if part["about"]["unit"] == "m"],
+        scenes=[part for part in parts if part["about"]["unit"] != "m"],
+        references=references, figures=figures, runs=int(work["rounds"].sum()) if len(work) else 0,
+        refused=_records(gate[~gate.takes_part.astype(bool)]),
+        inaccurate=_records(gate[gate.only_inaccurate.astype(bool)]), checked=len(gate),
+        statuses=list(dict.fromkeys(["ok", "degraded", *sorted(work.status.unique())])),
+        summary=sentences.summary(tables["winners"]), regions=sentences.of_regions(tables),
+        fills=_records(tables["fills"]), forms=_records(tables["forms"]),
+        forms_says=sentences.of_forms(tables["forms"]),
+        precision=_records(tables["precision"]),
+        precision_says=sentences.of_precision(tables["precision"]),
+        tangents=sentences.tangent_rows(tables["tangents"]),
+        tangents_says=sentences.of_tangents(tables["tangents"]))
+
+
+def _records(table):
+    """Rows as dictionaries, without NaN."""
+    return table.astype(object).where(table.notna(), None).to_dict("records")

@@ -1,0 +1,94 @@
+# One `mbs simulate` of the advice as a raw file, and its row; what `mbs describe` says of the scene.
+import json
+import shlex
+import time
+from pathlib import Path
+
+from study.advise_study.choice import Pilot
+from study.advise_study.settings import LOOSE
+from study.pipeline import child, runs
+from study.pipeline.errors import StudyError
+from study.pipeline.layout import ROOT, program
+
+
+def describe(scene):
+    """`mbs describe --json`; StudyError with its own words if there is no such scene."""
+    ended = child.run([program(), "describe", scene, "--json"], 60, runs.MEMORY_MB)
+    if ended.status != "exited" or ended.code != 0:
+        raise StudyError(ended.reason.partition("mbs: ")[2] or f"{scene}: {ended.reason}")
+    return json.loads(ended.stdout)
+
+
+def scene_name(text):
+    """A scene as programs that run in ROOT find it; a file in the repository without the machine's path."""
+    if not Path(text).is_file():
+        return text
+    path = Path(text).resolve()
+    return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
+
+
+def command_line(record):
+    """What repeats a run, to be typed."""
+    return shlex.join(["build/mbs", *(word for word in record["command"][1:] if word != "--json")])
+
+
+class Runner:
+    """Runs simulations of one scene one after the other, and keeps a row of each."""
+
+    def __init__(self, layout, scene, contenders, contexts, deadline_us=None):
+        self.layout, self.scene = layout, scene
+        self.contenders, self.contexts = contenders, contexts
+        self.deadline = ["--deadline-us", f"{deadline_us:g}"] if deadline_us else []
+        self.rows, self.began = [], time.monotonic()
+
+    def __call__(self, kind, setting, variant, step, duration, seconds, half=False):
+        """The row of a run: kind, setting, implementation, step, outcome, times, command, raw_file."""
+        more = [*setting.options(self._tolerance(setting, variant, step)), *self.deadline,
+                *(["--half-step"] if half else [])]
+        record, path = self._simulate(kind, setting, variant, step, duration, seconds, more)
+        status, reason = runs.status(record)
+        summary = record.get("summary", {})
+        times = summary.get("step_us", {})
+        row = {"kind": kind, "setting": setting.label, "implementation": variant, "step": step,
+               "duration": duration, "status": status, "reason": reason,
+               "estimate": summary.get("position_error_estimate"),
+               "exact": summary.get("position_error_max"),
+               "step_us": _usual(times, summary), "step_us_median": times.get("median"),
+               "step_us_p99": times.get("p99"),
+               "step_us_max": times.get("max")} | {
+                   key: summary.get(key) for key in ("steps", "passes_per_step", "penalty", "tolerance",
+                                                     "deadline_misses")} | {
+               "seconds": record["seconds"], "command": command_line(record),
+               "raw_file": self.layout.relative(path)}
+        self.rows.append(row)
+        return row
+
+    def pilot(self, setting, variant, step, duration, seconds, kind="pilots"):
+        return as_pilot(self(kind, setting, variant, step, duration, seconds, half=True))
+
+    def _simulate(self, kind, setting, variant, step, duration, seconds, more):
+        contender = self.contenders[variant]
+        path = (self.layout.results / "raw" / kind / contender.file_name
+                / f"{setting.file_name}-{step:g}-{duration:g}.json")
+        return runs.simulate(path, contender, self.scene, step=step, duration=duration, every=0,
+                             context=self.contexts[contender.environment], seconds=seconds, more=more), path
+
+    def _tolerance(self, setting, variant, step):
+        """What the automatic tolerance, which a run of one step tells, is loosened to, m."""
+        if not setting.loose:
+            return None
+        plain = setting.parent
+        record, _ = self._simulate("automatic", plain, variant, step, step, 60, plain.options())
+        return LOOSE * record.get("summary", {}).get("tolerance", 1e-9)
+
+
+def _usual(times, summary):
+    """Mean time of a step without the longest, which the operating system may have interrupted, us."""
+    if summary.get("steps", 0) < 2:
+        return times.get("mean")
+    return (times["mean"] * summary["steps"] - times["max"]) / (summary["steps"] - 1)
+
+
+def as_pilot(row):
+    return Pilot(row["step"], row["status"], row["estimate"], row["step_us_median"] or float("nan"),
+                 row["step_us_p99"] or float("nan"), row["reason"])

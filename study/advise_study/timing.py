@@ -1,0 +1,95 @@
+# Which candidate is fastest: short runs in interleaved rounds, from which the slow ones drop out.
+import math
+from dataclasses import dataclass, field
+from statistics import median
+
+from study.pipeline.runs import FINISHED
+
+ROUNDS, TIE_BREAKS = 3, 2
+SLOWER = (2.0, 1.25, 1.1)  # this times the best one's time drops out after the first, second, later rounds
+STRETCH = 2.0              # simulated s of a timing: past singular positions, as far as there are such
+SHORTEST = 0.05            # wall s of its steps at least, if the whole duration has as many
+
+
+@dataclass
+class Candidate:
+    """An implementation with a setting at its step."""
+    setting: object
+    implementation: str
+    step: float
+    rows: list = field(default_factory=list)
+    reason: str = ""  # why it dropped out
+    out: bool = False
+    kept: bool = False  # it is timed in every round, however slow
+
+    def times(self, key="step_us"):
+        return [row[key] for row in self.rows if row[key] is not None]
+
+    def us_per_second(self):
+        """(median, least, most) over the rounds of the time of a simulated second."""
+        found = [value / self.step for value in self.times()]
+        return (median(found), min(found), max(found)) if found else (math.inf,) * 3
+
+    def p99_us(self):
+        """Median over the rounds."""
+        return median(self.times("step_us_p99")) if self.rows else math.inf
+
+    def drop(self, reason):
+        self.out, self.reason = True, reason
+
+
+def stretch(duration, us_per_second):
+    """Simulated time of a timing."""
+    return min(duration, max(STRETCH, 1e6 * SHORTEST / max(us_per_second, 1.0)))
+
+
+def race(candidates, run, left, deadline_us=None):
+    """Times the candidates; `run(candidate, round)` gives a row, `left()` the seconds left. Returns whether
+    there was time for all; slow ones have dropped out, with the reason."""
+    for number in range(1, ROUNDS + TIE_BREAKS + 1):
+        running = [one for one in candidates if not one.out]
+        if number > ROUNDS and (len(running) < 2 or decided(running)):
+            break
+        for one in running:
+            if left() <= 0 and any(other.rows for other in candidates):
+                _not_timed(candidates)
+                return False
+            row = run(one, number)
+            if row["status"] in FINISHED:
+                one.rows.append(row)
+            else:  # a stretch may end lost where the whole run is not: another candidate, then
+                one.drop(f"{row['status']} while it was timed: {row['reason']}")
+            if deadline_us and one.rows and one.p99_us() > 2 * deadline_us:
+                one.drop(f"99th percentile {one.p99_us():.3g} us")
+        drop_slow(candidates, SLOWER[min(number, len(SLOWER)) - 1], number)
+    return True
+
+
+def _not_timed(candidates):
+    for one in candidates:
+        if not one.out and not one.rows:
+            one.drop("no time was left to time it")
+
+
+def drop_slow(candidates, factor, number):
+    running = [one for one in candidates if not one.out]
+    best = min((one.us_per_second()[0] for one in running), default=math.inf)
+    for one in running:
+        ratio = one.us_per_second()[0] / best
+        if ratio > factor and not one.kept:
+            one.drop(f"{ratio:.2f} times slower after round {number}")
+
+
+def decided(running):
+    """Whether the fastest one's slowest round is faster than every other's fastest one."""
+    first, *others = sorted(running, key=lambda one: one.us_per_second()[0])
+    return all(first.us_per_second()[2] < one.us_per_second()[1] for one in others)
+
+
+def ranked(candidates, deadline_us=None):
+    """Those that may be advised, fastest first; a 99th percentile beyond the deadline is a reason to drop."""
+    for one in candidates:
+        if deadline_us and not one.out and one.p99_us() > deadline_us:
+            one.drop(f"99th percentile {one.p99_us():.3g} us: beyond the deadline")
+    return sorted((one for one in candidates if not one.out and one.rows),
+                  key=lambda one: one.us_per_second()[0])

@@ -1,0 +1,279 @@
+# study/advise: the choice on invented errors and times, what is refused, small questions to the real program.
+import json
+import math
+import os
+import shlex
+
+import pytest
+
+from study.advise_study import timing
+from study.advise_study.advice import Advice, Question
+from study.advise_study.choice import Pilot, allowed, counts, interval, local_order, next_step, tidy
+from study.advise_study.main import duration
+from study.advise_study.search import Found, Search
+from study.advise_study.settings import Setting, catalogue, fits, serving
+from study.advise_study.validate import fastest, luck
+from study.advise_study.verify import verify
+from study.pipeline.errors import StudyError
+from study.pipeline.layout import read_json
+from study.tests.conftest import ROOT, study
+
+REAL = {"MBS_PROGRAM": os.environ.get("MBS_PROGRAM", str(ROOT / "build" / "mbs"))}
+PENALTY, SADDLE = Setting("penalty"), Setting("saddle-point")
+LOOSE = Setting("saddle-point", (("tolerance", "loose"),))
+
+
+def pilots(*estimates, first=1e-2, status="ok"):
+    return [Pilot(first / 2**k, status if value is not None else "diverged", value, 1.0)
+            for k, value in enumerate(estimates)]
+
+
+def choose(estimate, limit, start=1e-2, duration=1.0):
+    """Pilots by the rules until they end; (their Next, all of them)."""
+    found = []
+    while len(found) < 40:
+        after = next_step(found, limit, 2, start, duration)
+        if after.step is None:
+            return after, found
+        value = estimate(after.step)
+        found.append(Pilot(after.step, "diverged" if value is None else "ok", value, 1.0))
+    raise AssertionError("no end")
+
+
+def test_the_step_meets_the_limit_and_is_not_much_shorter_than_needed():
+    for limit in (1e-1, 3e-3, 1e-5, 1e-7):
+        after, found = choose(lambda step: 40 * step**2, limit)
+        assert 0.85 * limit <= 40 * after.chosen**2 <= limit and len(found) <= 8
+
+
+def test_estimates_that_agree_by_chance_do_not_count():
+    chance = lambda step: 1e-4 if step > 6e-3 else 0.1 if step > 3e-3 else 4e3 * step**2
+    after, _ = choose(chance, 1e-3)
+    assert after.chosen < 3e-3 and chance(after.chosen) <= 1e-3
+    assert not counts(1e-2, pilots(1e-4)) and not counts(1e-2, pilots(1e-4, 0.1))
+    assert not counts(1e-2, pilots(1e-4, 9e-5)) and counts(5e-3, pilots(1e-4, 4e-5))
+    assert not counts(5e-3, pilots(4e-4, 1e-4, 2e-4))  # the next halving contradicts it
+    assert not counts(5e-3, pilots(4e-4, 1e-4, 8e-5))
+
+
+def test_a_motion_that_no_step_changes_shows_no_order_but_counts():
+    rest = pilots(1e-16, 1e-16)
+    assert counts(1e-2, rest, limit=1e-3) and not counts(1e-2, rest, limit=1e-15)
+    assert choose(lambda step: 0.0, 1e-3)[0].chosen == pytest.approx(8e-2)
+
+
+def test_rounding_and_lost_runs_end_the_search():
+    after, _ = choose(lambda step: step**2 + 1e-12 / step, 1e-14)
+    assert after.chosen is None and "shorter steps do not help: estimate" in after.reason
+    after, found = choose(lambda step: None, 1e-3)
+    assert after.chosen is None and "diverged" in after.reason and len(found) < 30
+    after, _ = choose(lambda step: None if step > 4e-3 else step**2, 1.0)
+    assert after.chosen == pytest.approx(2.5e-3 * math.sqrt(2))  # half-way to a lost one, but no further
+    after, _ = choose(lambda step: None if step > 3e-3 else step**2, 1.0)
+    assert after.chosen == pytest.approx(2.5e-3)
+
+
+def test_the_margin_is_what_first_order_leaves():
+    assert allowed(3e-3, 2) == pytest.approx(2e-3)
+    low, high = interval(2e-3, 2, observed=0.5)
+    assert (low, high) == (pytest.approx(1.5e-3), pytest.approx(3e-3))
+    assert interval(2e-3, 2, observed=3.0)[1] == pytest.approx(2e-3)
+    assert [local_order(step, pilots(16.0, 2.0, 1.0), 2) for step in (4e-3, 6e-3)] == [1.0, 3.0]
+    assert local_order(4e-3, [], 2) == 2
+
+
+@pytest.mark.parametrize("step, duration, expected", [
+    (2.77e-3, 5, 2.7e-3), (2.6e-3, 5, 2.5e-3), (1.3e-3, 20, 1.28e-3), (1 / 3, 20, 0.33), (1e-2, 20, 1e-2),
+    (1.09e-3, 0.7, 1.09e-3), (3.19e-5, 0.03, 3.1e-5)])
+def test_steps_are_tidy(step, duration, expected):
+    assert tidy(step, duration) == expected
+
+
+def search(errors, times, settings, **more):
+    """A Search on errors {setting: f(step)} and times of a step {setting: us}."""
+    made = Search(settings, lambda setting, step: Pilot(step, "ok", errors[setting](step), times[setting]),
+                  **({"error": 1e-3, "duration": 1.0, "start": 1e-2} | more))
+    return made, made.search()
+
+
+def test_the_search_follows_what_is_fast_and_says_why_others_are_left():
+    square = lambda step: 40 * step**2
+    times = {PENALTY: 10.0, SADDLE: 20.0, LOOSE: 9.0, Setting("rattle"): 100.0}
+    made, found = search({setting: square for setting in times}, times, list(times))
+    assert found[PENALTY].chosen == pytest.approx(found[LOOSE].chosen)
+    assert made.best() == pytest.approx(9.0 / found[LOOSE].chosen)
+    assert "ms a simulated second" in found[Setting("rattle")].reason
+    assert found[LOOSE].pilots and len(found[Setting("rattle")].pilots) < 3
+
+
+def test_without_time_nothing_is_made_up():
+    made = Search([PENALTY], lambda setting, step: None, error=1e-3, duration=1.0, start=1e-2)
+    found = made.search()
+    assert made.cut and found[PENALTY].chosen is None and "no time was left" in found[PENALTY].reason
+
+
+def test_a_setting_that_is_refused_or_late_is_not_tried_again():
+    refused = lambda setting, step: Pilot(step, "unsupported", None, reason="not served")
+    [one] = Search([PENALTY], refused, error=1, duration=1.0, start=1e-2).search().values()
+    assert one.reason == "unsupported: not served" and len(one.pilots) == 1
+    _, found = search({PENALTY: lambda step: step}, {PENALTY: 30.0}, [PENALTY], deadline_us=10.0)
+    assert found[PENALTY].reason == "a step takes 30 us"
+
+
+def race(times, p99=1.0, deadline_us=None, left=lambda: 1.0):
+    candidates = [timing.Candidate(PENALTY, name, 1e-3) for name in times]
+    run = lambda one, number: {"status": "ok", "reason": "", "step_us_p99": p99,
+                               "step_us": times[one.implementation][number - 1]}
+    whole = timing.race(candidates, run, left, deadline_us)
+    return whole, {one.implementation: one for one in candidates}, timing.ranked(candidates, deadline_us)
+
+
+def test_slow_candidates_drop_out_and_close_ones_get_more_rounds():
+    whole, found, ranked = race({"a": [10] * 5, "b": [11, 9, 10.5, 11, 11], "c": [21], "d": [13] * 2})
+    assert whole and [one.implementation for one in ranked] == ["a", "b"]
+    assert [len(found[name].rows) for name in "abcd"] == [5, 5, 1, 2]
+    assert found["c"].reason == "2.10 times slower after round 1"
+    _, found, _ = race({"a": [10] * 3, "b": [10.5] * 3})
+    assert len(found["b"].rows) == 3  # the rounds tell them apart
+
+
+def test_a_deadline_is_for_the_99th_percentile():
+    assert not race({"a": [1.0] * 5}, p99=12.0, deadline_us=10.0)[2]
+    assert race({"a": [1.0] * 5}, p99=9.0, deadline_us=10.0)[2]
+    whole, found, ranked = race({"a": [1.0] * 5, "b": [1.0] * 5}, left=iter([1, 0, 0]).__next__)
+    assert not whole and [one.implementation for one in ranked] == ["a"]
+    assert found["b"].reason == "no time was left to time it"
+
+
+def verified(estimate, p99=1.0, deadline_us=None):
+    """Advice on two implementations of a setting whose pilots at 10 and 5 ms were good; what was run."""
+    question = Question("bar", 1e-3, 1.0, deadline_us, 45.0)
+    advice = Advice(question, pilot_duration=1.0, candidates=[
+        timing.Candidate(PENALTY, name, 8e-3, [{"step_us": us, "step_us_p99": 1.0}] * 3)
+        for name, us in (("a", 10.0), ("b", 11.0))])
+    advice.found = {PENALTY: Found(PENALTY, pilots(8e-4, 2e-4), chosen=8e-3)}
+    ran = []
+
+    def run(kind, setting, name, step, *_, half):
+        ran.append((name, step))
+        return {"status": "ok", "reason": "", "setting": setting.label, "step": step, "step_us_p99": p99,
+                "estimate": estimate(step)}
+    verify(advice, run, lambda: 1.0, lambda text: None)
+    return advice, ran
+
+
+def test_a_candidate_that_fails_gets_a_shorter_step_and_then_one_that_is_known():
+    advice, ran = verified(lambda step: 10 * step**2)
+    assert ran == [("a", 8e-3)] and advice.chosen.implementation == "a"
+    advice, ran = verified(lambda step: 12 * step**2)
+    assert ran[0] == ("a", 8e-3) and ran[1][1] < 8e-3 and advice.verified["estimate"] <= allowed(1e-3, 2)
+    advice, ran = verified(lambda step: 2e-4 if step < 5.1e-3 else 9e-4)
+    assert ran[-1][1] == 5e-3 and len(ran) == 3 and advice.chosen
+    advice, _ = verified(lambda step: 1.0)
+    assert advice.chosen is None and all("when verified" in one.reason for one in advice.candidates)
+
+
+def test_an_estimate_below_that_of_a_shorter_step_is_raised():
+    advice, _ = verified(lambda step: 1e-5)
+    assert advice.verified["estimate"] == 2e-4  # the pilot's at 5 ms
+
+
+def test_the_deadline_is_verified_too():
+    advice, ran = verified(lambda step: 1e-4, p99=12.0, deadline_us=10.0)
+    assert advice.chosen is None and [name for name, _ in ran] == ["a", "b"]
+    assert advice.candidates[0].reason == "99th percentile 12 us when verified: beyond the deadline"
+
+
+def test_settings_are_served_by_name_and_fit_the_scene():
+    variants = {"one/a": {"settings": []}, "two/b": {"settings": ["saddle-point", "mixed", "rattle"]}}
+    assert serving(PENALTY, variants) == ["one/a", "two/b"]
+    assert serving(LOOSE, variants) == ["two/b"] == serving(Setting("rattle6"), variants)
+    assert not serving(Setting("saddle-point", (("precision", "single"),)), variants)
+    scene = {"terms": {"driven_constraints": False, "damping": True}, "driven_points": 0, "driven_vectors": 0}
+    assert fits(Setting("rattle4"), scene) and not fits(SADDLE, scene)
+    assert len({setting.file_name for setting in catalogue()}) == len(catalogue())
+
+
+def test_the_search_keeps_the_fastest_row_of_each_setting_that_meets_an_error():
+    found = [{"setting": name, "status": status, "exact": exact, "us_per_second": time}
+             for name, status, exact, time in (
+                 ("a", "ok", 2e-2, 5.0), ("a", "degraded", 9e-3, 10.0), ("a", "ok", 1e-3, 20.0),
+                 ("b", "ok", 1e-3, 19.0), ("c", "ok", 1e-3, 21.0), ("d", "diverged", 1e-9, 1.0))]
+    assert [row["us_per_second"] for row in fastest(found, 1e-2)] == [10.0, 19.0]
+    assert fastest(found, 1e-4) == []
+
+
+def test_a_step_whose_next_shorter_one_fails_is_luck():
+    found = [{"setting": "a", "status": "ok", "exact": exact, "us_per_second": time}
+             for exact, time in ((0.9e-2, 5.0), (2e-2, 7.0), (8e-3, 10.0), (1e-3, 20.0))]
+    assert [row["us_per_second"] for row in fastest(found, 1e-2)] == [10.0]
+    assert luck(found, 1e-2, 10.0)["us_per_second"] == 5.0 and luck(found, 1e-2, 4.0) == {}
+
+
+@pytest.mark.parametrize("arguments, what", [
+    (["four-bar:2"], "--error E are needed"), (["four-bar:2", "--error", "0"], "0 is not a positive number"),
+    (["four-bar:2", "--error", "-1e-3"], "argument"), (["four-bar:2", "--error", "small"], "'small'"),
+    (["four-bar:2", "--error", "1", "--deadline-us", "0"], "0 is not a positive number"),
+    (["four-bar:2", "--error", "1", "--duration", "nan"], "nan is not a positive number"),
+    (["nothing", "--error", "1"], 'scene "nothing": no such file'),
+    (["four-bar:2", "--error", "1", "--only", "nobody"], "unknown implementation 'nobody'"),
+    (["four-bar:2", "--error", "1", "--plot", "nowhere/a.svg"], "there is no such directory"),
+    (["four-bar:2", "--validate"], "--validate has scenes and errors of its own"),
+    (["four-bar:2", "--error", "1", "--plot", "a.pdf"], "must end in .svg or .png")])
+def test_what_is_wrong_is_said_in_a_line(tmp_path, arguments, what):
+    done = study("advise", *arguments, "--results", tmp_path / "results", **REAL)
+    assert done.returncode == 2 and what in done.stderr and "Traceback" not in done.stderr, done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1 and not (tmp_path / "results").exists()
+
+
+def test_scenes_without_a_free_point_and_times_beyond_a_table_are_refused():
+    with pytest.raises(StudyError, match="bar has no free points"):
+        duration("bar", None, {"free_points": 0})
+    with pytest.raises(StudyError, match="--duration 6: the drivers of bar end at 5 s"):
+        duration("bar", 6.0, {"free_points": 1, "drivers_end": 5.0})
+    assert duration("bar", None, {"free_points": 1, "drivers_end": 5.0}) == 5.0
+    assert duration("bar", None, {"free_points": 1, "drivers_end": None}) == 20.0
+
+
+def ask(folder, *more):
+    done = study("advise", "four-bar:2", "--duration", "0.8", "--only", "csc_klu/refactor", "--json", "--results",
+                 folder / "results", *more, **REAL)
+    return done, json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def advised(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("advised")
+    return folder, *ask(folder, "--error", "3e-5", "--plot", folder / "plot.svg")
+
+
+def test_the_advice_is_as_accurate_as_asked_and_traces_to_its_raw_files(advised):
+    folder, done, answer = advised
+    assert done.returncode == 0 and answer["met"], done.stderr
+    told = answer["advice"]
+    assert told["error"]["exact"] <= 3e-5 and told["error"]["estimate"] <= told["error"]["allowed_estimate"] < 3e-5
+    for run in answer["runs"]:
+        record = read_json(folder / "results" / run["raw_file"])
+        assert shlex.split(run["command"])[1:] == [word for word in record["command"][1:] if word != "--json"]
+        assert run["estimate"] == record["summary"]["position_error_estimate"]
+    assert {entry["setting"] for entry in answer["settings"]} == {setting.label for setting in catalogue()}
+    assert all(entry["step"] or entry["reason"] for entry in answer["settings"])
+    assert all(one["reason"] or one["advised"] or one["rounds"] for one in answer["candidates"])
+    assert (folder / "plot.svg").read_text().startswith("<?xml")
+    assert read_json(folder / "results" / "advice.json") == answer
+
+
+def test_estimates_that_count_are_near_the_exact_errors(advised):
+    exact = {(run["setting"], run["step"]): run["exact"] for run in advised[2]["runs"] if run["kind"] == "pilots"}
+    ratios = [pilot["estimate"] / exact[entry["setting"], pilot["step"]] for entry in advised[2]["settings"]
+              for pilot in entry["pilots"] if pilot["counts"] and entry["setting"] in ("penalty", "saddle-point")]
+    assert len(ratios) >= 3 and all(0.67 < ratio < 1.5 for ratio in ratios)
+
+
+def test_what_nothing_meets_is_said(tmp_path):
+    done, answer = ask(tmp_path, "--error", "1e-14", "--budget", "3")
+    assert done.returncode == 1 and not answer["met"] and answer["advice"] is None
+    assert answer["best_reached"]["estimate"] > 1e-14 and "no setting reaches the error" in answer["why_not"]
+    done = study("advise", "four-bar:2", "--duration", "0.6", "--only", "csc_klu/refactor", "--error", "1e-2",
+                 "--deadline-us", "1e-3", "--results", tmp_path / "late", **REAL)
+    assert done.returncode == 1 and "No setting meets this: no step is done within the deadline" in done.stdout
