@@ -78,7 +78,8 @@ def _draw_cell(axes, x, y, row):
     axes.add_patch(Rectangle((x, y), 1, 1, facecolor=colour, hatch=hatch, linewidth=0.4,
                              edgecolor="#b5b5b5" if hatch or what == "not run" else "white"))
     if what in ("ok", "silent", "degraded"):
-        axes.text(x + 0.5, y + 0.53, "0" if row.true_error == 0 else f"{power:d}".replace("-", "−"), ha="center", va="center", fontsize=6.5,
+        shown = "0" if row.true_error == 0 else f"{power:d}".replace("-", "−")
+        axes.text(x + 0.5, y + 0.53, shown, ha="center", va="center", fontsize=6.5,
                   color="white" if what == "silent" else "black")
     return what
 

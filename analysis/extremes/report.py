@@ -64,7 +64,8 @@ def render(tables, run, figures):
 def _battery(battery):
     said, nobody = sentences.battery(battery)
     return {"said": said, "nobody": nobody, "total": len(battery), "unlike": sentences.unlike(battery),
-            "counts": battery.groupby("scheme", sort=False).status.value_counts().unstack(fill_value=0).to_dict("index"),
+            "counts": battery.groupby("scheme", sort=False).status.value_counts().unstack(
+                fill_value=0).to_dict("index"),
             "statuses": list(dict.fromkeys(["ok", "degraded", *sorted(battery.status.unique())])),
             "silent": sentences.silent(battery),
             "unjudged": battery[(battery.status == "ok") & battery.true_error.isna()].to_dict("records")}

@@ -14,8 +14,9 @@ def draw(growth, singular, registry, scheme):
     sizes = sorted(rows.loops.unique())
     look = Look(SimpleNamespace(registry=registry, tidy=pandas.DataFrame({"blas": [], "build": []})))
     columns = min(len(sizes), 2)
-    figure, panels = plt.subplots(-(-len(sizes) // columns), columns, sharex=True, sharey=True, squeeze=False,
-                                  constrained_layout=True, figsize=(5.2 * columns + 0.4, 3.2 * -(-len(sizes) // columns) + 1))
+    lines = -(-len(sizes) // columns)
+    figure, panels = plt.subplots(lines, columns, sharex=True, sharey=True, squeeze=False,
+                                  constrained_layout=True, figsize=(5.2 * columns + 0.4, 3.2 * lines + 1))
     for axes in panels.flat[len(sizes):]:
         missing(axes, "")
     handles = {}
