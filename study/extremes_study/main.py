@@ -22,7 +22,7 @@ NEEDED = {"battery": "CONTROLS", "roundoff": "CONTROLS", "pivots": "STALE_PIVOTS
 def extremes(arguments):
     parser = argparse.ArgumentParser(
         prog="study/extremes", description="Numerical stability at the extremes. Writes tables, figures "
-        "and extremes.html; about half an hour.", formatter_class=argparse.RawDescriptionHelpFormatter,
+        "and extremes.html; about ten minutes.", formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="parts:\n" + "\n".join(f"  {name:9} {what}" for name, what in PARTS.items()))
     parser.add_argument("--parts", nargs="+", choices=list(PARTS), default=list(PARTS), metavar="PART",
                         help=f"only these parts ({' '.join(PARTS)})")
