@@ -11,17 +11,19 @@ MEMORY_MB = 4096
 
 
 def simulate(path, contender, scene, *, step, duration, every, context, seconds, more=(),
-             stored=False):
+             stored=False, columns=None):
     """{"context", "command", "seconds", "summary", "outputs": {column: values}} or "failure" in place
-    of the last two; an existing file is never run again."""
+    of the last two; an existing file is never run again. `outputs` are those of the scene or, where
+    `columns` are given, t and these of the trajectory."""
     if path.exists():
         return read_json(path)
     need(stored, path)
     outputs = path.with_name(path.name + ".partial.csv")
     outputs.parent.mkdir(parents=True, exist_ok=True)
+    kind = "--trajectory" if columns else "--output"
     command = contender.call("simulate", scene, "--implementation", contender.variant,
                              "--step", f"{step:g}", "--duration", f"{duration:g}", "--json",
-                             *(["--output", str(outputs), "--every", str(every)] if every else []),
+                             *([kind, str(outputs), "--every", str(every)] if every else []),
                              *map(str, more))
     ended = child.run(command, seconds, MEMORY_MB)
     record = {"context": context, "seconds": ended.seconds,
@@ -30,7 +32,8 @@ def simulate(path, contender, scene, *, step, duration, every, context, seconds,
         if ended.status != "exited" or ended.code not in (0, 1):
             raise ValueError(ended.reason)
         record["summary"] = json.loads(ended.stdout)
-        table = pandas.read_csv(outputs) if outputs.exists() else pandas.DataFrame()
+        table = (pandas.read_csv(outputs, usecols=["t", *columns] if columns else None)
+                 if outputs.exists() else pandas.DataFrame())
         record["outputs"] = {column: table[column].tolist() for column in table}
     except ValueError as error:
         status = "crashed" if ended.status == "exited" else ended.status

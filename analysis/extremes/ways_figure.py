@@ -1,0 +1,98 @@
+# Ways out: for each way and implementation the region, cell by cell, and what its steps cost.
+from textwrap import fill
+
+import matplotlib.pyplot as plt
+from matplotlib.patches import Patch, Rectangle
+
+from analysis.extremes.battery_figure import SILENT
+from analysis.extremes.numbers import NOT_SERVED, costs, folders, not_served, share
+
+COLOURS = {"safe": "#009E73", "silent": SILENT, "degraded": "#F2C14E", "lost": "#c4c4c4",
+           "unsupported": "#ffffff"}
+WORDS = {"safe": "ok", "silent": "silently wrong", "lost": "did not get through",
+         "unsupported": "not served or refused"}
+GAP, BLOCK = 2.0, 4.4  # between groups of columns; height of a way
+
+
+def draw(ways, cost):
+    """The figure of ways.csv and ways_cost.csv."""
+    names, own = list(dict.fromkeys(ways.way)), folders(ways)
+    figure, panels = plt.subplots(1, len(own), squeeze=False, sharey=True, constrained_layout=True,
+                                  figsize=(4.6 * len(own) + 1.4, 0.78 * len(names) + 1.6))
+    used = set()
+    for axes, folder in zip(panels.flat, own):
+        rows = ways[ways.implementation.str.split("/").str[0] == folder]
+        groups = _groups(ways)
+        for place, way in enumerate(names):
+            used |= _region(axes, rows[rows.way == way], groups, BLOCK * place)
+            _remark(axes, rows[rows.way == way], cost, folder, way, groups, BLOCK * place)
+        _frame(axes, folder, names, groups)
+    figure.legend(handles=[Patch(facecolor=colour, edgecolor="#999999", label=WORDS.get(name, name))
+                           for name, colour in COLOURS.items() if name in used],
+                  loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=5, fontsize=9)
+    return figure
+
+
+def _groups(ways):
+    """[(axis, values, sizes, left edge)]: the blocks of cells side by side."""
+    found, left = [], 0.0
+    known = ways[ways.axis.notna()]
+    for axis in dict.fromkeys(known.axis):
+        rows = known[known.axis == axis]
+        values, sizes = sorted(rows.value.unique()), sorted(rows.loops.unique())
+        found.append((axis, values, sizes, left))
+        left += len(values) + GAP
+    return found
+
+
+def _what(row):
+    if row.safe or row.silent:
+        return "safe" if row.safe else "silent"
+    if row.status in NOT_SERVED:
+        return "unsupported"
+    return "degraded" if row.status == "degraded" else "lost"
+
+
+def _region(axes, rows, groups, top):
+    used = set()
+    if not_served(rows):
+        return used
+    for axis, values, sizes, left in groups:
+        high = 3 / len(sizes)
+        for row in rows[rows.axis == axis].itertuples():
+            what = _what(row)
+            used.add(what)
+            axes.add_patch(Rectangle((left + values.index(row.value), top + high * sizes.index(row.loops)), 1, high,
+                                     facecolor=COLOURS[what], edgecolor="#aaaaaa" if what == "unsupported"
+                                     else "white", linewidth=0.6))
+    return used
+
+
+def _remark(axes, rows, cost, folder, way, groups, top):
+    good, total = share(rows)
+    right = groups[-1][3] + len(groups[-1][1]) + 0.5
+    if not_served(rows):
+        axes.text(groups[0][3], top + 1.5, fill(not_served(rows), 48), va="center", fontsize=8.5, color="#666666")
+        return
+    times = dict(costs(cost, folder, way))
+    axes.text(right, top + 1.5, "\n".join([f"{good} of {total} ok", *(
+        f"N = {loops:g}: ×{times[loops]:.2f}" if loops in times else f"N = {loops:g}: lost"
+        for loops in sorted(cost.loops.unique()))]), va="center", fontsize=8)
+
+
+def _frame(axes, folder, names, groups):
+    bottom = BLOCK * len(names) - (BLOCK - 3)
+    axes.set_title(folder)
+    axes.set_xlim(-0.3, groups[-1][3] + len(groups[-1][1]) + 5)
+    axes.set_ylim(bottom + 0.1, -0.4)
+    axes.set_yticks([BLOCK * place + 1.5 for place in range(len(names))], names)
+    ticks = [(left + 0.5 + i * (len(values) - 1), f"{1e3 * value:g} ms" if axis == "step" else f"{value:.0e}")
+             for axis, values, _, left in groups for i, value in enumerate((values[0], values[-1]))]
+    axes.set_xticks([x for x, _ in ticks], [text.replace("e+0", "e") for _, text in ticks], fontsize=8)
+    for axis, values, sizes, left in groups:
+        label = {"step": f"Δt; rows N = {', '.join(f'{n:g}' for n in sizes)}"}.get(axis, axis.replace(" ", "\n"))
+        axes.annotate(label, (left + len(values) / 2, bottom), xytext=(0, -20), textcoords="offset points", ha="center",
+                      va="top", fontsize=8.5, annotation_clip=False)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    axes.tick_params(length=0)

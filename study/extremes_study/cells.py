@@ -1,0 +1,132 @@
+# The cells of the battery: scene, settings and what the motion is known to be.
+import math
+from dataclasses import dataclass, field
+
+from study.extremes_study import scenes
+from study.extremes_study.motions import Chain, Flat
+
+STEP, STEPS, SAMPLES = 1.25e-3, 2000, 40
+DENSE_LOOPS = 200    # dense implementations run up to this size
+LONGEST = 5.0        # s of simulated time where the step is what is varied
+LENGTHY = 160000     # steps of 200 s
+SIZES = {1: STEPS, 10: STEPS, 100: STEPS, 1000: 100, 10000: 24}  # loops: steps
+LOOPS = 5            # where size is not what is varied
+
+
+@dataclass(frozen=True)
+class Cell:
+    axis: str
+    label: str
+    scene: str                # of `mbs`, or the name of a file that the battery writes
+    motion: Chain | None      # None: the reference at a quarter of the step
+    document: dict | None = field(default=None, compare=False)
+    step: float = STEP
+    steps: int = STEPS
+    penalty: str = "auto"
+    length: float = 1.0       # m, of a link: what errors are relative to
+
+    @property
+    def name(self):
+        words = f"{self.axis} {self.label}".replace("/", " per ")
+        return "-".join("".join(c if c.isalnum() or c in "-+." else " " for c in words).split())
+
+    @property
+    def duration(self):
+        return self.step * self.steps
+
+    @property
+    def every(self):
+        return max(1, self.steps // SAMPLES)
+
+    @property
+    def loops(self):
+        return self.motion.loops if self.motion else 1
+
+
+def battery():
+    """All cells, in the order of the picture."""
+    return [*_sizes(), *_steps(), *_penalties(), *_masses(), *_lengths(), *_springs(), *_redundant(),
+            *_starts(), *_long(), *_denormals()]
+
+
+def _short(value):
+    """1e6 for 1000000, 1e-160 for 1e-160, 0.01 for 0.01."""
+    mantissa, _, power = f"{value:g}".partition("e")
+    return f"{mantissa}e{int(power)}" if power else mantissa
+
+
+def _built_in(axis, label, loops=LOOPS, **more):
+    return Cell(axis, label, f"four-bar:{loops}", Chain(loops), **more)
+
+
+def _chain(axis, label, chain, **more):
+    return Cell(axis, label, "", chain, chain.document(), length=chain.length, **more)
+
+
+def _sizes():
+    return [_built_in("loops", f"N = {loops}", loops, steps=steps) for loops, steps in SIZES.items()]
+
+
+def _steps():
+    return [_built_in("step", f"Δt = 1e{power} s", step=10.0**power,
+                      steps=min(STEPS, round(LONGEST / 10.0**power))) for power in range(-6, 0)]
+
+
+def _penalties():
+    return [_built_in("penalty", f"α = 1e{power}", penalty=f"1e{power}") for power in range(2, 17, 2)]
+
+
+def _masses():
+    return [_chain("mass ratio", f"1e{power}", scenes.unlike_masses(LOOPS, 10.0**power))
+            for power in (-9, -6, -3, 3, 6, 9)]
+
+
+def _lengths():
+    """Steps in proportion to sqrt(length), as the motion is; two with the usual step."""
+    def chain(length):
+        return Chain(LOOPS, length=length, rate=length**-0.5)
+    scaled = [_chain("length", f"{_short(10.0**power)} m", chain(10.0**power), step=STEP * 10.0**(power // 2))
+              for power in range(-6, 7, 2)]
+    usual = [_chain("length", f"{_short(length)} m, usual step", chain(length)) for length in (1e-2, 1e2)]
+    return [*scaled, *usual, *(_chain("offset", f"{_short(offset)} m", Chain(LOOPS, offset=offset))
+                               for offset in (1e3, 1e6))]
+
+
+def _springs():
+    found = []
+    for stiffness in (1e6, 1e8, 1e10, 1e12):
+        found += [Cell("spring", f"loop, {_short(stiffness)} N/m", "", Chain(2), scenes.sprung_loop(stiffness)),
+                  Cell("spring", f"pendulum, {_short(stiffness)} N/m", "", None,
+                       scenes.sprung_pendulum(stiffness), steps=800)]
+    return found
+
+
+def _redundant():
+    return [Cell("redundant", "rod given twice", "", Chain(1), scenes.twin_rod(same_points=True)),
+            Cell("redundant", "rod doubled", "", Chain(1), scenes.twin_rod(same_points=False)),
+            *(Cell("redundant", f"third rod at {_short(shift)} m", "", Chain(1), scenes.shifted_rod(shift))
+              for shift in (1e-3, 1e-5, 1e-7, 1e-9))]
+
+
+def _starts():
+    flat, moving = math.pi / 2, math.sqrt(1 + 2 * Chain(2).k)  # as fast as four-bar:2 gets there
+    return [_chain("start", "singular, at rest", Flat(1, angle=flat, rate=0.0)),
+            _chain("start", "singular, moving", Chain(2, angle=flat, rate=moving)),
+            _chain("start", "zero gravity", Chain(LOOPS, gravity=0.0)),
+            _chain("start", "zero gravity, at rest", Chain(LOOPS, gravity=0.0, rate=0.0)),
+            _chain("start", "hanging at rest", Chain(LOOPS, angle=math.pi, rate=0.0)),
+            _chain("start", "upright at rest", Chain(LOOPS, rate=0.0))]
+
+
+def _long():
+    return [_built_in("duration", f"{LENGTHY * STEP:g} s", 2, steps=LENGTHY)]
+
+
+def _denormals():
+    tiny, short = 1e-310, 1e-160
+    return [_chain("denormal", f"masses {_short(tiny)} kg", Chain(1, rods=(tiny, tiny), couplers=(tiny,))),
+            _chain("denormal", f"a rod of {_short(tiny)} kg", Chain(1, rods=(1.0, tiny))),
+            Cell("denormal", f"a force of {_short(tiny)} N", "", Chain(1), scenes.with_force(tiny)),
+            _chain("denormal", f"gravity {_short(tiny)} m/s²", Chain(1, gravity=tiny)),
+            _chain("denormal", f"lengths {_short(short)} m", Chain(1, length=short, rate=short**-0.5),
+                   step=STEP * short**0.5)]

@@ -1,0 +1,80 @@
+# study/extremes: the battery of extremes, ways out, stale pivots and the growth of roundoff.
+import argparse
+import contextlib
+import os
+from pathlib import Path
+
+from study.pipeline.contenders import from_json
+from study.pipeline.errors import StudyError
+from study.pipeline.layout import Layout, ROOT, read_run, write_csv
+from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, registry, set_up,
+                                    start_named, writable)
+from study.pipeline.progress import Teller
+
+PARTS = {"battery": "every implementation at the extremes, against the true motion",
+         "ways": "how far each way out extends the safe region, at what cost",
+         "pivots": "kept pivots on matrices that change violently",
+         "roundoff": "difference from the long-double reference over 20 s"}
+TIMED = {"ways", "pivots"}
+NEEDED = {"battery": "CONTROLS", "roundoff": "CONTROLS", "pivots": "STALE_PIVOTS"}  # of tools.py, beside `mbs`
+
+
+def extremes(arguments):
+    parser = argparse.ArgumentParser(
+        prog="study/extremes", description="Numerical stability at the extremes. Writes tables, figures "
+        "and extremes.html; about ten minutes.", formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog="parts:\n" + "\n".join(f"  {name:9} {what}" for name, what in PARTS.items()))
+    parser.add_argument("--parts", nargs="+", choices=list(PARTS), default=list(PARTS), metavar="PART",
+                        help=f"only these parts ({' '.join(PARTS)})")
+    parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
+                        help="only these implementations (folder or folder/variant)")
+    parser.add_argument("--time-limit", type=_positive, default=60.0, metavar="S",
+                        help="for one run (60 s); what takes longer is kept as a timeout")
+    parser.add_argument("--results", metavar="DIR", help="results directory (results/local/extremes)")
+    parser.add_argument("--stored", action="store_true",
+                        help="figures and page again from stored tables, without running anything")
+    options = parser.parse_args(arguments)
+    layout = Layout(Path(options.results).absolute() if options.results
+                    else ROOT / "results" / "local" / "extremes")
+    if options.stored and not layout.run.exists():
+        raise StudyError(f"{layout.results} holds no results (no run.json)")
+    writable(layout.results)
+    timed = not options.stored and TIMED & set(options.parts)
+    with only_one(layout), only_one_measuring() if timed else contextlib.nullcontext():
+        if "MBS_PROGRAM" not in os.environ and not options.stored:
+            set_up(layout)
+        need_modules("yaml", "pandas", "matplotlib", "jinja2", "scipy")
+        if not options.stored:
+            _run(layout, options)
+        from analysis.extremes.report import write  # they need the modules
+        from analysis.loader import TableError
+        try:
+            write(layout.results)
+        except TableError as error:
+            raise StudyError(str(error)) from error
+    print(f"report: {layout.results / 'extremes.html'}")
+    return 0
+
+
+def _positive(text):
+    value = float(text)
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
+    return value
+
+
+def _run(layout, options):
+    from study.extremes_study import battery, pivots, roundoff, tools, ways
+    for part in (part for part in options.parts if part in NEEDED):
+        tools.built(getattr(tools, NEEDED[part]))
+    start_named(layout, "extremes", options.only, {"time_limit": options.time_limit})
+    run = read_run(layout)
+    settings = {variant["name"]: variant for entry in registry()["implementations"]
+                if entry["available"] for variant in entry["variants"]}
+    contenders = [one for one in from_json(run["contenders"]).values() if one.ranked and not one.missing]
+    study = tools.Study(layout, contenders, settings, run["contexts"], options.time_limit, Teller())
+    parts = {"battery": battery.run, "ways": ways.run, "pivots": pivots.run, "roundoff": roundoff.run}
+    for name in (name for name in PARTS if name in options.parts):
+        for table, rows in parts[name](study).items():
+            write_csv(layout.results / f"{table}.csv", rows)
+        study.tell.end()

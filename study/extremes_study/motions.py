@@ -1,0 +1,110 @@
+# The exact motion of N-four-bars with any lengths, masses and start, and the scenes that have it.
+#
+# All rods are `length` long and parallel, so the mechanism has one angle phi from the upward vertical. A rod
+# of mass m turns about its foot: m length^2 / 3 of inertia, weight at length / 2. A coupler of mass m moves with
+# its ends without turning: m length^2, weight at length; how long it is does not matter. With the sums R of the
+# rods' and C of the couplers' masses the energy is
+#     length^2 (R/3 + C) phi'^2 / 2 + g length (R/2 + C) cos phi,
+# hence phi'' = k sin phi, k = (g / length) (R/2 + C) / (R/3 + C): Eq. (9) of paper/README.md for equal masses.
+# Multiplying all masses by one number leaves k; a length L stretches time by sqrt(L).
+from dataclasses import dataclass
+
+import numpy
+from scipy.special import ellipj, ellipk, ellipkinc
+
+from study.scene_study.mechanics import GRAVITY
+
+
+@dataclass(frozen=True)
+class Chain:
+    loops: int
+    length: float = 1.0         # m, of the rods
+    gravity: float = GRAVITY
+    rods: tuple = ()            # kg; empty: 1 kg each
+    couplers: tuple = ()        # kg; empty: 1 kg each
+    spans: tuple = ()           # m, of the couplers; empty: `length` each
+    offset: float = 0.0         # m, of all x and y
+    angle: float = 0.0          # rad, at t = 0
+    rate: float = 1.0           # rad/s, at t = 0, not negative
+
+    @property
+    def masses(self):
+        """(of the rods, of the couplers), kg"""
+        return self.rods or (1.0,) * (self.loops + 1), self.couplers or (1.0,) * self.loops
+
+    @property
+    def feet(self):
+        """x of the ground points, m"""
+        return self.offset + numpy.cumsum([0.0, *(self.spans or (self.length,) * self.loops)])
+
+    @property
+    def k(self):
+        rods, couplers = map(sum, self.masses)
+        return self.gravity / self.length * (rods / 2 + couplers) / (rods / 3 + couplers)
+
+    def phi(self, times):
+        """(sin phi, cos phi) at `times`; psi = phi - pi is the angle from the downward vertical."""
+        k, half = self.k, (self.angle - numpy.pi) / 2
+        bottom = self.rate**2 + 4 * k * numpy.cos(self.angle / 2)**2  # psi'^2 where the energy is kinetic
+        if self.rate == 0 and (k == 0 or abs(numpy.sin(self.angle)) < 1e-12):
+            return numpy.full_like(times, numpy.sin(self.angle)), numpy.full_like(times, numpy.cos(self.angle))
+        if bottom > 4 * k:  # turns over: sin(psi / 2) = sn
+            parameter = 4 * k / bottom
+            sn, cn, _, _ = ellipj(ellipkinc(half, parameter) + bottom**0.5 * times / 2, parameter)
+        else:               # swings: sin(psi / 2) = kappa sn
+            kappa = (bottom / (4 * k))**0.5
+            start = ellipkinc(numpy.arctan2(numpy.sin(half), self.rate / (2 * k**0.5)), kappa**2)
+            sn, _, cn, _ = ellipj(start + k**0.5 * times, kappa**2)
+            sn = kappa * sn
+        return -2 * sn * cn, 2 * sn**2 - 1
+
+    def speed(self, times):
+        """phi' at `times`, rad/s, without its sign: from the energy."""
+        square = self.rate**2 + 2 * self.k * (numpy.cos(self.angle) - self.phi(times)[1])
+        return numpy.maximum(square, 0)**0.5  # at rest it rounds to less
+
+    def solutions(self, times):
+        """[{column of a trajectory: values}]: the motion that is possible."""
+        sine, cosine = self.phi(numpy.asarray(times, dtype=float))
+        return [{f"B{i}.{axis}": values for i, foot in enumerate(self.feet) for axis, values in (
+            ("x", foot + self.length * sine), ("y", self.offset + self.length * cosine))}]
+
+    def document(self):
+        """The scene as JSON."""
+        sine, cosine = (round(float(f(self.angle)), 15) for f in (numpy.sin, numpy.cos))
+        speed, points, rods = self.length * self.rate, [], []
+        for i, foot in enumerate(map(float, self.feet)):
+            points += [{"name": f"A{i}", "position": [foot, self.offset], "fixed": True},
+                       {"name": f"B{i}", "position": [foot + self.length * sine,
+                                                      self.offset + self.length * cosine],
+                        "velocity": [speed * cosine, -speed * sine]}]
+        for i, mass in enumerate(self.masses[0]):
+            rods.append({"name": f"rod{i}", "between": [f"A{i}", f"B{i}"], "mass": mass,
+                         "length": self.length})
+        for i, mass in enumerate(self.masses[1]):
+            rods.append({"name": f"coupler{i}", "between": [f"B{i}", f"B{i + 1}"], "mass": mass,
+                         "length": self.spans[i] if self.spans else self.length})
+        return {"gravity": [0.0, -self.gravity], "points": points, "rods": rods}
+
+
+@dataclass(frozen=True)
+class Flat(Chain):
+    """One loop released with its rods on a line: two motions are possible. Either it swings as a parallelogram,
+    or rod 0 lies still, as B0 is A1, and coupler and rod 1 swing about A1 as one (k = 3 g / (2 length))."""
+
+    def solutions(self, times):
+        lone = Chain(1, self.length, self.gravity, self.rods, (1e-300,), angle=self.angle, rate=0.0)
+        [swing] = lone.solutions(times)
+        still = {"B0.x": numpy.full_like(times, self.length), "B0.y": numpy.zeros_like(times),
+                 "B1.x": swing["B1.x"], "B1.y": swing["B1.y"]}
+        return [*super().solutions(times), still]
+
+
+def singular_times(chain, duration):
+    """When the rods of a chain that starts upright and turns over lie on one line, s."""
+    bottom = chain.rate**2 + 4 * chain.k
+    parameter = 4 * chain.k / bottom
+    turns = int(bottom**0.5 * duration / numpy.pi) + 2
+    quarter = ellipkinc(numpy.pi * (numpy.arange(turns) / 2 - 0.25), parameter)  # am at phi = pi/2, 3 pi/2 ...
+    times = 2 * (quarter + ellipk(parameter)) / bottom**0.5
+    return times[(times > 0) & (times < duration)]

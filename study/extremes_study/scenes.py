@@ -1,0 +1,61 @@
+# The scenes of the battery that are more than a chain of four-bars: springs, redundant rods, denormals.
+from study.extremes_study.motions import Chain
+from study.scene_study.mechanics import GRAVITY
+
+
+def alternate(count, ratio):
+    """1, ratio, 1, ... of `count`."""
+    return tuple(ratio if i % 2 else 1.0 for i in range(count))
+
+
+def unlike_masses(loops, ratio):
+    """Every second rod and every second coupler has `ratio` kg, the others 1 kg."""
+    return Chain(loops, rods=alternate(loops + 1, ratio), couplers=alternate(loops, ratio))
+
+
+def unlike_lengths(loops, ratio):
+    """Every second coupler is shorter by `ratio`."""
+    return Chain(loops, spans=alternate(loops, 1 / ratio))
+
+
+def sprung_loop(stiffness):
+    """A spring beside a coupler of two loops, at its free length: the motion is that of the loops alone."""
+    return Chain(2).document() | {"springs": [
+        {"name": "spring", "between": ["B0", "B1"], "stiffness": stiffness, "length": 1.0}]}
+
+
+def sprung_pendulum(stiffness):
+    """A mass at the end of a rod, another on a spring behind it, released on a horizontal line: nothing pulls
+    then, so that a stiff spring starts without vibration."""
+    return {"points": [{"name": "A", "position": [0, 0], "fixed": True}, {"name": "B", "position": [1, 0]},
+                       {"name": "C", "position": [2, 0]}],
+            "gravity": [0.0, -GRAVITY],
+            "rods": [{"name": "rod", "between": ["A", "B"], "mass": 0, "length": 1.0}],
+            "masses": [{"point": "B", "mass": 1.0}, {"point": "C", "mass": 1.0}],
+            "springs": [{"name": "spring", "between": ["B", "C"], "stiffness": stiffness, "length": 1.0}]}
+
+
+def twin_rod(same_points):
+    """One loop whose first rod is there twice; the second has a foot of its own at the same place, or not."""
+    document = Chain(1).document()
+    foot = "A0" if same_points else "A"
+    if not same_points:
+        document["points"].append({"name": foot, "position": [0, 0], "fixed": True})
+    document["rods"].append({"name": "twin", "between": [foot, "B0"], "mass": 0, "length": 1.0})
+    return document
+
+
+def shifted_rod(shift):
+    """One loop with a third rod, massless, `shift` m beside the first: nearly redundant."""
+    document = Chain(1).document()
+    document["rods"] = [rod for rod in document["rods"] if rod["name"] != "coupler0"]
+    document["bodies"] = [{"name": "coupler0", "mass": 1.0, "centre": [0.5, 0], "inertia": 1 / 12,
+                           "points": {"B0": [0, 0], "C": [shift, 0], "B1": [1, 0]}}]
+    document["points"].append({"name": "A", "position": [shift, 0], "fixed": True})
+    document["rods"].append({"name": "third", "between": ["A", "C"], "mass": 0, "length": 1.0})
+    return document
+
+
+def with_force(newton):
+    """One loop with a force on it."""
+    return Chain(1).document() | {"forces": [{"name": "push", "point": "B0", "force": [newton, 0.0]}]}
