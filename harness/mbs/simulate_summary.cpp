@@ -41,6 +41,7 @@ nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
                {"factorizations_per_step", static_cast<double>(summary.factorizations) / steps},
                {"position_error_max", finite_or_null(summary.position_error_max)},
                {"position_error_estimate", finite_or_null(summary.position_error_estimate)},
+               {"local_error_sum", finite_or_null(summary.local_error_sum)},
                {"energy_drift_max", finite_or_null(summary.energy_drift_max)},
                {"constraint_violation_max", finite_or_null(summary.constraint_violation_max)},
                {"setup_us", summary.setup_us},
@@ -55,8 +56,8 @@ nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
                {"deadline_us", finite_or_null(settings.deadline_us)},
                {"deadline_misses", nullptr}});
   if (settings.scale_equations) {
-    std::string other = json["other_settings"];
-    json["other_settings"] = other + (other.empty() ? "" : " ") + "--scale-equations";
+    const std::string other = json["other_settings"];
+    json["other_settings"] = fmt::format("{}{}--scale-equations", other, other.empty() ? "" : " ");
   }
   if (summary.deadline_misses) json["deadline_misses"] = *summary.deadline_misses;
   return json;
@@ -92,6 +93,10 @@ std::string summary_text(const nlohmann::json& json) {
   if (!json["position_error_estimate"].is_null()) {
     text += fmt::format("  estimated error max    {:.3g} m, by half the step\n",
                         json["position_error_estimate"].get<double>());
+  }
+  if (!json["local_error_sum"].is_null()) {
+    text +=
+        fmt::format("  local errors add up to {:.3g} m\n", json["local_error_sum"].get<double>());
   }
   text += fmt::format("  energy drift max       {}\n",
                       number("energy_drift_max", " of its scale", "none: energy is not conserved"));

@@ -37,7 +37,7 @@ double documented_beta(const Spectrum& s, double step) {
   const double measured = std::clamp(30 / s.smallest, 4e3 / s.mean, 1e7 / s.mean);
   const double turn = std::sqrt(3 * 9.81) * step, x = turn / 6.8e-3;
   if (x <= 1) return std::min(measured / (x * x), 1e7 / s.mean);
-  const double longer = std::min(measured / std::sqrt(x), 0.6 / (s.least * turn * turn * turn));
+  const double longer = std::min(measured, 0.6 / (s.least * turn * turn * turn));
   return std::max(longer, measured / 100);
 }
 

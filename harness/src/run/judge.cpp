@@ -12,6 +12,7 @@
 #include "model_math/extent.hpp"
 #include "model_math/kinematics.hpp"
 #include "model_math/known_motion.hpp"
+#include "model_math/turning.hpp"
 #include "model_math/vector3.hpp"
 #include "scene/row_names.hpp"
 
@@ -84,6 +85,7 @@ Judge::Judge(const Scene& scene, const State& initial, double start)
   double rest = 0.0;  // J, of a speed that is none; at rest without forces all else is rounding
   for (const double mass : mass_diagonal(model)) rest += mass * std::pow(1e-6 * size, 2) / 2;
   energy_scale_ = std::max(energy_scale_, rest);
+  length_ = std::min(size, fastest_turning(model).length);
   for (const Torsion& torsion : torsions(model, start, initial.q)) twists_.push_back(torsion.twist);
   if (scene.four_bar_loops) {
     exact_.emplace(*scene.four_bar_loops);
@@ -134,6 +136,20 @@ std::string Judge::judge(double t, const State& state) {
   }
   const std::string turned = judge_torsion(t, state);
   return turned.empty() ? lost : turned;
+}
+
+void Judge::add_local_error(const State& before, const State& after, double step, long steps) {
+  double most = 0.0;
+  for (const Point& point : scene_->model.points()) {
+    if (point.is_fixed() || point.is_vector) continue;
+    double squared = 0.0;
+    for (int axis = 0; axis < scene_->model.dimension(); ++axis) {
+      const auto i = static_cast<std::size_t>(point.offset + axis);
+      squared += std::pow(after.a[i] - before.a[i], 2);
+    }
+    most = std::max(most, squared);
+  }
+  local_error_ += static_cast<double>(steps) * step * step / 12 * std::sqrt(most);
 }
 
 std::string Judge::judge_torsion(double t, const State& state) {

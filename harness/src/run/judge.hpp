@@ -24,7 +24,7 @@ struct RunBounds {
 /// hundredth of a rod's length.
 struct AccurateBounds {
   double position_error = 1e-2;  ///< m, where an exact solution is known
-  /// Of the scene's extent, where the error is estimated (HalfStepRun).
+  /// Of Judge::length(), where the error is estimated: local_error_sum() and HalfStepRun.
   double estimated_error = 1e-2;
   double energy_drift = 1e-2;  ///< as RunBounds
   double constraint_violation = 1e-4;
@@ -38,6 +38,17 @@ class Judge {
 
   /// Judges the state at time t. Returns the reason if the solution is lost, empty if not.
   std::string judge(double t, const State& state);
+
+  /// Takes two states one step (s) of the trapezoidal rule apart as typical of `steps` steps.
+  void add_local_error(const State& before, const State& after, double step, long steps);
+  /// Sum over the steps of what the trapezoidal rule leaves in one, dt^2/12 |a' - a| of the point
+  /// where that is most, m: what the position error comes to if nothing damps or multiplies it,
+  /// such as the lag behind the exact motion, which neither energy nor constraints show.
+  [[nodiscard]] double local_error_sum() const { return local_error_; }
+  /// What errors are small against where the exact motion is not known, m: the length of the part
+  /// that turns fastest, at most the extent.
+  [[nodiscard]] double length() const { return length_; }
+  [[nodiscard]] bool knows_exact_motion() const { return exact_.has_value(); }
 
   /// Whether the state that judge() refused satisfies the constraints and conserves energy, but is
   /// on another branch of the motion than the exact one.
@@ -76,6 +87,8 @@ class Judge {
   double violation_ = 0.0;           // m^2, m
   double relative_violation_ = 0.0;  // as RunBounds
   bool off_branch_ = false;
+  double length_ = 1.0;       // m
+  double local_error_ = 0.0;  // m
 };
 
 }  // namespace mbs

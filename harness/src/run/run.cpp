@@ -9,7 +9,6 @@
 #include <new>
 #include <numeric>
 
-#include "model_math/extent.hpp"
 #include "printable.hpp"
 #include "run/driver_end.hpp"
 #include "run/half_step_run.hpp"
@@ -79,13 +78,53 @@ void locate_loss(const Context& run, const LastGood& good, long step, const std:
   }
 }
 
-/// Steps until the end or until the solution is lost. `size` is the scene's extent, m.
-void step_through(const Context& run, double size, State& state, const Observer& observer,
+/// The outcome of a run that went to its end.
+void conclude(const Context& run) {
+  RunSummary& summary = run.summary;
+  const double share =
+      static_cast<double>(summary.steps_at_limit) / static_cast<double>(summary.steps);
+  if (share > RunBounds{}.pass_limit_share) {
+    summary.status = RunStatus::not_converged;
+    summary.reason = fmt::format("{} of {} steps ended at the limit of {} passes (allowed {:g} %)",
+                                 summary.steps_at_limit, summary.steps,
+                                 run.settings.step.max_passes, 100 * RunBounds{}.pass_limit_share);
+    return;
+  }
+  summary.reason = run.judge.degradation();
+  const double allowed = AccurateBounds{}.estimated_error * run.judge.length();
+  std::string estimated;
+  if (run.half && !(run.half->position_error_max() <= allowed)) {
+    estimated = fmt::format("estimated position error {:.1e} m (ok to {:.2g})",
+                            run.half->position_error_max(), allowed);
+  } else if (!(summary.local_error_sum.value_or(0.0) <= allowed)) {
+    estimated = fmt::format(
+        "local errors add up to {:.1e} m (ok to {:.2g}): a shorter step, or --half-step for a "
+        "sharper estimate",
+        *summary.local_error_sum, allowed);
+  }
+  if (!summary.reason.empty() && !estimated.empty()) summary.reason += ", ";
+  summary.reason += estimated;
+  if (!summary.reason.empty()) summary.status = RunStatus::degraded;
+}
+
+/// Where nothing better tells, the judge adds up local errors; those of the schemes of higher order
+/// are not the trapezoidal rule's.
+bool adds_local_errors(const Context& run) {
+  const Scheme scheme = run.settings.step.scheme;
+  return !run.half && !run.judge.knows_exact_motion() && scheme != Scheme::rattle4 &&
+         scheme != Scheme::rattle6;
+}
+
+/// Steps until the end or until the solution is lost.
+void step_through(const Context& run, State& state, const Observer& observer,
                   std::vector<float>& times) {
   RunSummary& summary = run.summary;
   const long steps = count_steps(run.settings);
   times.reserve(static_cast<std::size_t>(steps));
   LastGood good{0, state, run.judge};
+  const auto judged = [&](long i) { return i % run.settings.judge_every == 0 || i == steps; };
+  const bool local = adds_local_errors(run);
+  State before = state;  // one step before the judged one
   double judge_us = 0.0;
   for (long i = 1; i <= steps; ++i) {
     auto begin = Clock::now();
@@ -100,35 +139,23 @@ void step_through(const Context& run, double size, State& state, const Observer&
       return locate_loss(run, good, i, "the tangent matrix could not be factorized");
     }
     if (run.half) run.half->advance();
-    if (i % run.settings.judge_every == 0 || i == steps) {
-      begin = Clock::now();
+    begin = Clock::now();
+    if (judged(i)) {
       run.simulation.get_state(state);
       const std::string lost = run.judge.judge(run.time(i), state);
       if (!lost.empty()) return locate_loss(run, good, i, lost);
+      if (local) run.judge.add_local_error(before, state, run.settings.step.step, i - good.step);
       good = {i, state, run.judge};
-      judge_us += microseconds(Clock::now() - begin);
-      if (run.half) run.half->compare(state);
-    } else if (observer) {
-      run.simulation.get_state(state);
     }
+    if (local && i < steps && judged(i + 1)) run.simulation.get_state(before);
+    judge_us += microseconds(Clock::now() - begin);
+    if (judged(i) && run.half) run.half->compare(state);
+    if (observer && !judged(i)) run.simulation.get_state(state);
     summary.judge_us = judge_us / static_cast<double>(i);
     if (observer) observer(i, run.time(i), state);
   }
-  const double share = static_cast<double>(summary.steps_at_limit) / static_cast<double>(steps);
-  if (share > RunBounds{}.pass_limit_share) {
-    summary.status = RunStatus::not_converged;
-    summary.reason = fmt::format("{} of {} steps ended at the limit of {} passes (allowed {:g} %)",
-                                 summary.steps_at_limit, steps, run.settings.step.max_passes,
-                                 100 * RunBounds{}.pass_limit_share);
-    return;
-  }
-  summary.reason = run.judge.degradation();
-  if (run.half && !(run.half->position_error_max() <= AccurateBounds{}.estimated_error * size)) {
-    summary.reason += fmt::format(
-        "{}estimated position error {:.1e} m (ok to {:g})", summary.reason.empty() ? "" : ", ",
-        run.half->position_error_max(), AccurateBounds{}.estimated_error * size);
-  }
-  if (!summary.reason.empty()) summary.status = RunStatus::degraded;
+  if (local) summary.local_error_sum = run.judge.local_error_sum();
+  conclude(run);
 }
 
 /// Figures of the times of the steps, which it reorders.
@@ -222,8 +249,7 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
     summary.setup_us = microseconds(Clock::now() - begin);
     if (observer) observer(0, 0.0, state);
     if (settings.half_step) half.emplace(scene, variant, *settings.half_step, state);
-    step_through({*simulation, settings, judge, summary, half}, extent(scene.model.points()), state,
-                 observer, times);
+    step_through({*simulation, settings, judge, summary, half}, state, observer, times);
   } catch (const Unsupported& reason) {
     summary.status = RunStatus::unsupported;
     summary.reason = printable(reason.what(), 1000);

@@ -51,6 +51,8 @@ struct RunSummary {
   std::optional<long> deadline_misses;            ///< steps beyond RunSettings::deadline_us
   std::optional<double> position_error_max;       ///< m
   std::optional<double> position_error_estimate;  ///< m, with RunSettings::half_step
+  /// Judge::local_error_sum(), m; none where something better is known or the order is higher.
+  std::optional<double> local_error_sum;
   std::optional<double> energy_drift_max;         ///< none if the model is not conservative
   double constraint_violation_max = 0.0;
 };

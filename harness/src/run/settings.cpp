@@ -53,10 +53,10 @@ double automatic_beta(const Model& model, double step) {
   const double measured = std::clamp(30 / smallest, 4e3 / mean, most);
   const double turn = fastest_turning(model).rate * step;
   if (turn == 0.0) return measured;
-  const double longer = turn / kTurn;
-  if (longer <= 1.0) return std::min(measured / (longer * longer), most);
+  const double ratio = turn / kTurn;
+  if (ratio <= 1.0) return std::min(measured / (ratio * ratio), most);
   const double nonlinear = 0.6 / (least_constraint_diagonal(model) * std::pow(turn, 3));
-  return std::max(std::min(measured / std::sqrt(longer), nonlinear), measured / 100);
+  return std::max(std::min(measured, nonlinear), measured / 100);
 }
 
 }  // namespace

@@ -15,8 +15,7 @@ namespace mbs {
 /// and, with x = turn / 6.8e-3,
 ///
 ///   beta = min(beta_0 / x^2, 1e7 / s_mean)                       for shorter steps,
-///   beta = min(beta_0 / sqrt(x), 0.6 / (s_row turn^3))           for longer ones,
-///                                                                 but at least beta_0 / 100.
+///   beta = max(min(beta_0, 0.6 / (s_row turn^3)), beta_0 / 100)  for longer ones.
 ///
 /// s_min is the smallest eigenvalue above 0 of S = Phi_q M^-1 Phi_q^T at the start, s_mean the mean
 /// and s_row the least above 0 of its diagonal with the diagonal of M (m^2/kg); omega is
