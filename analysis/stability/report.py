@@ -28,12 +28,13 @@ def write(folder):
         figures[scheme, precision] = base64.b64encode(
             (folder / "figures" / f"{scheme}-{precision}.svg").read_bytes()).decode()
     partial = folder / "stability.html.partial"
-    partial.write_text(render(table, _json(folder / "run.json"), figures), encoding="utf-8")
+    long = plain_table(folder / "long.csv") if (folder / "long.csv").exists() else None
+    partial.write_text(render(table, _json(folder / "run.json"), figures, long), encoding="utf-8")
     partial.replace(folder / "stability.html")
 
 
-def render(table, run, figures):
-    """The page; `figures`: {(scheme, precision): SVG in base 64}."""
+def render(table, run, figures, long=None):
+    """The page; `figures`: {(scheme, precision): SVG in base 64}; `long`: long.csv if it is there."""
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
                                      autoescape=True, trim_blocks=True, lstrip_blocks=True,
                                      undefined=jinja2.StrictUndefined)
@@ -52,6 +53,7 @@ def render(table, run, figures):
         context=next(iter(run["contexts"].values())), inputs=run["inputs"], parts=parts,
         least=scaled.min(), most=scaled.max(),
         statuses=list(dict.fromkeys(["ok", "degraded", *sorted(table.status.unique())])),
+        long=[] if long is None else long.fillna({"must_hold": ""}).to_dict("records"),
         limit=ACCURATE, total=len(table), inaccurate=inaccurate(table).to_dict("records"))
 
 

@@ -28,22 +28,22 @@ class Cell:
             return AUTOMATIC
         return f"{4 * self.scaled / self.step**2:.8g}"
 
-    def path(self, layout):
+    def path(self, layout, duration):
         scaled = self.scaled if self.scaled == AUTOMATIC else f"{self.scaled:g}"
         return (layout.results / "raw" / f"{self.loops}" / f"{self.scheme}-{self.precision}"
-                / f"{self.contender.file_name}-{self.step:g}-{scaled}.json")
+                / f"{self.contender.file_name}-{self.step:g}-{scaled}-{duration:g}s.json")
 
 
 def run(cell, layout, contexts, duration, seconds):
     """The record of one simulation, judged after every step; an existing file is never run again."""
     return runs.simulate(
-        cell.path(layout), cell.contender, f"four-bar:{cell.loops}", step=cell.step,
+        cell.path(layout, duration), cell.contender, f"four-bar:{cell.loops}", step=cell.step,
         duration=duration, every=0, context=contexts[cell.contender.environment], seconds=seconds,
         more=["--scheme", cell.scheme, "--precision", cell.precision, "--penalty", cell.penalty,
               "--judge-every", 1])
 
 
-def row(cell, record, layout):
+def row(cell, record, layout, duration):
     """The row of stability.csv of a run."""
     status, reason = runs.status(record)
     summary = record.get("summary", {})
@@ -56,7 +56,7 @@ def row(cell, record, layout):
                 key: summary.get(key) for key in (
                     "failed_at", "position_error_max", "energy_drift_max", "passes_per_step",
                     "steps_at_limit")} | {
-            "raw_file": layout.relative(cell.path(layout)),
+            "raw_file": layout.relative(cell.path(layout, duration)),
             "command": shlex.join(["build/mbs", *record["command"][1:]])}
 
 

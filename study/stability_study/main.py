@@ -27,6 +27,8 @@ def stability(arguments):
                         help=f"numbers of loops ({' '.join(map(str, LOOPS))})")
     parser.add_argument("--all", action="store_true",
                         help=f"the default loops and {' '.join(map(str, LARGE))}")
+    parser.add_argument("--long", action="store_true",
+                        help="also whole runs of 20 s, up to N = 2000, in every scheme: long.csv")
     parser.add_argument("--implementation", metavar="NAME", help="folder/variant for all runs "
                         f"({IMPLEMENTATIONS['double']}; {IMPLEMENTATIONS['single']} in single "
                         "precision); what it does not serve is left out")
@@ -81,7 +83,7 @@ def _loops(text):
 
 def _run(layout, options):
     import pandas
-    from study.stability_study import grid
+    from study.stability_study import grid, long
     variants = _variants(registry())
     served = _served(variants, options.implementation)
     start_named(layout, "stability", list(dict.fromkeys(served.values())),
@@ -107,7 +109,24 @@ def _run(layout, options):
     tell.end()
     write_csv(layout.results / "windows.csv", pandas.DataFrame(windows))
     write_csv(layout.results / "stability.csv", pandas.DataFrame(
-        [grid.row(cell, record, layout) for cell, record in found.items()]))
+        [grid.row(cell, record, layout, options.duration) for cell, record in found.items()]))
+    if options.long:
+        name = served["penalty", "double"]
+        cells = long.cells(contenders[name], {"penalty", *variants[name].get("settings", [])})
+        _long(cells, layout, run["contexts"], options.time_limit)
+
+
+def _long(cells, layout, contexts, seconds):
+    import pandas
+    from study.stability_study import long
+    tell, rows = Teller(), []
+    with ThreadPool(AT_ONCE) as pool:
+        records = pool.imap(lambda cell: long.record(cell, layout, contexts, seconds), cells)
+        for number, (cell, record) in enumerate(zip(cells, records), start=1):
+            rows.append(long.judged(cell, record, layout))
+            tell(f"20 s; {cell.scheme}; N = {cell.loops}: run {number} of {len(cells)}")
+    tell.end()
+    write_csv(layout.results / "long.csv", pandas.DataFrame(rows))
 
 
 def _variants(known):

@@ -8,6 +8,7 @@ import pytest
 
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_json
+from study.stability_study import long
 from study.stability_study.main import stability
 from study.tests.conftest import FAKE, ROOT, study
 
@@ -109,3 +110,24 @@ def test_the_real_program(tmp_path):
     assert set(found.alpha_dt2_4[found.penalty_asked != "auto"]) == {1e2, 1e3}
     assert (pandas.read_csv(tmp_path / "results" / "windows.csv").lower > 0).all()
     assert len(list((tmp_path / "results" / "figures").iterdir())) == 8
+
+
+ROW = {"scheme": "saddle-point", "loops": 2000, "status": "ok", "position_error_max": 1e-3,
+       "passes_per_step": 2.0, "steps_at_limit": 0}
+
+
+@pytest.mark.parametrize("change, verdict", [
+    ({}, "yes"), ({"loops": 3000}, ""), ({"scheme": "rattle"}, ""), ({"status": "degraded"}, "no"),
+    ({"position_error_max": 3e-3}, "no"), ({"position_error_max": None, "status": "timeout"}, "no"),
+    ({"passes_per_step": 2.3}, "no"), ({"steps_at_limit": 1}, "no"),
+    ({"scheme": "penalty", "loops": 200, "steps_at_limit": 9, "passes_per_step": 3.0}, "yes")])
+def test_what_whole_runs_must_hold(change, verdict):
+    assert long.holds(ROW | change) == verdict
+
+
+def test_whole_runs_are_a_table_and_a_section_of_the_page(run, tmp_path, monkeypatch):
+    monkeypatch.setattr(long, "LOOPS", {"penalty": (1, 2), "rattle": (1,)})
+    run("--implementation", "good_sparse/only", "--long")
+    found = pandas.read_csv(tmp_path / "results" / "long.csv")
+    assert list(found.loops) == [1, 2] and set(found.scheme) == {"penalty"}
+    assert "Whole runs" in (tmp_path / "results" / "stability.html").read_text()
