@@ -87,9 +87,10 @@ std::string summary_text(const nlohmann::json& json) {
       json["steps"].get<long>(), passes,
       factorizations == passes ? "" : fmt::format(" and {:.3f} factorizations", factorizations),
       json["steps_at_limit"].get<long>());
-  text += fmt::format(
-      "  position error max     {}\n",
-      number("position_error_max", " m", "not known: no exact motion of this scene is"));
+  text +=
+      fmt::format("  position error max     {}\n",
+                  number("position_error_max", " m",
+                         "not known: no exact motion of this scene is (--half-step estimates)"));
   if (!json["position_error_estimate"].is_null()) {
     text += fmt::format("  estimated error max    {:.3g} m, by half the step\n",
                         json["position_error_estimate"].get<double>());

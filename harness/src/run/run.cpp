@@ -92,15 +92,16 @@ void conclude(const Context& run) {
   }
   summary.reason = run.judge.degradation();
   const double allowed = AccurateBounds{}.estimated_error * run.judge.length();
+  const double local_allowed = AccurateBounds{}.local_error * run.judge.length();
   std::string estimated;
   if (run.half && !(run.half->position_error_max() <= allowed)) {
     estimated = fmt::format("estimated position error {:.1e} m (ok to {:.2g})",
                             run.half->position_error_max(), allowed);
-  } else if (!(summary.local_error_sum.value_or(0.0) <= allowed)) {
+  } else if (!(summary.local_error_sum.value_or(0.0) <= local_allowed)) {
     estimated = fmt::format(
         "local errors add up to {:.1e} m (ok to {:.2g}): a shorter step, or --half-step for a "
         "sharper estimate",
-        *summary.local_error_sum, allowed);
+        *summary.local_error_sum, local_allowed);
   }
   if (!summary.reason.empty() && !estimated.empty()) summary.reason += ", ";
   summary.reason += estimated;
