@@ -6,7 +6,7 @@ import jinja2
 import matplotlib.pyplot as plt
 
 from analysis.extremes import battery_figure, numbers, pivots_figure, roundoff_figure, sentences, ways_figure
-from analysis.loader import TableError, _json, read_table
+from analysis.loader import TableError, _json, plain_table
 from analysis.style import save
 from analysis.text import number
 
@@ -17,7 +17,7 @@ TABLES = {"battery": ("battery",), "ways": ("ways", "ways_cost", "scaling"),
 def write(folder):
     """Writes figures/*.svg and .png and extremes.html from the tables in `folder`."""
     folder = Path(folder)
-    tables = {part: {name: read_table(folder / f"{name}.csv") for name in names}
+    tables = {part: {name: plain_table(folder / f"{name}.csv") for name in names}
               for part, names in TABLES.items() if (folder / f"{names[0]}.csv").exists()}
     if not tables:
         raise TableError(f"{folder}: holds no table of any part ({', '.join(TABLES)})")
