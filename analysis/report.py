@@ -4,13 +4,11 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-import jinja2
-
-from analysis import bounds, paper, summary, tables
+from analysis import bounds, page, paper, summary, tables
 from analysis.claims import claims
 from analysis.figures.t2_operations import table as table2
 from analysis.loader import TableError, load
-from analysis.text import interval, number
+from analysis.text import interval
 
 CAPTIONS = {  # in the order of the page
     "t1_phases": "Table 1. Share of a step's time by phase: the paper's starting versions, ours, "
@@ -51,12 +49,8 @@ def figures(folder):
 
 def render(folder):
     results = load(folder)
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
-                                     autoescape=True, trim_blocks=True, lstrip_blocks=True,
-                                     undefined=jinja2.StrictUndefined)
-    environment.filters |= {"number": number, "interval": interval}
     ledger = claims(results)
-    return environment.get_template("report.html.j2").render(
+    return page.template(Path(__file__).parent / "report.html.j2", interval=interval).render(
         context=results.context, run=results.run, registry=results.registry,
         figures=figures(folder), sections=SECTIONS, times=tables.step_times(results),
         by_size=summary.by_size(results), dense_from=summary.dense_from(results),
@@ -75,7 +69,7 @@ if __name__ == "__main__":
     if len(sys.argv) != 3:
         sys.exit(f"usage: {sys.argv[0]} RESULTS_DIR OUTPUT.html")
     try:
-        page = render(Path(sys.argv[1]))
+        text = render(Path(sys.argv[1]))
     except TableError as error:
         sys.exit(f"error: {error}")
-    Path(sys.argv[2]).write_text(page, encoding="utf-8")
+    Path(sys.argv[2]).write_text(text, encoding="utf-8")

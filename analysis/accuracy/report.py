@@ -1,15 +1,11 @@
 # accuracy.html: error against time, the regions for a required error, settings side by side; self-contained.
-import base64
 from pathlib import Path
 
-import jinja2
-import matplotlib.pyplot as plt
 import pandas
 
+from analysis import page
 from analysis.accuracy import names, pairs_figure, regions_figure, sentences, work_figure
 from analysis.loader import TableError, _json
-from analysis.style import save
-from analysis.text import number
 
 NEEDED = ("work", "gate", "references")
 OTHERS = ("regions", "winners", "fills", "forms", "precision", "tangents")  # of parts that were run
@@ -36,16 +32,10 @@ def write(folder):
     folder = Path(folder)
     tables = load(folder)
     registry = _json(folder / "implementations.json")["implementations"]
-    (folder / "figures").mkdir(exist_ok=True)
     figures = {}
     for name, figure in _figures(tables, registry):
-        for kind in ("svg", "png"):
-            save(figure, folder / "figures" / f"{name}.{kind}")
-        plt.close(figure)
-        figures[name] = base64.b64encode((folder / "figures" / f"{name}.svg").read_bytes()).decode()
-    partial = folder / "accuracy.html.partial"
-    partial.write_text(render(tables, _json(folder / "run.json"), figures), encoding="utf-8")
-    partial.replace(folder / "accuracy.html")
+        figures[name] = page.embedded(folder, name, figure)
+    page.write(folder / "accuracy.html", render(tables, _json(folder / "run.json"), figures))
 
 
 def file_name(subject):
@@ -75,10 +65,6 @@ def _figures(tables, registry):
 
 def render(tables, run, figures):
     """The page; `figures`: {name: SVG in base 64}."""
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
-                                     autoescape=True, trim_blocks=True, lstrip_blocks=True,
-                                     undefined=jinja2.StrictUndefined)
-    environment.filters |= {"number": number, "step": names.step}
     work, gate = tables["work"], tables["gate"]
     references = tables["references"].to_dict("records")
     by_subject = dict(list(work.groupby("subject", sort=False)))
@@ -86,7 +72,7 @@ def render(tables, run, figures):
               "says": sentences.of_subject(by_subject[about["subject"]]),
               "statuses": by_subject[about["subject"]].status.value_counts().to_dict()}
              for about in references if about["subject"] in by_subject]
-    return environment.get_template("accuracy.html.j2").render(
+    return page.template(Path(__file__).parent / "accuracy.html.j2", step=names.step).render(
         context=next(iter(run["contexts"].values())), inputs=run["inputs"], parts=parts,
         chains=[part for part in parts if part["about"]["unit"] == "m"],
         scenes=[part for part in parts if part["about"]["unit"] != "m"],

@@ -1,14 +1,9 @@
 # extremes.html: figures, outcomes and what they say, of the parts that have been run; one self-contained page.
-import base64
 from pathlib import Path
 
-import jinja2
-import matplotlib.pyplot as plt
-
+from analysis import page
 from analysis.extremes import battery_figure, numbers, pivots_figure, roundoff_figure, sentences, ways_figure
 from analysis.loader import TableError, _json, plain_table
-from analysis.style import save
-from analysis.text import number
 
 TABLES = {"battery": ("battery",), "ways": ("ways", "ways_cost", "scaling"),
           "pivots": ("pivots", "pivots_claims"), "roundoff": ("roundoff", "roundoff_growth", "singular")}
@@ -22,16 +17,10 @@ def write(folder):
     if not tables:
         raise TableError(f"{folder}: holds no table of any part ({', '.join(TABLES)})")
     registry = _json(folder / "implementations.json")["implementations"]
-    (folder / "figures").mkdir(exist_ok=True)
     figures = {}
     for name, figure in _drawn(tables, registry):
-        for kind in ("svg", "png"):
-            save(figure, folder / "figures" / f"{name}.{kind}")
-        plt.close(figure)
-        figures[name] = base64.b64encode((folder / "figures" / f"{name}.svg").read_bytes()).decode()
-    partial = folder / "extremes.html.partial"
-    partial.write_text(render(tables, _json(folder / "run.json"), figures), encoding="utf-8")
-    partial.replace(folder / "extremes.html")
+        figures[name] = page.embedded(folder, name, figure)
+    page.write(folder / "extremes.html", render(tables, _json(folder / "run.json"), figures))
 
 
 def _drawn(tables, registry):
@@ -51,12 +40,8 @@ def _drawn(tables, registry):
 
 def render(tables, run, figures):
     """The page; `figures`: {name: SVG in base 64}."""
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
-                                     autoescape=True, trim_blocks=True, lstrip_blocks=True,
-                                     undefined=jinja2.StrictUndefined)
-    environment.filters["number"] = number
     parts = {"battery": _battery, "ways": _ways, "pivots": _pivots, "roundoff": _roundoff}
-    return environment.get_template("extremes.html.j2").render(
+    return page.template(Path(__file__).parent / "extremes.html.j2").render(
         context=next(iter(run["contexts"].values())), inputs=run["inputs"], figures=figures,
         **{name: make(**tables[name]) if name in tables else None for name, make in parts.items()})
 

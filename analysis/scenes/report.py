@@ -2,13 +2,9 @@
 import base64
 from pathlib import Path
 
-import jinja2
-import matplotlib.pyplot as plt
-
+from analysis import page
 from analysis.loader import _json
 from analysis.scenes import modelling_figure, tables
-from analysis.style import save
-from analysis.text import number
 
 SHEETS = Path(__file__).resolve().parents[2] / "harness" / "scenes" / "pictures"
 CONSERVED = 1e-3  # of the range of the energy
@@ -19,26 +15,15 @@ def write(folder, compared):
     implementations that ran every problem at every step."""
     folder = Path(folder)
     data = tables.load(folder)
-    (folder / "figures").mkdir(exist_ok=True)
-    figure = modelling_figure.draw(data["modelling"])
-    for kind in ("svg", "png"):
-        save(figure, folder / "figures" / f"modelling.{kind}")
-    plt.close(figure)
-    page = render(folder, data, compared)
-    partial = folder / "scenes.html.partial"
-    partial.write_text(page, encoding="utf-8")
-    partial.replace(folder / "scenes.html")
+    page.embedded(folder, "modelling", modelling_figure.draw(data["modelling"]))
+    page.write(folder / "scenes.html", render(folder, data, compared))
 
 
 def render(folder, data, compared):
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
-                                     autoescape=True, trim_blocks=True, lstrip_blocks=True,
-                                     undefined=jinja2.StrictUndefined)
-    environment.filters |= {"number": number, "digits": tables.digits}
     run = _json(folder / "run.json")
     context = next(iter(run["contexts"].values()))
     problems, convergence = data["problems"], data["convergence"]
-    return environment.get_template("scenes.html.j2").render(
+    return page.template(Path(__file__).parent / "scenes.html.j2", digits=tables.digits).render(
         context=context, compared=compared, problems=[] if problems.empty else tables.best_errors(problems),
         agreement={} if data["gate"].empty else tables.agreement(data["gate"]),
         convergence=[] if convergence.empty else convergence.to_dict("records"),

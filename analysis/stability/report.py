@@ -1,14 +1,9 @@
 # stability.html: the maps, how to read them, the outcomes counted; one self-contained page.
-import base64
 from pathlib import Path
 
-import jinja2
-import matplotlib.pyplot as plt
-
+from analysis import page
 from analysis.loader import _json, plain_table
 from analysis.stability.figure import draw
-from analysis.style import save
-from analysis.text import number
 
 ACCURATE = 1e-2  # m, the largest position error that "ok" allows
 
@@ -17,28 +12,17 @@ def write(folder):
     """Writes figures/SCHEME-PRECISION.svg and .png, and stability.html, from the tables in `folder`."""
     folder = Path(folder)
     table, windows = (plain_table(folder / f"{name}.csv") for name in ("stability", "windows"))
-    (folder / "figures").mkdir(exist_ok=True)
     series = list(dict.fromkeys(zip(table.scheme, table.precision)))
     figures = {}
     for scheme, precision in series:
-        figure = draw(table, windows, scheme, precision)
-        for kind in ("svg", "png"):
-            save(figure, folder / "figures" / f"{scheme}-{precision}.{kind}")
-        plt.close(figure)
-        figures[scheme, precision] = base64.b64encode(
-            (folder / "figures" / f"{scheme}-{precision}.svg").read_bytes()).decode()
-    partial = folder / "stability.html.partial"
+        figures[scheme, precision] = page.embedded(folder, f"{scheme}-{precision}",
+                                                   draw(table, windows, scheme, precision))
     long = plain_table(folder / "long.csv") if (folder / "long.csv").exists() else None
-    partial.write_text(render(table, _json(folder / "run.json"), figures, long), encoding="utf-8")
-    partial.replace(folder / "stability.html")
+    page.write(folder / "stability.html", render(table, _json(folder / "run.json"), figures, long))
 
 
 def render(table, run, figures, long=None):
     """The page; `figures`: {(scheme, precision): SVG in base 64}; `long`: long.csv if it is there."""
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
-                                     autoescape=True, trim_blocks=True, lstrip_blocks=True,
-                                     undefined=jinja2.StrictUndefined)
-    environment.filters["number"] = number
     parts = [{"scheme": scheme, "precision": precision, "figure": figure,
               "rows": table[(table.scheme == scheme) & (table.precision == precision)]}
              for (scheme, precision), figure in figures.items()]
@@ -49,7 +33,7 @@ def render(table, run, figures, long=None):
                  "automatic": rows[(rows.penalty_asked == "auto") & (rows.status != "ok")].to_dict(
                      "records")}
     scaled = table[table.penalty_asked != "auto"].alpha_dt2_4
-    return environment.get_template("stability.html.j2").render(
+    return page.template(Path(__file__).parent / "stability.html.j2").render(
         context=next(iter(run["contexts"].values())), inputs=run["inputs"], parts=parts,
         least=scaled.min(), most=scaled.max(),
         statuses=list(dict.fromkeys(["ok", "degraded", *sorted(table.status.unique())])),

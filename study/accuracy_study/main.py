@@ -1,10 +1,8 @@
 # study/accuracy: error against time of every implementation and setting: tables, figures and page.
 import argparse
 import os
-from pathlib import Path
 
-from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, ROOT
+from study.pipeline.options import loops, positive, report, results
 from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, registry, set_up,
                                     writable)
 
@@ -13,10 +11,7 @@ PARTS = ("work", "regions", "pairs")
 
 def accuracy(arguments):
     options = _parser().parse_args(arguments)
-    layout = Layout(Path(options.results).absolute() if options.results
-                    else ROOT / "results" / "local" / "accuracy")
-    if options.stored and not (layout.results / "work.csv").exists():
-        raise StudyError(f"{layout.results} holds no results (no work.csv)")
+    layout = results(options, "accuracy", "work.csv")
     need_modules("yaml", "pandas", "matplotlib", "jinja2", "scipy")
     from study.accuracy_study import stages  # it needs the modules
     if options.dry_run:
@@ -29,13 +24,8 @@ def accuracy(arguments):
                 if "MBS_PROGRAM" not in os.environ:
                     set_up(layout)
                 stages.run(layout, options)
-        from analysis.accuracy.report import write
-        from analysis.loader import TableError
-        try:
-            write(layout.results)
-        except TableError as error:
-            raise StudyError(str(error)) from error
-    print(f"report: {layout.results / 'accuracy.html'}")
+        from analysis.accuracy.report import write  # it needs the modules
+        report(layout, "accuracy", write)
     return 0
 
 
@@ -44,7 +34,7 @@ def _parser():
         prog="study/accuracy", description="Which implementation and setting (study/settings.yaml) "
         "reaches which error in which time, on the N-four-bar and the standard problems. Writes tables, "
         "figures and accuracy.html; how long it may take is said first.")
-    parser.add_argument("--loops", nargs="+", type=_loops, metavar="N",
+    parser.add_argument("--loops", nargs="+", type=loops, metavar="N",
                         help="sizes of the N-four-bar (each part has its own, 2 to 1000)")
     parser.add_argument("--problems", nargs="+", metavar="NAME",
                         help="only these standard problems (study/scenes --help lists them); none: none")
@@ -53,25 +43,12 @@ def _parser():
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS, metavar="PART",
                         help="work (error against time), regions (who is fastest for a required "
                         "error), pairs (forms and precisions side by side); all")
-    parser.add_argument("--duration", type=_positive, default=5.0, metavar="S",
+    parser.add_argument("--duration", type=positive, default=5.0, metavar="S",
                         help="simulated time of the N-four-bar (5 s: past five singular positions)")
-    parser.add_argument("--time-limit", type=_positive, default=4.0, metavar="S",
+    parser.add_argument("--time-limit", type=positive, default=4.0, metavar="S",
                         help="a run that is predicted to take longer is not run (4 s)")
     parser.add_argument("--results", metavar="DIR", help="results directory (results/local/accuracy)")
     parser.add_argument("--dry-run", action="store_true", help="say what would run and how long")
     parser.add_argument("--stored", action="store_true",
                         help="figures and page again from stored tables, without running anything")
     return parser
-
-
-def _positive(text):
-    value = float(text)
-    if not 0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
-    return float(f"{value:g}")  # as it is passed on
-
-
-def _loops(text):
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text} is not a number of loops (1, 2, ...)")
-    return int(text)

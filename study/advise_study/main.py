@@ -9,6 +9,7 @@ from pathlib import Path
 from study.pipeline.contenders import from_json
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import Layout, ROOT, read_run, write_json
+from study.pipeline.options import positive
 from study.pipeline.prepare import (digest_of_scene, need_modules, only_one, only_one_measuring,
                                     registry, select, start_named, writable)
 from study.pipeline.progress import Teller
@@ -85,15 +86,15 @@ def _parser():
                     "that very scene, under a minute for four-bar:40; exit status 1 if no setting is "
                     "good enough.")
     parser.add_argument("scene", nargs="?", metavar="SCENE", help="four-bar:N or a JSON file")
-    parser.add_argument("--error", type=_positive, metavar="E",
+    parser.add_argument("--error", type=positive, metavar="E",
                         help="largest position error of any point over the whole time, m")
-    parser.add_argument("--deadline-us", type=_positive, metavar="D",
+    parser.add_argument("--deadline-us", type=positive, metavar="D",
                         help="99 %% of the steps must be done within D microseconds")
-    parser.add_argument("--duration", type=_positive, metavar="T",
+    parser.add_argument("--duration", type=positive, metavar="T",
                         help=f"simulated time ({DURATION:g} s, or up to where the drivers end)")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
                         help="only these implementations (folder or folder/variant)")
-    parser.add_argument("--budget", type=_positive, default=BUDGET, metavar="S",
+    parser.add_argument("--budget", type=positive, default=BUDGET, metavar="S",
                         help=f"for pilots and timings ({BUDGET:g} s); what is left out then is said")
     parser.add_argument("--json", action="store_true", help="print everything as JSON (study/advise_study/README.md)")
     parser.add_argument("--plot", metavar="FILE", help="draw the pilots and the choice (.svg or .png)")
@@ -102,13 +103,6 @@ def _parser():
     parser.add_argument("--validate", action="store_true", help="hold the advice against an exhaustive "
                         "search on scenes with exact solutions; about 20 minutes")
     return parser
-
-
-def _positive(text):
-    value = float(text)
-    if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
-    return float(f"{value:g}")  # as it is passed on
 
 
 def duration(scene, asked, described):

@@ -2,11 +2,10 @@
 import argparse
 import contextlib
 import os
-from pathlib import Path
 
 from study.pipeline.contenders import from_json
-from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, ROOT, read_run, write_csv
+from study.pipeline.layout import read_run, write_csv
+from study.pipeline.options import positive, report, results
 from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, registry, set_up,
                                     start_named, writable)
 from study.pipeline.progress import Teller
@@ -28,16 +27,13 @@ def extremes(arguments):
                         help=f"only these parts ({' '.join(PARTS)})")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
                         help="only these implementations (folder or folder/variant)")
-    parser.add_argument("--time-limit", type=_positive, default=60.0, metavar="S",
+    parser.add_argument("--time-limit", type=positive, default=60.0, metavar="S",
                         help="for one run (60 s); what takes longer is kept as a timeout")
     parser.add_argument("--results", metavar="DIR", help="results directory (results/local/extremes)")
     parser.add_argument("--stored", action="store_true",
                         help="figures and page again from stored tables, without running anything")
     options = parser.parse_args(arguments)
-    layout = Layout(Path(options.results).absolute() if options.results
-                    else ROOT / "results" / "local" / "extremes")
-    if options.stored and not layout.run.exists():
-        raise StudyError(f"{layout.results} holds no results (no run.json)")
+    layout = results(options, "extremes", "run.json")
     writable(layout.results)
     timed = not options.stored and TIMED & set(options.parts)
     with only_one(layout), only_one_measuring() if timed else contextlib.nullcontext():
@@ -46,21 +42,9 @@ def extremes(arguments):
         need_modules("yaml", "pandas", "matplotlib", "jinja2", "scipy")
         if not options.stored:
             _run(layout, options)
-        from analysis.extremes.report import write  # they need the modules
-        from analysis.loader import TableError
-        try:
-            write(layout.results)
-        except TableError as error:
-            raise StudyError(str(error)) from error
-    print(f"report: {layout.results / 'extremes.html'}")
+        from analysis.extremes.report import write  # it needs the modules
+        report(layout, "extremes", write)
     return 0
-
-
-def _positive(text):
-    value = float(text)
-    if not 0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
-    return value
 
 
 def _run(layout, options):

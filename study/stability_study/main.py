@@ -1,13 +1,12 @@
 # study/stability: the outcome of the N-four-bar over (step, penalty): table, figures and page.
 import argparse
-import math
 import os
 from multiprocessing.pool import ThreadPool
-from pathlib import Path
 
 from study.pipeline.contenders import from_json
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, ROOT, read_run, write_csv
+from study.pipeline.layout import read_run, write_csv
+from study.pipeline.options import loops, positive, report, results
 from study.pipeline.prepare import need_modules, only_one, registry, set_up, start_named, writable
 from study.pipeline.progress import Teller
 
@@ -23,7 +22,7 @@ def stability(arguments):
         prog="study/stability", description="Which penalty factors and steps simulate the N-four-bar "
         "well, in each scheme and precision. Writes stability.csv, figures and stability.html; "
         "about two minutes, with --all five.")
-    parser.add_argument("--loops", nargs="+", type=_loops, metavar="N",
+    parser.add_argument("--loops", nargs="+", type=loops, metavar="N",
                         help=f"numbers of loops ({' '.join(map(str, LOOPS))})")
     parser.add_argument("--all", action="store_true",
                         help=f"the default loops and {' '.join(map(str, LARGE))}")
@@ -32,13 +31,13 @@ def stability(arguments):
     parser.add_argument("--implementation", metavar="NAME", help="folder/variant for all runs "
                         f"({IMPLEMENTATIONS['double']}; {IMPLEMENTATIONS['single']} in single "
                         "precision); what it does not serve is left out")
-    parser.add_argument("--steps", nargs="+", type=_positive, default=STEPS, metavar="S",
+    parser.add_argument("--steps", nargs="+", type=positive, default=STEPS, metavar="S",
                         help="in seconds (1.25e-3 times powers of 2 from 1/8 to 8)")
-    parser.add_argument("--penalties", nargs="+", type=_positive, default=PENALTIES, metavar="B",
+    parser.add_argument("--penalties", nargs="+", type=positive, default=PENALTIES, metavar="B",
                         help="values of alpha step^2 / 4, in kg/m^2 (1e0 to 1e12, decades)")
-    parser.add_argument("--duration", type=_positive, default=2.0, metavar="S",
+    parser.add_argument("--duration", type=positive, default=2.0, metavar="S",
                         help="simulated time (2 s: past two singular positions)")
-    parser.add_argument("--time-limit", type=_positive, default=120.0, metavar="S",
+    parser.add_argument("--time-limit", type=positive, default=120.0, metavar="S",
                         help="for one run (120 s); what takes longer is kept as a timeout")
     parser.add_argument("--results", metavar="DIR",
                         help="results directory (results/local/stability)")
@@ -47,10 +46,7 @@ def stability(arguments):
     options = parser.parse_args(arguments)
     if options.all and options.loops:
         raise StudyError("--all and --loops exclude each other")
-    layout = Layout(Path(options.results).absolute() if options.results
-                    else ROOT / "results" / "local" / "stability")
-    if options.stored and not (layout.results / "stability.csv").exists():
-        raise StudyError(f"{layout.results} holds no results (no stability.csv)")
+    layout = results(options, "stability", "stability.csv")
     writable(layout.results)
     with only_one(layout):
         if "MBS_PROGRAM" not in os.environ and not options.stored:
@@ -58,27 +54,9 @@ def stability(arguments):
         need_modules("yaml", "pandas", "matplotlib", "jinja2")
         if not options.stored:
             _run(layout, options)
-        from analysis.loader import TableError  # they need the modules
-        from analysis.stability.report import write
-        try:
-            write(layout.results)
-        except TableError as error:
-            raise StudyError(str(error)) from error
-    print(f"report: {layout.results / 'stability.html'}")
+        from analysis.stability.report import write  # it needs the modules
+        report(layout, "stability", write)
     return 0
-
-
-def _positive(text):
-    value = float(text)
-    if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
-    return float(f"{value:g}")  # as it is passed on
-
-
-def _loops(text):
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text} is not a number of loops (1, 2, ...)")
-    return int(text)
 
 
 def _run(layout, options):
