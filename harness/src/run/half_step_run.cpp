@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model_math/point_distance.hpp"
 #include "run/setting_names.hpp"
 
 namespace mbs {
@@ -36,18 +37,10 @@ void HalfStepRun::advance() {
 
 void HalfStepRun::compare(const State& whole) {
   simulation_->get_state(state_);
-  for (const Point& point : scene_.model.points()) {
-    if (point.is_fixed() || point.is_vector) continue;
-    double squared = 0.0;
-    for (int axis = 0; axis < scene_.model.dimension(); ++axis) {
-      const auto i = static_cast<std::size_t>(point.offset + axis);
-      squared += std::pow(whole.q[i] - state_.q[i], 2);
-    }
-    const double error = factor_ * std::sqrt(squared);
-    // Not std::max, which would drop a NaN.
-    if (!(error <= error_)) {
-      error_ = std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
-    }
+  const double error = factor_ * largest_point_distance(scene_.model, whole.q, state_.q);
+  // Not std::max, which would drop a NaN.
+  if (!(error <= error_)) {
+    error_ = std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
   }
 }
 

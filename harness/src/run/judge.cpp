@@ -12,6 +12,7 @@
 #include "model_math/extent.hpp"
 #include "model_math/kinematics.hpp"
 #include "model_math/known_motion.hpp"
+#include "model_math/point_distance.hpp"
 #include "model_math/turning.hpp"
 #include "model_math/vector3.hpp"
 #include "scene/row_names.hpp"
@@ -139,17 +140,8 @@ std::string Judge::judge(double t, const State& state) {
 }
 
 void Judge::add_local_error(const State& before, const State& after, double step, long steps) {
-  double most = 0.0;
-  for (const Point& point : scene_->model.points()) {
-    if (point.is_fixed() || point.is_vector) continue;
-    double squared = 0.0;
-    for (int axis = 0; axis < scene_->model.dimension(); ++axis) {
-      const auto i = static_cast<std::size_t>(point.offset + axis);
-      squared += std::pow(after.a[i] - before.a[i], 2);
-    }
-    most = std::max(most, squared);
-  }
-  local_error_ += static_cast<double>(steps) * step * step / 12 * std::sqrt(most);
+  const double change = largest_point_distance(scene_->model, after.a, before.a);
+  local_error_ += static_cast<double>(steps) * step * step / 12 * change;
 }
 
 std::string Judge::judge_torsion(double t, const State& state) {
