@@ -45,15 +45,17 @@ std::vector<double> constraint_diagonal(const Model& model) {
 namespace {
 
 /// beta = alpha dt^2/4 of the penalty form, kg/m^2.
-double automatic_beta(const Model& model, double step) {
-  constexpr double kTurn = 6.8e-3;  // rad a step, at which the measured three numbers hold
+double automatic_beta(const Model& model, const StepSettings& settings) {
+  // rad a step, at which the measured three numbers hold. The coarse tolerance of single precision
+  // leaves the multipliers one pass a step, which needs more beta from longer steps on.
+  const double at = settings.precision == Precision::single_precision ? 13.6e-3 : 6.8e-3;
   const double mean = mean_constraint_eigenvalue(model);
   const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
-  const double most = 1e7 / mean;
+  const double most = 4e6 / mean;
   const double measured = std::clamp(30 / smallest, 4e3 / mean, most);
-  const double turn = fastest_turning(model).rate * step;
+  const double turn = fastest_turning(model).rate * settings.step;
   if (turn == 0.0) return measured;
-  const double ratio = turn / kTurn;
+  const double ratio = turn / at;
   if (ratio <= 1.0) return std::min(measured / (ratio * ratio), most);
   const double nonlinear = 0.6 / (least_constraint_diagonal(model) * std::pow(turn, 3));
   return std::max(std::min(measured, nonlinear), measured / 100);
@@ -77,7 +79,7 @@ double least_constraint_diagonal(const Model& model) {
 double automatic_penalty(const Model& model, const StepSettings& settings) {
   if (model.constraints() == 0) return 1.0;
   const double per_beta = 4 / (settings.step * settings.step);
-  if (settings.scheme == Scheme::penalty) return per_beta * automatic_beta(model, settings.step);
+  if (settings.scheme == Scheme::penalty) return per_beta * automatic_beta(model, settings);
   const double mean = mean_constraint_eigenvalue(model);
   if (settings.scheme != Scheme::saddle_point) return per_beta * 2e4 / mean;  // RATTLE
   return per_beta * (settings.precision == Precision::double_precision ? 2.5e8 : 1e6) / mean;
