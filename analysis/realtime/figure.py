@@ -26,9 +26,11 @@ def distributions(table):
                for form, (colour, marker) in FORMS.items()]
     handles += [plt.Line2D([], [], color=GREY, marker="|", linestyle="none", markersize=9,
                            label="99 %, 99.9 %"),
-                plt.Line2D([], [], color=GREY, marker="x", linestyle="none", label="largest"),
+                plt.Line2D([], [], color=FORMS["penalty"][0], marker="x", linestyle="none", label="largest"),
+               plt.Line2D([], [], color=GREY, marker="x", linestyle="none", alpha=0.6, markersize=4,
+                          label="largest with what interrupts"),
                 plt.Line2D([], [], color="black", linestyle=(0, (4, 2)), label="deadline")]
-    figure.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=5)
+    figure.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=6)
     return figure
 
 
@@ -48,6 +50,7 @@ def _panel(axes, rows, names):
                 axes.plot(row.median_us, y, marker, color=colour, markersize=4.5)
                 axes.plot([row.p99_us, row.p999_us], [y, y], "|", color=colour, markersize=8)
                 axes.plot(row.max_us, y, "x", color=colour, markersize=4.5)
+                axes.plot(row.observed_max_us, y, "x", color=GREY, alpha=0.6, markersize=3.5)
     axes.set_xscale("log")
     axes.set_yticks(range(len(names)), names)
     axes.set_ylim(len(names) - 0.4, -0.6)

@@ -27,13 +27,16 @@ def render(steps, largest, run, figures):
         context=next(iter(run["contexts"].values())), figures=figures, inputs=run["inputs"],
         steps=steps.to_dict("records"), largest=largest.to_dict("records"),
         late=steps[~steps.in_real_time.astype(bool)].to_dict("records"),
+        repeats=run["inputs"]["repeats"], pilot=run["inputs"]["pilot"],
         guards=guards.to_dict("records"), worst=None if large.empty else large.share.max(),
         allowed=GUARD, judged_from=JUDGED_FROM)
 
 
 def guard(steps):
-    """Share of a step that judging every 32nd state takes, by size and implementation."""
-    rows = steps[steps.judge_us.notna() & steps.mean_us.notna()].copy()
+    """Share of a step that judging every 32nd state takes, by size and implementation: means over
+    one run, both as observed."""
+    rows = steps[steps.judge_us.notna() & steps.observed_mean_us.notna()].copy()
     rows["variables"] = 2 * rows.loops + 2
-    rows["share"] = rows.judge_us / rows.mean_us
-    return rows[["implementation", "scheme", "step", "variables", "judge_us", "mean_us", "share"]]
+    rows["share"] = rows.judge_us / rows.observed_mean_us
+    return rows[["implementation", "scheme", "step", "variables", "judge_us", "observed_mean_us",
+                 "share"]]

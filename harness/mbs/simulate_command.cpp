@@ -31,6 +31,7 @@ struct SimulateOptions {
   bool half_step = false;
   bool scale_equations = false;
   std::optional<double> deadline_us;
+  int repeats = 1;
   bool json = false;
 };
 
@@ -105,8 +106,9 @@ int simulate(const SimulateOptions& options) {
   }
   const StepSettings step = options.step.resolve(
       options.scale_equations ? ScaledEquations(scene.model).model() : scene.model);
-  RunSettings settings{step,         options.duration,        options.judge_every,
-                       std::nullopt, options.scale_equations, options.deadline_us};
+  RunSettings settings{step,           options.duration,        options.judge_every,
+                       std::nullopt,   options.scale_equations, options.deadline_us,
+                       options.repeats};
   if (options.half_step) {
     StepOptions half = options.step;
     half.settings.step /= 2;
@@ -168,6 +170,11 @@ void add_simulate_command(CLI::App& app, int& status) {
                     "multiply constraints by powers of two that make them weigh alike");
   command->add_option("--deadline-us", options->deadline_us,
                       "count the steps that take longer, in microseconds");
+  command
+      ->add_option("--repeats", options->repeats,
+                   "simulate R times, and tell each step's least time too: what the machine "
+                   "interrupts falls out")
+      ->capture_default_str();
   command->add_flag("--json", options->json, "print the summary as JSON");
   command->callback([options, &status] { status = simulate(*options); });
 }

@@ -18,6 +18,25 @@ nlohmann::json finite_or_null(std::optional<double> value) {
   return *value;
 }
 
+nlohmann::json times_json(const StepTimes& us) {
+  nlohmann::json json = {{"mean", us.mean}, {"median", us.median}, {"p99", us.p99},
+                         {"p999", us.p999}, {"max", us.max},       {"deadline_misses", nullptr}};
+  if (us.deadline_misses) json["deadline_misses"] = *us.deadline_misses;
+  return json;
+}
+
+/// One line, and one more where there is a deadline.
+std::string times_text(const std::string& label, const nlohmann::json& us,
+                       const nlohmann::json& run) {
+  std::string text =
+      fmt::format("  {:<22} {:.2f} us median, {:.2f} p99, {:.2f} max\n", label,
+                  us["median"].get<double>(), us["p99"].get<double>(), us["max"].get<double>());
+  if (us["deadline_misses"].is_null()) return text;
+  return text + fmt::format("    deadline             {} of {} steps took more than {:g} us\n",
+                            us["deadline_misses"].get<long>(), run["steps"].get<long>(),
+                            run["deadline_us"].get<double>());
+}
+
 }  // namespace
 
 nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
@@ -46,20 +65,15 @@ nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
                {"constraint_violation_max", finite_or_null(summary.constraint_violation_max)},
                {"setup_us", summary.setup_us},
                {"judge_us", summary.judge_us},
-               {"step_us",
-                {{"mean", summary.step_us_mean},
-                 {"median", summary.step_us_median},
-                 {"p99", summary.step_us_p99},
-                 {"p999", summary.step_us_p999},
-                 {"max", summary.step_us_max}}},
+               {"step_us", times_json(summary.step_us)},
+               {"least_us", summary.least_us ? times_json(*summary.least_us) : nullptr},
+               {"repeats", settings.repeats},
                {"scale_equations", settings.scale_equations},
-               {"deadline_us", finite_or_null(settings.deadline_us)},
-               {"deadline_misses", nullptr}});
+               {"deadline_us", finite_or_null(settings.deadline_us)}});
   if (settings.scale_equations) {
     const std::string other = json["other_settings"];
     json["other_settings"] = fmt::format("{}{}--scale-equations", other, other.empty() ? "" : " ");
   }
-  if (summary.deadline_misses) json["deadline_misses"] = *summary.deadline_misses;
   return json;
 }
 
@@ -106,13 +120,10 @@ std::string summary_text(const nlohmann::json& json) {
   text += fmt::format("  set-up                 {:.1f} us\n", json["setup_us"].get<double>());
   text +=
       fmt::format("  judging                {:.2f} us a step\n", json["judge_us"].get<double>());
-  text += fmt::format("  step                   {:.2f} us median, {:.2f} p99, {:.2f} max\n",
-                      json["step_us"]["median"].get<double>(), json["step_us"]["p99"].get<double>(),
-                      json["step_us"]["max"].get<double>());
-  if (!json["deadline_us"].is_null()) {
-    text += fmt::format("  deadline               {} of {} steps took more than {:g} us\n",
-                        json["deadline_misses"].get<long>(), json["steps"].get<long>(),
-                        json["deadline_us"].get<double>());
+  text += times_text("step", json["step_us"], json);
+  if (!json["least_us"].is_null()) {
+    text += times_text(fmt::format("least of {} runs", json["repeats"].get<int>()),
+                       json["least_us"], json);
   }
   return text;
 }

@@ -110,14 +110,31 @@ TEST(Deadline, CountsTheStepsBeyondIt) {
   RunSettings settings;
   settings.step.penalty = automatic_penalty(scene.model, settings.step);
   settings.duration = 0.25;
-  EXPECT_FALSE(run(scene, reference(), settings).deadline_misses);
+  EXPECT_FALSE(run(scene, reference(), settings).step_us.deadline_misses);
   settings.deadline_us = 1e-6;
-  EXPECT_EQ(run(scene, reference(), settings).deadline_misses, 200);
+  EXPECT_EQ(run(scene, reference(), settings).step_us.deadline_misses, 200);
   settings.deadline_us = 1e12;
   const RunSummary summary = run(scene, reference(), settings);
-  EXPECT_EQ(summary.deadline_misses, 0);
-  EXPECT_LE(summary.step_us_p99, summary.step_us_p999);
-  EXPECT_GT(summary.step_us_mean, 0.0);
+  EXPECT_EQ(summary.step_us.deadline_misses, 0);
+  EXPECT_LE(summary.step_us.p99, summary.step_us.p999);
+  EXPECT_GT(summary.step_us.mean, 0.0);
+}
+
+TEST(Repeats, TellEachStepsLeastTime) {
+  const Scene scene = load_scene("four-bar:1");
+  RunSettings settings;
+  settings.step.penalty = automatic_penalty(scene.model, settings.step);
+  settings.duration = 0.25;
+  settings.deadline_us = 1e-6;
+  EXPECT_FALSE(run(scene, reference(), settings).least_us);
+  settings.repeats = 3;
+  const RunSummary summary = run(scene, reference(), settings);
+  ASSERT_TRUE(summary.least_us);
+  EXPECT_EQ(summary.steps, 200);
+  EXPECT_EQ(summary.least_us->deadline_misses, 200);
+  EXPECT_GT(summary.least_us->median, 0.0);
+  EXPECT_LT(summary.least_us->mean, summary.step_us.mean);
+  EXPECT_LE(summary.least_us->max, summary.step_us.max);
 }
 
 }  // namespace

@@ -52,9 +52,9 @@ TEST(Run, ReportsASoundRun) {
   EXPECT_NEAR(last, 2.0, 1e-12);
   EXPECT_GE(summary.passes, 2 * 1600);
   EXPECT_GT(summary.setup_us, 0.0);
-  EXPECT_GT(summary.step_us_median, 0.0);
-  EXPECT_LE(summary.step_us_median, summary.step_us_p99);
-  EXPECT_LE(summary.step_us_p99, summary.step_us_max);
+  EXPECT_GT(summary.step_us.median, 0.0);
+  EXPECT_LE(summary.step_us.median, summary.step_us.p99);
+  EXPECT_LE(summary.step_us.p99, summary.step_us.max);
   ASSERT_TRUE(summary.position_error_max);
   EXPECT_GT(*summary.position_error_max, 1e-8);
   EXPECT_LT(*summary.position_error_max, 1e-3);
@@ -431,6 +431,7 @@ TEST(CountSteps, RefusesWhatIsOutOfRange) {
     expect_refusal([bad](RunSettings& s) { s.step.tolerance = bad; }, "--tolerance");
   }
   for (const int bad : {0, -1, 1001}) {
+    expect_refusal([bad](RunSettings& s) { s.repeats = bad; }, "--repeats");
     expect_refusal([bad](RunSettings& s) { s.step.max_passes = bad; }, "--max-passes");
   }
   expect_refusal([](RunSettings& s) { s.duration = 0.6e-3; }, "shorter than half a step");

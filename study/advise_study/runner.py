@@ -55,9 +55,10 @@ class Runner:
                "exact": summary.get("position_error_max"),
                "step_us": _usual(times, summary), "step_us_median": times.get("median"),
                "step_us_p99": times.get("p99"),
-               "step_us_max": times.get("max")} | {
-                   key: summary.get(key) for key in ("steps", "passes_per_step", "penalty", "tolerance",
-                                                     "deadline_misses")} | {
+               "step_us_max": times.get("max"),
+               "deadline_misses": times.get("deadline_misses")} | {
+                   key: summary.get(key) for key in ("steps", "passes_per_step", "penalty",
+                                                     "tolerance")} | {
                "seconds": record["seconds"], "command": command_line(record),
                "raw_file": self.layout.relative(path)}
         self.rows.append(row)

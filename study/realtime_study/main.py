@@ -48,9 +48,10 @@ def realtime(arguments):
 
 def _run(layout, options):
     import pandas
-    from study.realtime_study.search import Case, largest, step_row
+    from study.realtime_study.search import PILOT, REPEATS, Case, largest, step_row
     known = registry()
-    start_named(layout, "realtime", select(known, options.only), {"duration": options.duration})
+    start_named(layout, "realtime", select(known, options.only), {
+        "duration": options.duration, "repeats": REPEATS, "pilot": PILOT})
     run = read_run(layout)
     served = {variant["name"]: variant.get("settings", []) for entry in known["implementations"]
               if entry["available"] for variant in entry["variants"]}

@@ -16,7 +16,8 @@ CASE = search.Case(Contender("one/a", "one/a"), "penalty", 1e-3)
 
 def record(misses, status="ok"):
     return {"command": ["mbs", "simulate"], "summary": {
-        "status": status, "status_reason": "because", "deadline_misses": misses, "steps": 2000}}
+        "status": status, "status_reason": "because", "steps": 2000,
+        "step_us": {"deadline_misses": 2000}, "least_us": {"deadline_misses": misses}}}
 
 
 def search_with(monkeypatch, tmp_path, answer):

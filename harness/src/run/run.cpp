@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <new>
-#include <numeric>
 
 #include "printable.hpp"
 #include "run/driver_end.hpp"
@@ -24,15 +23,6 @@ using Clock = std::chrono::steady_clock;
 
 double microseconds(Clock::duration duration) {
   return std::chrono::duration<double, std::micro>(duration).count();
-}
-
-/// Nearest-rank quantile; reorders `values`.
-double quantile(std::vector<float>& values, double share) {
-  if (values.empty()) return 0.0;
-  const auto rank = static_cast<std::ptrdiff_t>(std::ceil(share * values.size())) - 1;
-  const auto nth = values.begin() + std::max<std::ptrdiff_t>(rank, 0);
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
 }
 
 void fail(RunSummary& summary, RunStatus status, std::string reason, double t) {
@@ -159,19 +149,13 @@ void step_through(const Context& run, State& state, const Observer& observer,
   conclude(run);
 }
 
-/// Figures of the times of the steps, which it reorders.
-void summarize(RunSummary& summary, std::vector<float>& times, std::optional<double> deadline_us) {
-  summary.step_us_median = quantile(times, 0.5);
-  summary.step_us_p99 = quantile(times, 0.99);
-  summary.step_us_p999 = quantile(times, 0.999);
-  summary.step_us_max = quantile(times, 1.0);
-  if (!times.empty()) {
-    summary.step_us_mean =
-        std::accumulate(times.begin(), times.end(), 0.0) / static_cast<double>(times.size());
-  }
-  if (deadline_us) {
-    summary.deadline_misses =
-        std::ranges::count_if(times, [&](float us) { return us > *deadline_us; });
+/// Simulates the whole motion again, from the same start, for the times of its steps alone.
+void repeat(Simulation& simulation, const State& start, std::vector<float>& least) {
+  simulation.set_state(start);
+  for (float& time : least) {
+    const auto begin = Clock::now();
+    if (simulation.step().status == StepStatus::factorization_failed) return;
+    time = std::min(time, static_cast<float>(microseconds(Clock::now() - begin)));
   }
 }
 
@@ -207,6 +191,9 @@ long count_steps(const RunSettings& settings) {
   if (settings.judge_every < 1) {
     throw UsageError(
         fmt::format("--judge-every is {}: it must be at least 1", settings.judge_every));
+  }
+  if (settings.repeats < 1 || settings.repeats > 1000) {
+    throw UsageError(fmt::format("--repeats is {}: it must be 1 to 1000", settings.repeats));
   }
   if (settings.deadline_us) require(*settings.deadline_us, "--deadline-us", "");
   require(settings.step.penalty, "--penalty", "");
@@ -244,13 +231,23 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
   try {
     const auto begin = Clock::now();
     if (settings.scale_equations) scaled.emplace(scene.model);
-    const auto simulation = scaled ? scaled->create(variant, scene.model, settings.step)
-                                   : create_simulation(variant, scene.model, settings.step);
+    const auto create = [&] {
+      return scaled ? scaled->create(variant, scene.model, settings.step)
+                    : create_simulation(variant, scene.model, settings.step);
+    };
+    const auto simulation = create();
     simulation->set_state(state);
     summary.setup_us = microseconds(Clock::now() - begin);
     if (observer) observer(0, 0.0, state);
     if (settings.half_step) half.emplace(scene, variant, *settings.half_step, state);
     step_through({*simulation, settings, judge, summary, half}, state, observer, times);
+    if (settings.repeats > 1) {
+      std::vector<float> least = times;
+      for (int run = 1; run < settings.repeats; ++run) {
+        repeat(*create(), initial_state(scene.model), least);
+      }
+      summary.least_us = step_times(least, settings.deadline_us);
+    }
   } catch (const Unsupported& reason) {
     summary.status = RunStatus::unsupported;
     summary.reason = printable(reason.what(), 1000);
@@ -261,7 +258,7 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
     summary.reason = fmt::format("the implementation threw: {}", printable(error.what(), 1000));
     summary.failed_at = (summary.steps + 1) * settings.step.step;
   }
-  summarize(summary, times, settings.deadline_us);
+  summary.step_us = step_times(times, settings.deadline_us);
   if (half) summary.position_error_estimate = half->position_error_max();
   summary.position_error_max = judge.position_error_max();
   summary.energy_drift_max = judge.energy_drift_max();

@@ -7,6 +7,7 @@
 
 #include "registry/registry.hpp"
 #include "run/judge.hpp"
+#include "run/step_times.hpp"
 
 namespace mbs {
 
@@ -33,6 +34,9 @@ struct RunSettings {
   std::optional<StepSettings> half_step;
   bool scale_equations = false;       ///< simulate with ScaledEquations
   std::optional<double> deadline_us;  ///< steps that take longer are counted
+  /// Times the motion is simulated. The repeats are only timed: what interrupts a step of one run
+  /// hardly interrupts the same step of another.
+  int repeats = 1;
 };
 
 struct RunSummary {
@@ -45,15 +49,13 @@ struct RunSummary {
   long steps_at_limit = 0;
   double setup_us = 0.0;  ///< the factory and the first set_state()
   double judge_us = 0.0;  ///< mean a step: what copying states out and judging them takes
-  /// Wall clock of a step.
-  double step_us_mean = 0.0, step_us_median = 0.0, step_us_p99 = 0.0, step_us_p999 = 0.0,
-         step_us_max = 0.0;
-  std::optional<long> deadline_misses;            ///< steps beyond RunSettings::deadline_us
+  StepTimes step_us;      ///< of the first run
+  std::optional<StepTimes> least_us;              ///< each step's least over all runs, with repeats
   std::optional<double> position_error_max;       ///< m
   std::optional<double> position_error_estimate;  ///< m, with RunSettings::half_step
   /// Judge::local_error_sum(), m; none where something better is known or the order is higher.
   std::optional<double> local_error_sum;
-  std::optional<double> energy_drift_max;         ///< none if the model is not conservative
+  std::optional<double> energy_drift_max;  ///< none if the model is not conservative
   double constraint_violation_max = 0.0;
 };
 
