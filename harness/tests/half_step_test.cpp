@@ -67,20 +67,6 @@ TEST(HalfStep, DegradesARunWithoutAnExactSolution) {
   EXPECT_FALSE(run(scene, reference(), settings).position_error_estimate);
 }
 
-TEST(LocalErrors, AddUpToTheLagOfLongSteps) {
-  // A pendulum at the rate w: what the trapezoidal rule lags is w t (w dt)^2/12.
-  const Scene scene = load_scene(MBS_ROOT "/harness/scenes/pendulum.json");
-  RunSettings settings = with_half_step(scene, Scheme::penalty, 5e-3, 4.0);
-  const double error = *run(scene, reference(), settings).position_error_estimate;
-  settings.half_step.reset();
-  const RunSummary summary = run(scene, reference(), settings);
-  ASSERT_TRUE(summary.local_error_sum);
-  EXPECT_GT(*summary.local_error_sum, 0.5 * error);
-  EXPECT_LT(*summary.local_error_sum, 5 * error);
-  const Scene exact = load_scene("four-bar:1");
-  EXPECT_FALSE(run(exact, reference(), settings).local_error_sum);
-}
-
 TEST(LocalErrors, DegradeARunThatEnergyAndConstraintsCallSound) {
   const Scene scene = load_scene(MBS_ROOT "/harness/scenes/problems/slider_crank.json");
   RunSettings settings;

@@ -35,10 +35,10 @@ Spectrum spectrum_of(const Model& model) {
 /// beta of the documented rule, at omega = sqrt(2 * 1.5 g / 1 m), the rate of the N-four-bar.
 double documented_beta(const Spectrum& s, double step,
                        Precision precision = Precision::double_precision) {
-  const double measured = std::clamp(30 / s.smallest, 4e3 / s.mean, 4e6 / s.mean);
+  const double measured = std::clamp(30 / s.smallest, 4e3 / s.mean, 1e7 / s.mean);
   const double turn = std::sqrt(3 * 9.81) * step,
                x = turn / (precision == Precision::single_precision ? 13.6e-3 : 6.8e-3);
-  if (x <= 1) return std::min(measured / (x * x), 4e6 / s.mean);
+  if (x <= 1) return std::min(measured / (x * x), std::max(measured, 4e6 / s.mean));
   const double longer = std::min(measured, 0.6 / (s.least * turn * turn * turn));
   return std::max(longer, measured / 100);
 }
@@ -68,7 +68,7 @@ TEST(AutomaticPenalty, IsThatOfTheIndependentConstraintsWhereSomeAreRedundant) {
   const Spectrum s = spectrum_of(model);
   const double rule = 4 / (kStep * kStep) * documented_beta(s, kStep);
   EXPECT_GT(30 / s.smallest, 4e3 / s.mean);  // the slowest mode decides
-  EXPECT_LT(rule, 0.1 * 4 / (kStep * kStep) * 4e6 / s.mean);
+  EXPECT_LT(rule, 0.1 * 4 / (kStep * kStep) * 1e7 / s.mean);
   EXPECT_NEAR(automatic_penalty(model, {.step = kStep}), rule, 0.05 * rule);
 }
 

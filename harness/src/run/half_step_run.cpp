@@ -8,15 +8,11 @@
 #include "run/setting_names.hpp"
 
 namespace mbs {
-namespace {
 
-/// 2^p / (2^p - 1)
 double richardson_factor(Scheme scheme) {
   const int order = scheme == Scheme::rattle4 ? 4 : scheme == Scheme::rattle6 ? 6 : 2;
   return 1.0 / (1.0 - std::ldexp(1.0, -order));
 }
-
-}  // namespace
 
 HalfStepRun::HalfStepRun(const Scene& scene, const Variant& variant, const StepSettings& half,
                          const State& initial)

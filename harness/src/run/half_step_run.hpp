@@ -9,6 +9,9 @@
 
 namespace mbs {
 
+/// 2^p / (2^p - 1) with the order p of `scheme`.
+double richardson_factor(Scheme scheme);
+
 /// Richardson's estimate: what a scheme of order p leaves is 2^p / (2^p - 1) times the difference
 /// to half the step, where both steps are short enough for its order to show. No exact solution is
 /// needed.

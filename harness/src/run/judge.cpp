@@ -68,6 +68,10 @@ bool is_finite(const State& state) {
 
 }  // namespace
 
+double trapezoidal_error(const Model& model, const State& before, const State& after, double step) {
+  return step * step / 12 * largest_point_distance(model, after.a, before.a);
+}
+
 Judge::Judge(const Scene& scene, const State& initial, double start)
     : scene_(&scene),
       phi_(static_cast<std::size_t>(scene.model.constraints())),
@@ -139,9 +143,13 @@ std::string Judge::judge(double t, const State& state) {
   return turned.empty() ? lost : turned;
 }
 
-void Judge::add_local_error(const State& before, const State& after, double step, long steps) {
-  const double change = largest_point_distance(scene_->model, after.a, before.a);
-  local_error_ += static_cast<double>(steps) * step * step / 12 * change;
+void Judge::add_local_error(double local, const State& judged, double step, long steps) {
+  if (conservative_ && last_kinetic_ > 0.0) {
+    const std::vector<double> rest(judged.v.size(), 0.0);
+    local += step * largest_point_distance(scene_->model, judged.v, rest) *
+             (std::sqrt(1 + last_energy_difference_ / last_kinetic_) - 1);
+  }
+  local_error_ += static_cast<double>(steps) * local;
 }
 
 std::string Judge::judge_torsion(double t, const State& state) {
@@ -175,6 +183,8 @@ std::string Judge::judge_energy(double t, const State& state) {
   }
   if (!conservative_) return "";
   energy_scale_ = std::max(energy_scale_, kinetic);
+  last_kinetic_ = kinetic;
+  last_energy_difference_ = difference;
   energy_difference_ = std::max(energy_difference_, difference);
   if (*energy_drift_max() <= bounds_.energy_drift) return "";
   return fmt::format("energy drifted by {:.2e} of its scale (allowed {:g})", *energy_drift_max(),

@@ -32,6 +32,10 @@ struct AccurateBounds {
   double constraint_violation = 1e-4;
 };
 
+/// What the trapezoidal rule leaves in one step, dt^2/12 |a' - a| of the point where that is most,
+/// m; `after` is one step (s) after `before`.
+double trapezoidal_error(const Model& model, const State& before, const State& after, double step);
+
 /// Figures of one state, and the worst so far; NaN never passes for small.
 class Judge {
  public:
@@ -41,11 +45,13 @@ class Judge {
   /// Judges the state at time t. Returns the reason if the solution is lost, empty if not.
   std::string judge(double t, const State& state);
 
-  /// Takes two states one step (s) of the trapezoidal rule apart as typical of `steps` steps.
-  void add_local_error(const State& before, const State& after, double step, long steps);
-  /// Sum over the steps of what the trapezoidal rule leaves in one, dt^2/12 |a' - a| of the point
-  /// where that is most, m: what the position error comes to if nothing damps or multiplies it,
-  /// such as the lag behind the exact motion, which neither energy nor constraints show.
+  /// Adds what `steps` steps (of `step` s) like the last judged one leave: `local` (m) each, and
+  /// the way by which a speed with that much too much or too little energy is ahead or behind, step
+  /// v drift/2 with v the speed of the fastest point.
+  void add_local_error(double local, const State& judged, double step, long steps);
+  /// Sum of the above over the run, m: what the position error comes to if nothing damps or
+  /// multiplies it, such as the lag behind the exact motion, which neither energy nor constraints
+  /// show.
   [[nodiscard]] double local_error_sum() const { return local_error_; }
   /// What errors are small against where the exact motion is not known, m: the length of the part
   /// that turns fastest, at most the extent.
@@ -84,7 +90,8 @@ class Judge {
   bool conservative_;
   double initial_energy_ = 0.0;
   double energy_scale_ = 0.0;
-  double energy_difference_ = 0.0;
+  double energy_difference_ = 0.0;                            // J, the largest
+  double last_kinetic_ = 0.0, last_energy_difference_ = 0.0;  // J, of the last judged state
   std::optional<double> position_error_;
   double violation_ = 0.0;           // m^2, m
   double relative_violation_ = 0.0;  // as RunBounds

@@ -12,6 +12,7 @@
 #include "run/driver_end.hpp"
 #include "run/half_step_run.hpp"
 #include "run/initial_state.hpp"
+#include "run/local_half_steps.hpp"
 #include "run/scaled_equations.hpp"
 #include "run/setting_names.hpp"
 #include "usage_error.hpp"
@@ -33,11 +34,13 @@ void fail(RunSummary& summary, RunStatus status, std::string reason, double t) {
 
 /// What one run is made of.
 struct Context {
+  const Model& model;
   Simulation& simulation;
   const RunSettings& settings;
   Judge& judge;
   RunSummary& summary;
   std::optional<HalfStepRun>& half;
+  std::optional<LocalHalfSteps>& local_half;
   [[nodiscard]] double time(long step) const { return step * settings.step.step; }
 };
 
@@ -48,24 +51,30 @@ struct LastGood {
   Judge judge;
 };
 
-/// The solution was found lost at `step`, for `reason`. Does the steps
-/// between again and judges each, so that the summary has the first that was lost.
-void locate_loss(const Context& run, const LastGood& good, long step, const std::string& reason) {
+/// The solution was found lost at `step`, for `reason`. Does the steps since `good` again and
+/// judges each, so that the summary has the first that was lost. False if none of them was: with
+/// more states the judge knows better what its figures are small against. Its judgement counts
+/// then.
+bool locate_loss(const Context& run, const LastGood& good, long step, const std::string& reason) {
   const auto lost = [&run](long at, const Judge& judge, const std::string& why) {
     fail(run.summary, judge.off_branch() ? RunStatus::wrong_branch : RunStatus::diverged, why,
          run.time(at));
+    return true;
   };
-  lost(step, run.judge, reason);
-  if (good.step + 1 == step) return;
+  if (good.step + 1 == step) return lost(step, run.judge, reason);
   Judge judge = good.judge;
   State state = good.state;
   run.simulation.set_state(state);
   for (long i = good.step + 1; i <= step; ++i) {
-    if (run.simulation.step().status == StepStatus::factorization_failed) return;
+    if (run.simulation.step().status == StepStatus::factorization_failed) {
+      return lost(step, run.judge, reason);
+    }
     run.simulation.get_state(state);
     const std::string first = judge.judge(run.time(i), state);
     if (!first.empty()) return lost(i, judge, first);
   }
+  run.judge = judge;
+  return false;
 }
 
 /// The outcome of a run that went to its end.
@@ -98,12 +107,23 @@ void conclude(const Context& run) {
   if (!summary.reason.empty()) summary.status = RunStatus::degraded;
 }
 
-/// Where nothing better tells, the judge adds up local errors; those of the schemes of higher order
-/// are not the trapezoidal rule's.
-bool adds_local_errors(const Context& run) {
-  const Scheme scheme = run.settings.step.scheme;
-  return !run.half && !run.judge.knows_exact_motion() && scheme != Scheme::rattle4 &&
-         scheme != Scheme::rattle6;
+bool has_high_order(Scheme scheme) {
+  return scheme == Scheme::rattle4 || scheme == Scheme::rattle6;
+}
+
+/// Whether the state is judged after step i: once in every `judge_every` steps, at uneven places,
+/// so that a motion that repeats is not always met at the same one, and after the last.
+bool is_judged(long i, long judge_every, long steps) {
+  constexpr double kGoldenRatio = 0.6180339887498949;
+  const long block = (i - 1) / judge_every;
+  const double share = std::fmod(static_cast<double>(block + 1) * kGoldenRatio, 1.0);
+  return i == steps || (i - 1) % judge_every == static_cast<long>(share * judge_every);
+}
+
+/// What one step left, m, sampled where the state is judged.
+double local_error(const Context& run, const State& before, const State& after) {
+  if (run.local_half) return run.local_half->error(before, after);
+  return trapezoidal_error(run.model, before, after, run.settings.step.step);
 }
 
 /// Steps until the end or until the solution is lost.
@@ -113,8 +133,8 @@ void step_through(const Context& run, State& state, const Observer& observer,
   const long steps = count_steps(run.settings);
   times.reserve(static_cast<std::size_t>(steps));
   LastGood good{0, state, run.judge};
-  const auto judged = [&](long i) { return i % run.settings.judge_every == 0 || i == steps; };
-  const bool local = adds_local_errors(run);
+  const auto judged = [&](long i) { return is_judged(i, run.settings.judge_every, steps); };
+  const bool local = !run.half && !run.judge.knows_exact_motion();  // nothing better tells
   State before = state;  // one step before the judged one
   double judge_us = 0.0;
   for (long i = 1; i <= steps; ++i) {
@@ -127,21 +147,26 @@ void step_through(const Context& run, State& state, const Observer& observer,
     summary.factorizations += outcome.factorizations < 0 ? outcome.passes : outcome.factorizations;
     if (outcome.status == StepStatus::pass_limit) ++summary.steps_at_limit;
     if (outcome.status == StepStatus::factorization_failed) {
-      return locate_loss(run, good, i, "the tangent matrix could not be factorized");
+      const std::string why = "the tangent matrix could not be factorized";
+      if (!locate_loss(run, good, i, why)) fail(summary, RunStatus::diverged, why, run.time(i));
+      return;
     }
     if (run.half) run.half->advance();
     begin = Clock::now();
     if (judged(i)) {
       run.simulation.get_state(state);
       const std::string lost = run.judge.judge(run.time(i), state);
-      if (!lost.empty()) return locate_loss(run, good, i, lost);
-      if (local) run.judge.add_local_error(before, state, run.settings.step.step, i - good.step);
+      if (!lost.empty() && locate_loss(run, good, i, lost)) return;
+      if (local) {
+        run.judge.add_local_error(local_error(run, before, state), state, run.settings.step.step,
+                                  i - good.step);
+      }
       good = {i, state, run.judge};
     }
     if (local && i < steps && judged(i + 1)) run.simulation.get_state(before);
     judge_us += microseconds(Clock::now() - begin);
-    if (judged(i) && run.half) run.half->compare(state);
-    if (observer && !judged(i)) run.simulation.get_state(state);
+    if ((observer || run.half) && !judged(i)) run.simulation.get_state(state);
+    if (run.half) run.half->compare(state);
     summary.judge_us = judge_us / static_cast<double>(i);
     if (observer) observer(i, run.time(i), state);
   }
@@ -227,6 +252,7 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
   Judge judge(scene, state, 0.0);
   std::vector<float> times;
   std::optional<HalfStepRun> half;
+  std::optional<LocalHalfSteps> local_half;
   std::optional<ScaledEquations> scaled;
   try {
     const auto begin = Clock::now();
@@ -240,7 +266,9 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
     summary.setup_us = microseconds(Clock::now() - begin);
     if (observer) observer(0, 0.0, state);
     if (settings.half_step) half.emplace(scene, variant, *settings.half_step, state);
-    step_through({*simulation, settings, judge, summary, half}, state, observer, times);
+    if (has_high_order(settings.step.scheme)) local_half.emplace(scene, variant, settings.step);
+    step_through({scene.model, *simulation, settings, judge, summary, half, local_half}, state,
+                 observer, times);
     if (settings.repeats > 1) {
       std::vector<float> least = times;
       for (int run = 1; run < settings.repeats; ++run) {

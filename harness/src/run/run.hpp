@@ -53,7 +53,7 @@ struct RunSummary {
   std::optional<StepTimes> least_us;              ///< each step's least over all runs, with repeats
   std::optional<double> position_error_max;       ///< m
   std::optional<double> position_error_estimate;  ///< m, with RunSettings::half_step
-  /// Judge::local_error_sum(), m; none where something better is known or the order is higher.
+  /// Judge::local_error_sum(), m; none where something better is known.
   std::optional<double> local_error_sum;
   std::optional<double> energy_drift_max;  ///< none if the model is not conservative
   double constraint_violation_max = 0.0;

@@ -10,11 +10,11 @@ namespace mbs {
 
 /// The penalty factor `auto`: alpha = (4 / dt^2) beta, at turn = omega dt = 6.8e-3 rad a step
 ///
-///   beta_0 = clamp(30 / s_min, 4e3 / s_mean, 4e6 / s_mean)
+///   beta_0 = clamp(30 / s_min, 4e3 / s_mean, 1e7 / s_mean)
 ///
 /// and, with x = turn / 6.8e-3, in single precision turn / 13.6e-3,
 ///
-///   beta = min(beta_0 / x^2, 4e6 / s_mean)                       for shorter steps,
+///   beta = min(beta_0 / x^2, max(beta_0, 4e6 / s_mean))          for shorter steps,
 ///   beta = max(min(beta_0, 0.6 / (s_row turn^3)), beta_0 / 100)  for longer ones.
 ///
 /// s_min is the smallest eigenvalue above 0 of S = Phi_q M^-1 Phi_q^T at the start, s_mean the mean

@@ -1,0 +1,39 @@
+// Set back, two half steps, compare.
+#include "run/local_half_steps.hpp"
+
+#include <limits>
+
+#include "model_math/point_distance.hpp"
+#include "run/half_step_run.hpp"
+#include "run/setting_names.hpp"
+
+namespace mbs {
+namespace {
+
+/// The same eps = 4 / (alpha dt^2).
+StepSettings halved(StepSettings settings) {
+  settings.step /= 2;
+  settings.penalty *= 4;
+  return settings;
+}
+
+}  // namespace
+
+LocalHalfSteps::LocalHalfSteps(const Scene& scene, const Variant& variant,
+                               const StepSettings& settings)
+    : scene_(scene),
+      simulation_(create_simulation(variant, scene.model, halved(settings))),
+      factor_(richardson_factor(settings.scheme)) {}
+
+double LocalHalfSteps::error(const State& before, const State& after) {
+  simulation_->set_state(before);
+  for (int i = 0; i < 2; ++i) {
+    if (simulation_->step().status == StepStatus::factorization_failed) {
+      return std::numeric_limits<double>::infinity();
+    }
+  }
+  simulation_->get_state(state_);
+  return factor_ * largest_point_distance(scene_.model, after.q, state_.q);
+}
+
+}  // namespace mbs

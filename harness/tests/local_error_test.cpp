@@ -1,0 +1,133 @@
+// What neither energy nor constraints show: lags, found by what single steps leave.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "controls/controls.hpp"
+#include "run/initial_state.hpp"
+#include "run/run.hpp"
+#include "run/settings.hpp"
+
+namespace mbs {
+namespace {
+
+Variant reference() {
+  for (const Variant& variant : test::controls().variants) {
+    if (variant.name == "reference") return variant;
+  }
+  throw std::logic_error("the controls have no reference");
+}
+
+Scene shipped(const char* name) {
+  return load_scene(std::string(MBS_ROOT "/harness/scenes/") + name);
+}
+
+RunSettings settings_for(const Scene& scene, Scheme scheme, double step, double duration) {
+  RunSettings settings;
+  settings.step.scheme = scheme;
+  settings.step.step = step;
+  settings.step.penalty = automatic_penalty(scene.model, settings.step);
+  settings.step.tolerance = 1e-12;
+  settings.duration = duration;
+  return settings;
+}
+
+/// The same settings at half the step.
+StepSettings half_of(const Scene& scene, StepSettings settings) {
+  settings.step /= 2;
+  settings.penalty = automatic_penalty(scene.model, settings);
+  return settings;
+}
+
+TEST(LocalErrors, AddUpToTheLagOfLongSteps) {
+  // A pendulum at the rate w: what the trapezoidal rule lags is w t (w dt)^2/12.
+  const Scene scene = shipped("pendulum.json");
+  RunSettings settings = settings_for(scene, Scheme::penalty, 5e-3, 4.0);
+  settings.half_step = half_of(scene, settings.step);
+  const double error = *run(scene, reference(), settings).position_error_estimate;
+  settings.half_step.reset();
+  const RunSummary summary = run(scene, reference(), settings);
+  ASSERT_TRUE(summary.local_error_sum);
+  EXPECT_GT(*summary.local_error_sum, 0.5 * error);
+  EXPECT_LT(*summary.local_error_sum, 5 * error);
+  const Scene exact = load_scene("four-bar:1");
+  EXPECT_FALSE(run(exact, reference(), settings).local_error_sum);
+}
+
+TEST(LocalErrors, OfHigherOrdersAreFoundByHalfSteps) {
+  const Scene scene = shipped("point_mass_pendulum.json");
+  for (const Scheme scheme : {Scheme::rattle4, Scheme::rattle6}) {
+    const RunSummary coarse = run(scene, reference(), settings_for(scene, scheme, 0.15, 60.0));
+    EXPECT_EQ(coarse.status, RunStatus::degraded) << static_cast<int>(scheme);
+    RunSettings fine = settings_for(scene, scheme, 0.02, 5.0);
+    const RunSummary sound = run(scene, reference(), fine);
+    EXPECT_EQ(sound.status, RunStatus::ok) << sound.reason;
+    fine.half_step = half_of(scene, fine.step);
+    const double error = *run(scene, reference(), fine).position_error_estimate;
+    EXPECT_GT(*sound.local_error_sum, 0.1 * error) << static_cast<int>(scheme);
+    EXPECT_LT(*sound.local_error_sum, 30 * error) << static_cast<int>(scheme);
+  }
+}
+
+TEST(LocalErrors, CountWhatAWrongEnergyIsAheadBy) {
+  const Scene scene = shipped("pendulum.json");
+  const State initial = initial_state(scene.model);
+  State moving = initial;
+  moving.v[0] += 2.0;
+  Judge judge(scene, moving, 0.0);
+  judge.add_local_error(0.0, moving, 0.1, 10);
+  EXPECT_EQ(judge.local_error_sum(), 0.0);
+  State faster = moving;
+  for (double& v : faster.v) v *= 1.01;
+  judge.judge(0.1, faster);
+  judge.add_local_error(0.0, faster, 0.1, 10);
+  // Ten steps of 0.1 s at the speed of the last, which is to the first as 1.01 to 1.
+  double speed = 0.0;
+  for (const double v : faster.v) speed = std::hypot(speed, v);
+  EXPECT_NEAR(judge.local_error_sum(), speed * (std::sqrt(2 - 1 / 1.0201) - 1), 1e-12);
+}
+
+/// A mass on a spring along x at 2 pi rad a `period` steps, in unit steps of a millisecond.
+Scene oscillator(double period) {
+  ModelData data;
+  data.points = {{"A", -1, {-10, 0, 0}}, {"B", 0, {1, 0, 0}}};
+  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
+  data.force = data.initial_velocity = {0.0, 0.0};
+  const double rate = 2 * std::acos(-1.0) / (period * 1e-3);
+  data.springs.push_back({0, 1, rate * rate, 0.0, 10.0, "spring"});
+  return {"oscillator", Model(std::move(data)), {}, {}};
+}
+
+TEST(LocalErrors, AMotionInStepWithTheJudgeIsSeen) {
+  const Scene scene = oscillator(32);
+  RunSettings settings;
+  settings.step.step = 1e-3;
+  settings.duration = 0.096;
+  settings.judge_every = 32;
+  EXPECT_EQ(run(scene, reference(), settings).status, RunStatus::degraded);
+  settings.half_step = settings.step;
+  settings.half_step->step /= 2;
+  const RunSummary estimated = run(scene, reference(), settings);
+  // The lag of the trapezoidal rule, (w dt)^2/12 of w t, at the fastest point of the way.
+  const double turn = 2 * std::acos(-1.0) / 32;
+  EXPECT_NEAR(*estimated.position_error_estimate, turn * turn / 12 * turn * 96, 0.1 * turn);
+  EXPECT_EQ(estimated.status, RunStatus::degraded);
+}
+
+TEST(Run, IsNotLostBecauseItWasJudgedSeldom) {
+  // Seldom judged, the largest kinetic energy is met late, and drift looks large until then.
+  const Scene scene = shipped("point_mass_pendulum.json");
+  RunSettings settings = settings_for(scene, Scheme::penalty, 0.07, 20.0);
+  settings.judge_every = 1;
+  const RunSummary often = run(scene, reference(), settings);
+  EXPECT_EQ(often.status, RunStatus::degraded) << often.reason;
+  for (const int every : {8, 16, 32, 64}) {
+    settings.judge_every = every;
+    const RunSummary seldom = run(scene, reference(), settings);
+    EXPECT_EQ(seldom.status, often.status) << every << ": " << seldom.reason;
+    EXPECT_EQ(seldom.steps, often.steps);
+  }
+}
+
+}  // namespace
+}  // namespace mbs
