@@ -3,6 +3,7 @@ from dataclasses import asdict
 
 from analysis.text import number
 from study.advise_study.choice import allowed, counts, halvings
+from study.advise_study.runner import without_checks
 from study.advise_study.settings import catalogue, fits, serving
 from study.advise_study.verify import expected_error
 from study.pipeline.runs import FINISHED
@@ -44,7 +45,7 @@ def _advised(advice):
             **_times(one), "verified_step_us": {"mean": row["step_us"], "p99": row["step_us_p99"],
                                                 "max": row["step_us_max"]},
             "deadline_misses": row["deadline_misses"], "steps": row["steps"],
-            "command": row["command"], "raw_file": row["raw_file"]}
+            "command": without_checks(row["command"]), "raw_file": row["raw_file"]}
 
 
 def _setting(setting, advice, described, variants):
@@ -130,7 +131,7 @@ def _who(one):
 def _advice_lines(answer):
     told, times = answer["advice"], answer["advice"]["us_per_second"]
     error, step = told["error"], told["step_us"]
-    lines = ["", "Run this:", "", f"  {told['command']}", "",
+    lines = ["", "Run this (add --half-step to check):", "", f"  {told['command']}", "",
              _row("implementation", told["implementation"]), _row("settings", told["setting"]),
              _row("step", f"{told['step']:g} s"),
              _row("penalty factor", f"{number(told['penalty'], 4)}, automatic"),

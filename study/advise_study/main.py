@@ -15,6 +15,7 @@ from study.pipeline.prepare import (digest_of_scene, need_modules, only_one, onl
 from study.pipeline.progress import Teller
 
 DURATION, BUDGET = 20.0, 45.0  # s
+OF_A_QUESTION = ("SCENE", "--error", "--deadline-us", "--duration", "--budget", "--json", "--plot")
 DEFAULT = ROOT / "results" / "local" / "advice"
 
 
@@ -30,9 +31,8 @@ def advise(arguments):
         raise StudyError(f"--plot {options.plot}: the name must end in .svg or .png")
     if options.plot and not Path(options.plot).absolute().parent.is_dir():
         raise StudyError(f"--plot {options.plot}: there is no such directory")
-    if options.validate and (options.scene or options.error or options.plot or options.json):
-        raise StudyError("--validate has scenes and errors of its own: only --only and --results go with it")
     if options.validate:
+        _nothing_beside_validate(options)
         from study.advise_study.validate import validate
         return validate(options)
     if not options.scene or options.error is None:
@@ -47,6 +47,13 @@ def advise(arguments):
     return 0 if answer["met"] else 1
 
 
+def _nothing_beside_validate(options):
+    given = [name for name in OF_A_QUESTION if getattr(options, name.strip("-").replace("-", "_").lower())]
+    if given:
+        raise StudyError(f"--validate asks questions of its own: {', '.join(given)} "
+                         f"do{'es' * (len(given) == 1)} not go with it, only --only and --results do")
+
+
 def ask(options, folder=None):
     """(answer, Advice) of one question; its raw files and advice.json are kept."""
     from study.advise_study.advice import Question, advise as seek  # these need the modules
@@ -58,7 +65,7 @@ def ask(options, folder=None):
     scene = scene_name(options.scene)
     described = describe(scene)
     question = Question(options.scene, options.error, duration(options.scene, options.duration, described),
-                        options.deadline_us, options.budget)
+                        options.deadline_us, options.budget or BUDGET)
     inputs = {"scene": scene, "file": digest_of_scene(scene), "error": question.error,
               "duration": question.duration, "deadline_us": question.deadline_us,
               "budget": question.budget}
@@ -94,7 +101,7 @@ def _parser():
                         help=f"simulated time ({DURATION:g} s, or up to where the drivers end)")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
                         help="only these implementations (folder or folder/variant)")
-    parser.add_argument("--budget", type=positive, default=BUDGET, metavar="S",
+    parser.add_argument("--budget", type=positive, metavar="S",
                         help=f"for pilots and timings ({BUDGET:g} s); what is left out then is said")
     parser.add_argument("--json", action="store_true", help="print everything as JSON (study/advise_study/README.md)")
     parser.add_argument("--plot", metavar="FILE", help="draw the pilots and the choice (.svg or .png)")

@@ -11,6 +11,11 @@ from study.pipeline.errors import StudyError
 from study.pipeline.layout import ROOT, program
 
 
+# After every step: the usual judging of every 32nd one may keep pace with the motion and miss its worst.
+EXACT = ("--judge-every", "1")  # for the exact error
+HALVED = ("--half-step", *EXACT)  # for an estimate beside it
+
+
 def describe(scene):
     """`mbs describe --json`; StudyError with its own words if there is no such scene."""
     ended = child.run([program(), "describe", scene, "--json"], 60, runs.MEMORY_MB)
@@ -32,6 +37,13 @@ def command_line(record):
     return shlex.join(["build/mbs", *(word for word in record["command"][1:] if word != "--json")])
 
 
+def without_checks(command):
+    """A command line as it was timed: `command` without what only tells its error."""
+    words = shlex.split(command)
+    at = words.index(HALVED[0]) if HALVED[0] in words else len(words)
+    return shlex.join(words[:at] + words[at + len(HALVED):])
+
+
 class Runner:
     """Runs simulations of one scene one after the other, and keeps a row of each."""
 
@@ -41,10 +53,10 @@ class Runner:
         self.deadline = ["--deadline-us", f"{deadline_us:g}"] if deadline_us else []
         self.rows, self.began = [], time.monotonic()
 
-    def __call__(self, kind, setting, variant, step, duration, seconds, half=False):
-        """The row of a run: kind, setting, implementation, step, outcome, times, command, raw_file."""
-        more = [*setting.options(self._tolerance(setting, variant, step)), *self.deadline,
-                *(["--half-step"] if half else [])]
+    def __call__(self, kind, setting, variant, step, duration, seconds, checks=()):
+        """The row of a run: kind, setting, implementation, step, outcome, times, command, raw_file. `checks`: EXACT
+        or HALVED where its error matters, not only its time."""
+        more = [*setting.options(self._tolerance(setting, variant, step)), *self.deadline, *checks]
         record, path = self._simulate(kind, setting, variant, step, duration, seconds, more)
         status, reason = runs.status(record)
         summary = record.get("summary", {})
@@ -65,7 +77,7 @@ class Runner:
         return row
 
     def pilot(self, setting, variant, step, duration, seconds, kind="pilots"):
-        return as_pilot(self(kind, setting, variant, step, duration, seconds, half=True))
+        return as_pilot(self(kind, setting, variant, step, duration, seconds, checks=HALVED))
 
     def _simulate(self, kind, setting, variant, step, duration, seconds, more):
         contender = self.contenders[variant]

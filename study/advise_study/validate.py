@@ -6,8 +6,8 @@ import pandas
 
 from study.advise_study import timing
 from study.advise_study.advice import PROBE_FACTOR, probe
-from study.advise_study.main import BUDGET, DEFAULT, ask
-from study.advise_study.runner import Runner
+from study.advise_study.main import DEFAULT, ask
+from study.advise_study.runner import EXACT, Runner
 from study.advise_study.settings import catalogue, serving
 from study.pipeline.contenders import from_json
 from study.pipeline.layout import Layout, read_run, write_csv
@@ -72,7 +72,7 @@ def search(run, variants, duration, errors, scene):
         step, met = LONGEST, 0
         while served and met < 2 and step >= SHORTEST:
             tell(f"search: {scene}, {setting.label}, step {step:.3g} s")
-            row = run("search", setting, served[0], float(f"{step:.3g}"), duration, 120)
+            row = run("search", setting, served[0], float(f"{step:.3g}"), duration, 120, checks=EXACT)
             row |= {"us_per_second": row["step_us"] / row["step"] if row["step_us"] else None, "pruned": ""}
             rows.append(row)
             met = met + 1 if meets(row, min(errors)) else 0
@@ -120,7 +120,7 @@ def fastest(found, error):
 def _compare(scene, error, duration, options, layout, run, variants, found, speeds):
     """The row of validation.csv of one question."""
     asked = Namespace(scene=scene, error=error, duration=duration, deadline_us=None, only=options.only,
-                      budget=BUDGET, results=None)
+                      budget=None, results=None)
     answer, advice = ask(asked, folder=layout.results / f"error-{error:g}")
     settings = {setting.label: setting for setting in catalogue()}
     candidates = [timing.Candidate(settings[row["setting"]], name, row["step"])

@@ -1,6 +1,7 @@
 # The last stage of an advice: the fastest candidate over the whole time, and what follows if it fails.
 from study.advise_study import timing
 from study.advise_study.choice import allowed, interval, local_order, tidy
+from study.advise_study.runner import HALVED
 from study.pipeline.runs import FINISHED
 
 VERIFICATIONS = 20
@@ -21,7 +22,7 @@ def verify(advice, run, left, tell):
             return
         tell(f"verification: {one.implementation}, {one.setting.label}, step {one.step:g} s")
         row = {} | run("verification", one.setting, one.implementation, one.step, question.duration,
-                  max(60.0, 5 * expected), half=True)
+                  max(60.0, 5 * expected), checks=HALVED)
         row |= {"estimate": _at_least(row, advice)}
         advice.verifications.append(row)
         if accepted(row, one.setting, question):

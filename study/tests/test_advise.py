@@ -154,7 +154,7 @@ def verified(estimate, p99=1.0, deadline_us=None):
     advice.found = {PENALTY: Found(PENALTY, pilots(8e-4, 2e-4), chosen=8e-3)}
     ran = []
 
-    def run(kind, setting, name, step, *_, half):
+    def run(kind, setting, name, step, *_, checks):
         ran.append((name, step))
         return {"status": "ok", "reason": "", "setting": setting.label, "step": step, "step_us_p99": p99,
                 "estimate": estimate(step)}
@@ -218,7 +218,10 @@ def test_a_step_whose_next_shorter_one_fails_is_luck():
     (["nothing", "--error", "1"], 'scene "nothing": no such file'),
     (["four-bar:2", "--error", "1", "--only", "nobody"], "unknown implementation 'nobody'"),
     (["four-bar:2", "--error", "1", "--plot", "nowhere/a.svg"], "there is no such directory"),
-    (["four-bar:2", "--validate"], "--validate has scenes and errors of its own"),
+    (["four-bar:2", "--validate"], "--validate asks questions of its own: SCENE does not go"),
+    (["--validate", "--deadline-us", "9", "--duration", "1", "--budget", "3"],
+     "its own: --deadline-us, --duration, --budget do not go"),
+    (["--validate", "--json", "--error", "1"], "its own: --error, --json do not go"),
     (["four-bar:2", "--error", "1", "--plot", "a.pdf"], "must end in .svg or .png")])
 def test_what_is_wrong_is_said_in_a_line(tmp_path, arguments, what):
     done = study("advise", *arguments, "--results", tmp_path / "results", **REAL)
@@ -261,6 +264,19 @@ def test_the_advice_is_as_accurate_as_asked_and_traces_to_its_raw_files(advised)
     assert all(one["reason"] or one["advised"] or one["rounds"] for one in answer["candidates"])
     assert (folder / "plot.svg").read_text().startswith("<?xml")
     assert read_json(folder / "results" / "advice.json") == answer
+
+
+def test_what_is_advised_is_what_was_timed_and_errors_are_judged_after_every_step(advised):
+    command = shlex.split(advised[2]["advice"]["command"])
+    place = command.index("--duration") + 1
+
+    def alike(run):  # but for the time that a timing covers
+        words = shlex.split(run["command"])
+        return words[:place] + words[place + 1:] == command[:place] + command[place + 1:]
+    runs = advised[2]["runs"]
+    assert any(alike(run) for run in runs if run["kind"].startswith("round"))
+    checked = {run["kind"]: " --half-step --judge-every 1 " in run["command"] for run in runs}
+    assert {kind for kind, yes in checked.items() if yes} == {"pilots", "verification"}
 
 
 def test_estimates_that_count_are_near_the_exact_errors(advised):
