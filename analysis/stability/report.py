@@ -30,8 +30,7 @@ def render(table, run, figures, long=None):
         rows = part["rows"]
         part |= {"implementation": rows.implementation.iloc[0],
                  "counts": rows.status.value_counts().to_dict(), "valleys": valleys(rows),
-                 "automatic": rows[(rows.penalty_asked == "auto") & (rows.status != "ok")].to_dict(
-                     "records")}
+                 "automatic": automatic(rows)}
     scaled = table[table.penalty_asked != "auto"].alpha_dt2_4
     return page.template(Path(__file__).parent / "stability.html.j2").render(
         context=next(iter(run["contexts"].values())), inputs=run["inputs"], parts=parts,
@@ -39,6 +38,15 @@ def render(table, run, figures, long=None):
         statuses=list(dict.fromkeys(["ok", "degraded", *sorted(table.status.unique())])),
         long=[] if long is None else long.fillna({"must_hold": ""}).to_dict("records"),
         limit=ACCURATE, total=len(table), inaccurate=inaccurate(table).to_dict("records"))
+
+
+def automatic(rows):
+    """(runs whose automatic penalty factor is not ok though another one at their step is; those where none is)"""
+    known, missed, none = valleys(rows), [], []
+    for row in rows[(rows.penalty_asked == "auto") & (rows.status != "ok")].to_dict("records"):
+        valley = known.get(row["loops"], {}).get(row["step"])
+        (missed if valley else none).append(row | {"valley": valley})
+    return missed, none
 
 
 def inaccurate(table):

@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import pandas
 
 from analysis.stability.figure import category, draw
-from analysis.stability.report import inaccurate, render, valleys
+from analysis.stability.report import automatic, inaccurate, render, valleys
 
 STATUSES = ("diverged", "ok", "ok", "degraded", "wrong-branch", "not-converged", "timeout", "crashed")
 
@@ -61,3 +61,16 @@ def test_the_page_counts_outcomes_and_accuses_what_is_ok_but_wrong():
     assert "1 runs are “ok”" in page(rows) and "<code>run 1</code>" in page(rows)
     rows.loc[1, "position_error_max"] = float("nan")
     assert len(inaccurate(rows)) == 1
+
+
+def test_where_the_automatic_penalty_factor_misses_a_valley_is_told_from_where_there_is_none():
+    rows = table()
+    [missed], none = automatic(rows)
+    assert missed["valley"] == (10, 100, 2, 2) and none == []
+    assert "In 1 cell another α is ok" in page(rows) and "no α is ok either" not in page(rows)
+    rows.loc[(rows.step == 1e-3) & (rows.status == "ok"), "status"] = "degraded"
+    missed, [alone] = automatic(rows)
+    assert missed == [] and alone["valley"] is None
+    assert "In no cell where another" in page(rows) and "In 1 where no α is ok either: N = 2 at 1 ms" in page(rows)
+    rows.loc[rows.penalty_asked == "auto", "status"] = "ok"
+    assert automatic(rows) == ([], []) and "no α is ok either" not in page(rows)

@@ -90,7 +90,7 @@ def _run(layout, options):
         [grid.row(cell, record, layout, options.duration) for cell, record in found.items()]))
     if options.long:
         name = served["penalty", "double"]
-        cells = long.cells(contenders[name], {"penalty", *variants[name].get("settings", [])})
+        cells = long.cells(contenders[name], variants[name].get("settings", []))
         _long(cells, layout, run["contexts"], options.time_limit)
 
 

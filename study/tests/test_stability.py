@@ -6,6 +6,7 @@ import tempfile
 import pandas
 import pytest
 
+from study.pipeline.contenders import Contender
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_json
 from study.stability_study import long
@@ -123,6 +124,12 @@ ROW = {"scheme": "saddle-point", "loops": 2000, "status": "ok", "position_error_
     ({"scheme": "penalty", "loops": 200, "steps_at_limit": 9, "passes_per_step": 3.0}, "yes")])
 def test_what_whole_runs_must_hold(change, verdict):
     assert long.holds(ROW | change) == verdict
+
+
+def test_compositions_of_rattle_run_where_rattle_is_served():
+    contender = Contender("one/a", "one/a")
+    assert {cell.scheme for cell in long.cells(contender, ["rattle"])} == {"penalty", "rattle", "rattle4", "rattle6"}
+    assert {cell.scheme for cell in long.cells(contender, ["saddle-point"])} == {"penalty", "saddle-point"}
 
 
 def test_whole_runs_are_a_table_and_a_section_of_the_page(run, tmp_path, monkeypatch):
