@@ -1,10 +1,11 @@
-# The battery as a matrix: a row a cell, a column an implementation and form, colour the outcome.
+# The battery as matrices: a row a cell, a column an implementation and setting, colour the outcome.
 import math
 
 import matplotlib.pyplot as plt
 from matplotlib.colors import Normalize
 from matplotlib.patches import Patch, Rectangle
 
+from analysis.extremes.numbers import FORMS, ran
 from analysis.style import GREY
 
 SHADES, DIGITS = plt.get_cmap("Greens"), Normalize(-16, -2)  # of "ok", by the exponent of the true error
@@ -15,18 +16,26 @@ LOOKS = {  # (colour, hatch)
     "not run": ("#ffffff", "")}
 OTHER = ("#ffffff", "++++")
 SILENT, UNJUDGED = "#D00000", "ok, not judged"
-FORMS = {"penalty": "penalty form", "saddle-point": "saddle-point form"}
+NARROW = 6  # columns; the name of a setting with fewer is upright
+
+
+def figures(table):
+    """(name, figure) of battery.csv: the two forms in every cell, the other settings in theirs."""
+    forms = table.setting.isin(FORMS)
+    for name, rows in (("battery", table[forms]), ("battery-settings", table[~forms])):
+        if len(rows):
+            yield name, draw(rows)
 
 
 def draw(table):
-    """The figure of battery.csv."""
-    columns = list(dict.fromkeys(zip(table.scheme, table.implementation)))
-    columns.sort(key=lambda column: list(FORMS).index(column[0]))
+    settings = list(dict.fromkeys(table.setting))
+    columns = list(dict.fromkeys(zip(table.setting, table.implementation)))
+    columns.sort(key=lambda column: settings.index(column[0]))
     cells = list(dict.fromkeys(zip(table.axis, table.value)))
     places = _places(cells)
     wide, high = len(columns), max(places.values()) + 1
     figure, axes = plt.subplots(figsize=(0.34 * wide + 3.2, 0.2 * high + 2.4))
-    used = {_draw_cell(axes, columns.index((row.scheme, row.implementation)),
+    used = {_draw_cell(axes, columns.index((row.setting, row.implementation)),
                        places[row.axis, row.value], row) for row in table.itertuples()}
     axes.set_xlim(0, wide)
     axes.set_ylim(high, 0)
@@ -40,13 +49,13 @@ def draw(table):
     figure.suptitle(title(table), x=0.01, y=1.0, ha="left", fontsize=13,
                     color=SILENT if table.silent.any() else "black")
     axes.legend(handles=_legend(used), loc="upper center", bbox_to_anchor=(0.4, -0.025), ncols=5, fontsize=8.5,
-                title="number: exponent of the true error, in lengths of a link", title_fontsize=8.5)
+                title="number: exponent of the true error, in lengths of a link; =0: no error at all", title_fontsize=8.5)
     return figure
 
 
 def title(table):
     silent = int(table.silent.sum())
-    return f"{silent} silent wrong{'' if silent == 1 else 's'} in {len(table)} runs"
+    return f"{silent} silent wrong{'' if silent == 1 else 's'} in {len(ran(table))} runs"
 
 
 def kind(row):
@@ -78,7 +87,7 @@ def _draw_cell(axes, x, y, row):
     axes.add_patch(Rectangle((x, y), 1, 1, facecolor=colour, hatch=hatch, linewidth=0.4,
                              edgecolor="#b5b5b5" if hatch or what == "not run" else "white"))
     if what in ("ok", "silent", "degraded"):
-        shown = "0" if row.true_error == 0 else f"{power:d}".replace("-", "−")
+        shown = "=0" if row.true_error == 0 else f"{power:d}".replace("-", "−")
         axes.text(x + 0.5, y + 0.53, shown, ha="center", va="center", fontsize=6.5,
                   color="white" if what == "silent" else "black")
     return what
@@ -91,11 +100,11 @@ def _power(error):
 
 
 def _groups(axes, columns, cells, places):
-    for form, title in FORMS.items():
-        own = [x for x, (scheme, _) in enumerate(columns) if scheme == form]
-        if own:
-            axes.text(own[0], axes.get_ylim()[0] + 0.3, title, va="top", fontsize=9)
-            axes.axvline(own[0], color="black", linewidth=0.8)
+    for setting in dict.fromkeys(setting for setting, _ in columns):
+        own = [x for x, (its, _) in enumerate(columns) if its == setting]
+        axes.text(own[0] + 0.1, axes.get_ylim()[0] + 0.3, setting, va="top", fontsize=9,
+                  rotation=90 if len(own) < NARROW else 0)
+        axes.axvline(own[0], color="black", linewidth=0.8)
     for axis in dict.fromkeys(axis for axis, _ in cells):
         first = min(places[cell] for cell in cells if cell[0] == axis)
         axes.annotate(axis, (0, first + 0.5), xytext=(-165, 0), textcoords="offset points",

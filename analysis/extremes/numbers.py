@@ -3,9 +3,16 @@ import numpy
 
 PLAIN = "α auto"
 NOT_SERVED = ("unsupported", "refused")
+NOT_RUN = (*NOT_SERVED, "not run")
+FORMS = ("penalty", "saddle-point")  # settings that every cell runs
 NEAR = 0.1          # s on either side of a singular position
 FLOOR = 1e-17       # m; differences below it are none
 INSTANTS = ("at_1_s", "at_5_s", "at_20_s")
+
+
+def ran(battery):
+    """The rows of battery.csv that are runs: neither refused nor left out."""
+    return battery[~battery.status.isin(NOT_RUN)]
 
 
 def folders(ways):
@@ -44,6 +51,12 @@ def passes(cost, folder, way):
     own = cost[(cost.folder == folder) & (cost.way == way)].dropna(subset="passes_per_step") if len(cost) else cost
     return [(int(loops), float(rows.passes_per_step.median())) for loops, rows in (
         own.groupby("loops") if len(own) else [])]
+
+
+def later(lines, singular):
+    """What follows the first turn: in that the difference leaves zero, by as many decades as FLOOR is low."""
+    turn = singular[2] - singular[0]  # two of them a turn
+    return lines[lines.t >= turn]
 
 
 def growth(lines, singular):

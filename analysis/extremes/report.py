@@ -26,7 +26,7 @@ def write(folder):
 def _drawn(tables, registry):
     """(name, figure) of every figure that the tables allow."""
     if "battery" in tables:
-        yield "battery", battery_figure.draw(tables["battery"]["battery"])
+        yield from battery_figure.figures(tables["battery"]["battery"])
     if "ways" in tables:
         yield "ways", ways_figure.draw(tables["ways"]["ways"], tables["ways"]["ways_cost"])
     if "pivots" in tables:
@@ -48,8 +48,9 @@ def render(tables, run, figures):
 
 def _battery(battery):
     said, nobody = sentences.battery(battery)
-    return {"said": said, "nobody": nobody, "total": len(battery), "unlike": sentences.unlike(battery),
-            "counts": battery.groupby("scheme", sort=False).status.value_counts().unstack(
+    return {"said": said, "nobody": nobody, "total": len(numbers.ran(battery)), "rows": len(battery),
+            "unlike": sentences.unlike(battery),
+            "counts": battery.groupby("setting", sort=False).status.value_counts().unstack(
                 fill_value=0).to_dict("index"),
             "statuses": list(dict.fromkeys(["ok", "degraded", *sorted(battery.status.unique())])),
             "silent": sentences.silent(battery),

@@ -1,24 +1,24 @@
 # The sentences of extremes.html, computed from its tables.
 import numpy
 
-from analysis.extremes.numbers import FLOOR, INSTANTS, NEAR, growth, with_speed
+from analysis.extremes.numbers import FLOOR, INSTANTS, NEAR, growth, later, ran, with_speed
 from analysis.text import number
 
 
 def battery(table):
     """Where all are right, where none is, who fails where others do not."""
-    found, nobody = [], []
-    ran = table[~table.status.isin(["not run", "unsupported"])]
-    for (axis, value), rows in ran.groupby(["axis", "value"], sort=False):
+    found, nobody, runs = [], [], ran(table)
+    tried = table[~table.status.isin(["not run", "unsupported"])]
+    for (axis, value), rows in tried.groupby(["axis", "value"], sort=False):
         good = rows.status == "ok"
         if not (good & ~rows.silent).any():
             outcomes = rows.status.mask(rows.silent, "silently wrong").value_counts()
             counts = ", ".join(f"{count} {status}" for status, count in outcomes.items())
             nobody.append(f"{axis}, {value}: {counts}")
-    good = ((table.status == "ok") & ~table.silent).sum()
-    found.append(f"{good} of {len(ran)} runs are ok and right; {int(table.silent.sum())} are ok and wrong.")
-    for form, rows in ran.groupby("scheme", sort=False):
-        found.append(f"{form} form: ok and right in {((rows.status == 'ok') & ~rows.silent).sum()} of {len(rows)}.")
+    good = ((runs.status == "ok") & ~runs.silent).sum()
+    found.append(f"{good} of {len(runs)} runs are ok and right; {int(runs.silent.sum())} are ok and wrong.")
+    for setting, rows in runs.groupby("setting", sort=False):
+        found.append(f"{setting}: ok and right in {((rows.status == 'ok') & ~rows.silent).sum()} of {len(rows)}.")
     return found, nobody
 
 
@@ -31,12 +31,12 @@ def silent(rows):
 
 
 def unlike(table):
-    """Cells where implementations of one form end differently: [(axis, value, form, {status: [names]})]."""
-    ran = table[~table.status.isin(["not run", "unsupported"])]
+    """Cells where implementations of one setting end differently: [(axis, value, setting, {status: [names]})]."""
+    tried = table[~table.status.isin(["not run", "unsupported"])]
     found = []
-    for (axis, value, form), rows in ran.groupby(["axis", "value", "scheme"], sort=False):
+    for (axis, value, setting), rows in tried.groupby(["axis", "value", "setting"], sort=False):
         if rows.status.nunique() > 1:
-            found.append({"axis": axis, "value": value, "scheme": form, "outcomes": {
+            found.append({"axis": axis, "value": value, "setting": setting, "outcomes": {
                 status: list(group.implementation) for status, group in rows.groupby("status", sort=False)}})
     return found
 
@@ -77,7 +77,8 @@ def roundoff(table, lines, singular):
         at = singular[singular.loops == loops].t.to_numpy()
         own = [line for _, line in lines[(lines.scheme == form) & (lines.loops == loops)].groupby("implementation")
                if len(line) > 1]
-        near, far, time = numpy.median([growth(line, at) for line in own], axis=0) if own else [float("nan")] * 3
+        grown = [growth(rest, at) for rest in (later(line, at) for line in own) if len(rest) > 1]
+        near, far, time = numpy.median(grown, axis=0) if grown else [float("nan")] * 3
         found.append({"scheme": form, "loops": loops, "near": near, "far": far, "time": time,
                       "with_speed": float(numpy.median([with_speed(line) for line in own])) if own else float("nan"),
                       "medians": [rows[key].clip(lower=FLOOR).median() for key in INSTANTS],
@@ -91,10 +92,13 @@ def jumps(found):
     if not near + far > 0:
         return ["No growth was seen."]
     time = numpy.nanmedian([one["time"] for one in found])
-    verdict = ("it grows in jumps at singular positions" if near / (near + far) > 2 * time else
-               "singular positions are no jumps in it")
-    said = [f"{100 * near / (near + far):.0f} % of the growth (decades, summed over sizes and forms) happens within "
-            f"{NEAR:g} s of a singular position, which is {100 * time:.0f} % of the time: {verdict}."]
+    share = near / (near + far)
+    faster = numpy.inf if share == 1 else share / (1 - share) * (1 - time) / time
+    verdict = ("it grows in jumps there" if share > 0.5 and faster > 2 else
+               f"it grows {faster:.1f} times as fast there as in between" if faster > 1.2
+               else "singular positions are no jumps in it")
+    said = [f"After the first turn {100 * share:.0f} % of the growth (decades, summed over sizes and forms) happens "
+            f"within {NEAR:g} s of a singular position, which is {100 * time:.0f} % of the time: {verdict}."]
     powers = [numpy.log(one["medians"][2] / one["medians"][1]) / numpy.log(20 / 5) for one in found
               if one["medians"][1] > FLOOR]
     if powers:

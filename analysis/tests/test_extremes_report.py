@@ -16,7 +16,7 @@ REGISTRY = [{"folder": name, "variants": [{"name": f"{name}/v", "dense": name ==
 
 def battery():
     return pandas.DataFrame([
-        {"axis": axis, "value": status, "implementation": name, "scheme": form, "status": status, "reason": "why",
+        {"axis": axis, "value": status, "implementation": name, "setting": form, "status": status, "reason": "why",
          "true_error": 1e-5 if status in ("ok", "degraded") else float("nan"), "truth": "exact", "silent": False,
          "command": f"run {axis} {status} {name} {form}"}
         for axis in ("loops", "step") for status in STATUSES for name in ("a/v", "b/v")
@@ -54,6 +54,9 @@ def lines(jump):
                              "speed": 2 + numpy.cos(t)})
 
 
+TURNS = pandas.DataFrame({"loops": 1, "t": [0.2, 0.6, 1.2, 2.0]})  # singular positions; a turn takes 1 s
+
+
 def roundoff():
     return pandas.DataFrame([{"loops": 1, "scheme": "penalty", "implementation": "a/v", "status": "ok", "reason": "",
                               "at_1_s": 1e-12, "at_5_s": 1e-10, "at_20_s": 1.6e-9}])
@@ -72,18 +75,19 @@ def test_the_matrix_names_every_outcome_and_counts_what_is_silently_wrong():
     table = battery()
     figure = battery_figure.draw(table)
     named = {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
-    assert set(STATUSES) <= named and battery_figure.title(table) == "0 silent wrongs in 72 runs"
-    table.loc[0, "silent"], table.loc[4, "status"], table.loc[8, "true_error"] = True, "strange", 0.0
+    assert set(STATUSES) <= named and battery_figure.title(table) == "0 silent wrongs in 56 runs"
+    table.loc[0, "silent"], table.loc[4, "status"], table.loc[1, "true_error"] = True, "strange", 0.0
     figure = battery_figure.draw(table)
     named = {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
     assert {"silently wrong: ok beyond its class", "other failure"} <= named
-    assert battery_figure.title(table) == "1 silent wrong in 72 runs"
+    assert battery_figure.title(table) == "1 silent wrong in 56 runs"
+    assert [text.get_text() for text in figure.axes[0].texts].count("=0") == 1
     plt.close("all")
 
 
 def test_sentences_of_the_battery_find_where_nobody_is_ok():
     said, nobody = sentences.battery(battery())
-    assert said[0].startswith("8 of 64 runs are ok and right; 0") and len(nobody) == 14
+    assert said[0].startswith("8 of 56 runs are ok and right; 0") and len(nobody) == 14
     table = battery()
     table.loc[(table.value == "diverged") & (table.implementation == "a/v"), "status"] = "ok"
     assert len(sentences.battery(table)[1]) == 12
@@ -105,10 +109,23 @@ def test_growth_tells_jumps_from_what_grows_between():
     assert near == pytest.approx(4) and far == pytest.approx(0) and time == pytest.approx(0.05, abs=0.01)
     near, far, _ = numbers.growth(lines(jump=False), singular)
     assert near == pytest.approx(0.2, abs=0.02) and far == pytest.approx(3.8, abs=0.02)
-    at = pandas.DataFrame({"loops": [1], "t": [2.0]})
-    assert "in jumps" in sentences.jumps(sentences.roundoff(roundoff(), lines(jump=True), at))[0]
-    smooth = sentences.jumps(sentences.roundoff(roundoff(), lines(jump=False), at))
-    assert "no jumps" in smooth[0] and "between 2.0 and 2.0" in smooth[1]
+
+    def said(found):
+        return sentences.jumps(sentences.roundoff(roundoff(), found, TURNS))
+    assert "in jumps" in said(lines(jump=True))[0]
+    assert "no jumps" in said(lines(jump=False))[0] and "between 2.0 and 2.0" in said(lines(jump=False))[1]
+    both = lines(jump=False)
+    both["difference"] *= numpy.where(both.t > 2, 10.0, 1.0)
+    assert "it grows 3.5 times as fast there" in said(both)[0]
+
+
+def test_growth_begins_after_the_first_turn():
+    found = lines(jump=False)
+    told = sentences.jumps(sentences.roundoff(roundoff(), found, TURNS))
+    assert told[0].startswith("After the first turn 13 % of the growth") and "13 % of the time" in told[0]
+    found.loc[found.t < 0.3, "difference"] = 0.0  # nothing of how far it was below
+    assert sentences.jumps(sentences.roundoff(roundoff(), found, TURNS)) == told
+    assert sentences.jumps(sentences.roundoff(roundoff(), found[found.t < 0.9], TURNS)) == ["No growth was seen."]
 
 
 def test_a_lag_is_told_from_other_differences():
@@ -135,15 +152,16 @@ def test_the_page_has_the_parts_that_were_run(tmp_path):
     assert "does not hold" in page and "The battery" not in page
     table = battery()
     table.loc[0, "silent"] = True
+    table.loc[table.axis == "step", "setting"] = "rattle4"
     results(tmp_path, battery=table, ways=ways(), ways_cost=cost(), roundoff=roundoff(),
             scaling=pandas.DataFrame([{"solver": "Cholesky", "components_that_differ": 0, "largest_difference": 0.0}]),
-            roundoff_growth=lines(jump=True), singular=pandas.DataFrame({"loops": [1], "t": [2.0]}))
+            roundoff_growth=lines(jump=True), singular=TURNS)
     write(tmp_path)
     page = (tmp_path / "extremes.html").read_text()
     assert "<code>run loops ok a/v penalty</code>" in page and "run w" in page
     assert "no variant serves mixed" in page and "Cholesky: the same bit for bit" in page
     assert {path.name for path in (tmp_path / "figures").glob("*.png")} == {
-        "battery.png", "ways.png", "pivots.png", "roundoff-penalty.png"}
+        "battery.png", "battery-settings.png", "ways.png", "pivots.png", "roundoff-penalty.png"}
     (tmp_path / "singular.csv").unlink()
     with pytest.raises(TableError, match="singular.csv: cannot be read"):
         write(tmp_path)

@@ -1,16 +1,23 @@
-# The cells of the battery: scene, settings and what the motion is known to be.
+# The cells of the battery: scene, what is extreme in it, and what the motion is known to be.
 import math
+import unicodedata
 from dataclasses import dataclass, field
+
+import numpy
 
 from study.extremes_study import scenes
 from study.extremes_study.motions import Chain, Flat
 
-STEP, STEPS, SAMPLES = 1.25e-3, 2000, 40
+STEP, STEPS = 1.25e-3, 2000
+SAMPLES, TURN = 200, 40  # instants of a run at least; in a turn of about 2 s, where a run has many
 DENSE_LOOPS = 200    # dense implementations run up to this size
 LONGEST = 5.0        # s of simulated time where the step is what is varied
 LENGTHY = 160000     # steps of 200 s
 SIZES = {1: STEPS, 10: STEPS, 100: STEPS, 1000: 100, 10000: 24}  # loops: steps
+JSON_LOOPS = 1000    # up to this size the scene is a file: the program knows the exact motion of `four-bar:N`
 LOOPS = 5            # where size is not what is varied
+CLASS = 1e-2         # of a link's length, what "ok" allows: AccurateBounds of harness/src/run/judge.hpp
+STILL = 1e-9         # lengths; what moves less rests
 
 
 @dataclass(frozen=True)
@@ -27,7 +34,8 @@ class Cell:
 
     @property
     def name(self):
-        words = f"{self.axis} {self.label}".replace("/", " per ")
+        words = f"{self.axis} {self.label}".replace("/", " per ").replace("Δ", "d").replace("α", "alpha")
+        words = unicodedata.normalize("NFKD", words)  # a raised 2 becomes 2
         return "-".join("".join(c if c.isalnum() or c in "-+." else " " for c in words).split())
 
     @property
@@ -36,11 +44,20 @@ class Cell:
 
     @property
     def every(self):
-        return max(1, self.steps // SAMPLES)
+        """Steps between two instants."""
+        turns = self.duration / (2.0 * self.length**0.5)
+        return max(1, self.steps // max(SAMPLES, round(TURN * turns)))
 
     @property
     def loops(self):
         return self.motion.loops if self.motion else 1
+
+    def allowed(self, solutions):
+        """The class: the largest true error, in lengths, of a run that may be ok. Of a short way it is the same
+        share, as else a run that stood still would be right; what is at rest must stay within a hundredth."""
+        way = max((numpy.ptp(values) for solution in solutions for values in solution.values() if len(values)),
+                  default=0.0) / self.length
+        return CLASS * min(1.0, float(way)) if way > STILL else CLASS
 
 
 def battery():
@@ -55,25 +72,23 @@ def _short(value):
     return f"{mantissa}e{int(power)}" if power else mantissa
 
 
-def _built_in(axis, label, loops=LOOPS, **more):
-    return Cell(axis, label, f"four-bar:{loops}", Chain(loops), **more)
-
-
 def _chain(axis, label, chain, **more):
     return Cell(axis, label, "", chain, chain.document(), length=chain.length, **more)
 
 
 def _sizes():
-    return [_built_in("loops", f"N = {loops}", loops, steps=steps) for loops, steps in SIZES.items()]
+    return [_chain("loops", f"N = {loops}", Chain(loops), steps=steps) if loops <= JSON_LOOPS else
+            Cell("loops", f"N = {loops}", f"four-bar:{loops}", Chain(loops), steps=steps)
+            for loops, steps in SIZES.items()]
 
 
 def _steps():
-    return [_built_in("step", f"Δt = 1e{power} s", step=10.0**power,
-                      steps=min(STEPS, round(LONGEST / 10.0**power))) for power in range(-6, 0)]
+    return [_chain("step", f"Δt = 1e{power} s", Chain(LOOPS), step=10.0**power,
+                   steps=min(STEPS, round(LONGEST / 10.0**power))) for power in range(-6, 0)]
 
 
 def _penalties():
-    return [_built_in("penalty", f"α = 1e{power}", penalty=f"1e{power}") for power in range(2, 17, 2)]
+    return [_chain("penalty", f"α = 1e{power}", Chain(LOOPS), penalty=f"1e{power}") for power in range(2, 17, 2)]
 
 
 def _masses():
@@ -119,7 +134,7 @@ def _starts():
 
 
 def _long():
-    return [_built_in("duration", f"{LENGTHY * STEP:g} s", 2, steps=LENGTHY)]
+    return [_chain("duration", f"{LENGTHY * STEP:g} s", Chain(2), steps=LENGTHY)]
 
 
 def _denormals():

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 import pandas
 
 from study.extremes_study import scenes, scaling, tools
-from study.extremes_study.battery import CLASS
+from study.extremes_study.cells import CLASS
 from study.extremes_study.motions import Chain
 from study.pipeline import runs
 from study.pipeline.layout import write_json

@@ -9,7 +9,7 @@ import pandas
 import pytest
 from scipy.integrate import solve_ivp
 
-from study.extremes_study import battery, pivots, roundoff, scaling, scenes, tools, ways
+from study.extremes_study import battery, cells, pivots, roundoff, scaling, scenes, settings, tools, ways
 from study.extremes_study.cells import Cell, battery as all_cells
 from study.extremes_study.motions import Chain, Flat, singular_times
 from study.pipeline.contenders import Contender
@@ -52,6 +52,28 @@ def test_cells_have_names_of_their_own_and_what_is_known():
     assert all(float(f"{cell.step:g}") == pytest.approx(cell.step, rel=1e-12) for cell in cells)
 
 
+def test_only_the_largest_scene_is_one_whose_motion_the_program_knows():
+    assert [cell.label for cell in all_cells() if cell.scene] == ["N = 10000"]
+    assert all(cell.name.isascii() and "/" not in cell.name for cell in all_cells())
+
+
+def test_settings_that_few_serve_run_in_cells_that_there_are():
+    known = {(cell.axis, cell.label) for cell in all_cells()}
+    assert {(axis, label) for axis, labels in settings.CELLS.items() for label in labels} < known
+    assert settings.of("loops", "N = 10") == settings.FORMS + settings.OTHERS
+    assert settings.of("loops", "N = 1000") == settings.FORMS
+    assert {setting.scheme for setting in settings.OTHERS} == {"rattle", "rattle4", "rattle6", "penalty", "saddle-point"}
+
+
+def test_standing_still_is_right_only_where_nothing_moves():
+    for cell in all_cells():
+        times = numpy.linspace(0, cell.duration, 9)
+        for solution in cell.motion.solutions(times)[:1] if cell.motion else ():
+            still = {column: numpy.full(9, values[0]) for column, values in solution.items()}
+            error = tools.distances(still, solution, cell.length).max()
+            assert (error > cell.allowed([solution])) == (error > cells.STILL), cell.name
+
+
 def record(status, error=0.0):
     outputs = {column: list(values + error) for column, values in Chain(1).solutions(TIMES)[0].items()}
     return {"summary": {"status": status, "status_reason": ""}, "outputs": {"t": list(TIMES)} | outputs,
@@ -61,12 +83,16 @@ def record(status, error=0.0):
 def test_what_is_ok_beyond_its_class_is_silently_wrong():
     contender, cell = Contender("one/a", "one/a"), Cell("loops", "1", "four-bar:1", Chain(1))
     place = SimpleNamespace(layout=Layout("/r"), settings={"one/a": {"dense": False}})
-    rows = [battery._row(place, cell, "penalty", contender, record(*outcome), {})
+    penalty = settings.FORMS[0]
+    rows = [battery._row(place, cell, penalty, contender, record(*outcome), {})
             for outcome in (("ok",), ("ok", 0.02), ("degraded", 0.02), ("diverged", 0.5), ("ok", float("nan")))]
     assert [row["silent"] for row in rows] == [False, True, False, False, True]
     assert rows[1]["true_error"] == pytest.approx(0.02 * 2**0.5) and numpy.isnan(rows[3]["true_error"])
     assert rows[0]["command"] == "build/mbs simulate 'a scene.json'"
-    dense = battery._row(place, cell, "penalty", contender, None, {})
+    reported = record("ok")
+    reported["summary"]["position_error_max"] = 0.02  # between two samples
+    assert battery._row(place, cell, penalty, contender, reported, {})["silent"]
+    dense = battery._row(place, cell, penalty, contender, None, {})
     assert dense["status"] == "not run" and "dense" in dense["reason"] and not dense["silent"]
 
 
@@ -183,7 +209,7 @@ def test_the_battery_on_the_real_program_is_resumed(place, monkeypatch):
              Cell("step", "too long", "four-bar:1", Chain(1), step=0.5, steps=80)]
     monkeypatch.setattr(battery, "battery", lambda: cells)
     table = battery.run(place)["battery"]
-    assert list(table.scheme) == 4 * ["penalty", "saddle-point"] and not table.silent.any()
+    assert list(table.setting) == 4 * ["penalty", "saddle-point"] and not table.silent.any()
     assert list(table.status[:6]) == 4 * ["ok"] + 2 * ["refused"] and (table.true_error[:4] < 1e-4).all()
     assert (table.status[6:] == "diverged").all() and table.failed_at[6:].notna().all()
     assert "allowed is one rod" in table.reason[4]
