@@ -16,7 +16,7 @@ LOOKS = {  # (colour, hatch)
     "not run": ("#ffffff", "")}
 OTHER = ("#ffffff", "++++")
 SILENT, UNJUDGED = "#D00000", "ok, not judged"
-NARROW = 6  # columns; the name of a setting with fewer is upright
+NARROW, UPRIGHT = 6, 2.3  # the name of a setting with fewer columns is upright and takes so many inches
 
 
 def figures(table):
@@ -46,9 +46,11 @@ def draw(table):
     for spine in axes.spines.values():
         spine.set_visible(False)
     _groups(axes, columns, cells, places)
-    figure.suptitle(title(table), x=0.01, y=1.0, ha="left", fontsize=13,
-                    color=SILENT if table.silent.any() else "black")
-    axes.legend(handles=_legend(used), loc="upper center", bbox_to_anchor=(0.4, -0.025), ncols=5, fontsize=8.5,
+    axes.annotate(title(table), (0, 1), xycoords="axes fraction", xytext=(-165, 160), textcoords="offset points",
+                  fontsize=13, color=SILENT if table.silent.any() else "black")  # above the longest name
+    upright = table.groupby("setting").implementation.nunique().min() < NARROW
+    below = (UPRIGHT if upright else 0.25) / (figure.get_figheight() * axes.get_position().height)
+    axes.legend(handles=_legend(used), loc="upper center", bbox_to_anchor=(0.4, -below), ncols=5, fontsize=8.5,
                 title="number: exponent of the true error, in lengths of a link; =0: no error at all", title_fontsize=8.5)
     return figure
 

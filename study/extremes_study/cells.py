@@ -125,7 +125,8 @@ def _redundant():
 
 def _starts():
     flat, moving = math.pi / 2, math.sqrt(1 + 2 * Chain(2).k)  # as fast as four-bar:2 gets there
-    return [_chain("start", "singular, at rest", Flat(1, angle=flat, rate=0.0)),
+    return [_chain("start", "singular, at rest", Flat(1, angle=flat, rate=0.0), steps=600),  # at 1 s it rests on
+            # a line again, and other motions become possible
             _chain("start", "singular, moving", Chain(2, angle=flat, rate=moving)),
             _chain("start", "zero gravity", Chain(LOOPS, gravity=0.0)),
             _chain("start", "zero gravity, at rest", Chain(LOOPS, gravity=0.0, rate=0.0)),
