@@ -10,6 +10,7 @@ from analysis.accuracy.winners import winners
 
 REGISTRY = [{"folder": name, "variants": [{"name": f"{name}/a", "dense": name == "one"}]}
             for name in ("one", "two")]
+SHUFFLED = " ".join(f"{1.02 + 0.1 * place / 3:g}" for place in (3, -1, 2, -3, 0, -2, 1))
 DENSE = {"one/a": True, "two/a": False}
 
 
@@ -38,7 +39,8 @@ def cell(implementation, time, required=1e-2, spread=0.1, **more):
     return {"loops": 2, "fill_asked": None, "natural_fill": 0.8, "fill": 0.8, "required": required,
             "implementation": implementation, "setting": "default", "step": 1e-2, "error": 5e-3,
             "measured_error": required, "error_of": implementation, "status": "ok", "time": time, "time_low": time - spread,
-            "time_high": time + spread, "duration": 1.0, "rounds": 3, "raw_file": "raw", "command": "c",
+            "time_high": time + spread, "duration": 1.0, "rounds": 7, "raw_file": "raw", "command": "c",
+            "times": " ".join(f"{time + spread * place / 3:g}" for place in (-3, -2, -1, 0, 1, 2, 3)),
             "reason": None} | more
 
 
@@ -65,8 +67,12 @@ def test_a_winner_needs_to_be_clear_of_the_spread_of_other_implementations():
         [row] = winners(pandas.DataFrame(cells)).to_dict("records")
         return row
     assert of(cell("one/a", 1.0), cell("two/a", 1.5))["decided"] is True
-    near_one = of(cell("one/a", 1.0), cell("two/a", 1.1))
-    assert near_one["decided"] is False and near_one["second"] == "two/a"
+    near_one = of(cell("one/a", 1.0), cell("two/a", 1.02, times=SHUFFLED))
+    assert near_one["decided"] is False and near_one["second"] == "two/a" and near_one["margin_low"] < 1
+    paired = of(cell("one/a", 1.0), cell("two/a", 1.02))  # slower in every round: the interval says so
+    assert paired["margin"] == pytest.approx(1.02)
+    few = cell("three/a", 0.9, rounds=3, times="0.9 0.9 0.9")  # once slower than both that had more rounds
+    assert of(few, cell("one/a", 1.0), cell("two/a", 1.5))["implementation"] == "one/a"
     same = of(cell("one/a", 1.0), cell("one/a", 1.1, setting="loose"), cell("two/a", 1.5))
     assert same["decided"] is True and same["as_fast"] == "loose" and same["margin"] == 1.5
     assert of(cell("one/a", 1.0, measured_error=2e-2), cell("two/a", 1.5))["implementation"] == "two/a"
@@ -102,7 +108,7 @@ def test_a_subject_that_nobody_finishes_can_be_drawn():
 
 
 def test_the_region_map_shows_setting_step_and_nobody():
-    found = winners(pandas.DataFrame([cell("one/a", 1.0), cell("two/a", 1.05),
+    found = winners(pandas.DataFrame([cell("one/a", 1.0), cell("two/a", 1.02, times=SHUFFLED),
                                       cell("one/a", 1.0, fill_asked=1.0, required=1e-4)]))
     figure = regions_figure.draw(found, names.look(REGISTRY))
     texts = [text.get_text() for axes in figure.axes for text in axes.texts]

@@ -7,6 +7,8 @@ from study.pipeline import runs
 from study.pipeline.layout import Layout
 
 NOT_RUN = "not-run"  # the status of what was left out, with its reason
+SHORT = 0.02   # s of steps: a single run that is shorter says more of the machine's interruptions than of itself
+REPEATS = 5    # of such a run in one process; each step's least time counts
 
 
 @dataclass(frozen=True)
@@ -19,16 +21,28 @@ class Bench:
     def raw(self) -> Path:
         return self.layout.results / "raw"
 
-    def run(self, kind, subject, contender, setting, step, *, duration=None, repeat=1, seconds=None):
-        """The record of one simulation, with its "raw_file"; an existing file is never run again."""
+    def run(self, kind, subject, contender, setting, step, *, duration=None, repeat=1, seconds=None,
+            repeats=1):
+        """The record of one simulation, with its "raw_file"; an existing file is never run again. `repeat`: the
+        round; `repeats`: of the simulation in its process."""
         path = (self.raw / kind / subject.file_name / setting.file_name
-                / f"{contender.file_name}-{step:g}{f'-{repeat}' if repeat > 1 else ''}.json")
+                / f"{contender.file_name}-{step:g}"
+                  f"{'-least' if repeats > 1 else ''}{f'-{repeat}' if repeat > 1 else ''}.json")
         record = runs.simulate(
             path, contender, subject.scene, step=step, duration=duration or subject.duration,
             every=subject.every(step), context=self.contexts[contender.environment],
             # Predictions may be wrong by half.
-            seconds=seconds or 1.5 * self.time_limit, more=[*setting.words(subject.base), *subject.judging(step)])
+            seconds=seconds or 1.5 * self.time_limit, more=[
+                *setting.words(subject.base), *subject.judging(step),
+                *(["--repeats", repeats] if repeats > 1 else [])])
         return record | {"raw_file": self.layout.relative(path)}
+
+    def steady(self, kind, subject, contender, setting, step):
+        """The record of `run`, of a finished run that is SHORT that of REPEATS at once."""
+        record = self.run(kind, subject, contender, setting, step)
+        if runs.status(record)[0] not in runs.FINISHED or time_of(record) * subject.duration > SHORT:
+            return record
+        return self.run(kind, subject, contender, setting, step, repeats=REPEATS)
 
 
 def left_out(subject, variant, setting, step, reason):
@@ -48,8 +62,8 @@ def row(subject, variant, setting, step, record):
             "variables", "passes_per_step", "factorizations_per_step", "steps_at_limit", "penalty",
             "tolerance", "duration") if key in summary}
         found |= {"fill": summary.get("tangent_nonzeros", 0) / summary["variables"]**2,
-                  "step_us": summary["step_us"]["mean"],
-                  "step_us_median": summary["step_us"]["median"]}
+                  "repeats": summary.get("repeats", 1), "step_us": _step_us(summary)["mean"],
+                  "step_us_median": _step_us(summary)["median"]}
     if status in runs.FINISHED:
         time = time_of(record)
         error = subject.error(record)
@@ -62,7 +76,12 @@ def row(subject, variant, setting, step, record):
 def time_of(record):
     """s of computation for a simulated second."""
     summary = record["summary"]
-    return 1e-6 * summary["step_us"]["mean"] * summary["steps"] / summary["duration"]
+    return 1e-6 * _step_us(summary)["mean"] * summary["steps"] / summary["duration"]
+
+
+def _step_us(summary):
+    """Times of the steps; of a repeated run each step's least."""
+    return summary["least_us"] if summary.get("repeats", 1) > 1 else summary["step_us"]
 
 
 def _named(subject, implementation, setting, step):

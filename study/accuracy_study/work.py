@@ -2,13 +2,15 @@
 import numpy
 
 from analysis.accuracy.front import finished, near, pareto
+from study.accuracy_study import brackets
 from study.accuracy_study.bench import left_out, row, time_of
 from study.pipeline import runs
 
 SLOW = 2.0   # whose default setting is this much slower than the fastest is not tried in others
-FAR = 3.0    # a curve that is this far from the front, and comes no nearer, is not followed further
+FAR = 2.0    # a curve that is this far from the front, and comes no nearer, is not followed further
 NEAR = 1.5   # runs up to this factor from the front are repeated, if they are
-SHORT = 1.0  # s at most: longer ones are averages themselves
+LONG = 1.0   # s: longer ones are averages themselves
+PASSES = 3.0  # a step at most, where the next run is predicted
 ROUNDS = 3
 
 
@@ -27,6 +29,8 @@ def measure(bench, subject, entries, tell):
                 table.append(left_out(subject, variant, setting, numpy.nan, slow[variant]))
             else:
                 table += _curve(bench, subject, variant, setting, entries, table)
+    if subject.loops:
+        table += brackets.refine(bench, subject, entries, pandas.DataFrame(table), tell)
     table = pandas.DataFrame(table)
     _repeat(bench, subject, entries, table, tell)
     table["front"] = table.index.isin(pareto(table))
@@ -45,9 +49,10 @@ def _curve(bench, subject, variant, setting, entries, known):
         if reason:
             rows.append(left_out(subject, variant, setting, step, reason))
             continue
-        record = bench.run("work", subject, entries.contenders[variant], setting, step)
+        contender = entries.contenders[variant]
+        ahead = _half_step(subject, step, bench.run("work", subject, contender, setting, step))
+        record = bench.steady("work", subject, contender, setting, step)
         rows.append(row(subject, variant, setting, step, record))
-        ahead = _half_step(subject, step, record)
     return rows
 
 
@@ -79,8 +84,12 @@ def _half_step(subject, step, record):
     """Predicted seconds of the run with half the step."""
     if runs.status(record)[0] == "timeout":
         return numpy.inf
-    done = record.get("summary", {}).get("steps", 0)  # fewer than all of a run that diverged
-    return record["seconds"] / done * 2 * subject.duration / step if done else 0.0
+    summary = record.get("summary", {})
+    done = summary.get("steps", 0)  # fewer than all of a run that diverged
+    if not done:
+        return 0.0
+    fewer = min(1.0, PASSES / summary["passes_per_step"])  # a step that is too long needs many passes
+    return fewer * record["seconds"] / done * 2 * subject.duration / step
 
 
 def _slow(table, entries):
@@ -107,7 +116,7 @@ def _repeat(bench, subject, entries, table, tell):
     if "time" not in table:
         table[["time", "error"]] = numpy.nan
     chosen = [index for index in near(table, NEAR)
-              if table.time[index] * subject.duration <= SHORT]
+              if table.time[index] * subject.duration <= LONG]
     times = {index: [table.time[index]] for index in chosen}
     for repeat in range(2, ROUNDS + 1):
         for place, index in enumerate(chosen, start=1):
@@ -115,7 +124,7 @@ def _repeat(bench, subject, entries, table, tell):
             tell(f"{subject.name}: round {repeat} near the front, {place} of {len(chosen)}")
             record = bench.run("work", subject, entries.contenders[one.implementation],
                                entries.setting(one.implementation, one.setting), one.step,
-                               repeat=repeat)
+                               repeat=repeat, repeats=int(one["repeats"]))
             if runs.status(record)[0] in runs.FINISHED:
                 times[index].append(time_of(record))
     for index, found in times.items():
