@@ -1,5 +1,5 @@
-# Rounds of the candidates of a region: three of all, in an order shuffled anew each time, four more of the two
-# best of each required error, which then have intervals.
+# Rounds of the candidates of a region in an order shuffled anew each time: one of all, two more of those near the
+# fastest, four more of the two best of each required error, which then have intervals.
 #
 # Times may be those of a short stretch, error classes not: without a curve of its own over seconds, a candidate's
 # run of a second at natural fill must meet the error.
@@ -12,7 +12,8 @@ from analysis.accuracy.winners import leaders
 from study.accuracy_study import classes
 from study.accuracy_study.bench import REPEATS, SHORT, row
 
-ALL, BEST, SEED = 3, 7, 20080101
+FEW, BEST, SEED = 3, 7, 20080101
+NEAR = 1.3                    # times the fastest of the first round: who is slower has no second
 DURATIONS = (1.0, 0.2, 0.05)  # s, or that of the curves
 RUN_SECONDS = 0.25            # the longest duration that is predicted to take less is taken
 
@@ -27,11 +28,13 @@ def measure(bench, subject, entries, cells, tell):
     for cell in left:
         _judge(bench, subject, entries, cell)
     left = [cell for cell in left if not cell["reason"]]
-    for number in range(1, ALL + 1):
-        _round(bench, subject, entries, left, number, tell)
-    best = [left[place] for error in {cell["required"] for cell in left}
-            for place in leaders(_table(left, error))]
-    for number in range(ALL + 1, BEST + 1):
+    errors = sorted({cell["required"] for cell in left})
+    _round(bench, subject, entries, left, 1, tell)
+    near = [cell for error in errors for cell in _near([one for one in left if one["required"] == error])]
+    for number in range(2, FEW + 1):
+        _round(bench, subject, entries, near, number, tell)
+    best = [near[place] for error in sorted({cell["required"] for cell in near}) for place in leaders(_table(near, error))]
+    for number in range(FEW + 1, BEST + 1):
         _round(bench, subject, entries, best, number, tell)
     for cell in left:
         found = cell["times"]
@@ -65,6 +68,14 @@ def _judge(bench, subject, entries, cell):
     cell |= {"error": found["error"], "error_of": variant, "error_raw_file": found["raw_file"]}
     if found["error"] > cell["required"]:
         cell["reason"] = f"its own error over {classes.DURATION:g} s is {found['error']:.2g} m"
+
+
+def _near(cells):
+    """Of one required error: those near the fastest, and the fastest of another implementation."""
+    meeting = [cell for cell in cells if cell["measured_error"] <= cell["required"]]
+    order = sorted(meeting, key=lambda cell: cell["times"][0])
+    others = [cell for cell in order if cell["implementation"] != order[0]["implementation"]]
+    return [cell for cell in order if cell is next(iter(others), None) or cell["times"][0] <= NEAR * order[0]["times"][0]]
 
 
 def _round(bench, subject, entries, cells, number, tell):
