@@ -38,9 +38,11 @@ class Bench:
         return record | {"raw_file": self.layout.relative(path)}
 
     def steady(self, kind, subject, contender, setting, step):
-        """The record of `run`, of a finished run that is SHORT that of REPEATS at once."""
+        """The record of `run`, of a finished run that is SHORT (by its median step) that of REPEATS at once."""
         record = self.run(kind, subject, contender, setting, step)
-        if runs.status(record)[0] not in runs.FINISHED or time_of(record) * subject.duration > SHORT:
+        if runs.status(record)[0] not in runs.FINISHED:
+            return record
+        if 1e-6 * record["summary"]["step_us"]["median"] * record["summary"]["steps"] > SHORT:
             return record
         return self.run(kind, subject, contender, setting, step, repeats=REPEATS)
 

@@ -33,7 +33,8 @@ def measure(bench, subject, entries, cells, tell):
     near = [cell for error in errors for cell in _near([one for one in left if one["required"] == error])]
     for number in range(2, FEW + 1):
         _round(bench, subject, entries, near, number, tell)
-    best = [near[place] for error in sorted({cell["required"] for cell in near}) for place in leaders(_table(near, error))]
+    errors = sorted({cell["required"] for cell in near})
+    best = [near[place] for error in errors for place in leaders(_table(near, error))]
     for number in range(FEW + 1, BEST + 1):
         _round(bench, subject, entries, best, number, tell)
     for cell in left:
