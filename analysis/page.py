@@ -1,5 +1,6 @@
 # What the pages share: their templates, figures that are saved and embedded, atomic writing.
 import base64
+from pathlib import Path
 
 import jinja2
 import matplotlib.pyplot as plt
@@ -9,10 +10,10 @@ from analysis.text import number
 
 
 def template(path, **filters):
-    """The template in `path`, with `number` and further filters."""
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(path.parent), autoescape=True,
-                                     trim_blocks=True, lstrip_blocks=True,
-                                     undefined=jinja2.StrictUndefined)
+    """The template in `path`, with `number` and further filters; it may include what is beside this file."""
+    loader = jinja2.FileSystemLoader([path.parent, Path(__file__).parent])
+    environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True,
+                                     lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters |= {"number": number} | filters
     return environment.get_template(path.name)
 

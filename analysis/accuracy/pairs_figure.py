@@ -35,7 +35,7 @@ def draw(table, look, title, goal=None):
 def _series(axes, rows, line, label):
     axes.plot(rows.variables, rows.ratio, **line | {"marker": "", "alpha": 0.6}, label=label)
     axes.vlines(rows.variables, rows.low, rows.high, color=line["color"], linewidth=1.4)
-    same = (rows.first_class == rows.second_class) & rows.first_class.notna()
+    same = same_class(rows)
     for chosen, face in ((rows[same], line["color"]), (rows[~same], "white")):
         axes.plot(chosen.variables, chosen.ratio, linestyle="none", marker=line["marker"],
                   color=line["color"], markerfacecolor=face, markersize=6.5)
@@ -44,5 +44,9 @@ def _series(axes, rows, line, label):
 def gains(table, goal=GAIN):
     """Rows in which the second setting is at least `goal` times faster with the same error class, by the lower
     end of the interval."""
-    same = (table.first_class == table.second_class) & table.first_class.notna()
-    return table[same & (table.low >= goal)]
+    return table[same_class(table) & (table.low >= goal)]
+
+
+def same_class(table):
+    """Whether both errors are known and in the same class."""
+    return (table.first_class == table.second_class) & table.first_class.notna()

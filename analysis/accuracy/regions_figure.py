@@ -63,6 +63,6 @@ def _legend(winners, look):
     handles = [Patch(facecolor=look.colour(name), alpha=DECIDED, label=f"{name}: {count}")
                for name, count in won.items()]
     return [*handles, Patch(facecolor="#cccccc", hatch="////", edgecolor="#555555", linewidth=0,
-                            label="undecided: another is within the spread"),
+                            label="undecided: the interval includes 1"),
             Patch(**NOBODY, label="nobody meets the error"),
             Patch(facecolor="white", edgecolor="#bbbbbb", label="below the mechanism's own fill")]

@@ -58,7 +58,7 @@ def _figures(tables, registry):
         yield "regions", regions_figure.draw(tables["winners"], look)
     for name, title, goal in (
             ("forms", "The saddle-point form beside the penalty form", None),
-            ("precision", "Lower precision beside double; hollow: another error class", pairs_figure.GAIN)):
+            ("precision", "Lower precision beside double; hollow: another error class, or none", pairs_figure.GAIN)):
         if "ratio" in tables[name] and tables[name].ratio.notna().any():
             yield name, pairs_figure.draw(tables[name], look, title, goal)
 

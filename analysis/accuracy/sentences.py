@@ -1,7 +1,7 @@
 # What the page says of each figure and table, computed from its rows.
 from analysis.accuracy import names
 from analysis.accuracy.front import fastest, finished, pareto
-from analysis.accuracy.pairs_figure import GAIN, gains
+from analysis.accuracy.pairs_figure import GAIN, gains, same_class
 from analysis.text import number
 
 
@@ -61,9 +61,10 @@ def of_regions(tables):
         decided = int((met.decided.astype(str) == "True").sum())
         said[0] += (f" {counts.index[0]} is fastest in {counts.iloc[0]} of them, most often with the setting "
                     f"{settings.index[0]} ({settings.iloc[0]}); {decided} are decided.")
-    pruned = int(regions.reason.notna().sum())
-    said.append(f"Of {len(regions)} candidates {pruned} were pruned by their pilots, each with its reason in "
-                "regions.csv.")
+    reasons = regions.reason.dropna()
+    pruned = int(reasons.str.startswith("pruned").sum())
+    said.append(f"Of {len(regions)} candidates {pruned} were pruned by their pilots and {len(reasons) - pruned} by "
+                "a run of their own that does not have the error class, each with its reason in regions.csv.")
     if len(fills):
         same = fills.same.astype(bool)
         worst = fills.difference.max()
@@ -91,19 +92,18 @@ def of_precision(precision):
     if precision.empty or "ratio" not in precision or precision.ratio.notna().sum() == 0:
         return []
     rows = precision[precision.ratio.notna()]
-    won = gains(rows)
+    won, same = gains(rows), rows[same_class(rows)]
+    if won.empty and same.empty:
+        return [f"None of {len(rows)} pairs is in the same error class."]
     if won.empty:
-        best = rows.loc[rows.low.idxmax()]
-        same = rows[(rows.first_class == rows.second_class) & rows.first_class.notna()]
-        said = [f"Lower precision is nowhere at least {GAIN:g} times faster at the same error class: the best of "
-                f"all is {number(best.ratio)} ({number(best.low)} to {number(best.high)}; "
+        best = same.loc[same.low.idxmax()]
+        return [f"Lower precision is nowhere at least {GAIN:g} times faster at the same error class: the best there "
+                f"is {number(best.ratio)} ({number(best.low)} to {number(best.high)}; "
                 f"{best.implementation}, {best.second}, n = {best.variables:.0f}), error {number(best.second_error, 2)} m against "
-                f"{number(best.first_error, 2)} m in double."]
-        if len(same):
-            said.append(f"{len(same)} of {len(rows)} pairs are in the same error class; the passes a step go "
-                        f"from {number(same.first_passes_per_step.median(), 2)} to "
-                        f"{number(same.second_passes_per_step.median(), 2)} (medians).")
-        return said
+                f"{number(best.first_error, 2)} m in double.",
+                f"{len(same)} of {len(rows)} pairs are in the same error class; the passes a step go "
+                f"from {number(same.first_passes_per_step.median(), 2)} to "
+                f"{number(same.second_passes_per_step.median(), 2)} (medians)."]
     best = won.loc[won.low.idxmax()]
     return [f"At the same error class lower precision is at least {GAIN:g} times faster in {len(won)} of {len(rows)} "
             f"pairs: {_list(f'{r.implementation}, {r.second}, n = {r.variables:.0f}' for r in won.itertuples())}.",

@@ -37,7 +37,7 @@ def measure(bench, entries, kind, pairs, loops, tell):
 def _pair(bench, subject, entries, kind, variant, both):
     found = {"loops": subject.loops, "variables": 2 * subject.loops + 2, "implementation": variant,
              "dense": entries.dense[variant], "first": both[0].name, "second": both[1].name,
-             "step": STEP}
+             "step": STEP, "ratio": numpy.nan}
     refused = [entries.refused[variant, one.name] for one in both
                if (variant, one.name) in entries.refused]
     if refused:

@@ -19,7 +19,7 @@ from study.scene_study.references import CLOSED, EXTRAPOLATED, KNOWN, four_bar, 
 # s; above 20 ms nobody keeps 1e-1 m, below 39 us rounding has won or time is up
 STEPS = tuple(8e-2 / 2**halvings for halvings in range(12))
 AROUND = (4, 2, 1, 0.5, 0.25)  # a scene's own first step times these
-JUDGED_S = 1e-2  # the error of a four-bar is evaluated at these times, or at every step that is longer
+JUDGED_S = 1e-2  # the error of a four-bar is evaluated at these times; at every step that is longer than half of it
 ULP = 2.0**-52
 REFERENCE_SECONDS = 300
 COLUMNS = ("subject", "title", "scene", "reference", "own_error", "unit", "own_error_from", "duration")
