@@ -47,11 +47,18 @@ def figures(folder):
                    "data": base64.b64encode(found[name].read_bytes()).decode()} for name in order}
 
 
+def beside(folder):
+    """{title: relative link} of the pages of other studies whose results lie beside `folder`."""
+    pages = sorted(path for path in folder.resolve().parent.glob("*/*.html")
+                   if path.parent.name == path.stem)
+    return {path.stem.capitalize(): f"../{path.stem}/{path.name}" for path in pages}
+
+
 def render(folder):
     results = load(folder)
     ledger = claims(results)
     return page.template(Path(__file__).parent / "report.html.j2", interval=interval).render(
-        context=results.context, run=results.run, registry=results.registry,
+        beside=beside(folder), context=results.context, run=results.run, registry=results.registry,
         figures=figures(folder), sections=SECTIONS, times=tables.step_times(results),
         by_size=summary.by_size(results), dense_from=summary.dense_from(results),
         prices=summary.prices(results), overhead=tables.overhead(results), ledger=ledger,

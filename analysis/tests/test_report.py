@@ -125,3 +125,11 @@ def test_every_figure_of_the_folder_is_on_the_page_in_order(tables):
     (2.5e-7, "2.5·10⁻⁷"), (0, "0")])
 def test_number(value, text):
     assert number(value) == text
+
+
+def test_pages_of_other_studies_beside_it_are_linked(tables):
+    folder = tables[0]
+    assert "Other studies" not in render(folder)
+    (folder.parent / "stability").mkdir()
+    (folder.parent / "stability" / "stability.html").write_text("")
+    assert '<a href="../stability/stability.html">Stability</a>' in render(folder)
