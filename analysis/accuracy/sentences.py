@@ -99,8 +99,8 @@ def of_precision(precision):
         best = same.loc[same.low.idxmax()]
         return [f"Lower precision is nowhere at least {GAIN:g} times faster at the same error class: the best there "
                 f"is {number(best.ratio)} ({number(best.low)} to {number(best.high)}; "
-                f"{best.implementation}, {best.second}, n = {best.variables:.0f}), error {number(best.second_error, 2)} m against "
-                f"{number(best.first_error, 2)} m in double.",
+                f"{best.implementation}, {best.second}, n = {best.variables:.0f}), error "
+                f"{number(best.second_error, 2)} m against {number(best.first_error, 2)} m in double.",
                 f"{len(same)} of {len(rows)} pairs are in the same error class; the passes a step go "
                 f"from {number(same.first_passes_per_step.median(), 2)} to "
                 f"{number(same.second_passes_per_step.median(), 2)} (medians)."]

@@ -126,6 +126,8 @@ def test_a_gain_needs_the_same_class_and_the_whole_interval():
     assert "one/a, mixed, n = 22" in sentences.of_precision(table)[0]
     nowhere = sentences.of_precision(table.iloc[1:3])
     assert nowhere[0].startswith("Lower precision is nowhere") and "1 of 2 pairs" in nowhere[1]
+    assert "three/a" in nowhere[0]  # two/a is faster, but of another class
+    assert sentences.of_precision(table.iloc[[1, 3]]) == ["None of 2 pairs is in the same error class."]
     figure = pairs_figure.draw(table, names.look(REGISTRY + [
         {"folder": name, "variants": [{"name": f"{name}/a"}]} for name in ("three", "four")]), "t", 1.2)
     assert {text.get_text() for text in figure.axes[0].get_legend().get_texts()} == set(table.implementation)
@@ -145,7 +147,8 @@ def test_the_page_says_what_was_refused_and_what_the_reference_is_worth():
                    "unit": "m", "own_error_from": "rounding"},
                   {"subject": "A03", "title": "Andrews", "reference": "none: it diverged", "own_error": None,
                    "unit": None, "own_error_from": None}]
-    regions = pandas.DataFrame([cell("one/a", 1.0), cell("two/a", 9.0, reason="pruned: too slow")])
+    regions = pandas.DataFrame([cell("one/a", 1.0), cell("two/a", 9.0, reason="pruned: too slow"),
+                                cell("two/a", 9.0, reason="over 1 s: diverged: energy")])
     tables = {"work": work(), "gate": pandas.DataFrame(gate), "references": pandas.DataFrame(references),
               "regions": regions, "winners": winners(regions), "fills": pandas.DataFrame(),
               "forms": pandas.DataFrame([pair("one/a", 0.5), pair("two/a", float("nan"))]),
@@ -154,5 +157,5 @@ def test_the_page_says_what_was_refused_and_what_the_reference_is_worth():
     page = report.render(tables, {"contexts": {"own": context}, "inputs": {"duration": 5.0, "time_limit": 4.0}},
                          {"work-four-bar-2": "AAAA"})
     for text in ("one/a, single, four-bar:2: disagrees, free-running", "none: it diverged", "3·10⁻¹⁵",
-                 "1 were pruned", "1 not-run", "1 diverged", "one/a, default (6)", "AAAA"):
+                 "1 were pruned by their pilots and 1 by a run of their own", "1 not-run", "1 diverged", "one/a, default (6)", "AAAA"):
         assert text in page, text

@@ -16,7 +16,7 @@ from study.scene_study import mechanics, metric
 from study.scene_study.extrapolate import extrapolate
 from study.scene_study.references import CLOSED, EXTRAPOLATED, KNOWN, four_bar, kind
 
-# s; above 20 ms nobody keeps 1e-1 m, below 39 us rounding has won or time is up
+# s, from where nobody keeps 1e-1 m
 STEPS = tuple(8e-2 / 2**halvings for halvings in range(12))
 AROUND = (4, 2, 1, 0.5, 0.25)  # a scene's own first step times these
 JUDGED_S = 1e-2  # the error of a four-bar is evaluated at these times; at every step that is longer than half of it
