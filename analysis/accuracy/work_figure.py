@@ -137,5 +137,5 @@ def _key(figure, members):
                     label="upper edge: did not finish (status in work.csv)"),
              Line2D([], [], color=GREY, marker="v", markerfacecolor="none", linestyle="none",
                     label="at most: below the reference's own error")]
-    figure.legend(handles=[*marks, *entries], loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=4,
+    figure.legend(handles=[*marks, *entries], loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=4,
                   fontsize=8, handlelength=1.6, columnspacing=1.2)

@@ -1,12 +1,12 @@
 # How long study/accuracy may take, roughly: what was left out as slow or of no use is an average of past runs.
 from study.accuracy_study import regions, subjects
 
-START = 0.05                # s a process, with the repeats of short runs
+START = 0.06                # s a process, with the repeats of short runs
 SPARSE = 2.5e-7             # s a step and variable, an average of settings
 DENSE = 1e-10               # s a step and cubed variable, more than that
 GATE = 0.4                  # s an implementation and setting
 LEFT = {False: 0.32, True: 0.06}  # share of the work of all sparse, all dense curves that is done
-REPEATS = 1.25              # curves with the runs between steps and the repeated ones near the front
+REPEATS = 1.4               # curves with the runs between steps and the repeated ones near the front
 SCENE_CURVE = 0.2           # s a curve of a standard problem, and
 SCENE_REFERENCE = 6.0       # its reference
 CELL, PAIR = 20.0, 6.0      # s a size and fill of the regions; a pair of settings
