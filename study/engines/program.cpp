@@ -1,0 +1,169 @@
+// The command line of an engine's program, the loop that is timed, and the line of JSON.
+#include <CLI/CLI.hpp>
+#include <cctype>
+#include <chrono>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "engine.hpp"
+#include "judge.hpp"
+
+namespace engines {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using nlohmann::json;
+
+struct Options {
+  int loops = 0;
+  bool pendulum = false, as_json = false;
+  double duration = 5.0;
+  std::vector<std::string> settings;
+};
+
+/// Times at which the points were seen, and where they were.
+struct Samples {
+  std::vector<double> t;
+  std::vector<std::vector<double>> points;  // x0, y0, x1, ... of each time
+};
+
+struct Run {
+  double reached = 0.0, seconds = 0.0, setup_seconds = 0.0;
+  long judged = 0;
+  Samples samples;
+};
+
+std::string first_complaint;
+long complaints = 0;
+
+double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+/// At most 300 characters of `text`, each run of white space a blank.
+std::string in_a_line(const std::string& text) {
+  std::string line;
+  for (const char c : text) {
+    const bool blank = std::isspace(static_cast<unsigned char>(c)) != 0;
+    if (!blank || (!line.empty() && line.back() != ' ')) line += blank ? ' ' : c;
+  }
+  return line.substr(0, 300);
+}
+
+void sample(Samples& samples, const Mechanism& mechanism, double t,
+            const std::vector<RodState>& states) {
+  samples.t.push_back(t);
+  samples.points.emplace_back();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(mechanism.points); ++i) {
+    const double half = mechanism.rods[i].length / 2;
+    samples.points.back().push_back(states[i].x + half * states[i].cosine);
+    samples.points.back().push_back(states[i].y + half * states[i].sine);
+  }
+}
+
+/// Advances to the end or until the motion is lost. Only advance() is timed: states are read and
+/// judged while the clock stands still.
+void simulate(Engine& engine, const Mechanism& mechanism, double duration, Judge& judge, Run& run) {
+  std::vector<RodState> states(mechanism.rods.size());
+  while (run.reached < duration) {
+    const auto begin = Clock::now();
+    run.reached = engine.advance(duration);
+    run.seconds += seconds(Clock::now() - begin);
+    ++run.judged;
+    engine.read(states);
+    if (!judge.judge(run.reached, states)) return;
+    if (mechanism.four_bar_loops == 0) sample(run.samples, mechanism, run.reached, states);
+  }
+  judge.conclude();
+}
+
+json report(const Program& program, const Options& options, const Judge& judge, const Run& run) {
+  json settings = json::object();
+  for (const std::string& word : options.settings)
+    settings[word.substr(0, word.find('='))] = word.substr(word.find('=') + 1);
+  const bool lost = judge.status() != "ok" && judge.status() != "degraded";
+  json line{
+      {"engine", program.engine},
+      {"version", program.version},
+      {"setting", settings},
+      {"scene", options.pendulum ? "double-pendulum" : "four-bar:" + std::to_string(options.loops)},
+      {"loops", options.loops},
+      {"duration", options.duration},
+      {"status", judge.status()},
+      {"status_reason", judge.reason()},
+      {"failed_at", lost ? json(run.reached) : json(nullptr)},
+      {"position_error_max",
+       judge.position_error() ? finite_or_null(*judge.position_error()) : json(nullptr)},
+      {"energy_drift_max", finite_or_null(judge.energy_drift())},
+      {"joint_gap_max", finite_or_null(judge.gap())},
+      {"judged", run.judged},
+      {"setup_seconds", run.setup_seconds},
+      {"seconds", run.seconds},
+      {"time", run.reached > 0.0 ? json(run.seconds / run.reached) : json(nullptr)},
+      {"complaints", complaints},
+      {"first_complaint", first_complaint},
+      {"compiler", "GCC " __VERSION__}};
+  if (options.pendulum) line["outputs"] = {{"t", run.samples.t}, {"points", run.samples.points}};
+  return line;
+}
+
+int run_it(const Program& program, const Options& options) {
+  const Mechanism mechanism = options.pendulum ? double_pendulum() : four_bar(options.loops);
+  Settings settings(options.settings);
+  Judge judge(mechanism);
+  Run run;
+  try {
+    const auto begin = Clock::now();
+    const auto engine = program.create(mechanism, settings, options.duration);
+    run.setup_seconds = seconds(Clock::now() - begin);
+    settings.require_all_taken();
+    simulate(*engine, mechanism, options.duration, judge, run);
+  } catch (const UsageError&) {
+    throw;
+  } catch (const std::exception& error) {
+    judge.lose("diverged", "the engine gave up: " + in_a_line(error.what()));
+  }
+  const json line = report(program, options, judge, run);
+  if (options.as_json) {
+    std::cout << line.dump() << '\n';
+  } else {
+    for (const char* key : {"status", "status_reason", "position_error_max", "energy_drift_max",
+                            "joint_gap_max", "time", "first_complaint"})
+      std::cout << key << ": " << line[key].dump() << '\n';
+  }
+  return judge.status() == "ok" || judge.status() == "degraded" ? 0 : 1;
+}
+
+}  // namespace
+
+void note_complaint(const std::string& text) {
+  if (complaints++ == 0) first_complaint = in_a_line(text);
+}
+
+int run_program(const Program& program, int argc, char** argv) {
+  CLI::App app{program.engine + " " + program.version +
+               ": the N-four-bar mechanism or the double pendulum"};
+  Options options;
+  auto* loops =
+      app.add_option("--loops", options.loops, "N of the N-four-bar")->check(CLI::Range(1, 10000));
+  app.add_flag("--pendulum", options.pendulum, "the double pendulum instead")->excludes(loops);
+  app.add_option("--duration", options.duration, "simulated time, s")->check(CLI::Range(1e-3, 1e4));
+  app.add_option("--setting", options.settings, "KEY=VALUE ... (study/engines/README.md)");
+  app.add_flag("--json", options.as_json, "one line of JSON");
+  try {
+    app.parse(argc, argv);
+    if (options.loops == 0 && !options.pendulum)
+      throw UsageError("--loops or --pendulum is required");
+    return run_it(program, options);
+  } catch (const CLI::CallForHelp&) {
+    std::cout << app.help();
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    std::cerr << "engine_" << program.engine << ": " << error.what() << '\n';
+  } catch (const UsageError& error) {
+    std::cerr << "engine_" << program.engine << ": " << error.what() << '\n';
+  }
+  return 2;
+}
+
+}  // namespace engines
