@@ -68,7 +68,7 @@ def run(layout, options):
 
     def store(name, rows):
         write_csv(layout.results / f"{name}.csv", pandas.DataFrame(rows))
-    entries = _admit(place, contenders, choice, store, tell)
+    entries = admit(place, contenders, choice, store, tell)
     tables = _work(place, entries, choice, store, tell)
     if "regions" in choice.parts:
         store("fills", fills.check(place, entries, tell))
@@ -81,7 +81,7 @@ def run(layout, options):
     tell.end()
 
 
-def _admit(place, contenders, choice, store, tell):
+def admit(place, contenders, choice, store, tell):
     """The gate of every setting; Entries with what it refuses."""
     rows = []
     for setting in settings.read_list():

@@ -45,7 +45,7 @@ def _curve(bench, subject, variant, setting, entries, known):
         return [left_out(subject, variant, setting, numpy.nan, reason)]
     rows, ahead = [], 0.0
     for step in subject.steps:
-        reason = _too_long(ahead, bench.time_limit) or _of_no_use(rows, known)
+        reason = too_long(ahead, bench.time_limit) or of_no_use(rows, known)
         if reason:
             rows.append(left_out(subject, variant, setting, step, reason))
             continue
@@ -56,14 +56,15 @@ def _curve(bench, subject, variant, setting, entries, known):
     return rows
 
 
-def _too_long(ahead, limit):
+def too_long(ahead, limit):
+    """Why a run that is predicted to take `ahead` s is not made, or ""."""
     if ahead <= limit:
         return ""
     return (f"predicted to take {ahead:.1f} s, the limit is {limit:g} s" if numpy.isfinite(ahead) else
             "the run at twice the step did not end")
 
 
-def _of_no_use(rows, known):
+def of_no_use(rows, known):
     """Why a curve is not followed further: two halvings of the step in turn have not made the error smaller, or
     it is far from the front and no nearer than before."""
     made = [one for one in rows if one["rounds"]][-3:]

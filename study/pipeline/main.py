@@ -30,6 +30,8 @@ STUDIES = {"view": "study.viewer.main", "scenes": "study.scene_study.main",
 def main(arguments):
     command, *rest = arguments
     try:
+        if command == "run" and "--engines" in rest:
+            return importlib.import_module("study.engines.main").engines(rest)
         if command in STUDIES:  # imported only now: they need modules that others do without
             return getattr(importlib.import_module(STUDIES[command]), command)(rest)
         return {"run": run, "figures": figures, "compare": compare}[command](rest)
@@ -52,6 +54,8 @@ def run(arguments):
     parser.add_argument("--list", action="store_true", help="list profiles and implementations")
     parser.add_argument("--results", metavar="DIR",
                         help="results directory (results/local/PROFILE)")
+    parser.add_argument("--engines", nargs="*", metavar="ENGINE",
+                        help="something else: other engines beside ours (study/run --engines --help)")
     options = parser.parse_args(arguments)
     if options.list:
         return list_choices()
