@@ -41,8 +41,8 @@ def _parser():
                         help="only these implementations of ours (folder or folder/variant)")
     parser.add_argument("--duration", type=positive, default=5.0, metavar="S",
                         help="simulated time of the N-four-bar (5 s: past five singular positions)")
-    parser.add_argument("--time-limit", type=positive, default=10.0, metavar="S",
-                        help="a run that is predicted to take longer is not run (10 s)")
+    parser.add_argument("--time-limit", type=positive, default=4.0, metavar="S",
+                        help="a run that is predicted to take longer is not run (4 s)")
     parser.add_argument("--results", metavar="DIR", help="results directory (results/local/engines)")
     parser.add_argument("--dry-run", action="store_true", help="say what would run and how long")
     parser.add_argument("--stored", action="store_true",

@@ -33,18 +33,33 @@ std::string body(const Mechanism& mechanism, int i) {
   return xml + "</body>\n";
 }
 
-/// Newton's iterations and tolerance are those at which it is exact; collisions are off as nothing
-/// collides.
+/// solref: time constant (s) and damping ratio; solimp: impedance, the same at any violation.
+std::string closures(const Mechanism& mechanism, Settings& settings, double step) {
+  const double steps = settings.number("timeconst-steps", 0.0);
+  const double constant = steps > 0.0 ? steps * step : 0.02;  // MuJoCo's own value
+  const double impedance = settings.number("impedance", 0.0);
+  const std::string solimp =
+      impedance > 0.0 ? text("solimp='%.17g %.17g 0.001'", impedance, impedance) : "";
+  std::string xml;
+  for (const Loop& loop : mechanism.loops) {
+    xml += text("<connect body1='r%d' body2='r%d' anchor='%.17g 0 0' solref='%.17g 1' %s/>\n",
+                loop.rod, loop.other, mechanism.rods[static_cast<std::size_t>(loop.rod)].length,
+                constant, solimp.c_str());
+  }
+  return xml;
+}
+
+/// Collisions are off, as nothing collides.
 std::string model_xml(const Mechanism& mechanism, Settings& settings) {
   const std::vector<std::string> integrators{"Euler", "RK4", "implicit"},
       solvers{"Newton", "CG", "PGS"};
   const double step = settings.positive("step", 2e-3);  // MuJoCo's own values here and below
   std::string xml = "<mujoco><compiler angle='radian' inertiafromgeom='false'/>\n";
   xml += text(
-      "<option timestep='%.17g' gravity='0 %.17g 0' integrator='%s' solver='%s' iterations='%g' "
+      "<option timestep='%.17g' gravity='0 %.17g 0' integrator='%s' solver='%s' "
       "tolerance='%g'><flag contact='disable' refsafe='%s'/></option>\n",
       step, -kGravity, integrators[settings.choice("integrator", integrators)].c_str(),
-      solvers[settings.choice("solver", solvers)].c_str(), settings.positive("iterations", 100),
+      solvers[settings.choice("solver", solvers)].c_str(),
       settings.number("solver-tolerance", 1e-8),
       settings.choice("refsafe", {"on", "off"}) == 0 ? "enable" : "disable");
   xml += "<worldbody>\n";
@@ -52,20 +67,7 @@ std::string model_xml(const Mechanism& mechanism, Settings& settings) {
     if (mechanism.rods[static_cast<std::size_t>(i)].parent < 0) xml += body(mechanism, i);
   }
   xml += "</worldbody>\n<equality>\n";
-  // solref: time constant, in steps or s, and damping ratio; solimp: impedance, the same at any
-  // violation.
-  const double steps = settings.number("timeconst-steps", 0.0);
-  const double constant = steps > 0.0 ? steps * step : settings.positive("timeconst", 0.02);
-  const double ratio = settings.positive("dampratio", 1.0),
-               impedance = settings.number("impedance", 0.0);
-  const std::string solimp =
-      impedance > 0.0 ? text("solimp='%.17g %.17g 0.001'", impedance, impedance) : "";
-  for (const Loop& loop : mechanism.loops) {
-    xml += text("<connect body1='r%d' body2='r%d' anchor='%.17g 0 0' solref='%.17g %.17g' %s/>\n",
-                loop.rod, loop.other, mechanism.rods[static_cast<std::size_t>(loop.rod)].length,
-                constant, ratio, solimp.c_str());
-  }
-  return xml + "</equality></mujoco>\n";
+  return xml + closures(mechanism, settings, step) + "</equality></mujoco>\n";
 }
 
 struct DeleteModel {

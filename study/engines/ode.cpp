@@ -14,14 +14,13 @@ class OdeEngine final : public FixedStepEngine {
   OdeEngine(const Mechanism& mechanism, Settings& settings)
       : FixedStepEngine(settings), mechanism_(mechanism), world_(dWorldCreate()) {
     dWorldSetGravity(world_, 0, -kGravity, 0);
-    // ODE's own values for double precision, but 20 iterations and 1.3 are those of QuickStep.
+    // ODE's own values for double precision.
     dWorldSetERP(world_, settings.number("erp", 0.2));
     dWorldSetCFM(world_, settings.number("cfm", 1e-10));
     quick_ = settings.choice("method", {"step", "quickstep"}) == 1;
     if (quick_) {
       dWorldSetQuickStepNumIterations(world_,
                                       static_cast<int>(settings.positive("iterations", 20)));
-      dWorldSetQuickStepW(world_, settings.positive("over-relaxation", 1.3));
     }
     finite_rotation_ = settings.choice("rotation", {"infinitesimal", "finite"}) == 1;
     planar_ = settings.choice("plane", {"free", "plane2d"}) == 1;

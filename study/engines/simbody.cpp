@@ -36,10 +36,9 @@ class SimbodyEngine final : public Engine {
 
   void read(std::vector<RodState>& states) const override {
     const State& state = integrator_->getState();
-    for (const auto& body : bodies_) {
-      const auto i = static_cast<std::size_t>(&body - bodies_.data());
-      angles_[i] = body.getAngle(state);
-      rates_[i] = body.getRate(state);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      angles_[i] = bodies_[i].getAngle(state);
+      rates_[i] = bodies_[i].getRate(state);
     }
     states_of_joints(mechanism_, angles_, rates_, states);
   }

@@ -13,7 +13,7 @@ from study.pipeline.prepare import digest, registry, start_named
 from study.pipeline.progress import Teller
 
 LOOPS = (1, 2, 5, 10, 20, 40)
-CURVE_S = 6.0    # an engine's curve of one N-four-bar takes about this, and twice that with the rounds
+CURVE_S = 3.0    # of the time limit: a setting's curves of one size, long and short, and its share of the rounds
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def sentence(choice, listed):
     """How long it may take, on a quiet machine."""
     number, seconds = estimate.total(choice)
     settings_count = sum(map(len, listed.values()))
-    theirs = 2 * CURVE_S * settings_count * len(choice.loops["work"]) * choice.time_limit / 10
+    theirs = CURVE_S * choice.time_limit * settings_count * len(choice.loops["work"])
     return (f"{len(listed)} engines, {settings_count} settings, beside {len(choice.served)} implementations, "
             f"{number} curves: about {max(1, round((1.3 * seconds + theirs) / 60))} minutes on a quiet machine")
 

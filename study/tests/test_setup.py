@@ -17,12 +17,12 @@ def stand_ins():
         yield Path(folder)
 
 
-def run_setup(stand_ins, installed, *, user=None):
+def run_setup(stand_ins, installed, *more, user=None):
     for name, text in (("dpkg-query", installed), ("apt-get", 'echo "apt-get $*" >> "$0.log"')):
         (stand_ins / name).write_text(f"#!/bin/bash\n{text}\n")
         (stand_ins / name).chmod(0o755)
     command = ["setpriv", "--reuid", "65534", "--clear-groups"] if user else []
-    return subprocess.run([*command, "/bin/bash", ROOT / "study/setup", "--no-build"], text=True,
+    return subprocess.run([*command, "/bin/bash", ROOT / "study/setup", "--no-build", *more], text=True,
                           capture_output=True, env={"PATH": f"{stand_ins}:/usr/bin:/bin"})
 
 
@@ -40,6 +40,18 @@ def test_root_installs_what_is_missing(stand_ins):
     assert run_setup(stand_ins, ALL_BUT_CMAKE).returncode == 0
     log = (stand_ins / "apt-get.log").read_text().splitlines()
     assert log == ["apt-get update -q", "apt-get install -y --no-install-recommends cmake"]
+
+
+ALL_BUT_ENGINES = 'for p in "$@"; do [[ $p == -* || $p == lib@(simbody|ode)-dev ]] || printf "ii %s " "$p"; done'
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="installing needs root")
+def test_engines_are_installed_only_when_asked_for(stand_ins):
+    assert run_setup(stand_ins, ALL_BUT_ENGINES).returncode == 0
+    assert not (stand_ins / "apt-get.log").exists()
+    assert run_setup(stand_ins, ALL_BUT_ENGINES, "--engines").returncode == 0
+    log = (stand_ins / "apt-get.log").read_text().splitlines()
+    assert log[1] == "apt-get install -y --no-install-recommends libsimbody-dev libode-dev"
 
 
 def test_others_are_told_the_command(stand_ins):
