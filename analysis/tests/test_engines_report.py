@@ -31,7 +31,7 @@ ENGINES = pandas.DataFrame([
     theirs("ode", "step", 1e-2, 1.0, 5e-3, subject=SHORT)])
 OURS = pandas.DataFrame([
     ours("default", 1e-2, 0.1, 2e-2), ours("default", 5e-3, 0.2, 1e-4), ours("kept", 1e-2, 0.05, 3e-2),
-    ours("kept", 5e-3, 0.15, 5e-3), ours("default", 1e-2, 0.001, 9.0, status="diverged"),
+    ours("kept", 5e-3, 0.15, 5e-3), ours("loose", 5e-3, 0.12, 8e-3), ours("default", 1e-2, 0.001, 9.0, status="diverged"),
     ours("default", 1e-2, 0.5, 4e-3, subject=SHORT)])
 
 
@@ -58,7 +58,7 @@ def test_ours_is_the_fastest_at_the_engine_s_own_error_or_a_smaller_one():
     loose = row(found, "ode", 1e-1)
     assert (loose["engine_value"], loose["setting"], loose["step"]) == (1e-2, "kept", 1e-2)
     assert loose["ratio"] == pytest.approx(1.0 / 0.05) and loose["low"] <= loose["ratio"] <= loose["high"]
-    assert row(found, "ode", 1e-2)["setting"] == "kept"  # 5e-3 is as good as the engine's 6e-3
+    assert row(found, "ode", 1e-2)["setting"] == "kept"  # its 5e-3 is as good as the engine's 6e-3, 8e-3 is not
     assert row(found, "bullet", 1e-3)["setting"] == "default"  # 5e-3 is not as good as its 2e-4
     assert row(found, "ode", 1e-1, "paper")["setting"] == "default"
     assert row(found, "ode", 1e-1, "paper")["ratio"] == pytest.approx(1.0 / 0.1)
@@ -82,6 +82,9 @@ def test_the_times_that_count_are_those_of_the_rounds():
     lost = rounds()
     lost.loc[lost.setting == "kept", "time"] = None
     assert row(table(ENGINES, OURS, lost), "ode", 1e-1)["setting"] == "default"
+    lost = rounds()
+    lost.loc[(lost.setting == "kept") & (lost["round"] == 2), "time"] = None
+    assert row(table(ENGINES, OURS, lost), "ode", 1e-1)["time"] == pytest.approx(0.05)  # of the round it has
 
 
 def test_candidates_are_what_may_be_the_fastest_of_either_scope():
@@ -91,7 +94,7 @@ def test_candidates_are_what_may_be_the_fastest_of_either_scope():
     assert list(long.loc[engines_index].value) == [1e-2, 5e-3, 2.5e-3, 1e-2]
     assert sorted(zip(mine.loc[ours_index].setting, mine.loc[ours_index].step)) == [
         ("default", 5e-3), ("default", 1e-2), ("kept", 5e-3), ("kept", 1e-2)]
-    assert 4 not in ours_index  # it diverged
+    assert mine.loc[ours_index].status.eq('ok').all()  # one that diverged is faster
 
 
 def test_sentences_give_the_worst_ratio_and_what_was_lost():
@@ -116,7 +119,7 @@ def test_the_figure_has_fronts_and_the_runs_that_were_lost():
     crosses = [line for line in axes.get_lines() if line.get_marker() == "x" and len(line.get_xdata())]
     assert [list(line.get_xdata()) for line in crosses] == [[0.1]]
     black = [list(line.get_ydata()) for line in axes.get_lines() if line.get_color() == "black"]
-    assert black == [[3e-2, 2e-2, 5e-3, 1e-4], [2e-2, 1e-4]]  # all; the paper's scheme alone
+    assert black == [[3e-2, 2e-2, 8e-3, 5e-3, 1e-4], [2e-2, 1e-4]]  # all; the paper's scheme alone
     assert "Simbody: Pareto front" in {text.get_text() for text in drawn.legends[0].get_texts()}
     plt.close(drawn)
 
@@ -131,6 +134,8 @@ def test_the_page_shows_ratios_failures_and_what_is_missing():
     for text in ("does not reach it", "1 wrong-branch", "LCP failed", "libsimbody-dev is not there", "AAAA",
                  "2 checks, 1 refused", "reaches none", 'class="bad">2<'):
         assert text in page, text
+    first = report._wide(tables["equal_error"])[0]
+    assert (first["setting"], first["paper"]["setting"]) == ("kept", "default")
     assert report.panels(references) == {"singular": {LONG: "long"}, "regular": {SHORT: "short"}}
 
 

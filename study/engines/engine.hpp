@@ -1,6 +1,7 @@
 // What an engine's program provides: a model of a mechanism that can be advanced and read.
 #pragma once  // C++17, as Simbody's headers do not compile as C++20
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
