@@ -1,4 +1,4 @@
-# Times at equal error: each engine's fastest run that meets an error, and ours at that run's own error or a smaller one.
+# Times at equal error: each engine's fastest run that meets an error, and ours at that run's error or a smaller one.
 #
 # engines.csv and work.csv hold single runs, which choose the candidates; rounds.csv holds the times that are compared.
 import numpy

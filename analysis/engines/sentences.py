@@ -28,12 +28,14 @@ def of_ratios(table, regular):
         where = "Without singular positions" if kind else "Past singular positions"
         timed = rows[rows.ratio.notna()]
         holds = int((timed.ratio >= least).sum())
-        text = f"{where} ours takes at least {least} times less time in {holds} of {len(rows)} comparisons at equal error"
+        text = (f"{where} ours takes at least {least} times less time in {holds} of {len(rows)} comparisons at "
+                "equal error")
         if len(timed):
             worst = timed.loc[timed.ratio.idxmin()]
             text += (f"; the smallest ratio is {number(worst.ratio, 2)} ({number(worst.low, 2)} to "
                      f"{number(worst.high, 2)}), against {name(worst.engine)} ({worst.engine_setting}, "
-                     f"{value(worst.over, worst.engine_value)}) on {worst.subject} at {number(worst.engine_error, 2)} m")
+                     f"{value(worst.over, worst.engine_value)}) on {worst.subject} at "
+                     f"{number(worst.engine_error, 2)} m")
         if len(timed) < len(rows):
             text += f"; {len(rows) - len(timed)} of its errors ours does not reach"
         said.append(text + ".")

@@ -11,8 +11,8 @@ LONG, SHORT = "four-bar:2", "four-bar:2 regular"
 
 def theirs(engine, setting, value, time, error, status="ok", subject=LONG, **more):
     done = status in ("ok", "degraded")
-    return {"subject": subject, "loops": 2, "engine": engine, "setting": setting, "over": "step", "value": value,
-            "status": status, "status_reason": "" if done else "because", "rounds": 1, "time": time,
+    return {"subject": subject, "loops": 2, "engine": engine, "setting": setting, "over": "step",
+            "value": value, "status": status, "status_reason": "" if done else "because", "rounds": 1, "time": time,
             "error": error if done else None, "version": "1.0", "first_complaint": None, "raw_file": f"raw/{engine}",
             "command": f"engine_{engine}"} | more
 
@@ -31,7 +31,8 @@ ENGINES = pandas.DataFrame([
     theirs("ode", "step", 1e-2, 1.0, 5e-3, subject=SHORT)])
 OURS = pandas.DataFrame([
     ours("default", 1e-2, 0.1, 2e-2), ours("default", 5e-3, 0.2, 1e-4), ours("kept", 1e-2, 0.05, 3e-2),
-    ours("kept", 5e-3, 0.15, 5e-3), ours("loose", 5e-3, 0.12, 8e-3), ours("default", 1e-2, 0.001, 9.0, status="diverged"),
+    ours("kept", 5e-3, 0.15, 5e-3), ours("loose", 5e-3, 0.12, 8e-3),
+    ours("default", 1e-2, 0.001, 9.0, status="diverged"),
     ours("default", 1e-2, 0.5, 4e-3, subject=SHORT)])
 
 
@@ -125,8 +126,9 @@ def test_the_figure_has_fronts_and_the_runs_that_were_lost():
 
 
 def test_the_page_shows_ratios_failures_and_what_is_missing():
-    references = pandas.DataFrame([{"subject": name, "title": title, "reference": "closed form", "own_error": 3e-15,
-                                    "own_error_from": "rounding"} for name, title in ((LONG, "long"), (SHORT, "short"))])
+    references = pandas.DataFrame([
+        {"subject": name, "title": title, "reference": "closed form", "own_error": 3e-15,
+         "own_error_from": "rounding"} for name, title in ((LONG, "long"), (SHORT, "short"))])
     tables = {"engines": ENGINES, "work": OURS, "references": references, "equal_error": table(
         ENGINES, OURS, rounds()), "gate": pandas.DataFrame([{"takes_part": False}, {"takes_part": True}])}
     context = {"compiler": "c", "commit": "0", "cpu_model": "a machine"}
