@@ -13,14 +13,13 @@ NAMES = {"simbody": "Simbody", "mujoco": "MuJoCo", "ode": "Open Dynamics Engine"
 OURS = {"all": {"color": "black", "linewidth": 2.4, "label": "ours, every scheme and setting"},
         "paper": {"color": "black", "linewidth": 1.5, "linestyle": (0, (4, 1.5)),
                   "label": "ours, the paper's scheme alone"}}
-COLUMNS = 3
 
 
 def draw(engines, ours, titles):
     """The figure of the subjects in `titles` ({subject: title}), from rows of engines.csv and work.csv."""
-    lines = -(-len(titles) // COLUMNS)
-    columns = min(COLUMNS, len(titles))
-    figure, panels = plt.subplots(lines, columns, figsize=(5.2 * columns, 4.1 * lines + 0.7), squeeze=False,
+    columns = 4 if len(titles) in (4, 7, 8) else min(3, len(titles))  # no panel is alone in its line
+    lines = -(-len(titles) // columns)
+    figure, panels = plt.subplots(lines, columns, figsize=(min(5.2 * columns, 17.5), 4.1 * lines + 0.7), squeeze=False,
                                   sharex=True, sharey=True)
     figure.subplots_adjust(wspace=0.06, hspace=0.2)
     for axes in panels.flat[len(titles):]:
@@ -37,9 +36,9 @@ def draw(engines, ours, titles):
         axes.tick_params(labelbottom=True)
     for axes in panels[:, 0]:
         axes.set_ylabel("largest position error, m")
-    for axes in panels[-1]:
+    for axes in panels.flat[max(0, len(titles) - columns):len(titles)]:  # the lowest of each column
         axes.set_xlabel("computation for a simulated second, s")
-    _key(figure, engines.engine.unique())
+    _key(figure, engines.engine.unique(), lines)
     return figure
 
 
@@ -66,7 +65,7 @@ def look(engine, place):
     return COLOURS.get(engine, GREY), MARKERS[place % len(MARKERS)]
 
 
-def _key(figure, engines):
+def _key(figure, engines, lines):
     entries = [Line2D([], [], **line) for line in OURS.values()]
     for place, engine in enumerate(engines):
         colour, marker = look(engine, place)
@@ -75,6 +74,5 @@ def _key(figure, engines):
                        label="other runs of an engine"),
                 Line2D([], [], color=GREY, marker="x", linestyle="none",
                        label="upper edge: lost the motion (status in engines.csv)")]
-    figure.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, 0.06 if len(figure.axes) > COLUMNS
-                                                                       else 0.0),
-                  ncols=4, fontsize=9, handlelength=2.4)
+    figure.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, 0.1 - 0.1 / lines), ncols=4,
+                  fontsize=9, handlelength=2.4)

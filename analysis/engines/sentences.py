@@ -56,7 +56,7 @@ def of_engines(engines):
         best = "none finished" if done.empty else (
             f"{number(done.error.min(), 2)} m is the smallest error ({done.loc[done.error.idxmin()].subject})")
         said.append(f"{name(engine)} {made.version.dropna().iloc[0] if made.version.notna().any() else ''}: "
-                    f"{len(made)} runs; {best}; {kinds or 'none'} lost.")
+                    f"{len(made)} runs; {best}; not finished: {kinds or 'none'}.")
     return said
 
 
