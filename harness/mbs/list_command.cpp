@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "environment/blas.hpp"
+#include "limit/limit.hpp"
 #include "mbs/commands.hpp"
 #include "registry/registry.hpp"
 #include "run/setting_names.hpp"
@@ -48,7 +49,10 @@ nlohmann::json list_json() {
                                {"reason", entry.unavailable},
                                {"variants", variants}});
   }
-  return {{"implementations", implementations}, {"blas", blas_json()}};
+  return {
+      {"implementations", implementations},
+      {"reference_line", {{"name", limit::kName}, {"description", limit::variant().description}}},
+      {"blas", blas_json()}};
 }
 
 void print_list() {
@@ -66,6 +70,8 @@ void print_list() {
       if (!served.empty()) fmt::print("{:<24} also {}\n", "", fmt::join(served, ", "));
     }
   }
+  fmt::print("\nReference line, only if named:\n{:<24} {}\n", limit::kName,
+             limit::variant().description);
   fmt::print("\nBLAS and LAPACK (--blas NAME):\n");
   for (const BlasPair& pair : blas_pairs()) {
     const std::string reason = why_unavailable(pair);

@@ -6,9 +6,15 @@
 
 #include <algorithm>
 
+#include "limit/limit.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
+namespace {
+
+bool is_limit(const std::string& name) { return name == "limit" || name == limit::kName; }
+
+}  // namespace
 
 std::vector<NamedVariant> all_variants() {
   std::vector<NamedVariant> result;
@@ -25,6 +31,7 @@ std::vector<NamedVariant> select_variants(const std::vector<std::string>& names)
   if (names.empty()) return all;
   std::vector<NamedVariant> result;
   for (const std::string& name : names) {
+    if (is_limit(name)) continue;
     for (const RegistryEntry& entry : registry()) {
       if (entry.folder == name.substr(0, name.find('/')) && !entry.unavailable.empty()) {
         throw UsageError(
@@ -46,6 +53,9 @@ std::vector<NamedVariant> select_variants(const std::vector<std::string>& names)
       return variant.name == name || variant.entry->folder == name;
     };
     if (std::ranges::any_of(names, wanted)) result.push_back(variant);
+  }
+  if (std::ranges::any_of(names, is_limit)) {
+    result.push_back({limit::kName, nullptr, &limit::variant()});
   }
   return result;
 }

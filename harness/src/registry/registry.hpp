@@ -22,7 +22,7 @@ const std::vector<RegistryEntry>& registry();
 /// One runnable variant and the name it goes by everywhere, "folder/variant".
 struct NamedVariant {
   std::string name;
-  const RegistryEntry* entry = nullptr;
+  const RegistryEntry* entry = nullptr;  ///< none for the limit code
   const Variant* variant = nullptr;
 };
 
@@ -31,7 +31,8 @@ std::vector<NamedVariant> all_variants();
 
 /// The variants that `names` select, in order: "folder/variant", or "folder" for all of its
 /// variants; an empty list selects everything available. Throws UsageError with the known names if
-/// one is unknown, or with the reason if it is unavailable.
+/// one is unknown, or with the reason if it is unavailable. "limit" or "limit/limit" adds the code
+/// of limit/, which an empty list never does.
 std::vector<NamedVariant> select_variants(const std::vector<std::string>& names);
 
 inline RegistryEntry available(std::string folder, Implementation implementation) {
