@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "limit/storage.hpp"
@@ -21,17 +22,23 @@ class Chain {
   void get_state(State& state) const;
   StepOutcome step();
 
+  [[nodiscard]] std::span<const Block<V>> blocks() const { return blocks_; }
+
  private:
   template <bool kFirst>
   void pass();
   template <bool kFirst, bool kPadded>
-  void eliminate(std::size_t i, const Place<V>& place, Carry<V>& carry);
+  void sweep();
   template <bool kFirst>
-  void take_next(Block<V>& next, Carry<V>& carry) const;
+  Own<V> take(Block<V>& block) const;
   template <bool kFirst>
   V tension(const V& violation, V& multiplier) const;
+  template <bool kFirst, bool kPadded>
+  Evaluated<V> evaluate(std::size_t i, const Place<V>& place, Own<V>& own);
+  template <bool kPadded>
+  Pivot<V> pivot(const Evaluated<V>& at, const Eliminated<V>& last) const;
   template <bool kFirst>
-  void solve_middle(const Carry<V>& carry);
+  void solve_middle(const Own<V>& own, const Eliminated<V>& last, const Planar<V>& left);
   bool substitute_back();
   template <class Side>
   void project();
@@ -50,7 +57,7 @@ class Chain {
   int loops_;
   int max_passes_;
   std::size_t depth_;         // blocks before the middle one
-  double s_, h_, tolerance_;  // m^-1 of README.md's units; s; of s Delta q
+  double s_, h_, tolerance_;  // m^-1 of README.md's units; s; of 2 s Delta q
   ChainConstants<V> constants_;
   Place<V> first_, second_, interior_, middle_;
   std::vector<Block<V>> blocks_;    // depth_ + 1, the middle one in both lanes

@@ -5,120 +5,158 @@
 
 namespace mbs::limit {
 
-/// A rod's or coupler's force over its direction, from s^2 Phi, and lambda <- lambda + alpha Phi of
-/// the pass before, which the same Phi serves: Eq. (1).
+/// Twice a rod's or coupler's force over its direction, from s^2 Phi; and lambda <- lambda + alpha
+/// Phi of the pass before, which the same Phi serves: Eq. (1).
 template <class V>
 template <bool kFirst>
 MBS_LIMIT_INLINE V Chain<V>::tension(const V& violation, V& multiplier) const {
   V lambda = load(multiplier);
   if constexpr (!kFirst) {
-    lambda = fma(constants_.half, violation, lambda);
+    lambda = lambda + violation;
     store(multiplier, lambda);
   }
-  return fma(constants_.half, violation, lambda);
+  return lambda + violation;
 }
 
-/// Loads the block that comes next; in a step's first pass it is predicted on the way.
+/// A block's own numbers; in a step's first pass they are predicted on the way.
 template <class V>
 template <bool kFirst>
-MBS_LIMIT_INLINE void Chain<V>::take_next(Block<V>& next, Carry<V>& carry) const {
-  carry.x = load(next.x), carry.y = load(next.y);
-  carry.ux = load(next.ux), carry.uy = load(next.uy);
+MBS_LIMIT_INLINE Own<V> Chain<V>::take(Block<V>& block) const {
+  Own<V> own{load(block.x), load(block.y), load(block.ux), load(block.uy)};
   if constexpr (kFirst) {
-    const V wx = load(next.wx) + carry.ux, wy = load(next.wy) + carry.uy;
-    carry.x = fma(constants_.two, wx, carry.x), carry.y = fma(constants_.two, wy, carry.y);
-    store(next.wx, wx), store(next.wy, wy);
-    store(next.x, carry.x), store(next.y, carry.y);
+    const V wx = load(block.wx) + own.ux, wy = load(block.wy) + own.uy;
+    own.x = own.x + wx, own.y = own.y + wy;
+    store(block.wx, wx), store(block.wy, wy);
+    store(block.x, own.x), store(block.y, own.y);
   }
+  return own;
 }
 
-/// Evaluates block i and the coupler behind it, Eqs. (3), (5) and (7), and eliminates the block.
+/// Block i, whose own numbers are in `own`, and the coupler behind it: Eqs. (3), (5) and (7), but
+/// for what elimination brings.
 template <class V>
 template <bool kFirst, bool kPadded>
-MBS_LIMIT_INLINE void Chain<V>::eliminate(std::size_t i, const Place<V>& place, Carry<V>& carry) {
+MBS_LIMIT_INLINE Evaluated<V> Chain<V>::evaluate(std::size_t i, const Place<V>& place,
+                                                 Own<V>& own) {
   Block<V>& block = blocks_[i];
-  const Carry<V> own = carry;
-  take_next<kFirst>(blocks_[i + 1], carry);
+  const Own<V> next = take<kFirst>(blocks_[i + 1]);
   const auto kept = [this](const V& a) { return kPadded ? a * constants_.pad : a; };
-
-  const V ex = carry.x - own.x + constants_.offset, ey = carry.y - own.y;
-  const V exx = ex * ex, exy = ex * ey, eyy = ey * ey;
-  const V dxx = own.x * own.x, dyy = own.y * own.y;
+  Evaluated<V> result;
+  const V ex = next.x - own.x + constants_.offset, ey = next.y - own.y;
+  const V exx = ex * ex, eyy = ey * ey, dxx = own.x * own.x, dyy = own.y * own.y;
   const V rod = tension<kFirst>(kept(dxx + dyy - constants_.length), block.rod);
   const V coupler = tension<kFirst>(kept(exx + eyy - constants_.length), block.coupler);
+  const V pull_x = coupler * ex, pull_y = coupler * ey;
+  result.fx = fma(rod, own.x, fma(place.mass, own.ux, next.ux - pull_x));
+  result.fy = fma(rod, own.y, fma(place.mass, own.uy, next.uy - pull_y + place.weight));
+  result.on_x = own.ux + pull_x, result.on_y = own.uy + pull_y;
+  result.ex = ex, result.ey = ey, result.exx = exx, result.exy = ex * ey, result.eyy = eyy;
+  result.axx = dxx + place.mass, result.axy = own.x * own.y, result.ayy = dyy + place.mass;
+  own = next;
+  return result;
+}
 
-  // Eq. (3) for this block, less what was eliminated before it.
-  const V fx = fnma(coupler, ex, fma(rod, own.x, fma(place.mass, own.ux, own.fx + carry.ux)));
-  const V fy =
-      fnma(coupler, ey, fma(rod, own.y, fma(place.mass, own.uy, own.fy + carry.uy + place.weight)));
+/// Takes up what the last block handed on, and gets the one division of this one under way.
+template <class V>
+template <bool kPadded>
+MBS_LIMIT_INLINE Pivot<V> Chain<V>::pivot(const Evaluated<V>& at, const Eliminated<V>& last) const {
+  Pivot<V> result;
+  result.axx = fma(last.nxx, last.rho, at.axx),
+  result.sxx = fma(last.nxx, last.rho, at.axx + at.exx);
+  result.axy = fma(last.nxy, last.rho, at.axy),
+  result.sxy = fma(last.nxy, last.rho, at.axy + at.exy);
+  result.ayy = fma(last.nyy, last.rho, at.ayy),
+  result.syy = fma(last.nyy, last.rho, at.ayy + at.eyy);
+  result.rho = reciprocal(result.sxx * result.syy - result.sxy * result.sxy);
+  if constexpr (kPadded) result.rho = result.rho * constants_.pad;
+  return result;
+}
 
-  // Eq. (5): A without the coupler behind, S with it.
-  const V axx0 = dxx + place.mass, axy0 = own.x * own.y, ayy0 = dyy + place.mass;
-  const V axx = fma(own.nxx, own.rho, axx0), sxx = fma(own.nxx, own.rho, axx0 + exx);
-  const V axy = fma(own.nxy, own.rho, axy0), sxy = fma(own.nxy, own.rho, axy0 + exy);
-  const V ayy = fma(own.nyy, own.rho, ayy0), syy = fma(own.nyy, own.rho, ayy0 + eyy);
-  const V sigma = fms(sxx, syy, sxy * sxy);
-  const V rho = reciprocal(sigma);
-  const V delta = fms(axx, ayy, axy * axy);
-  const V zx = fms(ayy, ex, axy * ey), zy = fms(axx, ey, axy * ex);
-  carry.nxx = kept(fma(delta, exx, fms(ex + ex, zx, syy)));
-  carry.nxy = kept(fma(delta, exy, fma(ex, zy, fma(ey, zx, sxy))));
-  carry.nyy = kept(fma(delta, eyy, fms(ey + ey, zy, sxx)));
-  carry.rho = rho;
+/// What it hands on.
+template <class V>
+MBS_LIMIT_INLINE Eliminated<V> eliminate(const Evaluated<V>& at, const Pivot<V>& S, const V& fx,
+                                         const V& fy) {
+  Eliminated<V> result;
+  const V delta = fms(S.axx, S.ayy, S.axy * S.axy);
+  const V zx = fms(S.ayy, at.ex, S.axy * at.ey), zy = fms(S.axx, at.ey, S.axy * at.ex);
+  result.nxx = fma(delta, at.exx, fms(at.ex + at.ex, zx, S.syy));
+  result.nxy = fma(delta, at.exy, fma(at.ex, zy, fma(at.ey, zx, S.sxy)));
+  result.nyy = fma(delta, at.eyy, fms(at.ey + at.ey, zy, S.sxx));
+  result.rho = S.rho, result.zx = zx, result.zy = zy;
+  result.sxx = S.sxx, result.sxy = S.sxy, result.syy = S.syy, result.ex = at.ex, result.ey = at.ey;
+  result.fx = fx, result.fy = fy, result.on_x = at.on_x, result.on_y = at.on_y;
+  return result;
+}
 
-  Factor<V>& factor = factors_[i];
-  const V ixx = kept(syy * rho), ixy = kept(sxy * rho),
-          iyy = kept(sxx * rho);  // S^-1: ixx, -ixy, iyy
-  const V tx = zx * rho, ty = zy * rho;
-  const V gxx = kept(fnma(tx, ex, ixx)), gxy = kept(fnma(tx, ey, -ixy));
-  const V gyx = kept(fnma(ty, ex, -ixy)), gyy = kept(fnma(ty, ey, iyy));
-  carry.fx = fnma(gyx, fy, fnma(gxx, fx, fma(coupler, ex, own.ux)));
-  carry.fy = fnma(gyy, fy, fnma(gxy, fx, fma(coupler, ey, own.uy)));
+/// The factor of a block, once its division is done; what its elimination leaves in the
+/// right-hand side of the next.
+template <class V>
+MBS_LIMIT_INLINE Planar<V> finish(const Eliminated<V>& block, Factor<V>& factor) {
+  const V ixx = block.syy * block.rho, ixy = block.sxy * block.rho, iyy = block.sxx * block.rho;
+  const V tx = block.zx * block.rho, ty = block.zy * block.rho;
+  const V gxx = fnma(tx, block.ex, ixx), gxy = fnma(tx, block.ey, -ixy);
+  const V gyx = fnma(ty, block.ex, -ixy), gyy = fnma(ty, block.ey, iyy);
+  const V fx = block.fx, fy = block.fy;
   store(factor.gxx, gxx), store(factor.gxy, gxy), store(factor.gyx, gyx), store(factor.gyy, gyy);
   store(factor.sxx, ixx), store(factor.sxy, ixy), store(factor.syy, iyy);
   store(factor.cx, fnma(ixy, fy, ixx * fx)), store(factor.cy, fnma(ixy, fx, iyy * fy));
+  return {fnma(gxx, fx, block.on_x) - gyx * fy, fnma(gyy, fy, block.on_y) - gxy * fx};
 }
 
 /// The middle block, to which both lanes lead: both hold it and come to the same.
 template <class V>
 template <bool kFirst>
-void Chain<V>::solve_middle(const Carry<V>& carry) {
-  Block<V>& block = blocks_[depth_];
+MBS_LIMIT_INLINE void Chain<V>::solve_middle(const Own<V>& own, const Eliminated<V>& last,
+                                             const Planar<V>& left) {
   const auto both = [](const V& a) { return a + swapped(a); };
-  const V x = carry.x, y = carry.y;
-  const V rod = tension<kFirst>(fma(x, x, fms(y, y, constants_.length)), block.rod);
-  const V fx = fma(rod, x, fma(middle_.mass, carry.ux, both(carry.fx)));
-  const V fy = fma(rod, y, fma(middle_.mass, carry.uy, both(carry.fy) + middle_.weight));
-  const V sxx = fma(x, x, both(carry.nxx * carry.rho) + middle_.mass);
-  const V sxy = fma(x, y, both(carry.nxy * carry.rho));
-  const V syy = fma(y, y, both(carry.nyy * carry.rho) + middle_.mass);
-  const V rho = reciprocal(fms(sxx, syy, sxy * sxy));
+  const V x = own.x, y = own.y;
+  const V sxx = fma(x, x, both(last.nxx * last.rho) + middle_.mass);
+  const V sxy = fma(x, y, both(last.nxy * last.rho));
+  const V syy = fma(y, y, both(last.nyy * last.rho) + middle_.mass);
+  const V rho = reciprocal(sxx * syy - sxy * sxy);
+  const V rod = tension<kFirst>(x * x + y * y - constants_.length, blocks_[depth_].rod);
+  const V fx = fma(rod, x, fma(middle_.mass, own.ux, both(left.x)));
+  const V fy = fma(rod, y, fma(middle_.mass, own.uy, both(left.y) + middle_.weight));
   Factor<V>& factor = factors_[depth_];
   const V ixx = syy * rho, ixy = sxy * rho, iyy = sxx * rho;
   store(factor.sxx, ixx), store(factor.sxy, ixy), store(factor.syy, iyy);
   store(factor.cx, fnma(ixy, fy, ixx * fx)), store(factor.cy, fnma(ixy, fx, iyy * fy));
 }
 
+/// Processors take the oldest instruction that is ready. So that none delays the chain of
+/// divisions, a block's factor is finished when the next block's division is under way.
+template <class V>
+template <bool kFirst, bool kPadded>
+void Chain<V>::sweep() {
+  Own<V> own = take<kFirst>(blocks_[0]);
+  Evaluated<V> at = evaluate<kFirst, kPadded>(0, first_, own);
+  Eliminated<V> last{};
+  Pivot<V> S = pivot<kPadded>(at, last);
+  last = eliminate(at, S, at.fx, at.fy);
+  for (std::size_t i = 1; i < depth_; ++i) {
+    at = evaluate<kFirst, false>(i, i == 1 ? second_ : interior_, own);
+    S = pivot<false>(at, last);
+    const Planar<V> left = finish(last, factors_[i - 1]);
+    last = eliminate(at, S, at.fx + left.x, at.fy + left.y);
+  }
+  solve_middle<kFirst>(own, last, finish(last, factors_[depth_ - 1]));
+}
+
 template <class V>
 template <bool kFirst>
 void Chain<V>::pass() {
-  Carry<V> carry{};
-  take_next<kFirst>(blocks_[0], carry);
-  carry.rho = constants_.half;  // times nothing
   if (padded()) {
-    eliminate<kFirst, true>(0, first_, carry);
+    sweep<kFirst, true>();
   } else {
-    eliminate<kFirst, false>(0, first_, carry);
+    sweep<kFirst, false>();
   }
-  if (depth_ > 1) eliminate<kFirst, false>(1, second_, carry);
-  for (std::size_t i = 2; i < depth_; ++i) eliminate<kFirst, false>(i, interior_, carry);
-  solve_middle<kFirst>(carry);
 }
 
-/// By Eq. (2) the same for s B, s dt/2 v (later, see Block::wx) and s dt^2/4 a.
+/// Eq. (2), from 2 s Delta q; that of v follows later, see Block::wx.
 template <class V>
-MBS_LIMIT_INLINE void change_by(Block<V>& block, const Planar<V>& change) {
-  store(block.x, load(block.x) - change.x), store(block.y, load(block.y) - change.y);
+MBS_LIMIT_INLINE void change_by(Block<V>& block, const Planar<V>& change, const V& half) {
+  store(block.x, fnma(half, change.x, load(block.x)));
+  store(block.y, fnma(half, change.y, load(block.y)));
   store(block.ux, load(block.ux) - change.x), store(block.uy, load(block.uy) - change.y);
 }
 
@@ -128,10 +166,10 @@ bool Chain<V>::substitute_back() {
   const Factor<V>& middle = factors_[depth_];
   Planar<V> change{load(middle.cx), load(middle.cy)};
   V most = larger_magnitude(change.x, change.y);
-  change_by(blocks_[depth_], change);
+  change_by(blocks_[depth_], change, constants_.half);
   for (std::size_t i = depth_; i-- > 0;) {
     change = outwards(factors_[i], change);
-    change_by(blocks_[i], change);
+    change_by(blocks_[i], change, constants_.half);
     most = larger_magnitude(larger_magnitude(most, change.x), change.y);
   }
   return lane(most, 0) <= tolerance_ && lane(most, 1) <= tolerance_;

@@ -10,10 +10,10 @@ namespace mbs::limit {
 template <class V>
 struct VelocitySide {
   V x, y, wx, wy, from_x, from_y;
-  V half, length, offset;
+  V length, offset;
 
   explicit VelocitySide(const ChainConstants<V>& constants)
-      : half(constants.half), length(constants.length), offset(constants.offset) {}
+      : length(constants.length), offset(constants.offset) {}
 
   MBS_LIMIT_INLINE void begin(Block<V>& block) {
     x = load(block.x), y = load(block.y);
@@ -27,13 +27,13 @@ struct VelocitySide {
     begin(next);
     const V ex = x - own_x + offset, ey = y - own_y;
     const V coupler = ex * ex + ey * ey - length, rod = own_x * own_x + own_y * own_y - length;
-    store(block.rod, fma(half, kOutermost ? rod * pad : rod, load(block.rod)));
-    store(block.coupler, fma(half, kOutermost ? coupler * pad : coupler, load(block.coupler)));
+    store(block.rod, load(block.rod) + (kOutermost ? rod * pad : rod));
+    store(block.coupler, load(block.coupler) + (kOutermost ? coupler * pad : coupler));
     from_x = own_wx, from_y = own_wy;
     return {fma(place.mass, own_wx, px + wx), fma(place.mass, own_wy, py + wy)};
   }
   MBS_LIMIT_INLINE Planar<V> middle(Block<V>& block, const Place<V>& place) {
-    store(block.rod, fma(half, x * x + y * y - length, load(block.rod)));
+    store(block.rod, load(block.rod) + (x * x + y * y - length));
     return {fma(place.mass, wx, from_x + swapped(from_x)),
             fma(place.mass, wy, from_y + swapped(from_y))};
   }
@@ -46,9 +46,10 @@ struct VelocitySide {
 template <class V>
 struct AccelerationSide {
   V x, y, wx, wy, ux, uy, from_x, from_y;
-  V offset;
+  V offset, half;
 
-  explicit AccelerationSide(const ChainConstants<V>& constants) : offset(constants.offset) {}
+  explicit AccelerationSide(const ChainConstants<V>& constants)
+      : offset(constants.offset), half(constants.half) {}
 
   MBS_LIMIT_INLINE void take(const Block<V>& block) {
     x = load(block.x), y = load(block.y);
@@ -65,14 +66,15 @@ struct AccelerationSide {
     const AccelerationSide own = *this;
     take(next);
     const V ex = x - own.x + offset, ey = y - own.y, dx = wx - own.wx, dy = wy - own.wy;
-    const V rod = fma(own.wx, own.wx, own.wy * own.wy), all = fma(dx, dx, dy * dy);
+    const V rod = half * (own.wx * own.wx + own.wy * own.wy);
+    const V all = half * (dx * dx + dy * dy);
     const V coupler = kOutermost ? all * pad : all;
     from_x = fnma(coupler, ex, own.ux), from_y = fnma(coupler, ey, own.uy);
     return {fma(coupler, ex, fnma(rod, own.x, fma(place.mass, own.ux, own.from_x + ux))),
             fma(coupler, ey, fnma(rod, own.y, fma(place.mass, own.uy, own.from_y + uy)))};
   }
   MBS_LIMIT_INLINE Planar<V> middle(Block<V>&, const Place<V>& place) {
-    const V rod = fma(wx, wx, wy * wy);
+    const V rod = half * (wx * wx + wy * wy);
     return {fnma(rod, x, fma(place.mass, ux, from_x + swapped(from_x))),
             fnma(rod, y, fma(place.mass, uy, from_y + swapped(from_y)))};
   }
@@ -81,33 +83,34 @@ struct AccelerationSide {
   }
 };
 
+/// c = S^-1 of what arrives at a block, kept for the way back.
+template <class V>
+MBS_LIMIT_INLINE Planar<V> keep(Factor<V>& factor, const Planar<V>& y) {
+  const V ixy = load(factor.sxy);
+  const Planar<V> c{fnma(ixy, y.y, load(factor.sxx) * y.x), fnma(ixy, y.x, load(factor.syy) * y.y)};
+  store(factor.cx, c.x), store(factor.cy, c.y);
+  return c;
+}
+
 /// One right-hand side through the factors, inwards and back.
 template <class V>
 template <class Side>
 void Chain<V>::project() {
   Side side(constants_);
   side.begin(blocks_[0]);
-  Planar<V> gone{side.from_x, side.from_y};
-  const auto inwards = [&](std::size_t i, const Planar<V>& arriving) {
-    Factor<V>& factor = factors_[i];
-    const V fx = arriving.x - gone.x, fy = arriving.y - gone.y, ixy = load(factor.sxy);
-    store(factor.cx, fnma(ixy, fy, load(factor.sxx) * fx));
-    store(factor.cy, fnma(ixy, fx, load(factor.syy) * fy));
-    gone.x = fma(load(factor.gyx), fy, load(factor.gxx) * fx);
-    gone.y = fma(load(factor.gyy), fy, load(factor.gxy) * fx);
-  };
-  const V& pad = constants_.pad;
-  inwards(0, side.template arrive<true>(blocks_[0], blocks_[1], first_, pad));
+  Planar<V> y = side.template arrive<true>(blocks_[0], blocks_[1], first_, constants_.pad);
+  keep(factors_[0], y);
   for (std::size_t i = 1; i < depth_; ++i) {
     const Place<V>& place = i == 1 ? second_ : interior_;
-    inwards(i, side.template arrive<false>(blocks_[i], blocks_[i + 1], place, pad));
+    y = inwards(factors_[i - 1], y,
+                side.template arrive<false>(blocks_[i], blocks_[i + 1], place, constants_.pad));
+    keep(factors_[i], y);
   }
-  const Factor<V>& factor = factors_[depth_];
+  const V zero = y.x - y.x;
+  const Planar<V> both = inwards(factors_[depth_ - 1], y, {zero, zero});
   const Planar<V> arriving = side.middle(blocks_[depth_], middle_);
-  const V fx = arriving.x - (gone.x + swapped(gone.x)),
-          fy = arriving.y - (gone.y + swapped(gone.y));
-  const V ixy = load(factor.sxy);
-  Planar<V> found{fnma(ixy, fy, load(factor.sxx) * fx), fnma(ixy, fx, load(factor.syy) * fy)};
+  y = {arriving.x + (both.x + swapped(both.x)), arriving.y + (both.y + swapped(both.y))};
+  Planar<V> found = keep(factors_[depth_], y);
   Side::leave(blocks_[depth_], found);
   for (std::size_t i = depth_; i-- > 0;) {
     found = outwards(factors_[i], found);

@@ -16,11 +16,11 @@ Chain<V>::Chain(int loops, const StepSettings& settings)
       depth_(static_cast<std::size_t>(loops + 1) / 2),
       s_(settings.step * std::sqrt(6.0 * settings.penalty)),
       h_(settings.step),
-      tolerance_(s_ * settings.tolerance),
+      tolerance_(2.0 * s_ * settings.tolerance),
       blocks_(depth_ + 1),
       factors_(depth_ + 1) {
-  constexpr double kGravity = 9.81;                    // m/s^2
-  set_constants(6.0 * s_ * h_ * h_ / 4.0 * kGravity);  // of 1 kg
+  constexpr double kGravity = 9.81;              // m/s^2
+  set_constants(3.0 * s_ * h_ * h_ * kGravity);  // of 1 kg
 }
 
 template <class V>
@@ -38,7 +38,7 @@ void Chain<V>::set_constants(double weight) {
   interior_ = place(inside, inside);
   middle_ = loops_ == 1 ? place(end, end) : interior_;
   constants_ = {make<V>(1.0, padded() ? 0.0 : 1.0), make<V>(s_ * s_, s_ * s_), make<V>(s_, -s_),
-                make<V>(2.0, 2.0), make<V>(0.5, 0.5)};
+                make<V>(0.5, 0.5)};
 }
 
 template <class V>
@@ -59,7 +59,7 @@ template <class V>
 void Chain<V>::set_state(const State& state) {
   std::fill(blocks_.begin(), blocks_.end(), Block<V>{});
   set_lane(blocks_[0].y, 1, s_);  // a block that is not there stands upright
-  const double to_w = s_ * h_ / 2.0, to_u = s_ * h_ * h_ / 4.0, to_force = 3.0 * h_ * h_;
+  const double to_w = s_ * h_, to_u = s_ * h_ * h_ / 2.0, to_force = 6.0 * h_ * h_;
   for (int j = 0; j <= loops_; ++j) {
     const auto at = static_cast<std::size_t>(2 * j);
     set(&Block<V>::x, seat(j), s_ * (state.q[at] - j));
@@ -79,7 +79,7 @@ void Chain<V>::set_state(const State& state) {
 
 template <class V>
 void Chain<V>::get_state(State& state) const {
-  const double to_w = s_ * h_ / 2.0, to_u = s_ * h_ * h_ / 4.0, to_force = 3.0 * h_ * h_;
+  const double to_w = s_ * h_, to_u = s_ * h_ * h_ / 2.0, to_force = 6.0 * h_ * h_;
   for (int j = 0; j <= loops_; ++j) {
     const auto at = static_cast<std::size_t>(2 * j);
     const int which = seat(j).lane;

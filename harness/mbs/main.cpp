@@ -1,4 +1,4 @@
-// The program `mbs`: list, describe, simulate, check, bench.
+// The program `mbs`: list, describe, simulate, check, limit, bench.
 #include <sys/resource.h>
 #include <unistd.h>
 

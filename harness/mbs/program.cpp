@@ -132,11 +132,13 @@ int run_program(int argc, char** argv) {
   add_describe_command(app, status);
   add_simulate_command(app, status);
   add_check_command(app, status);
+  add_limit_command(app, status);
   app.add_subcommand("bench", "time implementations with Google Benchmark (see mbs bench --help)");
   for (CLI::App* command : app.get_subcommands({})) command->footer(kScenes);
   if (argc > 1 && argv[1][0] != '-' && !is_subcommand(app, argv[1])) {
     throw UsageError(fmt::format(
-        "unknown subcommand '{}': there are list, describe, simulate, check, bench", argv[1]));
+        "unknown subcommand '{}': there are list, describe, simulate, check, limit, bench",
+        argv[1]));
   }
   try {
     app.parse(argc, argv);
