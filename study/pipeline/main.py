@@ -24,7 +24,8 @@ class Parser(argparse.ArgumentParser):
 STUDIES = {"view": "study.viewer.main", "scenes": "study.scene_study.main",
            "stability": "study.stability_study.main", "accuracy": "study.accuracy_study.main",
            "realtime": "study.realtime_study.main", "extremes": "study.extremes_study.main",
-           "advise": "study.advise_study.main", "against": "study.pipeline.against"}
+           "advise": "study.advise_study.main", "limit": "study.limit_study.main",
+           "against": "study.pipeline.against"}
 
 
 def main(arguments):

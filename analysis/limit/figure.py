@@ -1,0 +1,101 @@
+# Step time over size between the limit's bounds and the implementations; steps split by phase.
+from types import SimpleNamespace
+
+import matplotlib.pyplot as plt
+import numpy
+
+from analysis.loader import PHASES
+from analysis.style import GREY, Look, legend, number_axis, size_ticks
+
+LIMIT = "limit/limit"
+BOUNDS = {"latency_ns": ("bound: dependent operations", "--"),
+          "memory_ns": ("bound: memory traffic", "-."),
+          "arithmetic_ns": ("bound: rate of arithmetic", ":")}
+COLOURS = {"evaluation": "#56B4E9", "assembly": "#009E73", "factorization": "#0072B2",
+           "solve": "#E69F00", "projection": "#CC79A7", "other": "#999999"}
+
+
+def timed(steps):
+    """Rows with a time, and how many times that of the limit code of their size it is."""
+    rows = steps[steps.status == "ok"].copy()
+    limits = rows[rows.implementation == LIMIT].set_index("loops").step_us
+    rows["multiple"] = rows.step_us / rows.loops.map(limits)
+    return rows[rows.multiple.notna()]
+
+
+def leaders(steps):
+    """The variant of each folder with the least geometric mean multiple over the sizes that most of its
+    folder's variants have; in the order of that mean."""
+    rows = timed(steps)
+    rows = rows[rows.implementation != LIMIT]
+    rows = rows.assign(folder=rows.implementation.str.split("/").str[0], log=numpy.log(rows.multiple))
+    chosen = []
+    for _, mine in rows.groupby("folder"):
+        most = mine.groupby("implementation").loops.nunique().max()
+        whole = mine.groupby("implementation").filter(lambda one, most=most: len(one) == most)
+        means = whole.groupby("implementation").log.mean()
+        chosen.append((means.min(), means.idxmin()))
+    return [name for _, name in sorted(chosen)]
+
+
+def over_size(bounds, steps, registry):
+    """Above: µs a step; below: multiples of the limit code."""
+    look = Look(SimpleNamespace(registry=registry, tidy=SimpleNamespace(blas=[], build=[])))
+    rows, bounds = timed(steps), bounds.sort_values("variables")
+    figure, (times, multiples) = plt.subplots(2, 1, sharex=True, figsize=(8.6, 8.4),
+                                              gridspec_kw={"hspace": 0.08, "height_ratios": [1.5, 1]})
+    for column, (label, dash) in BOUNDS.items():
+        times.plot(bounds.variables, bounds[column] / 1e3, dash, color=GREY, label=label)
+    times.fill_between(bounds.variables, bounds.bound_ns / 1e3, times.get_ylim()[0], color=GREY,
+                       alpha=0.12, linewidth=0)
+    for name in [LIMIT, *leaders(steps)]:
+        mine = rows[rows.implementation == name].sort_values("variables")
+        style = ({"color": "black", "linewidth": 2.2, "marker": "o", "markersize": 4.5}
+                 if name == LIMIT else look.line(name))
+        times.plot(mine.variables, mine.step_us, **style,
+                   label="limit: code for the N-four-bar alone" if name == LIMIT else name)
+        times.fill_between(mine.variables, mine.low_us, mine.high_us, color=style["color"],
+                           alpha=0.15, linewidth=0)
+        multiples.plot(mine.variables, mine.multiple, **style)
+    times.set_title("A step's time between what is needed and what is taken")
+    times.set_ylabel("time per step, µs")
+    multiples.set_ylabel("multiple of the limit code")
+    for axes, unit in ((times, ""), (multiples, "×")):
+        axes.set_yscale("log")
+        number_axis(axes.yaxis, unit)
+        axes.grid(True, which="major")
+    size_ticks(multiples, sorted(rows.variables.unique()))
+    legend(times)
+    return figure
+
+
+def by_phase(steps):
+    """A panel a size (at most three): phases of each folder's leader, in multiples of the limit code."""
+    rows, names = timed(steps), leaders(steps)
+    sizes = sorted(rows.loops.unique())
+    shown = sizes if len(sizes) <= 3 else [sizes[round(k * (len(sizes) - 1) / 2)] for k in range(3)]
+    figure, panels = plt.subplots(1, len(shown), sharey=True, squeeze=False, constrained_layout=True,
+                                  figsize=(3.9 * len(shown) + 1.8, 0.36 * len(names) + 1.5))
+    for axes, loops in zip(panels[0], shown):
+        of_size = rows[rows.loops == loops].set_index("implementation")
+        for place, name in enumerate(names):
+            if name not in of_size.index:
+                axes.text(0.02, place, "not timed", va="center", fontsize=8, color=GREY,
+                          transform=axes.get_yaxis_transform())
+                continue
+            row, left = of_size.loc[name], 0.0
+            for phase in PHASES:
+                width = row[f"{phase}_us"] / row.step_us * row.multiple
+                axes.barh(place, width, 0.62, left=left, color=COLOURS[phase])
+                left += width
+            axes.text(left, place, f" {row.multiple:.3g}×", va="center", fontsize=8)
+        axes.axvline(1, color="black", linewidth=1.2)
+        axes.margins(x=0.14)
+        axes.set_title(f"n = {2 * loops + 2}, limit {1e3 * of_size.step_us[LIMIT]:.3g} ns")
+        axes.set_xlabel("multiple of the limit code's step")
+        axes.set_yticks(range(len(names)), names)
+        axes.set_ylim(len(names) - 0.4, -0.6)
+    figure.legend(handles=[plt.Rectangle((0, 0), 1, 1, color=colour, label=phase)
+                           for phase, colour in COLOURS.items()],
+                  loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=6)
+    return figure

@@ -1,0 +1,85 @@
+# The limit's page and figures from made-up tables.
+import json
+
+import matplotlib.pyplot as plt
+import pandas
+import pytest
+
+from analysis.limit.figure import LIMIT, by_phase, leaders, over_size, timed
+from analysis.limit.report import by_size, write
+from analysis.loader import PHASES, TableError
+
+REGISTRY = [{"folder": folder, "variants": [{"name": f"{folder}/{name}"} for name in names]}
+            for folder, names in (("one", ("a", "b")), ("two", ("c",)))]
+
+
+def row(name, loops, step_us, status="ok", reason=""):
+    shares = dict.fromkeys(PHASES, 0.1) | {"factorization": 0.5}
+    return {"implementation": name, "loops": loops, "variables": 2 * loops + 2, "status": status,
+            "reason": reason, "step_us": step_us, "low_us": step_us, "high_us": step_us,
+            "rounds": 1, "passes": 2.0} | {
+        f"{phase}_us": share * step_us for phase, share in shares.items()}
+
+
+def steps():
+    nothing = float("nan")
+    return pandas.DataFrame([
+        row(LIMIT, 10, 0.25), row("one/a", 10, 3.0), row("one/b", 10, 2.0), row("two/c", 10, 5.0),
+        row(LIMIT, 40, 1.0), row("one/a", 40, 8.0), row("one/b", 40, nothing, "failed", "too slow"),
+        row("two/c", 40, 12.0), row("two/c", 499, 99.0)])
+
+
+def bounds():
+    return pandas.DataFrame([
+        {"loops": n, "variables": 2 * n + 2, "passes": 2.0, "flops": 4e3, "divisions": 30,
+         "bytes_loaded": 7e3, "bytes_stored": 4e3, "level": "L1", "arithmetic_ns": 70.0,
+         "latency_ns": 189.0, "memory_ns": 57.0, "bound_ns": 189.0, "measured_ns": 250.0,
+         "ratio": 1.32} for n in (40, 10)])
+
+
+def test_multiples_are_of_the_limit_code_of_the_same_size():
+    found = timed(steps()).set_index(["implementation", "loops"]).multiple
+    assert found["one/a", 10] == 12 and found["one/a", 40] == 8 and found[LIMIT, 40] == 1
+    assert ("two/c", 499) not in found.index  # the limit code has no time there
+    assert ("one/b", 40) not in found.index
+
+
+def test_a_folder_is_led_by_the_fastest_of_those_timed_everywhere():
+    assert leaders(steps()) == ["one/a", "two/c"]
+
+
+def test_phases_are_times_and_multiples():
+    sizes = dict(by_size(steps()))
+    assert [r["implementation"] for r in sizes[22]] == [LIMIT, "one/b", "one/a", "two/c"]
+    factorization = sizes[22][1]["phases"][PHASES.index("factorization")]
+    assert factorization == pytest.approx((1000.0, 4.0))
+    assert sizes[22][0]["phases"] == []
+
+
+def test_figures_show_bounds_limit_and_leaders():
+    figure = over_size(bounds(), steps(), REGISTRY)
+    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert "two/c" in labels and "one/b" not in labels
+    assert sum(label.startswith("bound") for label in labels) == 3
+    split = by_phase(steps())
+    assert [axes.get_title(loc="left")[:6] for axes in split.axes] == ["n = 22", "n = 82"]
+    plt.close("all")
+
+
+def test_the_page_has_every_variant_and_what_was_lost(tmp_path):
+    steps().to_csv(tmp_path / "steps.csv", index=False)
+    bounds().to_csv(tmp_path / "bounds.csv", index=False)
+    (tmp_path / "implementations.json").write_text(json.dumps({"implementations": REGISTRY}))
+    (tmp_path / "run.json").write_text(json.dumps({"contexts": {"own": {"compiler": "c", "commit": "0"}}}))
+    write(tmp_path)
+    text = (tmp_path / "limit.html").read_text()
+    assert "one/b, N = 40: too slow" in text and "<td>two/c</td>" in text
+    assert (tmp_path / "figures" / "over_size.png").exists()
+
+
+def test_tables_without_the_limit_code_are_refused(tmp_path):
+    table = steps()
+    table[table.implementation != LIMIT].to_csv(tmp_path / "steps.csv", index=False)
+    bounds().to_csv(tmp_path / "bounds.csv", index=False)
+    with pytest.raises(TableError, match="no size has a time of limit/limit"):
+        write(tmp_path)

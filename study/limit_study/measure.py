@@ -1,0 +1,96 @@
+# The gate, then rounds of timed processes over all contenders of a size; one raw file each.
+import json
+import statistics
+
+from study.pipeline import child
+from study.pipeline.contenders import Contender
+from study.pipeline.errors import StudyError
+from study.pipeline.layout import read_json, write_json
+
+LIMIT = Contender("limit/limit", "limit/limit")
+MEMORY_MB = 4096
+PHASES = ("evaluation", "assembly", "factorization", "solve", "projection", "other")
+
+
+def bounds(layout, loops):
+    """The rows of bounds.csv, in the order of `loops`."""
+    key = "-".join(map(str, loops))
+    raw = _kept(layout, f"bounds-{key}.json", LIMIT.call("limit", *map(str, loops), "--json"), 600)
+    if "failure" in raw:
+        raise StudyError(f"mbs limit: {raw['failure']}")
+    return raw["found"]["rows"]
+
+
+def size(layout, contenders, loops, rounds, seconds, tell):
+    """The rows of steps.csv of one size."""
+    rows, timed = [], []
+    for one in contenders:
+        tell(f"gate of {one.name}")
+        reason = _objection(layout, one, loops, seconds)
+        rows.append({"implementation": one.name, "loops": loops, "variables": 2 * loops + 2,
+                     "status": "disagrees" if reason else "ok", "reason": reason})
+        timed.append(not reason)
+    samples = [[] for _ in contenders]
+    for turn in range(1, rounds + 1):
+        for place, one in enumerate(contenders):
+            if not timed[place]:
+                continue
+            tell(f"round {turn} of {rounds}, {one.name}")
+            found, reason = _bench(layout, one, loops, turn, seconds)
+            samples[place].append(found)
+            if reason:
+                rows[place] |= {"status": "failed", "reason": reason}
+                timed[place] = False
+    return [row | (_figures(found) if good else {})
+            for row, found, good in zip(rows, samples, timed)]
+
+
+def _kept(layout, name, command, seconds):
+    """{"command", "found": what it printed} or {"command", "failure"}; a stored one is not run again."""
+    path = layout.results / "raw" / name
+    if path.exists():
+        return read_json(path)
+    ended = child.run(command, seconds, MEMORY_MB)
+    record = {"command": command}
+    try:
+        if ended.status != "exited" or ended.code not in (0, 1):
+            raise ValueError(ended.reason)
+        record["found"] = json.loads(ended.stdout)
+    except ValueError as error:
+        record["failure"] = str(error)
+    write_json(path, record)
+    return record
+
+
+def _objection(layout, one, loops, seconds):
+    """Why the gate rejects it; empty if it does not."""
+    path = layout.results / "raw" / f"n{2 * loops + 2}" / f"{one.file_name}-gate.json"
+    if not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        ended = child.run(one.call("check", f"four-bar:{loops}", "--implementation", one.variant,
+                                   "--time-limit", f"{seconds:g}", "--json", str(path)),
+                          2 * seconds + 60, MEMORY_MB)
+        if not path.exists():
+            write_json(path, {"rows": [{"verdict": ended.status, "reason": ended.reason}]})
+    row = read_json(path)["rows"][0]
+    return "" if row["verdict"] == "agrees" else f"{row['verdict']}: {row['reason']}"
+
+
+def _bench(layout, one, loops, turn, seconds):
+    """(the row of Google Benchmark, "") or ({}, why there is none)."""
+    raw = _kept(layout, f"n{2 * loops + 2}/{one.file_name}-{turn}.json",
+                one.call("bench", f"four-bar:{loops}", "--implementation", one.variant, "--phases",
+                         "--benchmark_min_time=0.02", "--benchmark_format=json"), seconds)
+    if "failure" in raw:
+        return {}, raw["failure"]
+    row = raw["found"]["benchmarks"][0]
+    return (row, "") if not row.get("error_occurred") else ({}, row["error_message"])
+
+
+def _figures(found):
+    times = [row["step_us"] for row in found]
+    shares = {phase: statistics.median(row[f"phase_{phase}"] for row in found) for phase in PHASES}
+    total = sum(shares.values())
+    return {"step_us": statistics.median(times), "low_us": min(times), "high_us": max(times),
+            "rounds": len(times), "passes": found[0]["passes"] / found[0]["steps"]} | {
+        f"{phase}_us": statistics.median(times) * share / total for phase, share in shares.items()}
