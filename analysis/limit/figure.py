@@ -6,6 +6,7 @@ import numpy
 
 from analysis.loader import PHASES
 from analysis.style import GREY, Look, legend, number_axis, size_ticks
+from analysis.text import number
 
 LIMIT = "limit/limit"
 BOUNDS = {"latency_ns": ("bound: dependent operations", "--"),
@@ -80,7 +81,7 @@ def by_phase(steps):
         of_size = rows[rows.loops == loops].set_index("implementation")
         for place, name in enumerate(names):
             if name not in of_size.index:
-                axes.text(0.02, place, "not timed", va="center", fontsize=8, color=GREY,
+                axes.text(0.3, place, "not timed", va="center", fontsize=8, color=GREY,
                           transform=axes.get_yaxis_transform())
                 continue
             row, left = of_size.loc[name], 0.0
@@ -91,7 +92,7 @@ def by_phase(steps):
             axes.text(left, place, f" {row.multiple:.3g}×", va="center", fontsize=8)
         axes.axvline(1, color="black", linewidth=1.2)
         axes.margins(x=0.14)
-        axes.set_title(f"n = {2 * loops + 2}, limit {1e3 * of_size.step_us[LIMIT]:.3g} ns")
+        axes.set_title(f"n = {2 * loops + 2}, limit {number(of_size.step_us[LIMIT])} µs")
         axes.set_xlabel("multiple of the limit code's step")
         axes.set_yticks(range(len(names)), names)
         axes.set_ylim(len(names) - 0.4, -0.6)

@@ -22,6 +22,7 @@ def render(bounds, steps, run, figures):
     """The page; `figures`: {name: SVG in base 64}."""
     return page.template(Path(__file__).parent / "limit.html.j2").render(
         context=next(iter(run["contexts"].values())), figures=figures, limit=LIMIT,
+        counted="instructions" in steps and steps.instructions.notna().any(),
         bounds=bounds.sort_values("loops").to_dict("records"), sizes=by_size(steps), phases=PHASES,
         lost=steps[steps.status != "ok"].to_dict("records"))
 
@@ -35,6 +36,7 @@ def by_size(steps):
         found.append((2 * loops + 2, [
             {"implementation": row.implementation, "ns": 1e3 * row.step_us,
              "multiple": row.multiple, "passes": row.passes,
+             "instructions": getattr(row, "instructions", None),
              "phases": [] if row.implementation == LIMIT else [
                  (1e3 * getattr(row, f"{phase}_us"), 1e3 * getattr(row, f"{phase}_us") / limit)
                  for phase in PHASES]} for row in group.itertuples()]))

@@ -77,6 +77,21 @@ def test_the_page_has_every_variant_and_what_was_lost(tmp_path):
     assert (tmp_path / "figures" / "over_size.png").exists()
 
 
+def test_instructions_are_a_column_where_they_were_counted(tmp_path):
+    table = steps()
+    (tmp_path / "implementations.json").write_text(json.dumps({"implementations": REGISTRY}))
+    (tmp_path / "run.json").write_text(json.dumps({"contexts": {"own": {"compiler": "c", "commit": "0"}}}))
+    bounds().to_csv(tmp_path / "bounds.csv", index=False)
+    for counted in (False, True):
+        if counted:
+            table["instructions"] = [2769.0] + [float("nan")] * (len(table) - 1)
+        table.to_csv(tmp_path / "steps.csv", index=False)
+        write(tmp_path)
+        text = (tmp_path / "limit.html").read_text()
+        assert ("instructions</th>" in text) == counted
+        assert ('<td class="n">2769</td>' in text) == counted
+
+
 def test_tables_without_the_limit_code_are_refused(tmp_path):
     table = steps()
     table[table.implementation != LIMIT].to_csv(tmp_path / "steps.csv", index=False)

@@ -2,7 +2,9 @@
 import argparse
 import os
 
+from study.pipeline.builds import build
 from study.pipeline.contenders import from_json
+from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_run, write_csv
 from study.pipeline.options import loops, positive, report, results
 from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, select, set_up,
@@ -22,6 +24,8 @@ def limit(arguments):
                         help="only these implementations (folder or folder/variant)")
     parser.add_argument("--loops", nargs="+", type=loops, default=LOOPS, metavar="N",
                         help=f"sizes ({' '.join(map(str, LOOPS))})")
+    parser.add_argument("--instructions", action="store_true", help="also count the instructions of a "
+                        "step up to N = 40 with Valgrind, in a build of their own")
     parser.add_argument("--rounds", type=loops, default=5, metavar="R",
                         help="processes a cell, in turn over all implementations (5)")
     parser.add_argument("--time-limit", type=positive, default=60.0, metavar="S",
@@ -46,7 +50,9 @@ def limit(arguments):
 
 def _run(layout, options):
     import pandas
-    from study.limit_study import measure
+    from study.limit_study import instructions, measure
+    if options.instructions:
+        _prepare_counting(layout, instructions)
     start_named(layout, "limit", select(registry(), options.only),
                 {"rounds": options.rounds, "time_limit": options.time_limit})
     run = read_run(layout)
@@ -56,9 +62,27 @@ def _run(layout, options):
     for number, size in enumerate(options.loops, start=1):
         def told(what, at=f"N = {size}: size {number} of {len(options.loops)}"):
             tell(f"{at}, {what}")
-        rows += measure.size(layout, contenders, size, options.rounds, options.time_limit, told)
+        found = measure.size(layout, contenders, size, options.rounds, options.time_limit, told)
+        for one, row in zip(contenders, found):
+            if options.instructions and size <= instructions.MOST_LOOPS and row["status"] == "ok":
+                told(f"instructions of {one.name}")
+                row["instructions"] = instructions.count(layout, one, size, 5 * options.time_limit)
+        rows += found
     told("bounds")
     bounds = measure.bounds(layout, options.loops)
     tell.end()
     write_csv(layout.results / "bounds.csv", pandas.DataFrame(bounds))
     write_csv(layout.results / "steps.csv", pandas.DataFrame(rows))
+
+
+def _prepare_counting(layout, instructions):
+    if instructions.why_not():
+        raise StudyError(f"--instructions: {instructions.why_not()}")
+    if "MBS_PROGRAM" in os.environ:
+        return
+    tell = Teller()
+    with open(layout.log, "a", encoding="utf-8") as log:
+        broken = build(instructions.BUILD, log, tell)
+    tell.end()
+    if broken:
+        raise StudyError(f"--instructions: {broken}")
