@@ -38,7 +38,7 @@ class Chain {
   template <bool kPadded>
   Pivot<V> pivot(const Evaluated<V>& at, const Eliminated<V>& last) const;
   template <bool kFirst>
-  void solve_middle(const Own<V>& own, const Eliminated<V>& last, const Planar<V>& left);
+  void solve_middle(const Own<V>& own, const Eliminated<V>& last, Factor<V>& outer);
   bool substitute_back();
   template <class Side>
   void project();

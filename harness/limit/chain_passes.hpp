@@ -107,13 +107,14 @@ MBS_LIMIT_INLINE Planar<V> finish(const Eliminated<V>& block, Factor<V>& factor)
 template <class V>
 template <bool kFirst>
 MBS_LIMIT_INLINE void Chain<V>::solve_middle(const Own<V>& own, const Eliminated<V>& last,
-                                             const Planar<V>& left) {
+                                             Factor<V>& outer) {
   const auto both = [](const V& a) { return a + swapped(a); };
   const V x = own.x, y = own.y;
   const V sxx = fma(x, x, both(last.nxx * last.rho) + middle_.mass);
   const V sxy = fma(x, y, both(last.nxy * last.rho));
   const V syy = fma(y, y, both(last.nyy * last.rho) + middle_.mass);
   const V rho = reciprocal(sxx * syy - sxy * sxy);
+  const Planar<V> left = finish(last, outer);
   const V rod = tension<kFirst>(x * x + y * y - constants_.length, blocks_[depth_].rod);
   const V fx = fma(rod, x, fma(middle_.mass, own.ux, both(left.x)));
   const V fy = fma(rod, y, fma(middle_.mass, own.uy, both(left.y) + middle_.weight));
@@ -139,7 +140,7 @@ void Chain<V>::sweep() {
     const Planar<V> left = finish(last, factors_[i - 1]);
     last = eliminate(at, S, at.fx + left.x, at.fy + left.y);
   }
-  solve_middle<kFirst>(own, last, finish(last, factors_[depth_ - 1]));
+  solve_middle<kFirst>(own, last, factors_[depth_ - 1]);
 }
 
 template <class V>

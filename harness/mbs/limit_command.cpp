@@ -26,8 +26,8 @@ double measure_step(const MeasurementTask& task) {
   return 1e9 * samples[samples.size() / 2] / task.stretch.steps;
 }
 
-nlohmann::json row_of(int loops, const limit::Machine& machine) {
-  const Scene scene = load_scene(fmt::format("four-bar:{}", loops));
+nlohmann::json row_of(const Scene& scene, const limit::Machine& machine) {
+  const int loops = *scene.four_bar_loops;
   const StepSettings settings = StepOptions{}.resolve(scene.model);
   const Stretch stretch = make_stretch(scene, settings.step, default_steps(scene, settings.step));
   const double measured = measure_step({scene, limit::variant(), stretch, settings, false, false});
@@ -112,9 +112,13 @@ void add_limit_command(CLI::App& app, int& status) {
   command->add_option("N", options->loops, "numbers of loops")->capture_default_str();
   command->add_flag("--json", options->json, "machine-readable");
   command->callback([options, &status] {
+    std::vector<Scene> scenes;  // all of them first, so that a bad number loses nothing
+    for (const int loops : options->loops) {
+      scenes.push_back(load_scene(fmt::format("four-bar:{}", loops)));
+    }
     const limit::Machine machine = limit::measure_machine();
     nlohmann::json rows = nlohmann::json::array();
-    for (const int loops : options->loops) rows.push_back(row_of(loops, machine));
+    for (const Scene& scene : scenes) rows.push_back(row_of(scene, machine));
     if (options->json) {
       nlohmann::json context;
       for (const auto& [key, value] : environment_record()) context[key] = value;
