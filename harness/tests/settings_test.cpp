@@ -36,9 +36,10 @@ Spectrum spectrum_of(const Model& model) {
 double documented_beta(const Spectrum& s, double step,
                        Precision precision = Precision::double_precision) {
   const double measured = std::clamp(30 / s.smallest, 4e3 / s.mean, 1e7 / s.mean);
-  const double turn = std::sqrt(3 * 9.81) * step,
-               x = turn / (precision == Precision::single_precision ? 13.6e-3 : 6.8e-3);
-  if (x <= 1) return std::min(measured / (x * x), std::max(measured, 4e6 / s.mean));
+  const bool single = precision == Precision::single_precision;
+  const double turn = std::sqrt(3 * 9.81) * step, x = turn / (single ? 13.6e-3 : 6.8e-3);
+  if (x <= 1)
+    return std::min(measured / (x * x), std::max(measured, (single ? 6e4 : 4e6) / s.mean));
   const double longer = std::min(measured, 0.6 / (s.least * turn * turn * turn));
   return std::max(longer, measured / 100);
 }

@@ -48,14 +48,16 @@ namespace {
 double automatic_beta(const Model& model, const StepSettings& settings) {
   // rad a step, at which the measured three numbers hold. The coarse tolerance of single precision
   // leaves the multipliers one pass a step, which needs more beta from longer steps on.
-  const double at = settings.precision == Precision::single_precision ? 13.6e-3 : 6.8e-3;
+  const bool single = settings.precision == Precision::single_precision;
+  const double at = single ? 13.6e-3 : 6.8e-3;
   const double mean = mean_constraint_eigenvalue(model);
   const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
   const double measured = std::clamp(30 / smallest, 4e3 / mean, 1e7 / mean);
   const double turn = fastest_turning(model).rate * settings.step;
   if (turn == 0.0) return measured;
   const double ratio = turn / at;
-  if (ratio <= 1.0) return std::min(measured / (ratio * ratio), std::max(measured, 4e6 / mean));
+  if (ratio <= 1.0)
+    return std::min(measured / (ratio * ratio), std::max(measured, (single ? 6e4 : 4e6) / mean));
   const double nonlinear = 0.6 / (least_constraint_diagonal(model) * std::pow(turn, 3));
   return std::max(std::min(measured, nonlinear), measured / 100);
 }

@@ -12,7 +12,7 @@ namespace mbs {
 ///
 ///   beta_0 = clamp(30 / s_min, 4e3 / s_mean, 1e7 / s_mean)
 ///
-/// and, with x = turn / 6.8e-3, in single precision turn / 13.6e-3,
+/// and, with x = turn / 6.8e-3 (in single precision turn / 13.6e-3, and 6e4 for 4e6),
 ///
 ///   beta = min(beta_0 / x^2, max(beta_0, 4e6 / s_mean))          for shorter steps,
 ///   beta = max(min(beta_0, 0.6 / (s_row turn^3)), beta_0 / 100)  for longer ones.
