@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mbs/simulation.hpp"
+#include "registry/registry.hpp"
 
 namespace mbs {
 
@@ -12,6 +13,7 @@ namespace mbs {
 void add_list_command(CLI::App& app, int& status);
 void add_describe_command(CLI::App& app, int& status);
 void add_simulate_command(CLI::App& app, int& status);
+void add_sweep_command(CLI::App& app, int& status);
 void add_check_command(CLI::App& app, int& status);
 void add_limit_command(CLI::App& app, int& status);
 
@@ -29,6 +31,9 @@ struct StepOptions {
   /// Throws UsageError if a value is out of range.
   [[nodiscard]] StepSettings resolve(const Model& model) const;
 };
+
+/// The one variant that the value of --implementation names. Throws UsageError.
+NamedVariant select_variant(const std::string& name);
 
 /// Throws UsageError unless `step` (s) is a sensible time step.
 void require_step(double step);

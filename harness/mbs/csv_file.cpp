@@ -8,10 +8,10 @@
 namespace mbs {
 namespace {
 
-std::string quoted(const std::string& name) {
-  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string result = "\"";
-  for (const char c : name) {
+  for (const char c : text) {
     if (c == '"') result += '"';
     result += c;
   }
@@ -21,12 +21,16 @@ std::string quoted(const std::string& name) {
 }  // namespace
 
 CsvFile::CsvFile(const std::string& path, const std::vector<std::string>& columns) : file_(path) {
-  std::string header;
-  for (const std::string& column : columns) {
-    if (!header.empty()) header += ',';
-    header += quoted(column);
+  write(columns);
+}
+
+void CsvFile::write(std::span<const std::string> row) {
+  std::string line;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (i > 0) line += ',';
+    line += quoted(row[i]);
   }
-  file_.stream() << header << '\n';
+  file_.stream() << line << '\n';
 }
 
 void CsvFile::write(std::span<const double> row) {

@@ -1,4 +1,4 @@
-// Tables of numbers as CSV, which appear whole or not at all.
+// Tables as CSV, which appear whole or not at all.
 #pragma once
 
 #include <span>
@@ -9,13 +9,14 @@
 
 namespace mbs {
 
-/// One line of column names, then rows of numbers that round-trip. Names with a comma, a quote or a
-/// line break are quoted as RFC 4180 says.
+/// One line of column names, then rows of numbers that round-trip, or of text. Names and text with
+/// a comma, a quote or a line break are quoted as RFC 4180 says.
 class CsvFile {
  public:
   /// Throws UsageError if `path` cannot be written.
   CsvFile(const std::string& path, const std::vector<std::string>& columns);
   void write(std::span<const double> row);
+  void write(std::span<const std::string> row);
   /// Makes the file appear under its name. Throws UsageError if not everything could be written.
   void commit() { file_.commit(); }
 

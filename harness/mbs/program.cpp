@@ -92,6 +92,13 @@ void StepOptions::add_to(CLI::App& command) {
   add_blas_option(command);
 }
 
+NamedVariant select_variant(const std::string& name) {
+  const std::vector<NamedVariant> variants = select_variants({name});
+  if (variants.size() == 1) return variants[0];
+  throw UsageError(fmt::format("--implementation '{}' has {} variants: name one, folder/variant",
+                               name, variants.size()));
+}
+
 void require_step(double step) {
   if (step >= 1e-12 && step <= 1e6) return;
   throw UsageError(fmt::format("--step is {:g} s: it must be 1e-12 to 1e6 s", step));
@@ -131,13 +138,14 @@ int run_program(int argc, char** argv) {
   add_list_command(app, status);
   add_describe_command(app, status);
   add_simulate_command(app, status);
+  add_sweep_command(app, status);
   add_check_command(app, status);
   add_limit_command(app, status);
   app.add_subcommand("bench", "time implementations with Google Benchmark (see mbs bench --help)");
   for (CLI::App* command : app.get_subcommands({})) command->footer(kScenes);
   if (argc > 1 && argv[1][0] != '-' && !is_subcommand(app, argv[1])) {
     throw UsageError(fmt::format(
-        "unknown subcommand '{}': there are list, describe, simulate, check, limit, bench",
+        "unknown subcommand '{}': there are list, describe, simulate, sweep, check, limit, bench",
         argv[1]));
   }
   try {

@@ -1,7 +1,6 @@
 // mbs simulate: one scene, one implementation, a typed outcome.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include "describe/warnings.hpp"
 #include "mbs/commands.hpp"
 #include "mbs/file_names.hpp"
+#include "mbs/progress.hpp"
 #include "mbs/simulate_summary.hpp"
 #include "mbs/trajectory.hpp"
 #include "run/run.hpp"
@@ -35,27 +35,6 @@ struct SimulateOptions {
   bool json = false;
 };
 
-/// Simulated time on a terminal's last line, at most once a per cent.
-class Progress {
- public:
-  explicit Progress(long steps) : steps_(steps), shown_(::isatty(STDERR_FILENO) != 0) {}
-  ~Progress() {
-    if (percent_ >= 0) fmt::print(stderr, "\r{:40}\r", "");
-  }
-  void at(long step, double t) {
-    const long percent = 100 * step / steps_;
-    if (!shown_ || percent == percent_) return;
-    percent_ = percent;
-    fmt::print(stderr, "\r{:3} %  t = {:.4g} s", percent, t);
-    std::fflush(stderr);
-  }
-
- private:
-  long steps_;
-  bool shown_;
-  long percent_ = -1;
-};
-
 /// Runs, and writes the files that were asked for.
 RunSummary run_with_files(const SimulateOptions& options, const Scene& scene,
                           const Variant& variant, const RunSettings& settings) {
@@ -65,12 +44,12 @@ RunSummary run_with_files(const SimulateOptions& options, const Scene& scene,
   if (!options.output.empty()) output.emplace(options.output, scene);
   RunSummary summary;
   {
-    Progress progress(count_steps(settings));
+    Progress progress(settings.duration, "s");
     summary = run(scene, variant, settings, [&](long step, double t, const State& state) {
       const bool wanted = step % options.every == 0;
       if (trajectory && wanted) trajectory->write(t, state);
       if (output) output->follow(t, state, wanted);
-      progress.at(step, t);
+      progress.at(t);
     });
   }
   if (trajectory) trajectory->commit();
@@ -91,11 +70,7 @@ void require_files(const SimulateOptions& options) {
 }
 
 int simulate(const SimulateOptions& options) {
-  const std::vector<NamedVariant> variants = select_variants({options.implementation});
-  if (variants.size() != 1) {
-    throw UsageError(fmt::format("--implementation '{}' has {} variants: name one, folder/variant",
-                                 options.implementation, variants.size()));
-  }
+  const NamedVariant variant = select_variant(options.implementation);
   if (options.every < 1) {
     throw UsageError(fmt::format("--every is {}: it must be at least 1", options.every));
   }
@@ -116,8 +91,8 @@ int simulate(const SimulateOptions& options) {
   }
   require_duration(scene, settings);
   const std::vector<std::string> warnings = setting_warnings(scene.model, settings.step);
-  const RunSummary summary = run_with_files(options, scene, *variants[0].variant, settings);
-  nlohmann::json json = summary_json(scene, variants[0], settings, summary);
+  const RunSummary summary = run_with_files(options, scene, *variant.variant, settings);
+  nlohmann::json json = summary_json(scene, variant, settings, summary);
   json["warnings"] = warnings;
   if (options.json) {
     fmt::print("{}\n", json.dump(2));
@@ -131,7 +106,7 @@ int simulate(const SimulateOptions& options) {
     return 0;
   }
   fmt::print(
-      stderr, "mbs: {} on {}: {}{}{}{}\n", variants[0].name, scene.name, to_string(summary.status),
+      stderr, "mbs: {} on {}: {}{}{}{}\n", variant.name, scene.name, to_string(summary.status),
       summary.failed_at ? fmt::format(" at t = {:g} s: ", *summary.failed_at) : ": ",
       summary.reason, warnings.empty() ? "" : fmt::format(" ({})", fmt::join(warnings, "; ")));
   return 1;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "mbs/batch.hpp"
 #include "mbs/operations.hpp"
 #include "mbs/simulation.hpp"
 
@@ -39,6 +41,11 @@ struct Variant {
   Serves serves = {};
   /// The operations of Table 2 alone, as this variant's step does them; nullptr: not offered.
   std::unique_ptr<Operations> (*operations)(const Model& model) = nullptr;
+  /// Many at once, for `mbs sweep`; nullptr: they run one after the other, as they do where this
+  /// throws Unsupported. The models outlive the batch.
+  std::unique_ptr<BatchSimulation> (*create_batch)(
+      std::span<const Model* const> models, std::span<const StepSettings> settings) = nullptr;
+  int batch_lanes = 0;  ///< with create_batch: the number of lanes that it is best given
 };
 
 /// What the folder `implementations/<folder>/` offers. The folder defines

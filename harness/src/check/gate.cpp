@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
-#include <limits>
 
+#include "check/batch_checks.hpp"
 #include "check/exact_checks.hpp"
+#include "check/lock_step.hpp"
+#include "check/processor_time.hpp"
 #include "printable.hpp"
 #include "run/setting_names.hpp"
 
@@ -17,61 +18,20 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// max |x - y|; NaN if either holds one, or if the sizes differ.
-double distance(const Values& x, const Values& y) {
-  if (x.size() != y.size()) return std::numeric_limits<double>::quiet_NaN();
-  double worst = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double difference = std::abs(x[i] - y[i]);
-    if (!std::isfinite(difference)) return std::numeric_limits<double>::quiet_NaN();
-    worst = std::max(worst, difference);
-  }
-  return worst;
-}
-
-double largest(const Values& x) {
-  double worst = 0.0;
-  for (const double value : x) worst = std::max(worst, std::abs(value));
-  return worst;
-}
-
 /// One step from the state of each probe; value = worst difference in units of its tolerance.
 Check lock_step(const NamedVariant& variant, const Model& model, const StepSettings& settings,
                 const ReferenceRun& reference) {
   const auto simulation = create_simulation(*variant.variant, model, settings);
-  double worst = 0.0;
-  std::string detail = "no difference";
+  LockStep comparison("lock-step");
   State state;
   for (const Probe& probe : reference.probes) {
     simulation->set_state(probe.before);
     const StepOutcome outcome = simulation->step();
     simulation->get_state(state);
-    const LockStepTolerance tolerance = lock_step_tolerance(probe, settings);
-    if (outcome.status == StepStatus::factorization_failed) {
-      return {"lock-step", std::nullopt, 1.0, false,
-              fmt::format("factorization failed in the step from t = {:g} s", probe.t)};
-    }
-    const auto compare = [&](const char* name, const Values& x, const Values& y, double allowed) {
-      const double difference = distance(x, y);
-      if (difference == 0.0) return;  // nothing is allowed where there is nothing: 0/0
-      const double ratio = difference / allowed;
-      if (std::isnan(worst) || ratio <= worst) return;  // the first NaN stays
-      worst = ratio;
-      detail = fmt::format("{} differs by {:.1e} after one step from t = {:g} s (allowed {:.1e})",
-                           name, difference, probe.t, allowed);
-    };
-    compare("q", state.q, probe.after.q, tolerance.q);
-    compare("v", state.v, probe.after.v, tolerance.v);
-    compare("a", state.a, probe.after.a, tolerance.a);
-    compare("lambda", state.lambda, probe.after.lambda, tolerance.lambda);
-    if (std::isnan(worst)) break;
+    comparison.add(probe, settings, outcome, state);
   }
-  return {"lock-step", worst, 1.0, worst <= 1.0, detail};
+  return comparison.check();
 }
-
-/// Processor time of this process, s: unlike the wall clock, it makes no check depend on what else
-/// the machine does.
-double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// lambda after `steps` steps of the stretch against the reference's: within 5 % of the way that it
 /// has moved since the start, beyond `noise` (N/m), what rounding does to it in one step. Positions
@@ -80,18 +40,11 @@ Check compare_multipliers(const ReferenceRun& reference, const Values& lambda, s
                           double noise) {
   if (lambda.empty() || steps == 0) return {"multipliers", {}, {}, {}, "there are none"};
   const Values& expected = reference.multipliers[steps - 1];
-  const double moved = distance(expected, reference.stretch.initial.lambda);
-  const double difference = distance(lambda, expected);
+  const double moved = largest_difference(expected, reference.stretch.initial.lambda);
+  const double difference = largest_difference(lambda, expected);
   const double allowed = 0.05 * moved + noise;
   return {"multipliers", difference, allowed, difference <= allowed,
           fmt::format("N/m; they moved by {:.1e}, rounding is up to {:.1e}", moved, noise)};
-}
-
-/// In double precision far above what rounding grows to, far below the method's own error of about
-/// 1e-6 m and more. Single precision has no solution to agree on beyond its own digits: here it
-/// must only follow the same motion.
-double free_running_tolerance(Precision precision) {
-  return precision == Precision::single_precision ? 1e-2 : 1e-7;
 }
 
 /// Runs the stretch, or what `seconds` allow of it; compares positions and passes with the
@@ -121,7 +74,7 @@ std::vector<Check> free_running(const NamedVariant& variant, const Model& model,
     expected += reference.outcomes[i].passes;
     limited += outcome.status == StepStatus::pass_limit;
     expected_limited += reference.outcomes[i].status == StepStatus::pass_limit;
-    const double difference = distance(state.q, reference.positions[i]);
+    const double difference = largest_difference(state.q, reference.positions[i]);
     positions.value = std::isnan(difference) ? difference : std::max(*positions.value, difference);
     if (!(difference <= kTolerance)) {
       positions.passed = false;
@@ -184,6 +137,10 @@ std::vector<Check> run_checks(const Scene& scene, const NamedVariant& variant,
                                  : exact_checks_not_run("it would take too long here"),
                       std::back_inserter(checks));
   }
+  if (variant.variant->create_batch != nullptr) {
+    std::ranges::copy(batch_checks(*variant.variant, scene.model, settings, reference, seconds / 8),
+                      std::back_inserter(checks));
+  }
   return checks;
 }
 
@@ -225,23 +182,6 @@ Verdict interpret(Verdict verdict, const Isolated& result) {
 }
 
 }  // namespace
-
-LockStepTolerance lock_step_tolerance(const Probe& probe, const StepSettings& settings) {
-  constexpr double kSafety = 4.0;
-  const double unit = settings.precision == Precision::single_precision
-                          ? std::numeric_limits<float>::epsilon() / 2
-                          : std::numeric_limits<double>::epsilon() / 2;
-  const double h = settings.step;
-  const double size = std::max(largest(probe.after.q), 1e-300);
-  const double growth = kSafety * unit * probe.outcome.passes * std::sqrt(probe.condition);
-  // Factors in single precision make Newton converge along another way.
-  const double left = settings.precision == Precision::mixed ? settings.tolerance : 0.0;
-  const double q = growth * size + left;
-  const double phi = probe.jacobian_norm * (unit * size + left);  // what that does to Phi
-  return {q, 2 / h * q, 4 / (h * h) * q,
-          kSafety *
-              (probe.outcome.passes * settings.penalty * phi + unit * largest(probe.after.lambda))};
-}
 
 Verdict check_implementation(const Scene& scene, const NamedVariant& variant,
                              const StepSettings& settings, const ReferenceRun& reference,

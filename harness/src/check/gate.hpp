@@ -9,16 +9,10 @@
 namespace mbs {
 
 /// Checks `variant` on `scene` in a child process under `limits`: lock-step, free-running motion
-/// and number of passes against `reference`, then error and order against the exact solution if
-/// there is one. A dead or hanging child is a verdict, not an error.
+/// and number of passes against `reference`, the same of batches, then error and order against the
+/// exact solution if there is one. A dead or hanging child is a verdict, not an error.
 Verdict check_implementation(const Scene& scene, const NamedVariant& variant,
                              const StepSettings& settings, const ReferenceRun& reference,
                              const IsolationLimits& limits = {});
-
-/// Tolerances of a lock-step comparison; harness/README.md has their derivation.
-struct LockStepTolerance {
-  double q, v, a, lambda;
-};
-LockStepTolerance lock_step_tolerance(const Probe& probe, const StepSettings& settings);
 
 }  // namespace mbs

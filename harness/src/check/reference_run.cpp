@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "model_math/kinematics.hpp"
-#include "reference/reference_simulation.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -24,6 +23,14 @@ double row_sum_norm(const Model& model, const State& state) {
 }
 
 }  // namespace
+
+void take_probe(ReferenceSimulation& reference, const Model& model, Probe& probe) {
+  reference.set_state(probe.before);
+  probe.outcome = reference.step();
+  reference.get_state(probe.after);
+  probe.condition = reference.tangent_condition();
+  probe.jacobian_norm = row_sum_norm(model, probe.before);
+}
 
 ReferenceRun run_reference(const Scene& scene, const StepSettings& settings) {
   constexpr int kSteps = 800;
@@ -55,13 +62,7 @@ ReferenceRun run_reference(const Scene& scene, const StepSettings& settings) {
     result.positions.push_back(state.q);
     result.multipliers.push_back(state.lambda);
   }
-  for (Probe& probe : result.probes) {
-    reference.set_state(probe.before);
-    probe.outcome = reference.step();
-    reference.get_state(probe.after);
-    probe.condition = reference.tangent_condition();
-    probe.jacobian_norm = row_sum_norm(scene.model, probe.before);
-  }
+  for (Probe& probe : result.probes) take_probe(reference, scene.model, probe);
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mbs/simulation.hpp"
+#include "reference/reference_simulation.hpp"
 #include "run/stretch.hpp"
 #include "scene/scene.hpp"
 
@@ -26,6 +27,9 @@ struct ReferenceRun {
   std::vector<StepOutcome> outcomes;             ///< of each step
   std::vector<Probe> probes;                     ///< spread over the stretch, its ends included
 };
+
+/// Does the step of `probe.before` by `reference`, a simulation of `model`.
+void take_probe(ReferenceSimulation& reference, const Model& model, Probe& probe);
 
 /// Runs the reference over the stretch of `scene`: 800 steps, fewer from 500 variables up so that
 /// its cost stays bounded, never fewer than 16. Throws UsageError if the reference itself fails,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "check_state.hpp"
+
 namespace mbs {
 namespace {
 
@@ -23,13 +25,17 @@ void check(std::span<const double> values, std::size_t size, const char* name) {
 
 }  // namespace
 
-void Simulation::set_state(const State& state) {
-  const auto n = static_cast<std::size_t>(variables_);
+void check_state(const State& state, int variables, int constraints) {
+  const auto n = static_cast<std::size_t>(variables);
   check(state.q, n, "q");
   check(state.v, n, "v");
   check(state.a, n, "a");
-  check(state.lambda, static_cast<std::size_t>(constraints_), "lambda");
+  check(state.lambda, static_cast<std::size_t>(constraints), "lambda");
   if (!std::isfinite(state.t)) throw std::invalid_argument("state.t is not finite");
+}
+
+void Simulation::set_state(const State& state) {
+  check_state(state, variables_, constraints_);
   start_ = state.t;
   steps_ = 0;
   do_set_state(state);

@@ -10,7 +10,8 @@
 #include <utility>
 
 #include "printable.hpp"
-#include "scene/scene.hpp"
+#include "scene/json_text.hpp"
+#include "scene/scene_document.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -102,26 +103,44 @@ std::string read_file(const std::string& path) {
   return text;
 }
 
-}  // namespace
-
-Scene load_scene(const std::string& text) {
-  if (text.starts_with(kFourBar)) return load_four_bar(text);
+/// Throws unless there may be a JSON scene at `path`.
+void require_file(const std::string& path) {
   std::error_code error;
-  const auto status = std::filesystem::status(text, error);
+  const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {
-    const bool missing = status.type() == std::filesystem::file_type::not_found || text.empty();
-    fail(text,
+    const bool missing = status.type() == std::filesystem::file_type::not_found || path.empty();
+    fail(path,
          fmt::format("{}; allowed are four-bar:N (N from 1 to {}), four-bar:N,fill=F (F above "
                      "0, up to 1), or the path of a JSON scene file",
                      missing ? "no such file and no such kind of scene" : error.message(),
                      kMostLoops));
   }
   if (std::filesystem::is_directory(status)) {
-    fail(text, "this is a directory, allowed is a JSON scene file");
+    fail(path, "this is a directory, allowed is a JSON scene file");
   }
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& text) {
+  return text.starts_with(kFourBar) ? load_four_bar(text) : scene_of(load_document(text), text);
+}
+
+nlohmann::json load_document(const std::string& text) {
+  if (!text.starts_with(kFourBar)) {
+    require_file(text);
+    return parse_json(read_file(text), text);
+  }
+  if (text.find(',') != std::string::npos) {
+    fail(text, "artificial fill is in no document, allowed are four-bar:N and JSON scene files");
+  }
+  return four_bar_document(parse_loops(text, std::string_view(text).substr(kFourBar.size())));
+}
+
+Scene scene_of(const nlohmann::json& document, const std::string& name) {
   // Paths may hold any bytes; a scene's name ends up in JSON and must be UTF-8.
-  SceneData data = parse_scene(read_file(text), text);
-  return {printable(text, kLongestName), Model(std::move(data.model)), {}, {},
+  SceneData data = read_scene(document, name);
+  return {printable(name, kLongestName), Model(std::move(data.model)), {}, {},
           std::move(data.elements),      std::move(data.assembly)};
 }
 

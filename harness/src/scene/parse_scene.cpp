@@ -10,14 +10,18 @@
 #include "scene/placement.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_checks.hpp"
+#include "scene/scene_document.hpp"
 #include "scene/scene_reader.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
 
 SceneData parse_scene(std::string_view json, const std::string& where) {
-  const nlohmann::json root = parse_json(json, where);
-  SceneDraft draft = SceneReader(JsonNode(root, where)).read();
+  return read_scene(parse_json(json, where), where);
+}
+
+SceneData read_scene(const nlohmann::json& document, const std::string& where) {
+  SceneDraft draft = SceneReader(JsonNode(document, where)).read();
   choose_bases(draft);
   place(draft);
   try {

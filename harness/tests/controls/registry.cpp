@@ -2,6 +2,7 @@
 // that lacks its library.
 #include "registry/registry.hpp"
 
+#include "controls/batches.hpp"
 #include "controls/controls.hpp"
 
 namespace mbs {
@@ -9,6 +10,7 @@ namespace mbs {
 const std::vector<RegistryEntry>& registry() {
   static const std::vector<RegistryEntry> entries{
       available("control", test::controls()),
+      available("batch", {"the reference in batches", "none", "0", "none", test::batches()}),
       unavailable("missing", "Missing is not installed: apt-get install libmissing-dev")};
   return entries;
 }

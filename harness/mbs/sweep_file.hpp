@@ -1,0 +1,28 @@
+// The table of `mbs sweep`: a row a lane.
+#pragma once
+
+#include <string>
+
+#include "mbs/csv_file.hpp"
+#include "sweep/lane.hpp"
+#include "sweep/sweep_grid.hpp"
+
+namespace mbs {
+
+/// Columns: the paths that are varied; status, status_reason, failed_at, steps, passes_per_step,
+/// position_error_estimate, local_error_sum, energy_drift_max, constraint_violation_max as in the
+/// summary of `mbs simulate`; then NAME.last, NAME.min and NAME.max of each column of the scene's
+/// outputs. A cell is empty where there is no such number.
+class SweepFile {
+ public:
+  /// Throws UsageError if `path` cannot be written.
+  SweepFile(const std::string& path, const SweepGrid& grid);
+  void write(const std::vector<double>& values, const Lane& lane);
+  void commit() { file_.commit(); }
+
+ private:
+  std::size_t outputs_;  // columns
+  CsvFile file_;
+};
+
+}  // namespace mbs

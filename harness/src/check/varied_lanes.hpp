@@ -1,0 +1,26 @@
+// Mechanisms of one shape that differ in every number.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "mbs/simulation.hpp"
+
+namespace mbs {
+
+/// All that a batch, and a simulation of each of its lanes alone, is made from.
+struct VariedLanes {
+  std::vector<std::unique_ptr<Model>> models;  // lanes refer to them
+  std::vector<const Model*> pointers;
+  std::vector<StepSettings> settings;
+  std::vector<State> starts;
+
+  [[nodiscard]] int count() const { return static_cast<int>(models.size()); }
+};
+
+/// `count` lanes like `model`, each with masses, forces and penalty factor of its own, and lengths
+/// where nothing has one by itself, that start where `start`, a state of the model, is.
+VariedLanes vary_lanes(int count, const Model& model, const StepSettings& settings,
+                       const State& start);
+
+}  // namespace mbs

@@ -1,0 +1,206 @@
+// Judgement after each step; where it finds the solution lost, the first step that was.
+#include "run/judged_run.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <new>
+#include <utility>
+
+#include "printable.hpp"
+
+namespace mbs {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+bool has_high_order(Scheme scheme) {
+  return scheme == Scheme::rattle4 || scheme == Scheme::rattle6;
+}
+
+}  // namespace
+
+JudgedRun::JudgedRun(const Scene& scene, const Variant& variant, const RunSettings& settings,
+                     State start, Observer observer)
+    : scene_(scene),
+      variant_(variant),
+      settings_(settings),
+      observer_(std::move(observer)),
+      steps_(count_steps(settings)),
+      state_(std::move(start)),
+      before_(state_),
+      judge_(scene, state_, 0.0),
+      good_{0, state_, judge_},
+      samples_local_error_(!settings.half_step && !judge_.knows_exact_motion()) {}
+
+void JudgedRun::begin(Access access) {
+  access_ = std::move(access);
+  if (observer_) observer_(0, 0.0, state_);
+  if (settings_.half_step) half_.emplace(scene_, variant_, *settings_.half_step, state_);
+  if (has_high_order(settings_.step.scheme)) {
+    local_half_.emplace(scene_, variant_, settings_.step);
+  }
+}
+
+double JudgedRun::time(long step) const { return static_cast<double>(step) * settings_.step.step; }
+
+/// Once in every `judge_every` steps, at uneven places, so that a motion that repeats is not always
+/// met at the same one, and after the last.
+bool JudgedRun::is_judged(long step) const {
+  constexpr double kGoldenRatio = 0.6180339887498949;
+  const long every = settings_.judge_every, block = (step - 1) / every;
+  const double share = std::fmod(static_cast<double>(block + 1) * kGoldenRatio, 1.0);
+  return step == steps_ ||
+         (step - 1) % every == static_cast<long>(share * static_cast<double>(every));
+}
+
+void JudgedRun::count(const StepOutcome& outcome) {
+  ++summary_.steps;
+  summary_.passes += outcome.passes;
+  summary_.factorizations += outcome.factorizations < 0 ? outcome.passes : outcome.factorizations;
+  if (outcome.status == StepStatus::pass_limit) ++summary_.steps_at_limit;
+}
+
+void JudgedRun::take(const StepOutcome& outcome) {
+  count(outcome);
+  const long step = summary_.steps;
+  if (outcome.status == StepStatus::factorization_failed) {
+    const std::string why = "the tangent matrix could not be factorized";
+    if (!locate_loss(why)) lose(RunStatus::diverged, why, time(step));
+    return;
+  }
+  if (half_) half_->advance();
+  const auto begin = Clock::now();
+  if (is_judged(step)) judge_present();
+  if (is_over_) return;
+  if (samples_local_error_ && step < steps_ && is_judged(step + 1)) access_.get_state(before_);
+  judging_ += Clock::now() - begin;
+  if ((observer_ || half_) && !is_judged(step)) access_.get_state(state_);
+  if (half_) half_->compare(state_);
+  if (observer_) observer_(step, time(step), state_);
+  if (step == steps_) conclude();
+}
+
+void JudgedRun::judge_present() {
+  const long step = summary_.steps;
+  access_.get_state(state_);
+  std::string lost = judge_.judge(time(step), state_);
+  if (!lost.empty() && !locate_loss(lost)) {
+    // Where another simulation did the steps again, this state itself is still to be judged.
+    lost = judge_.judge(time(step), state_);
+    if (!lost.empty()) lose(judge_, lost, step);
+  }
+  if (is_over_) return;
+  if (samples_local_error_) {
+    judge_.add_local_error(local_error(), state_, settings_.step.step, step - good_.step);
+  }
+  good_ = {step, state_, judge_};
+}
+
+/// What the last step left, m, sampled where the state is judged.
+double JudgedRun::local_error() {
+  if (local_half_) return local_half_->error(before_, state_);
+  return trapezoidal_error(scene_.model, before_, state_, settings_.step.step);
+}
+
+/// The solution was found lost, for `reason`. Does the steps since the last good one again and
+/// judges each, so that the summary has the first that was lost. False if none of them was: with
+/// more states the judge knows better what its figures are small against. Its judgement counts
+/// then.
+bool JudgedRun::locate_loss(const std::string& reason) {
+  const long step = summary_.steps;
+  if (good_.step + 1 == step) {
+    lose(judge_, reason, step);
+    return true;
+  }
+  Judge judge = good_.judge;
+  State state = good_.state;
+  Simulation& simulation = access_.again();
+  simulation.set_state(state);
+  for (long i = good_.step + 1; i <= step; ++i) {
+    if (simulation.step().status == StepStatus::factorization_failed) {
+      lose(judge_, reason, step);
+      return true;
+    }
+    simulation.get_state(state);
+    const std::string first = judge.judge(time(i), state);
+    if (first.empty()) continue;
+    lose(judge, first, i);
+    return true;
+  }
+  judge_ = judge;
+  return false;
+}
+
+void JudgedRun::lose(const Judge& judge, std::string reason, long step) {
+  lose(judge.off_branch() ? RunStatus::wrong_branch : RunStatus::diverged, std::move(reason),
+       time(step));
+}
+
+void JudgedRun::lose(RunStatus status, std::string reason, std::optional<double> t) {
+  summary_.status = status;
+  summary_.reason = std::move(reason);
+  summary_.failed_at = t;
+  is_over_ = true;
+}
+
+void JudgedRun::take_exception() {
+  try {
+    throw;
+  } catch (const Unsupported& reason) {
+    lose(RunStatus::unsupported, printable(reason.what(), 1000), std::nullopt);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    lose(RunStatus::diverged,
+         fmt::format("the implementation threw: {}", printable(error.what(), 1000)),
+         time(summary_.steps + 1));
+  }
+}
+
+/// The outcome of a run that went to its end.
+void JudgedRun::conclude() {
+  is_over_ = true;
+  if (samples_local_error_) summary_.local_error_sum = judge_.local_error_sum();
+  const double share = static_cast<double>(summary_.steps_at_limit) / static_cast<double>(steps_);
+  if (share > RunBounds{}.pass_limit_share) {
+    summary_.status = RunStatus::not_converged;
+    summary_.reason = fmt::format("{} of {} steps ended at the limit of {} passes (allowed {:g} %)",
+                                  summary_.steps_at_limit, steps_, settings_.step.max_passes,
+                                  100 * RunBounds{}.pass_limit_share);
+    return;
+  }
+  summary_.reason = judge_.degradation();
+  const std::string estimated = beyond_estimates();
+  if (!summary_.reason.empty() && !estimated.empty()) summary_.reason += ", ";
+  summary_.reason += estimated;
+  if (!summary_.reason.empty()) summary_.status = RunStatus::degraded;
+}
+
+std::string JudgedRun::beyond_estimates() const {
+  const double allowed = AccurateBounds{}.estimated_error * judge_.length();
+  if (half_ && !(half_->position_error_max() <= allowed)) {
+    return fmt::format("estimated position error {:.1e} m (ok to {:.2g})",
+                       half_->position_error_max(), allowed);
+  }
+  const double local_allowed = AccurateBounds{}.local_error * judge_.length();
+  if (summary_.local_error_sum.value_or(0.0) <= local_allowed) return "";
+  return fmt::format(
+      "local errors add up to {:.1e} m (ok to {:.2g}): a shorter step, or --half-step for a "
+      "sharper estimate",
+      *summary_.local_error_sum, local_allowed);
+}
+
+RunSummary JudgedRun::finish() {
+  summary_.judge_us = summary_.steps == 0
+                          ? 0.0
+                          : std::chrono::duration<double, std::micro>(judging_).count() /
+                                static_cast<double>(summary_.steps);
+  if (half_) summary_.position_error_estimate = half_->position_error_max();
+  summary_.position_error_max = judge_.position_error_max();
+  summary_.energy_drift_max = judge_.energy_drift_max();
+  summary_.constraint_violation_max = judge_.constraint_violation_max();
+  return summary_;
+}
+
+}  // namespace mbs

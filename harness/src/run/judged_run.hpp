@@ -1,0 +1,84 @@
+// One run as it is judged step by step, whoever does the steps: a simulation, or a lane of a batch.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "run/half_step_run.hpp"
+#include "run/local_half_steps.hpp"
+#include "run/run.hpp"
+
+namespace mbs {
+
+/// Takes what each step gives, looks at the state where the settings ask for it, and arrives at the
+/// typed outcome.
+///
+///   JudgedRun judged(scene, variant, settings, initial_state(scene.model), observer);
+///   judged.begin(access);
+///   while (!judged.is_over()) judged.take(simulation.step());
+///   RunSummary summary = judged.finish();
+class JudgedRun {
+ public:
+  /// What does the steps, as far as a judge needs it.
+  struct Access {
+    std::function<void(State&)> get_state;
+    /// A simulation that can be set back, to do steps of this run again: the same, or one like it.
+    std::function<Simulation&()> again;
+  };
+
+  /// `scene` and `variant` must outlive this.
+  JudgedRun(const Scene& scene, const Variant& variant, const RunSettings& settings, State start,
+            Observer observer);
+
+  /// The simulation is ready and at the start. Throws Unsupported if what runs beside it is.
+  void begin(Access access);
+  /// The simulation has done a step.
+  void take(const StepOutcome& outcome);
+  /// At the end, or lost.
+  [[nodiscard]] bool is_over() const { return is_over_; }
+  /// Within a catch block: what the exception says of this run. Passes std::bad_alloc on.
+  void take_exception();
+
+  /// The outcome, but for the times of steps and set-up.
+  [[nodiscard]] RunSummary finish();
+
+ private:
+  /// The last step at which the solution was not lost.
+  struct LastGood {
+    long step;
+    State state;
+    Judge judge;
+  };
+
+  [[nodiscard]] double time(long step) const;
+  [[nodiscard]] bool is_judged(long step) const;
+  void count(const StepOutcome& outcome);
+  void judge_present();
+  bool locate_loss(const std::string& reason);
+  void lose(RunStatus status, std::string reason, std::optional<double> t);
+  void lose(const Judge& judge, std::string reason, long step);
+  [[nodiscard]] double local_error();
+  void conclude();
+  [[nodiscard]] std::string beyond_estimates() const;
+
+  const Scene& scene_;
+  const Variant& variant_;
+  RunSettings settings_;
+  Observer observer_;
+  Access access_;
+  long steps_;    // of the whole run
+  State state_;   // the last one that was looked at
+  State before_;  // one step before the one that is judged next
+  Judge judge_;
+  LastGood good_;
+  std::optional<HalfStepRun> half_;
+  std::optional<LocalHalfSteps> local_half_;
+  bool samples_local_error_;  // nothing better tells
+  bool is_over_ = false;
+  std::chrono::steady_clock::duration judging_{};
+  RunSummary summary_;
+};
+
+}  // namespace mbs

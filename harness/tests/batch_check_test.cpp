@@ -1,0 +1,76 @@
+// The gate holds batches against the reference, and rejects each defect for the right reason.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <regex>
+
+#include "check/batch_checks.hpp"
+#include "check/gate.hpp"
+#include "controls/batches.hpp"
+#include "run/settings.hpp"
+#include "scene/scene.hpp"
+
+namespace mbs {
+namespace {
+
+Verdict check_batch(const std::string& name, const std::string& scene_name) {
+  const std::vector<Variant> variants = test::batches();
+  const Variant& variant = *std::ranges::find(variants, name, &Variant::name);
+  const Scene scene = load_scene(scene_name);
+  StepSettings settings;
+  settings.penalty = automatic_penalty(scene.model, settings);
+  settings.tolerance = automatic_tolerance(scene.model, settings);
+  return check_implementation(scene, {"batch/" + name, nullptr, &variant}, settings,
+                              run_reference(scene, settings), {.seconds = 400.0});
+}
+
+const Check& check_named(const Verdict& verdict, const std::string& name) {
+  const auto check = std::ranges::find(verdict.checks, name, &Check::name);
+  if (check == verdict.checks.end()) throw std::invalid_argument("no check is called " + name);
+  return *check;
+}
+
+TEST(BatchChecks, ASoundBatchAgrees) {
+  const std::string folder = MBS_ROOT "/harness/scenes/";
+  for (const std::string& scene :
+       {std::string("four-bar:2"), folder + "double_pendulum.json",
+        folder + "problems/slider_crank.json", folder + "problems/a04_bricard.json",
+        folder + "problems/half_car.json"}) {
+    SCOPED_TRACE(scene);
+    const Verdict verdict = check_batch("sound", scene);
+    EXPECT_EQ(verdict.verdict, "agrees") << verdict.reason;
+    EXPECT_LE(check_named(verdict, "batch").value.value(), 1.0);
+    EXPECT_EQ(check_named(verdict, "batch-running").value, 0.0);
+    EXPECT_EQ(check_named(verdict, "batch-running").detail, "m; 400 steps of 3 and 11 lanes");
+  }
+}
+
+TEST(BatchChecks, DefectsAreRejected) {
+  const struct {
+    const char *name, *verdict, *reason;
+  } cases[] = {
+      {"lost_lane", "disagrees",
+       "^batch-running: lane 2 of 3: q differs by nan m first at step 40$"},
+      {"failed_lane", "disagrees",
+       "^batch-running: lane 2 of 3: factorization failed first at step 40$"},
+      {"throws", "crashed", "^threw the batch is lost$"},
+      {"leaks", "disagrees", "^batch: lane 1 of 3: q differs by "},
+      {"mixes", "disagrees", R"(^batch: lane \d+ of \d+: . differs by .* after one step)"},
+  };
+  for (const auto& [name, expected, reason] : cases) {
+    const Verdict verdict = check_batch(name, "four-bar:2");
+    EXPECT_EQ(verdict.verdict, expected) << name << ": " << verdict.reason;
+    EXPECT_TRUE(std::regex_search(verdict.reason, std::regex(reason)))
+        << name << ": " << verdict.reason;
+  }
+}
+
+TEST(BatchChecks, ABatchThatIsRefusedIsNotChecked) {
+  const Verdict verdict = check_batch("unsupported", "four-bar:2");
+  EXPECT_EQ(verdict.verdict, "agrees") << verdict.reason;
+  EXPECT_FALSE(check_named(verdict, "batch").passed);
+  EXPECT_EQ(check_named(verdict, "batch").detail, "no batches today");
+}
+
+}  // namespace
+}  // namespace mbs
