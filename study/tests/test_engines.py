@@ -190,7 +190,7 @@ def test_an_engine_that_does_not_exist(tmp_path):
 REAL = [one for found in settings.read_list().values() for one in found if programs.program(one.engine).exists()]
 
 
-@pytest.mark.parametrize("setting", REAL, ids=lambda one: f"{one.engine}-{one.file_name}")
+@pytest.mark.parametrize("setting", REAL, ids=[f"{one.engine}-{one.file_name}" for one in REAL])
 def test_every_setting_means_something_to_its_program(setting):
     done = subprocess.run([programs.program(setting.engine), "--loops", "1", "--duration", "0.05",
                            *setting.words(setting.values[2]), "--json"], capture_output=True, text=True)
@@ -199,7 +199,8 @@ def test_every_setting_means_something_to_its_program(setting):
         "ok", "degraded", "diverged"), summary
 
 
-@pytest.mark.parametrize("setting", {one.engine: one for one in REAL}.values(), ids=lambda one: one.engine)
+@pytest.mark.parametrize("setting", {one.engine: one for one in REAL}.values(),
+                         ids=list({one.engine: one for one in REAL}))
 def test_programs_refuse_bad_input(setting):
     program = programs.program(setting.engine)
     for words, what in ((["--loops", "0"], "--loops"), (["--loops", "1", "--setting", "stp=1"], "stp means nothing"),
