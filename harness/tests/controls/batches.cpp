@@ -65,7 +65,7 @@ class FailedLane final : public SoundBatch {
   }
 };
 
-class Throws final : public SoundBatch {
+class ThrowingBatch final : public SoundBatch {
   using SoundBatch::SoundBatch;
   void do_step(std::span<StepOutcome> outcomes) override {
     SoundBatch::do_step(outcomes);
@@ -123,7 +123,7 @@ std::vector<Variant> batches() {
   return {variant("sound", create_batch<SoundBatch>),
           variant("lost_lane", create_batch<LostLane>),
           variant("failed_lane", create_batch<FailedLane>),
-          variant("throws", create_batch<Throws>),
+          variant("throws", create_batch<ThrowingBatch>),
           variant("unsupported", refuse),
           variant("leaks", create_batch<Leaks>),
           variant("mixes", create_batch<Mixes>)};
