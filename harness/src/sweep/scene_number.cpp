@@ -10,18 +10,12 @@
 #include <vector>
 
 #include "printable.hpp"
-#include "usage_error.hpp"
+#include "sweep/value_range.hpp"
 
 namespace mbs {
 namespace {
 
 using nlohmann::json;
-
-[[noreturn]] void fail(const std::string& path, const std::string& found,
-                       const std::string& allowed) {
-  throw UsageError(
-      fmt::format("--vary {}: found {}, allowed is {}", in_quotes(path), found, allowed));
-}
 
 /// "~1" is "/", "~0" is "~", as in JSON pointers.
 std::string unescaped(std::string_view token) {
@@ -97,8 +91,8 @@ std::optional<std::size_t> find_item(const json& array, const std::string& token
   for (std::size_t i = 0; i < array.size() && !token.empty(); ++i) {
     if (name_of_item(array[i]) != token) continue;
     if (found) {
-      fail(path, fmt::format("{} twice, as items {} and {}", in_quotes(token), *found, i),
-           "a name that one item has, or an index");
+      refuse_vary(path, fmt::format("{} twice, as items {} and {}", in_quotes(token), *found, i),
+                  "a name that one item has, or an index");
     }
     found = i;
   }
@@ -118,7 +112,8 @@ json::json_pointer find_number(const json& document, const std::string& path) {
   for (const std::string& token : tokens_of(path)) {
     const std::string where = pointer.empty() ? "the scene" : pointer.to_string().substr(1);
     const auto unknown = [&] {
-      fail(path, fmt::format("no {} in {}", in_quotes(token), printable(where)), members_of(*at));
+      refuse_vary(path, fmt::format("no {} in {}", in_quotes(token), printable(where)),
+                  members_of(*at));
     };
     if (at->is_object()) {
       if (!at->contains(token)) unknown();
@@ -128,15 +123,16 @@ json::json_pointer find_number(const json& document, const std::string& path) {
       if (!index) unknown();
       pointer.push_back(std::to_string(*index));
     } else {
-      fail(path, fmt::format("{} in {}, and nothing below it", kind_of(*at), printable(where)),
-           "a path that ends at a number");
+      refuse_vary(path,
+                  fmt::format("{} in {}, and nothing below it", kind_of(*at), printable(where)),
+                  "a path that ends at a number");
     }
     at = &document.at(pointer);
   }
   if (!at->is_number()) {
-    fail(path, kind_of(*at),
-         at->is_structured() && !at->empty() ? "a number: go on with " + members_of(*at)
-                                             : "a number");
+    refuse_vary(path, kind_of(*at),
+                at->is_structured() && !at->empty() ? "a number: go on with " + members_of(*at)
+                                                    : "a number");
   }
   return pointer;
 }

@@ -26,8 +26,7 @@ void SweepGrid::add_axis(const std::string& text) {
   SweepAxis axis{path, find_number(document_, path), parse_range(text.substr(equals + 1), path)};
   for (const SweepAxis& other : axes_) {
     if (other.number != axis.number) continue;
-    throw UsageError(fmt::format("--vary {}: found the same number as --vary {}, allowed is once",
-                                 in_quotes(path), in_quotes(other.path)));
+    refuse_vary(path, "the same number as --vary " + in_quotes(other.path), "once");
   }
   const auto count = static_cast<long>(axis.values.size());
   if (count > kMostLanes / lanes_) {

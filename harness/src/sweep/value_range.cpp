@@ -13,12 +13,6 @@
 namespace mbs {
 namespace {
 
-[[noreturn]] void refuse_range(const std::string& path, const std::string& found,
-                               const std::string& allowed) {
-  throw UsageError(
-      fmt::format("--vary {}: found {}, allowed is {}", in_quotes(path), found, allowed));
-}
-
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts{""};
   for (const char c : text) {
@@ -41,7 +35,7 @@ bool parse_all(std::string_view text, Number& value) {
 double parse_number(const std::string& text, const std::string& path) {
   double value = 0.0;
   if (!parse_all(text, value) || !std::isfinite(value)) {
-    refuse_range(
+    refuse_vary(
         path, in_quotes(text),
         "a number, in a range a:b:K (K values from a to b), a:b:K:log, or a list v1,v2,...");
   }
@@ -51,13 +45,18 @@ double parse_number(const std::string& text, const std::string& path) {
 long parse_count(const std::string& text, const std::string& path) {
   long count = 0;
   if (!parse_all(text, count) || count < 2 || count > kMostLanes) {
-    refuse_range(path, fmt::format("{} for the number of values", in_quotes(text)),
-                 fmt::format("2 to {}", kMostLanes));
+    refuse_vary(path, fmt::format("{} for the number of values", in_quotes(text)),
+                fmt::format("2 to {}", kMostLanes));
   }
   return count;
 }
 
 }  // namespace
+
+void refuse_vary(const std::string& path, const std::string& found, const std::string& allowed) {
+  throw UsageError(
+      fmt::format("--vary {}: found {}, allowed is {}", in_quotes(path), found, allowed));
+}
 
 std::vector<double> parse_range(const std::string& text, const std::string& path) {
   std::vector<double> values;
@@ -68,11 +67,11 @@ std::vector<double> parse_range(const std::string& text, const std::string& path
   const std::vector<std::string> parts = split(text, ':');
   const bool is_log = parts.size() == 4 && parts[3] == "log";
   if (parts.size() != 3 && !is_log)
-    refuse_range(path, in_quotes(text), "a:b:K, a:b:K:log or v1,v2,...");
+    refuse_vary(path, in_quotes(text), "a:b:K, a:b:K:log or v1,v2,...");
   const double first = parse_number(parts[0], path), last = parse_number(parts[1], path);
   const long count = parse_count(parts[2], path);
   if (is_log && !(first * last > 0.0)) {
-    refuse_range(path, in_quotes(text), "ends of one sign, and not 0, for even ratios");
+    refuse_vary(path, in_quotes(text), "ends of one sign, and not 0, for even ratios");
   }
   for (long i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(count - 1);
