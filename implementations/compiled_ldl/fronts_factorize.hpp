@@ -1,0 +1,126 @@
+// Fronts<F>: factorization of the fronts one after the other. Part of fronts.hpp.
+#pragma once
+
+#include "fronts.hpp"
+
+namespace mbs::compiled_ldl {
+
+template <typename F>
+Fronts<F>::Fronts(const Program& program, bool definite)
+    : program_(program),
+      definite_(definite),
+      constants_(program.storage, F(0.0)),
+      matrix_(program.storage, F(0.0)),
+      inverse_(program.padded, F(0.0)) {
+  int longest = 0;
+  for (const Front& front : program.fronts) longest = std::max(longest, front.stride);
+  work_.resize(longest + W, F(0.0));
+}
+
+template <typename F>
+bool Fronts<F>::factorize_and_solve(F* y) {
+  least_ = F(1.0);
+  for (const Front& front : program_.fronts) factorize(front, y);
+  for (auto front = program_.fronts.rbegin(); front != program_.fronts.rend(); ++front) {
+    backward(*front, y);
+  }
+  if constexpr (kLanesOf<F> == 1) return least_ > F(0.0);
+  return true;
+}
+
+/// A pivot of zero or NaN has an inverse that is not finite, an infinite one has zero.
+template <typename F>
+void Fronts<F>::check(const F& inverse) {
+  const F measure = definite_ ? inverse : inverse * inverse;
+  if constexpr (kLanesOf<F> == 1) {
+    least_ = measure > F(0.0) && inverse - inverse == F(0.0) ? least_ : F(-1.0);
+  } else {
+    const auto finite = inverse.v - inverse.v;
+    least_.v = measure.v > finite ? least_.v : Lanes(-1.0).v;
+  }
+}
+
+template <typename F>
+void Fronts<F>::factorize(const Front& front, F* y) {
+  F* columns = matrix_.data() + front.base;
+  constexpr int kPanel = 8;
+  for (int from = 0; from < front.pivots; from += kPanel) {
+    const int to = std::min(from + kPanel, front.pivots);
+    for (int j = from; j < to; ++j) pivot_column(front, columns, j, to, y);
+    for (int k = to; k < front.pivots; ++k) {
+      update_column(front, columns, from, to, columns + k * front.stride, k);
+    }
+  }
+  if (front.border > 0) update_border(front, y);
+}
+
+/// Eliminates pivot j from the columns before `end` and from the pivots' right-hand side.
+template <typename F>
+void Fronts<F>::pivot_column(const Front& front, F* columns, int j, int end, F* y) {
+  F* column = columns + j * front.stride;
+  const F inverse = F(1.0) / column[j];
+  check(inverse);
+  inverse_[front.first + j] = inverse;
+  const int packs = front.stride / W;
+  for (int k = j + 1; k < end; ++k) {
+    const F factor = column[k] * inverse;
+    V* target = pack(columns + k * front.stride);
+    for (int i = k / W; i < packs; ++i) target[i] -= factor * pack(column)[i];
+  }
+  const F z = y[front.first + j] * inverse;
+  for (int i = j + 1; i < front.pivots; ++i) y[front.first + i] -= column[i] * z;
+}
+
+/// target -= Σ_j column_j (column_j)_row / d_j over pivots from … to - 1, from row `row` on.
+template <typename F>
+void Fronts<F>::update_column(const Front& front, const F* columns, int from, int to, F* target,
+                              int row) {
+  const int packs = front.stride / W;
+  const F* inverse = inverse_.data() + front.first;
+  F factors[8];
+  for (int j = from; j < to; ++j) factors[j - from] = columns[j * front.stride + row] * inverse[j];
+  for (int i = row / W; i < packs; ++i) {
+    V sum = pack(target)[i];
+    for (int j = from; j < to; ++j) sum -= factors[j - from] * pack(columns + j * front.stride)[i];
+    pack(target)[i] = sum;
+  }
+}
+
+template <typename F>
+void Fronts<F>::update_border(const Front& front, F* y) {
+  F* columns = matrix_.data() + front.base;
+  const int p = front.pivots;
+  for (int g = front.groups_begin; g < front.groups_end; ++g) {
+    const Group& group = program_.groups[g];
+    for (int k = group.begin; k < group.end; ++k) {
+      const int packs = front.stride / W;
+      for (int i = (p + k) / W; i < packs; ++i) pack(work_.data())[i] = V{};
+      for (int from = 0; from < p; from += 8) {
+        update_column(front, columns, from, std::min(from + 8, p), work_.data(), p + k);
+      }
+      scatter(front, group, k);
+    }
+  }
+  const int* rows = program_.border_rows.data() + front.rows;
+  for (int j = 0; j < p; ++j) {
+    const F z = y[front.first + j] * inverse_[front.first + j];
+    const F* column = columns + j * front.stride + p;
+    for (int i = 0; i < front.border; ++i) y[rows[i]] -= column[i] * z;
+  }
+}
+
+/// Adds work_ to the column that border column k goes to.
+template <typename F>
+void Fronts<F>::scatter(const Front& front, const Group& group, int k) {
+  const int* places = program_.positions.data() + group.positions - group.begin;
+  F* target = matrix_.data() + group.base + (k - group.begin) * group.stride;
+  const F* source = work_.data() + front.pivots;
+  if (group.contiguous) {
+    F* from_k = target + places[k];
+    for (int i = k; i < front.border; ++i) from_k[i - k] += source[i];
+  } else {
+    for (int i = k; i < front.border; ++i) target[places[i]] += source[i];
+  }
+}
+
+}  // namespace mbs::compiled_ldl

@@ -1,0 +1,21 @@
+// Orders of elimination of a graph, before anything is known about numbers.
+#pragma once
+
+#include <vector>
+
+namespace mbs::compiled_ldl {
+
+/// Neighbours of each node, sorted, each once, without the node itself.
+using Graph = std::vector<std::vector<int>>;
+
+/// The graph in which the nodes of each clique are neighbours.
+Graph graph_of(int nodes, const std::vector<std::vector<int>>& cliques);
+
+/// Which of several nodes of least degree goes first: the one that has waited longest, so that
+/// independent branches grow side by side, or the latest one.
+enum class Tie { longest, latest };
+
+/// Approximate minimum degree: the nodes in order of elimination.
+std::vector<int> minimum_degree(const Graph& graph, Tie tie);
+
+}  // namespace mbs::compiled_ldl

@@ -1,0 +1,164 @@
+// Stepper: predictor and Newton's passes. Part of stepper.hpp.
+#pragma once
+
+#include "stepper.hpp"
+
+namespace mbs::compiled_ldl {
+
+template <typename S, typename F, int D>
+Stepper<S, F, D>::Stepper(const Model& model, const StepSettings& settings)
+    : Simulation(model, settings),
+      settings_(settings),
+      system_(std::vector<const Model*>{&model}, std::vector<StepSettings>{settings}),
+      reuses_(settings.tangent != TangentReuse::none),
+      refines_(reuses_ || !std::is_same_v<S, F>),
+      step_(static_cast<S>(settings.step)),
+      tolerance_(static_cast<S>(settings.tolerance)),
+      velocity_terms_(system_.constraints.count(), S(0.0)),
+      star_(system_.rows.extent, S(0.0)),
+      multipliers_(system_.constraints.count(), S(0.0)),
+      difference_(system_.rows.extent, S(0.0)),
+      right_hand_side_(system_.rows.extent, S(0.0)) {}
+
+template <typename S, typename F, int D>
+void Stepper<S, F, D>::do_set_state(const State& state) {
+  system_.put(0, state);
+  due_ = true;
+  unprojected_ = 0;
+  if (!system_.rattle) return;
+  system_.evaluate();
+  system_.assemble();
+  std::fill(system_.y.begin(), system_.y.end(), S(0.0));
+  system_.factorize_and_solve();
+  find_acceleration();
+}
+
+template <typename S, typename F, int D>
+void Stepper<S, F, D>::do_get_state(State& state) const {
+  system_.get(0, state);
+}
+
+template <typename S, typename F, int D>
+StepOutcome Stepper<S, F, D>::do_step() {
+  phases_.enter(Phase::other);
+  return system_.rattle ? rattle_step() : trapezoidal_step();
+}
+
+template <typename S, typename F, int D>
+StepOutcome Stepper<S, F, D>::trapezoidal_step() {
+  StepOutcome outcome;
+  if (reuses_) outcome.factorizations = 0;
+  if (system_.drivers.any()) system_.drive(time());
+  predict();
+  if (!run_passes(outcome) || !project(outcome)) {
+    outcome.status = StepStatus::factorization_failed;
+    due_ = true;
+  }
+  return outcome;
+}
+
+/// With q' = q + Δt v + (Δt²/2) a, Eq. (2) gives v' = v + Δt a and a' = a.
+template <typename S, typename F, int D>
+void Stepper<S, F, D>::predict() {
+  S* q = system_.q.data();
+  S* v = system_.v.data();
+  const S* a = system_.a.data();
+  const S half = step_ * step_ / S(2.0);
+  for (int i = 0; i < system_.program.padded; ++i) {
+    q[i] += step_ * v[i] + half * a[i];
+    v[i] += step_ * a[i];
+  }
+}
+
+template <typename S, typename F, int D>
+bool Stepper<S, F, D>::run_passes(StepOutcome& outcome) {
+  phases_.enter(Phase::evaluation);
+  system_.evaluate();
+  const bool at_convergence = settings_.multipliers == MultiplierUpdate::converged;
+  bool updated = false;
+  S previous = S(0.0);
+  outcome.status = StepStatus::pass_limit;
+  for (int pass = 1; pass <= settings_.max_passes; ++pass) {
+    outcome.passes = pass;
+    if (!solve_pass(outcome)) return false;
+    const S change = apply_pass();
+    const bool converged = change <= tolerance_;
+    judge_factors(pass, change, previous);
+    previous = change;
+    if (!system_.saddle && (!at_convergence || converged)) update_multipliers();
+    if (converged && (!at_convergence || updated)) {
+      outcome.status = StepStatus::converged;
+      break;
+    }
+    updated = converged;
+  }
+  if (outcome.status == StepStatus::pass_limit) due_ = true;
+  return true;
+}
+
+template <typename S, typename F, int D>
+bool Stepper<S, F, D>::factorizes(int pass) const {
+  switch (settings_.tangent) {
+    case TangentReuse::none:
+      return true;
+    case TangentReuse::step:
+      return pass == 1;
+    case TangentReuse::kept:
+      return due_;
+  }
+  return true;
+}
+
+template <typename S, typename F, int D>
+bool Stepper<S, F, D>::solve_pass(StepOutcome& outcome) {
+  phases_.enter(Phase::evaluation);
+  system_.residual();
+  if (!factorizes(outcome.passes)) {
+    phases_.enter(Phase::solve);
+    system_.solve();
+    return true;
+  }
+  if (reuses_) ++outcome.factorizations;
+  due_ = false;
+  phases_.enter(Phase::assembly);
+  system_.assemble();
+  phases_.enter(Phase::factorization);
+  return system_.factorize_and_solve();
+}
+
+/// q', v', a' and, in the saddle-point form, λ with the solution; max|Δq|.
+template <typename S, typename F, int D>
+S Stepper<S, F, D>::apply_pass() {
+  phases_.enter(Phase::other);
+  if (system_.saddle) system_.take_multipliers(system_.lambda.data(), S(1.0) / system_.h);
+  S* q = system_.q.data();
+  S* v = system_.v.data();
+  S* a = system_.a.data();
+  const S* y = system_.y.data();
+  const S to_v = S(2.0) / step_, to_a = S(1.0) / system_.h;
+  for (int i = 0; i < system_.program.padded; ++i) {
+    q[i] += y[i];
+    v[i] += to_v * y[i];
+    a[i] += to_a * y[i];
+  }
+  const S change = system_.largest();
+  phases_.enter(Phase::evaluation);
+  system_.evaluate();
+  return change;
+}
+
+template <typename S, typename F, int D>
+void Stepper<S, F, D>::update_multipliers() {
+  for (int k = 0; k < system_.constraints.count(); ++k) {
+    system_.lambda[k] += system_.alpha * system_.phi[k];
+  }
+}
+
+/// Factors that are kept become due when convergence slows.
+template <typename S, typename F, int D>
+void Stepper<S, F, D>::judge_factors(int pass, S change, S previous) {
+  if (pass < 2) return;
+  if (!(change <= previous / S(4.0)) && !(change <= tolerance_)) due_ = true;
+}
+
+}  // namespace mbs::compiled_ldl

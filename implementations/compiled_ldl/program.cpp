@@ -1,0 +1,155 @@
+// Compiles a pattern: ordering, fronts, positions of everything.
+#include "program.hpp"
+
+#include <algorithm>
+#include <ostream>
+
+#include "elimination_tree.hpp"
+#include "ordering.hpp"
+
+namespace mbs::compiled_ldl {
+namespace {
+
+/// Every multiplier comes right after the last of its points: late enough that a large alpha
+/// costs no digits, early enough that it costs no fill.
+std::vector<int> insert_multipliers(const std::vector<int>& points, const Pattern& pattern) {
+  std::vector<int> place(pattern.points);
+  for (int k = 0; k < pattern.points; ++k) place[points[k]] = k;
+  std::vector<std::vector<int>> after(pattern.points + 1);
+  for (int m = 0; m < static_cast<int>(pattern.borders.size()); ++m) {
+    int last = pattern.points;
+    for (const int p : pattern.borders[m]) {
+      last = last == pattern.points ? place[p] : std::max(last, place[p]);
+    }
+    after[last].push_back(pattern.points + m);
+  }
+  std::vector<int> order;
+  for (int k = 0; k <= pattern.points; ++k) {
+    if (k < pattern.points) order.push_back(points[k]);
+    order.insert(order.end(), after[k].begin(), after[k].end());
+  }
+  return order;
+}
+
+Tree best_tree(const Pattern& pattern, const std::vector<int>& sizes, int width) {
+  auto cliques = pattern.cliques;
+  cliques.insert(cliques.end(), pattern.borders.begin(), pattern.borders.end());
+  const Graph points = graph_of(pattern.points, cliques);
+  cliques = pattern.cliques;
+  for (int m = 0; m < static_cast<int>(pattern.borders.size()); ++m) {
+    for (const int p : pattern.borders[m]) cliques.push_back({pattern.points + m, p});
+  }
+  const int nodes = pattern.points + static_cast<int>(pattern.borders.size());
+  const Graph all = pattern.borders.empty() ? points : graph_of(nodes, cliques);
+  Tree best;
+  for (const Tie tie : {Tie::longest, Tie::latest}) {
+    const auto order = insert_multipliers(minimum_degree(points, tie), pattern);
+    Tree tree = eliminate(all, order, sizes, width);
+    if (best.fronts.empty() || tree.cycles < best.cycles) best = std::move(tree);
+  }
+  return best;
+}
+
+void place_rows(const Tree& tree, const std::vector<int>& sizes, Program& program) {
+  program.row_of_node.resize(sizes.size());
+  const auto round_up = [&](int x) {
+    return (x + program.width - 1) / program.width * program.width;
+  };
+  for (const TreeFront& from : tree.fronts) {
+    Front front;
+    front.first = program.size;
+    front.base = program.storage;
+    for (const int node : from.pivots) {
+      program.row_of_node[node] = program.size;
+      program.size += sizes[node];
+    }
+    for (const int node : from.border) front.border += sizes[node];
+    front.pivots = program.size - front.first;
+    front.stride = round_up(front.pivots + front.border);
+    program.storage += front.pivots * front.stride;
+    program.front_of_row.resize(program.size, static_cast<int>(program.fronts.size()));
+    program.fronts.push_back(front);
+  }
+  program.padded = (program.size + 15) / 16 * 16;
+}
+
+void place_borders(const Tree& tree, const std::vector<int>& sizes, Program& program) {
+  for (std::size_t k = 0; k < tree.fronts.size(); ++k) {
+    Front& front = program.fronts[k];
+    front.rows = static_cast<int>(program.border_rows.size());
+    for (const int node : tree.fronts[k].border) {
+      for (int i = 0; i < sizes[node]; ++i) {
+        program.border_rows.push_back(program.row_of_node[node] + i);
+      }
+    }
+    std::sort(program.border_rows.begin() + front.rows, program.border_rows.end());
+  }
+}
+
+int place_in(const Program& program, const Front& front, int row) {
+  if (row < front.first + front.pivots) return row - front.first;
+  const auto begin = program.border_rows.begin() + front.rows;
+  const auto found = std::lower_bound(begin, begin + front.border, row);
+  return front.pivots + static_cast<int>(found - begin);
+}
+
+void place_updates(Program& program) {
+  for (Front& front : program.fronts) {
+    front.groups_begin = static_cast<int>(program.groups.size());
+    const int* rows = program.border_rows.data() + front.rows;
+    for (int k = 0; k < front.border;) {
+      const Front& target = program.fronts[program.front_of_row[rows[k]]];
+      Group group;
+      group.begin = k;
+      while (k < front.border && rows[k] < target.first + target.pivots) ++k;
+      group.end = k;
+      group.base = target.base + (rows[group.begin] - target.first) * target.stride;
+      // The columns of a group need not be neighbours in the target: split where they are not.
+      for (int i = group.begin + 1; i < group.end; ++i) {
+        if (rows[i] != rows[i - 1] + 1) group.end = k = i;
+      }
+      group.stride = target.stride;
+      group.positions = static_cast<int>(program.positions.size());
+      for (int i = group.begin; i < front.border; ++i) {
+        program.positions.push_back(place_in(program, target, rows[i]));
+      }
+      const auto* places = program.positions.data() + group.positions;
+      group.contiguous =
+          places[front.border - group.begin - 1] - places[0] == front.border - group.begin - 1;
+      program.groups.push_back(group);
+    }
+    front.groups_end = static_cast<int>(program.groups.size());
+  }
+}
+
+}  // namespace
+
+int Program::entry(int row, int column) const {
+  const Front& front = fronts[front_of_row[column]];
+  return front.base + (column - front.first) * front.stride + place_in(*this, front, row);
+}
+
+Program compile(const Pattern& pattern, int width) {
+  Program program;
+  program.width = width;
+  std::vector<int> sizes(pattern.points + pattern.borders.size(), 1);
+  std::fill_n(sizes.begin(), pattern.points, pattern.dimension);
+  const Tree tree = best_tree(pattern, sizes, width);
+  place_rows(tree, sizes, program);
+  place_borders(tree, sizes, program);
+  place_updates(program);
+  return program;
+}
+
+std::ostream& operator<<(std::ostream& out, const Program& program) {
+  out << program.size << " rows, " << program.storage << " numbers, " << program.fronts.size()
+      << " fronts\n";
+  for (const Front& front : program.fronts) {
+    out << "rows " << front.first << " to " << front.first + front.pivots - 1 << ", border";
+    for (int i = 0; i < front.border; ++i) out << ' ' << program.border_rows[front.rows + i];
+    out << ", updates in " << front.groups_end - front.groups_begin << " group(s)\n";
+  }
+  return out;
+}
+
+}  // namespace mbs::compiled_ldl

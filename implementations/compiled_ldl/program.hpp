@@ -1,0 +1,60 @@
+// The symbolic program: which dense fronts are eliminated in which order, and where numbers lie.
+#pragma once
+
+#include <iosfwd>
+#include <vector>
+
+namespace mbs::compiled_ldl {
+
+/// What couples with what. A node is a point (all its coordinates) or a multiplier (one row).
+struct Pattern {
+  int dimension = 2;
+  int points = 0;                         ///< nodes 0 … points - 1
+  std::vector<std::vector<int>> cliques;  ///< points that are coupled with each other
+  std::vector<std::vector<int>> borders;  ///< of each multiplier: its points
+};
+
+/// Columns that are eliminated together: `pivots` of them, with rows below in `border` others. They
+/// lie in the storage column by column from `base` on, `stride` apart: pivots first, then border.
+struct Front {
+  int first = 0;   ///< row of the first pivot
+  int pivots = 0;  ///< columns
+  int border = 0;
+  int stride = 0;
+  int base = 0;
+  int rows = 0;          ///< where Program::border_rows has its border
+  int groups_begin = 0;  ///< its updates, in Program::groups
+  int groups_end = 0;
+};
+
+/// Where border columns begin … end - 1 of a front's update go: into columns of one later front.
+struct Group {
+  int begin = 0, end = 0;  ///< among the border
+  int base = 0;            ///< storage of column `begin`, row 0 of that front
+  int stride = 0;
+  int positions = 0;  ///< where Program::positions has the place of each border row from `begin` on
+  bool contiguous = false;  ///< these places follow each other
+};
+
+struct Program {
+  int size = 0;     ///< rows; those of a point follow each other
+  int padded = 0;   ///< rows, a multiple of the width
+  int storage = 0;  ///< numbers in all fronts
+  int width = 1;    ///< strides are multiples of it
+  std::vector<int> row_of_node;
+  std::vector<int> front_of_row;
+  std::vector<Front> fronts;  ///< in order of elimination
+  std::vector<Group> groups;
+  std::vector<int> border_rows;
+  std::vector<int> positions;
+
+  /// Where the entry (row, column) lies, row >= column, both coupled.
+  [[nodiscard]] int entry(int row, int column) const;
+};
+
+/// `width`: how many numbers a processor handles at once.
+Program compile(const Pattern& pattern, int width);
+
+std::ostream& operator<<(std::ostream& out, const Program& program);
+
+}  // namespace mbs::compiled_ldl

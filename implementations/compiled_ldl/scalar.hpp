@@ -1,0 +1,104 @@
+// What a program computes with: double, float, or eight doubles side by side, one a simulation.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <new>
+#include <vector>
+
+namespace mbs::compiled_ldl {
+
+/// Eight doubles, one of each of eight simulations.
+struct Lanes {
+  static constexpr int kCount = 8;
+  using Vector __attribute__((vector_size(64), may_alias)) = double;
+  Vector v;
+
+  Lanes() = default;
+  Lanes(double x) : v(Vector{} + x) {}  // NOLINT: a number is the same in every lane
+  static Lanes of(const Vector& v) {
+    Lanes x;
+    x.v = v;
+    return x;
+  }
+  Lanes& operator+=(const Lanes& b) { return v += b.v, *this; }
+  Lanes& operator-=(const Lanes& b) { return v -= b.v, *this; }
+  Lanes& operator*=(const Lanes& b) { return v *= b.v, *this; }
+};
+inline Lanes operator+(const Lanes& a, const Lanes& b) { return Lanes::of(a.v + b.v); }
+inline Lanes operator-(const Lanes& a, const Lanes& b) { return Lanes::of(a.v - b.v); }
+inline Lanes operator*(const Lanes& a, const Lanes& b) { return Lanes::of(a.v * b.v); }
+inline Lanes operator/(const Lanes& a, const Lanes& b) { return Lanes::of(a.v / b.v); }
+inline Lanes operator-(const Lanes& a) { return Lanes::of(-a.v); }
+
+template <typename S>
+inline constexpr int kLanesOf = 1;
+template <>
+inline constexpr int kLanesOf<Lanes> = Lanes::kCount;
+
+inline double lane(const Lanes& x, int i) { return x.v[i]; }
+inline double lane(double x, int /*i*/) { return x; }
+inline double lane(float x, int /*i*/) { return x; }
+inline void set_lane(Lanes& x, int i, double value) { x.v[i] = value; }
+inline void set_lane(double& x, int /*i*/, double value) { x = value; }
+inline void set_lane(float& x, int /*i*/, double value) { x = static_cast<float>(value); }
+
+/// The scalar function f in every lane.
+template <typename S, typename Function>
+S each(const S& x, Function f) {
+  if constexpr (kLanesOf<S> == 1) {
+    return static_cast<S>(f(x));
+  } else {
+    S y = 0.0;
+    for (int i = 0; i < kLanesOf<S>; ++i) y.v[i] = f(x.v[i]);
+    return y;
+  }
+}
+template <typename S, typename Function>
+S each(const S& x, const S& y, Function f) {
+  if constexpr (kLanesOf<S> == 1) {
+    return static_cast<S>(f(x, y));
+  } else {
+    S z = 0.0;
+    for (int i = 0; i < kLanesOf<S>; ++i) z.v[i] = f(x.v[i], y.v[i]);
+    return z;
+  }
+}
+
+inline double magnitude(double x) { return std::fabs(x); }
+inline float magnitude(float x) { return std::fabs(x); }
+inline Lanes magnitude(const Lanes& x) { return Lanes::of(x.v < 0.0 ? -x.v : x.v); }
+/// The larger one; `a` if b is NaN.
+inline double larger(double a, double b) { return b > a ? b : a; }
+inline float larger(float a, float b) { return b > a ? b : a; }
+inline Lanes larger(const Lanes& a, const Lanes& b) { return Lanes::of(b.v > a.v ? b.v : a.v); }
+
+/// One or eight consecutive numbers that a processor handles at once.
+template <typename F>
+struct Pack {
+  static constexpr int kWidth = 64 / sizeof(F);
+  using Type __attribute__((vector_size(64), may_alias)) = F;
+};
+template <>
+struct Pack<Lanes> {
+  static constexpr int kWidth = 1;
+  using Type = Lanes;
+};
+
+/// Begins on a cache line.
+template <typename T>
+struct Aligned {
+  using value_type = T;
+  Aligned() = default;
+  template <typename U>
+  Aligned(const Aligned<U>&) {}  // NOLINT: the usual rebinding
+  T* allocate(std::size_t count) {
+    return static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t(64)));
+  }
+  void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t(64)); }
+  bool operator==(const Aligned&) const { return true; }
+};
+template <typename T>
+using Array = std::vector<T, Aligned<T>>;
+
+}  // namespace mbs::compiled_ldl

@@ -1,0 +1,155 @@
+// Patterns and rows of a model.
+#include "scene.hpp"
+
+namespace mbs::compiled_ldl {
+namespace {
+
+/// Free points by index of their first coordinate, as nodes of a pattern.
+class Nodes {
+ public:
+  explicit Nodes(const Model& model) : model_(model), at_(model.variables(), -1) {
+    for (const Point& point : model.points()) {
+      if (!point.is_fixed()) at_[point.offset] = count_++;
+    }
+  }
+  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] int of_point(int point) const {
+    return model_.points()[point].is_fixed() ? -1 : at_[model_.points()[point].offset];
+  }
+  [[nodiscard]] int of_coordinate(int k) const {
+    while (at_[k] < 0) --k;
+    return at_[k];
+  }
+  [[nodiscard]] std::vector<int> clique(std::initializer_list<int> points) const {
+    std::vector<int> nodes;
+    for (const int p : points) {
+      const int node = of_point(p);
+      if (node >= 0) nodes.push_back(node);
+    }
+    return sorted(std::move(nodes));
+  }
+  static std::vector<int> sorted(std::vector<int> nodes) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    return nodes;
+  }
+
+ private:
+  const Model& model_;
+  std::vector<int> at_;
+  int count_ = 0;
+};
+
+}  // namespace
+
+Pattern pattern_of(const Model& model, bool multipliers, bool second_derivatives) {
+  const Nodes nodes(model);
+  Pattern pattern;
+  pattern.dimension = model.dimension();
+  pattern.points = nodes.count();
+  for (const MassEntry& entry : model.mass()) {
+    pattern.cliques.push_back({nodes.of_coordinate(entry.row), nodes.of_coordinate(entry.col)});
+  }
+  for (const Spring& s : model.springs()) pattern.cliques.push_back(nodes.clique({s.a, s.b}));
+  for (const TorsionSpring& s : model.torsion_springs()) {
+    pattern.cliques.push_back(nodes.clique({s.a, s.b, s.c, s.d}));
+  }
+  const auto add = [&](const std::vector<int>& clique, bool curved) {
+    if (multipliers) pattern.borders.push_back(clique);
+    if (!multipliers || (curved && second_derivatives)) pattern.cliques.push_back(clique);
+  };
+  for (const auto& c : model.dot_constraints()) add(nodes.clique({c.a, c.b, c.c, c.d}), true);
+  for (const auto& c : model.bilinear_constraints()) add(nodes.clique({c.a, c.b, c.c, c.d}), true);
+  for (const LinearConstraint& constraint : model.linear_constraints()) {
+    std::vector<int> clique;
+    for (const auto& term : constraint.terms)
+      clique.push_back(nodes.of_coordinate(term.coordinate));
+    add(Nodes::sorted(std::move(clique)), false);
+  }
+  return pattern;
+}
+
+Rows::Rows(const Model& model, const Program& program)
+    : of_point(model.points().size()), of_coordinate(model.variables()), free_(program.padded) {
+  extent = program.padded;
+  int node = 0;
+  for (std::size_t i = 0; i < model.points().size(); ++i) {
+    const Point& point = model.points()[i];
+    if (point.is_fixed()) {
+      of_point[i] = extent;
+      extent += model.dimension();
+      continue;
+    }
+    of_point[i] = program.row_of_node[node++];
+    for (int x = 0; x < model.dimension(); ++x) of_coordinate[point.offset + x] = of_point[i] + x;
+  }
+}
+
+Pairs make_pairs(const std::vector<std::array<int, 2>>& points, const Rows& rows,
+                 std::vector<int>& order) {
+  std::vector<Pair> all;
+  for (const auto& [p, q] : points) {
+    Pair pair;
+    pair.a = std::min(rows.of_point[p], rows.of_point[q]);
+    pair.b = std::max(rows.of_point[p], rows.of_point[q]);
+    all.push_back(pair);
+  }
+  const auto free = [&](const Pair& pair) { return rows.is_free(pair.a) + rows.is_free(pair.b); };
+  order.resize(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) {
+    if (free(all[i]) != free(all[j])) return free(all[i]) > free(all[j]);
+    return all[i].a < all[j].a;
+  });
+  Pairs pairs;
+  for (const int k : order) pairs.list.push_back(all[k]);
+  for (const Pair& pair : pairs.list) {
+    pairs.two += free(pair) == 2;
+    pairs.one += free(pair) >= 1;
+  }
+  return pairs;
+}
+
+Quad make_quad(const std::array<int, 4>& points, const Rows& rows, const Program& program,
+               std::vector<Place>* places) {
+  Quad quad;
+  quad.a = rows.of_point[points[0]];
+  quad.b = rows.of_point[points[1]];
+  quad.c = rows.of_point[points[2]];
+  quad.d = rows.of_point[points[3]];
+  const auto add = [&](int row, double sign_a, double sign_c) {
+    if (!rows.is_free(row)) return;
+    int i = 0;
+    while (i < quad.free && quad.points[i].row < row) ++i;
+    if (i == quad.free || quad.points[i].row != row) {  // kept sorted
+      for (int j = quad.free++; j > i; --j) quad.points[j] = quad.points[j - 1];
+      quad.points[i] = {row, 0.0, 0.0};
+    }
+    quad.points[i].sign_a += sign_a;
+    quad.points[i].sign_c += sign_c;
+  };
+  add(quad.a, 1.0, 0.0);
+  add(quad.b, -1.0, 0.0);
+  add(quad.c, 0.0, 1.0);
+  add(quad.d, 0.0, -1.0);
+  if (places == nullptr) return quad;
+  quad.places = static_cast<int>(places->size());
+  for (int i = 0; i < quad.free; ++i) {
+    for (int j = i; j < quad.free; ++j) {
+      places->push_back(place_of(program, quad.points[j].row, quad.points[i].row));
+    }
+  }
+  return quad;
+}
+
+void place_pairs(Pairs& pairs, const Program& program) {
+  for (int k = 0; k < pairs.one; ++k) {
+    Pair& pair = pairs.list[k];
+    pair.aa = place_of(program, pair.a, pair.a);
+    if (k >= pairs.two) continue;
+    pair.bb = place_of(program, pair.b, pair.b);
+    pair.ba = place_of(program, pair.b, pair.a);
+  }
+}
+
+}  // namespace mbs::compiled_ldl

@@ -1,0 +1,52 @@
+// A model, or eight of the same shape, on the rows of a program.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "blocks.hpp"
+#include "mbs/model.hpp"
+#include "program.hpp"
+#include "scalar.hpp"
+
+namespace mbs::compiled_ldl {
+
+/// The pattern that a scheme's matrix has: multipliers are rows of it in the saddle-point forms,
+/// where the points of a constraint couple with each other only by its second derivatives.
+Pattern pattern_of(const Model& model, bool multipliers, bool second_derivatives);
+
+/// Vectors of coordinates have `extent` numbers: the program's rows, then those of fixed points.
+struct Rows {
+  Rows(const Model& model, const Program& program);
+
+  std::vector<int> of_point;
+  std::vector<int> of_coordinate;  ///< of an index into q
+  int extent = 0;
+
+  [[nodiscard]] bool is_free(int row) const { return row < free_; }
+
+ private:
+  int free_ = 0;
+};
+
+/// `order`: which of `points` became which pair.
+Pairs make_pairs(const std::vector<std::array<int, 2>>& points, const Rows& rows,
+                 std::vector<int>& order);
+/// Finds their blocks; for pairs that are coupled in the program's pattern.
+void place_pairs(Pairs& pairs, const Program& program);
+/// Appends the places of its blocks to `places`; none if that is null.
+Quad make_quad(const std::array<int, 4>& points, const Rows& rows, const Program& program,
+               std::vector<Place>* places);
+
+/// The number that each model has, one a lane; lanes without a model have that of the first.
+template <typename S, typename Get>
+S of_models(std::span<const Model* const> models, Get get) {
+  S value = static_cast<S>(get(*models[0]));
+  for (int i = 1; i < static_cast<int>(models.size()); ++i) set_lane(value, i, get(*models[i]));
+  return value;
+}
+
+}  // namespace mbs::compiled_ldl

@@ -1,0 +1,128 @@
+// System: residual, matrix and solves. Part of system.hpp.
+#pragma once
+
+#include "system.hpp"
+
+namespace mbs::compiled_ldl {
+
+template <typename S, typename F, int D>
+void System<S, F, D>::residual() {
+  mass.residual(force.data(), a.data(), y.data());
+  if (forces.any()) forces.add(q.data(), v.data(), y.data());
+  const int count = constraints.count();
+  for (int k = 0; k < count; ++k) {
+    terms[k] = saddle ? -lambda[k] : -(lambda[k] + alpha * phi[k]);
+  }
+  constraints.add_transposed(terms.data(), y.data());
+  for (int i = 0; i < program.padded; ++i) y[i] *= h;
+  if (!saddle) return;
+  for (int k = 0; k < count; ++k) y[constraints.row(k)] = -phi[k];
+}
+
+template <typename S, typename F, int D>
+void System<S, F, D>::assemble() {
+  fronts.start();
+  F* matrix = fronts.matrix();
+  if (saddle) {
+    constraints.add_rows(matrix);
+  } else {
+    constraints.add_penalty(matrix, h * alpha);
+  }
+  if (rattle) return;
+  if (forces.has_stiffness()) {
+    forces.keep();
+    forces.add_matrix(matrix);
+  }
+  if (!curved) return;
+  for (int k = 0; k < constraints.count(); ++k) {
+    terms[k] = saddle ? lambda[k] : lambda[k] + alpha * phi[k];
+  }
+  constraints.keep_forces(terms.data(), h);
+  constraints.add_curvature(matrix);
+}
+
+/// y rounded to F in units of its largest entry, which it returns.
+template <typename S, typename F, int D>
+S System<S, F, D>::scale_down() {
+  S scale = S(0.0);
+  for (int i = 0; i < program.padded; ++i) scale = larger(scale, magnitude(y[i]));
+  const S inverse = scale > S(0.0) ? S(1.0) / scale : S(0.0);
+  for (int i = 0; i < program.padded; ++i) rounded_[i] = static_cast<F>(y[i] * inverse);
+  return scale;
+}
+
+template <typename S, typename F, int D>
+void System<S, F, D>::scale_up(const S& scale) {
+  for (int i = 0; i < program.padded; ++i) y[i] = static_cast<S>(rounded_[i]) * scale;
+}
+
+template <typename S, typename F, int D>
+bool System<S, F, D>::factorize_and_solve() {
+  if constexpr (kSame) {
+    return fronts.factorize_and_solve(y.data());
+  } else {
+    const S scale = scale_down();
+    const bool accepted = fronts.factorize_and_solve(rounded_.data());
+    scale_up(scale);
+    return accepted;
+  }
+}
+
+template <typename S, typename F, int D>
+void System<S, F, D>::solve() {
+  if constexpr (kSame) {
+    fronts.solve(y.data());
+  } else {
+    const S scale = scale_down();
+    fronts.solve(rounded_.data());
+    scale_up(scale);
+  }
+}
+
+template <typename S, typename F, int D>
+void System<S, F, D>::product(const S* x) {
+  mass.product(x, y.data());
+  if (rattle) return;
+  if (forces.has_stiffness()) forces.add_product(x, y.data());
+  if (curved) constraints.add_curvature_product(x, y.data());
+}
+
+template <typename S, typename F, int D>
+void System<S, F, D>::constrain(const S* t) {
+  if (saddle) {
+    for (int k = 0; k < constraints.count(); ++k) y[constraints.row(k)] = -t[k];
+    return;
+  }
+  const S factor = -h * alpha;
+  for (int k = 0; k < constraints.count(); ++k) terms[k] = factor * t[k];
+  constraints.add_transposed(terms.data(), y.data());
+}
+
+template <typename S, typename F, int D>
+void System<S, F, D>::take_multipliers(S* multipliers, const S& factor) {
+  for (int k = 0; k < constraints.count(); ++k) {
+    S& value = y[constraints.row(k)];
+    if (multipliers != nullptr) multipliers[k] += factor * value;
+    value = S(0.0);
+  }
+}
+
+template <typename S, typename F, int D>
+S System<S, F, D>::largest() const {
+  constexpr int kTogether = 8;  // padded is a multiple of it
+  S most[kTogether], sum[kTogether];
+  for (int u = 0; u < kTogether; ++u) most[u] = sum[u] = S(0.0);
+  for (int i = 0; i < program.padded; i += kTogether) {
+    for (int u = 0; u < kTogether; ++u) {
+      most[u] = larger(most[u], magnitude(y[i + u]));
+      sum[u] += S(0.0) * y[i + u];
+    }
+  }
+  for (int u = 1; u < kTogether; ++u) {
+    most[0] = larger(most[0], most[u]);
+    sum[0] += sum[u];
+  }
+  return most[0] + sum[0];  // 0 y is NaN if y is infinite or NaN
+}
+
+}  // namespace mbs::compiled_ldl
