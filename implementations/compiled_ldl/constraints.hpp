@@ -19,12 +19,12 @@ class Constraints {
   [[nodiscard]] int row(int k) const { return multiplier_row_[k]; }
   S& value(int k) { return value_[k]; }
 
-  /// phi = Φ(q), and the gradients for what follows.
+  /// phi = Φ(q), and the gradients for what follows; those of the evaluation before are `earlier`.
   void evaluate(const S* q, S* phi);
   /// y += Φqᵀ t.
-  void add_transposed(const S* t, S* y) const;
+  void add_transposed(const S* t, S* y, bool earlier = false) const;
   /// t = Φq x, with the columns of fixed points.
-  void product(const S* x, S* t) const;
+  void product(const S* x, S* t, bool earlier = false) const;
   /// t = 2 u̇·B ẇ, which is Φ̇q v + Φ̇t but for what drivers prescribe.
   void velocity_terms(const S* v, S* t) const;
 
@@ -66,8 +66,8 @@ class Constraints {
   Array<S> matrices_;  // B, D × D row by row
   std::vector<int> number_, multiplier_row_;
   Array<S> value_;
-  Array<S> u_;        // of each distance
-  Array<S> vectors_;  // A = B w and C = Bᵀ u of each other quadratic one
+  Array<S> u_, earlier_u_;              // of each distance
+  Array<S> vectors_, earlier_vectors_;  // A = B w and C = Bᵀ u of each other quadratic one
   Array<S> force_;    // g h of Eq. (16)
   std::vector<RowPlace> pair_rows_;
   std::vector<Place> quad_rows_;    // four of each

@@ -17,6 +17,8 @@ void Constraints<S, D>::multiply(const S* matrix, const S* x, S* y, bool transpo
 
 template <typename S, int D>
 void Constraints<S, D>::evaluate(const S* q, S* phi) {
+  u_.swap(earlier_u_);
+  vectors_.swap(earlier_vectors_);
   int k = 0;
   S* u = u_.data();
   for (const Pair& pair : pairs_.list) {
@@ -53,9 +55,9 @@ void Constraints<S, D>::evaluate(const S* q, S* phi) {
 }
 
 template <typename S, int D>
-void Constraints<S, D>::add_transposed(const S* t, S* y) const {
+void Constraints<S, D>::add_transposed(const S* t, S* y, bool earlier) const {
   int k = 0;
-  const S* u = u_.data();
+  const S* u = (earlier ? earlier_u_ : u_).data();
   for (const Pair& pair : pairs_.list) {
     const S s = t[k++] * S(2.0);
     for (int x = 0; x < D; ++x) {
@@ -64,7 +66,7 @@ void Constraints<S, D>::add_transposed(const S* t, S* y) const {
     }
     u += D;
   }
-  const S* vectors = vectors_.data();
+  const S* vectors = (earlier ? earlier_vectors_ : vectors_).data();
   for (const Quad& quad : quads_) {
     const S s = t[k++];
     for (int x = 0; x < D; ++x) {
@@ -83,16 +85,16 @@ void Constraints<S, D>::add_transposed(const S* t, S* y) const {
 }
 
 template <typename S, int D>
-void Constraints<S, D>::product(const S* x, S* t) const {
+void Constraints<S, D>::product(const S* x, S* t, bool earlier) const {
   int k = 0;
-  const S* u = u_.data();
+  const S* u = (earlier ? earlier_u_ : u_).data();
   for (const Pair& pair : pairs_.list) {
     S sum = S(0.0);
     for (int i = 0; i < D; ++i) sum += u[i] * (x[pair.a + i] - x[pair.b + i]);
     t[k++] = sum * S(2.0);
     u += D;
   }
-  const S* vectors = vectors_.data();
+  const S* vectors = (earlier ? earlier_vectors_ : vectors_).data();
   for (const Quad& quad : quads_) {
     S sum = S(0.0);
     for (int i = 0; i < D; ++i) {

@@ -48,6 +48,7 @@ void Constraints<S, D>::add_pairs(std::span<const Model* const> models, const Ro
         of_models<S>(models, [&](const Model& m) { return m.dot_constraints()[number].value; }));
   }
   u_.resize(points.size() * D, S(0.0));
+  earlier_u_ = u_;
 }
 
 template <typename S, int D>
@@ -81,6 +82,7 @@ void Constraints<S, D>::add_quads(std::span<const Model* const> models, const Ro
     }
   }
   vectors_.resize(quads_.size() * 2 * D, S(0.0));
+  earlier_vectors_ = vectors_;
 }
 
 template <typename S, int D>

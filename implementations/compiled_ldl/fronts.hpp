@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
 
 #include "program.hpp"
 #include "scalar.hpp"
@@ -31,6 +32,8 @@ class Fronts {
  private:
   using P = Pack<F>;
   using V = typename P::Type;
+  /// A float's inverse is rounded only with the product it goes into.
+  using I = std::conditional_t<std::is_same_v<F, float>, double, F>;
   static constexpr int W = P::kWidth;
 
   static V* pack(F* x) { return reinterpret_cast<V*>(x); }
@@ -43,12 +46,12 @@ class Fronts {
   void scatter(const Front& front, const Group& group, int k);
   void forward(const Front& front, F* y) const;
   void backward(const Front& front, F* y) const;
-  void check(const F& inverse);
+  void check(const I& inverse);
 
   const Program& program_;
   bool definite_;
   Array<F> constants_, matrix_;
-  Array<F> inverse_;       // of the pivots
+  Array<I> inverse_;  // of the pivots
   mutable Array<F> work_;  // a column
   F least_ = 1.0;
 };

@@ -11,7 +11,7 @@ Fronts<F>::Fronts(const Program& program, bool definite)
       definite_(definite),
       constants_(program.storage, F(0.0)),
       matrix_(program.storage, F(0.0)),
-      inverse_(program.padded, F(0.0)) {
+      inverse_(program.padded, I(0.0)) {
   int longest = 0;
   for (const Front& front : program.fronts) longest = std::max(longest, front.stride);
   work_.resize(longest + W, F(0.0));
@@ -30,10 +30,10 @@ bool Fronts<F>::factorize_and_solve(F* y) {
 
 /// A pivot of zero or NaN has an inverse that is not finite, an infinite one has zero.
 template <typename F>
-void Fronts<F>::check(const F& inverse) {
-  const F measure = definite_ ? inverse : inverse * inverse;
+void Fronts<F>::check(const I& inverse) {
+  const I measure = definite_ ? inverse : inverse * inverse;
   if constexpr (kLanesOf<F> == 1) {
-    least_ = measure > F(0.0) && inverse - inverse == F(0.0) ? least_ : F(-1.0);
+    least_ = measure > I(0.0) && inverse - inverse == I(0.0) ? least_ : F(-1.0);
   } else {
     const auto finite = inverse.v - inverse.v;
     least_.v = measure.v > finite ? least_.v : Lanes(-1.0).v;
@@ -58,16 +58,16 @@ void Fronts<F>::factorize(const Front& front, F* y) {
 template <typename F>
 void Fronts<F>::pivot_column(const Front& front, F* columns, int j, int end, F* y) {
   F* column = columns + j * front.stride;
-  const F inverse = F(1.0) / column[j];
+  const I inverse = I(1.0) / I(column[j]);
   check(inverse);
   inverse_[front.first + j] = inverse;
   const int packs = front.stride / W;
   for (int k = j + 1; k < end; ++k) {
-    const F factor = column[k] * inverse;
+    const F factor = static_cast<F>(column[k] * inverse);
     V* target = pack(columns + k * front.stride);
     for (int i = k / W; i < packs; ++i) target[i] -= factor * pack(column)[i];
   }
-  const F z = y[front.first + j] * inverse;
+  const F z = static_cast<F>(y[front.first + j] * inverse);
   for (int i = j + 1; i < front.pivots; ++i) y[front.first + i] -= column[i] * z;
 }
 
@@ -76,9 +76,11 @@ template <typename F>
 void Fronts<F>::update_column(const Front& front, const F* columns, int from, int to, F* target,
                               int row) {
   const int packs = front.stride / W;
-  const F* inverse = inverse_.data() + front.first;
+  const I* inverse = inverse_.data() + front.first;
   F factors[8];
-  for (int j = from; j < to; ++j) factors[j - from] = columns[j * front.stride + row] * inverse[j];
+  for (int j = from; j < to; ++j) {
+    factors[j - from] = static_cast<F>(columns[j * front.stride + row] * inverse[j]);
+  }
   for (int i = row / W; i < packs; ++i) {
     V sum = pack(target)[i];
     for (int j = from; j < to; ++j) sum -= factors[j - from] * pack(columns + j * front.stride)[i];
@@ -103,7 +105,7 @@ void Fronts<F>::update_border(const Front& front, F* y) {
   }
   const int* rows = program_.border_rows.data() + front.rows;
   for (int j = 0; j < p; ++j) {
-    const F z = y[front.first + j] * inverse_[front.first + j];
+    const F z = static_cast<F>(y[front.first + j] * inverse_[front.first + j]);
     const F* column = columns + j * front.stride + p;
     for (int i = 0; i < front.border; ++i) y[rows[i]] -= column[i] * z;
   }

@@ -57,16 +57,20 @@ StepOutcome Stepper<S, F, D>::trapezoidal_step() {
   return outcome;
 }
 
-/// With q' = q + Δt v + (Δt²/2) a, Eq. (2) gives v' = v + Δt a and a' = a.
+/// Eq. (2) on the difference that is left after rounding, so that v and a follow what q does.
 template <typename S, typename F, int D>
 void Stepper<S, F, D>::predict() {
   S* q = system_.q.data();
   S* v = system_.v.data();
-  const S* a = system_.a.data();
-  const S half = step_ * step_ / S(2.0);
+  S* a = system_.a.data();
+  const S half = step_ * step_ / S(2.0), to_v = S(2.0) / step_, to_a = S(1.0) / system_.h;
+  const S damped = S(4.0) / step_;
   for (int i = 0; i < system_.program.padded; ++i) {
-    q[i] += step_ * v[i] + half * a[i];
-    v[i] += step_ * a[i];
+    const S moved = q[i] + (step_ * v[i] + half * a[i]);
+    const S difference = moved - q[i];
+    q[i] = moved;
+    a[i] = to_a * difference - damped * v[i] - a[i];
+    v[i] = to_v * difference - v[i];
   }
 }
 

@@ -36,16 +36,26 @@ const S* Stepper<S, F, D>::without_fixed(const S* x) {
   return difference_.data();
 }
 
-/// Eqs. (6) and (13); `terms` Φt or Φ̇q v' + Φ̇t, nullptr: zero.
+/// Eqs. (6) and (13) for what they change. T is T₀ + (Δt²/4) α Φqᵀ Φq with the Φq of the last pass,
+/// so that (6) is T (v' − v*) = −(Δt²/4) α (Φqᵀ Φq v* + Φqᵀ Φt), the first with that Φq: nothing has
+/// to cancel, and M is not needed. `terms` is Φt or Φ̇q v' + Φ̇t; nullptr: zero.
 template <typename S, typename F, int D>
 void Stepper<S, F, D>::project_once(S* x, const S* terms) {
-  system_.product(without_fixed(x));
-  if (terms != nullptr) system_.constrain(terms);
+  auto& s = system_;
+  std::fill(s.y.begin(), s.y.end(), S(0.0));
+  s.constraints.product(without_fixed(x), s.terms.data(), true);
+  if (s.saddle) {
+    for (int k = 0; terms != nullptr && k < s.constraints.count(); ++k) s.terms[k] += terms[k];
+    s.constrain(s.terms.data());
+  } else {
+    s.constrain(s.terms.data(), true);
+    if (terms != nullptr) s.constrain(terms);
+  }
   phases_.enter(Phase::solve);
-  system_.solve();
+  s.solve();
   phases_.enter(Phase::projection);
-  if (system_.saddle) system_.take_multipliers(nullptr, S(0.0));
-  std::copy(system_.y.data(), system_.y.data() + system_.program.padded, x);
+  if (s.saddle) s.take_multipliers(nullptr, S(0.0));
+  for (int i = 0; i < s.program.padded; ++i) x[i] += s.y[i];
 }
 
 /// y = right-hand sides of Eq. (15) at x, given v* or a*.

@@ -42,18 +42,18 @@ bool Stepper<S, F, D>::stage(S length, StepOutcome& outcome) {
   phases_.enter(Phase::assembly);
   s.assemble();
   phases_.enter(Phase::evaluation);
-  // M w + (h/2) Q(q'), with w in place of v.
-  s.product(s.v.data());
-  Array<S>& applied = star_;
-  std::copy(s.force.begin(), s.force.end(), applied.begin());
-  if (s.forces.any()) s.forces.add(s.q.data(), s.v.data(), applied.data());
-  for (int i = 0; i < s.program.padded; ++i) s.y[i] += length / S(2.0) * applied[i];
+  // w is in place of v. R [v' − w; ·] = [(h/2) Q(q'); −Φq w], so that M w need not cancel.
+  std::copy(s.force.begin(), s.force.end(), s.y.begin());
+  if (s.forces.any()) s.forces.add(s.q.data(), s.v.data(), s.y.data());
+  for (int i = 0; i < s.program.padded; ++i) s.y[i] *= length / S(2.0);
+  s.constraints.product(s.v.data(), s.terms.data());
+  s.constrain(s.terms.data());
   phases_.enter(Phase::factorization);
   ++outcome.factorizations;
   if (!s.factorize_and_solve()) return false;
   phases_.enter(Phase::projection);
   s.take_multipliers(nullptr, S(0.0));
-  std::copy(s.y.data(), s.y.data() + s.program.padded, s.v.data());
+  for (int i = 0; i < s.program.padded; ++i) s.v[i] += s.y[i];
   refine_velocity();
   find_acceleration();
   return true;
