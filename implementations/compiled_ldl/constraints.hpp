@@ -68,7 +68,7 @@ class Constraints {
   Array<S> value_;
   Array<S> u_, earlier_u_;              // of each distance
   Array<S> vectors_, earlier_vectors_;  // A = B w and C = Bᵀ u of each other quadratic one
-  Array<S> force_;    // g h of Eq. (16)
+  Array<S> force_;                      // g h of Eq. (16)
   std::vector<RowPlace> pair_rows_;
   std::vector<Place> quad_rows_;    // four of each
   std::vector<Place> term_places_;  // saddle-point forms: of each term

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <type_traits>
 
 #include "program.hpp"
 #include "scalar.hpp"
@@ -30,15 +29,6 @@ class Fronts {
   [[nodiscard]] const F& least_pivot() const { return least_; }
 
  private:
-  using P = Pack<F>;
-  using V = typename P::Type;
-  /// A float's inverse is rounded only with the product it goes into.
-  using I = std::conditional_t<std::is_same_v<F, float>, double, F>;
-  static constexpr int W = P::kWidth;
-
-  static V* pack(F* x) { return reinterpret_cast<V*>(x); }
-  static const V* pack(const F* x) { return reinterpret_cast<const V*>(x); }
-
   void factorize(const Front& front, F* y);
   void pivot_column(const Front& front, F* columns, int j, int end, F* y);
   void update_column(const Front& front, const F* columns, int from, int to, F* target, int row);
@@ -46,12 +36,12 @@ class Fronts {
   void scatter(const Front& front, const Group& group, int k);
   void forward(const Front& front, F* y) const;
   void backward(const Front& front, F* y) const;
-  void check(const I& inverse);
+  void check(const F& inverse);
 
   const Program& program_;
   bool definite_;
   Array<F> constants_, matrix_;
-  Array<I> inverse_;  // of the pivots
+  Array<F> inverse_;       // of the pivots
   mutable Array<F> work_;  // a column
   F least_ = 1.0;
 };

@@ -11,10 +11,10 @@ Fronts<F>::Fronts(const Program& program, bool definite)
       definite_(definite),
       constants_(program.storage, F(0.0)),
       matrix_(program.storage, F(0.0)),
-      inverse_(program.padded, I(0.0)) {
+      inverse_(program.padded, F(0.0)) {
   int longest = 0;
   for (const Front& front : program.fronts) longest = std::max(longest, front.stride);
-  work_.resize(longest + W, F(0.0));
+  work_.resize(longest, F(0.0));
 }
 
 template <typename F>
@@ -30,10 +30,10 @@ bool Fronts<F>::factorize_and_solve(F* y) {
 
 /// A pivot of zero or NaN has an inverse that is not finite, an infinite one has zero.
 template <typename F>
-void Fronts<F>::check(const I& inverse) {
-  const I measure = definite_ ? inverse : inverse * inverse;
+void Fronts<F>::check(const F& inverse) {
+  const F measure = definite_ ? inverse : inverse * inverse;
   if constexpr (kLanesOf<F> == 1) {
-    least_ = measure > I(0.0) && inverse - inverse == I(0.0) ? least_ : F(-1.0);
+    least_ = measure > F(0.0) && inverse - inverse == F(0.0) ? least_ : F(-1.0);
   } else {
     const auto finite = inverse.v - inverse.v;
     least_.v = measure.v > finite ? least_.v : Lanes(-1.0).v;
@@ -58,16 +58,16 @@ void Fronts<F>::factorize(const Front& front, F* y) {
 template <typename F>
 void Fronts<F>::pivot_column(const Front& front, F* columns, int j, int end, F* y) {
   F* column = columns + j * front.stride;
-  const I inverse = I(1.0) / I(column[j]);
+  const F inverse = F(1.0) / F(column[j]);
   check(inverse);
   inverse_[front.first + j] = inverse;
-  const int packs = front.stride / W;
+  const int rows = front.stride;
   for (int k = j + 1; k < end; ++k) {
-    const F factor = static_cast<F>(column[k] * inverse);
-    V* target = pack(columns + k * front.stride);
-    for (int i = k / W; i < packs; ++i) target[i] -= factor * pack(column)[i];
+    const F factor = column[k] * inverse;
+    F* target = columns + k * front.stride;
+    for (int i = k; i < rows; ++i) target[i] -= factor * column[i];
   }
-  const F z = static_cast<F>(y[front.first + j] * inverse);
+  const F z = y[front.first + j] * inverse;
   for (int i = j + 1; i < front.pivots; ++i) y[front.first + i] -= column[i] * z;
 }
 
@@ -75,16 +75,18 @@ void Fronts<F>::pivot_column(const Front& front, F* columns, int j, int end, F* 
 template <typename F>
 void Fronts<F>::update_column(const Front& front, const F* columns, int from, int to, F* target,
                               int row) {
-  const int packs = front.stride / W;
-  const I* inverse = inverse_.data() + front.first;
+  const int rows = front.stride;
+  const F* inverse = inverse_.data() + front.first;
   F factors[8];
   for (int j = from; j < to; ++j) {
-    factors[j - from] = static_cast<F>(columns[j * front.stride + row] * inverse[j]);
+    factors[j - from] = columns[j * front.stride + row] * inverse[j];
   }
-  for (int i = row / W; i < packs; ++i) {
-    V sum = pack(target)[i];
-    for (int j = from; j < to; ++j) sum -= factors[j - from] * pack(columns + j * front.stride)[i];
-    pack(target)[i] = sum;
+  for (int i = row; i < rows; ++i) {
+    F sum = target[i];
+    for (int j = from; j < to; ++j) {
+      sum -= factors[j - from] * columns[j * front.stride + i];
+    }
+    target[i] = sum;
   }
 }
 
@@ -95,8 +97,8 @@ void Fronts<F>::update_border(const Front& front, F* y) {
   for (int g = front.groups_begin; g < front.groups_end; ++g) {
     const Group& group = program_.groups[g];
     for (int k = group.begin; k < group.end; ++k) {
-      const int packs = front.stride / W;
-      for (int i = (p + k) / W; i < packs; ++i) pack(work_.data())[i] = V{};
+      const int rows = front.stride;
+      for (int i = p + k; i < rows; ++i) work_[i] = F(0.0);
       for (int from = 0; from < p; from += 8) {
         update_column(front, columns, from, std::min(from + 8, p), work_.data(), p + k);
       }
@@ -105,7 +107,7 @@ void Fronts<F>::update_border(const Front& front, F* y) {
   }
   const int* rows = program_.border_rows.data() + front.rows;
   for (int j = 0; j < p; ++j) {
-    const F z = static_cast<F>(y[front.first + j] * inverse_[front.first + j]);
+    const F z = y[front.first + j] * inverse_[front.first + j];
     const F* column = columns + j * front.stride + p;
     for (int i = 0; i < front.border; ++i) y[rows[i]] -= column[i] * z;
   }

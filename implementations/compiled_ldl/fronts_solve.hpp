@@ -17,7 +17,7 @@ template <typename F>
 void Fronts<F>::forward(const Front& front, F* y) const {
   const int* rows = program_.border_rows.data() + front.rows;
   for (int j = 0; j < front.pivots; ++j) {
-    const F z = static_cast<F>(y[front.first + j] * inverse_[front.first + j]);
+    const F z = y[front.first + j] * inverse_[front.first + j];
     const F* column = matrix_.data() + front.base + j * front.stride;
     for (int i = j + 1; i < front.pivots; ++i) y[front.first + i] -= column[i] * z;
     for (int i = 0; i < front.border; ++i) y[rows[i]] -= column[front.pivots + i] * z;
@@ -35,7 +35,7 @@ void Fronts<F>::backward(const Front& front, F* y) const {
     F sum = x[j];
     for (int i = 0; i < front.border; ++i) sum -= column[front.pivots + i] * border[i];
     for (int i = j + 1; i < front.pivots; ++i) sum -= column[i] * x[i];
-    x[j] = static_cast<F>(sum * inverse_[front.first + j]);
+    x[j] = sum * inverse_[front.first + j];
   }
 }
 

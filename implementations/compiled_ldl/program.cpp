@@ -50,11 +50,19 @@ Tree best_tree(const Pattern& pattern, const std::vector<int>& sizes, int width)
   return best;
 }
 
+/// Columns long enough for vectors of 2, 4 or 8 numbers that begin below the pivots of a panel.
+int stride_of(const Front& front, int width) {
+  const int rows = front.pivots + front.border;
+  if (width == 1) return rows;
+  const auto lanes = [](int count) { return count <= 2 ? 2 : count <= 4 ? 4 : 8; };
+  int stride = std::max(lanes(front.pivots), front.pivots);
+  if (front.border > 0) stride = front.pivots + round_up(front.border, lanes(front.border));
+  if (front.pivots > kPanel) stride = std::max(stride, round_up(rows, width));
+  return stride <= 4 ? stride : round_up(stride, 4);
+}
+
 void place_rows(const Tree& tree, const std::vector<int>& sizes, Program& program) {
   program.row_of_node.resize(sizes.size());
-  const auto round_up = [&](int x) {
-    return (x + program.width - 1) / program.width * program.width;
-  };
   for (const TreeFront& from : tree.fronts) {
     Front front;
     front.first = program.size;
@@ -65,12 +73,13 @@ void place_rows(const Tree& tree, const std::vector<int>& sizes, Program& progra
     }
     for (const int node : from.border) front.border += sizes[node];
     front.pivots = program.size - front.first;
-    front.stride = round_up(front.pivots + front.border);
+    front.stride = stride_of(front, program.width);
     program.storage += front.pivots * front.stride;
+    program.storage = round_up(program.storage, program.width);
     program.front_of_row.resize(program.size, static_cast<int>(program.fronts.size()));
     program.fronts.push_back(front);
   }
-  program.padded = (program.size + 15) / 16 * 16;
+  program.padded = round_up(program.size, 8) + 8;
 }
 
 void place_borders(const Tree& tree, const std::vector<int>& sizes, Program& program) {

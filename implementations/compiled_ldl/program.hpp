@@ -6,6 +6,11 @@
 
 namespace mbs::compiled_ldl {
 
+/// Pivots that are eliminated at once, at most.
+inline constexpr int kPanel = 8;
+
+inline int round_up(int x, int unit) { return (x + unit - 1) / unit * unit; }
+
 /// What couples with what. A node is a point (all its coordinates) or a multiplier (one row).
 struct Pattern {
   int dimension = 2;
@@ -40,7 +45,7 @@ struct Program {
   int size = 0;     ///< rows; those of a point follow each other
   int padded = 0;   ///< rows, a multiple of the width
   int storage = 0;  ///< numbers in all fronts
-  int width = 1;    ///< strides are multiples of it
+  int width = 1;    ///< how many numbers a processor handles at once
   std::vector<int> row_of_node;
   std::vector<int> front_of_row;
   std::vector<Front> fronts;  ///< in order of elimination

@@ -37,8 +37,8 @@ const S* Stepper<S, F, D>::without_fixed(const S* x) {
 }
 
 /// Eqs. (6) and (13) for what they change. T is T₀ + (Δt²/4) α Φqᵀ Φq with the Φq of the last pass,
-/// so that (6) is T (v' − v*) = −(Δt²/4) α (Φqᵀ Φq v* + Φqᵀ Φt), the first with that Φq: nothing has
-/// to cancel, and M is not needed. `terms` is Φt or Φ̇q v' + Φ̇t; nullptr: zero.
+/// so that (6) is T (v' − v*) = −(Δt²/4) α (Φqᵀ Φq v* + Φqᵀ Φt), the first with that Φq: nothing
+/// has to cancel, and M is not needed. `terms` is Φt or Φ̇q v' + Φ̇t; nullptr: zero.
 template <typename S, typename F, int D>
 void Stepper<S, F, D>::project_once(S* x, const S* terms) {
   auto& s = system_;

@@ -73,18 +73,6 @@ inline double larger(double a, double b) { return b > a ? b : a; }
 inline float larger(float a, float b) { return b > a ? b : a; }
 inline Lanes larger(const Lanes& a, const Lanes& b) { return Lanes::of(b.v > a.v ? b.v : a.v); }
 
-/// One or eight consecutive numbers that a processor handles at once.
-template <typename F>
-struct Pack {
-  static constexpr int kWidth = 64 / sizeof(F);
-  using Type __attribute__((vector_size(64), may_alias)) = F;
-};
-template <>
-struct Pack<Lanes> {
-  static constexpr int kWidth = 1;
-  using Type = Lanes;
-};
-
 /// Begins on a cache line.
 template <typename T>
 struct Aligned {

@@ -9,6 +9,7 @@
 #include "fronts.hpp"
 #include "mass.hpp"
 #include "mbs/simulation.hpp"
+#include "panels.hpp"
 
 namespace mbs::compiled_ldl {
 
@@ -34,7 +35,8 @@ class System {
 
   /// y = T₀ x, or M x for RATTLE.
   void product(const S* x);
-  /// y −= (Δt²/4) α Φqᵀ t, `earlier` with that of the evaluation before, or the multipliers' rows = −t.
+  /// y −= (Δt²/4) α Φqᵀ t, `earlier` with that of the evaluation before, or the multipliers' rows =
+  /// −t.
   void constrain(const S* t, bool earlier = false);
   /// λ or ν += factor times the multipliers' rows of y, which become zero.
   void take_multipliers(S* multipliers, const S& factor);
@@ -49,7 +51,7 @@ class System {
   Drivers<S, D> drivers;
   Forces<S, D> forces;
   Mass<S, D> mass;
-  Fronts<F> fronts;
+  std::conditional_t<kLanesOf<F> == 1, Panels<F>, Fronts<F>> fronts;
   Array<S> q, v, a, force, y;   // extent
   Array<S> lambda, phi, terms;  // constraints
 

@@ -25,7 +25,7 @@ System<S, F, D>::System(std::span<const Model* const> models,
                         std::span<const StepSettings> settings)
     : program(compile(
           pattern_of(*models[0], has_multiplier_rows(settings[0]), settings[0].geometric_stiffness),
-          Pack<F>::kWidth)),
+          kLanesOf<F> == 1 ? 8 : 1)),
       rows(*models[0], program),
       saddle(has_multiplier_rows(settings[0])),
       rattle(is_rattle(settings[0])),
@@ -71,6 +71,7 @@ void System<S, F, D>::put(int lane, const State& state) {
     set_lane(v[row], lane, state.v[i]);
     set_lane(a[row], lane, state.a[i]);
   }
+  std::fill(y.begin(), y.end(), S(0.0));  // nothing of a failed step is left behind
   for (int k = 0; k < constraints.count(); ++k) {
     set_lane(lambda[k], lane, state.lambda[constraints.number(k)]);
   }

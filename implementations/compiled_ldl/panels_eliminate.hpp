@@ -1,0 +1,171 @@
+// Panels<F>: elimination of a run of panels. Part of panels.hpp.
+#pragma once
+
+#include "panels.hpp"
+
+namespace mbs::compiled_ldl {
+
+template <typename F>
+bool Panels<F>::factorize_and_solve(F* y) {
+  bool accepted = true;
+  for (const Run& run : runs_) accepted &= (this->*run.eliminate)(run, y);
+  for (auto run = runs_.rbegin(); run != runs_.rend(); ++run) (this->*run->backward)(*run, y);
+  return accepted;
+}
+
+template <typename F>
+template <int P, int L, bool kDefinite>
+bool Panels<F>::eliminate(const Run& run, F* y) {
+  constexpr int N = lanes_for(P);
+  using V = typename Short<F, N>::Type;
+  bool accepted = true;
+  for (int i = run.begin; i < run.end; ++i) {
+    const Panel& panel = panels_[i];
+    const F* columns = matrix() + panel.columns;
+    F* factors = factors_.data() + panel.factors;
+    V a[P], l[P], m[P];
+    F inverse[P];
+#pragma GCC unroll 8
+    for (int j = 0; j < P; ++j) a[j] = load<F, N>(columns + j * panel.stride);
+    accepted &= decompose<F, P, kDefinite>(a, l, inverse);
+    if constexpr (L > 0) reduce_below<P, L>(panel, l, inverse);
+    invert_triangle<F, P>(l, m);
+    V scale = V{}, z = V{};
+#pragma GCC unroll 8
+    for (int j = 0; j < P; ++j) {
+      store<F, N>(factors + j * N, m[j]);
+      scale[j] = inverse[j];
+      z += m[j] * y[panel.first + j];
+    }
+    store_transposed<F, P, P, N>(m, factors + P * N);
+    store<F, N>(factors + 2 * P * N, scale);
+    z *= scale;
+    store_first<P>(y + panel.first, z);
+    if constexpr (L > 0) {
+      subtract_below<P, L>(panel, z, y);
+      if constexpr (L == 8) {
+        if (panel.inside > 0) update_inside<P>(panel);
+      }
+      update_border<P, L>(panel);
+    }
+  }
+  return accepted;
+}
+
+/// C becomes C L⁻ᵀ, and its rows times D⁻¹ are stored.
+template <typename F>
+template <int P, int L>
+void Panels<F>::reduce_below(const Panel& panel,
+                             const typename Short<F, lanes_for(P)>::Type (&l)[P],
+                             const F (&inverse)[P]) {
+  using W = typename Short<F, L>::Type;
+  constexpr int N = lanes_for(P);
+  F* below = matrix() + panel.columns + P;
+  F* rows = factors_.data() + panel.factors + (2 * P + 1) * N;
+  for (int i = 0; i < panel.below; i += L) {
+    W c[P];
+#pragma GCC unroll 8
+    for (int j = 0; j < P; ++j) {
+      c[j] = load<F, L>(below + j * panel.stride + i);
+#pragma GCC unroll 8
+      for (int k = 0; k < j; ++k) c[j] -= c[k] * l[k][j];
+      if (j > 0) store<F, L>(below + j * panel.stride + i, c[j]);
+    }
+#pragma GCC unroll 8
+    for (int j = 0; j < P; ++j) c[j] *= inverse[j];
+    store_transposed<F, P, L, N>(c, rows + i * N);
+  }
+}
+
+/// y −= C z at the rows below.
+template <typename F>
+template <int P, int L>
+void Panels<F>::subtract_below(const Panel& panel, const typename Short<F, lanes_for(P)>::Type& z,
+                               F* y) const {
+  using W = typename Short<F, L>::Type;
+  const F* below = matrix_.data() + kMargin + panel.columns + P;
+  const int* rows = rows_.data() + panel.rows;
+  for (int i = 0; i < panel.below; i += L) {
+    W sum = load<F, L>(below + i) * z[0];
+#pragma GCC unroll 8
+    for (int j = 1; j < P; ++j) sum += load<F, L>(below + j * panel.stride + i) * z[j];
+    if (panel.contiguous) {
+      store<F, L>(y + rows[i], load<F, L>(y + rows[i]) - sum);
+    } else {
+      const int count = std::min(L, panel.below - i);
+      for (int l = 0; l < count; ++l) y[rows[i + l]] -= sum[l];
+    }
+  }
+}
+
+/// Further columns of the front, two at a time.
+template <typename F>
+template <int P>
+void Panels<F>::update_inside(const Panel& panel) {
+  using W = typename Short<F, 8>::Type;
+  constexpr int N = lanes_for(P);
+  const F* below = matrix() + panel.columns + P;
+  const F* g = factors_.data() + panel.factors + (2 * P + 1) * N;
+  for (int k = 0; k < panel.inside; k += 2) {
+    const bool both = k + 1 < panel.inside;
+    F* one = matrix() + panel.columns + (P + k) * panel.stride + P;
+    F* other = both ? one + panel.stride : work_.data();
+    const F* g0 = g + k * N;
+    const F* g1 = both ? g0 + N : g0;
+    for (int i = k / 8 * 8; i < panel.below; i += 8) {
+      W s0 = load<F, 8>(one + i), s1 = load<F, 8>(other + i);
+#pragma GCC unroll 8
+      for (int j = 0; j < P; ++j) {
+        const W c = load<F, 8>(below + j * panel.stride + i);
+        s0 -= c * g0[j];
+        s1 -= c * g1[j];
+      }
+      store<F, 8>(one + i, s0);
+      store<F, 8>(other + i, s1);
+    }
+  }
+}
+
+template <typename F>
+template <int P, int L>
+void Panels<F>::update_border(const Panel& panel) {
+  for (int g = panel.groups_begin; g < panel.groups_end; ++g) {
+    const Group& group = program_.groups[g];
+    for (int k = group.begin; k < group.end; ++k) update_column<P, L>(panel, group, k);
+  }
+}
+
+/// Border column k of the update, added to the column that it goes to.
+template <typename F>
+template <int P, int L>
+void Panels<F>::update_column(const Panel& panel, const Group& group, int k) {
+  using W = typename Short<F, L>::Type;
+  constexpr int N = lanes_for(P);
+  const int at = panel.inside + k;  // among the rows below
+  const F* below = matrix() + panel.columns + P;
+  const F* g = factors_.data() + panel.factors + (2 * P + 1 + at) * N;
+  const int* places = program_.positions.data() + group.positions - group.begin;
+  F* target = matrix() + group.base + (k - group.begin) * group.stride;
+  const int first = at / L * L;
+  for (int i = first; i < panel.below; i += L) {
+    W sum = load<F, L>(below + i) * g[0];
+#pragma GCC unroll 8
+    for (int j = 1; j < P; ++j) sum += load<F, L>(below + j * panel.stride + i) * g[j];
+    if (group.contiguous) {
+      if (i == first) {
+#pragma GCC unroll 8
+        for (int l = 0; l < L; ++l) sum[l] = i + l < at ? F(0) : sum[l];
+      }
+      F* to = target + places[k] + i - at;
+      store<F, L>(to, load<F, L>(to) - sum);
+    } else {
+      store<F, L>(work_.data() + i - first, sum);
+    }
+  }
+  if (group.contiguous) return;
+  const F* sums = work_.data() + at - first;
+  const int border = panel.below - panel.inside;
+  for (int i = k; i < border; ++i) target[places[i]] -= sums[i - k];
+}
+
+}  // namespace mbs::compiled_ldl
