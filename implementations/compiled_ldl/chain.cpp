@@ -1,0 +1,97 @@
+// Which kernel serves a chain with some settings.
+#include "chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "chain_batch.hpp"
+#include "chain_rattle_simulation.hpp"
+#include "chain_trapezoidal.hpp"
+
+namespace mbs::compiled_ldl::chain {
+namespace dispatch {
+
+bool is_served(const StepSettings& settings) {
+  return settings.multipliers == MultiplierUpdate::every_pass &&
+         settings.tangent == TangentReuse::none &&
+         settings.precision == Precision::double_precision && !settings.geometric_stiffness &&
+         settings.penalty > 0.0 && std::isfinite(settings.penalty) && settings.max_passes >= 1;
+}
+
+/// Calls `make` with the kind of mass and rods that all of `chains` are.
+template <class Make>
+auto with_kind(std::span<const Topology> chains, const Make& make) {
+  bool isotropic = true;
+  int least = kMostRods;
+  int most = 0;
+  for (const Topology& chain : chains) {
+    isotropic = isotropic && chain.isotropic;
+    least = std::min(least, chain.least_rods);
+    most = std::max(most, chain.most_rods);
+  }
+  if (!isotropic) return make.template operator()<GeneralMass, AtMostRods<kMostRods>>();
+  if (most > 1) return make.template operator()<IsotropicMass, AtMostRods<kMostRods>>();
+  if (least == 1) return make.template operator()<IsotropicMass, OneRod>();
+  return make.template operator()<IsotropicMass, AtMostRods<1>>();
+}
+
+}  // namespace dispatch
+
+std::span<const double> stages_of(Scheme scheme) {
+  static constexpr double kOne[] = {1.0};
+  static constexpr double kOuter = 0.41449077179437573714;  // 1/(4 − 4^(1/3))
+  static constexpr double kFourth[] = {kOuter, kOuter, 1.0 - 4.0 * kOuter, kOuter, kOuter};
+  static constexpr double kW1 = -1.17767998417887100694641568096431573;
+  static constexpr double kW2 = 0.235573213359358133684793182978534602;
+  static constexpr double kW3 = 0.784513610477557263819497633866349876;
+  static constexpr double kW0 = 1.0 - 2.0 * (kW1 + kW2 + kW3);
+  static constexpr double kSixth[] = {kW3, kW2, kW1, kW0, kW1, kW2, kW3};
+  if (scheme == Scheme::rattle4) return kFourth;
+  if (scheme == Scheme::rattle6) return kSixth;
+  return kOne;
+}
+
+std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
+  if (!dispatch::is_served(settings)) return nullptr;
+  auto topology = find_chain(model);
+  if (!topology) return nullptr;
+  return dispatch::with_kind({&*topology, 1}, [&]<template <class> class MassOf, class Rods>() {
+    std::unique_ptr<Simulation> simulation;
+    if (settings.scheme == Scheme::penalty) {
+      using Kind = TrapezoidalSimulation<PenaltyForm, MassOf, Rods>;
+      simulation = std::make_unique<Kind>(model, settings, std::move(*topology));
+    } else if (settings.scheme == Scheme::saddle_point) {
+      using Kind = TrapezoidalSimulation<SaddlePointForm, MassOf, Rods>;
+      simulation = std::make_unique<Kind>(model, settings, std::move(*topology));
+    } else {
+      using Kind = RattleSimulation<MassOf, Rods>;
+      simulation = std::make_unique<Kind>(model, settings, std::move(*topology));
+    }
+    return simulation;
+  });
+}
+
+std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> models,
+                                              std::span<const StepSettings> settings) {
+  std::vector<Topology> chains;
+  for (std::size_t lane = 0; lane < models.size() && lane < settings.size(); ++lane) {
+    if (settings[lane].scheme != Scheme::penalty || !dispatch::is_served(settings[lane])) {
+      return nullptr;
+    }
+    auto topology = find_chain(*models[lane]);
+    if (!topology) return nullptr;
+    chains.push_back(std::move(*topology));
+  }
+  if (chains.empty()) return nullptr;
+  return dispatch::with_kind(chains, [&]<template <class> class MassOf, class Rods>() {
+    std::unique_ptr<BatchSimulation> batch =
+        std::make_unique<PenaltyBatch<MassOf, Rods>>(models, settings, std::move(chains));
+    return batch;
+  });
+}
+
+int batch_lanes() { return 4 * Lanes<Wide>::kChains; }
+
+}  // namespace mbs::compiled_ldl::chain

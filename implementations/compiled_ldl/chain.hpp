@@ -1,0 +1,22 @@
+// Entry points of the kernels for chains of points: chain.md.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "mbs/batch.hpp"
+#include "mbs/simulation.hpp"
+
+namespace mbs::compiled_ldl::chain {
+
+/// nullptr unless `model` is a chain and `settings` are among those served here.
+std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings);
+
+/// The same for many at once, one a vector lane; nullptr as above.
+std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> models,
+                                              std::span<const StepSettings> settings);
+
+/// The number of lanes that a batch is best given.
+int batch_lanes();
+
+}  // namespace mbs::compiled_ldl::chain

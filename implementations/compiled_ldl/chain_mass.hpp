@@ -1,0 +1,86 @@
+// Blocks of M: multiples of the identity, which rods give, or any.
+#pragma once
+
+#include <array>
+
+#include "chain_lanes.hpp"
+
+namespace mbs::compiled_ldl::chain {
+
+/// m I at a point, c I between it (outer) and the next one inwards (inner).
+template <class V>
+struct IsotropicMass {
+  V m, c, twice, square;  // m, c, 2c, c²
+
+  void set(int lane, const std::array<double, 3>& mass, const std::array<double, 4>& coupling) {
+    m[lane] = mass[0];
+    c[lane] = coupling[0];
+    twice[lane] = 2.0 * coupling[0];
+    square[lane] = coupling[0] * coupling[0];
+  }
+  MBS_CHAIN_INLINE Sym<V> matrix() const { return {m, V{}, m}; }
+  MBS_CHAIN_INLINE Sym<V> plus_square(const Vec<V>& d) const {
+    return {m + d.x * d.x, d.x * d.y, m + d.y * d.y};
+  }
+  MBS_CHAIN_INLINE Vec<V> times(const Vec<V>& v) const { return m * v; }
+  /// C v, of the inner point's v
+  MBS_CHAIN_INLINE Vec<V> outer(const Vec<V>& v) const { return c * v; }
+  /// Cᵀ v, of the outer point's v
+  MBS_CHAIN_INLINE Vec<V> inner(const Vec<V>& v) const { return c * v; }
+  /// δ e eᵀ + Cᵀz eᵀ + e zᵀC − Cᵀ adj(S) C
+  MBS_CHAIN_INLINE Sym<V> update(const V& delta, const Vec<V>& z, const Vec<V>& e,
+                                 const Sym<V>& S) const {
+    const V half = V{} + 0.5;
+    const Vec<V> g{delta * e.x + twice * z.x, delta * e.y + twice * z.y};
+    return {g.x * e.x - square * S.yy, half * (g.x * e.y + g.y * e.x) + square * S.xy,
+            g.y * e.y - square * S.xx};
+  }
+  /// G = S⁻¹ C − y eᵀ, given S/σ
+  MBS_CHAIN_INLINE void gain(const Sym<V>& R, const Vec<V>& y, const Vec<V>& e, V (&G)[4]) const {
+    G[0] = c * R.yy - y.x * e.x;
+    G[1] = -c * R.xy - y.x * e.y;
+    G[2] = -c * R.xy - y.y * e.x;
+    G[3] = c * R.xx - y.y * e.y;
+  }
+};
+
+/// Any symmetric block at a point, any block between two.
+template <class V>
+struct GeneralMass {
+  Sym<V> m;
+  V c[4];
+
+  void set(int lane, const std::array<double, 3>& mass, const std::array<double, 4>& coupling) {
+    m.xx[lane] = mass[0];
+    m.xy[lane] = mass[1];
+    m.yy[lane] = mass[2];
+    for (int k = 0; k < 4; ++k) c[k][lane] = coupling[k];
+  }
+  MBS_CHAIN_INLINE const Sym<V>& matrix() const { return m; }
+  MBS_CHAIN_INLINE Sym<V> plus_square(const Vec<V>& d) const { return chain::plus_square(m, d); }
+  MBS_CHAIN_INLINE Vec<V> times(const Vec<V>& v) const { return m * v; }
+  MBS_CHAIN_INLINE Vec<V> outer(const Vec<V>& v) const {
+    return {c[0] * v.x + c[1] * v.y, c[2] * v.x + c[3] * v.y};
+  }
+  MBS_CHAIN_INLINE Vec<V> inner(const Vec<V>& v) const {
+    return {c[0] * v.x + c[2] * v.y, c[1] * v.x + c[3] * v.y};
+  }
+  MBS_CHAIN_INLINE Sym<V> update(const V& delta, const Vec<V>& z, const Vec<V>& e,
+                                 const Sym<V>& S) const {
+    const Vec<V> first = adjugate_times(S, Vec<V>{c[0], c[2]});  // adj(S) times columns of C
+    const Vec<V> second = adjugate_times(S, Vec<V>{c[1], c[3]});
+    const Vec<V> y = inner(z);
+    const Vec<V> h{delta * e.x + y.x, delta * e.y + y.y};
+    return {h.x * e.x + (y.x * e.x - (c[0] * first.x + c[2] * first.y)),
+            h.x * e.y + (y.y * e.x - (c[0] * second.x + c[2] * second.y)),
+            h.y * e.y + (y.y * e.y - (c[1] * second.x + c[3] * second.y))};
+  }
+  MBS_CHAIN_INLINE void gain(const Sym<V>& R, const Vec<V>& y, const Vec<V>& e, V (&G)[4]) const {
+    G[0] = R.yy * c[0] - R.xy * c[2] - y.x * e.x;
+    G[1] = R.yy * c[1] - R.xy * c[3] - y.x * e.y;
+    G[2] = R.xx * c[2] - R.xy * c[0] - y.y * e.x;
+    G[3] = R.xx * c[3] - R.xy * c[1] - y.y * e.y;
+  }
+};
+
+}  // namespace mbs::compiled_ldl::chain

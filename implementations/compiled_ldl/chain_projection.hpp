@@ -1,0 +1,122 @@
+// Projections of velocities and accelerations of a chain, Eq. (6), with its last factors.
+#pragma once
+
+#include "chain_newton.hpp"
+
+namespace mbs::compiled_ldl::chain {
+
+/// Whose λ the first projection brings up to date, Eq. (1): with `some`, of the lanes `pending`.
+/// With `none` the form is that of (13): λ is complete, and the Φq of the factors stays.
+enum class Update { all, some, none };
+
+template <class Store, Update kUpdate = Update::all>
+class Projection {
+ public:
+  using V = typename Store::V;
+  using Mask = typename Lanes<typename Store::Use>::Mask;
+
+  /// λ of the last pass, Eq. (1), and v of (2), unprojected.
+  static void settle(Store& chain, const Mask& pending = Mask()) {
+    for (int k = 0; k <= chain.last; ++k) {
+      B& block = chain.blocks[k];
+      rods(block, chain.constants[k], pending);
+      if (k < chain.last) link(block, chain.blocks[k + 1], chain.constants[k], pending);
+      block.w = block.w + block.u;
+    }
+  }
+
+  /// λ of the last pass and the projected v.
+  static void velocity(Store& chain) {
+    velocity_inwards(chain, Mask());
+    velocity_outwards(chain);
+  }
+  static void velocity_inwards(Store& chain, const Mask& pending) {
+    substitute_inwards(chain, Velocity{pending});
+  }
+  static void velocity_outwards(Store& chain) {
+    substitute_outwards(chain, [](B& block, const Vec<V>& x) { block.w = x; });
+  }
+
+  /// The projected a, with that v.
+  static void acceleration(Store& chain) {
+    acceleration_inwards(chain);
+    acceleration_outwards(chain);
+  }
+  static void acceleration_inwards(Store& chain) { substitute_inwards(chain, Acceleration{}); }
+  static void acceleration_outwards(Store& chain) {
+    substitute_outwards(chain, [](B& block, const Vec<V>& x) { block.u = x; });
+  }
+
+ private:
+  using B = typename Store::B;
+  using C = typename Store::C;
+
+  MBS_CHAIN_INLINE static void add(V& multiplier, const V& violation, const Mask& pending) {
+    if constexpr (kUpdate == Update::some) {
+      keep(multiplier, V(multiplier + violation), pending);
+    } else {
+      multiplier = multiplier + violation;
+    }
+  }
+  MBS_CHAIN_INLINE static void rods(B& block, const C& data, const Mask& pending) {
+    if (kUpdate == Update::none) return;
+    for (int j = 0; j < Store::kRods; ++j) {
+      add(block.rods[j], data.rods[j].violation(data.rods[j].vector(block.x)), pending);
+    }
+  }
+  MBS_CHAIN_INLINE static void link(B& block, const B& next, const C& data, const Mask& pending) {
+    if (kUpdate == Update::none) return;
+    add(block.link, data.link.violation(data.link.vector(next.x - block.x)), pending);
+  }
+
+  /// M v*
+  struct Velocity {
+    const Mask& pending;
+
+    MBS_CHAIN_INLINE Vec<V> point(B& block, const C& data) const {
+      rods(block, data, pending);
+      return data.mass.times(block.w + block.u);
+    }
+    MBS_CHAIN_INLINE void link(B& block, const B& next, const C& data, Vec<V>& f,
+                               Vec<V>& inner) const {
+      Projection::link(block, next, data, pending);
+      f = f + data.mass.outer(next.w + next.u);
+      inner = data.mass.inner(block.w + block.u);
+    }
+  };
+
+  MBS_CHAIN_INLINE static Vec<V> rod(const B& block, const C& data, int j) {
+    if constexpr (kUpdate == Update::none) {
+      return block.d[j];
+    } else {
+      return data.rods[j].vector(block.x);
+    }
+  }
+  MBS_CHAIN_INLINE static Vec<V> coupler(const B& block, const B& next, const C& data) {
+    if constexpr (kUpdate == Update::none) {
+      return block.e;
+    } else {
+      return data.link.vector(next.x - block.x);
+    }
+  }
+
+  /// M a* − (Δt²/4) α Φqᵀ Φ̇q v'
+  struct Acceleration {
+    MBS_CHAIN_INLINE Vec<V> point(const B& block, const C& data) const {
+      Vec<V> f = data.mass.times(block.u);
+      const V half_square = (V{} + 0.5) * dot(block.w, block.w);
+      for (int j = 0; j < Store::kRods; ++j) f = f - half_square * rod(block, data, j);
+      return f;
+    }
+    MBS_CHAIN_INLINE void link(const B& block, const B& next, const C& data, Vec<V>& f,
+                               Vec<V>& inner) const {
+      const Vec<V> e = coupler(block, next, data);
+      const Vec<V> rate = next.w - block.w;
+      const Vec<V> pull = ((V{} + 0.5) * dot(rate, rate)) * e;
+      f = f + (data.mass.outer(next.u) + pull);
+      inner = data.mass.inner(block.u) - pull;
+    }
+  };
+};
+
+}  // namespace mbs::compiled_ldl::chain

@@ -1,0 +1,215 @@
+// One stage of RATTLE on a chain, Eq. (14): its sweeps, with the multipliers eliminated.
+#pragma once
+
+#include "chain_elimination.hpp"
+
+namespace mbs::compiled_ldl::chain {
+
+/// A point, with the rows of Φq that belong to its factors.
+template <class V, class Rods>
+struct RattleBlock : Block<V, Rods> {
+  Vec<V> d[Rods::kMost];
+  Vec<V> e;
+  Vec<V> way;  // s (q' − q) of the stage
+};
+
+template <class Store>
+class RattleStage {
+ public:
+  using V = typename Store::V;
+  using B = typename Store::B;
+  using C = typename Store::C;
+
+  /// Steps 1 and 2: the first pass of a stage of `length` steps predicts. Returns max|2 s Δq|.
+  template <bool kFirst>
+  static V pass(Store& chain, double length) {
+    const Position<kFirst> terms{V{} + length};
+    if (kFirst) terms.predict(chain.blocks[0]);
+    substitute_inwards(chain, terms);
+    LargestOf<typename Store::Use> largest;
+    substitute_outwards(chain, [&](B& block, const Vec<V>& x) {
+      const Vec<V> half = (V{} + 0.5) * x;
+      block.x = block.x - half;
+      block.way = block.way - half;
+      largest.add(x);
+    });
+    return largest.value();
+  }
+
+  /// Steps 3 and 4: R(q') and the velocity. Returns the least pivot.
+  template <bool kVelocity>
+  static V factorize(Store& chain, double length) {
+    const V least = factorize_inwards<kVelocity>(chain, V{} + length);
+    if (kVelocity) substitute_outwards(chain, [](B& block, const Vec<V>& x) { block.w = x; });
+    return least;
+  }
+
+  /// Step 4, one refinement: max|s Δt δ|.
+  static V refine_velocity(Store& chain) {
+    substitute_inwards(chain, VelocityResidual{});
+    LargestOf<typename Store::Use> largest;
+    substitute_outwards(chain, [&](B& block, const Vec<V>& x) {
+      block.w = block.w + x;
+      largest.add(x);
+    });
+    return largest.value();
+  }
+
+  /// Step 5.
+  static void acceleration(Store& chain) {
+    substitute_inwards(chain, Acceleration{});
+    substitute_outwards(chain, [](B& block, const Vec<V>& x) { block.u = x; });
+  }
+
+  /// Step 5, one refinement: max|s Δt²/2 δ|. Its λ is that of the solution before: settle() adds
+  /// what the last one brings.
+  template <bool kFirst>
+  static V refine_acceleration(Store& chain) {
+    substitute_inwards(chain, AccelerationResidual<kFirst>{});
+    LargestOf<typename Store::Use> largest;
+    substitute_outwards(chain, [&](B& block, const Vec<V>& x) {
+      block.u = block.u + x;
+      largest.add(x);
+    });
+    return largest.value();
+  }
+
+  static void settle(Store& chain) {
+    for (int k = 0; k <= chain.last; ++k) {
+      B& block = chain.blocks[k];
+      for (int j = 0; j < Store::kRods; ++j) block.rods[j] += rod_rate(block, j);
+      if (k < chain.last) block.link += link_rate(block, chain.blocks[k + 1]);
+    }
+  }
+
+ private:
+  /// ε⁻¹ (Φq a + Φ̇q v) of a distance.
+  MBS_CHAIN_INLINE static V rod_rate(const B& block, int j) {
+    return dot(block.d[j], block.u) + (V{} + 0.5) * dot(block.w, block.w);
+  }
+  MBS_CHAIN_INLINE static V link_rate(const B& block, const B& next) {
+    const Vec<V> rate = next.w - block.w;
+    return dot(block.e, next.u - block.u) + (V{} + 0.5) * dot(rate, rate);
+  }
+  MBS_CHAIN_INLINE static void pull_together(const V& force, const Vec<V>& e, Vec<V>& f,
+                                             Vec<V>& inner) {
+    f = f + force * e;
+    inner = Vec<V>{} - force * e;
+  }
+
+  /// −ε⁻¹ Φqᵀ Φ with the Φq of the factors and the Φ of where the points are.
+  template <bool kFirst>
+  struct Position {
+    V length;
+
+    MBS_CHAIN_INLINE void predict(B& block) const {
+      block.way = length * (block.w + length * block.u);
+      block.x = block.x + block.way;
+    }
+    MBS_CHAIN_INLINE Vec<V> point(const B& block, const C& data) const {
+      Vec<V> f{};
+      for (int j = 0; j < Store::kRods; ++j) {
+        f = f + data.rods[j].violation(data.rods[j].vector(block.x)) * block.d[j];
+      }
+      return f;
+    }
+    MBS_CHAIN_INLINE void link(const B& block, B& next, const C& data, Vec<V>& f,
+                               Vec<V>& inner) const {
+      if (kFirst) predict(next);
+      const V violation = data.link.violation(data.link.vector(next.x - block.x));
+      f = f - violation * block.e;
+      inner = violation * block.e;
+    }
+  };
+
+  /// −ε⁻¹ Φqᵀ Φq v
+  struct VelocityResidual {
+    MBS_CHAIN_INLINE Vec<V> point(const B& block, const C&) const {
+      Vec<V> f{};
+      for (int j = 0; j < Store::kRods; ++j) {
+        f = f - dot(block.d[j], block.w) * block.d[j];
+      }
+      return f;
+    }
+    MBS_CHAIN_INLINE void link(const B& block, const B& next, const C&, Vec<V>& f,
+                               Vec<V>& inner) const {
+      pull_together(dot(block.e, next.w - block.w), block.e, f, inner);
+    }
+  };
+
+  /// Q − ε⁻¹ Φqᵀ Φ̇q v
+  struct Acceleration {
+    MBS_CHAIN_INLINE Vec<V> point(const B& block, const C& data) const {
+      Vec<V> f = data.force;
+      const V half_square = (V{} + 0.5) * dot(block.w, block.w);
+      for (int j = 0; j < Store::kRods; ++j) f = f - half_square * block.d[j];
+      return f;
+    }
+    MBS_CHAIN_INLINE void link(const B& block, const B& next, const C&, Vec<V>& f,
+                               Vec<V>& inner) const {
+      const Vec<V> rate = next.w - block.w;
+      pull_together((V{} + 0.5) * dot(rate, rate), block.e, f, inner);
+    }
+  };
+
+  /// −ε⁻¹ Φqᵀ (Φq a + Φ̇q v); that it is ε⁻¹ times a residual makes it part of λ.
+  template <bool kFirst>
+  struct AccelerationResidual {
+    MBS_CHAIN_INLINE Vec<V> point(B& block, const C&) const {
+      Vec<V> f{};
+      for (int j = 0; j < Store::kRods; ++j) {
+        const V rate = rod_rate(block, j);
+        block.rods[j] = kFirst ? rate : block.rods[j] + rate;
+        f = f - rate * block.d[j];
+      }
+      return f;
+    }
+    MBS_CHAIN_INLINE void link(B& block, const B& next, const C&, Vec<V>& f, Vec<V>& inner) const {
+      const V rate = link_rate(block, next);
+      block.link = kFirst ? rate : block.link + rate;
+      pull_together(rate, block.e, f, inner);
+    }
+  };
+
+  /// Evaluates and keeps the rows of Φq of a point; M + Σ d dᵀ.
+  MBS_CHAIN_INLINE static Sym<V> rows(B& block, const C& data) {
+    Sym<V> A;
+    for (int j = 0; j < Store::kRods; ++j) {
+      const Vec<V> d = data.rods[j].vector(block.x);
+      block.d[j] = d;
+      A = j == 0 ? data.mass.plus_square(d) : plus_square(A, d);
+    }
+    return A;
+  }
+
+  template <bool kVelocity>
+  static V factorize_inwards(Store& chain, const V& length) {
+    B* block = chain.blocks.data();
+    const C* data = chain.constants.data();
+    B* const end = block + chain.last;
+    const V inverse_length = (V{} + 1.0) / length;
+    Carry<V> carry;
+    V least = V{} + 1.0;
+    for (; block != end; ++block, ++data) {
+      const Sym<V> own = rows(*block, *data);
+      const Vec<V> e = data->link.vector(block[1].x - block->x);
+      block->e = e;
+      Sym<V> S;
+      Vec<V> z;
+      eliminate(data->mass, own, e, S, z, least, carry);
+      finish(block->factors, data->mass, S, z, carry.reciprocal, e);
+      if (!kVelocity) continue;
+      const Vec<V> w = inverse_length * block->way;
+      const Vec<V> f = carry.force + (data->mass.times(w) + length * data->force +
+                                      data->mass.outer(inverse_length * block[1].way));
+      block->c = adjugate_times(block->factors.scaled, f);
+      carry.force = forward(block->factors.gain, data->mass.inner(w), f);
+    }
+    const Vec<V> f = length * data->force + data->mass.times(inverse_length * block->way);
+    block->factors.scaled =
+        meet<typename Store::Use>(rows(*block, *data), carry, f, least, block->c);
+    return least;
+  }
+};
+
+}  // namespace mbs::compiled_ldl::chain
