@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "bench/batch_rows.hpp"
 #include "bench/bench_plan.hpp"
 #include "bench/bench_rows.hpp"
 #include "bench/operation_rows.hpp"
@@ -49,6 +50,10 @@ void add_options(CLI::App& app, BenchRequest& request, StepOptions& step) {
   app.add_flag("--operations", request.operations,
                "instead of steps, time Jacobian evaluation, rank-k update and matrix addition of "
                "the variants that offer them one by one");
+  app.add_flag(
+      "--batch", request.batch,
+      "instead of single simulations, time as many varied lanes as a variant is best given, "
+      "side by side and alone: step_us and alone_us are of one lane, gain is their ratio");
 }
 
 bool asks_for_help(int argc, char** argv) {
@@ -114,13 +119,17 @@ int run_cells(const std::vector<PlannedCell>& cells, const BenchRequest& request
   const std::string out = benchmark::FLAGS_benchmark_out;
   BenchRows rows;
   OperationRows operations;
+  BatchRows batches;
   if (request.operations) {
     operations.add(cells);
+  } else if (request.batch) {
+    batches.add(cells);
   } else {
     rows.add(cells, request.phases);
   }
   for (const auto& [key, value] : environment_record()) benchmark::AddCustomContext(key, value);
-  const auto display = make_display_reporter();
+  const auto display =
+      request.batch ? make_display_reporter(kBatchCounters) : make_display_reporter(kStepCounters);
   JsonReporter file;
   benchmark::RunSpecifiedBenchmarks(display.get(), out.empty() ? nullptr : &file, ".");
   benchmark::ClearRegisteredBenchmarks();
@@ -130,7 +139,7 @@ int run_cells(const std::vector<PlannedCell>& cells, const BenchRequest& request
   if (!out.empty() && (!file.complete() || error)) {
     throw UsageError(fmt::format("--benchmark_out: {} could not be written to its end", out));
   }
-  return rows.failed() || operations.failed() ? 1 : 0;
+  return rows.failed() || operations.failed() || batches.failed() ? 1 : 0;
 }
 
 }  // namespace

@@ -24,6 +24,9 @@ void check(const BenchRequest& request) {
   if (request.steps && (*request.steps < 1 || *request.steps > kMostSteps)) {
     throw UsageError(fmt::format("--steps is {}: it must be 1 to {}", *request.steps, kMostSteps));
   }
+  if (request.batch && (request.operations || request.phases)) {
+    throw UsageError("--batch goes with neither --operations nor --phases");
+  }
   constexpr double kLatestStart = 1e6;  // s; later, the elliptic functions' argument loses digits
   if (request.start && !(*request.start >= 0.0 && *request.start <= kLatestStart)) {
     throw UsageError(
@@ -74,19 +77,22 @@ BenchPlan plan_bench(const BenchRequest& request) {
       throw UsageError(fmt::format("scene '{}' is given twice", name));
     }
     const PlannedScene* scene = &plan.scenes.emplace_back(plan_scene(name, request));
-    if (control && !request.operations) {
+    if (control && !request.operations && !request.batch) {
       plan.cells.push_back({fmt::format("{}/{}", kControl, name), scene, &null_variant(), true});
     }
     for (const NamedVariant& variant : variants) {
       // Asked for by name it becomes a row that says so.
-      const bool offers = !request.operations || variant.variant->operations != nullptr;
+      const bool offers = (!request.operations || variant.variant->operations != nullptr) &&
+                          (!request.batch || variant.variant->create_batch != nullptr);
       if (!offers && request.implementations.empty()) continue;
       plan.cells.push_back(
           {fmt::format("{}/{}", variant.name, name), scene, variant.variant, false});
     }
   }
   if (plan.cells.empty()) {
-    throw UsageError("--operations: no implementation of this build offers them one by one");
+    throw UsageError(request.batch
+                         ? "--batch: no implementation of this build advances lanes side by side"
+                         : "--operations: no implementation of this build offers them one by one");
   }
   return plan;
 }

@@ -22,6 +22,7 @@ struct BenchRequest {
   std::optional<double> start;  ///< s
   bool phases = false;
   bool operations = false;  ///< the operations of Table 2 instead of steps
+  bool batch = false;       ///< many lanes at once, and alone, instead of single simulations
 };
 
 /// A scene with what is common to all of its cells.

@@ -3,6 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <deque>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "bench/measurement.hpp"
 
 namespace mbs {
+
+/// What these rows show people.
+inline constexpr std::array kStepCounters{"step_us", "setup_us", "passes", "position_error"};
 
 /// Registers one benchmark a cell, with the cell's name, manual time and microseconds: an iteration
 /// is one stretch. Every row that succeeds has the same counters, a number that does not exist

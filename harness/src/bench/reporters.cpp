@@ -1,7 +1,6 @@
 // Adapts Google Benchmark's reporters.
 #include "bench/reporters.hpp"
 
-#include <array>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -20,7 +19,6 @@ Runs as_registered(Runs runs) {
 }
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array<const char*, 4> kShown{"step_us", "setup_us", "passes", "position_error"};
 
 }  // namespace
 
@@ -74,7 +72,7 @@ void DisplayReporter::ReportRuns(const std::vector<Run>& runs) {
   Runs shown = as_registered(runs);
   for (auto& run : shown) {
     const benchmark::UserCounters all = std::exchange(run.counters, {});
-    for (const char* name : kShown) {
+    for (const std::string& name : shown_) {
       // A failed run has none, but the CSV reporter aborts unless all runs have the same.
       const auto counter = all.find(name);
       run.counters[name] = counter != all.end() ? counter->second : benchmark::Counter(kNone);
@@ -83,12 +81,13 @@ void DisplayReporter::ReportRuns(const std::vector<Run>& runs) {
   inner_->ReportRuns(shown);
 }
 
-std::unique_ptr<benchmark::BenchmarkReporter> make_display_reporter() {
+std::unique_ptr<benchmark::BenchmarkReporter> make_display_reporter(
+    std::span<const char* const> shown) {
   std::unique_ptr<benchmark::BenchmarkReporter> chosen(benchmark::CreateDefaultDisplayReporter());
   if (dynamic_cast<benchmark::JSONReporter*>(chosen.get()) != nullptr) {
     return std::make_unique<JsonReporter>();
   }
-  return std::make_unique<DisplayReporter>(std::move(chosen));
+  return std::make_unique<DisplayReporter>(std::move(chosen), shown);
 }
 
 }  // namespace mbs

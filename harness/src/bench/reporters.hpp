@@ -4,7 +4,9 @@
 #include <benchmark/benchmark.h>
 
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace mbs {
 
@@ -24,22 +26,25 @@ class JsonReporter final : public benchmark::JSONReporter {
   bool complete_ = false;
 };
 
-/// Any other reporter of Google Benchmark behind the names as registered, and only as many counters
-/// as a line of a terminal can show.
+/// Any other reporter of Google Benchmark behind the names as registered, and only those counters
+/// that are to be `shown`, as many as a line of a terminal has room for.
 class DisplayReporter final : public benchmark::BenchmarkReporter {
  public:
-  explicit DisplayReporter(std::unique_ptr<benchmark::BenchmarkReporter> inner)
-      : inner_(std::move(inner)) {}
+  DisplayReporter(std::unique_ptr<benchmark::BenchmarkReporter> inner,
+                  std::span<const char* const> shown)
+      : inner_(std::move(inner)), shown_(shown.begin(), shown.end()) {}
   bool ReportContext(const Context& context) override { return inner_->ReportContext(context); }
   void ReportRuns(const std::vector<Run>& runs) override;
   void Finalize() override { inner_->Finalize(); }
 
  private:
   std::unique_ptr<benchmark::BenchmarkReporter> inner_;
+  std::vector<std::string> shown_;
 };
 
 /// What the flags --benchmark_format and --benchmark_color ask for; call after Initialize().
-std::unique_ptr<benchmark::BenchmarkReporter> make_display_reporter();
+std::unique_ptr<benchmark::BenchmarkReporter> make_display_reporter(
+    std::span<const char* const> shown);
 
 /// Replaces the values NaN, -NaN, Infinity and -Infinity by null in JSON with one member a line.
 std::string without_non_finite(const std::string& json);

@@ -1,0 +1,37 @@
+// Rows of Google Benchmark for many simulations side by side, against the same ones alone.
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "bench/bench_plan.hpp"
+
+namespace mbs {
+
+/// What rows of batches show people.
+inline constexpr std::array kBatchCounters{"lanes", "step_us", "alone_us", "gain"};
+
+/// Registers "folder/variant/scene/batch": manual time, microseconds, an iteration being one
+/// stretch of as many lanes as the variant is best given, which differ in masses, forces and
+/// lengths. Counters: lanes; steps; step_us, the time of a step of one lane (that of all over their
+/// number); alone_us, the same for a Simulation of each lane, one after the other, in the same
+/// iterations; gain, alone_us / step_us; variables, constraints and fill_percent. A variant without
+/// batches, a lane that is lost, or a batch that is refused is a row with error_occurred and
+/// "unsupported: ...", "factorization-failed: ..." or "error: ...".
+class BatchRows {
+ public:
+  /// `cells` and what they point to must outlive the object, and the object the benchmarks' run.
+  void add(const std::vector<PlannedCell>& cells);
+  /// Whether a row that has run failed.
+  [[nodiscard]] bool failed() const { return failed_; }
+
+ private:
+  void run(const PlannedCell& cell, benchmark::State& state);
+
+  bool failed_ = false;
+};
+
+}  // namespace mbs
