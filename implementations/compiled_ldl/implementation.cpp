@@ -1,6 +1,8 @@
 // compiled_ldl: describes it and makes its simulations.
 #include "mbs/implementation.hpp"
 
+#include "batch.hpp"
+#include "scalar.hpp"
 #include "simulations.hpp"
 
 namespace mbs::compiled_ldl {
@@ -32,6 +34,8 @@ Implementation implementation() {
                   .single_precision = true,
                   .mixed_precision = true,
                   .geometric_stiffness = true};
+  block.create_batch = create_batch;
+  block.batch_lanes = Lanes::kCount;
   Implementation all;
   all.description = "the scene compiled into a flat program; block L D L^T in dense fronts";
   all.library = "none";
