@@ -72,10 +72,9 @@ class LaneGroup {
     const bool due = --until_projection_ == 0;
     if (due) until_projection_ = settings_.projections_every;
     projections_ = due ? settings_.projections : Projections::none;
-    if (projections_ == Projections::none)
-      return Projection<Store, Update::some>::settle(chain_, last_);
+    if (projections_ == Projections::none) return Projection<Store, true>::settle(chain_, last_);
     if (whole_) return Projection<Store>::velocity_inwards(chain_, Mask());
-    Projection<Store, Update::some>::velocity_inwards(chain_, last_);
+    Projection<Store, true>::velocity_inwards(chain_, last_);
   }
   void velocity_outwards() {
     if (projections_ != Projections::none) Projection<Store>::velocity_outwards(chain_);

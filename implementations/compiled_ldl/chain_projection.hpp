@@ -5,11 +5,8 @@
 
 namespace mbs::compiled_ldl::chain {
 
-/// Whose λ the first projection brings up to date, Eq. (1): with `some`, of the lanes `pending`.
-/// With `none` the form is that of (13): λ is complete, and the Φq of the factors stays.
-enum class Update { all, some, none };
-
-template <class Store, Update kUpdate = Update::all>
+/// With `kMasked` λ of some lanes is up to date already: all but those `pending`.
+template <class Store, bool kMasked = false>
 class Projection {
  public:
   using V = typename Store::V;
@@ -52,20 +49,18 @@ class Projection {
   using C = typename Store::C;
 
   MBS_CHAIN_INLINE static void add(V& multiplier, const V& violation, const Mask& pending) {
-    if constexpr (kUpdate == Update::some) {
+    if constexpr (kMasked) {
       keep(multiplier, V(multiplier + violation), pending);
     } else {
       multiplier = multiplier + violation;
     }
   }
   MBS_CHAIN_INLINE static void rods(B& block, const C& data, const Mask& pending) {
-    if (kUpdate == Update::none) return;
     for (int j = 0; j < Store::kRods; ++j) {
       add(block.rods[j], data.rods[j].violation(data.rods[j].vector(block.x)), pending);
     }
   }
   MBS_CHAIN_INLINE static void link(B& block, const B& next, const C& data, const Mask& pending) {
-    if (kUpdate == Update::none) return;
     add(block.link, data.link.violation(data.link.vector(next.x - block.x)), pending);
   }
 
@@ -85,32 +80,17 @@ class Projection {
     }
   };
 
-  MBS_CHAIN_INLINE static Vec<V> rod(const B& block, const C& data, int j) {
-    if constexpr (kUpdate == Update::none) {
-      return block.d[j];
-    } else {
-      return data.rods[j].vector(block.x);
-    }
-  }
-  MBS_CHAIN_INLINE static Vec<V> coupler(const B& block, const B& next, const C& data) {
-    if constexpr (kUpdate == Update::none) {
-      return block.e;
-    } else {
-      return data.link.vector(next.x - block.x);
-    }
-  }
-
   /// M a* − (Δt²/4) α Φqᵀ Φ̇q v'
   struct Acceleration {
     MBS_CHAIN_INLINE Vec<V> point(const B& block, const C& data) const {
       Vec<V> f = data.mass.times(block.u);
       const V half_square = (V{} + 0.5) * dot(block.w, block.w);
-      for (int j = 0; j < Store::kRods; ++j) f = f - half_square * rod(block, data, j);
+      for (int j = 0; j < Store::kRods; ++j) f = f - half_square * data.rods[j].vector(block.x);
       return f;
     }
     MBS_CHAIN_INLINE void link(const B& block, const B& next, const C& data, Vec<V>& f,
                                Vec<V>& inner) const {
-      const Vec<V> e = coupler(block, next, data);
+      const Vec<V> e = data.link.vector(next.x - block.x);
       const Vec<V> rate = next.w - block.w;
       const Vec<V> pull = ((V{} + 0.5) * dot(rate, rate)) * e;
       f = f + (data.mass.outer(next.u) + pull);

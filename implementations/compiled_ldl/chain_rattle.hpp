@@ -1,15 +1,12 @@
 // One stage of RATTLE on a chain, Eq. (14): its sweeps, with the multipliers eliminated.
 #pragma once
 
-#include "chain_elimination.hpp"
+#include "chain_rows.hpp"
 
 namespace mbs::compiled_ldl::chain {
 
-/// A point, with the rows of Φq that belong to its factors.
 template <class V, class Rods>
-struct RattleBlock : Block<V, Rods> {
-  Vec<V> d[Rods::kMost];
-  Vec<V> e;
+struct RattleBlock : RowBlock<V, Rods> {
   Vec<V> way;  // s (q' − q) of the stage
 };
 
@@ -46,7 +43,7 @@ class RattleStage {
 
   /// Step 4, one refinement: max|s Δt δ|.
   static V refine_velocity(Store& chain) {
-    substitute_inwards(chain, VelocityResidual{});
+    velocity_residual(chain, [](const B& block) { return block.w; });
     LargestOf<typename Store::Use> largest;
     substitute_outwards(chain, [&](B& block, const Vec<V>& x) {
       block.w = block.w + x;
@@ -65,7 +62,9 @@ class RattleStage {
   /// what the last one brings.
   template <bool kFirst>
   static V refine_acceleration(Store& chain) {
-    substitute_inwards(chain, AccelerationResidual<kFirst>{});
+    acceleration_residual(chain, [](V& multiplier, const V& rate) {
+      multiplier = kFirst ? rate : multiplier + rate;  // ε⁻¹ times a residual is part of λ
+    });
     LargestOf<typename Store::Use> largest;
     substitute_outwards(chain, [&](B& block, const Vec<V>& x) {
       block.u = block.u + x;
@@ -83,20 +82,6 @@ class RattleStage {
   }
 
  private:
-  /// ε⁻¹ (Φq a + Φ̇q v) of a distance.
-  MBS_CHAIN_INLINE static V rod_rate(const B& block, int j) {
-    return dot(block.d[j], block.u) + (V{} + 0.5) * dot(block.w, block.w);
-  }
-  MBS_CHAIN_INLINE static V link_rate(const B& block, const B& next) {
-    const Vec<V> rate = next.w - block.w;
-    return dot(block.e, next.u - block.u) + (V{} + 0.5) * dot(rate, rate);
-  }
-  MBS_CHAIN_INLINE static void pull_together(const V& force, const Vec<V>& e, Vec<V>& f,
-                                             Vec<V>& inner) {
-    f = f + force * e;
-    inner = Vec<V>{} - force * e;
-  }
-
   /// −ε⁻¹ Φqᵀ Φ with the Φq of the factors and the Φ of where the points are.
   template <bool kFirst>
   struct Position {
@@ -122,21 +107,6 @@ class RattleStage {
     }
   };
 
-  /// −ε⁻¹ Φqᵀ Φq v
-  struct VelocityResidual {
-    MBS_CHAIN_INLINE Vec<V> point(const B& block, const C&) const {
-      Vec<V> f{};
-      for (int j = 0; j < Store::kRods; ++j) {
-        f = f - dot(block.d[j], block.w) * block.d[j];
-      }
-      return f;
-    }
-    MBS_CHAIN_INLINE void link(const B& block, const B& next, const C&, Vec<V>& f,
-                               Vec<V>& inner) const {
-      pull_together(dot(block.e, next.w - block.w), block.e, f, inner);
-    }
-  };
-
   /// Q − ε⁻¹ Φqᵀ Φ̇q v
   struct Acceleration {
     MBS_CHAIN_INLINE Vec<V> point(const B& block, const C& data) const {
@@ -149,25 +119,6 @@ class RattleStage {
                                Vec<V>& inner) const {
       const Vec<V> rate = next.w - block.w;
       pull_together((V{} + 0.5) * dot(rate, rate), block.e, f, inner);
-    }
-  };
-
-  /// −ε⁻¹ Φqᵀ (Φq a + Φ̇q v); that it is ε⁻¹ times a residual makes it part of λ.
-  template <bool kFirst>
-  struct AccelerationResidual {
-    MBS_CHAIN_INLINE Vec<V> point(B& block, const C&) const {
-      Vec<V> f{};
-      for (int j = 0; j < Store::kRods; ++j) {
-        const V rate = rod_rate(block, j);
-        block.rods[j] = kFirst ? rate : block.rods[j] + rate;
-        f = f - rate * block.d[j];
-      }
-      return f;
-    }
-    MBS_CHAIN_INLINE void link(B& block, const B& next, const C&, Vec<V>& f, Vec<V>& inner) const {
-      const V rate = link_rate(block, next);
-      block.link = kFirst ? rate : block.link + rate;
-      pull_together(rate, block.e, f, inner);
     }
   };
 

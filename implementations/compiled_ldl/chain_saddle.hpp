@@ -2,14 +2,13 @@
 #pragma once
 
 #include "chain_newton.hpp"
+#include "chain_rows.hpp"
 
 namespace mbs::compiled_ldl::chain {
 
 /// A point, with what a pass has evaluated of its distances.
 template <class V, class Rods>
-struct SaddleBlock : Block<V, Rods> {
-  Vec<V> d[Rods::kMost];
-  Vec<V> e;
+struct SaddleBlock : RowBlock<V, Rods> {
   V violation[Rods::kMost];
   V link_violation;
 };
@@ -131,6 +130,28 @@ class SaddleNewton {
     block->factors.scaled = {reciprocal * S.xx, reciprocal * S.xy, reciprocal * S.yy};
     block->c = reciprocal * adjugate_times(S, f);
     return smaller(least, smaller(S.xx, smaller(sigma, reciprocal)));
+  }
+};
+
+/// Eq. (13), solved for what v* and a* lack: Φqᵀ times something large would leave its rounding in
+/// M's part.
+template <class Store>
+class SaddleProjection {
+ public:
+  using V = typename Store::V;
+  using B = typename Store::B;
+
+  static void settle(Store& chain) {
+    for (B& block : chain.blocks) block.w = block.w + block.u;
+  }
+  static void velocity(Store& chain) {
+    velocity_residual(chain, [](const B& block) { return block.w + block.u; });
+    substitute_outwards(chain,
+                        [](B& block, const Vec<V>& x) { block.w = (block.w + block.u) + x; });
+  }
+  static void acceleration(Store& chain) {
+    acceleration_residual(chain, [](V& /*multiplier*/, const V& /*rate*/) {});
+    substitute_outwards(chain, [](B& block, const Vec<V>& x) { block.u = block.u + x; });
   }
 };
 

@@ -11,20 +11,22 @@
 
 namespace mbs::compiled_ldl::chain {
 
-/// The passes of a form, and what is left to its first projection.
+/// Blocks, passes and projections of a form.
 struct PenaltyForm {
   template <class V, class Rods>
   using Block = chain::Block<V, Rods>;
   template <class Store, bool kFirst>
   using Passes = Newton<Store, kFirst>;
-  static constexpr Update kUpdate = Update::all;
+  template <class Store>
+  using Project = Projection<Store>;
 };
 struct SaddlePointForm {
   template <class V, class Rods>
   using Block = SaddleBlock<V, Rods>;
   template <class Store, bool kFirst>
   using Passes = SaddleNewton<Store, kFirst>;
-  static constexpr Update kUpdate = Update::none;
+  template <class Store>
+  using Project = SaddleProjection<Store>;
 };
 
 template <class Form, template <class> class MassOf, class Rods>
@@ -40,7 +42,7 @@ class TrapezoidalSimulation final : public Simulation {
 
  private:
   using Store = Storage<Pair, MassOf, Rods, Form::template Block>;
-  using Project = Projection<Store, Form::kUpdate>;
+  using Project = typename Form::template Project<Store>;
 
   void do_set_state(const State& state) override {
     chain_.set(0, topology_, units_, state);

@@ -19,8 +19,14 @@ class Constraints {
   [[nodiscard]] int row(int k) const { return multiplier_row_[k]; }
   S& value(int k) { return value_[k]; }
 
-  /// phi = Φ(q), and the gradients for what follows; those of the evaluation before are `earlier`.
-  void evaluate(const S* q, S* phi);
+  /// phi = Φ(q), and the gradients for what follows; those of the evaluation before become `earlier`
+  /// ones, which stay if `exchange` is false.
+  void evaluate(const S* q, S* phi, bool exchange = true);
+  /// Gradients become `earlier` ones in these lanes.
+  void keep_where(const LaneMask& mask) {
+    copy_where(mask, u_, earlier_u_);
+    copy_where(mask, vectors_, earlier_vectors_);
+  }
   /// y += Φqᵀ t.
   void add_transposed(const S* t, S* y, bool earlier = false) const;
   /// t = Φq x, with the columns of fixed points.
@@ -32,7 +38,7 @@ class Constraints {
   template <typename F>
   void add_constant(F* matrix, const S& s) const;
   template <typename F>
-  void add_penalty(F* matrix, const S& s) const;
+  void add_penalty(F* matrix, const S& s, bool earlier = false) const;
   template <typename F>
   void add_rows(F* matrix) const;
 

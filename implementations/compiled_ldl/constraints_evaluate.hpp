@@ -16,9 +16,11 @@ void Constraints<S, D>::multiply(const S* matrix, const S* x, S* y, bool transpo
 }
 
 template <typename S, int D>
-void Constraints<S, D>::evaluate(const S* q, S* phi) {
-  u_.swap(earlier_u_);
-  vectors_.swap(earlier_vectors_);
+void Constraints<S, D>::evaluate(const S* q, S* phi, bool exchange) {
+  if (exchange) {
+    u_.swap(earlier_u_);
+    vectors_.swap(earlier_vectors_);
+  }
   int k = 0;
   S* u = u_.data();
   for (const Pair& pair : pairs_.list) {

@@ -18,6 +18,11 @@ class Forces {
   void add(const S* q, const S* v, S* y);
   /// Keeps C and K of the last add() for what follows.
   void keep();
+  void keep_where(const LaneMask& mask) {
+    copy_where(mask, direction_, kept_);
+    copy_where(mask, across_, kept_across_);
+    copy_where(mask, torsion_directions_, kept_torsions_);
+  }
   /// += (Δt/2) C + (Δt²/4) K.
   template <typename F>
   void add_matrix(F* matrix) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "panel_vectors.hpp"
 #include "program.hpp"
 #include "scalar.hpp"
 
@@ -30,7 +31,7 @@ class Fronts {
 
  private:
   void factorize(const Front& front, F* y);
-  void pivot_column(const Front& front, F* columns, int j, int end, F* y);
+  void pivot_columns(const Front& front, F* columns, int j, int end, F* y);
   void update_column(const Front& front, const F* columns, int from, int to, F* target, int row);
   void update_border(const Front& front, F* y);
   void scatter(const Front& front, const Group& group, int k);

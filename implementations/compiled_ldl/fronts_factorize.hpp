@@ -43,10 +43,9 @@ void Fronts<F>::check(const F& inverse) {
 template <typename F>
 void Fronts<F>::factorize(const Front& front, F* y) {
   F* columns = matrix_.data() + front.base;
-  constexpr int kPanel = 8;
   for (int from = 0; from < front.pivots; from += kPanel) {
     const int to = std::min(from + kPanel, front.pivots);
-    for (int j = from; j < to; ++j) pivot_column(front, columns, j, to, y);
+    for (int j = from; j < to; j += 2) pivot_columns(front, columns, j, to, y);
     for (int k = to; k < front.pivots; ++k) {
       update_column(front, columns, from, to, columns + k * front.stride, k);
     }
@@ -54,21 +53,32 @@ void Fronts<F>::factorize(const Front& front, F* y) {
   if (front.border > 0) update_border(front, y);
 }
 
-/// Eliminates pivot j from the columns before `end` and from the pivots' right-hand side.
+/// Eliminates pivots j and j + 1 from the columns before `end` and from the pivots' right-hand side,
+/// as decompose() of panel_vectors.hpp does.
 template <typename F>
-void Fronts<F>::pivot_column(const Front& front, F* columns, int j, int end, F* y) {
-  F* column = columns + j * front.stride;
-  const F inverse = F(1.0) / F(column[j]);
+void Fronts<F>::pivot_columns(const Front& front, F* columns, int j, int end, F* y) {
+  F* one = columns + j * front.stride;
+  const F inverse = F(1.0) / one[j];
   check(inverse);
-  inverse_[front.first + j] = inverse;
-  const int rows = front.stride;
-  for (int k = j + 1; k < end; ++k) {
-    const F factor = column[k] * inverse;
-    F* target = columns + k * front.stride;
-    for (int i = k; i < rows; ++i) target[i] -= factor * column[i];
-  }
+  F* inverses = inverse_.data() + front.first;
+  inverses[j] = inverse;
+  const int rows = front.pivots + front.border;
   const F z = y[front.first + j] * inverse;
-  for (int i = j + 1; i < front.pivots; ++i) y[front.first + i] -= column[i] * z;
+  for (int i = j + 1; i < front.pivots; ++i) y[front.first + i] -= one[i] * z;
+  if (j + 1 == end) return;
+  F* other = one + front.stride;
+  const F of_pair = F(1.0) / determinant(one[j], one[j + 1], other[j + 1]);
+  check(of_pair);
+  inverses[j + 1] = one[j] * of_pair;
+  const F factor = one[j + 1] * inverse;
+  for (int i = j + 1; i < rows; ++i) other[i] -= one[i] * factor;
+  for (int k = j + 2; k < end; ++k) {
+    const F factor1 = one[k] * inverse, factor2 = other[k] * inverses[j + 1];
+    F* target = columns + k * front.stride;
+    for (int i = k; i < rows; ++i) target[i] = (target[i] - one[i] * factor1) - other[i] * factor2;
+  }
+  const F z2 = y[front.first + j + 1] * inverses[j + 1];
+  for (int i = j + 2; i < front.pivots; ++i) y[front.first + i] -= other[i] * z2;
 }
 
 /// target -= Σ_j column_j (column_j)_row / d_j over pivots from … to - 1, from row `row` on.

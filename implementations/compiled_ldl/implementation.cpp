@@ -1,7 +1,9 @@
 // compiled_ldl: describes it and makes its simulations.
 #include "mbs/implementation.hpp"
 
+#include "batch.hpp"
 #include "chain.hpp"
+#include "scalar.hpp"
 #include "simulations.hpp"
 
 namespace mbs::compiled_ldl {
@@ -32,11 +34,10 @@ std::unique_ptr<Simulation> create_chains(const Model& model, const StepSettings
   return simulation ? std::move(simulation) : create_fronts(model, settings);
 }
 
-std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> models,
-                                              std::span<const StepSettings> settings) {
+std::unique_ptr<BatchSimulation> create_chain_batch(std::span<const Model* const> models,
+                                                    std::span<const StepSettings> settings) {
   auto batch = chain::create_batch(models, settings);
-  if (!batch) throw Unsupported("only chains of points in the penalty form advance side by side");
-  return batch;
+  return batch ? std::move(batch) : create_batch(models, settings);
 }
 
 }  // namespace
@@ -47,11 +48,13 @@ Implementation implementation() {
   fronts.description = "dense fronts of points, merged and ordered by predicted time, for any scene";
   fronts.create = create_fronts;
   fronts.serves = kAll;
+  fronts.create_batch = create_batch;
+  fronts.batch_lanes = Lanes::kCount;
   Variant chains = fronts;
   chains.name = "chains";
   chains.description = "kernels for a chain of points where the scene is one, else fronts";
   chains.create = create_chains;
-  chains.create_batch = create_batch;
+  chains.create_batch = create_chain_batch;
   chains.batch_lanes = chain::batch_lanes();
   Implementation all;
   all.description = "the scene compiled into a flat program; block L D L^T in dense fronts";

@@ -88,6 +88,12 @@ inline float determinant(float x, float y, float w) {
   return static_cast<float>(static_cast<double>(x) * w - static_cast<double>(y) * y);
 }
 
+inline Lanes determinant(const Lanes& x, const Lanes& y, const Lanes& w) {
+  Lanes result;
+  for (int i = 0; i < Lanes::kCount; ++i) result.v[i] = determinant(x.v[i], y.v[i], w.v[i]);
+  return result;
+}
+
 /// L D Lᵀ of a symmetric block, columns in registers, of which the lower halves count: a becomes L
 /// D, l becomes L, `inverse` that of D; lanes from P on are rows below. Two pivots at a time: both
 /// inverses, 1/x and x/det, are under way together. False if a pivot is not accepted.

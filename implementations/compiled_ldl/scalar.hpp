@@ -73,6 +73,18 @@ inline double larger(double a, double b) { return b > a ? b : a; }
 inline float larger(float a, float b) { return b > a ? b : a; }
 inline Lanes larger(const Lanes& a, const Lanes& b) { return Lanes::of(b.v > a.v ? b.v : a.v); }
 
+/// True (all bits) in some of the lanes.
+using LaneMask = long long __attribute__((vector_size(64)));
+inline bool any(const LaneMask& mask) {
+  long long all = 0;
+  for (int i = 0; i < Lanes::kCount; ++i) all |= mask[i];
+  return all != 0;
+}
+/// x where the mask is true, else y.
+inline Lanes select(const LaneMask& mask, const Lanes& x, const Lanes& y = 0.0) {
+  return Lanes::of(mask ? x.v : y.v);
+}
+
 /// Begins on a cache line.
 template <typename T>
 struct Aligned {
@@ -88,5 +100,9 @@ struct Aligned {
 };
 template <typename T>
 using Array = std::vector<T, Aligned<T>>;
+
+inline void copy_where(const LaneMask& mask, const Array<Lanes>& from, Array<Lanes>& to) {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] = select(mask, from[i], to[i]);
+}
 
 }  // namespace mbs::compiled_ldl

@@ -29,6 +29,8 @@ class System {
   void residual();
   /// The matrix of Eq. (5), (12) or (14), at the last evaluate() and residual().
   void assemble();
+  /// The matrix of Eq. (5), in the other lanes the one that they had.
+  void assemble_where(const LaneMask& mask);
   /// y = solution; false if a pivot was not accepted.
   bool factorize_and_solve();
   void solve();

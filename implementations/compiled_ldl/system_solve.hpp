@@ -41,6 +41,16 @@ void System<S, F, D>::assemble() {
   constraints.add_curvature(matrix);
 }
 
+template <typename S, typename F, int D>
+void System<S, F, D>::assemble_where(const LaneMask& mask) {
+  fronts.start();
+  constraints.keep_where(mask);
+  constraints.add_penalty(fronts.matrix(), h * alpha, true);
+  if (!forces.has_stiffness()) return;
+  forces.keep_where(mask);
+  forces.add_matrix(fronts.matrix());
+}
+
 /// y rounded to F in units of its largest entry, which it returns.
 template <typename S, typename F, int D>
 S System<S, F, D>::scale_down() {

@@ -1,0 +1,16 @@
+// Many simulations of one pattern at once, eight side by side in the lanes of a vector.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "mbs/batch.hpp"
+
+namespace mbs::compiled_ldl {
+
+/// Throws Unsupported unless the scheme is the default one in double precision, its matrix
+/// factorized every pass.
+std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> models,
+                                              std::span<const StepSettings> settings);
+
+}  // namespace mbs::compiled_ldl

@@ -1,0 +1,141 @@
+// Up to eight simulations side by side: "The step" with each lane stopping at its own pass.
+#pragma once
+
+#include "system.hpp"
+
+namespace mbs::compiled_ldl {
+
+template <int D>
+class LaneGroup {
+ public:
+  LaneGroup(std::span<const Model* const> models, std::span<const StepSettings> settings)
+      : settings_(settings[0]),
+        tolerance_(of_settings<Lanes>(settings, &StepSettings::tolerance)),
+        system_(models, settings), velocity_terms_(system_.constraints.count(), Lanes(0.0)),
+        free_(system_.rows.extent, Lanes(0.0)) {}
+
+  void set_state(int lane, const State& state) {
+    system_.put(lane, state);
+    running_[lane] = -1;
+    unprojected_ = 0;
+  }
+  void get_state(int lane, State& state) const { system_.get(lane, state); }
+  void retire(int lane) { running_[lane] = 0; }
+
+  /// One step to `time`; outcomes of the lanes that take part.
+  void step(double time, std::span<StepOutcome> outcomes);
+
+ private:
+  void predict();
+  void evaluate() {
+    system_.constraints.evaluate(system_.q.data(), system_.phi.data(), false);
+  }
+  /// Applies the last solution in the lanes of `active`; max|Δq|.
+  Lanes apply(const LaneMask& active);
+  void project();
+  void project_once(Lanes* x, const Lanes* terms);
+
+  StepSettings settings_;
+  Lanes tolerance_;
+  System<Lanes, Lanes, D> system_;
+  LaneMask running_{};
+  int unprojected_ = 0;
+  Array<Lanes> velocity_terms_, free_;
+};
+
+template <int D>
+void LaneGroup<D>::step(double time, std::span<StepOutcome> outcomes) {
+  if (!any(running_)) return;
+  if (system_.drivers.any()) system_.drive(time);
+  predict();
+  evaluate();
+  LaneMask active = running_;
+  for (int pass = 1; pass <= settings_.max_passes && any(active); ++pass) {
+    system_.residual();
+    system_.assemble_where(active);
+    system_.factorize_and_solve();
+    const LaneMask failed = active & (system_.fronts.least_pivot().v < 0.0);
+    const Lanes change = apply(active);
+    const LaneMask converged = active & ~failed & (change.v <= tolerance_.v);
+    for (int i = 0; i < static_cast<int>(outcomes.size()); ++i) {
+      if (active[i] == 0) continue;
+      outcomes[i] = {.status = failed[i] != 0      ? StepStatus::factorization_failed
+                               : converged[i] != 0 ? StepStatus::converged
+                                                   : StepStatus::pass_limit,
+                     .passes = pass};
+    }
+    active &= ~(failed | converged);
+  }
+  project();
+}
+
+/// As Stepper::predict().
+template <int D>
+void LaneGroup<D>::predict() {
+  Lanes* q = system_.q.data();
+  Lanes* v = system_.v.data();
+  Lanes* a = system_.a.data();
+  const double step = settings_.step;
+  const Lanes half = step * step / 2.0, to_v = 2.0 / step, to_a = 4.0 / (step * step);
+  for (int i = 0; i < system_.program.size; ++i) {
+    const Lanes moved = q[i] + (step * v[i] + half * a[i]);
+    const Lanes difference = moved - q[i];
+    q[i] = moved;
+    a[i] = to_a * difference - 4.0 / step * v[i] - a[i];
+    v[i] = to_v * difference - v[i];
+  }
+}
+
+template <int D>
+Lanes LaneGroup<D>::apply(const LaneMask& active) {
+  Lanes* q = system_.q.data();
+  Lanes* v = system_.v.data();
+  Lanes* a = system_.a.data();
+  const Lanes to_v = 2.0 / settings_.step, to_a = 4.0 / (settings_.step * settings_.step);
+  Lanes most = 0.0, sum = 0.0;
+  for (int i = 0; i < system_.program.size; ++i) {
+    const Lanes y = select(active, system_.y[i]);
+    most = larger(most, magnitude(y));
+    sum += 0.0 * y;  // NaN if y is infinite or NaN
+    q[i] += y;
+    v[i] += to_v * y;
+    a[i] += to_a * y;
+  }
+  evaluate();
+  for (int k = 0; k < system_.constraints.count(); ++k) {
+    system_.lambda[k] += select(active, system_.alpha * system_.phi[k]);
+  }
+  return most + sum;
+}
+
+template <int D>
+void LaneGroup<D>::project() {
+  if (settings_.projections == Projections::none) return;
+  if (++unprojected_ < settings_.projections_every) return;
+  unprojected_ = 0;
+  auto& s = system_;
+  if (s.drivers.any()) s.drivers.rate_terms(s.constraints, velocity_terms_.data());
+  project_once(s.v.data(), s.drivers.any() ? velocity_terms_.data() : nullptr);
+  if (settings_.projections == Projections::velocity) return;
+  s.drivers.acceleration_terms(s.constraints, s.v.data(), velocity_terms_.data());
+  project_once(s.a.data(), velocity_terms_.data());
+}
+
+/// As Stepper::project_once().
+template <int D>
+void LaneGroup<D>::project_once(Lanes* x, const Lanes* terms) {
+  auto& s = system_;
+  const Lanes* given = x;
+  if (s.drivers.any()) {  // without what fixed points have
+    std::copy(x, x + s.program.size, free_.data());
+    given = free_.data();
+  }
+  std::fill(s.y.begin(), s.y.end(), Lanes(0.0));
+  s.constraints.product(given, s.terms.data(), true);
+  s.constrain(s.terms.data(), true);
+  if (terms != nullptr) s.constrain(terms);
+  s.solve();
+  for (int i = 0; i < s.program.size; ++i) x[i] += s.y[i];
+}
+
+}  // namespace mbs::compiled_ldl
