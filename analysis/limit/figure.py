@@ -100,3 +100,36 @@ def by_phase(steps):
                            for phase, colour in COLOURS.items()],
                   loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=6)
     return figure
+
+
+def ahead(leads, scenes, wanted):
+    """Bars a scene: how many times faster than the fastest with a library each of `leads`
+    ({implementation: Series by scene}) is; a mark where it is to be: `wanted(dimension, filled)`."""
+    about = scenes.groupby("scene", sort=False)[["variables", "dimension", "filled"]].first()
+    order = about.sort_values(["filled", "dimension"], kind="stable").index
+    names = [scene.removeprefix("harness/scenes/").removesuffix(".json") for scene in order]
+    height = 0.8 / len(leads)
+    figure, axes = plt.subplots(figsize=(8.6, 0.34 * len(order) + 1.6), constrained_layout=True)
+    for row, (name, lead) in enumerate(leads.items()):
+        places = [place + (row - (len(leads) - 1) / 2) * height for place in range(len(order))]
+        values = [lead.get(scene, float("nan")) for scene in order]
+        axes.barh(places, [value - 1 for value in values], height, left=1, label=name,
+                  color=list(COLOURS.values())[row * 2 + 2])
+        for place, value in zip(places, values):
+            text = f" {value:.3g}×" if value == value else " not timed"
+            axes.text(max(value, 1) if value == value else 1, place, text, va="center", fontsize=7)
+    axes.plot([wanted(row.dimension, row.filled) for row in about.loc[order].itertuples()],
+              range(len(order)), linestyle="none", marker="|", markersize=13, markeredgewidth=2,
+              color="black", label="at least")
+    axes.axvline(1, color=GREY, linewidth=1)
+    axes.set_xscale("log")
+    number_axis(axes.xaxis, "×")
+    axes.margins(x=0.12)
+    axes.set_yticks(range(len(order)), [f"{name} (n = {about.variables[scene]}, "
+                                        f"{'filled' if about.filled[scene] else str(about.dimension[scene]) + 'D'})"
+                                        for name, scene in zip(names, order)], fontsize=8)
+    axes.set_ylim(len(order) - 0.4, -0.6)
+    axes.set_xlabel("time of the fastest with a library ÷ own time")
+    axes.set_title("How far ahead of libraries")
+    axes.legend(loc="lower right", frameon=True)
+    return figure

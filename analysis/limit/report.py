@@ -2,29 +2,51 @@
 from pathlib import Path
 
 from analysis import page
-from analysis.limit.figure import LIMIT, by_phase, over_size, timed
+from analysis.limit.figure import LIMIT, ahead, by_phase, over_size, timed
+from analysis.limit.must_hold import leads, must_hold, own, wanted
 from analysis.loader import PHASES, TableError, _json, plain_table
 
 
 def write(folder):
-    """Writes figures/over_size and by_phase (.svg, .png), and limit.html."""
+    """Writes figures/*.svg and .png of what was measured, and limit.html."""
     folder = Path(folder)
-    bounds, steps = (plain_table(folder / f"{name}.csv") for name in ("bounds", "steps"))
-    if "step_us" not in steps or timed(steps).empty:
+    tables = {name: plain_table(folder / f"{name}.csv") if (folder / f"{name}.csv").exists() else None
+              for name in ("bounds", "steps", "scenes", "batches")}
+    steps, scenes = tables["steps"], tables["scenes"]
+    if steps is not None and ("step_us" not in steps or timed(steps).empty):
         raise TableError(f"{folder / 'steps.csv'}: no size has a time of {LIMIT}")
     registry = _json(folder / "implementations.json")["implementations"]
-    figures = {"over_size": page.embedded(folder, "over_size", over_size(bounds, steps, registry)),
-               "by_phase": page.embedded(folder, "by_phase", by_phase(steps))}
-    page.write(folder / "limit.html", render(bounds, steps, _json(folder / "run.json"), figures))
+    drawn = {}
+    if steps is not None:
+        drawn |= {"over_size": over_size(tables["bounds"], steps, registry), "by_phase": by_phase(steps)}
+    if scenes is not None and own(registry):
+        drawn["ahead"] = ahead({name: leads(scenes, name, own(registry), "scene")
+                                for name in own(registry)}, scenes, wanted)
+    figures = {name: page.embedded(folder, name, figure) for name, figure in drawn.items()}
+    page.write(folder / "limit.html", render(tables, registry, _json(folder / "run.json"), figures))
 
 
-def render(bounds, steps, run, figures):
+def render(tables, registry, run, figures):
     """The page; `figures`: {name: SVG in base 64}."""
+    steps, scenes, batches = (tables[name] for name in ("steps", "scenes", "batches"))
     return page.template(Path(__file__).parent / "limit.html.j2").render(
         context=next(iter(run["contexts"].values())), figures=figures, limit=LIMIT,
-        counted="instructions" in steps and steps.instructions.notna().any(),
-        bounds=bounds.sort_values("loops").to_dict("records"), sizes=by_size(steps), phases=PHASES,
-        lost=steps[steps.status != "ok"].to_dict("records"))
+        counted=steps is not None and "instructions" in steps and steps.instructions.notna().any(),
+        bounds=[] if steps is None else tables["bounds"].sort_values("loops").to_dict("records"),
+        sizes=[] if steps is None else by_size(steps), phases=PHASES,
+        held={name: must_hold(name, registry, steps, scenes, batches) for name in own(registry)},
+        batches=[] if batches is None else batches[batches.status == "ok"].to_dict("records"),
+        scenes=[] if scenes is None else by_scene(scenes),
+        lost=[row | {"where": row.get("scene") or f"four-bar:{row.get('loops')}"}
+              for table in (steps, scenes, batches) if table is not None
+              for row in table[~table.status.isin(["ok", "slower"])].to_dict("records")])
+
+
+def by_scene(scenes):
+    """[(scene, n, dimension, rows)], the fastest first."""
+    good = scenes[scenes.status.isin(["ok", "slower"])].sort_values("step_us")
+    return [(scene, group.variables.iloc[0], group.dimension.iloc[0], group.to_dict("records"))
+            for scene, group in good.groupby("scene", sort=False)]
 
 
 def by_size(steps):

@@ -6,6 +6,7 @@ import pandas
 import pytest
 
 from analysis.limit.figure import LIMIT, by_phase, leaders, over_size, timed
+from analysis.limit.must_hold import leads, must_hold
 from analysis.limit.report import by_size, write
 from analysis.loader import PHASES, TableError
 
@@ -73,7 +74,7 @@ def test_the_page_has_every_variant_and_what_was_lost(tmp_path):
     (tmp_path / "run.json").write_text(json.dumps({"contexts": {"own": {"compiler": "c", "commit": "0"}}}))
     write(tmp_path)
     text = (tmp_path / "limit.html").read_text()
-    assert "one/b, N = 40: too slow" in text and "<td>two/c</td>" in text
+    assert "one/b, four-bar:40: too slow" in text and "<td>two/c</td>" in text
     assert (tmp_path / "figures" / "over_size.png").exists()
 
 
@@ -98,3 +99,83 @@ def test_tables_without_the_limit_code_are_refused(tmp_path):
     bounds().to_csv(tmp_path / "bounds.csv", index=False)
     with pytest.raises(TableError, match="no size has a time of limit/limit"):
         write(tmp_path)
+
+
+OWN = [*REGISTRY, {"folder": "own", "library": "none", "variants": [{"name": "own/x"}]}]
+
+
+def scenes():
+    def one(scene, name, step_us, status="ok", dimension=2, filled=False):
+        return {"scene": scene, "implementation": name, "step_us": step_us, "status": status,
+                "reason": "", "variables": 6, "dimension": dimension, "filled": filled}
+    return pandas.DataFrame([
+        one("a.json", "own/x", 1.0), one("a.json", "one/a", 3.0), one("a.json", "two/c", 2.5),
+        one("b.json", "own/x", 1.0), one("b.json", "one/a", 1.9), one("b.json", "two/c", 9.0, "slower"),
+        one("c.json", "own/x", 1.0, dimension=3), one("c.json", "one/a", 0.5, "failed", dimension=3),
+        one("c.json", "two/c", 1.6, dimension=3),
+        one("f", "own/x", 1.0, filled=True), one("f", "one/a", 0.95, filled=True)])
+
+
+def held(**tables):
+    return {one.what: one for one in must_hold("own/x", OWN, **tables)}
+
+
+def test_a_lead_is_over_the_fastest_with_a_library_that_agreed():
+    found = leads(scenes(), "own/x", ["own/x"], "scene")
+    assert found["a.json"] == 2.5 and found["b.json"] == 1.9 and found["c.json"] == 1.6
+
+
+def test_the_worst_scene_of_a_kind_counts():
+    found = held(scenes=scenes())
+    planar = found["times faster than the fastest with a library, planar scenes"]
+    assert not planar.holds and planar.worst == "1.9 (b)"
+    assert found["times faster than the fastest with a library, spatial scenes"].holds
+    filled = found["times the step of the fastest with a library, n = 100, filled"]
+    assert filled.holds and filled.worst == "1.05 (f)"
+
+
+def sized(power, last=9999):
+    rows = [row(name, loops, factor * (2 * loops + 2) ** power) | {
+        "setup_us": 10.0 * loops, "memory_bytes": 100.0 * loops + 100}
+        for loops in (10, 24, 40, 49, 79, 499, 1999, last)
+        for name, factor in ((LIMIT, 1.0), ("own/x", 1.4), ("one/a", 5.0))]
+    return pandas.DataFrame(rows)
+
+
+def test_sizes_and_growth():
+    found = held(steps=sized(1.0))
+    assert found["times faster than the fastest with a library, N-four-bar"].holds
+    assert found["times the limit code's step"].holds
+    assert all(found[f"exponent of {what} over n"].worst == "1"
+               for what in ("a step's time", "a pass's time", "memory"))
+    assert found["set-up, s"].worst == "0.1 (n = 20000)" and found["set-up, s"].holds
+    assert not held(steps=sized(1.1))["exponent of a step's time over n"].holds
+
+
+def test_what_was_not_measured_does_not_hold():
+    found = held(steps=sized(1.0, last=499).drop_duplicates())
+    for what in ("exponent of memory over n", "set-up, s"):
+        assert found[what].worst == "" and not found[what].holds
+    few = sized(1.0)
+    few = few[few.loops != 24]
+    lead = held(steps=few)["times faster than the fastest with a library, N-four-bar"]
+    assert lead.worst == "" and not lead.holds
+
+
+def test_batches_gain():
+    def gains(*values):
+        return pandas.DataFrame([{"scene": f"s{k}", "implementation": "own/x", "status": "ok", "gain": gain}
+                                 for k, gain in enumerate(values)])
+    what = "throughput of a batch ÷ that of its lanes alone"
+    assert held(batches=gains(5.0, 4.0))[what].holds
+    assert held(batches=gains(5.0, 3.9))[what].worst == "3.9 (s1)"
+
+
+def test_scenes_and_batches_need_no_sizes(tmp_path):
+    scenes().to_csv(tmp_path / "scenes.csv", index=False)
+    (tmp_path / "implementations.json").write_text(json.dumps({"implementations": OWN}))
+    (tmp_path / "run.json").write_text(json.dumps({"contexts": {"own": {"compiler": "c", "commit": "0"}}}))
+    write(tmp_path)
+    text = (tmp_path / "limit.html").read_text()
+    assert "What own/x is held to" in text and "1.9 (b)" in text and "not measured" not in text
+    assert (tmp_path / "figures" / "ahead.png").exists()

@@ -48,7 +48,7 @@ TEST(BenchProgram, WritesARowForEveryVariantAndScene) {
     EXPECT_NEAR(row["step_us"], row["real_time"].get<double>() / 20, 1e-9 * 1e6);
     EXPECT_GT(row["setup_us"], 0.0);
     for (const char* key : {"steps_at_limit", "variables", "constraints", "fill_percent", "penalty",
-                            "step", "tolerance", "max_passes", "start"}) {
+                            "step", "tolerance", "max_passes", "start", "memory_bytes"}) {
       EXPECT_TRUE(row.at(key).is_number()) << key;
     }
     double shares = 0.0;
@@ -124,6 +124,25 @@ TEST(BenchProgram, PrintsRowsThatFailInEveryFormat) {
   }
 }
 
+TEST(BenchProgram, TimesBatchesBesideTheirLanesAlone) {
+  const json rows = bench("four-bar:1 four-bar:2 --batch")["benchmarks"];
+  std::size_t offering = 0;
+  for (const NamedVariant& variant : all_variants()) {
+    offering += variant.variant->create_batch != nullptr;
+  }
+  EXPECT_EQ(rows.size(), 2 * offering);
+  for (const json& row : rows) {
+    SCOPED_TRACE(row["name"]);
+    EXPECT_TRUE(row["name"].get<std::string>().ends_with("/batch"));
+    ASSERT_FALSE(row.contains("error_occurred")) << row;
+    EXPECT_GT(row["lanes"], 1);
+    EXPECT_EQ(row["steps"], 20);
+    EXPECT_NEAR(row["step_us"], row["real_time"].get<double>() / 20 / row["lanes"].get<double>(),
+                1e-6);
+    EXPECT_NEAR(row["gain"], row["alone_us"].get<double>() / row["step_us"].get<double>(), 1e-6);
+  }
+}
+
 TEST(BenchProgram, HelpShowsBothKindsOfOptions) {
   for (const char* flag : {"--help", "-h", "four-bar:2 --help"}) {
     const auto run = test::run_mbs(std::string("bench ") + flag);
@@ -194,6 +213,8 @@ TEST(BenchProgram, RefusesBadInput) {
   expect_refusal("four-bar:1 --start -1", "--start");
   expect_refusal("four-bar:1 --penalty -1", "--penalty");
   expect_refusal("four-bar:1 --max-passes 0", "--max-passes");
+  expect_refusal("four-bar:1 --batch --operations", "--batch");
+  expect_refusal("four-bar:1 --batch --phases", "--batch");
 }
 
 TEST(BenchProgram, LeavesOlderResultsAloneWhenRefusing) {

@@ -31,10 +31,11 @@ void wait(microseconds time) {
 /// Does what a test tells it to, and counts.
 class Scripted final : public Simulation {
  public:
-  enum class Script { still, slow_setup, not_finite, refuses, at_limit, phases };
+  enum class Script { still, slow_setup, not_finite, refuses, at_limit, phases, hoards };
 
   Scripted(const Model& model, Script script) : Simulation(model, StepSettings{}), script_(script) {
     if (script_ == Script::slow_setup) wait(milliseconds(4));
+    if (script_ == Script::hoards) hoard_.resize(1'000'000);
   }
 
   static inline long steps = 0;   ///< of all objects since a test cleared it
@@ -69,6 +70,7 @@ class Scripted final : public Simulation {
  private:
   Script script_;
   State state_;
+  std::vector<double> hoard_;
   long done_ = 0;
 };
 
@@ -166,6 +168,14 @@ TEST_F(MeasurementTest, CountsStepsAtTheLimit) {
   cell.prepare();
   EXPECT_EQ(cell.figures().steps_at_limit, 5);
   EXPECT_EQ(cell.figures().passes, 5 * 2 + 5 * 20);
+}
+
+TEST_F(MeasurementTest, SaysWhatTheSimulationHolds) {
+  if (MBS_SANITIZE) GTEST_SKIP() << "the sanitizer's malloc does not tell";
+  Measurement cell = measurement(create_scripted<Script::hoards>);
+  cell.prepare();
+  EXPECT_GE(cell.figures().memory_bytes, 8e6);
+  EXPECT_LE(cell.figures().memory_bytes, 8.1e6);
 }
 
 TEST_F(MeasurementTest, ComesBackAfterRelease) {

@@ -11,15 +11,26 @@ from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, 
                                     registry, start_named, writable)
 from study.pipeline.progress import Teller
 
-LOOPS = (2, 5, 10, 24, 40, 79, 160, 499)
+LOOPS = (2, 5, 10, 24, 40, 79, 160, 499, 1999)
+PARTS = ("sizes", "scenes", "batches")
+
+EPILOG = """parts:
+  sizes     every implementation on the N-four-bar, and its bounds; code without a library to 20 000 variables
+  scenes    the standard problems, the examples and fills of 100 variables: own code against libraries
+  batches   simulations side by side against each alone
+"""
 
 
 def limit(arguments):
     parser = argparse.ArgumentParser(
         prog="study/limit", description="The step of every implementation beside that of code "
         "written for the N-four-bar alone and beside the lower bounds of its arithmetic "
-        "(harness/limit), and what each phase takes of it. Writes bounds.csv, steps.csv, figures "
-        "and limit.html; about half an hour.")
+        "(harness/limit), and what each phase takes of it; how far ahead of libraries code without "
+        "any is, scene by scene; many lanes side by side. Writes bounds.csv, steps.csv, scenes.csv, "
+        "batches.csv, figures and limit.html; about an hour.", epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS, metavar="PART",
+                        help=f"only these parts ({' '.join(PARTS)})")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
                         help="only these implementations (folder or folder/variant)")
     parser.add_argument("--loops", nargs="+", type=loops, default=LOOPS, metavar="N",
@@ -34,7 +45,7 @@ def limit(arguments):
     parser.add_argument("--stored", action="store_true",
                         help="figures and page again from stored tables, without running anything")
     options = parser.parse_args(arguments)
-    layout = results(options, "limit", "steps.csv")
+    layout = results(options, "limit", "implementations.json")
     writable(layout.results)
     with only_one(layout):
         if "MBS_PROGRAM" not in os.environ and not options.stored:
@@ -50,29 +61,55 @@ def limit(arguments):
 
 def _run(layout, options):
     import pandas
-    from study.limit_study import instructions, measure
+    from study.limit_study import instructions, lead, measure
     if options.instructions:
         _prepare_counting(layout, instructions)
     start_named(layout, "limit", select(registry(), options.only),
                 {"rounds": options.rounds, "time_limit": options.time_limit})
     run = read_run(layout)
-    contenders = [measure.LIMIT, *(one for one in from_json(run["contenders"]).values()
-                                   if one.ranked and not one.missing)]
-    tell, rows = Teller(), []
-    for number, size in enumerate(options.loops, start=1):
-        def told(what, at=f"N = {size}: size {number} of {len(options.loops)}"):
-            tell(f"{at}, {what}")
-        found = measure.size(layout, contenders, size, options.rounds, options.time_limit, told)
-        for one, row in zip(contenders, found):
+    contenders = [one for one in from_json(run["contenders"]).values()
+                  if one.ranked and not one.missing]
+    mine, tell = lead.own(registry()), Teller()
+    if "sizes" in options.parts:
+        rows = _sizes(layout, options, contenders, mine, tell)
+        tell("bounds")
+        bounds = measure.bounds(layout, options.loops)
+        write_csv(layout.results / "bounds.csv", pandas.DataFrame(bounds))
+        write_csv(layout.results / "steps.csv", pandas.DataFrame(rows))
+    if "scenes" in options.parts:
+        rows, scenes = [], lead.scenes()
+        for number, scene in enumerate(scenes, start=1):
+            rows += lead.rows(layout, contenders, mine, scene, options.rounds, options.time_limit,
+                              _telling(tell, f"{scene}: scene {number} of {len(scenes)}"))
+        write_csv(layout.results / "scenes.csv", pandas.DataFrame(rows))
+    if "batches" in options.parts:
+        rows = lead.batches(layout, contenders, options.time_limit, tell)
+        write_csv(layout.results / "batches.csv", pandas.DataFrame(rows))
+    tell.end()
+
+
+def _sizes(layout, options, contenders, mine, tell):
+    """Rows of steps.csv. Who was not timed at one size is not tried at a larger one."""
+    from study.limit_study import instructions, lead, measure
+    rows, lost = [], set()
+    sizes = sorted({*options.loops, *(lead.LARGE if options.loops == LOOPS else ())})
+    for number, size in enumerate(sizes, start=1):
+        told = _telling(tell, f"N = {size}: size {number} of {len(sizes)}")
+        here = [one for one in (measure.LIMIT, *contenders)
+                if one.name not in lost and (size in options.loops or one.name in mine
+                                             or one is measure.LIMIT)]
+        found = measure.size(layout, here, size, options.rounds, options.time_limit, told)
+        lost |= {row["implementation"] for row in found if row["status"] != "ok"}
+        for one, row in zip(here, found):
             if options.instructions and size <= instructions.MOST_LOOPS and row["status"] == "ok":
                 told(f"instructions of {one.name}")
                 row["instructions"] = instructions.count(layout, one, size, 5 * options.time_limit)
         rows += found
-    told("bounds")
-    bounds = measure.bounds(layout, options.loops)
-    tell.end()
-    write_csv(layout.results / "bounds.csv", pandas.DataFrame(bounds))
-    write_csv(layout.results / "steps.csv", pandas.DataFrame(rows))
+    return rows
+
+
+def _telling(tell, where):
+    return lambda what: tell(f"{where}, {what}")
 
 
 def _prepare_counting(layout, instructions):

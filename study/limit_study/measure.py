@@ -23,11 +23,17 @@ def bounds(layout, loops):
 
 def size(layout, contenders, loops, rounds, seconds, tell):
     """The rows of steps.csv of one size."""
+    rows = cell(layout, contenders, f"four-bar:{loops}", f"n{2 * loops + 2}", rounds, seconds, tell)
+    return [{"loops": loops, "variables": 2 * loops + 2} | row for row in rows]
+
+
+def cell(layout, contenders, scene, folder, rounds, seconds, tell):
+    """A row a contender: the gate, then `rounds` in turn. Raw files go to raw/`folder`."""
     rows, timed = [], []
     for one in contenders:
         tell(f"gate of {one.name}")
-        reason = _objection(layout, one, loops, seconds)
-        rows.append({"implementation": one.name, "loops": loops, "variables": 2 * loops + 2,
+        reason = _objection(layout, one, scene, folder, seconds)
+        rows.append({"scene": scene, "implementation": one.name,
                      "status": "disagrees" if reason else "ok", "reason": reason})
         timed.append(not reason)
     samples = [[] for _ in contenders]
@@ -36,7 +42,8 @@ def size(layout, contenders, loops, rounds, seconds, tell):
             if not timed[place]:
                 continue
             tell(f"round {turn} of {rounds}, {one.name}")
-            found, reason = _bench(layout, one, loops, turn, seconds)
+            found, reason = bench(layout, one, scene, f"{folder}/{one.file_name}-{turn}", seconds,
+                                  "--phases")
             samples[place].append(found)
             if reason:
                 rows[place] |= {"status": "failed", "reason": reason}
@@ -45,11 +52,23 @@ def size(layout, contenders, loops, rounds, seconds, tell):
             for row, found, good in zip(rows, samples, timed)]
 
 
+def bench(layout, one, scene, name, seconds, *options):
+    """(the row of Google Benchmark, "") or ({}, why there is none); raw/`name`.json."""
+    raw = _kept(layout, f"{name}.json",
+                one.call("bench", scene, "--implementation", one.variant, *options,
+                         "--benchmark_min_time=0.02", "--benchmark_format=json"), seconds)
+    if "failure" in raw:
+        return {}, raw["failure"]
+    row = raw["found"]["benchmarks"][0]
+    return (row, "") if not row.get("error_occurred") else ({}, row["error_message"])
+
+
 def _kept(layout, name, command, seconds):
     """{"command", "found": what it printed} or {"command", "failure"}; a stored one is not run again."""
     path = layout.results / "raw" / name
     if path.exists():
         return read_json(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
     ended = child.run(command, seconds, MEMORY_MB)
     record = {"command": command}
     try:
@@ -62,12 +81,12 @@ def _kept(layout, name, command, seconds):
     return record
 
 
-def _objection(layout, one, loops, seconds):
+def _objection(layout, one, scene, folder, seconds):
     """Why the gate rejects it; empty if it does not."""
-    path = layout.results / "raw" / f"n{2 * loops + 2}" / f"{one.file_name}-gate.json"
+    path = layout.results / "raw" / folder / f"{one.file_name}-gate.json"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
-        ended = child.run(one.call("check", f"four-bar:{loops}", "--implementation", one.variant,
+        ended = child.run(one.call("check", scene, "--implementation", one.variant,
                                    "--time-limit", f"{seconds:g}", "--json", str(path)),
                           2 * seconds + 60, MEMORY_MB)
         if not path.exists():
@@ -76,21 +95,12 @@ def _objection(layout, one, loops, seconds):
     return "" if row["verdict"] == "agrees" else f"{row['verdict']}: {row['reason']}"
 
 
-def _bench(layout, one, loops, turn, seconds):
-    """(the row of Google Benchmark, "") or ({}, why there is none)."""
-    raw = _kept(layout, f"n{2 * loops + 2}/{one.file_name}-{turn}.json",
-                one.call("bench", f"four-bar:{loops}", "--implementation", one.variant, "--phases",
-                         "--benchmark_min_time=0.02", "--benchmark_format=json"), seconds)
-    if "failure" in raw:
-        return {}, raw["failure"]
-    row = raw["found"]["benchmarks"][0]
-    return (row, "") if not row.get("error_occurred") else ({}, row["error_message"])
-
-
 def _figures(found):
     times = [row["step_us"] for row in found]
     shares = {phase: statistics.median(row[f"phase_{phase}"] for row in found) for phase in PHASES}
     total = sum(shares.values())
     return {"step_us": statistics.median(times), "low_us": min(times), "high_us": max(times),
-            "rounds": len(times), "passes": found[0]["passes"] / found[0]["steps"]} | {
+            "rounds": len(times), "passes": found[0]["passes"] / found[0]["steps"],
+            "setup_us": statistics.median(row["setup_us"] for row in found),
+            "memory_bytes": found[0].get("memory_bytes")} | {
         f"{phase}_us": statistics.median(times) * share / total for phase, share in shares.items()}

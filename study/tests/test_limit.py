@@ -4,7 +4,7 @@ import tempfile
 import pandas
 import pytest
 
-from study.limit_study import instructions, measure
+from study.limit_study import instructions, lead, main, measure
 from study.limit_study.main import limit
 from study.pipeline.contenders import Contender
 from study.pipeline.layout import Layout, write_json
@@ -14,7 +14,7 @@ ONE = Contender("one/a", "one/a")
 
 
 def bench_row(step_us):
-    return {"step_us": step_us, "passes": 80, "steps": 40} | {
+    return {"step_us": step_us, "passes": 80, "steps": 40, "setup_us": 7.0, "memory_bytes": 9e3} | {
         f"phase_{phase}": 0.5 if phase == "solve" else 0.1 for phase in measure.PHASES}
 
 
@@ -24,13 +24,14 @@ def test_figures_are_medians_and_phases_add_up():
     assert found["passes"] == 2.0 and found["rounds"] == 3
     assert sum(found[f"{phase}_us"] for phase in measure.PHASES) == pytest.approx(2.0)
     assert found["solve_us"] == pytest.approx(1.0)
+    assert (found["setup_us"], found["memory_bytes"]) == (7.0, 9e3)
 
 
 def test_what_the_gate_rejects_is_not_timed(tmp_path):
     write_json(tmp_path / "raw" / "n22" / "one.a-gate.json",
                {"rows": [{"verdict": "disagrees", "reason": "lock-step"}]})
     rows = measure.size(Layout(tmp_path), [ONE], 10, 1, 1.0, lambda text: None)
-    assert rows == [{"implementation": "one/a", "loops": 10, "variables": 22,
+    assert rows == [{"implementation": "one/a", "loops": 10, "variables": 22, "scene": "four-bar:10",
                      "status": "disagrees", "reason": "disagrees: lock-step"}]
 
 
@@ -66,17 +67,61 @@ def test_what_is_refused(words):
     assert refused.value.code == 2
 
 
+def test_own_code_is_what_has_no_library():
+    entries = [{"available": True, "library": library, "variants": [{"name": f"{library}/x"}]}
+               for library in ("none", "KLU")]
+    assert lead.own({"implementations": [*entries, {"available": False}]}) == {"none/x"}
+
+
+def test_scenes_are_all_that_users_are_given():
+    found = lead.scenes()
+    assert "harness/scenes/problems/a04_bricard.json" in found
+    assert "harness/scenes/examples/coupler.json" in found and "four-bar:49,fill=0.5" in found
+    assert all((ROOT / scene).is_file() for scene in found if scene.endswith(".json"))
+
+
+def test_who_is_far_behind_at_first_is_not_timed_further(tmp_path, monkeypatch):
+    """Own code is timed whatever a first run says; the fastest with a library sets the measure."""
+    names = {"own/x": 9.0, "one/fast": 2.0, "one/near": 2.9, "one/slow": 3.1}
+    timed = []
+    monkeypatch.setattr(measure, "bench", lambda layout, one, *_: (bench_row(names[one.name]), ""))
+    monkeypatch.setattr(lead, "_about", lambda scene: {"scene": scene, "dimension": 2})
+    monkeypatch.setattr(measure, "cell", lambda layout, near, *_: timed.extend(near) or [])
+    rows = lead.rows(Layout(tmp_path), [Contender(name, name) for name in names], {"own/x"},
+                     "a.json", 1, 1.0, lambda text: None)
+    assert [one.name for one in timed] == ["own/x", "one/fast", "one/near"]
+    assert [(row["implementation"], row["status"], row["dimension"]) for row in rows] == [
+        ("one/slow", "slower", 2)]
+
+
+def test_who_failed_at_one_size_is_not_tried_at_a_larger_one(monkeypatch):
+    from types import SimpleNamespace
+    seen = []
+
+    def size(layout, here, loops, *_):
+        seen.append((loops, [one.name for one in here]))
+        return [{"implementation": one.name, "status": "failed" if one is ONE else "ok"} for one in here]
+    monkeypatch.setattr(measure, "size", size)
+    options = SimpleNamespace(loops=[1, 2], rounds=1, time_limit=1.0, instructions=False)
+    main._sizes(None, options, [ONE], set(), lambda text: None)
+    assert seen == [(1, ["limit/limit", "one/a"]), (2, ["limit/limit"])]
+
+
 def test_a_tiny_study_on_the_real_program(tmp_path, monkeypatch):
     if not (ROOT / "build" / "mbs").exists():
         pytest.skip("build/mbs is not built")
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setenv("MBS_PROGRAM", str(ROOT / "build" / "mbs"))
-    words = ["--only", "csc_klu/refactor", "--loops", "1", "2", "--rounds", "1", "--results",
+    monkeypatch.setattr(lead, "scenes", lambda: ["harness/scenes/double_pendulum.json"])
+    words = ["--only", "csc_klu/refactor", "compiled_ldl/chains", "--loops", "1", "2", "--rounds", "1", "--results",
              str(tmp_path)]
     limit(words)
     steps, bounds = (pandas.read_csv(tmp_path / f"{name}.csv") for name in ("steps", "bounds"))
-    assert list(steps.implementation) == ["limit/limit", "csc_klu/refactor"] * 2
+    assert list(steps.implementation) == ["limit/limit", "csc_klu/refactor", "compiled_ldl/chains"] * 2
     assert (steps.status == "ok").all() and (bounds.bound_ns > 0).all()
+    scenes, batches = (pandas.read_csv(tmp_path / f"{name}.csv") for name in ("scenes", "batches"))
+    assert set(scenes.status) <= {"ok", "slower"} and set(scenes.dimension) == {2}
+    assert list(batches.implementation) == ["compiled_ldl/chains"] * 2 and (batches.gain > 0).all()
     page = (tmp_path / "limit.html").read_text()
     assert "csc_klu/refactor" in page and (tmp_path / "figures" / "by_phase.png").exists()
     limit([*words, "--stored"])

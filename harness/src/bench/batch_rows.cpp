@@ -10,6 +10,7 @@
 
 #include "bench/measurement.hpp"
 #include "check/varied_lanes.hpp"
+#include "run/setting_names.hpp"
 
 namespace mbs {
 namespace {
@@ -25,10 +26,11 @@ class BatchMeasurement {
     if (cell.variant->create_batch == nullptr) {
       throw CellFailure("unsupported: this variant does not advance simulations side by side");
     }
-    batch_ = cell.variant->create_batch(lanes_.pointers, lanes_.settings);
     for (std::size_t lane = 0; lane < lanes_.models.size(); ++lane) {
-      alone_.push_back(cell.variant->create(*lanes_.models[lane], lanes_.settings[lane]));
+      alone_.push_back(
+          create_simulation(*cell.variant, *lanes_.models[lane], lanes_.settings[lane]));
     }
+    batch_ = cell.variant->create_batch(lanes_.pointers, lanes_.settings);
   }
 
   [[nodiscard]] int lanes() const { return lanes_.count(); }

@@ -31,6 +31,7 @@ void count_figures(const CellFigures& figures, benchmark::UserCounters& counters
   counters["passes"] = static_cast<double>(figures.passes);
   counters["steps_at_limit"] = static_cast<double>(figures.steps_at_limit);
   counters["setup_us"] = figures.setup_us;
+  counters["memory_bytes"] = figures.memory_bytes;
   counters["position_error"] = figures.position_error.value_or(kNone);
   counters["constraint_violation"] = figures.constraint_violation.value_or(kNone);
   counters["energy_drift"] = figures.energy_drift.value_or(kNone);

@@ -17,8 +17,8 @@ inline constexpr std::array kStepCounters{"step_us", "setup_us", "passes", "posi
 
 /// Registers one benchmark a cell, with the cell's name, manual time and microseconds: an iteration
 /// is one stretch. Every row that succeeds has the same counters, a number that does not exist
-/// being NaN: steps, passes, steps_at_limit, step_us, setup_us, variables, constraints,
-/// fill_percent, penalty, step, tolerance, max_passes, start, position_error,
+/// being NaN: steps, passes, steps_at_limit, step_us, setup_us, memory_bytes, variables,
+/// constraints, fill_percent, penalty, step, tolerance, max_passes, start, position_error,
 /// constraint_violation, energy_drift and, if phases are asked for, phase_evaluation ...
 /// phase_other. A cell that cannot be timed is a row with error_occurred and the CellFailure as
 /// error_message.

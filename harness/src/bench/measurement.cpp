@@ -2,6 +2,7 @@
 #include "bench/measurement.hpp"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <chrono>
@@ -43,6 +44,12 @@ Tally run_steps(Simulation& simulation, long steps) {
   return tally;
 }
 
+/// Bytes that malloc has given out: what everything written in C, C++ or Fortran holds.
+double allocated_bytes() {
+  const auto info = mallinfo2();
+  return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+}
+
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -72,8 +79,10 @@ void Measurement::prepare() {
 
 void Measurement::try_to_prepare() {
   constexpr int kSetupSamples = 5;
+  const double before = allocated_bytes();
   set_up(prepared_before_ ? 1 : kSetupSamples);
   time_stretch();
+  if (!prepared_before_) figures_.memory_bytes = allocated_bytes() - before;
   if (prepared_before_) return;
   if (!task_.control) judge_end();
   if (task_.phases) profile();

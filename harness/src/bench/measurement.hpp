@@ -32,8 +32,9 @@ struct MeasurementTask {
 
 /// Everything about a cell but the times of its stretches.
 struct CellFigures {
-  double setup_us = 0.0;  ///< median of five: the factory and the first set_state()
-  long passes = 0;        ///< of the latest stretch
+  double setup_us = 0.0;      ///< median of five: the factory and the first set_state()
+  double memory_bytes = 0.0;  ///< what the simulation holds after its first stretch
+  long passes = 0;            ///< of the latest stretch
   long steps_at_limit = 0;
   std::optional<double> position_error;                      ///< m, at the end of the stretch
   std::optional<double> constraint_violation, energy_drift;  ///< as Judge defines them
