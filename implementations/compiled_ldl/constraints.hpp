@@ -19,8 +19,8 @@ class Constraints {
   [[nodiscard]] int row(int k) const { return multiplier_row_[k]; }
   S& value(int k) { return value_[k]; }
 
-  /// phi = Φ(q), and the gradients for what follows; those of the evaluation before become `earlier`
-  /// ones, which stay if `exchange` is false.
+  /// phi = Φ(q), and the gradients for what follows; those of the evaluation before become
+  /// `earlier` ones, which stay if `exchange` is false.
   void evaluate(const S* q, S* phi, bool exchange = true);
   /// Gradients become `earlier` ones in these lanes.
   void keep_where(const LaneMask& mask) {
@@ -29,6 +29,11 @@ class Constraints {
   }
   /// y += Φqᵀ t.
   void add_transposed(const S* t, S* y, bool earlier = false) const;
+  /// y −= h Φqᵀ (λ + α φ).
+  void add_forces(const S* lambda, const S* phi, const S& alpha, const S& h, S* y) const;
+  /// y −= f (Φqᵀ Φq x + Φqᵀ t) with t = Φ̇q v if there is v, the first two Φq the earlier ones; x is
+  /// zero at fixed points.
+  void add_projection(const S* x, const S* v, const S& f, S* y) const;
   /// t = Φq x, with the columns of fixed points.
   void product(const S* x, S* t, bool earlier = false) const;
   /// t = 2 u̇·B ẇ, which is Φ̇q v + Φ̇t but for what drivers prescribe.
@@ -49,6 +54,7 @@ class Constraints {
   void add_curvature_product(const S* x, S* y) const;
 
  private:
+  static constexpr int kQuad = 6 * D;  // A, C and four gradients
   struct Terms {
     int begin = 0, end = 0;
   };
@@ -61,6 +67,9 @@ class Constraints {
   void add_linear(std::span<const Model* const> models, const Rows& rows);
   void find_rows(const Program& program);
   void multiply(const S* matrix, const S* x, S* y, bool transposed) const;
+  template <typename Factor>
+  void add_gradients(Factor factor, S* y, bool earlier) const;
+  S quad_velocity_term(int i, const S* v) const;
 
   Pairs pairs_;
   std::vector<Quad> quads_;
@@ -73,7 +82,7 @@ class Constraints {
   std::vector<int> number_, multiplier_row_;
   Array<S> value_;
   Array<S> u_, earlier_u_;              // of each distance
-  Array<S> vectors_, earlier_vectors_;  // A = B w and C = Bᵀ u of each other quadratic one
+  Array<S> vectors_, earlier_vectors_;  // A = B w, C = Bᵀ u, gradients of each other quadratic one
   Array<S> force_;                      // g h of Eq. (16)
   std::vector<RowPlace> pair_rows_;
   std::vector<Place> quad_rows_;    // four of each

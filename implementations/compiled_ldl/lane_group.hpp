@@ -11,7 +11,8 @@ class LaneGroup {
   LaneGroup(std::span<const Model* const> models, std::span<const StepSettings> settings)
       : settings_(settings[0]),
         tolerance_(of_settings<Lanes>(settings, &StepSettings::tolerance)),
-        system_(models, settings), velocity_terms_(system_.constraints.count(), Lanes(0.0)),
+        system_(models, settings),
+        velocity_terms_(system_.constraints.count(), Lanes(0.0)),
         free_(system_.rows.extent, Lanes(0.0)) {}
 
   void set_state(int lane, const State& state) {
@@ -27,13 +28,11 @@ class LaneGroup {
 
  private:
   void predict();
-  void evaluate() {
-    system_.constraints.evaluate(system_.q.data(), system_.phi.data(), false);
-  }
+  void evaluate() { system_.constraints.evaluate(system_.q.data(), system_.phi.data(), false); }
   /// Applies the last solution in the lanes of `active`; max|Δq|.
   Lanes apply(const LaneMask& active);
   void project();
-  void project_once(Lanes* x, const Lanes* terms);
+  void project_once(Lanes* x, const Lanes* terms, const Lanes* v);
 
   StepSettings settings_;
   Lanes tolerance_;
@@ -114,26 +113,29 @@ void LaneGroup<D>::project() {
   if (++unprojected_ < settings_.projections_every) return;
   unprojected_ = 0;
   auto& s = system_;
+  const Lanes* terms = velocity_terms_.data();
   if (s.drivers.any()) s.drivers.rate_terms(s.constraints, velocity_terms_.data());
-  project_once(s.v.data(), s.drivers.any() ? velocity_terms_.data() : nullptr);
+  project_once(s.v.data(), terms, nullptr);
   if (settings_.projections == Projections::velocity) return;
-  s.drivers.acceleration_terms(s.constraints, s.v.data(), velocity_terms_.data());
-  project_once(s.a.data(), velocity_terms_.data());
+  if (s.drivers.any()) {
+    s.drivers.acceleration_terms(s.constraints, s.v.data(), velocity_terms_.data());
+  }
+  project_once(s.a.data(), terms, s.v.data());
 }
 
-/// As Stepper::project_once().
+/// As Stepper::project_once() and project_undriven().
 template <int D>
-void LaneGroup<D>::project_once(Lanes* x, const Lanes* terms) {
+void LaneGroup<D>::project_once(Lanes* x, const Lanes* terms, const Lanes* v) {
   auto& s = system_;
-  const Lanes* given = x;
+  for (int i = 0; i < s.program.size; ++i) s.y[i] = 0.0;
   if (s.drivers.any()) {  // without what fixed points have
     std::copy(x, x + s.program.size, free_.data());
-    given = free_.data();
+    s.constraints.product(free_.data(), s.terms.data(), true);
+    s.constrain(s.terms.data(), true);
+    s.constrain(terms);
+  } else {
+    s.constraints.add_projection(x, v, s.h * s.alpha, s.y.data());
   }
-  std::fill(s.y.begin(), s.y.end(), Lanes(0.0));
-  s.constraints.product(given, s.terms.data(), true);
-  s.constrain(s.terms.data(), true);
-  if (terms != nullptr) s.constrain(terms);
   s.solve();
   for (int i = 0; i < s.program.size; ++i) x[i] += s.y[i];
 }

@@ -135,17 +135,7 @@ template <typename S, typename F, int D>
 S Stepper<S, F, D>::apply_pass() {
   phases_.enter(Phase::other);
   if (system_.saddle) system_.take_multipliers(system_.lambda.data(), S(1.0) / system_.h);
-  S* q = system_.q.data();
-  S* v = system_.v.data();
-  S* a = system_.a.data();
-  const S* y = system_.y.data();
-  const S to_v = S(2.0) / step_, to_a = S(1.0) / system_.h;
-  for (int i = 0; i < system_.program.padded; ++i) {
-    q[i] += y[i];
-    v[i] += to_v * y[i];
-    a[i] += to_a * y[i];
-  }
-  const S change = system_.largest();
+  const S change = system_.apply(S(2.0) / step_);
   phases_.enter(Phase::evaluation);
   system_.evaluate();
   return change;

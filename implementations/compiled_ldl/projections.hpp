@@ -17,14 +17,20 @@ bool Stepper<S, F, D>::project(StepOutcome& outcome) {
       std::copy(x, x + s.program.padded, star_.data());
       return refine(x, star_.data(), of_velocity, outcome);
     }
-    project_once(x, of_velocity && !s.drivers.any() ? nullptr : velocity_terms_.data());
+    if (s.saddle || s.drivers.any()) {
+      project_once(x, of_velocity && !s.drivers.any() ? nullptr : velocity_terms_.data());
+    } else {
+      project_undriven(x, of_velocity ? nullptr : s.v.data());
+    }
     return true;
   };
   if (s.drivers.any()) s.drivers.rate_terms(s.constraints, velocity_terms_.data());
   if (!solve(s.v.data(), true)) return false;
   if (settings_.projections == Projections::velocity) return true;
   phases_.enter(Phase::projection);
-  s.drivers.acceleration_terms(s.constraints, s.v.data(), velocity_terms_.data());
+  if (s.saddle || s.drivers.any() || refines_) {
+    s.drivers.acceleration_terms(s.constraints, s.v.data(), velocity_terms_.data());
+  }
   return solve(s.a.data(), false);
 }
 
@@ -56,6 +62,19 @@ void Stepper<S, F, D>::project_once(S* x, const S* terms) {
   phases_.enter(Phase::projection);
   if (s.saddle) s.take_multipliers(nullptr, S(0.0));
   for (int i = 0; i < s.program.padded; ++i) x[i] += s.y[i];
+}
+
+/// The same in the penalty form without drivers; with v, x is the acceleration.
+template <typename S, typename F, int D>
+void Stepper<S, F, D>::project_undriven(S* x, const S* v) {
+  auto& s = system_;
+  S* y = s.y.data();
+  for (int i = 0; i < s.program.padded; ++i) y[i] = S(0.0);
+  s.constraints.add_projection(x, v, s.h * s.alpha, y);
+  phases_.enter(Phase::solve);
+  s.solve();
+  phases_.enter(Phase::projection);
+  for (int i = 0; i < s.program.padded; ++i) x[i] += y[i];
 }
 
 /// y = right-hand sides of Eq. (15) at x, given v* or a*.
@@ -96,7 +115,7 @@ S Stepper<S, F, D>::take_correction() {
 template <typename S, typename F, int D>
 bool Stepper<S, F, D>::renew_factors() {
   auto& s = system_;
-  s.forces.add(s.q.data(), s.v.data(), s.y.data());
+  s.forces.add(s.q.data(), s.v.data(), S(1.0), s.y.data());
   s.assemble();
   s.y = right_hand_side_;
   return s.factorize_and_solve();

@@ -29,6 +29,7 @@ class Stepper final : public Simulation {
   // projections.hpp
   bool project(StepOutcome& outcome);
   void project_once(S* x, const S* given);
+  void project_undriven(S* x, const S* v);
   bool refine(S* x, const S* given, bool of_velocity, StepOutcome& outcome);
   S take_correction();
   bool renew_factors();

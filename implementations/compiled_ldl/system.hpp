@@ -42,6 +42,8 @@ class System {
   void constrain(const S* t, bool earlier = false);
   /// λ or ν += factor times the multipliers' rows of y, which become zero.
   void take_multipliers(S* multipliers, const S& factor);
+  /// q' += y, v' += to_v y, a' += y/h; max|y| as below.
+  S apply(const S& to_v);
   /// max|y|, NaN if there is one.
   [[nodiscard]] S largest() const;
 

@@ -7,16 +7,11 @@ namespace mbs::compiled_ldl {
 
 template <typename S, typename F, int D>
 void System<S, F, D>::residual() {
-  mass.residual(force.data(), a.data(), y.data());
-  if (forces.any()) forces.add(q.data(), v.data(), y.data());
-  const int count = constraints.count();
-  for (int k = 0; k < count; ++k) {
-    terms[k] = saddle ? -lambda[k] : -(lambda[k] + alpha * phi[k]);
-  }
-  constraints.add_transposed(terms.data(), y.data());
-  for (int i = 0; i < program.padded; ++i) y[i] *= h;
+  mass.residual(force.data(), a.data(), h, y.data());
+  if (forces.any()) forces.add(q.data(), v.data(), h, y.data());
+  constraints.add_forces(lambda.data(), phi.data(), saddle ? S(0.0) : alpha, h, y.data());
   if (!saddle) return;
-  for (int k = 0; k < count; ++k) y[constraints.row(k)] = -phi[k];
+  for (int k = 0; k < constraints.count(); ++k) y[constraints.row(k)] = -phi[k];
 }
 
 template <typename S, typename F, int D>
@@ -117,22 +112,53 @@ void System<S, F, D>::take_multipliers(S* multipliers, const S& factor) {
   }
 }
 
-template <typename S, typename F, int D>
-S System<S, F, D>::largest() const {
-  constexpr int kTogether = 8;  // padded is a multiple of it
-  S most[kTogether], sum[kTogether];
-  for (int u = 0; u < kTogether; ++u) most[u] = sum[u] = S(0.0);
-  for (int i = 0; i < program.padded; i += kTogether) {
-    for (int u = 0; u < kTogether; ++u) {
-      most[u] = larger(most[u], magnitude(y[i + u]));
-      sum[u] += S(0.0) * y[i + u];
+/// The largest magnitude of eight numbers at a time and whether all are finite.
+template <typename S>
+struct Largest {
+  S most[8], sum[8];
+  Largest() {
+    for (int u = 0; u < 8; ++u) most[u] = sum[u] = S(0.0);
+  }
+  void add(const S* y) {
+    for (int u = 0; u < 8; ++u) {
+      most[u] = larger(most[u], magnitude(y[u]));
+      sum[u] += S(0.0) * y[u];  // NaN if y is infinite or NaN
     }
   }
-  for (int u = 1; u < kTogether; ++u) {
-    most[0] = larger(most[0], most[u]);
-    sum[0] += sum[u];
+  [[nodiscard]] S value() const {
+    S result = most[0], all = sum[0];
+    for (int u = 1; u < 8; ++u) {
+      result = larger(result, most[u]);
+      all += sum[u];
+    }
+    return result + all;
   }
-  return most[0] + sum[0];  // 0 y is NaN if y is infinite or NaN
+};
+
+template <typename S, typename F, int D>
+S System<S, F, D>::largest() const {
+  Largest<S> largest;
+  for (int i = 0; i < program.padded; i += 8) largest.add(y.data() + i);
+  return largest.value();
+}
+
+template <typename S, typename F, int D>
+S System<S, F, D>::apply(const S& to_v) {
+  const S to_a = to_v * to_v;
+  Largest<S> largest;
+  S* const q_ = q.data();
+  S* const v_ = v.data();
+  S* const a_ = a.data();
+  const S* const y_ = y.data();
+  for (int i = 0; i < program.size; i += 8) {
+    largest.add(y_ + i);
+    for (int u = i; u < i + 8; ++u) {
+      q_[u] += y_[u];
+      v_[u] += to_v * y_[u];
+      a_[u] += to_a * y_[u];
+    }
+  }
+  return largest.value();
 }
 
 }  // namespace mbs::compiled_ldl
