@@ -21,7 +21,13 @@ class Constraints {
 
   /// phi = Φ(q), and the gradients for what follows; those of the evaluation before become
   /// `earlier` ones, which stay if `exchange` is false.
-  void evaluate(const S* q, S* phi, bool exchange = true);
+  void evaluate(const S* q, S* phi, bool exchange = true) {
+    evaluate_with(q, phi, exchange, [](int /*k*/, const S& /*phi*/) {});
+  }
+  /// The same, then λ += α Φ.
+  void evaluate_and_update(const S* q, S* phi, const S& alpha, S* lambda) {
+    evaluate_with(q, phi, true, [&](int k, const S& value) { lambda[k] += alpha * value; });
+  }
   /// Gradients become `earlier` ones in these lanes.
   void keep_where(const LaneMask& mask) {
     copy_where(mask, u_, earlier_u_);
@@ -67,6 +73,8 @@ class Constraints {
   void add_linear(std::span<const Model* const> models, const Rows& rows);
   void find_rows(const Program& program);
   void multiply(const S* matrix, const S* x, S* y, bool transposed) const;
+  template <typename Then>
+  void evaluate_with(const S* q, S* phi, bool exchange, Then then);
   template <typename Factor>
   void add_gradients(Factor factor, S* y, bool earlier) const;
   S quad_velocity_term(int i, const S* v) const;

@@ -16,7 +16,8 @@ void Constraints<S, D>::multiply(const S* matrix, const S* x, S* y, bool transpo
 }
 
 template <typename S, int D>
-void Constraints<S, D>::evaluate(const S* q, S* phi, bool exchange) {
+template <typename Then>
+void Constraints<S, D>::evaluate_with(const S* q, S* phi, bool exchange, Then then) {
   if (exchange) {
     u_.swap(earlier_u_);
     vectors_.swap(earlier_vectors_);
@@ -26,6 +27,7 @@ void Constraints<S, D>::evaluate(const S* q, S* phi, bool exchange) {
   for (const Pair& pair : pairs_.list) {
     for (int x = 0; x < D; ++x) u[x] = q[pair.a + x] - q[pair.b + x];
     phi[k] = dot<D>(u, u) - value_[k];
+    then(k, phi[k]);
     u += D;
     ++k;
   }
@@ -47,12 +49,14 @@ void Constraints<S, D>::evaluate(const S* q, S* phi, bool exchange) {
     } else {
       phi[k] = dot<D>(c, a) - value_[k];
     }
+    then(k, phi[k]);
     find_gradients<D>(quad, a, c, vectors + 2 * D);
   }
   for (const Terms& terms : linear_) {
     S sum = S(0.0);
     for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * q[term_rows_[i]];
     phi[k] = sum - value_[k];
+    then(k, phi[k]);
     ++k;
   }
 }

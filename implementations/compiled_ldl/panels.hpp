@@ -57,6 +57,10 @@ class Panels {
 
   template <int P, int L, bool kDefinite>
   bool eliminate(const Run& run, F* y);
+  template <int P, int L, bool kDefinite>
+  bool eliminate_panel(const Panel& panel, F* y);
+  template <int L, bool kDefinite>
+  bool eliminate_pair(const Panel& panel, F* y);
   template <int P, int L>
   void forward(const Run& run, F* y) const;
   template <int P, int L>

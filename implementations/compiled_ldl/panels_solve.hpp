@@ -20,12 +20,19 @@ void Panels<F>::forward(const Run& run, F* y) const {
   for (int i = run.begin; i < run.end; ++i) {
     const Panel& panel = panels_[i];
     const F* factors = factors_.data() + panel.factors;
-    const F* x = y + panel.first;
-    V z = load<F, N>(factors) * x[0];
+    F* x = y + panel.first;
+    V z;
+    if constexpr (P == 2) {
+      z = V{x[0] * factors[8], (x[1] - factors[1] * x[0]) * factors[9]};
+      x[0] = z[0];
+      x[1] = z[1];
+    } else {
+      z = load<F, N>(factors) * x[0];
 #pragma GCC unroll 8
-    for (int j = 1; j < P; ++j) z += load<F, N>(factors + j * N) * x[j];
-    z *= load<F, N>(factors + 2 * P * N);
-    store_first<P>(y + panel.first, z);
+      for (int j = 1; j < P; ++j) z += load<F, N>(factors + j * N) * x[j];
+      z *= load<F, N>(factors + 2 * P * N);
+      store_first<P>(x, z);
+    }
     if constexpr (L > 0) subtract_below<P, L>(panel, z, y);
   }
 }
@@ -51,10 +58,15 @@ void Panels<F>::backward(const Run& run, F* y) const {
     }
     for (; k < panel.below; ++k) x0 -= load<F, N>(g + k * N) * y[rows[k]];
     x0 = (x0 + x1) + (x2 + x3);
-    V x = load<F, N>(transposed) * x0[0];
+    if constexpr (P == 2) {
+      y[panel.first] = x0[0] - transposed[1 - P * N] * x0[1];
+      y[panel.first + 1] = x0[1];
+    } else {
+      V x = load<F, N>(transposed) * x0[0];
 #pragma GCC unroll 8
-    for (int j = 1; j < P; ++j) x += load<F, N>(transposed + j * N) * x0[j];
-    store_first<P>(y + panel.first, x);
+      for (int j = 1; j < P; ++j) x += load<F, N>(transposed + j * N) * x0[j];
+      store_first<P>(y + panel.first, x);
+    }
   }
 }
 

@@ -89,7 +89,6 @@ bool Stepper<S, F, D>::run_passes(StepOutcome& outcome) {
     const bool converged = change <= tolerance_;
     judge_factors(pass, change, previous);
     previous = change;
-    if (!system_.saddle && (!at_convergence || converged)) update_multipliers();
     if (converged && (!at_convergence || updated)) {
       outcome.status = StepStatus::converged;
       break;
@@ -130,22 +129,20 @@ bool Stepper<S, F, D>::solve_pass(StepOutcome& outcome) {
   return system_.factorize_and_solve();
 }
 
-/// q', v', a' and, in the saddle-point form, λ with the solution; max|Δq|.
+/// q', v', a' and λ with the solution; max|Δq|.
 template <typename S, typename F, int D>
 S Stepper<S, F, D>::apply_pass() {
   phases_.enter(Phase::other);
   if (system_.saddle) system_.take_multipliers(system_.lambda.data(), S(1.0) / system_.h);
   const S change = system_.apply(S(2.0) / step_);
   phases_.enter(Phase::evaluation);
-  system_.evaluate();
-  return change;
-}
-
-template <typename S, typename F, int D>
-void Stepper<S, F, D>::update_multipliers() {
-  for (int k = 0; k < system_.constraints.count(); ++k) {
-    system_.lambda[k] += system_.alpha * system_.phi[k];
+  const bool at_convergence = settings_.multipliers == MultiplierUpdate::converged;
+  if (system_.saddle || (at_convergence && !(change <= tolerance_))) {
+    system_.evaluate();
+  } else {
+    system_.evaluate_and_update();
   }
+  return change;
 }
 
 /// Factors that are kept become due when convergence slows.

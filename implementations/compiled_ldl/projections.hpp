@@ -61,7 +61,8 @@ void Stepper<S, F, D>::project_once(S* x, const S* terms) {
   s.solve();
   phases_.enter(Phase::projection);
   if (s.saddle) s.take_multipliers(nullptr, S(0.0));
-  for (int i = 0; i < s.program.padded; ++i) x[i] += s.y[i];
+  const S* y = s.y.data();
+  for_each_row(s.program.size, s.program.padded, [=](int i) { x[i] += y[i]; });
 }
 
 /// The same in the penalty form without drivers; with v, x is the acceleration.
@@ -74,7 +75,7 @@ void Stepper<S, F, D>::project_undriven(S* x, const S* v) {
   phases_.enter(Phase::solve);
   s.solve();
   phases_.enter(Phase::projection);
-  for (int i = 0; i < s.program.padded; ++i) x[i] += y[i];
+  for_each_row(s.program.size, s.program.padded, [=](int i) { x[i] += y[i]; });
 }
 
 /// y = right-hand sides of Eq. (15) at x, given v* or a*.

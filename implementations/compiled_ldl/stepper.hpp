@@ -24,7 +24,6 @@ class Stepper final : public Simulation {
   bool factorizes(int pass) const;
   bool solve_pass(StepOutcome& outcome);
   S apply_pass();
-  void update_multipliers();
   void judge_factors(int pass, S change, S previous);
   // projections.hpp
   bool project(StepOutcome& outcome);

@@ -25,6 +25,10 @@ class System {
   void drive(double t) { drivers.drive(t, q.data(), v.data(), constraints, force.data()); }
   void evaluate() { constraints.evaluate(q.data(), phi.data()); }
 
+  void evaluate_and_update() {
+    constraints.evaluate_and_update(q.data(), phi.data(), alpha, lambda.data());
+  }
+
   /// y = −f of Eq. (3), or the right-hand side of Eq. (12).
   void residual();
   /// The matrix of Eq. (5), (12) or (14), at the last evaluate() and residual().

@@ -145,20 +145,17 @@ S System<S, F, D>::largest() const {
 template <typename S, typename F, int D>
 S System<S, F, D>::apply(const S& to_v) {
   const S to_a = to_v * to_v;
-  Largest<S> largest;
   S* const q_ = q.data();
   S* const v_ = v.data();
   S* const a_ = a.data();
   const S* const y_ = y.data();
-  for (int i = 0; i < program.size; i += 8) {
-    largest.add(y_ + i);
-    for (int u = i; u < i + 8; ++u) {
-      q_[u] += y_[u];
-      v_[u] += to_v * y_[u];
-      a_[u] += to_a * y_[u];
-    }
-  }
-  return largest.value();
+  for_each_row(program.size, program.padded, [=](int i) {
+    const S change = y_[i];
+    q_[i] += change;
+    v_[i] += to_v * change;
+    a_[i] += to_a * change;
+  });
+  return largest();
 }
 
 }  // namespace mbs::compiled_ldl
