@@ -71,8 +71,14 @@ class Panels {
   template <int P, int L>
   void subtract_below(const Panel& panel, const typename Short<F, lanes_for(P)>::Type& z,
                       F* y) const;
+  /// Mᵀ z, of its columns.
+  template <int P>
+  static typename Short<F, lanes_for(P)>::Type times_transposed(
+      const F* columns, const typename Short<F, lanes_for(P)>::Type& z);
   template <int P>
   void update_inside(const Panel& panel);
+  template <int P>
+  void update_two(const Panel& panel, const Group& group);
   template <int P, int L>
   void update_border(const Panel& panel);
   template <int P, int L>

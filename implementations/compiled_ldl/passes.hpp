@@ -115,16 +115,15 @@ bool Stepper<S, F, D>::factorizes(int pass) const {
 template <typename S, typename F, int D>
 bool Stepper<S, F, D>::solve_pass(StepOutcome& outcome) {
   phases_.enter(Phase::evaluation);
-  system_.residual();
-  if (!factorizes(outcome.passes)) {
+  const bool renews = factorizes(outcome.passes);
+  system_.linearize(renews);
+  if (!renews) {
     phases_.enter(Phase::solve);
     system_.solve();
     return true;
   }
   if (reuses_) ++outcome.factorizations;
   due_ = false;
-  phases_.enter(Phase::assembly);
-  system_.assemble();
   phases_.enter(Phase::factorization);
   return system_.factorize_and_solve();
 }

@@ -29,9 +29,9 @@ class System {
     constraints.evaluate_and_update(q.data(), phi.data(), alpha, lambda.data());
   }
 
-  /// y = −f of Eq. (3), or the right-hand side of Eq. (12).
-  void residual();
-  /// The matrix of Eq. (5), (12) or (14), at the last evaluate() and residual().
+  /// y = −f of Eq. (3), or the right-hand side of Eq. (12), and the matrix if it is asked for.
+  void linearize(bool with_matrix);
+  /// The matrix of Eq. (5), (12) or (14), at the last evaluate() and the last forces.
   void assemble();
   /// The matrix of Eq. (5), in the other lanes the one that they had.
   void assemble_where(const LaneMask& mask);

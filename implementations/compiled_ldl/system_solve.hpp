@@ -5,10 +5,12 @@
 
 namespace mbs::compiled_ldl {
 
+/// The constraints' forces come last, so that the matrix is in the cache when it is factorized.
 template <typename S, typename F, int D>
-void System<S, F, D>::residual() {
+void System<S, F, D>::linearize(bool with_matrix) {
   mass.residual(force.data(), a.data(), h, y.data());
   if (forces.any()) forces.add(q.data(), v.data(), h, y.data());
+  if (with_matrix) assemble();
   constraints.add_forces(lambda.data(), phi.data(), saddle ? S(0.0) : alpha, h, y.data());
   if (!saddle) return;
   for (int k = 0; k < constraints.count(); ++k) y[constraints.row(k)] = -phi[k];
@@ -149,13 +151,18 @@ S System<S, F, D>::apply(const S& to_v) {
   S* const v_ = v.data();
   S* const a_ = a.data();
   const S* const y_ = y.data();
-  for_each_row(program.size, program.padded, [=](int i) {
+  S most = S(0.0), sum = S(0.0);
+  const bool few = program.size <= 16;
+  for_each_row(program.size, program.padded, [=, &most, &sum](int i) {
     const S change = y_[i];
     q_[i] += change;
     v_[i] += to_v * change;
     a_[i] += to_a * change;
+    if (!few) return;
+    most = larger(most, magnitude(change));
+    sum += S(0.0) * change;
   });
-  return largest();
+  return few ? most + sum : largest();
 }
 
 }  // namespace mbs::compiled_ldl
