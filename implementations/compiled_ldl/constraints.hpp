@@ -34,12 +34,18 @@ class Constraints {
     copy_where(mask, vectors_, earlier_vectors_);
   }
   /// y += Φqᵀ t.
-  void add_transposed(const S* t, S* y, bool earlier = false) const;
+  void add_transposed(const S* t, S* y) const;
   /// y −= h Φqᵀ (λ + α φ).
   void add_forces(const S* lambda, const S* phi, const S& alpha, const S& h, S* y) const;
   /// y −= f (Φqᵀ Φq x + Φqᵀ t) with t = Φ̇q v if there is v, the first two Φq the earlier ones; x is
   /// zero at fixed points.
   void add_projection(const S* x, const S* v, const S& f, S* y) const;
+  /// Whether one of these rows is among those of constraint k's points.
+  [[nodiscard]] bool touches(int k, const std::vector<int>& point_rows) const;
+  /// Φq x of constraint k alone, with the columns of fixed points.
+  S product_of(int k, const S* x) const;
+  /// y += t times the gradient of constraint k.
+  void add_gradient(int k, const S& t, S* y) const;
   /// t = Φq x, with the columns of fixed points.
   void product(const S* x, S* t, bool earlier = false) const;
   /// t = 2 u̇·B ẇ, which is Φ̇q v + Φ̇t but for what drivers prescribe.
@@ -76,7 +82,7 @@ class Constraints {
   template <typename Then>
   void evaluate_with(const S* q, S* phi, bool exchange, Then then);
   template <typename Factor>
-  void add_gradients(Factor factor, S* y, bool earlier) const;
+  void add_gradients(Factor factor, S* y) const;
   S quad_velocity_term(int i, const S* v) const;
 
   Pairs pairs_;
@@ -106,3 +112,4 @@ class Constraints {
 #include "constraints_evaluate.hpp"
 #include "constraints_matrix.hpp"
 #include "constraints_setup.hpp"
+#include "constraints_single.hpp"

@@ -64,9 +64,9 @@ void Constraints<S, D>::evaluate_with(const S* q, S* phi, bool exchange, Then th
 /// y += Σ factor(k) times the gradient of constraint k, at free points.
 template <typename S, int D>
 template <typename Factor>
-void Constraints<S, D>::add_gradients(Factor factor, S* y, bool earlier) const {
+void Constraints<S, D>::add_gradients(Factor factor, S* y) const {
   int k = 0;
-  const S* u = (earlier ? earlier_u_ : u_).data();
+  const S* u = u_.data();
   for (; k < pairs_.two; ++k, u += D) {
     const Pair& pair = pairs_.list[k];
     const S s = factor(k) * S(2.0);
@@ -82,7 +82,7 @@ void Constraints<S, D>::add_gradients(Factor factor, S* y, bool earlier) const {
     for (int x = 0; x < D; ++x) y[pair.a + x] += s * u[x];
   }
   k = pairs_.count();
-  const S* g = (earlier ? earlier_vectors_ : vectors_).data() + 2 * D;
+  const S* g = vectors_.data() + 2 * D;
   for (const Quad& quad : quads_) {
     const S s = factor(k++);
     for (int i = 0; i < quad.free; ++i) {
@@ -97,14 +97,14 @@ void Constraints<S, D>::add_gradients(Factor factor, S* y, bool earlier) const {
 }
 
 template <typename S, int D>
-void Constraints<S, D>::add_transposed(const S* t, S* y, bool earlier) const {
-  add_gradients([t](int k) { return t[k]; }, y, earlier);
+void Constraints<S, D>::add_transposed(const S* t, S* y) const {
+  add_gradients([t](int k) { return t[k]; }, y);
 }
 
 template <typename S, int D>
 void Constraints<S, D>::add_forces(const S* lambda, const S* phi, const S& alpha, const S& h,
                                    S* y) const {
-  add_gradients([&](int k) { return -h * (lambda[k] + alpha * phi[k]); }, y, false);
+  add_gradients([&](int k) { return -h * (lambda[k] + alpha * phi[k]); }, y);
 }
 
 template <typename S, int D>

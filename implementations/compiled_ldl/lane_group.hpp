@@ -12,7 +12,6 @@ class LaneGroup {
       : settings_(settings[0]),
         tolerance_(of_settings<Lanes>(settings, &StepSettings::tolerance)),
         system_(models, settings),
-        velocity_terms_(system_.constraints.count(), Lanes(0.0)),
         free_(system_.rows.extent, Lanes(0.0)) {}
 
   void set_state(int lane, const State& state) {
@@ -32,14 +31,14 @@ class LaneGroup {
   /// Applies the last solution in the lanes of `active`; max|Δq|.
   Lanes apply(const LaneMask& active);
   void project();
-  void project_once(Lanes* x, const Lanes* terms, const Lanes* v);
+  void project_once(Lanes* x, const Lanes* v);
 
   StepSettings settings_;
   Lanes tolerance_;
   System<Lanes, Lanes, D> system_;
   LaneMask running_{};
   int unprojected_ = 0;
-  Array<Lanes> velocity_terms_, free_;
+  Array<Lanes> free_;
 };
 
 template <int D>
@@ -112,32 +111,28 @@ void LaneGroup<D>::project() {
   if (settings_.projections == Projections::none) return;
   if (++unprojected_ < settings_.projections_every) return;
   unprojected_ = 0;
-  auto& s = system_;
-  const Lanes* terms = velocity_terms_.data();
-  if (s.drivers.any()) s.drivers.rate_terms(s.constraints, velocity_terms_.data());
-  project_once(s.v.data(), terms, nullptr);
+  project_once(system_.v.data(), nullptr);
   if (settings_.projections == Projections::velocity) return;
-  if (s.drivers.any()) {
-    s.drivers.acceleration_terms(s.constraints, s.v.data(), velocity_terms_.data());
-  }
-  project_once(s.a.data(), terms, s.v.data());
+  project_once(system_.a.data(), system_.v.data());
 }
 
-/// As Stepper::project_once() and project_undriven().
+/// As Stepper::project_penalty().
 template <int D>
-void LaneGroup<D>::project_once(Lanes* x, const Lanes* terms, const Lanes* v) {
+void LaneGroup<D>::project_once(Lanes* x, const Lanes* v) {
   auto& s = system_;
-  for (int i = 0; i < s.program.size; ++i) s.y[i] = 0.0;
-  if (s.drivers.any()) {  // without what fixed points have
+  Lanes* y = s.y.data();
+  for (int i = 0; i < s.program.size; ++i) y[i] = 0.0;
+  const Lanes* given = x;
+  if (s.drivers.any() && v == nullptr) {  // without what fixed points have
     std::copy(x, x + s.program.size, free_.data());
-    s.constraints.product(free_.data(), s.terms.data(), true);
-    s.constrain(s.terms.data(), true);
-    s.constrain(terms);
-  } else {
-    s.constraints.add_projection(x, v, s.h * s.alpha, s.y.data());
+    given = free_.data();
   }
+  const Lanes factor = s.h * s.alpha;
+  s.constraints.add_projection(given, v, factor, y);
+  if (s.drivers.any() && v == nullptr) s.drivers.add_rate_terms(s.constraints, factor, y);
+  if (s.drivers.any() && v != nullptr) s.drivers.add_acceleration_terms(s.constraints, factor, y);
   s.solve();
-  for (int i = 0; i < s.program.size; ++i) x[i] += s.y[i];
+  for (int i = 0; i < s.program.size; ++i) x[i] += y[i];
 }
 
 }  // namespace mbs::compiled_ldl

@@ -41,9 +41,8 @@ class System {
 
   /// y = T₀ x, or M x for RATTLE.
   void product(const S* x);
-  /// y −= (Δt²/4) α Φqᵀ t, `earlier` with that of the evaluation before, or the multipliers' rows =
-  /// −t.
-  void constrain(const S* t, bool earlier = false);
+  /// y −= (Δt²/4) α Φqᵀ t, or the multipliers' rows = −t.
+  void constrain(const S* t);
   /// λ or ν += factor times the multipliers' rows of y, which become zero.
   void take_multipliers(S* multipliers, const S& factor);
   /// q' += y, v' += to_v y, a' += y/h; max|y| as below.

@@ -95,14 +95,14 @@ void System<S, F, D>::product(const S* x) {
 }
 
 template <typename S, typename F, int D>
-void System<S, F, D>::constrain(const S* t, bool earlier) {
+void System<S, F, D>::constrain(const S* t) {
   if (saddle) {
     for (int k = 0; k < constraints.count(); ++k) y[constraints.row(k)] = -t[k];
     return;
   }
   const S factor = -h * alpha;
   for (int k = 0; k < constraints.count(); ++k) terms[k] = factor * t[k];
-  constraints.add_transposed(terms.data(), y.data(), earlier);
+  constraints.add_transposed(terms.data(), y.data());
 }
 
 template <typename S, typename F, int D>
