@@ -48,9 +48,10 @@ std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> mode
       s.geometric_stiffness) {
     throw Unsupported("batches are for the default scheme");
   }
-  // Constant torques drive through singular positions again and again, where rounding decides how many
-  // passes a step takes: lanes would differ from simulations alone by more than rounding.
-  if (!models.front()->couples().empty()) throw Unsupported("batches are for models without couples");
+  // Constant torques drive through singular positions again and again, where rounding decides how
+  // many passes a step takes: lanes would differ from simulations alone by more than rounding.
+  if (!models.front()->couples().empty())
+    throw Unsupported("batches are for models without couples");
   if (models.front()->dimension() == 2) return std::make_unique<Batch<2>>(models, settings);
   return std::make_unique<Batch<3>>(models, settings);
 }

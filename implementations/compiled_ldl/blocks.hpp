@@ -95,18 +95,24 @@ struct Quad {
   int places = 0;  ///< where the blocks (j, i), j >= i, of these points begin in a list of places
 };
 
-template <int D, typename F, typename S>
-void add_quad(F* matrix, const Quad& quad, const Place* places, const S& s, const S* vector_a,
-              const S* vector_c) {
-  S g[4][D];
+/// g: the gradient at each of the quad's free points, for vectors A and C.
+template <int D, typename S>
+void find_gradients(const Quad& quad, const S* vector_a, const S* vector_c, S* g) {
   for (int i = 0; i < quad.free; ++i) {
     const S sign_a = quad.points[i].sign_a, sign_c = quad.points[i].sign_c;
-    for (int x = 0; x < D; ++x) g[i][x] = sign_a * vector_a[x] + sign_c * vector_c[x];
+    for (int x = 0; x < D; ++x) g[i * D + x] = sign_a * vector_a[x] + sign_c * vector_c[x];
   }
+}
+
+/// += s g gᵀ.
+template <int D, typename F, typename S>
+void add_quad(F* matrix, const Quad& quad, const Place* places, const S& s, const S* g) {
   const Place* place = places + quad.places;
   for (int i = 0; i < quad.free; ++i) {
-    add_square<D>(matrix, *place++, s, g[i]);
-    for (int j = i + 1; j < quad.free; ++j) add_outer<D>(matrix, *place++, s, g[j], g[i]);
+    add_square<D>(matrix, *place++, s, g + i * D);
+    for (int j = i + 1; j < quad.free; ++j) {
+      add_outer<D>(matrix, *place++, s, g + j * D, g + i * D);
+    }
   }
 }
 

@@ -16,7 +16,8 @@ void Constraints<S, D>::multiply(const S* matrix, const S* x, S* y, bool transpo
 }
 
 template <typename S, int D>
-void Constraints<S, D>::evaluate(const S* q, S* phi, bool exchange) {
+template <typename Then>
+void Constraints<S, D>::evaluate_with(const S* q, S* phi, bool exchange, Then then) {
   if (exchange) {
     u_.swap(earlier_u_);
     vectors_.swap(earlier_vectors_);
@@ -26,11 +27,12 @@ void Constraints<S, D>::evaluate(const S* q, S* phi, bool exchange) {
   for (const Pair& pair : pairs_.list) {
     for (int x = 0; x < D; ++x) u[x] = q[pair.a + x] - q[pair.b + x];
     phi[k] = dot<D>(u, u) - value_[k];
+    then(k, phi[k]);
     u += D;
     ++k;
   }
   S* vectors = vectors_.data();
-  for (std::size_t i = 0; i < quads_.size(); ++i, ++k, vectors += 2 * D) {
+  for (std::size_t i = 0; i < quads_.size(); ++i, ++k, vectors += kQuad) {
     const Quad& quad = quads_[i];
     S* a = vectors;
     S* c = vectors + D;
@@ -47,42 +49,104 @@ void Constraints<S, D>::evaluate(const S* q, S* phi, bool exchange) {
     } else {
       phi[k] = dot<D>(c, a) - value_[k];
     }
+    then(k, phi[k]);
+    find_gradients<D>(quad, a, c, vectors + 2 * D);
   }
   for (const Terms& terms : linear_) {
     S sum = S(0.0);
     for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * q[term_rows_[i]];
     phi[k] = sum - value_[k];
+    then(k, phi[k]);
     ++k;
   }
 }
 
+/// y += Σ factor(k) times the gradient of constraint k, at free points.
 template <typename S, int D>
-void Constraints<S, D>::add_transposed(const S* t, S* y, bool earlier) const {
+template <typename Factor>
+void Constraints<S, D>::add_gradients(Factor factor, S* y) const {
   int k = 0;
-  const S* u = (earlier ? earlier_u_ : u_).data();
-  for (const Pair& pair : pairs_.list) {
-    const S s = t[k++] * S(2.0);
+  const S* u = u_.data();
+  for (; k < pairs_.two; ++k, u += D) {
+    const Pair& pair = pairs_.list[k];
+    const S s = factor(k) * S(2.0);
     for (int x = 0; x < D; ++x) {
-      y[pair.a + x] += s * u[x];
-      y[pair.b + x] -= s * u[x];
+      const S force = s * u[x];
+      y[pair.a + x] += force;
+      y[pair.b + x] -= force;
     }
-    u += D;
   }
-  const S* vectors = (earlier ? earlier_vectors_ : vectors_).data();
+  for (; k < pairs_.one; ++k, u += D) {
+    const Pair& pair = pairs_.list[k];
+    const S s = factor(k) * S(2.0);
+    for (int x = 0; x < D; ++x) y[pair.a + x] += s * u[x];
+  }
+  k = pairs_.count();
+  const S* g = vectors_.data() + 2 * D;
   for (const Quad& quad : quads_) {
-    const S s = t[k++];
-    for (int x = 0; x < D; ++x) {
-      const S at_a = s * vectors[x], at_c = s * vectors[D + x];
-      y[quad.a + x] += at_a;
-      y[quad.b + x] -= at_a;
-      y[quad.c + x] += at_c;
-      y[quad.d + x] -= at_c;
+    const S s = factor(k++);
+    for (int i = 0; i < quad.free; ++i) {
+      for (int x = 0; x < D; ++x) y[quad.points[i].row + x] += s * g[i * D + x];
     }
-    vectors += 2 * D;
+    g += kQuad;
   }
   for (const Terms& terms : linear_) {
-    const S s = t[k++];
+    const S s = factor(k++);
     for (int i = terms.begin; i < terms.end; ++i) y[term_rows_[i]] += s * term_coefficients_[i];
+  }
+}
+
+template <typename S, int D>
+void Constraints<S, D>::add_transposed(const S* t, S* y) const {
+  add_gradients([t](int k) { return t[k]; }, y);
+}
+
+template <typename S, int D>
+void Constraints<S, D>::add_forces(const S* lambda, const S* phi, const S& alpha, const S& h,
+                                   S* y) const {
+  add_gradients([&](int k) { return -h * (lambda[k] + alpha * phi[k]); }, y);
+}
+
+template <typename S, int D>
+void Constraints<S, D>::add_projection(const S* x, const S* v, const S& f, S* y) const {
+  const S* u = u_.data();
+  const S* e = earlier_u_.data();
+  for (int k = 0; k < pairs_.one; ++k, u += D, e += D) {
+    const Pair& pair = pairs_.list[k];
+    S sum = S(0.0), square = S(0.0), force[D];
+    for (int i = 0; i < D; ++i) sum += e[i] * (x[pair.a + i] - x[pair.b + i]);
+    sum *= S(4.0) * f;
+    for (int i = 0; i < D; ++i) force[i] = sum * e[i];
+    if (v != nullptr) {
+      for (int i = 0; i < D; ++i) {
+        const S rate = v[pair.a + i] - v[pair.b + i];
+        square += rate * rate;
+      }
+      square *= S(4.0) * f;
+      for (int i = 0; i < D; ++i) force[i] += square * u[i];
+    }
+    for (int i = 0; i < D; ++i) y[pair.a + i] -= force[i];
+    if (k >= pairs_.two) continue;
+    for (int i = 0; i < D; ++i) y[pair.b + i] += force[i];
+  }
+  const S* g = vectors_.data() + 2 * D;
+  const S* earlier = earlier_vectors_.data() + 2 * D;
+  for (int k = 0; k < static_cast<int>(quads_.size()); ++k, g += kQuad, earlier += kQuad) {
+    const Quad& quad = quads_[k];
+    S sum = S(0.0);
+    for (int i = 0; i < quad.free; ++i) sum += dot<D>(earlier + i * D, x + quad.points[i].row);
+    sum *= f;
+    const S term = v == nullptr ? S(0.0) : f * quad_velocity_term(k, v);
+    for (int i = 0; i < quad.free; ++i) {
+      S* to = y + quad.points[i].row;
+      for (int j = 0; j < D; ++j) to[j] -= sum * earlier[i * D + j] + term * g[i * D + j];
+    }
+  }
+  for (const Terms& terms : linear_) {
+    S sum = S(0.0);
+    for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * x[term_rows_[i]];
+    sum *= f;
+    for (int i = terms.begin; i < terms.end; ++i) y[term_rows_[i]] -= sum * term_coefficients_[i];
   }
 }
 
@@ -104,7 +168,7 @@ void Constraints<S, D>::product(const S* x, S* t, bool earlier) const {
              vectors[D + i] * (x[quad.c + i] - x[quad.d + i]);
     }
     t[k++] = sum;
-    vectors += 2 * D;
+    vectors += kQuad;
   }
   for (const Terms& terms : linear_) {
     S sum = S(0.0);
@@ -121,19 +185,19 @@ void Constraints<S, D>::velocity_terms(const S* v, S* t) const {
     for (int x = 0; x < D; ++x) rate[x] = v[pair.a + x] - v[pair.b + x];
     t[k++] = S(2.0) * dot<D>(rate, rate);
   }
-  for (std::size_t i = 0; i < quads_.size(); ++i) {
-    const Quad& quad = quads_[i];
-    S u[D], w[D], turned[D];
-    for (int x = 0; x < D; ++x) u[x] = v[quad.a + x] - v[quad.b + x];
-    for (int x = 0; x < D; ++x) w[x] = v[quad.c + x] - v[quad.d + x];
-    if (matrix_of_quad_[i] >= 0) {
-      multiply(matrices_.data() + matrix_of_quad_[i], w, turned, false);
-      t[k++] = S(2.0) * dot<D>(u, turned);
-    } else {
-      t[k++] = S(2.0) * dot<D>(u, w);
-    }
-  }
+  for (int i = 0; i < static_cast<int>(quads_.size()); ++i) t[k++] = quad_velocity_term(i, v);
   while (k < count()) t[k++] = S(0.0);
+}
+
+template <typename S, int D>
+S Constraints<S, D>::quad_velocity_term(int i, const S* v) const {
+  const Quad& quad = quads_[i];
+  S u[D], w[D], turned[D];
+  for (int x = 0; x < D; ++x) u[x] = v[quad.a + x] - v[quad.b + x];
+  for (int x = 0; x < D; ++x) w[x] = v[quad.c + x] - v[quad.d + x];
+  if (matrix_of_quad_[i] < 0) return S(2.0) * dot<D>(u, w);
+  multiply(matrices_.data() + matrix_of_quad_[i], w, turned, false);
+  return S(2.0) * dot<D>(u, turned);
 }
 
 }  // namespace mbs::compiled_ldl

@@ -28,8 +28,8 @@ void Constraints<S, D>::add_penalty(F* matrix, const S& s, bool earlier) const {
   for (; k < pairs_.one; ++k, u += D) add_pair<D>(matrix, pairs_.list[k], 1, s4, u);
   const S* vectors = (earlier ? earlier_vectors_ : vectors_).data();
   for (const Quad& quad : quads_) {
-    add_quad<D>(matrix, quad, places_.data(), s, vectors, vectors + D);
-    vectors += 2 * D;
+    add_quad<D>(matrix, quad, places_.data(), s, vectors + 2 * D);
+    vectors += kQuad;
   }
 }
 
@@ -46,12 +46,11 @@ void Constraints<S, D>::add_rows(F* matrix) const {
     }
   }
   for (std::size_t k = 0; k < quads_.size(); ++k) {
-    const S* a = vectors_.data() + k * 2 * D;
+    const S* g = vectors_.data() + k * kQuad + 2 * D;
     for (int i = 0; i < quads_[k].free; ++i) {
       const Place& place = quad_rows_[4 * k + i];
-      const S sign_a = quads_[k].points[i].sign_a, sign_c = quads_[k].points[i].sign_c;
       for (int x = 0; x < D; ++x) {
-        matrix[place.at + x * place.stride] += static_cast<F>(sign_a * a[x] + sign_c * a[D + x]);
+        matrix[place.at + x * place.stride] += static_cast<F>(g[i * D + x]);
       }
     }
   }

@@ -81,7 +81,7 @@ void Constraints<S, D>::add_quads(std::span<const Model* const> models, const Ro
       }
     }
   }
-  vectors_.resize(quads_.size() * 2 * D, S(0.0));
+  vectors_.resize(quads_.size() * kQuad, S(0.0));
   earlier_vectors_ = vectors_;
 }
 

@@ -16,7 +16,10 @@ class Drivers {
   /// t = Φt.
   void rate_terms(const Constraints<S, D>& constraints, S* t) const;
   /// t = Φ̇q v + Φ̇t.
-  void acceleration_terms(const Constraints<S, D>& constraints, const S* v, S* t);
+  void acceleration_terms(const Constraints<S, D>& constraints, const S* v, S* t) const;
+  /// y −= f Φqᵀ Φt, or that of what drivers add to Φ̇q v + Φ̇t.
+  void add_rate_terms(const Constraints<S, D>& constraints, const S& f, S* y) const;
+  void add_acceleration_terms(const Constraints<S, D>& constraints, const S& f, S* y) const;
   /// t −= ṡ: makes Φq v + Φt of the product with all columns.
   void subtract_rates(S* t) const {
     for (const Value& value : values_) t[value.constraint] -= value.rate;
@@ -35,10 +38,11 @@ class Drivers {
   std::vector<const Model*> models_;
   bool any_;
   std::vector<int> point_rows_;
+  std::vector<int> touched_;  // constraints with a driven point
   std::vector<Value> values_;
   std::vector<Mass> mass_;
   Array<S> velocity_, acceleration_;  // of fixed points; zero elsewhere
-  Array<S> constant_, terms_;
+  Array<S> constant_;
 };
 
 template <typename S, int D>
@@ -55,9 +59,11 @@ Drivers<S, D>::Drivers(std::span<const Model* const> models, const Rows& rows,
   if (!any_) return;
   velocity_.resize(rows.extent, S(0.0));
   acceleration_.resize(rows.extent, S(0.0));
-  terms_.resize(all.count(), S(0.0));
   for (const DrivenPoint& point : first.driven_points()) {
     point_rows_.push_back(rows.of_point[point.point]);
+  }
+  for (int k = 0; k < all.count(); ++k) {
+    if (all.touches(k, point_rows_)) touched_.push_back(k);
   }
   for (int i = 0; i < static_cast<int>(first.driven_values().size()); ++i) {
     for (int k = 0; k < all.count(); ++k) {
@@ -103,17 +109,39 @@ void Drivers<S, D>::drive(double t, S* q, S* v, Constraints<S, D>& constraints, 
 
 template <typename S, int D>
 void Drivers<S, D>::rate_terms(const Constraints<S, D>& constraints, S* t) const {
-  constraints.product(velocity_.data(), t);
+  std::fill_n(t, constraints.count(), S(0.0));
+  for (const int k : touched_) t[k] = constraints.product_of(k, velocity_.data());
   subtract_rates(t);
 }
 
 template <typename S, int D>
-void Drivers<S, D>::acceleration_terms(const Constraints<S, D>& constraints, const S* v, S* t) {
+void Drivers<S, D>::acceleration_terms(const Constraints<S, D>& constraints, const S* v,
+                                       S* t) const {
   constraints.velocity_terms(v, t);
   if (!any_) return;
-  constraints.product(acceleration_.data(), terms_.data());
-  for (int k = 0; k < constraints.count(); ++k) t[k] += terms_[k];
+  for (const int k : touched_) t[k] += constraints.product_of(k, acceleration_.data());
   for (const Value& value : values_) t[value.constraint] -= value.acceleration;
+}
+
+template <typename S, int D>
+void Drivers<S, D>::add_rate_terms(const Constraints<S, D>& constraints, const S& f, S* y) const {
+  for (const int k : touched_) {
+    constraints.add_gradient(k, -f * constraints.product_of(k, velocity_.data()), y);
+  }
+  for (const Value& value : values_) {
+    constraints.add_gradient(value.constraint, f * value.rate, y);
+  }
+}
+
+template <typename S, int D>
+void Drivers<S, D>::add_acceleration_terms(const Constraints<S, D>& constraints, const S& f,
+                                           S* y) const {
+  for (const int k : touched_) {
+    constraints.add_gradient(k, -f * constraints.product_of(k, acceleration_.data()), y);
+  }
+  for (const Value& value : values_) {
+    constraints.add_gradient(value.constraint, f * value.acceleration, y);
+  }
 }
 
 }  // namespace mbs::compiled_ldl

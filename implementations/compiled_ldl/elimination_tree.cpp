@@ -9,7 +9,7 @@ namespace mbs::compiled_ldl {
 namespace {
 
 /// Predicted cycles of a front of `pivots` columns and `border` more rows; constants fitted to
-/// measurements of four-bar scenes with and without fill.
+/// measurements of the standard scenes and of filled four-bars.
 double front_cycles(int pivots, int border, int width) {
   if (width == 1) {  // many side by side: arithmetic counts, latency less
     const double rows = pivots + border;
@@ -17,8 +17,8 @@ double front_cycles(int pivots, int border, int width) {
   }
   const double packs = std::ceil(static_cast<double>(pivots + border) / width);
   const double inside = 0.5 * pivots * pivots * packs;
-  const double outside = border * (4.0 + packs * (2.0 + 0.75 * pivots));
-  return 25.0 + 24.0 * pivots + inside + outside;
+  const double outside = border * (10.0 + packs * (2.0 + 0.75 * pivots));
+  return 100.0 * std::ceil(pivots / 8.0) + 24.0 * pivots + inside + outside;
 }
 
 class Symbolic {

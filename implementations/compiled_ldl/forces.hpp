@@ -14,8 +14,8 @@ class Forces {
   [[nodiscard]] bool any() const { return has_stiffness() || !couples_.empty(); }
   [[nodiscard]] bool has_stiffness() const { return springs_.count() > 0 || !torsions_.empty(); }
 
-  /// y += Q of (q, v), without its constant part.
-  void add(const S* q, const S* v, S* y);
+  /// y += factor times Q of (q, v), without its constant part.
+  void add(const S* q, const S* v, const S& factor, S* y);
   /// Keeps C and K of the last add() for what follows.
   void keep();
   void keep_where(const LaneMask& mask) {
@@ -37,9 +37,9 @@ class Forces {
     int a, b, axis;
     S torque;
   };
-  void add_spring(const S* q, const S* v, S* y, int k);
-  void add_torsion(const S* q, const S* v, S* y, int k);
-  void add_couple(const S* q, S* y, const Couple2& couple) const;
+  void add_spring(const S* q, const S* v, const S& factor, S* y, int k);
+  void add_torsion(const S* q, const S* v, const S& factor, S* y, int k);
+  void add_couple(const S* q, const S& factor, S* y, const Couple2& couple) const;
   /// y = z × x; planar z is (0, 0, 1).
   static void turn(const S* z, const S* x, S* y);
 

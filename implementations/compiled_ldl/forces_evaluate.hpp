@@ -19,14 +19,14 @@ void Forces<S, D>::turn(const S* z, const S* x, S* y) {
 }
 
 template <typename S, int D>
-void Forces<S, D>::add(const S* q, const S* v, S* y) {
-  for (int k = 0; k < springs_.count(); ++k) add_spring(q, v, y, k);
-  for (int k = 0; k < static_cast<int>(torsions_.size()); ++k) add_torsion(q, v, y, k);
-  for (const Couple2& couple : couples_) add_couple(q, y, couple);
+void Forces<S, D>::add(const S* q, const S* v, const S& factor, S* y) {
+  for (int k = 0; k < springs_.count(); ++k) add_spring(q, v, factor, y, k);
+  for (int k = 0; k < static_cast<int>(torsions_.size()); ++k) add_torsion(q, v, factor, y, k);
+  for (const Couple2& couple : couples_) add_couple(q, factor, y, couple);
 }
 
 template <typename S, int D>
-void Forces<S, D>::add_spring(const S* q, const S* v, S* y, int k) {
+void Forces<S, D>::add_spring(const S* q, const S* v, const S& factor, S* y, int k) {
   const Pair& pair = springs_.list[k];
   const Element& spring = spring_[k];
   S* e = direction_.data() + k * D;
@@ -36,7 +36,8 @@ void Forces<S, D>::add_spring(const S* q, const S* v, S* y, int k) {
   const S length = each(dot<D>(e, e), [](auto x) { return std::sqrt(x); });
   const S inverse = each(length, [](auto x) { return x == 0 ? x : 1 / x; });
   for (int i = 0; i < D; ++i) e[i] *= inverse;
-  const S force = spring.stiffness * (length - spring.free) + spring.damping * dot<D>(e, rate);
+  const S force =
+      factor * (spring.stiffness * (length - spring.free) + spring.damping * dot<D>(e, rate));
   across_[k] = larger(S(0.0), spring.stiffness * (S(1.0) - spring.free * inverse));
   for (int i = 0; i < D; ++i) {
     y[pair.a + i] -= force * e[i];
@@ -45,7 +46,7 @@ void Forces<S, D>::add_spring(const S* q, const S* v, S* y, int k) {
 }
 
 template <typename S, int D>
-void Forces<S, D>::add_torsion(const S* q, const S* v, S* y, int k) {
+void Forces<S, D>::add_torsion(const S* q, const S* v, const S& factor, S* y, int k) {
   const Quad& quad = torsions_[k];
   const Element& spring = torsion_[k];
   const S* z = q + torsion_axes_[k];
@@ -69,7 +70,7 @@ void Forces<S, D>::add_torsion(const S* q, const S* v, S* y, int k) {
     at_c[i] *= inverse_w;
     rate += at_a[i] * (v[quad.a + i] - v[quad.b + i]) + at_c[i] * (v[quad.c + i] - v[quad.d + i]);
   }
-  const S torque = spring.stiffness * turned + spring.damping * rate;
+  const S torque = factor * (spring.stiffness * turned + spring.damping * rate);
   for (int i = 0; i < D; ++i) {
     y[quad.a + i] -= torque * at_a[i];
     y[quad.b + i] += torque * at_a[i];
@@ -79,14 +80,14 @@ void Forces<S, D>::add_torsion(const S* q, const S* v, S* y, int k) {
 }
 
 template <typename S, int D>
-void Forces<S, D>::add_couple(const S* q, S* y, const Couple2& couple) const {
+void Forces<S, D>::add_couple(const S* q, const S& factor, S* y, const Couple2& couple) const {
   S w[D], turned[D];
   for (int i = 0; i < D; ++i) w[i] = q[couple.a + i] - q[couple.b + i];
   turn(q + couple.axis, w, turned);
-  const S factor = couple.torque / dot<D>(w, w);
+  const S force = factor * couple.torque / dot<D>(w, w);
   for (int i = 0; i < D; ++i) {
-    y[couple.a + i] += factor * turned[i];
-    y[couple.b + i] -= factor * turned[i];
+    y[couple.a + i] += force * turned[i];
+    y[couple.b + i] -= force * turned[i];
   }
 }
 

@@ -68,7 +68,9 @@ void Forces<S, D>::add_matrix(F* matrix) const {
   }
   for (std::size_t k = 0; k < torsions_.size(); ++k) {
     const S* vectors = kept_torsions_.data() + k * 2 * D;
-    add_quad<D>(matrix, torsions_[k], places_.data(), torsion_weight_[k], vectors, vectors + D);
+    S g[4 * D];
+    find_gradients<D>(torsions_[k], vectors, vectors + D, g);
+    add_quad<D>(matrix, torsions_[k], places_.data(), torsion_weight_[k], g);
   }
 }
 

@@ -53,8 +53,8 @@ void Fronts<F>::factorize(const Front& front, F* y) {
   if (front.border > 0) update_border(front, y);
 }
 
-/// Eliminates pivots j and j + 1 from the columns before `end` and from the pivots' right-hand side,
-/// as decompose() of panel_vectors.hpp does.
+/// Eliminates pivots j and j + 1 from the columns before `end` and from the pivots' right-hand
+/// side, as decompose() of panel_vectors.hpp does.
 template <typename F>
 void Fronts<F>::pivot_columns(const Front& front, F* columns, int j, int end, F* y) {
   F* one = columns + j * front.stride;

@@ -11,7 +11,7 @@ class LaneGroup {
   LaneGroup(std::span<const Model* const> models, std::span<const StepSettings> settings)
       : settings_(settings[0]),
         tolerance_(of_settings<Lanes>(settings, &StepSettings::tolerance)),
-        system_(models, settings), velocity_terms_(system_.constraints.count(), Lanes(0.0)),
+        system_(models, settings),
         free_(system_.rows.extent, Lanes(0.0)) {}
 
   void set_state(int lane, const State& state) {
@@ -27,20 +27,18 @@ class LaneGroup {
 
  private:
   void predict();
-  void evaluate() {
-    system_.constraints.evaluate(system_.q.data(), system_.phi.data(), false);
-  }
+  void evaluate() { system_.constraints.evaluate(system_.q.data(), system_.phi.data(), false); }
   /// Applies the last solution in the lanes of `active`; max|Δq|.
   Lanes apply(const LaneMask& active);
   void project();
-  void project_once(Lanes* x, const Lanes* terms);
+  void project_once(Lanes* x, const Lanes* v);
 
   StepSettings settings_;
   Lanes tolerance_;
   System<Lanes, Lanes, D> system_;
   LaneMask running_{};
   int unprojected_ = 0;
-  Array<Lanes> velocity_terms_, free_;
+  Array<Lanes> free_;
 };
 
 template <int D>
@@ -51,7 +49,7 @@ void LaneGroup<D>::step(double time, std::span<StepOutcome> outcomes) {
   evaluate();
   LaneMask active = running_;
   for (int pass = 1; pass <= settings_.max_passes && any(active); ++pass) {
-    system_.residual();
+    system_.linearize(false);
     system_.assemble_where(active);
     system_.factorize_and_solve();
     const LaneMask failed = active & (system_.fronts.least_pivot().v < 0.0);
@@ -113,29 +111,28 @@ void LaneGroup<D>::project() {
   if (settings_.projections == Projections::none) return;
   if (++unprojected_ < settings_.projections_every) return;
   unprojected_ = 0;
-  auto& s = system_;
-  if (s.drivers.any()) s.drivers.rate_terms(s.constraints, velocity_terms_.data());
-  project_once(s.v.data(), s.drivers.any() ? velocity_terms_.data() : nullptr);
+  project_once(system_.v.data(), nullptr);
   if (settings_.projections == Projections::velocity) return;
-  s.drivers.acceleration_terms(s.constraints, s.v.data(), velocity_terms_.data());
-  project_once(s.a.data(), velocity_terms_.data());
+  project_once(system_.a.data(), system_.v.data());
 }
 
-/// As Stepper::project_once().
+/// As Stepper::project_penalty().
 template <int D>
-void LaneGroup<D>::project_once(Lanes* x, const Lanes* terms) {
+void LaneGroup<D>::project_once(Lanes* x, const Lanes* v) {
   auto& s = system_;
+  Lanes* y = s.y.data();
+  for (int i = 0; i < s.program.size; ++i) y[i] = 0.0;
   const Lanes* given = x;
-  if (s.drivers.any()) {  // without what fixed points have
+  if (s.drivers.any() && v == nullptr) {  // without what fixed points have
     std::copy(x, x + s.program.size, free_.data());
     given = free_.data();
   }
-  std::fill(s.y.begin(), s.y.end(), Lanes(0.0));
-  s.constraints.product(given, s.terms.data(), true);
-  s.constrain(s.terms.data(), true);
-  if (terms != nullptr) s.constrain(terms);
+  const Lanes factor = s.h * s.alpha;
+  s.constraints.add_projection(given, v, factor, y);
+  if (s.drivers.any() && v == nullptr) s.drivers.add_rate_terms(s.constraints, factor, y);
+  if (s.drivers.any() && v != nullptr) s.drivers.add_acceleration_terms(s.constraints, factor, y);
   s.solve();
-  for (int i = 0; i < s.program.size; ++i) x[i] += s.y[i];
+  for (int i = 0; i < s.program.size; ++i) x[i] += y[i];
 }
 
 }  // namespace mbs::compiled_ldl

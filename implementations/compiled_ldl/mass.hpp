@@ -21,13 +21,11 @@ class Mass {
   }
   /// y = M x.
   void product(const S* x, S* y) const {
-    multiply(
-        x, y, [](int /*row*/) { return S(0.0); }, S(1.0));
+    multiply(x, y, [](int /*row*/, const S& sum) { return sum; });
   }
-  /// y = b − M x.
-  void residual(const S* b, const S* x, S* y) const {
-    multiply(
-        x, y, [b](int row) { return b[row]; }, S(-1.0));
+  /// y = h (b − M x).
+  void residual(const S* b, const S* x, const S& h, S* y) const {
+    multiply(x, y, [b, h](int row, const S& sum) { return h * (b[row] - sum); });
   }
 
  private:
@@ -45,8 +43,8 @@ class Mass {
   };
 
   static bool is_multiple(const Block& block);
-  template <typename Start>
-  void multiply(const S* x, S* y, Start start, S sign) const;
+  template <typename Finish>
+  void multiply(const S* x, S* y, Finish finish) const;
 
   std::vector<Entry> entries_;
   std::vector<Row> rows_;
@@ -108,8 +106,8 @@ bool Mass<S, D>::is_multiple(const Block& block) {
 }
 
 template <typename S, int D>
-template <typename Start>
-void Mass<S, D>::multiply(const S* x, S* y, Start start, S sign) const {
+template <typename Finish>
+void Mass<S, D>::multiply(const S* x, S* y, Finish finish) const {
   int multiple = 0, block = 0;
   for (const Row& row : rows_) {
     S sum[D];
@@ -125,7 +123,7 @@ void Mass<S, D>::multiply(const S* x, S* y, Start start, S sign) const {
         for (int i = 0; i < D; ++i) sum[i] += m[i * D + j] * xj[j];
       }
     }
-    for (int i = 0; i < D; ++i) y[row.row + i] = start(row.row + i) + sign * sum[i];
+    for (int i = 0; i < D; ++i) y[row.row + i] = finish(row.row + i, sum[i]);
   }
 }
 

@@ -57,6 +57,10 @@ class Panels {
 
   template <int P, int L, bool kDefinite>
   bool eliminate(const Run& run, F* y);
+  template <int P, int L, bool kDefinite>
+  bool eliminate_panel(const Panel& panel, F* y);
+  template <int L, bool kDefinite>
+  bool eliminate_pair(const Panel& panel, F* y);
   template <int P, int L>
   void forward(const Run& run, F* y) const;
   template <int P, int L>
@@ -67,8 +71,14 @@ class Panels {
   template <int P, int L>
   void subtract_below(const Panel& panel, const typename Short<F, lanes_for(P)>::Type& z,
                       F* y) const;
+  /// Mᵀ z, of its columns.
+  template <int P>
+  static typename Short<F, lanes_for(P)>::Type times_transposed(
+      const F* columns, const typename Short<F, lanes_for(P)>::Type& z);
   template <int P>
   void update_inside(const Panel& panel);
+  template <int P>
+  void update_two(const Panel& panel, const Group& group);
   template <int P, int L>
   void update_border(const Panel& panel);
   template <int P, int L>

@@ -16,38 +16,81 @@ bool Panels<F>::factorize_and_solve(F* y) {
 template <typename F>
 template <int P, int L, bool kDefinite>
 bool Panels<F>::eliminate(const Run& run, F* y) {
-  constexpr int N = lanes_for(P);
-  using V = typename Short<F, N>::Type;
   bool accepted = true;
   for (int i = run.begin; i < run.end; ++i) {
-    const Panel& panel = panels_[i];
-    const F* columns = matrix() + panel.columns;
-    F* factors = factors_.data() + panel.factors;
-    V a[P], l[P], m[P];
-    F inverse[P];
-#pragma GCC unroll 8
-    for (int j = 0; j < P; ++j) a[j] = load<F, N>(columns + j * panel.stride);
-    accepted &= decompose<F, P, kDefinite>(a, l, inverse);
-    if constexpr (L > 0) reduce_below<P, L>(panel, l, inverse);
-    invert_triangle<F, P>(l, m);
-    V scale = V{}, z = V{};
-#pragma GCC unroll 8
-    for (int j = 0; j < P; ++j) {
-      store<F, N>(factors + j * N, m[j]);
-      scale[j] = inverse[j];
-      z += m[j] * y[panel.first + j];
+    if constexpr (P == 2) {
+      accepted &= eliminate_pair<L, kDefinite>(panels_[i], y);
+    } else {
+      accepted &= eliminate_panel<P, L, kDefinite>(panels_[i], y);
     }
-    store_transposed<F, P, P, N>(m, factors + P * N);
-    store<F, N>(factors + 2 * P * N, scale);
-    z *= scale;
-    store_first<P>(y + panel.first, z);
-    if constexpr (L > 0) {
-      subtract_below<P, L>(panel, z, y);
-      if constexpr (L == 8) {
-        if (panel.inside > 0) update_inside<P>(panel);
-      }
-      update_border<P, L>(panel);
+  }
+  return accepted;
+}
+
+template <typename F>
+template <int P, int L, bool kDefinite>
+bool Panels<F>::eliminate_panel(const Panel& panel, F* y) {
+  constexpr int N = lanes_for(P);
+  using V = typename Short<F, N>::Type;
+  const F* columns = matrix() + panel.columns;
+  F* factors = factors_.data() + panel.factors;
+  V a[P], l[P], m[P];
+  F inverse[P];
+#pragma GCC unroll 8
+  for (int j = 0; j < P; ++j) a[j] = load<F, N>(columns + j * panel.stride);
+  const bool accepted = decompose<F, P, kDefinite>(a, l, inverse);
+  if constexpr (L > 0) reduce_below<P, L>(panel, l, inverse);
+  invert_triangle<F, P>(l, m);
+  V scale = V{}, z = V{};
+#pragma GCC unroll 8
+  for (int j = 0; j < P; ++j) {
+    store<F, N>(factors + j * N, m[j]);
+    scale[j] = inverse[j];
+    z += m[j] * y[panel.first + j];
+  }
+  store_transposed<F, P, P, N>(m, factors + P * N);
+  store<F, N>(factors + 2 * P * N, scale);
+  z *= scale;
+  if constexpr (L == 0) {
+    z = times_transposed<P>(factors + P * N, z);  // nothing is left for backward()
+  }
+  store_first<P>(y + panel.first, z);
+  if constexpr (L > 0) {
+    subtract_below<P, L>(panel, z, y);
+    if constexpr (L == 8) {
+      if (panel.inside > 0) update_inside<P>(panel);
     }
+    update_border<P, L>(panel);
+  }
+  return accepted;
+}
+
+/// The same for two pivots, in scalars: a vector's load would wait for the element's narrow stores.
+/// Of the factors only l, in its place in M, and D⁻¹ are kept.
+template <typename F>
+template <int L, bool kDefinite>
+bool Panels<F>::eliminate_pair(const Panel& panel, F* y) {
+  using V = typename Short<F, 2>::Type;
+  const F* columns = matrix() + panel.columns;
+  F* factors = factors_.data() + panel.factors;
+  const F x = columns[0], c = columns[1], w = columns[panel.stride + 1];
+  const F of_pair = F(1) / determinant(x, c, w);
+  const F inverse[2] = {F(1) / x, x * of_pair};
+  const F l = c * inverse[0];
+  bool accepted = inverse[0] - inverse[0] == F(0) && of_pair - of_pair == F(0);
+  accepted &= kDefinite ? x > F(0) && of_pair > F(0) : inverse[1] != F(0);
+  factors[1] = l;
+  factors[8] = inverse[0];
+  factors[9] = inverse[1];
+  const V columns_of_l[2] = {V{F(1), l}, V{F(0), F(1)}};
+  if constexpr (L > 0) reduce_below<2, L>(panel, columns_of_l, inverse);
+  F* b = y + panel.first;
+  const V z = {b[0] * inverse[0], (b[1] - l * b[0]) * inverse[1]};
+  b[0] = L > 0 ? z[0] : z[0] - l * z[1];
+  b[1] = z[1];
+  if constexpr (L > 0) {
+    subtract_below<2, L>(panel, z, y);
+    update_border<2, L>(panel);
   }
   return accepted;
 }
@@ -89,7 +132,7 @@ void Panels<F>::subtract_below(const Panel& panel, const typename Short<F, lanes
     W sum = load<F, L>(below + i) * z[0];
 #pragma GCC unroll 8
     for (int j = 1; j < P; ++j) sum += load<F, L>(below + j * panel.stride + i) * z[j];
-    if (panel.contiguous) {
+    if (L > 4 && panel.contiguous) {
       store<F, L>(y + rows[i], load<F, L>(y + rows[i]) - sum);
     } else {
       const int count = std::min(L, panel.below - i);
@@ -131,8 +174,34 @@ template <int P, int L>
 void Panels<F>::update_border(const Panel& panel) {
   for (int g = panel.groups_begin; g < panel.groups_end; ++g) {
     const Group& group = program_.groups[g];
+    if (L == 2 && group.end == 2 && group.begin == 0) {
+      update_two<P>(panel, group);
+      continue;
+    }
     for (int k = group.begin; k < group.end; ++k) update_column<P, L>(panel, group, k);
   }
+}
+
+/// The update of two border rows that are neighbours, in scalars.
+template <typename F>
+template <int P>
+void Panels<F>::update_two(const Panel& panel, const Group& group) {
+  constexpr int N = lanes_for(P);
+  const F* below = matrix() + panel.columns + P;
+  const F* g = factors_.data() + panel.factors + (2 * P + 1) * N;
+  F s00 = below[0] * g[0], s10 = below[1] * g[0], s11 = below[1] * g[N];
+#pragma GCC unroll 8
+  for (int j = 1; j < P; ++j) {
+    const F* c = below + j * panel.stride;
+    s00 += c[0] * g[j];
+    s10 += c[1] * g[j];
+    s11 += c[1] * g[N + j];
+  }
+  const int* places = program_.positions.data() + group.positions;
+  F* target = matrix() + group.base;
+  target[places[0]] -= s00;
+  target[places[1]] -= s10;
+  target[group.stride + places[1]] -= s11;
 }
 
 /// Border column k of the update, added to the column that it goes to.

@@ -20,14 +20,40 @@ void Panels<F>::forward(const Run& run, F* y) const {
   for (int i = run.begin; i < run.end; ++i) {
     const Panel& panel = panels_[i];
     const F* factors = factors_.data() + panel.factors;
-    const F* x = y + panel.first;
-    V z = load<F, N>(factors) * x[0];
+    F* x = y + panel.first;
+    V z;
+    if constexpr (P == 2) {
+      z = V{x[0] * factors[8], (x[1] - factors[1] * x[0]) * factors[9]};
+      x[0] = L > 0 ? z[0] : z[0] - factors[1] * z[1];
+      x[1] = z[1];
+    } else {
+      z = load<F, N>(factors) * x[0];
 #pragma GCC unroll 8
-    for (int j = 1; j < P; ++j) z += load<F, N>(factors + j * N) * x[j];
-    z *= load<F, N>(factors + 2 * P * N);
-    store_first<P>(y + panel.first, z);
+      for (int j = 1; j < P; ++j) z += load<F, N>(factors + j * N) * x[j];
+      z *= load<F, N>(factors + 2 * P * N);
+      if constexpr (L == 0) z = times_transposed<P>(factors + P * N, z);
+      store_first<P>(x, z);
+    }
     if constexpr (L > 0) subtract_below<P, L>(panel, z, y);
   }
+}
+
+template <typename F>
+template <int P>
+typename Short<F, lanes_for(P)>::Type Panels<F>::times_transposed(
+    const F* columns, const typename Short<F, lanes_for(P)>::Type& z) {
+  constexpr int N = lanes_for(P);
+  using V = typename Short<F, N>::Type;
+  V even = load<F, N>(columns) * z[0], odd = V{};
+#pragma GCC unroll 8
+  for (int j = 1; j < P; ++j) {
+    if (j % 2 == 0) {
+      even += load<F, N>(columns + j * N) * z[j];
+    } else {
+      odd += load<F, N>(columns + j * N) * z[j];
+    }
+  }
+  return even + odd;
 }
 
 /// x = Mᵀ (z − Wᵀ x below).
@@ -36,6 +62,7 @@ template <int P, int L>
 void Panels<F>::backward(const Run& run, F* y) const {
   constexpr int N = lanes_for(P);
   using V = typename Short<F, N>::Type;
+  if constexpr (L == 0) return;
   for (int i = run.end - 1; i >= run.begin; --i) {
     const Panel& panel = panels_[i];
     const F* transposed = factors_.data() + panel.factors + P * N;
@@ -51,10 +78,12 @@ void Panels<F>::backward(const Run& run, F* y) const {
     }
     for (; k < panel.below; ++k) x0 -= load<F, N>(g + k * N) * y[rows[k]];
     x0 = (x0 + x1) + (x2 + x3);
-    V x = load<F, N>(transposed) * x0[0];
-#pragma GCC unroll 8
-    for (int j = 1; j < P; ++j) x += load<F, N>(transposed + j * N) * x0[j];
-    store_first<P>(y + panel.first, x);
+    if constexpr (P == 2) {
+      y[panel.first] = x0[0] - transposed[1 - P * N] * x0[1];
+      y[panel.first + 1] = x0[1];
+    } else {
+      store_first<P>(y + panel.first, times_transposed<P>(transposed, x0));
+    }
   }
 }
 

@@ -89,7 +89,6 @@ bool Stepper<S, F, D>::run_passes(StepOutcome& outcome) {
     const bool converged = change <= tolerance_;
     judge_factors(pass, change, previous);
     previous = change;
-    if (!system_.saddle && (!at_convergence || converged)) update_multipliers();
     if (converged && (!at_convergence || updated)) {
       outcome.status = StepStatus::converged;
       break;
@@ -116,46 +115,33 @@ bool Stepper<S, F, D>::factorizes(int pass) const {
 template <typename S, typename F, int D>
 bool Stepper<S, F, D>::solve_pass(StepOutcome& outcome) {
   phases_.enter(Phase::evaluation);
-  system_.residual();
-  if (!factorizes(outcome.passes)) {
+  const bool renews = factorizes(outcome.passes);
+  system_.linearize(renews);
+  if (!renews) {
     phases_.enter(Phase::solve);
     system_.solve();
     return true;
   }
   if (reuses_) ++outcome.factorizations;
   due_ = false;
-  phases_.enter(Phase::assembly);
-  system_.assemble();
   phases_.enter(Phase::factorization);
   return system_.factorize_and_solve();
 }
 
-/// q', v', a' and, in the saddle-point form, λ with the solution; max|Δq|.
+/// q', v', a' and λ with the solution; max|Δq|.
 template <typename S, typename F, int D>
 S Stepper<S, F, D>::apply_pass() {
   phases_.enter(Phase::other);
   if (system_.saddle) system_.take_multipliers(system_.lambda.data(), S(1.0) / system_.h);
-  S* q = system_.q.data();
-  S* v = system_.v.data();
-  S* a = system_.a.data();
-  const S* y = system_.y.data();
-  const S to_v = S(2.0) / step_, to_a = S(1.0) / system_.h;
-  for (int i = 0; i < system_.program.padded; ++i) {
-    q[i] += y[i];
-    v[i] += to_v * y[i];
-    a[i] += to_a * y[i];
-  }
-  const S change = system_.largest();
+  const S change = system_.apply(S(2.0) / step_);
   phases_.enter(Phase::evaluation);
-  system_.evaluate();
-  return change;
-}
-
-template <typename S, typename F, int D>
-void Stepper<S, F, D>::update_multipliers() {
-  for (int k = 0; k < system_.constraints.count(); ++k) {
-    system_.lambda[k] += system_.alpha * system_.phi[k];
+  const bool at_convergence = settings_.multipliers == MultiplierUpdate::converged;
+  if (system_.saddle || (at_convergence && !(change <= tolerance_))) {
+    system_.evaluate();
+  } else {
+    system_.evaluate_and_update();
   }
+  return change;
 }
 
 /// Factors that are kept become due when convergence slows.

@@ -17,14 +17,21 @@ bool Stepper<S, F, D>::project(StepOutcome& outcome) {
       std::copy(x, x + s.program.padded, star_.data());
       return refine(x, star_.data(), of_velocity, outcome);
     }
-    project_once(x, of_velocity && !s.drivers.any() ? nullptr : velocity_terms_.data());
+    if (s.saddle) {
+      project_saddle(x, of_velocity && !s.drivers.any() ? nullptr : velocity_terms_.data());
+    } else {
+      project_penalty(x, of_velocity ? nullptr : s.v.data());
+    }
     return true;
   };
-  if (s.drivers.any()) s.drivers.rate_terms(s.constraints, velocity_terms_.data());
+  const bool lists_terms = s.saddle || refines_;
+  if (lists_terms && s.drivers.any()) s.drivers.rate_terms(s.constraints, velocity_terms_.data());
   if (!solve(s.v.data(), true)) return false;
   if (settings_.projections == Projections::velocity) return true;
   phases_.enter(Phase::projection);
-  s.drivers.acceleration_terms(s.constraints, s.v.data(), velocity_terms_.data());
+  if (lists_terms) {
+    s.drivers.acceleration_terms(s.constraints, s.v.data(), velocity_terms_.data());
+  }
   return solve(s.a.data(), false);
 }
 
@@ -36,26 +43,38 @@ const S* Stepper<S, F, D>::without_fixed(const S* x) {
   return difference_.data();
 }
 
-/// Eqs. (6) and (13) for what they change. T is T₀ + (Δt²/4) α Φqᵀ Φq with the Φq of the last pass,
-/// so that (6) is T (v' − v*) = −(Δt²/4) α (Φqᵀ Φq v* + Φqᵀ Φt), the first with that Φq: nothing
-/// has to cancel, and M is not needed. `terms` is Φt or Φ̇q v' + Φ̇t; nullptr: zero.
+/// Eq. (6) for what it changes. T is T₀ + (Δt²/4) α Φqᵀ Φq with the Φq of the last pass, so that
+/// (6) is T (v' − v*) = −(Δt²/4) α (Φqᵀ Φq v* + Φqᵀ Φt), the first with that Φq: nothing has to
+/// cancel, and M is not needed. With v, x is the acceleration.
 template <typename S, typename F, int D>
-void Stepper<S, F, D>::project_once(S* x, const S* terms) {
+void Stepper<S, F, D>::project_penalty(S* x, const S* v) {
   auto& s = system_;
-  std::fill(s.y.begin(), s.y.end(), S(0.0));
-  s.constraints.product(without_fixed(x), s.terms.data(), true);
-  if (s.saddle) {
-    for (int k = 0; terms != nullptr && k < s.constraints.count(); ++k) s.terms[k] += terms[k];
-    s.constrain(s.terms.data());
-  } else {
-    s.constrain(s.terms.data(), true);
-    if (terms != nullptr) s.constrain(terms);
-  }
+  S* y = s.y.data();
+  for (int i = 0; i < s.program.padded; ++i) y[i] = S(0.0);
+  const S factor = s.h * s.alpha;
+  s.constraints.add_projection(v == nullptr ? without_fixed(x) : x, v, factor, y);
+  if (s.drivers.any() && v == nullptr) s.drivers.add_rate_terms(s.constraints, factor, y);
+  if (s.drivers.any() && v != nullptr) s.drivers.add_acceleration_terms(s.constraints, factor, y);
   phases_.enter(Phase::solve);
   s.solve();
   phases_.enter(Phase::projection);
-  if (s.saddle) s.take_multipliers(nullptr, S(0.0));
-  for (int i = 0; i < s.program.padded; ++i) x[i] += s.y[i];
+  for_each_row(s.program.size, s.program.padded, [=](int i) { x[i] += y[i]; });
+}
+
+/// Eq. (13) for what it changes, likewise; `terms` is Φt or Φ̇q v' + Φ̇t, nullptr: zero.
+template <typename S, typename F, int D>
+void Stepper<S, F, D>::project_saddle(S* x, const S* terms) {
+  auto& s = system_;
+  std::fill(s.y.begin(), s.y.end(), S(0.0));
+  s.constraints.product(without_fixed(x), s.terms.data(), true);
+  for (int k = 0; terms != nullptr && k < s.constraints.count(); ++k) s.terms[k] += terms[k];
+  s.constrain(s.terms.data());
+  phases_.enter(Phase::solve);
+  s.solve();
+  phases_.enter(Phase::projection);
+  s.take_multipliers(nullptr, S(0.0));
+  const S* y = s.y.data();
+  for_each_row(s.program.size, s.program.padded, [=](int i) { x[i] += y[i]; });
 }
 
 /// y = right-hand sides of Eq. (15) at x, given v* or a*.
@@ -96,7 +115,7 @@ S Stepper<S, F, D>::take_correction() {
 template <typename S, typename F, int D>
 bool Stepper<S, F, D>::renew_factors() {
   auto& s = system_;
-  s.forces.add(s.q.data(), s.v.data(), s.y.data());
+  s.forces.add(s.q.data(), s.v.data(), S(1.0), s.y.data());
   s.assemble();
   s.y = right_hand_side_;
   return s.factorize_and_solve();

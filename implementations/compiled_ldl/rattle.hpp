@@ -44,7 +44,7 @@ bool Stepper<S, F, D>::stage(S length, StepOutcome& outcome) {
   phases_.enter(Phase::evaluation);
   // w is in place of v. R [v' − w; ·] = [(h/2) Q(q'); −Φq w], so that M w need not cancel.
   std::copy(s.force.begin(), s.force.end(), s.y.begin());
-  if (s.forces.any()) s.forces.add(s.q.data(), s.v.data(), s.y.data());
+  if (s.forces.any()) s.forces.add(s.q.data(), s.v.data(), S(1.0), s.y.data());
   for (int i = 0; i < s.program.padded; ++i) s.y[i] *= length / S(2.0);
   s.constraints.product(s.v.data(), s.terms.data());
   s.constrain(s.terms.data());
@@ -117,7 +117,7 @@ void Stepper<S, F, D>::find_acceleration() {
   auto& s = system_;
   phases_.enter(Phase::projection);
   std::copy(s.force.begin(), s.force.end(), s.y.begin());
-  if (s.forces.any()) s.forces.add(s.q.data(), s.v.data(), s.y.data());
+  if (s.forces.any()) s.forces.add(s.q.data(), s.v.data(), S(1.0), s.y.data());
   s.constraints.velocity_terms(s.v.data(), velocity_terms_.data());
   s.constrain(velocity_terms_.data());
   phases_.enter(Phase::solve);

@@ -101,6 +101,20 @@ struct Aligned {
 template <typename T>
 using Array = std::vector<T, Aligned<T>>;
 
+/// body(i) for 0 … padded - 1, by vectors if there are many. Few are taken one at a time: a
+/// vector's load would have to wait until the narrower stores before it have reached the cache.
+template <typename Body>
+inline void for_each_row(int size, int padded, Body body) {
+  if (size > 16) {
+    for (int i = 0; i < padded; ++i) body(i);
+    return;
+  }
+  for (int i = 0; i < size; ++i) {
+    body(i);
+    asm volatile("" : : : "memory");  // keeps the compiler from making vectors
+  }
+}
+
 inline void copy_where(const LaneMask& mask, const Array<Lanes>& from, Array<Lanes>& to) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] = select(mask, from[i], to[i]);
 }

@@ -24,11 +24,11 @@ class Stepper final : public Simulation {
   bool factorizes(int pass) const;
   bool solve_pass(StepOutcome& outcome);
   S apply_pass();
-  void update_multipliers();
   void judge_factors(int pass, S change, S previous);
   // projections.hpp
   bool project(StepOutcome& outcome);
-  void project_once(S* x, const S* given);
+  void project_saddle(S* x, const S* terms);
+  void project_penalty(S* x, const S* v);
   bool refine(S* x, const S* given, bool of_velocity, StepOutcome& outcome);
   S take_correction();
   bool renew_factors();

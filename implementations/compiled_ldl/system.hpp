@@ -25,9 +25,13 @@ class System {
   void drive(double t) { drivers.drive(t, q.data(), v.data(), constraints, force.data()); }
   void evaluate() { constraints.evaluate(q.data(), phi.data()); }
 
-  /// y = −f of Eq. (3), or the right-hand side of Eq. (12).
-  void residual();
-  /// The matrix of Eq. (5), (12) or (14), at the last evaluate() and residual().
+  void evaluate_and_update() {
+    constraints.evaluate_and_update(q.data(), phi.data(), alpha, lambda.data());
+  }
+
+  /// y = −f of Eq. (3), or the right-hand side of Eq. (12), and the matrix if it is asked for.
+  void linearize(bool with_matrix);
+  /// The matrix of Eq. (5), (12) or (14), at the last evaluate() and the last forces.
   void assemble();
   /// The matrix of Eq. (5), in the other lanes the one that they had.
   void assemble_where(const LaneMask& mask);
@@ -37,11 +41,12 @@ class System {
 
   /// y = T₀ x, or M x for RATTLE.
   void product(const S* x);
-  /// y −= (Δt²/4) α Φqᵀ t, `earlier` with that of the evaluation before, or the multipliers' rows =
-  /// −t.
-  void constrain(const S* t, bool earlier = false);
+  /// y −= (Δt²/4) α Φqᵀ t, or the multipliers' rows = −t.
+  void constrain(const S* t);
   /// λ or ν += factor times the multipliers' rows of y, which become zero.
   void take_multipliers(S* multipliers, const S& factor);
+  /// q' += y, v' += to_v y, a' += y/h; max|y| as below.
+  S apply(const S& to_v);
   /// max|y|, NaN if there is one.
   [[nodiscard]] S largest() const;
 

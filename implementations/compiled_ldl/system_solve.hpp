@@ -5,18 +5,15 @@
 
 namespace mbs::compiled_ldl {
 
+/// The constraints' forces come last, so that the matrix is in the cache when it is factorized.
 template <typename S, typename F, int D>
-void System<S, F, D>::residual() {
-  mass.residual(force.data(), a.data(), y.data());
-  if (forces.any()) forces.add(q.data(), v.data(), y.data());
-  const int count = constraints.count();
-  for (int k = 0; k < count; ++k) {
-    terms[k] = saddle ? -lambda[k] : -(lambda[k] + alpha * phi[k]);
-  }
-  constraints.add_transposed(terms.data(), y.data());
-  for (int i = 0; i < program.padded; ++i) y[i] *= h;
+void System<S, F, D>::linearize(bool with_matrix) {
+  mass.residual(force.data(), a.data(), h, y.data());
+  if (forces.any()) forces.add(q.data(), v.data(), h, y.data());
+  if (with_matrix) assemble();
+  constraints.add_forces(lambda.data(), phi.data(), saddle ? S(0.0) : alpha, h, y.data());
   if (!saddle) return;
-  for (int k = 0; k < count; ++k) y[constraints.row(k)] = -phi[k];
+  for (int k = 0; k < constraints.count(); ++k) y[constraints.row(k)] = -phi[k];
 }
 
 template <typename S, typename F, int D>
@@ -98,14 +95,14 @@ void System<S, F, D>::product(const S* x) {
 }
 
 template <typename S, typename F, int D>
-void System<S, F, D>::constrain(const S* t, bool earlier) {
+void System<S, F, D>::constrain(const S* t) {
   if (saddle) {
     for (int k = 0; k < constraints.count(); ++k) y[constraints.row(k)] = -t[k];
     return;
   }
   const S factor = -h * alpha;
   for (int k = 0; k < constraints.count(); ++k) terms[k] = factor * t[k];
-  constraints.add_transposed(terms.data(), y.data(), earlier);
+  constraints.add_transposed(terms.data(), y.data());
 }
 
 template <typename S, typename F, int D>
@@ -117,22 +114,55 @@ void System<S, F, D>::take_multipliers(S* multipliers, const S& factor) {
   }
 }
 
-template <typename S, typename F, int D>
-S System<S, F, D>::largest() const {
-  constexpr int kTogether = 8;  // padded is a multiple of it
-  S most[kTogether], sum[kTogether];
-  for (int u = 0; u < kTogether; ++u) most[u] = sum[u] = S(0.0);
-  for (int i = 0; i < program.padded; i += kTogether) {
-    for (int u = 0; u < kTogether; ++u) {
-      most[u] = larger(most[u], magnitude(y[i + u]));
-      sum[u] += S(0.0) * y[i + u];
+/// The largest magnitude of eight numbers at a time and whether all are finite.
+template <typename S>
+struct Largest {
+  S most[8], sum[8];
+  Largest() {
+    for (int u = 0; u < 8; ++u) most[u] = sum[u] = S(0.0);
+  }
+  void add(const S* y) {
+    for (int u = 0; u < 8; ++u) {
+      most[u] = larger(most[u], magnitude(y[u]));
+      sum[u] += S(0.0) * y[u];  // NaN if y is infinite or NaN
     }
   }
-  for (int u = 1; u < kTogether; ++u) {
-    most[0] = larger(most[0], most[u]);
-    sum[0] += sum[u];
+  [[nodiscard]] S value() const {
+    S result = most[0], all = sum[0];
+    for (int u = 1; u < 8; ++u) {
+      result = larger(result, most[u]);
+      all += sum[u];
+    }
+    return result + all;
   }
-  return most[0] + sum[0];  // 0 y is NaN if y is infinite or NaN
+};
+
+template <typename S, typename F, int D>
+S System<S, F, D>::largest() const {
+  Largest<S> largest;
+  for (int i = 0; i < program.padded; i += 8) largest.add(y.data() + i);
+  return largest.value();
+}
+
+template <typename S, typename F, int D>
+S System<S, F, D>::apply(const S& to_v) {
+  const S to_a = to_v * to_v;
+  S* const q_ = q.data();
+  S* const v_ = v.data();
+  S* const a_ = a.data();
+  const S* const y_ = y.data();
+  S most = S(0.0), sum = S(0.0);
+  const bool few = program.size <= 16;
+  for_each_row(program.size, program.padded, [=, &most, &sum](int i) {
+    const S change = y_[i];
+    q_[i] += change;
+    v_[i] += to_v * change;
+    a_[i] += to_a * change;
+    if (!few) return;
+    most = larger(most, magnitude(change));
+    sum += S(0.0) * change;
+  });
+  return few ? most + sum : largest();
 }
 
 }  // namespace mbs::compiled_ldl
