@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "chain_batch.hpp"
+#include "chain_penalty_group.hpp"
+#include "chain_rattle_group.hpp"
 #include "chain_rattle_simulation.hpp"
 #include "chain_trapezoidal.hpp"
 
@@ -77,7 +79,7 @@ std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> mode
                                               std::span<const StepSettings> settings) {
   std::vector<Topology> chains;
   for (std::size_t lane = 0; lane < models.size() && lane < settings.size(); ++lane) {
-    if (settings[lane].scheme != Scheme::penalty || !dispatch::is_served(settings[lane])) {
+    if (settings[lane].scheme == Scheme::saddle_point || !dispatch::is_served(settings[lane])) {
       return nullptr;
     }
     auto topology = find_chain(*models[lane]);
@@ -86,8 +88,14 @@ std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> mode
   }
   if (chains.empty()) return nullptr;
   return dispatch::with_kind(chains, [&]<template <class> class MassOf, class Rods>() {
-    std::unique_ptr<BatchSimulation> batch =
-        std::make_unique<PenaltyBatch<MassOf, Rods>>(models, settings, std::move(chains));
+    std::unique_ptr<BatchSimulation> batch;
+    if (settings[0].scheme == Scheme::penalty) {
+      using Batch = ChainBatch<PenaltyGroup<MassOf, Rods>>;
+      batch = std::make_unique<Batch>(models, settings, std::move(chains));
+    } else {
+      using Batch = ChainBatch<RattleGroup<MassOf, Rods>>;
+      batch = std::make_unique<Batch>(models, settings, std::move(chains));
+    }
     return batch;
   });
 }

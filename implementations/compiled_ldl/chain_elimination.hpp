@@ -79,21 +79,21 @@ MBS_CHAIN_INLINE void substitute_inwards(Store& chain, const Terms& terms) {
   const auto* data = chain.constants.data();
   auto* const end = block + chain.last;
   if (block == end) {  // a single point
-    block->c = adjugate_times(block->factors.scaled, terms.point(*block, *data));
+    block->f = adjugate_times(block->factors.scaled, terms.point(*block, *data));
     return;
   }
   Vec<V> before = terms.point(*block, *data);  // the right-hand side of the block before
   Vec<V> inner;                                // what its link gives
   terms.link(*block, block[1], *data, before, inner);
-  block->c = adjugate_times(block->factors.scaled, before);
+  block->f = before;
   for (++block, ++data; block != end; ++block, ++data) {
     Vec<V> f = inner + terms.point(*block, *data);
     terms.link(*block, block[1], *data, f, inner);
     before = forward(block[-1].factors.gain, f, before);  // only this waits for the block before
-    block->c = adjugate_times(block->factors.scaled, before);
+    block->f = before;
   }
   const Vec<V> f = inner + (V{} + 0.5) * terms.point(*block, *data);
-  block->c = adjugate_times(block->factors.scaled,
+  block->f = adjugate_times(block->factors.scaled,
                             meet<typename Store::Use>(forward(block[-1].factors.gain, f, before)));
 }
 
@@ -102,11 +102,11 @@ template <class Store, class Apply>
 MBS_CHAIN_INLINE void substitute_outwards(Store& chain, const Apply& apply) {
   auto* block = chain.blocks.data() + chain.last;
   auto* const begin = chain.blocks.data();
-  auto x = block->c;
+  auto x = block->f;  // of the last block the solution itself
   apply(*block, x);
   while (block != begin) {
     --block;
-    x = backward(block->factors.gain, block->c, x);
+    x = backward(block->factors.gain, adjugate_times(block->factors.scaled, block->f), x);
     apply(*block, x);
   }
 }

@@ -1,4 +1,4 @@
-// Several doubles in one register, and vectors and symmetric matrices of the plane made of them.
+// Several doubles in one register: what lies in its lanes, and what one cannot write with + and *.
 #pragma once
 
 #if defined(__SSE2__)
@@ -53,77 +53,6 @@ struct Lanes<Wide> {
   }
 };
 
-// Vec and Sym are copied member by member: GCC would copy the whole through a wider register, which
-// has to wait for the stores of the members.
-template <class V>
-struct Vec {
-  V x{}, y{};
-
-  Vec() = default;
-  MBS_CHAIN_INLINE Vec(const V& x, const V& y) : x(x), y(y) {}
-  MBS_CHAIN_INLINE Vec(const Vec& other) : x(other.x), y(other.y) {}
-  MBS_CHAIN_INLINE Vec& operator=(const Vec& other) {
-    x = other.x;
-    y = other.y;
-    return *this;
-  }
-};
-
-template <class V>
-struct Sym {
-  V xx{}, xy{}, yy{};
-
-  Sym() = default;
-  MBS_CHAIN_INLINE Sym(const V& xx, const V& xy, const V& yy) : xx(xx), xy(xy), yy(yy) {}
-  MBS_CHAIN_INLINE Sym(const Sym& other) : xx(other.xx), xy(other.xy), yy(other.yy) {}
-  MBS_CHAIN_INLINE Sym& operator=(const Sym& other) {
-    xx = other.xx;
-    xy = other.xy;
-    yy = other.yy;
-    return *this;
-  }
-};
-
-template <class V>
-MBS_CHAIN_INLINE Vec<V> operator+(const Vec<V>& a, const Vec<V>& b) {
-  return {a.x + b.x, a.y + b.y};
-}
-template <class V>
-MBS_CHAIN_INLINE Vec<V> operator-(const Vec<V>& a, const Vec<V>& b) {
-  return {a.x - b.x, a.y - b.y};
-}
-template <class V>
-MBS_CHAIN_INLINE Vec<V> operator*(const V& a, const Vec<V>& b) {
-  return {a * b.x, a * b.y};
-}
-template <class V>
-MBS_CHAIN_INLINE V dot(const Vec<V>& a, const Vec<V>& b) {
-  return a.x * b.x + a.y * b.y;
-}
-template <class V>
-MBS_CHAIN_INLINE Vec<V> operator*(const Sym<V>& a, const Vec<V>& b) {
-  return {a.xx * b.x + a.xy * b.y, a.xy * b.x + a.yy * b.y};
-}
-/// adj(a) b
-template <class V>
-MBS_CHAIN_INLINE Vec<V> adjugate_times(const Sym<V>& a, const Vec<V>& b) {
-  return {a.yy * b.x - a.xy * b.y, a.xx * b.y - a.xy * b.x};
-}
-template <class V>
-MBS_CHAIN_INLINE V determinant(const Sym<V>& a) {
-  return a.xx * a.yy - a.xy * a.xy;
-}
-/// a + factor b
-template <class V>
-MBS_CHAIN_INLINE Sym<V> plus(const Sym<V>& a, const V& factor, const Sym<V>& b) {
-  return {a.xx + factor * b.xx, a.xy + factor * b.xy, a.yy + factor * b.yy};
-}
-/// a + b bᵀ
-template <class V>
-MBS_CHAIN_INLINE Sym<V> plus_square(const Sym<V>& a, const Vec<V>& b) {
-  return {a.xx + b.x * b.x, a.xy + b.x * b.y, a.yy + b.y * b.y};
-}
-
 /// |a|, of each lane; by its sign bit, which is no arithmetic.
 template <class Use>
 MBS_CHAIN_INLINE typename Lanes<Use>::V magnitude(typename Lanes<Use>::V a) {
@@ -164,23 +93,15 @@ MBS_CHAIN_INLINE Pair larger<Pair>(Pair a, Pair b) {
 }
 #endif
 
-/// The largest magnitude of what it is given, in each lane; NaN if the last was.
-template <class Use>
-struct LargestOf {
-  using V = typename Lanes<Use>::V;
-  Vec<V> most{};
-
-  MBS_CHAIN_INLINE void add(const Vec<V>& a) {
-    most.x = larger(most.x, magnitude<Use>(a.x));
-    most.y = larger(most.y, magnitude<Use>(a.y));
-  }
-  [[nodiscard]] MBS_CHAIN_INLINE V value() const { return larger(most.y, larger(most.x, most.y)); }
-};
-
 /// The smaller one; the second if there is a NaN.
 template <class V>
 MBS_CHAIN_INLINE V smaller(V a, V b) {
   return a < b ? a : b;
+}
+
+template <class V, class Mask>
+MBS_CHAIN_INLINE void keep(V& to, const V& value, const Mask& lanes) {
+  to = lanes ? value : to;
 }
 
 }  // namespace mbs::compiled_ldl::chain

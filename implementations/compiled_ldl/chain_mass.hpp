@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "chain_lanes.hpp"
+#include "chain_planar.hpp"
 
 namespace mbs::compiled_ldl::chain {
 

@@ -19,27 +19,6 @@ struct Taking {
   Mask active;   // that this pass is for
 };
 
-template <class V, class Mask>
-MBS_CHAIN_INLINE void keep(V& to, const V& value, const Mask& lanes) {
-  to = lanes ? value : to;
-}
-template <class V, class Mask>
-MBS_CHAIN_INLINE void keep(Vec<V>& to, const Vec<V>& value, const Mask& lanes) {
-  keep(to.x, value.x, lanes);
-  keep(to.y, value.y, lanes);
-}
-template <class V, class Mask>
-MBS_CHAIN_INLINE void keep(Sym<V>& to, const Sym<V>& value, const Mask& lanes) {
-  keep(to.xx, value.xx, lanes);
-  keep(to.xy, value.xy, lanes);
-  keep(to.yy, value.yy, lanes);
-}
-template <class V, class Mask>
-MBS_CHAIN_INLINE void keep(Factors<V>& to, const Factors<V>& value, const Mask& lanes) {
-  keep(to.scaled, value.scaled, lanes);
-  for (int k = 0; k < 4; ++k) keep(to.gain[k], value.gain[k], lanes);
-}
-
 /// The first pass of a step predicts (step 1); later ones update λ, Eq. (1), by the Φ they begin
 /// with. With `kMasked` only some lanes do anything.
 template <class Store, bool kFirst, bool kMasked = false>
@@ -63,22 +42,32 @@ class Newton {
     Carry<V> carry;
     V least = V{} + 1.0;
     if (kFirst) predict(*block);
-    for (; block != end; ++block, ++data) {
+    if (block != end) {
+      Pending before;
       if (kFirst) predict(block[1]);
-      assemble_and_eliminate(*block, block[1], *data, taking, least, carry);
+      eliminate_block(*block, block[1], *data, taking, least, carry, before);
+      for (++block, ++data; block != end; ++block, ++data) {
+        if (kFirst) predict(block[1]);
+        Pending now;
+        eliminate_block(*block, block[1], *data, taking, least, carry, now);
+        finish_block(block[-1], data[-1], before, taking.active, carry);
+        before = now;
+        before.f = carry.force + before.f;
+      }
+      finish_block(block[-1], data[-1], before, taking.active, carry);
     }
     Vec<V> f = Vec<V>{} - data->force;
     const Sym<V> own = point(*block, *data, f, taking.pending);
-    set(block->factors.scaled, meet<typename Store::Use>(own, carry, f, least, block->c),
-        taking.active);
+    set<kMasked>(block->factors.scaled, meet<typename Store::Use>(own, carry, f, least, block->f),
+                 taking.active);
     return least;
   }
   static V outwards(Store& chain, const Mask& active) {
     LargestOf<typename Store::Use> largest;
     substitute_outwards(chain, [&](B& block, const Vec<V>& x) {  // Eqs. (4), (2)
       largest.add(x);
-      set(block.x, block.x - (V{} + 0.5) * x, active);
-      set(block.u, block.u - x, active);
+      set<kMasked>(block.x, block.x - (V{} + 0.5) * x, active);
+      set<kMasked>(block.u, block.u - x, active);
     });
     return largest.value();
   }
@@ -92,18 +81,9 @@ class Newton {
     block.x = block.x + block.w;
   }
 
-  template <class T>
-  MBS_CHAIN_INLINE static void set(T& to, const T& value, const Mask& lanes) {
-    if constexpr (kMasked) {
-      keep(to, value, lanes);
-    } else {
-      to = value;
-    }
-  }
-
   /// The tension λ + p of a distance, (3), and λ of the pass before, Eq. (1).
   MBS_CHAIN_INLINE static V tension(V& multiplier, const V& violation, const Mask& pending) {
-    if (!kFirst) set(multiplier, V(multiplier + violation), pending);
+    if (!kFirst) set<kMasked>(multiplier, V(multiplier + violation), pending);
     return multiplier + violation;
   }
 
@@ -119,22 +99,38 @@ class Newton {
     return A;
   }
 
-  MBS_CHAIN_INLINE static void assemble_and_eliminate(B& block, const B& next, const C& data,
-                                                      const Taking<Mask>& taking, V& least,
-                                                      Carry<V>& carry) {
+  /// An eliminated block whose factors are still to be made. They are when the next block's
+  /// division has begun: a processor takes the oldest operation that it can do, and these are many.
+  struct Pending {
+    Sym<V> S;
+    Vec<V> z, e;
+    V reciprocal;
+    Vec<V> f;      // its right-hand side
+    Vec<V> inner;  // what its link gives to the next one's
+  };
+
+  MBS_CHAIN_INLINE static void eliminate_block(B& block, const B& next, const C& data,
+                                               const Taking<Mask>& taking, V& least,
+                                               Carry<V>& carry, Pending& pending) {
     Vec<V> f = data.mass.outer(next.u) - data.force;
     const Sym<V> own = point(block, data, f, taking.pending);
-    const Vec<V> e = data.link.vector(next.x - block.x);
-    const Vec<V> pull = tension(block.link, data.link.violation(e), taking.pending) * e;
-    f = carry.force + (f - pull);  // what waits for the block before comes last
-    Sym<V> S;
-    Vec<V> z;
-    eliminate(data.mass, own, e, S, z, least, carry);
+    pending.e = data.link.vector(next.x - block.x);
+    const V violation = data.link.violation(pending.e);
+    const Vec<V> pull = tension(block.link, violation, taking.pending) * pending.e;
+    pending.f = f - pull;
+    pending.inner = pull + data.mass.inner(block.u);
+    eliminate(data.mass, own, pending.e, pending.S, pending.z, least, carry);
+    pending.reciprocal = carry.reciprocal;
+  }
+
+  MBS_CHAIN_INLINE static void finish_block(B& block, const C& data, const Pending& pending,
+                                            const Mask& active, Carry<V>& carry) {
     Factors<V> factors;
-    finish(factors, data.mass, S, z, carry.reciprocal, e);
-    block.c = adjugate_times(factors.scaled, f);
-    carry.force = forward(factors.gain, pull + data.mass.inner(block.u), f);
-    set(block.factors, factors, taking.active);
+    finish(factors, data.mass, pending.S, pending.z, pending.reciprocal, pending.e);
+    block.f = pending.f;
+    carry.force = forward(factors.gain, pending.inner, pending.f);
+    set<kMasked>(block.factors.scaled, factors.scaled, active);
+    for (int k = 0; k < 4; ++k) set<kMasked>(block.factors.gain[k], factors.gain[k], active);
   }
 };
 

@@ -49,11 +49,7 @@ class Projection {
   using C = typename Store::C;
 
   MBS_CHAIN_INLINE static void add(V& multiplier, const V& violation, const Mask& pending) {
-    if constexpr (kMasked) {
-      keep(multiplier, V(multiplier + violation), pending);
-    } else {
-      multiplier = multiplier + violation;
-    }
+    set<kMasked>(multiplier, V(multiplier + violation), pending);
   }
   MBS_CHAIN_INLINE static void rods(B& block, const C& data, const Mask& pending) {
     for (int j = 0; j < Store::kRods; ++j) {

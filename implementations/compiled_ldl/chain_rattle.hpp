@@ -1,33 +1,42 @@
 // One stage of RATTLE on a chain, Eq. (14): its sweeps, with the multipliers eliminated.
 #pragma once
 
+#include <span>
+
 #include "chain_rows.hpp"
 
 namespace mbs::compiled_ldl::chain {
+
+/// Lengths of the stages of a scheme, in steps.
+std::span<const double> stages_of(Scheme scheme);
+/// Of a velocity or an acceleration.
+inline constexpr int kMostRefinements = 5;
 
 template <class V, class Rods>
 struct RattleBlock : RowBlock<V, Rods> {
   Vec<V> way;  // s (q' − q) of the stage
 };
 
-template <class Store>
+/// With `kMasked` refinements and further passes are for the lanes `active` only.
+template <class Store, bool kMasked = false>
 class RattleStage {
  public:
   using V = typename Store::V;
   using B = typename Store::B;
   using C = typename Store::C;
+  using Mask = typename Lanes<typename Store::Use>::Mask;
 
   /// Steps 1 and 2: the first pass of a stage of `length` steps predicts. Returns max|2 s Δq|.
   template <bool kFirst>
-  static V pass(Store& chain, double length) {
+  static V pass(Store& chain, double length, const Mask& active = Mask()) {
     const Position<kFirst> terms{V{} + length};
     if (kFirst) terms.predict(chain.blocks[0]);
     substitute_inwards(chain, terms);
     LargestOf<typename Store::Use> largest;
     substitute_outwards(chain, [&](B& block, const Vec<V>& x) {
       const Vec<V> half = (V{} + 0.5) * x;
-      block.x = block.x - half;
-      block.way = block.way - half;
+      set<kMasked>(block.x, block.x - half, active);
+      set<kMasked>(block.way, block.way - half, active);
       largest.add(x);
     });
     return largest.value();
@@ -42,11 +51,11 @@ class RattleStage {
   }
 
   /// Step 4, one refinement: max|s Δt δ|.
-  static V refine_velocity(Store& chain) {
+  static V refine_velocity(Store& chain, const Mask& active = Mask()) {
     velocity_residual(chain, [](const B& block) { return block.w; });
     LargestOf<typename Store::Use> largest;
     substitute_outwards(chain, [&](B& block, const Vec<V>& x) {
-      block.w = block.w + x;
+      set<kMasked>(block.w, block.w + x, active);
       largest.add(x);
     });
     return largest.value();
@@ -61,13 +70,14 @@ class RattleStage {
   /// Step 5, one refinement: max|s Δt²/2 δ|. Its λ is that of the solution before: settle() adds
   /// what the last one brings.
   template <bool kFirst>
-  static V refine_acceleration(Store& chain) {
-    acceleration_residual(chain, [](V& multiplier, const V& rate) {
-      multiplier = kFirst ? rate : multiplier + rate;  // ε⁻¹ times a residual is part of λ
+  static V refine_acceleration(Store& chain, const Mask& active = Mask()) {
+    acceleration_residual(chain, [&](V& multiplier, const V& rate) {
+      // ε⁻¹ times a residual is part of λ
+      set<kMasked>(multiplier, kFirst ? rate : V(multiplier + rate), active);
     });
     LargestOf<typename Store::Use> largest;
     substitute_outwards(chain, [&](B& block, const Vec<V>& x) {
-      block.u = block.u + x;
+      set<kMasked>(block.u, block.u + x, active);
       largest.add(x);
     });
     return largest.value();
@@ -153,12 +163,12 @@ class RattleStage {
       const Vec<V> w = inverse_length * block->way;
       const Vec<V> f = carry.force + (data->mass.times(w) + length * data->force +
                                       data->mass.outer(inverse_length * block[1].way));
-      block->c = adjugate_times(block->factors.scaled, f);
+      block->f = f;
       carry.force = forward(block->factors.gain, data->mass.inner(w), f);
     }
     const Vec<V> f = length * data->force + data->mass.times(inverse_length * block->way);
     block->factors.scaled =
-        meet<typename Store::Use>(rows(*block, *data), carry, f, least, block->c);
+        meet<typename Store::Use>(rows(*block, *data), carry, f, least, block->f);
     return least;
   }
 };

@@ -9,9 +9,6 @@
 
 namespace mbs::compiled_ldl::chain {
 
-/// Lengths of the stages of a scheme, in steps.
-std::span<const double> stages_of(Scheme scheme);
-
 template <template <class> class MassOf, class Rods>
 class RattleSimulation final : public Simulation {
  public:
@@ -27,7 +24,6 @@ class RattleSimulation final : public Simulation {
  private:
   using Store = Storage<Pair, MassOf, Rods, RattleBlock>;
   using Stage = RattleStage<Store>;
-  static constexpr int kMostRefinements = 5;
 
   void do_set_state(const State& state) override {
     chain_.set(0, topology_, units_, state);

@@ -101,7 +101,7 @@ class SaddleNewton {
     carry.update = data.mass.update(delta, z, e, S);
     least = smaller(least, smaller(S.xx, sigma));
     finish(block.factors, data.mass, S, z, carry.reciprocal, e);
-    block.c = adjugate_times(block.factors.scaled, f);
+    block.f = f;
     carry.force = forward(block.factors.gain, pull + data.mass.inner(block.u), f);
   }
 
@@ -128,7 +128,7 @@ class SaddleNewton {
     for (int j = 0; j < Store::kRods; ++j) S = plus_square(S, block->d[j]);
     const V reciprocal = reciprocal_of(sigma);
     block->factors.scaled = {reciprocal * S.xx, reciprocal * S.xy, reciprocal * S.yy};
-    block->c = reciprocal * adjugate_times(S, f);
+    block->f = reciprocal * adjugate_times(S, f);
     return smaller(least, smaller(S.xx, smaller(sigma, reciprocal)));
   }
 };

@@ -14,6 +14,9 @@ template <class V>
 struct Factors {
   Sym<V> scaled;  // S/σ: its adjugate is S⁻¹
   V gain[4];      // G = S⁻¹ O, by rows
+
+  Factors() = default;
+  Factors(const Factors&) = delete;  // see Vec
 };
 
 /// State and factors of a point, in the units of chain.md.
@@ -22,7 +25,7 @@ struct Block {
   Vec<V> x, u, w;       // position, acceleration, velocity
   V rods[Rods::kMost];  // multipliers
   V link;
-  Vec<V> c;  // S⁻¹ times the right-hand side, between a sweep inwards and the one outwards
+  Vec<V> f;  // right-hand side between a sweep inwards and the one outwards
   Factors<V> factors;
 };
 

@@ -1,0 +1,109 @@
+// The step with default settings of the chains in a register, sweep by sweep.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "chain_lane_group.hpp"
+#include "chain_projection.hpp"
+
+namespace mbs::compiled_ldl::chain {
+
+template <template <class> class MassOf, class Rods>
+class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods>> {
+ public:
+  using Store = Storage<Wide, MassOf, Rods>;
+  using LaneGroup<Store>::LaneGroup;
+
+  void get_state(int chain, const Topology& topology, const StepSettings& settings,
+                 State& state) const {
+    chain_.get(chain, topology, Units(settings), state);
+  }
+
+  /// Sweeps of a few groups by turns: while one waits at the end of a sweep for the number that the
+  /// next one begins with, the processor has another's to do.
+  static void step_together(std::span<const std::unique_ptr<PenaltyGroup>> groups) {
+    for (const auto& group : groups) group->first_inwards();
+    for (const auto& group : groups) group->first_outwards();
+    for (bool more = true; more;) {
+      more = false;
+      for (const auto& group : groups) more = group->decide() || more;
+      for (const auto& group : groups) group->inwards();
+      for (const auto& group : groups) group->outwards();
+    }
+    for (const auto& group : groups) group->velocity_inwards();
+    for (const auto& group : groups) group->velocity_outwards();
+    for (const auto& group : groups) group->acceleration_inwards();
+    for (const auto& group : groups) group->acceleration_outwards();
+  }
+
+ private:
+  using Base = LaneGroup<Store>;
+  using Base::chain_, Base::failed_, Base::limit_, Base::passes_, Base::running_;
+  using typename Base::V;
+  using Mask = WideMask;
+
+  void first_inwards() {
+    passes_ = failed_ = limit_ = Mask{};
+    whole_ = more_ = true;
+    pass_ = 1;
+    active_ = running_;
+    result_.least = Newton<Store, true>::inwards(chain_, Taking<Mask>());
+  }
+  void first_outwards() { result_.largest = Newton<Store, true>::outwards(chain_, Mask()); }
+
+  /// Books the pass that has been done, and decides about another one. A chain that has converged
+  /// or failed takes no part in further ones.
+  bool decide() {
+    if (!more_) return false;
+    passes_ += active_;
+    last_ = active_;
+    failed_ |= active_ & ~where(result_.least > V{});
+    active_ &= ~where(result_.largest <= this->tolerance_) & ~failed_;
+    more_ = any(active_);
+    if (more_ && pass_ >= this->settings_.max_passes) {
+      limit_ = active_;
+      more_ = false;
+    }
+    ++pass_;
+    whole_ = whole_ && !(more_ && any(running_ & ~active_));
+    return more_;
+  }
+  void inwards() {
+    if (!more_) return;
+    result_.least = whole_ ? Newton<Store, false>::inwards(chain_, Taking<Mask>())
+                           : Newton<Store, false, true>::inwards(chain_, {last_, active_});
+  }
+  void outwards() {
+    if (!more_) return;
+    result_.largest = whole_ ? Newton<Store, false>::outwards(chain_, Mask())
+                             : Newton<Store, false, true>::outwards(chain_, active_);
+  }
+
+  void velocity_inwards() {
+    const bool due = ++this->steps_ % this->settings_.projections_every == 0;
+    projections_ = due ? this->settings_.projections : Projections::none;
+    if (projections_ == Projections::none) return Projection<Store, true>::settle(chain_, last_);
+    if (whole_) return Projection<Store>::velocity_inwards(chain_, Mask());
+    Projection<Store, true>::velocity_inwards(chain_, last_);
+  }
+  void velocity_outwards() {
+    if (projections_ != Projections::none) Projection<Store>::velocity_outwards(chain_);
+  }
+  void acceleration_inwards() {
+    if (projections_ == Projections::both) Projection<Store>::acceleration_inwards(chain_);
+  }
+  void acceleration_outwards() {
+    if (projections_ == Projections::both) Projection<Store>::acceleration_outwards(chain_);
+  }
+
+  Projections projections_ = Projections::both;  // that this step ends with
+  PassResult<V> result_{};
+  Mask active_{};      // which chains take part in the next pass
+  Mask last_{};        // which took part in the last one
+  bool whole_ = true;  // all took part in all passes
+  bool more_ = true;   // another pass is to be done
+  int pass_ = 1;
+};
+
+}  // namespace mbs::compiled_ldl::chain
