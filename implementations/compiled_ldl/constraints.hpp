@@ -111,5 +111,6 @@ class Constraints {
 
 #include "constraints_evaluate.hpp"
 #include "constraints_matrix.hpp"
+#include "constraints_projection.hpp"
 #include "constraints_setup.hpp"
 #include "constraints_single.hpp"

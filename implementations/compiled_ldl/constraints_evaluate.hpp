@@ -108,49 +108,6 @@ void Constraints<S, D>::add_forces(const S* lambda, const S* phi, const S& alpha
 }
 
 template <typename S, int D>
-void Constraints<S, D>::add_projection(const S* x, const S* v, const S& f, S* y) const {
-  const S* u = u_.data();
-  const S* e = earlier_u_.data();
-  for (int k = 0; k < pairs_.one; ++k, u += D, e += D) {
-    const Pair& pair = pairs_.list[k];
-    S sum = S(0.0), square = S(0.0), force[D];
-    for (int i = 0; i < D; ++i) sum += e[i] * (x[pair.a + i] - x[pair.b + i]);
-    sum *= S(4.0) * f;
-    for (int i = 0; i < D; ++i) force[i] = sum * e[i];
-    if (v != nullptr) {
-      for (int i = 0; i < D; ++i) {
-        const S rate = v[pair.a + i] - v[pair.b + i];
-        square += rate * rate;
-      }
-      square *= S(4.0) * f;
-      for (int i = 0; i < D; ++i) force[i] += square * u[i];
-    }
-    for (int i = 0; i < D; ++i) y[pair.a + i] -= force[i];
-    if (k >= pairs_.two) continue;
-    for (int i = 0; i < D; ++i) y[pair.b + i] += force[i];
-  }
-  const S* g = vectors_.data() + 2 * D;
-  const S* earlier = earlier_vectors_.data() + 2 * D;
-  for (int k = 0; k < static_cast<int>(quads_.size()); ++k, g += kQuad, earlier += kQuad) {
-    const Quad& quad = quads_[k];
-    S sum = S(0.0);
-    for (int i = 0; i < quad.free; ++i) sum += dot<D>(earlier + i * D, x + quad.points[i].row);
-    sum *= f;
-    const S term = v == nullptr ? S(0.0) : f * quad_velocity_term(k, v);
-    for (int i = 0; i < quad.free; ++i) {
-      S* to = y + quad.points[i].row;
-      for (int j = 0; j < D; ++j) to[j] -= sum * earlier[i * D + j] + term * g[i * D + j];
-    }
-  }
-  for (const Terms& terms : linear_) {
-    S sum = S(0.0);
-    for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * x[term_rows_[i]];
-    sum *= f;
-    for (int i = terms.begin; i < terms.end; ++i) y[term_rows_[i]] -= sum * term_coefficients_[i];
-  }
-}
-
-template <typename S, int D>
 void Constraints<S, D>::product(const S* x, S* t, bool earlier) const {
   int k = 0;
   const S* u = (earlier ? earlier_u_ : u_).data();

@@ -99,3 +99,4 @@ class Panels {
 #include "panels_eliminate.hpp"
 #include "panels_setup.hpp"
 #include "panels_solve.hpp"
+#include "panels_update.hpp"

@@ -157,7 +157,8 @@ def start_named(layout, name, only, inputs):
     usual = profiles.load("quick")
     profile = replace(usual, name=name, settings=usual.settings | {"alternatives": []})
     known = registry()
-    record = run_record(layout, profile, only, known) | {"inputs": inputs}
+    # As it is read back: a tuple would differ from its list.
+    record = run_record(layout, profile, only, known) | {"inputs": json.loads(json.dumps(inputs))}
     if not continues(layout, record, ("variants", "contenders", "programs", "inputs")):
         write_json(layout.registry, known)
         write_json(layout.run, record)

@@ -1,0 +1,116 @@
+// Compiles random patterns and solves with random numbers on them; --print shows a program.
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <random>
+
+#include "fronts.hpp"
+#include "panels.hpp"
+
+namespace {
+
+using namespace mbs::compiled_ldl;  // NOLINT: a test of this namespace alone
+
+using Random = std::mt19937;
+double number(Random& random) { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); }
+
+/// A chain of points with some more couplings, and multipliers between neighbours.
+Pattern random_pattern(Random& random, int dimension, int points, int more, bool multipliers) {
+  Pattern pattern{.dimension = dimension, .points = points, .cliques = {}, .borders = {}};
+  const auto any = [&] { return static_cast<int>(random() % points); };
+  for (int i = 0; i < points; ++i) pattern.cliques.push_back({i});
+  for (int i = 1; i < points; ++i) pattern.cliques.push_back({i - 1, i});
+  for (int i = 0; i < more; ++i) {
+    std::vector<int> clique = {any(), any(), any()};
+    std::sort(clique.begin(), clique.end());
+    clique.erase(std::unique(clique.begin(), clique.end()), clique.end());
+    pattern.cliques.push_back(clique);
+  }
+  for (int i = 1; multipliers && i < points; ++i) pattern.borders.push_back({i - 1, i});
+  return pattern;
+}
+
+/// Places and random values of a matrix of this pattern, dominated by its diagonal.
+struct Entry {
+  int row, column, at;
+  double value;
+};
+std::vector<Entry> random_matrix(Random& random, const Pattern& pattern, const Program& program) {
+  std::vector<Entry> entries;
+  const auto add = [&](int i, int j, double value) {
+    entries.push_back(
+        {std::max(i, j), std::min(i, j), program.entry(std::max(i, j), std::min(i, j)), value});
+  };
+  for (const auto& clique : pattern.cliques) {
+    for (const int p : clique) {
+      for (const int q : clique) {
+        for (int x = 0; x < pattern.dimension; ++x) {
+          for (int y = 0; y < pattern.dimension; ++y) {
+            const int i = program.row_of_node[p] + x, j = program.row_of_node[q] + y;
+            if (i > j) add(i, j, number(random));
+            if (i == j) add(i, j, 20.0);
+          }
+        }
+      }
+    }
+  }
+  for (std::size_t m = 0; m < pattern.borders.size(); ++m) {
+    const int row = program.row_of_node[pattern.points + m];
+    add(row, row, -0.5);
+    for (const int p : pattern.borders[m]) {
+      for (int x = 0; x < pattern.dimension; ++x) {
+        add(row, program.row_of_node[p] + x, number(random));
+      }
+    }
+  }
+  return entries;
+}
+
+/// Largest residual of a factorization's solution and of a second one with the same factors.
+template <typename Solver, typename F>
+double residual(Random& random, const Pattern& pattern, int width) {
+  const Program program = compile(pattern, width);
+  const auto entries = random_matrix(random, pattern, program);
+  Solver solver(program, pattern.borders.empty());
+  for (const Entry& e : entries) solver.constants()[e.at] += static_cast<F>(e.value);
+  double worst = 0.0;
+  for (int again = 0; again < 2; ++again) {
+    Array<F> x(program.padded, F(0.0));
+    std::vector<double> b(program.size);
+    for (int i = 0; i < program.size; ++i) x[i] = F(b[i] = number(random));
+    if (again == 0) {
+      solver.start();
+      if (!solver.factorize_and_solve(x.data())) return 1.0;
+    } else {
+      solver.solve(x.data());
+    }
+    for (const Entry& e : entries) {
+      b[e.row] -= e.value * lane(x[e.column], 0);
+      if (e.row != e.column) b[e.column] -= e.value * lane(x[e.row], 0);
+    }
+    for (const double r : b) worst = std::max(worst, std::fabs(r));
+  }
+  return worst;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Random random(1);
+  if (argc > 1 && std::strcmp(argv[1], "--print") == 0) {
+    std::cout << compile(random_pattern(random, 2, 10, 2, true), 8);
+    return 0;
+  }
+  int failed = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const int dimension = 2 + trial % 2, points = 1 + trial % 37, more = trial % 5 * points / 4;
+    const Pattern pattern = random_pattern(random, dimension, points, more, trial % 3 == 0);
+    const double in_double = residual<Panels<double>, double>(random, pattern, 8);
+    const double in_float = residual<Panels<float>, float>(random, pattern, 8);
+    const double in_lanes = residual<Fronts<Lanes>, Lanes>(random, pattern, 1);
+    if (in_double < 1e-10 && in_float < 1e-2 && in_lanes < 1e-10) continue;
+    std::printf("trial %d: residuals %g %g %g\n", trial, in_double, in_float, in_lanes);
+    ++failed;
+  }
+  return failed == 0 ? 0 : 1;
+}
