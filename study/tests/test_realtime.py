@@ -77,8 +77,9 @@ def test_a_tiny_study_on_the_real_program(tmp_path, monkeypatch):
     assert set(steps.status) <= set(runs.FINISHED) and (steps.deadline_us == 1e4).all()
     page = (tmp_path / "realtime.html").read_text()
     assert "csc_klu/refactor" in page and (tmp_path / "figures" / "largest.png").exists()
-    monkeypatch.setattr(runs, "simulate", None)
+    taken = {path: path.stat().st_mtime_ns for path in (tmp_path / "raw").rglob("*.json")}
     realtime(words)  # all of it is kept
+    assert taken == {path: path.stat().st_mtime_ns for path in (tmp_path / "raw").rglob("*.json")}
     assert (tmp_path / "realtime.html").read_text() == page
     realtime([*words, "--stored"])
     assert (tmp_path / "realtime.html").read_text() == page
