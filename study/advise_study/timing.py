@@ -20,6 +20,7 @@ class Candidate:
     rows: list = field(default_factory=list)
     reason: str = ""  # why it dropped out
     out: bool = False
+    slower: bool = False  # than others as they were then: that is why it is out
     kept: bool = False  # it is timed in every round, however slow
 
     def times(self, key="step_us"):
@@ -78,6 +79,14 @@ def drop_slow(candidates, factor, number):
         ratio = one.us_per_second()[0] / best
         if ratio > factor and not one.kept:
             one.drop(f"{ratio:.2f} times slower after round {number}")
+            one.slower = True
+
+
+def take_back(candidates):
+    """The timed ones that only were slower: what beat them has become slower itself."""
+    for one in candidates:
+        if one.slower and one.rows:
+            one.out, one.slower, one.reason = False, False, ""
 
 
 def decided(running):

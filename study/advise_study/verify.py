@@ -51,6 +51,7 @@ def accepted(row, setting, question):
 def _reconsider(one, row, advice):
     """What follows from a whole run that was not good enough: a shorter step for all candidates of its
     setting, their time scaled, or one candidate less."""
+    timing.take_back(advice.candidates)
     question, found = advice.question, advice.found[one.setting]
     limit = allowed(question.error, one.setting.order)
     if row["status"] not in FINISHED or row["estimate"] is None:

@@ -145,13 +145,15 @@ def test_a_deadline_is_for_the_99th_percentile():
     assert found["b"].reason == "no time was left to time it"
 
 
-def verified(estimate, p99=1.0, deadline_us=None):
-    """Advice on two implementations of a setting whose pilots at 10 and 5 ms were good; what was run."""
+def verified(estimate, p99=1.0, deadline_us=None, others=()):
+    """Advice on two implementations of a setting whose pilots at 10 and 5 ms were good, and `others`; what
+    was run."""
     question = Question("bar", 1e-3, 1.0, deadline_us, 45.0)
     advice = Advice(question, pilot_duration=1.0, candidates=[
         timing.Candidate(PENALTY, name, 8e-3, [{"step_us": us, "step_us_p99": 1.0}] * 3)
         for name, us in (("a", 10.0), ("b", 11.0))])
-    advice.found = {PENALTY: Found(PENALTY, pilots(8e-4, 2e-4), chosen=8e-3)}
+    advice.candidates += others
+    advice.found = {setting: Found(setting, pilots(8e-4, 2e-4), chosen=8e-3) for setting in (PENALTY, SADDLE)}
     ran = []
 
     def run(kind, setting, name, step, *_, checks):
@@ -171,6 +173,17 @@ def test_a_candidate_that_fails_gets_a_shorter_step_and_then_one_that_is_known()
     assert ran[-1][1] == 5e-3 and len(ran) == 3 and advice.chosen
     advice, _ = verified(lambda step: 1.0)
     assert advice.chosen is None and all("when verified" in one.reason for one in advice.candidates)
+
+
+@pytest.mark.parametrize("us, then", [(12.0, "c"), (30.0, "a")])
+def test_who_was_only_slower_comes_back_when_the_fastest_needs_a_shorter_step(us, then):
+    slower = timing.Candidate(SADDLE, "c", 8e-3, [{"step_us": us, "step_us_p99": 1.0}] * 3)
+    timing.drop_slow([timing.Candidate(PENALTY, "a", 8e-3, [{"step_us": 10.0}]), slower], 1.1, 3)
+    assert slower.reason == f"{us / 10:.2f} times slower after round 3"
+    estimates = iter([1.5e-3, 5e-4])
+    advice, ran = verified(lambda step: next(estimates), others=[slower])
+    assert [name for name, _ in ran] == ["a", then] and advice.chosen.implementation == then
+    assert advice.chosen.reason == ""
 
 
 def test_an_estimate_below_that_of_a_shorter_step_is_raised():
