@@ -63,9 +63,12 @@ void print_list() {
     }
     const Implementation& implementation = entry.implementation;
     for (const Variant& variant : implementation.variants) {
-      fmt::print("{:<24} {}; {} ({} {}, {})\n", entry.folder + "/" + variant.name,
-                 implementation.description, variant.description, implementation.library,
-                 implementation.version, implementation.licence);
+      const std::string library = implementation.library == "none"
+                                      ? "no library"
+                                      : fmt::format("{} {}, {}", implementation.library,
+                                                    implementation.version, implementation.licence);
+      fmt::print("{:<24} {}; {} ({})\n", entry.folder + "/" + variant.name,
+                 implementation.description, variant.description, library);
       const std::vector<std::string> served = served_settings(variant.serves);
       if (!served.empty()) fmt::print("{:<24} also {}\n", "", fmt::join(served, ", "));
     }
