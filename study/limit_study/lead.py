@@ -13,12 +13,6 @@ LARGE = (49, 160, 499, 1999, 4999, 9999)  # sizes at which time, memory and set-
 NEAR = 1.5  # of the fastest with a library, in a first short run; who is slower is not timed further
 
 
-def own(registry):
-    """Variants that stand on no library."""
-    return {variant["name"] for entry in registry["implementations"]
-            if entry["available"] and entry["library"] == "none" for variant in entry["variants"]}
-
-
 def scenes():
     """Every scene file that users are given, then the four-bar of 100 variables with artificial fill."""
     files = [path for folder in FOLDERS for path in sorted((ROOT / "harness/scenes" / folder).glob("*.json"))]

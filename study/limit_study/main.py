@@ -3,7 +3,7 @@ import argparse
 import os
 
 from study.pipeline.builds import build
-from study.pipeline.contenders import from_json
+from study.pipeline.contenders import from_json, own
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_run, write_csv
 from study.pipeline.options import loops, positive, report, results
@@ -69,7 +69,7 @@ def _run(layout, options):
     run = read_run(layout)
     contenders = [one for one in from_json(run["contenders"]).values()
                   if one.ranked and not one.missing]
-    mine, tell = lead.own(registry()), Teller()
+    mine, tell = own(registry()), Teller()
     if "sizes" in options.parts:
         rows = _sizes(layout, options, contenders, mine, tell)
         tell("bounds")

@@ -87,6 +87,12 @@ def control(profile, known):
     return Contender(NULL, NULL, wanted if wanted in available else SYSTEM)
 
 
+def own(known):
+    """Names of the variants that stand on no library, of `mbs list --json`."""
+    return {variant["name"] for entry in known["implementations"]
+            if entry["available"] and entry.get("library") == "none" for variant in entry["variants"]}
+
+
 def wanted_builds(profile, variants):
     """Names of the builds that alternatives of these variants need."""
     return list(dict.fromkeys(

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from study.pipeline import profile as profiles
-from study.pipeline.contenders import Contender, from_json
+from study.pipeline.contenders import Contender, from_json, own
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, read_run
+from study.pipeline.layout import Layout, read_json, read_run
 
 
 @dataclass(frozen=True)
@@ -18,6 +18,7 @@ class Study:
     contenders: dict   # name -> Contender
     control: Contender
     contexts: dict     # environment -> context of its raw files
+    own: set           # names of those that stand on no library
 
     def context(self, contender):
         return self.contexts[contender.environment]
@@ -35,7 +36,8 @@ def open_study(results):
     run = read_run(layout)
     profile = profiles.read(layout.results / "profile.yaml", run["profile"])
     [control] = from_json([run["control"]]).values()
-    return Study(layout, profile, from_json(run["contenders"]), control, run["contexts"])
+    return Study(layout, profile, from_json(run["contenders"]), control, run["contexts"],
+                 own(read_json(layout.registry)))
 
 
 def study_job(function):

@@ -2,7 +2,7 @@
 #
 # A pilot (the first steps of the motion, the fastest of PILOT_RUNS) predicts each cell's cost.
 # Cells slower than the best of their scene by more than the profile's factor are excluded: neither
-# checked nor timed. Where a pilot runs out of time, a single step and the least cost that the timeout
+# checked nor timed; code of the study's own, without a library, excludes nobody. Where a pilot runs out of time, a single step and the least cost that the timeout
 # proves predict; if not even that step ends, it may hang. "Best" counts only what the gate has not
 # rejected, so a wrong but fast implementation excludes nobody: after each verdict the rule is
 # applied again, until nobody new has to be checked. In filled scenes the two fastest of each family
@@ -178,10 +178,12 @@ def rejected(name, verdicts):
 
 
 def best_cost(study, pilots, verdicts):
-    """Least predicted time per step of the ranked ones not rejected; infinite if nobody is left."""
-    return min((pilot["step_us"] for name, pilot in pilots.items() if "step_us" in pilot
-                and study.contenders[name].ranked and not rejected(name, verdicts)),
-               default=math.inf)
+    """Least predicted time per step of the ranked ones not rejected; infinite if nobody is left. Those
+    without a library count only if there is nobody else: they are not what libraries are chosen by."""
+    alive = {name: pilot["step_us"] for name, pilot in pilots.items() if "step_us" in pilot
+             and study.contenders[name].ranked and not rejected(name, verdicts)}
+    backed = [cost for name, cost in alive.items() if name not in study.own]
+    return min(backed or alive.values(), default=math.inf)
 
 
 def _scene_plan(study, scene, pilots, verdicts):

@@ -6,7 +6,7 @@ import pytest
 
 from study.limit_study import instructions, lead, main, measure
 from study.limit_study.main import limit
-from study.pipeline.contenders import Contender
+from study.pipeline.contenders import Contender, own
 from study.pipeline.layout import Layout, write_json
 from study.tests.conftest import ROOT
 
@@ -70,7 +70,7 @@ def test_what_is_refused(words):
 def test_own_code_is_what_has_no_library():
     entries = [{"available": True, "library": library, "variants": [{"name": f"{library}/x"}]}
                for library in ("none", "KLU")]
-    assert lead.own({"implementations": [*entries, {"available": False}]}) == {"none/x"}
+    assert own({"implementations": [*entries, {"available": False}]}) == {"none/x"}
 
 
 def test_scenes_are_all_that_users_are_given():

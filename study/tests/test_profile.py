@@ -66,12 +66,20 @@ def test_stretch_is_the_longest_within_the_budget():
 def test_neither_a_rejected_implementation_nor_an_alternative_excludes_anybody():
     names = ("a/fast", "a/slow", "a/dead", "a/slow+atlas")
     contenders = {name: Contender(name, name.split("+")[0]) for name in names}
-    study = SimpleNamespace(contenders=contenders)
+    study = SimpleNamespace(contenders=contenders, own=set())
     pilots = {"a/fast": {"step_us": 1.0}, "a/slow": {"step_us": 500.0},
               "a/dead": {"status": "crashed"}, "a/slow+atlas": {"step_us": 0.1}}
     assert best_cost(study, pilots, {}) == 1.0
     assert best_cost(study, pilots, {"a/fast": {"verdict": "disagrees"}}) == 500.0
     assert best_cost(study, {"a/dead": pilots["a/dead"]}, {}) == float("inf")
+
+
+def test_code_without_a_library_excludes_nobody_who_has_one():
+    contenders = {name: Contender(name, name) for name in ("own/x", "a/slow")}
+    study = SimpleNamespace(contenders=contenders, own={"own/x"})
+    pilots = {"own/x": {"step_us": 1.0}, "a/slow": {"step_us": 500.0}}
+    assert best_cost(study, pilots, {}) == 500.0
+    assert best_cost(study, {"own/x": pilots["own/x"]}, {}) == 1.0
 
 
 def test_the_fastest_of_a_family_stay_in_the_map():
