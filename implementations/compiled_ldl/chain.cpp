@@ -41,20 +41,6 @@ auto with_kind(std::span<const Topology> chains, const Make& make) {
 
 }  // namespace dispatch
 
-std::span<const double> stages_of(Scheme scheme) {
-  static constexpr double kOne[] = {1.0};
-  static constexpr double kOuter = 0.41449077179437573714;  // 1/(4 − 4^(1/3))
-  static constexpr double kFourth[] = {kOuter, kOuter, 1.0 - 4.0 * kOuter, kOuter, kOuter};
-  static constexpr double kW1 = -1.17767998417887100694641568096431573;
-  static constexpr double kW2 = 0.235573213359358133684793182978534602;
-  static constexpr double kW3 = 0.784513610477557263819497633866349876;
-  static constexpr double kW0 = 1.0 - 2.0 * (kW1 + kW2 + kW3);
-  static constexpr double kSixth[] = {kW3, kW2, kW1, kW0, kW1, kW2, kW3};
-  if (scheme == Scheme::rattle4) return kFourth;
-  if (scheme == Scheme::rattle6) return kSixth;
-  return kOne;
-}
-
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
   if (!dispatch::is_served(settings)) return nullptr;
   auto topology = find_chain(model);

@@ -1,14 +1,11 @@
 // One stage of RATTLE on a chain, Eq. (14): its sweeps, with the multipliers eliminated.
 #pragma once
 
-#include <span>
-
 #include "chain_rows.hpp"
+#include "rattle_stages.hpp"
 
 namespace mbs::compiled_ldl::chain {
 
-/// Lengths of the stages of a scheme, in steps.
-std::span<const double> stages_of(Scheme scheme);
 /// Of a velocity or an acceleration.
 inline constexpr int kMostRefinements = 5;
 

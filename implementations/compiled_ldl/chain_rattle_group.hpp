@@ -15,7 +15,7 @@ class RattleGroup : public LaneGroup<Storage<Wide, MassOf, Rods, RattleBlock>> {
   using Store = Storage<Wide, MassOf, Rods, RattleBlock>;
 
   RattleGroup(int places, const StepSettings& settings)
-      : Base(places, settings), stages_(stages_of(settings.scheme)) {
+      : Base(places, settings), stages_(stage_lengths(settings.scheme)) {
     this->factorizations_ = static_cast<int>(stages_.size());
   }
 

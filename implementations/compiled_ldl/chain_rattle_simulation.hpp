@@ -14,7 +14,7 @@ class RattleSimulation final : public Simulation {
  public:
   RattleSimulation(const Model& model, const StepSettings& settings, Topology topology)
       : Simulation(model, settings),
-        stages_(stages_of(settings.scheme)),
+        stages_(stage_lengths(settings.scheme)),
         max_passes_(settings.max_passes),
         topology_(std::move(topology)),
         units_(settings),
