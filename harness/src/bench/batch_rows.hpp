@@ -19,8 +19,8 @@ inline constexpr std::array kBatchCounters{"lanes", "step_us", "alone_us", "gain
 /// lengths. Counters: lanes; steps; step_us, the time of a step of one lane (that of all over their
 /// number); alone_us, the same for a Simulation of each lane, one after the other, in the same
 /// iterations; gain, alone_us / step_us; variables, constraints and fill_percent. A variant without
-/// batches, a lane that is lost, or a batch that is refused is a row with error_occurred and
-/// "unsupported: ...", "factorization-failed: ..." or "error: ...".
+/// batches, a lane that is lost, or a batch that is refused is a row with error_occurred and a
+/// CellFailure's text as error_message.
 class BatchRows {
  public:
   /// `cells` and what they point to must outlive the object, and the object the benchmarks' run.

@@ -58,19 +58,27 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
+std::string failure_text() {
+  try {
+    throw;
+  } catch (const CellFailure& failure) {
+    return failure.what();
+  } catch (const Unsupported& reason) {
+    return fmt::format("unsupported: {}", reason.what());
+  } catch (const std::bad_alloc&) {
+    return "out-of-memory: an allocation failed";
+  } catch (const std::exception& error) {
+    return fmt::format("error: {}", error.what());
+  }
+}
+
 void Measurement::prepare() {
   if (failure_) throw CellFailure(*failure_);
   if (simulation_) return;
   try {
     try_to_prepare();
-  } catch (const CellFailure& failure) {
-    failure_ = failure.what();
-  } catch (const Unsupported& reason) {
-    failure_ = fmt::format("unsupported: {}", reason.what());
-  } catch (const std::bad_alloc&) {
-    failure_ = "out-of-memory: an allocation failed";
-  } catch (const std::exception& error) {
-    failure_ = fmt::format("error: {}", error.what());
+  } catch (const std::exception&) {
+    failure_ = failure_text();
   }
   if (!failure_) return;
   release();

@@ -20,6 +20,9 @@ class CellFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The std::exception in flight in the words of a CellFailure; only within a catch block.
+std::string failure_text();
+
 /// What to measure. The references must outlive the Measurement.
 struct MeasurementTask {
   const Scene& scene;
