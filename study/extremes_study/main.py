@@ -1,13 +1,11 @@
 # study/extremes: the battery of extremes, ways out, stale pivots and the growth of roundoff.
 import argparse
-import contextlib
-import os
 
+from study.pipeline.carrier import carry_out, layout_of
 from study.pipeline.contenders import from_json
 from study.pipeline.layout import read_run, write_csv
-from study.pipeline.options import positive, report, results
-from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, registry, set_up,
-                                    start_named, writable)
+from study.pipeline.options import add_only, add_results, positive
+from study.pipeline.prepare import registry, start_named
 from study.pipeline.progress import Teller
 
 PARTS = {"battery": "every implementation at the extremes, against the true motion",
@@ -25,26 +23,12 @@ def extremes(arguments):
         epilog="parts:\n" + "\n".join(f"  {name:9} {what}" for name, what in PARTS.items()))
     parser.add_argument("--parts", nargs="+", choices=list(PARTS), default=list(PARTS), metavar="PART",
                         help=f"only these parts ({' '.join(PARTS)})")
-    parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
-                        help="only these implementations (folder or folder/variant)")
+    add_only(parser)
     parser.add_argument("--time-limit", type=positive, default=60.0, metavar="S",
                         help="for one run (60 s); what takes longer is kept as a timeout")
-    parser.add_argument("--results", metavar="DIR", help="results directory (results/local/extremes)")
-    parser.add_argument("--stored", action="store_true",
-                        help="figures and page again from stored tables, without running anything")
+    add_results(parser, "extremes")
     options = parser.parse_args(arguments)
-    layout = results(options, "extremes", "run.json")
-    writable(layout.results)
-    timed = not options.stored and TIMED & set(options.parts)
-    with only_one(layout), only_one_measuring() if timed else contextlib.nullcontext():
-        if "MBS_PROGRAM" not in os.environ and not options.stored:
-            set_up(layout)
-        need_modules("yaml", "pandas", "matplotlib", "jinja2", "scipy")
-        if not options.stored:
-            _run(layout, options)
-        from analysis.extremes.report import write  # it needs the modules
-        report(layout, "extremes", write)
-    return 0
+    return carry_out(layout_of(options, "extremes", "run.json"), options, "extremes", _run, timed=bool(TIMED & set(options.parts)))
 
 
 def _run(layout, options):

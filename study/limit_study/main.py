@@ -3,12 +3,12 @@ import argparse
 import os
 
 from study.pipeline.builds import build
+from study.pipeline.carrier import carry_out, layout_of
 from study.pipeline.contenders import from_json, own
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_run, write_csv
-from study.pipeline.options import loops, positive, report, results
-from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, select, set_up,
-                                    registry, start_named, writable)
+from study.pipeline.options import add_only, add_results, loops, positive
+from study.pipeline.prepare import registry, select, start_named
 from study.pipeline.progress import Teller
 
 LOOPS = (2, 5, 10, 24, 40, 79, 160, 499, 1999)
@@ -31,8 +31,7 @@ def limit(arguments):
         formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS, metavar="PART",
                         help=f"only these parts ({' '.join(PARTS)})")
-    parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
-                        help="only these implementations (folder or folder/variant)")
+    add_only(parser)
     parser.add_argument("--loops", nargs="+", type=loops, default=LOOPS, metavar="N",
                         help=f"sizes ({' '.join(map(str, LOOPS))})")
     parser.add_argument("--instructions", action="store_true", help="also count the instructions of a "
@@ -41,22 +40,9 @@ def limit(arguments):
                         help="processes a cell, in turn over all implementations (5)")
     parser.add_argument("--time-limit", type=positive, default=60.0, metavar="S",
                         help="for one process (60 s); what takes longer is kept as a timeout")
-    parser.add_argument("--results", metavar="DIR", help="results directory (results/local/limit)")
-    parser.add_argument("--stored", action="store_true",
-                        help="figures and page again from stored tables, without running anything")
+    add_results(parser, "limit")
     options = parser.parse_args(arguments)
-    layout = results(options, "limit", "implementations.json")
-    writable(layout.results)
-    with only_one(layout):
-        if "MBS_PROGRAM" not in os.environ and not options.stored:
-            set_up(layout)
-        need_modules("yaml", "pandas", "matplotlib", "jinja2")
-        if not options.stored:
-            with only_one_measuring():
-                _run(layout, options)
-        from analysis.limit.report import write  # it needs the modules
-        report(layout, "limit", write)
-    return 0
+    return carry_out(layout_of(options, "limit", "implementations.json"), options, "limit", _run)
 
 
 def _run(layout, options):

@@ -1,10 +1,6 @@
-# What the command lines of the studies share: values, the results directory, the report at the end.
+# What the command lines of the studies share.
 import argparse
 import math
-from pathlib import Path
-
-from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, ROOT
 
 
 def positive(text):
@@ -20,20 +16,12 @@ def loops(text):
     return int(text)
 
 
-def results(options, name, needed):
-    """The layout of --results, or of results/local/NAME; StudyError if --stored finds no file `needed`."""
-    layout = Layout(Path(options.results).absolute() if options.results
-                    else ROOT / "results" / "local" / name)
-    if options.stored and not (layout.results / needed).exists():
-        raise StudyError(f"{layout.results} holds no results (no {needed})")
-    return layout
+def add_only(parser, whose="these implementations"):
+    parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
+                        help=f"only {whose} (folder or folder/variant)")
 
 
-def report(layout, name, write):
-    """Writes figures and page and says where NAME.html is. `write`: that of analysis/NAME/report.py."""
-    from analysis.loader import TableError  # it needs modules that may have been missing until now
-    try:
-        write(layout.results)
-    except TableError as error:
-        raise StudyError(str(error)) from error
-    print(f"report: {layout.results / f'{name}.html'}")
+def add_results(parser, name):
+    parser.add_argument("--results", metavar="DIR", help=f"results directory (results/local/{name})")
+    parser.add_argument("--stored", action="store_true",
+                        help="figures and page again from stored tables, without running anything")

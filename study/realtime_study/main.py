@@ -1,12 +1,11 @@
 # study/realtime: steps against their deadline: distributions, and the largest scene in real time.
 import argparse
-import os
 
+from study.pipeline.carrier import carry_out, layout_of
 from study.pipeline.contenders import from_json
 from study.pipeline.layout import read_run, write_csv
-from study.pipeline.options import loops, positive, report, results
-from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, registry, select,
-                                    set_up, start_named, writable)
+from study.pipeline.options import add_only, add_results, loops, positive
+from study.pipeline.prepare import registry, select, start_named
 from study.pipeline.progress import Teller
 
 LOOPS = (10, 40)
@@ -20,30 +19,16 @@ def realtime(arguments):
         "their own length: the distribution of their times over 20 s, misses, and the largest "
         "N-four-bar that each implementation simulates in real time. Writes steps.csv, largest.csv, "
         "figures and realtime.html; about 25 minutes.")
-    parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
-                        help="only these implementations (folder or folder/variant)")
+    add_only(parser)
     parser.add_argument("--loops", nargs="+", type=loops, default=LOOPS, metavar="N",
                         help="sizes whose distributions are shown (10 40)")
     parser.add_argument("--steps", nargs="+", type=positive, default=STEPS, metavar="S",
                         help="in seconds (1e-3 1e-4)")
     parser.add_argument("--duration", type=positive, default=20.0, metavar="S",
                         help="simulated time of a distribution (20 s)")
-    parser.add_argument("--results", metavar="DIR", help="results directory (results/local/realtime)")
-    parser.add_argument("--stored", action="store_true",
-                        help="figures and page again from stored tables, without running anything")
+    add_results(parser, "realtime")
     options = parser.parse_args(arguments)
-    layout = results(options, "realtime", "steps.csv")
-    writable(layout.results)
-    with only_one(layout):
-        if "MBS_PROGRAM" not in os.environ and not options.stored:
-            set_up(layout)
-        need_modules("yaml", "pandas", "matplotlib", "jinja2")
-        if not options.stored:
-            with only_one_measuring():
-                _run(layout, options)
-        from analysis.realtime.report import write  # it needs the modules
-        report(layout, "realtime", write)
-    return 0
+    return carry_out(layout_of(options, "realtime", "steps.csv"), options, "realtime", _run)
 
 
 def _run(layout, options):

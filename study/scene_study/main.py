@@ -1,11 +1,12 @@
 # study/scenes: runs the standard problems and the cost of modelling, writes tables and a report.
 import argparse
 import os
-from pathlib import Path
 
+from study.pipeline.carrier import layout_of
 from study.pipeline.contenders import from_json
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, ROOT, read_run, write_csv
+from study.pipeline.layout import read_run, write_csv
+from study.pipeline.options import add_only, add_results
 from study.pipeline.prepare import (digest, digest_of_scene, need_modules, only_one,
                                     only_one_measuring, set_up, start_named, writable)
 from study.pipeline.progress import Teller
@@ -30,23 +31,17 @@ def scenes(arguments):
     parser = _Parser(prog="study/scenes", description="Standard problems: gate, accuracy, conserved "
                      "energy. Modelling: what each piece costs.\n"
                      "Writes tables and scenes.html; about ten minutes.")
-    parser.add_argument("--results", metavar="DIR", help="results directory (results/local/scenes)")
-    parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
-                        help="only these implementations (folder or folder/variant)")
+    add_only(parser)
     parser.add_argument("--problems", nargs="+", metavar="NAME",
                         help="only these standard problems, by name, title or scene file as listed "
                         "below; none: no problem")
     parser.add_argument("--rounds", type=int, default=7,
                         help="rounds of the modelling measurement, 0 for none (7)")
-    parser.add_argument("--stored", action="store_true",
-                        help="tables and report again from stored runs, without running anything")
+    add_results(parser, "scenes")
     options = parser.parse_args(arguments)
     if options.rounds < 0:
         raise StudyError(f"--rounds is {options.rounds}: it must be at least 0")
-    layout = Layout(Path(options.results).absolute() if options.results
-                    else ROOT / "results" / "local" / "scenes")
-    if options.stored and not layout.run.exists():
-        raise StudyError(f"{layout.results} holds no results (no run.json)")
+    layout = layout_of(options, "scenes", "run.json")
     writable(layout.results)
     with only_one(layout), only_one_measuring():
         if "MBS_PROGRAM" not in os.environ and not options.stored:

@@ -1,13 +1,13 @@
 # study/stability: the outcome of the N-four-bar over (step, penalty): table, figures and page.
 import argparse
-import os
 from multiprocessing.pool import ThreadPool
 
+from study.pipeline.carrier import carry_out, layout_of
 from study.pipeline.contenders import from_json
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_run, write_csv
-from study.pipeline.options import loops, positive, report, results
-from study.pipeline.prepare import need_modules, only_one, registry, set_up, start_named, writable
+from study.pipeline.options import add_results, loops, positive
+from study.pipeline.prepare import registry, start_named
 from study.pipeline.progress import Teller
 
 LOOPS, LARGE = (1, 2, 5, 10, 20, 40, 80), (200, 500)
@@ -39,24 +39,11 @@ def stability(arguments):
                         help="simulated time (2 s: past two singular positions)")
     parser.add_argument("--time-limit", type=positive, default=120.0, metavar="S",
                         help="for one run (120 s); what takes longer is kept as a timeout")
-    parser.add_argument("--results", metavar="DIR",
-                        help="results directory (results/local/stability)")
-    parser.add_argument("--stored", action="store_true",
-                        help="figures and page again from stored tables, without running anything")
+    add_results(parser, "stability")
     options = parser.parse_args(arguments)
     if options.all and options.loops:
         raise StudyError("--all and --loops exclude each other")
-    layout = results(options, "stability", "stability.csv")
-    writable(layout.results)
-    with only_one(layout):
-        if "MBS_PROGRAM" not in os.environ and not options.stored:
-            set_up(layout)
-        need_modules("yaml", "pandas", "matplotlib", "jinja2")
-        if not options.stored:
-            _run(layout, options)
-        from analysis.stability.report import write  # it needs the modules
-        report(layout, "stability", write)
-    return 0
+    return carry_out(layout_of(options, "stability", "stability.csv"), options, "stability", _run, timed=False)
 
 
 def _run(layout, options):
