@@ -2,7 +2,8 @@
 import numpy
 
 SAME = 0.02
-FINISHED = ("ok", "degraded")
+GOOD = ("ok", "plausible")      # how a run ends of which nothing is known to be wrong
+FINISHED = (*GOOD, "degraded")  # how one ends that has all of its motion
 
 
 def finished(rows):

@@ -1,6 +1,7 @@
 # The picture of an advice: error estimates of the pilots over time per simulated second, and the choice.
 import matplotlib.pyplot as plt
 
+from analysis.accuracy.front import FINISHED
 from analysis.style import DASHES, DENSE, GREY, MARKERS, SPARSE, number_axis, save
 from analysis.text import number
 
@@ -16,7 +17,7 @@ def draw(answer):
         scheme, _, changes = entry["setting"].partition(", ")
         points = sorted((pilot["step_us"] / pilot["step"] / 1e3, pilot["estimate"], pilot["counts"])
                         for pilot in entry["pilots"]
-                        if pilot["status"] in ("ok", "degraded") and pilot["estimate"])
+                        if pilot["status"] in FINISHED and pilot["estimate"])
         if not points:
             continue
         place = seen[scheme] = seen.get(scheme, -1) + 1

@@ -5,6 +5,7 @@ import matplotlib.pyplot as plt
 from matplotlib.colors import Normalize
 from matplotlib.patches import Patch, Rectangle
 
+from analysis.accuracy.front import GOOD
 from analysis.extremes.numbers import FORMS, ran
 from analysis.style import GREY
 
@@ -64,7 +65,7 @@ def kind(row):
     """What a cell is drawn as."""
     if row.silent:
         return "silent"
-    if row.status == "ok":
+    if row.status in GOOD:
         return "ok" if row.true_error == row.true_error else UNJUDGED
     return row.status if row.status in LOOKS else "other failure"
 

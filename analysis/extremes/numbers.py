@@ -1,6 +1,8 @@
 # The numbers that figures, tables and sentences of extremes.html share.
 import numpy
 
+from analysis.accuracy.front import FINISHED
+
 PLAIN = "α auto"
 NOT_SERVED = ("unsupported", "refused")
 NOT_RUN = (*NOT_SERVED, "not run")
@@ -38,7 +40,7 @@ def costs(cost, folder, way):
     found = []
     if cost.empty:
         return found
-    own = cost[(cost.folder == folder) & cost.status.isin(["ok", "degraded"])]
+    own = cost[(cost.folder == folder) & cost.status.isin(FINISHED)]
     for loops, rows in own.groupby("loops"):
         pairs = rows[rows.way == way].set_index("round").step_us / rows[rows.way == PLAIN].set_index("round").step_us
         if pairs.notna().any():

@@ -2,6 +2,7 @@
 from pathlib import Path
 
 from analysis import page
+from analysis.accuracy.front import GOOD
 from analysis.extremes import battery_figure, numbers, pivots_figure, roundoff_figure, sentences, ways_figure
 from analysis.loader import TableError, _json, plain_table
 
@@ -54,7 +55,7 @@ def _battery(battery):
                 fill_value=0).to_dict("index"),
             "statuses": list(dict.fromkeys(["ok", "degraded", *sorted(battery.status.unique())])),
             "silent": sentences.silent(battery),
-            "unjudged": battery[(battery.status == "ok") & battery.true_error.isna()].to_dict("records")}
+            "unjudged": battery[battery.status.isin(GOOD) & battery.true_error.isna()].to_dict("records")}
 
 
 def _ways(ways, ways_cost, scaling):

@@ -1,6 +1,7 @@
 # The sentences of extremes.html, computed from its tables.
 import numpy
 
+from analysis.accuracy.front import GOOD
 from analysis.extremes.numbers import FLOOR, INSTANTS, NEAR, growth, later, ran, with_speed
 from analysis.text import number
 
@@ -10,15 +11,15 @@ def battery(table):
     found, nobody, runs = [], [], ran(table)
     tried = table[~table.status.isin(["not run", "unsupported"])]
     for (axis, value), rows in tried.groupby(["axis", "value"], sort=False):
-        good = rows.status == "ok"
+        good = rows.status.isin(GOOD)
         if not (good & ~rows.silent).any():
             outcomes = rows.status.mask(rows.silent, "silently wrong").value_counts()
             counts = ", ".join(f"{count} {status}" for status, count in outcomes.items())
             nobody.append(f"{axis}, {value}: {counts}")
-    good = ((runs.status == "ok") & ~runs.silent).sum()
+    good = (runs.status.isin(GOOD) & ~runs.silent).sum()
     found.append(f"{good} of {len(runs)} runs are ok and right; {int(runs.silent.sum())} are ok and wrong.")
     for setting, rows in runs.groupby("setting", sort=False):
-        found.append(f"{setting}: ok and right in {((rows.status == 'ok') & ~rows.silent).sum()} of {len(rows)}.")
+        found.append(f"{setting}: ok and right in {(rows.status.isin(GOOD) & ~rows.silent).sum()} of {len(rows)}.")
     return found, nobody
 
 

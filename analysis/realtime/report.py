@@ -33,7 +33,7 @@ def render(steps, largest, run, figures):
 
 
 def guard(steps):
-    """Share of a step that judging every 32nd state takes, by size and implementation: means over
+    """Share of a step that judging takes, by size and implementation: means over
     one run, both as observed."""
     rows = steps[steps.judge_us.notna() & steps.observed_mean_us.notna()].copy()
     rows["variables"] = 2 * rows.loops + 2

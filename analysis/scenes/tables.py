@@ -4,6 +4,7 @@ from pathlib import Path
 import numpy
 import pandas
 
+from analysis.accuracy.front import GOOD
 from analysis.loader import TableError
 from analysis.statistics import median, ratio_interval
 
@@ -36,7 +37,7 @@ def costs(modelling):
         for case in dict.fromkeys(group[group["round"] == 1].case):
             rows = group[group.case == case]
             plain = group[group.case == rows.base.iloc[0]]
-            failed = rows[rows.status != "ok"]
+            failed = rows[~rows.status.isin(GOOD)]
             row = {"implementation": implementation, "loops": loops, "case": case,
                    "piece": "" if case == PLAIN else rows.piece.iloc[0],
                    "status": "ok" if failed.empty else failed.status.iloc[0],

@@ -27,7 +27,7 @@ struct SimulateOptions {
   std::string trajectory;
   std::string output;
   long every = 1;
-  int judge_every = RunSettings{}.judge_every;
+  std::optional<int> judge_every;
   bool half_step = false;
   bool scale_equations = false;
   std::optional<double> deadline_us;
@@ -99,9 +99,10 @@ int simulate(const SimulateOptions& options) {
   } else {
     fmt::print("{}", summary_text(json));
   }
-  const bool degraded = summary.status == RunStatus::degraded;
-  if (degraded) fmt::print(stderr, "mbs: degraded: {}\n", summary.reason);
-  if (degraded || summary.status == RunStatus::ok) {
+  if (summary.status == RunStatus::degraded) {
+    fmt::print(stderr, "mbs: degraded: {}\n", summary.reason);
+  }
+  if (is_finished(summary.status)) {
     for (const std::string& warning : warnings) fmt::print(stderr, "mbs: warning: {}\n", warning);
     return 0;
   }
@@ -135,10 +136,10 @@ void add_simulate_command(CLI::App& app, int& status) {
       ->check(is_file_name);
   command->add_option("--every", options->every, "write every K-th step only, K >= 1")
       ->capture_default_str();
-  command
-      ->add_option("--judge-every", options->judge_every,
-                   "judge the state after every K-th step and the last, K >= 1")
-      ->capture_default_str();
+  command->add_option(
+      "--judge-every", options->judge_every,
+      "judge the state after every K-th step and the last, K >= 1 (default: 128, fewer "
+      "in runs below 8192 steps)");
   command->add_flag("--half-step", options->half_step,
                     "also simulate with half the step, and estimate the error by the difference");
   command->add_flag("--scale-equations", options->scale_equations,

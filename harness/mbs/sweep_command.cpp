@@ -114,7 +114,7 @@ int sweep(const SweepOptions& options) {
   file.commit();
   long failed = 0;
   for (const auto& [status, count] : outcomes) {
-    if (status != RunStatus::ok && status != RunStatus::degraded) failed += count;
+    if (!is_finished(status)) failed += count;
   }
   if (failed == 0) {
     fmt::print("{} lanes: {}\n", grid.lanes(), text_of(outcomes));

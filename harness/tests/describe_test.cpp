@@ -279,6 +279,17 @@ TEST(Warnings, SayWhereNoPenaltyFactorSuits) {
   EXPECT_TRUE(setting_warnings(model, settings).empty());
 }
 
+TEST(Warnings, TellOfALooseTolerance) {
+  const Model model = load_scene("four-bar:2").model;
+  StepSettings settings;
+  settings.penalty = automatic_penalty(model, settings);
+  const double automatic = automatic_tolerance(model, settings);
+  settings.tolerance = 0.9 * kLoosest * automatic;
+  EXPECT_EQ(tolerance_warning(model, settings), "");
+  settings.tolerance = 1.1 * kLoosest * automatic;
+  EXPECT_NE(tolerance_warning(model, settings).find("tolerance"), std::string::npos);
+}
+
 TEST(Warnings, TellOfSingularStarts) {
   const auto warnings = [](const char* text) {
     StepSettings settings;

@@ -61,7 +61,7 @@ TEST(LocalErrors, OfHigherOrdersAreFoundByHalfSteps) {
     EXPECT_EQ(coarse.status, RunStatus::degraded) << static_cast<int>(scheme);
     RunSettings fine = settings_for(scene, scheme, 0.02, 5.0);
     const RunSummary sound = run(scene, reference(), fine);
-    EXPECT_EQ(sound.status, RunStatus::ok) << sound.reason;
+    EXPECT_EQ(sound.status, RunStatus::plausible) << sound.reason;
     fine.half_step = half_of(scene, fine.step);
     const double error = *run(scene, reference(), fine).position_error_estimate;
     EXPECT_GT(*sound.local_error_sum, 0.1 * error) << static_cast<int>(scheme);

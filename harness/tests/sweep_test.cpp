@@ -225,7 +225,7 @@ TEST(SweepLanes, AloneAreWhatRunSays) {
   const std::vector<Lane>& lanes = alone();
   for (const Lane& lane : lanes) {
     const RunSummary expected = run(lane.scene, batch_variant("sound"), lane.settings);
-    EXPECT_EQ(lane.summary.status, RunStatus::ok) << lane.summary.reason;
+    EXPECT_EQ(lane.summary.status, RunStatus::plausible) << lane.summary.reason;
     EXPECT_EQ(lane.summary.passes, expected.passes);
     EXPECT_EQ(lane.summary.local_error_sum, expected.local_error_sum);
     ASSERT_EQ(lane.outputs.size(), 4U);     // B0.x, B0.y, vB0.x, vB0.y

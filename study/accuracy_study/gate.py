@@ -44,7 +44,8 @@ def _run(path, setting, group, context, final=False):
     partial.parent.mkdir(parents=True, exist_ok=True)
     names = [word for one in group for word in ("--implementation", one.variant)]
     command = group[0].call("check", *SCENES, *setting.words(), "--time-limit", str(SECONDS), *names)
-    ended = child.run([*command, "--json", str(partial)], SECONDS * (len(group) + 1), runs.MEMORY_MB)
+    ended = child.run([*command, "--json", str(partial)], SECONDS * (len(group) + 1), runs.MEMORY_MB,
+                      partial)
     ended_well = ended.status == "exited" and ended.code in (0, 1) and partial.exists()
     if not ended_well and not final:
         partial.unlink(missing_ok=True)

@@ -1,8 +1,6 @@
 # study/accuracy: error against time of every implementation and setting: tables, figures and page.
-import argparse
-
 from study.pipeline.carrier import carry_out, layout_of
-from study.pipeline.options import add_only, add_results, loops, positive
+from study.pipeline.options import Parser, add_only, add_results, loops, positive
 from study.pipeline.prepare import need_modules, registry
 
 PARTS = ("work", "regions", "pairs")
@@ -25,7 +23,7 @@ def _run(layout, options):
 
 
 def _parser():
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="study/accuracy", description="Which implementation and setting (study/settings.yaml) "
         "reaches which error in which time, on the N-four-bar and the standard problems. Writes tables, "
         "figures and accuracy.html; how long it may take is said first.")

@@ -103,7 +103,7 @@ def _why_not(advice):
     if any("a step takes" in found.reason for found in advice.found.values()):
         return "no step is done within the deadline"
     return "no setting reaches the error" + (
-        f" within the budget of {advice.question.budget:g} s (--budget)" if advice.cut_short else "")
+        f" within the budget of {advice.question.budget:g} s (--budget)" if any("no time was left" in cut for cut in advice.cut_short) else "")
 
 
 def text(answer):

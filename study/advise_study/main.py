@@ -1,5 +1,4 @@
 # study/advise: the command line; one question, its results directory, its answer.
-import argparse
 import hashlib
 import json
 import math
@@ -9,19 +8,14 @@ from pathlib import Path
 from study.pipeline.contenders import from_json
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import Layout, ROOT, read_run, write_json
-from study.pipeline.options import positive
+from study.pipeline.options import Parser, positive
 from study.pipeline.prepare import (digest_of_scene, need_modules, only_one, only_one_measuring,
                                     registry, select, start_named, writable)
 from study.pipeline.progress import Teller
 
-DURATION, BUDGET = 20.0, 45.0  # s
+DURATION, BUDGET, LONGEST = 20.0, 45.0, 1e6  # s
 OF_A_QUESTION = ("SCENE", "--error", "--deadline-us", "--duration", "--budget", "--json", "--plot")
 DEFAULT = ROOT / "results" / "local" / "advice"
-
-
-class Parser(argparse.ArgumentParser):
-    def error(self, message):
-        raise StudyError(f"{message} (see {self.prog} --help)")
 
 
 def advise(arguments):
@@ -119,6 +113,8 @@ def duration(scene, asked, described):
     end = described["drivers_end"] or math.inf
     if asked and asked > end:
         raise StudyError(f"--duration {asked:g}: the drivers of {scene} end at {end:g} s")
+    if asked and asked > LONGEST:
+        raise StudyError(f"--duration {asked:g}: at most {LONGEST:g} s")
     return asked or min(DURATION, end)
 
 

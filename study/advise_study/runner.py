@@ -11,7 +11,7 @@ from study.pipeline.errors import StudyError
 from study.pipeline.layout import ROOT, program
 
 
-# After every step: the usual judging of every 32nd one may keep pace with the motion and miss its worst.
+# After every step: the usual judging of a few of them may keep pace with the motion and miss its worst.
 EXACT = ("--judge-every", "1")  # for the exact error
 HALVED = ("--half-step", *EXACT)  # for an estimate beside it
 

@@ -32,13 +32,15 @@ def verify(advice, run, left, tell):
 
 
 def _at_least(row, advice):
-    """The estimate of a whole run, or a larger one that the same setting has at a shorter step: then the two
-    runs that gave it were wrong alike."""
-    if row["estimate"] is None or advice.pilot_duration < advice.question.duration:
-        return row["estimate"]
+    """The estimate of a whole run; its exact error, where that is known and larger; or a larger estimate that
+    the same setting has at a shorter step: then the two runs that gave it were wrong alike."""
+    if row["estimate"] is None:
+        return None
+    known = max(row["estimate"], row["exact"] or 0.0)
+    if advice.pilot_duration < advice.question.duration:
+        return known
     found = next(found for setting, found in advice.found.items() if setting.label == row["setting"])
-    return max([row["estimate"], *(pilot.estimate for pilot in found.pilots
-                                   if pilot.valid and pilot.step < row["step"])])
+    return max([known, *(pilot.estimate for pilot in found.pilots if pilot.valid and pilot.step < row["step"])])
 
 
 def accepted(row, setting, question):

@@ -1,8 +1,6 @@
 # study/run --engines: the N-four-bar in other engines beside ours: tables, figures and page.
-import argparse
-
 from study.pipeline.carrier import carry_out, layout_of
-from study.pipeline.options import add_only, add_results, loops, positive
+from study.pipeline.options import Parser, add_only, add_results, loops, positive
 from study.pipeline.prepare import need_modules
 
 
@@ -28,7 +26,7 @@ def _run(layout, options):
 
 
 def _parser():
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="study/run --engines", description="Error against time of Simbody, MuJoCo, Open Dynamics Engine and "
         "Bullet beside ours (settings: study/engines/settings.yaml and study/settings.yaml), on the N-four-bar and "
         "on scenes without singular positions. Writes tables, figures and engines.html; how long it may take is "

@@ -70,7 +70,7 @@ def truth(cell, references, times):
         return cell.motion.solutions(times), 0.0, "exact"
     quarter, eighth = (references[cell, factor] for factor in FINER)
     for record in (quarter, eighth):
-        status, reason = tools.outcome(record)
+        status, reason = runs.status(record)
         if status not in runs.FINISHED:
             return [], None, f"none: the reference ended as {status}: {reason}"
     fine, finest = ({column: values[:len(times)] for column, values in record["outputs"].items()}
@@ -89,7 +89,7 @@ def _row(study, cell, setting, contender, record, references):
     if record is None:
         return row | {"status": NOT_RUN, "reason": f"dense: {cell.loops} loops are too many",
                       "silent": False}
-    status, reason = tools.outcome(record)
+    status, reason = runs.status(record)
     solutions, own, kind = truth(cell, references, record.get("outputs", {}).get("t", []))
     summary = record.get("summary", {})
     # Its own word, where it knows the exact motion, covers instants that the samples miss.

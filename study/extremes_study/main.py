@@ -4,7 +4,7 @@ import argparse
 from study.pipeline.carrier import carry_out, layout_of
 from study.pipeline.contenders import from_json
 from study.pipeline.layout import read_run, write_csv
-from study.pipeline.options import add_only, add_results, positive
+from study.pipeline.options import Parser, add_only, add_results, positive
 from study.pipeline.prepare import registry, start_named
 from study.pipeline.progress import Teller
 
@@ -17,7 +17,7 @@ NEEDED = {"battery": "CONTROLS", "roundoff": "CONTROLS", "pivots": "STALE_PIVOTS
 
 
 def extremes(arguments):
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="study/extremes", description="Numerical stability at the extremes. Writes tables, figures "
         "and extremes.html; about ten minutes.", formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="parts:\n" + "\n".join(f"  {name:9} {what}" for name, what in PARTS.items()))

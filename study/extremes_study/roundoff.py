@@ -24,7 +24,7 @@ def run(study):
     for loops, form, one in jobs:
         path = _path(study, loops, form, one)
         record = read_json(path)  # one at a time: they are large
-        status, reason = tools.outcome(record)
+        status, reason = runs.status(record)
         times, found = differences(record, references[loops, form])
         rows.append({"loops": loops, "scheme": form, "implementation": one.variant, "status": status,
                      "reason": reason} | {f"at_{instant:g}_s": _at(times, found, instant)

@@ -74,26 +74,19 @@ def command(record):
     return shlex.join([f"{folder}/{Path(program).name}", *rest])
 
 
-def outcome(record):
-    """(status, reason) of a run; `refused` where `mbs` said in a line that it would not run it."""
-    status, reason = runs.status(record)
-    if status == "crashed" and reason.startswith("exit status"):
-        return "refused", reason.partition(": ")[2] or reason
-    return status, reason
-
-
 def error_of(record, solutions, length):
     """Largest distance of a point from where it should be at any time of a run's outputs, in lengths; where several
     motions are possible, from the nearest of them. NaN where it has not all of its motion, or nothing is known."""
     outputs = record.get("outputs", {})
-    if outcome(record)[0] not in WHOLE or not solutions or not outputs.get("t"):
+    if runs.status(record)[0] not in WHOLE or not solutions or not outputs.get("t"):
         return float("nan")
     return min(distances(outputs, solution, length).max() for solution in solutions)
 
 
 def is_silent(record, error, allowed):
-    """Whether a run is reported ok though its error is beyond what that allows; one without positions is."""
-    return outcome(record)[0] == "ok" and not error <= allowed
+    """Whether a run is reported ok or plausible though its error is beyond what that allows; one without
+    positions is."""
+    return runs.status(record)[0] in runs.GOOD and not error <= allowed
 
 
 def distances(outputs, solution, length):

@@ -113,11 +113,11 @@ def _record(study, way, one, place):
 
 
 def _row(study, way, one, place, record):
-    status, reason = tools.outcome(record)
+    status, reason = runs.status(record)
     error = tools.error_of(record, place.chain.solutions(record.get("outputs", {}).get("t", [])), 1.0)
     return {"way": way.name, "implementation": one.variant, "axis": place.axis, "value": place.value,
             "loops": place.loops, "status": status, "reason": reason, "true_error": error,
-            "safe": status == "ok" and error <= CLASS, "silent": tools.is_silent(record, error, CLASS),
+            "safe": status in runs.GOOD and error <= CLASS, "silent": tools.is_silent(record, error, CLASS),
             "passes_per_step": record.get("summary", {}).get("passes_per_step"),
             "raw_file": study.layout.relative(_path(study, way, one, place.name)),
             "command": tools.command(record)}
@@ -132,7 +132,7 @@ def _costs(study, served):
         path = _path(study, way, one, f"cost-{loops}-round{number}")
         record = runs.simulate(path, one, f"four-bar:{loops}", step=COST_STEP, duration=DURATION, every=0,
                                context=study.context(one), seconds=study.seconds, more=way.options)
-        status, reason = tools.outcome(record)
+        status, reason = runs.status(record)
         summary = record.get("summary", {})
         rows.append({"way": way.name, "implementation": one.variant, "folder": one.variant.split("/")[0],
                      "loops": loops, "round": number, "status": status, "reason": reason,

@@ -7,7 +7,7 @@ from study.pipeline.carrier import carry_out, layout_of
 from study.pipeline.contenders import from_json, own
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_run, write_csv
-from study.pipeline.options import add_only, add_results, loops, positive
+from study.pipeline.options import Parser, add_only, add_results, loops, positive
 from study.pipeline.prepare import registry, select, start_named
 from study.pipeline.progress import Teller
 
@@ -22,7 +22,7 @@ EPILOG = """parts:
 
 
 def limit(arguments):
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="study/limit", description="The step of every implementation beside that of code "
         "written for the N-four-bar alone and beside the lower bounds of its arithmetic "
         "(harness/limit), and what each phase takes of it; how far ahead of libraries code without "

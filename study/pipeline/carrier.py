@@ -5,7 +5,7 @@ import os
 from pathlib import Path
 
 from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, ROOT
+from study.pipeline.layout import Layout, ROOT, need_unchanged
 from study.pipeline.prepare import need_modules, only_one, only_one_measuring, set_up, writable
 
 
@@ -28,7 +28,9 @@ def carry_out(layout, options, name, run, timed=True, more_set_up=lambda: None):
             set_up(layout)
             more_set_up()
         need_modules()
-        if not options.stored:
+        if options.stored:
+            need_unchanged(layout.results)
+        else:
             run(layout, options)
         _write(layout, name)
     return 0

@@ -25,8 +25,9 @@ class Ended:
     seconds: float
 
 
-def run(command, seconds, memory_mb):
-    """Runs `command` in ROOT; it and all its children are gone when this returns or raises."""
+def run(command, seconds, memory_mb, writes=None):
+    """Runs `command` in ROOT; it and all its children are gone when this returns or raises, and in the
+    second case the file that it `writes` with whatever has a name that begins like that."""
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         begin = time.monotonic()
         child = subprocess.Popen(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out,
@@ -36,6 +37,11 @@ def run(command, seconds, memory_mb):
             code = child.wait(timeout=seconds)
         except subprocess.TimeoutExpired:
             code = None
+        except BaseException:
+            _end_group(child)
+            for path in writes.parent.glob(f"{writes.name}*") if writes else ():
+                path.unlink(missing_ok=True)
+            raise
         finally:
             _end_group(child)
         took = time.monotonic() - begin

@@ -1,4 +1,5 @@
 # Where everything lies inside one results directory; results/README.md shows the same picture.
+import hashlib
 import json
 import os
 from pathlib import Path
@@ -6,6 +7,7 @@ from pathlib import Path
 from study.pipeline.errors import StudyError
 
 ROOT = Path(__file__).resolve().parent.parent.parent
+DIGESTS = "tables.json"  # {name of a table: its SHA-256}
 NULL = "null/null"  # the harness's control: a simulation that does nothing
 
 
@@ -78,18 +80,40 @@ def read_run(layout, needed=RUN):
 
 def write_json(path, data):
     """Writes atomically: a reader sees the whole file or none."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(path.name + ".partial")
-    partial.write_text(json.dumps(data, indent=1) + "\n")
-    os.replace(partial, path)
+    _write(Path(path), lambda partial: partial.write_text(json.dumps(data, indent=1) + "\n"))
 
 
 def write_csv(path, table):
-    """The same for a pandas table."""
+    """The same for a pandas table, whose digest is kept beside it: need_unchanged()."""
+    _write(path, lambda partial: table.to_csv(partial, index=False))
+    kept = path.with_name(DIGESTS)
+    write_json(kept, (read_json(kept) if kept.exists() else {}) | {path.name: _digest(path)})
+
+
+def _write(path, write):
     partial = path.with_name(path.name + ".partial")
-    table.to_csv(partial, index=False)
-    os.replace(partial, path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write(partial)
+        os.replace(partial, path)
+    except OSError as error:
+        raise StudyError(f"cannot write {path}: {error.strerror}") from error
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def need_unchanged(results):
+    """StudyError if a table in the directory `results` is not what a study wrote there."""
+    kept = results / DIGESTS
+    for name, digest in (read_json(kept) if kept.exists() else {}).items():
+        path = results / name
+        if not path.exists() or _digest(path) != digest:
+            raise StudyError(f"{path} is {'not as it was written' if path.exists() else 'missing'}: restore it, "
+                             "or run the study again without --stored, which reads it from raw/ anew")
+
+
+def _digest(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def fingerprint(context):

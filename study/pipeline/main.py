@@ -1,9 +1,9 @@
 # The command lines of study/run, study/figures and study/compare, and the way into study/view.
-import argparse
 import importlib
 import os
 import re
 import shlex
+import signal
 import sys
 from pathlib import Path
 
@@ -12,13 +12,9 @@ from study.pipeline.contenders import Contender, contenders, from_json
 from study.pipeline.errors import StudyError
 from study.pipeline.front import run_workflow
 from study.pipeline.layout import Layout, ROOT, program, read_run
+from study.pipeline.options import Parser
 from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, registry,
                                     reopen_incomplete, select, set_up, start, writable)
-
-
-class Parser(argparse.ArgumentParser):
-    def error(self, message):
-        raise StudyError(f"{message} (see {self.prog} --help)")
 
 
 STUDIES = {"view": "study.viewer.main", "scenes": "study.scene_study.main",
@@ -28,8 +24,17 @@ STUDIES = {"view": "study.viewer.main", "scenes": "study.scene_study.main",
            "against": "study.pipeline.against"}
 
 
+class Terminated(KeyboardInterrupt):
+    """SIGTERM: as if it were interrupted."""
+
+
+def terminate(*_):
+    raise Terminated
+
+
 def main(arguments):
     command, *rest = arguments
+    signal.signal(signal.SIGTERM, terminate)
     try:
         if command == "run" and "--engines" in rest:
             return importlib.import_module("study.engines.main").engines(rest)
@@ -39,10 +44,10 @@ def main(arguments):
     except StudyError as error:
         print(f"study/{command}: {error}", file=sys.stderr)
         return 2
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as cause:
         print("\ninterrupted; only complete files are kept. To resume:\n  "
               + shlex.join([f"study/{command}", *rest]), file=sys.stderr)
-        return 130
+        return 128 + (signal.SIGTERM if isinstance(cause, Terminated) else signal.SIGINT)
 
 
 def run(arguments):

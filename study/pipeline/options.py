@@ -2,6 +2,15 @@
 import argparse
 import math
 
+from study.pipeline.errors import StudyError
+
+
+class Parser(argparse.ArgumentParser):
+    """Its errors are one line, like those of everything else."""
+
+    def error(self, message):
+        raise StudyError(f"{message} (see {self.prog} --help)")
+
 
 def positive(text):
     value = float(text)
@@ -14,6 +23,14 @@ def loops(text):
     if not text.isdecimal() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"{text} is not a number of loops (1, 2, ...)")
     return int(text)
+
+
+def need_steps(duration, steps):
+    """StudyError if a run of `duration` (s) in one of `steps` (s) is none that `mbs` would begin."""
+    for step in steps:
+        if not 1 <= round(duration / step) <= 1e8:
+            raise StudyError(f"{duration:g} s in steps of {step:g} s are {duration / step:.3g} steps: "
+                             "a run has 1 to 1e8")
 
 
 def add_only(parser, whose="these implementations"):

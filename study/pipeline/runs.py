@@ -8,6 +8,7 @@ from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_json, write_json
 
 MEMORY_MB = 4096
+USAGE = 2  # the exit status of `mbs` where it refuses what it is asked for
 
 
 def simulate(path, contender, scene, *, step, duration, every, context, seconds, more=(),
@@ -16,7 +17,7 @@ def simulate(path, contender, scene, *, step, duration, every, context, seconds,
     of the last two; an existing file is never run again. `outputs` are those of the scene or, where
     `columns` are given, t and these of the trajectory."""
     if path.exists():
-        return read_json(path)
+        return _read(path)
     need(stored, path)
     outputs = path.with_name(path.name + ".partial.csv")
     outputs.parent.mkdir(parents=True, exist_ok=True)
@@ -25,7 +26,7 @@ def simulate(path, contender, scene, *, step, duration, every, context, seconds,
                              "--step", f"{step:g}", "--duration", f"{duration:g}", "--json",
                              *([kind, str(outputs), "--every", str(every)] if every else []),
                              *map(str, more))
-    ended = child.run(command, seconds, MEMORY_MB)
+    ended = child.run(command, seconds, MEMORY_MB, outputs)
     record = {"context": context, "seconds": ended.seconds,
               "command": ["OUTPUT.csv" if word == str(outputs) else word for word in command]}
     try:
@@ -36,10 +37,25 @@ def simulate(path, contender, scene, *, step, duration, every, context, seconds,
                  if outputs.exists() else pandas.DataFrame())
         record["outputs"] = {column: table[column].tolist() for column in table}
     except ValueError as error:
-        status = "crashed" if ended.status == "exited" else ended.status
-        record |= {"failure": {"status": status, "reason": str(error)}}
+        record |= {"failure": _failure(ended, str(error))}
     outputs.unlink(missing_ok=True)
     write_json(path, record)
+    return record
+
+
+def _failure(ended, reason):
+    """Status and reason; `refused` where `mbs` said in a line that it would not run it."""
+    if ended.status == "exited" and ended.code == USAGE:
+        return {"status": "refused", "reason": reason.partition(": ")[2] or reason}
+    return {"status": "crashed" if ended.status == "exited" else ended.status, "reason": reason}
+
+
+def _read(path):
+    """A raw file that is there; StudyError if it is none of a run."""
+    record = read_json(path)
+    told = record.get("failure", record.get("summary")) if isinstance(record, dict) else None
+    if not isinstance(told, dict) or not isinstance(told.get("status"), str):
+        raise StudyError(f"{path} is damaged (it tells of no run): remove it and resume to measure it again")
     return record
 
 
@@ -49,7 +65,8 @@ def need(stored, path):
         raise StudyError(f"{path} is missing: the results are not complete; run study/scenes again")
 
 
-FINISHED = ("ok", "degraded")  # how a run ends that has all of its motion
+GOOD = ("ok", "plausible")       # how a run ends of which nothing is known to be wrong
+FINISHED = (*GOOD, "degraded")   # how one ends that has all of its motion
 
 
 def status(record):

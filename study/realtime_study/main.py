@@ -1,10 +1,8 @@
 # study/realtime: steps against their deadline: distributions, and the largest scene in real time.
-import argparse
-
 from study.pipeline.carrier import carry_out, layout_of
 from study.pipeline.contenders import from_json
 from study.pipeline.layout import read_run, write_csv
-from study.pipeline.options import add_only, add_results, loops, positive
+from study.pipeline.options import Parser, add_only, add_results, loops, need_steps, positive
 from study.pipeline.prepare import registry, select, start_named
 from study.pipeline.progress import Teller
 
@@ -14,7 +12,7 @@ SCHEMES = ("penalty", "saddle-point")
 
 
 def realtime(arguments):
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="study/realtime", description="Steps against the deadline that real time sets them, "
         "their own length: the distribution of their times over 20 s, misses, and the largest "
         "N-four-bar that each implementation simulates in real time. Writes steps.csv, largest.csv, "
@@ -34,6 +32,7 @@ def realtime(arguments):
 def _run(layout, options):
     import pandas
     from study.realtime_study.search import PILOT, REPEATS, Case, largest, step_row
+    need_steps(options.duration, options.steps)
     known = registry()
     start_named(layout, "realtime", select(known, options.only), {
         "duration": options.duration, "repeats": REPEATS, "pilot": PILOT})

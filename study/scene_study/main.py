@@ -6,13 +6,13 @@ from study.pipeline.carrier import layout_of
 from study.pipeline.contenders import from_json
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_run, write_csv
-from study.pipeline.options import add_only, add_results
+from study.pipeline.options import Parser, add_only, add_results
 from study.pipeline.prepare import (digest, digest_of_scene, need_modules, only_one,
                                     only_one_measuring, set_up, start_named, writable)
 from study.pipeline.progress import Teller
 
 
-class _Parser(argparse.ArgumentParser):
+class _Parser(Parser):
     """Its help ends with the names of the problems, read only when it is asked for."""
 
     def format_help(self):

@@ -146,7 +146,7 @@ def rows(found, relative):
                 "passes_per_step", "energy_drift_max", "constraint_violation_max")}
             row["step_us"] = summary["step_us"]["median"]
         outputs = record.get("outputs", {})
-        if status == "ok" and "B0.x" in outputs:
+        if status in runs.GOOD and "B0.x" in outputs:
             exact = four_bar(numpy.array(outputs["t"]), loops)
             row["position_error"] = max(float(numpy.max(numpy.abs(
                 numpy.array(outputs[column]) - exact[column]))) for column in ("B0.x", "B0.y"))

@@ -117,7 +117,7 @@ def _check(path, contender, problem, context, stored):
         "--step", f"{problem.steps[0]:g}", *problem.settings]
     command = contender.call("check", problem.scene, *settings, "--time-limit", str(CHECK_SECONDS), "--json",
                              str(partial), "--implementation", contender.variant)
-    ended = child.run(command, 2 * CHECK_SECONDS, runs.MEMORY_MB)
+    ended = child.run(command, 2 * CHECK_SECONDS, runs.MEMORY_MB, partial)
     if partial.exists() and ended.status == "exited":
         partial.replace(path)
         return read_json(path)

@@ -70,7 +70,8 @@ def windows(loops, steps):
             try:
                 window = json.loads(ended.stdout)["penalty_window"]
             except (ValueError, KeyError) as error:
-                raise StudyError(f"`{shlex.join(command)}` does not work: {ended.reason}") from error
+                raise StudyError(ended.reason.partition("mbs: ")[2] or
+                                 f"`{shlex.join(command)}` does not work: {ended.reason}") from error
             found.append({"loops": count} | {key: window[key] for key in (
                 "step", "lower", "lower_from", "upper", "upper_from")})
     return found

@@ -1,12 +1,11 @@
 # study/stability: the outcome of the N-four-bar over (step, penalty): table, figures and page.
-import argparse
 from multiprocessing.pool import ThreadPool
 
 from study.pipeline.carrier import carry_out, layout_of
 from study.pipeline.contenders import from_json
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_run, write_csv
-from study.pipeline.options import add_results, loops, positive
+from study.pipeline.options import Parser, add_results, loops, need_steps, positive
 from study.pipeline.prepare import registry, start_named
 from study.pipeline.progress import Teller
 
@@ -18,7 +17,7 @@ AT_ONCE = 2
 
 
 def stability(arguments):
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="study/stability", description="Which penalty factors and steps simulate the N-four-bar "
         "well, in each scheme and precision. Writes stability.csv, figures and stability.html; "
         "about two minutes, with --all five.")
@@ -51,19 +50,20 @@ def _run(layout, options):
     from study.stability_study import grid, long
     variants = _variants(registry())
     served = _served(variants, options.implementation)
-    start_named(layout, "stability", list(dict.fromkeys(served.values())),
-          {"duration": options.duration, "time_limit": options.time_limit})
-    run = read_run(layout)
-    contenders = from_json(run["contenders"])
     loops = sorted(set(options.loops or LOOPS + (LARGE if options.all else ())))
     steps, penalties = sorted(set(options.steps)), sorted(set(options.penalties))
+    need_steps(options.duration, steps)
+    windows = grid.windows(loops, steps)  # refuses what `mbs` would refuse
+    start_named(layout, "stability", list(dict.fromkeys(served.values())),
+                {"duration": options.duration, "time_limit": options.time_limit})
+    run = read_run(layout)
+    contenders = from_json(run["contenders"])
     cells = [grid.Cell(count, scheme, precision, contenders[name], step, penalty)
              for count in loops for (scheme, precision), name in served.items()
              if not variants[name]["dense"] or count <= grid.DENSE_LOOPS
              for step in steps for penalty in [grid.AUTOMATIC, *penalties]]
     if not cells:
         raise StudyError(f"dense implementations run up to N = {grid.DENSE_LOOPS} only: no run is left")
-    windows = grid.windows(loops, steps)
     tell, found = Teller(), {}
     with ThreadPool(AT_ONCE) as pool:  # interrupted, it drops what has not begun
         records = pool.imap(lambda cell: grid.run(cell, layout, run["contexts"], options.duration,

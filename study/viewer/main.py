@@ -1,5 +1,4 @@
 # The command line of study/view: from a scene to an HTML page and a PNG sheet.
-import argparse
 import math
 import os
 import re
@@ -8,15 +7,11 @@ import webbrowser
 from pathlib import Path
 
 from study.pipeline.errors import StudyError
+from study.pipeline.options import Parser
 from study.pipeline.prepare import need_modules
 
 VALUES_AT_MOST = 2_000_000  # coordinates in a page: 11 MB of it
 IMPLEMENTATION = "csc_klu/refactor"
-
-
-class Parser(argparse.ArgumentParser):
-    def error(self, message):
-        raise StudyError(f"{message} (see {self.prog} --help)")
 
 
 def view(arguments):

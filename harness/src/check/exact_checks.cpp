@@ -79,7 +79,7 @@ std::vector<Check> exact_checks(const Scene& scene, const Variant& variant,
   std::vector<double> errors;
   for (const double factor : order_visible ? std::vector{4.0, 2.0, 1.0} : std::vector{1.0}) {
     const RunSummary summary = run_with_step(scene, variant, settings, factor);
-    if (summary.status != RunStatus::ok && summary.status != RunStatus::degraded) {
+    if (!is_finished(summary.status)) {
       return {
           {"exact", {}, {}, false, fmt::format("step {:g} s: {}", factor * step, summary.reason)}};
     }

@@ -9,6 +9,7 @@
 
 #include "model_math/kinematics.hpp"
 #include "model_math/vector3.hpp"
+#include "run/settings.hpp"
 #include "scene/row_names.hpp"
 
 namespace mbs {
@@ -119,6 +120,15 @@ std::string period_warning(const Model& model, double step) {
       step, period);
 }
 
+std::string tolerance_warning(const Model& model, const StepSettings& settings) {
+  const double automatic = automatic_tolerance(model, settings);
+  if (settings.tolerance <= kLoosest * automatic) return "";
+  return fmt::format(
+      "the tolerance {:.2g} m is far above {:.2g}, the automatic one: what Newton leaves in every "
+      "step may add up to more than the step's own error (--half-step tells)",
+      settings.tolerance, automatic);
+}
+
 std::string start_warning(const Model& model, const Structure& structure) {
   if (structure.singular != true) return "";
   return fmt::format(
@@ -140,6 +150,7 @@ std::vector<std::string> setting_warnings(const Model& model, const StepSettings
       add(penalty_warning(window, settings.penalty, settings.step));
     }
   }
+  add(tolerance_warning(model, settings));
   add(period_warning(model, settings.step));
   return result;
 }

@@ -20,6 +20,10 @@ inline constexpr double kFarBelow = 100.0, kFarAbove = 10.0;
 /// Longest step as a share of the shortest period of springs; there the period is 3 % off.
 inline constexpr double kLongestShare = 0.1;
 
+/// Newton's tolerance over the automatic one from which the error that it leaves in a step may
+/// count.
+inline constexpr double kLoosest = 1000.0;
+
 /// Whether `penalty` is beyond the window, which is for `step` (s), that far, or whether the window
 /// is empty by as much; one line, empty if not.
 std::string penalty_warning(const PenaltyWindow& window, double penalty, double step);
@@ -33,6 +37,9 @@ std::string period_warning(const Model& model, double step);
 
 /// Whether the start is a singular position; one line, empty if not.
 std::string start_warning(const Model& model, const Structure& structure);
+
+/// Whether the tolerance is above kLoosest times the automatic one; one line, empty if not.
+std::string tolerance_warning(const Model& model, const StepSettings& settings);
 
 /// All of these, one line each.
 std::vector<std::string> setting_warnings(const Model& model, const StepSettings& settings);

@@ -49,14 +49,15 @@ void FourBarExact::state(double t, std::span<double> q, std::span<double> v,
 
 double FourBarExact::position_error(double t, std::span<const double> q) const {
   const Angle x = angle(t);
-  long double worst = 0;
+  long double worst = 0;  // squared, which long double has room for
   for (int i = 0; i <= loops_; ++i) {
     const auto j = static_cast<std::size_t>(2 * i);
-    const long double distance = std::hypot(q[j] - (i + x.sine), q[j + 1] - x.cosine);
-    if (!std::isfinite(distance)) return std::numeric_limits<double>::quiet_NaN();
-    worst = std::max(worst, distance);
+    const long double dx = q[j] - (i + x.sine), dy = q[j + 1] - x.cosine;
+    const long double square = dx * dx + dy * dy;
+    if (!std::isfinite(square)) return std::numeric_limits<double>::quiet_NaN();
+    worst = std::max(worst, square);
   }
-  return static_cast<double>(worst);
+  return static_cast<double>(std::sqrt(worst));
 }
 
 double FourBarExact::distance_from_branch(std::span<const double> q) const {

@@ -58,13 +58,8 @@ class Motion {
 
  private:
   [[nodiscard]] Vector3 of(int point, Coordinates x) const {
-    Vector3 result{};
     const auto offset = static_cast<std::size_t>(at(point).offset);
-    for (int axis = 0; axis < model_.dimension(); ++axis) {
-      const auto k = static_cast<std::size_t>(axis);
-      result[k] = x[offset + k];
-    }
-    return result;
+    return {x[offset], x[offset + 1], model_.dimension() == 3 ? x[offset + 2] : 0.0};
   }
 
   const Model& model_;

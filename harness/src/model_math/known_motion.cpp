@@ -34,14 +34,6 @@ void KnownMotion::set_time(double t) {
   }
 }
 
-KnownMotion::Vector KnownMotion::position(int point) const {
-  const auto index = static_cast<std::size_t>(point);
-  if (!driven_.empty() && driven_[index] >= 0) {
-    return positions_[static_cast<std::size_t>(driven_[index])];
-  }
-  return model_.points()[index].position;
-}
-
 KnownMotion::Vector KnownMotion::of(int point, const std::vector<Vector>& motion) const {
   const int driven = driven_.empty() ? -1 : driven_[static_cast<std::size_t>(point)];
   return driven < 0 ? Vector{} : motion[static_cast<std::size_t>(driven)];

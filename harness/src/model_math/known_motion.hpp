@@ -19,7 +19,13 @@ class KnownMotion {
   void set_time(double t);
 
   /// Of a fixed or driven point, m, m/s and m/s^2; planar: the third component is 0.
-  [[nodiscard]] Vector position(int point) const;
+  [[nodiscard]] Vector position(int point) const {
+    const auto index = static_cast<std::size_t>(point);
+    if (!driven_.empty() && driven_[index] >= 0) {
+      return positions_[static_cast<std::size_t>(driven_[index])];
+    }
+    return model_.points()[index].position;
+  }
   [[nodiscard]] Vector velocity(int point) const { return of(point, velocities_); }
   [[nodiscard]] Vector acceleration(int point) const { return of(point, accelerations_); }
 

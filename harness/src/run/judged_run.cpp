@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <new>
 #include <utility>
@@ -27,6 +28,8 @@ JudgedRun::JudgedRun(const Scene& scene, const Variant& variant, const RunSettin
       settings_(settings),
       observer_(std::move(observer)),
       steps_(count_steps(settings)),
+      interval_(judge_interval(settings)),
+      next_judged_(judged_after(0)),
       state_(std::move(start)),
       before_(state_),
       judge_(scene, state_, 0.0),
@@ -44,14 +47,15 @@ void JudgedRun::begin(Access access) {
 
 double JudgedRun::time(long step) const { return static_cast<double>(step) * settings_.step.step; }
 
-/// Once in every `judge_every` steps, at uneven places, so that a motion that repeats is not always
-/// met at the same one, and after the last.
-bool JudgedRun::is_judged(long step) const {
+/// The first step that is judged after the judged one `step`, or of all after 0: one in every
+/// `interval_` steps, at uneven places, so that a motion that repeats is not always met at the same
+/// one, and the last.
+long JudgedRun::judged_after(long step) const {
   constexpr double kGoldenRatio = 0.6180339887498949;
-  const long every = settings_.judge_every, block = (step - 1) / every;
+  const long block = step == 0 ? 0 : (step - 1) / interval_ + 1;
   const double share = std::fmod(static_cast<double>(block + 1) * kGoldenRatio, 1.0);
-  return step == steps_ ||
-         (step - 1) % every == static_cast<long>(share * static_cast<double>(every));
+  const long place = static_cast<long>(share * static_cast<double>(interval_));
+  return std::min(steps_, block * interval_ + place + 1);
 }
 
 void JudgedRun::count(const StepOutcome& outcome) {
@@ -70,18 +74,25 @@ void JudgedRun::take(const StepOutcome& outcome) {
     return;
   }
   if (half_) half_->advance();
-  const auto begin = Clock::now();
-  if (is_judged(step)) judge_present();
-  if (is_over_) return;
-  if (samples_local_error_ && step < steps_ && is_judged(step + 1)) access_.get_state(before_);
-  judging_ += Clock::now() - begin;
-  if ((observer_ || half_) && !is_judged(step)) access_.get_state(state_);
+  const bool is_judged = step == next_judged_;
+  if (is_judged) {
+    judge_present();
+    if (is_over_) return;
+    next_judged_ = judged_after(step);
+  }
+  if (samples_local_error_ && step < steps_ && step + 1 == next_judged_) {
+    const auto begin = Clock::now();
+    access_.get_state(before_);
+    judging_ += Clock::now() - begin;
+  }
+  if ((observer_ || half_) && !is_judged) access_.get_state(state_);
   if (half_) half_->compare(state_);
   if (observer_) observer_(step, time(step), state_);
   if (step == steps_) conclude();
 }
 
 void JudgedRun::judge_present() {
+  const auto begin = Clock::now();
   const long step = summary_.steps;
   access_.get_state(state_);
   std::string lost = judge_.judge(time(step), state_);
@@ -94,7 +105,10 @@ void JudgedRun::judge_present() {
   if (samples_local_error_) {
     judge_.add_local_error(local_error(), state_, settings_.step.step, step - good_.step);
   }
-  good_ = {step, state_, judge_};
+  good_.step = step;
+  good_.state = state_;
+  good_.judge = judge_;
+  judging_ += Clock::now() - begin;
 }
 
 /// What the last step left, m, sampled where the state is judged.
@@ -174,7 +188,12 @@ void JudgedRun::conclude() {
   const std::string estimated = beyond_estimates();
   if (!summary_.reason.empty() && !estimated.empty()) summary_.reason += ", ";
   summary_.reason += estimated;
-  if (!summary_.reason.empty()) summary_.status = RunStatus::degraded;
+  if (!summary_.reason.empty()) {
+    summary_.status = RunStatus::degraded;
+  } else if (samples_local_error_) {
+    summary_.status = RunStatus::plausible;
+    summary_.reason = "no exact motion is known; --half-step estimates the position error";
+  }
 }
 
 std::string JudgedRun::beyond_estimates() const {

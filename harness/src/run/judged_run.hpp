@@ -53,7 +53,7 @@ class JudgedRun {
   };
 
   [[nodiscard]] double time(long step) const;
-  [[nodiscard]] bool is_judged(long step) const;
+  [[nodiscard]] long judged_after(long step) const;
   void count(const StepOutcome& outcome);
   void judge_present();
   bool locate_loss(const std::string& reason);
@@ -68,9 +68,11 @@ class JudgedRun {
   RunSettings settings_;
   Observer observer_;
   Access access_;
-  long steps_;    // of the whole run
-  State state_;   // the last one that was looked at
-  State before_;  // one step before the one that is judged next
+  long steps_;        // of the whole run
+  long interval_;     // between two judgements
+  long next_judged_;  // step
+  State state_;       // the last one that was looked at
+  State before_;      // one step before the one that is judged next
   Judge judge_;
   LastGood good_;
   std::optional<HalfStepRun> half_;

@@ -49,6 +49,8 @@ std::string to_string(RunStatus status) {
   switch (status) {
     case RunStatus::ok:
       return "ok";
+    case RunStatus::plausible:
+      return "plausible";
     case RunStatus::degraded:
       return "degraded";
     case RunStatus::not_converged:
@@ -63,6 +65,11 @@ std::string to_string(RunStatus status) {
   return "unknown";
 }
 
+bool is_finished(RunStatus status) {
+  return status == RunStatus::ok || status == RunStatus::plausible ||
+         status == RunStatus::degraded;
+}
+
 long count_steps(const RunSettings& settings) {
   const auto require = [](double value, const char* name, const char* unit) {
     if (!(value > 0.0) || !std::isfinite(value)) {
@@ -72,9 +79,9 @@ long count_steps(const RunSettings& settings) {
   };
   require(settings.step.step, "--step", " s");
   require(settings.duration, "--duration", " s");
-  if (settings.judge_every < 1) {
+  if (settings.judge_every && *settings.judge_every < 1) {
     throw UsageError(
-        fmt::format("--judge-every is {}: it must be at least 1", settings.judge_every));
+        fmt::format("--judge-every is {}: it must be at least 1", *settings.judge_every));
   }
   if (settings.repeats < 1 || settings.repeats > 1000) {
     throw UsageError(fmt::format("--repeats is {}: it must be 1 to 1000", settings.repeats));
@@ -97,6 +104,11 @@ long count_steps(const RunSettings& settings) {
                                  settings.duration, steps, settings.step.step, kMostSteps));
   }
   return static_cast<long>(steps);
+}
+
+long judge_interval(const RunSettings& settings) {
+  if (settings.judge_every) return *settings.judge_every;
+  return std::clamp(count_steps(settings) / 64, 1L, 128L);
 }
 
 void require_duration(const Scene& scene, const RunSettings& settings) {

@@ -13,6 +13,7 @@ namespace mbs {
 
 enum class RunStatus {
   ok,             ///< the whole duration was simulated within AccurateBounds
+  plausible,      ///< the same, but nothing tells the position error itself: see Judge
   degraded,       ///< ... within RunBounds; the reason says what is beyond AccurateBounds
   not_converged,  ///< more steps than RunBounds allows ended at the pass limit
   diverged,       ///< the solution was lost: not finite, beyond RunBounds, or the step threw
@@ -20,15 +21,19 @@ enum class RunStatus {
   unsupported,    ///< the implementation cannot simulate this scene
 };
 
-/// "ok", "degraded", "not-converged", "diverged", "wrong-branch", "unsupported".
+/// Whether the whole duration was simulated, with every step converged: ok, plausible or degraded.
+bool is_finished(RunStatus status);
+
+/// "ok", "plausible", "degraded", "not-converged", "diverged", "wrong-branch", "unsupported".
 std::string to_string(RunStatus status);
 
 struct RunSettings {
   StepSettings step;
   double duration = 20.0;  ///< s; rounded to a whole number of steps
-  /// Steps between two judgements; the last step is judged too. Where one finds the solution lost,
-  /// the steps since the one before are done again to find the first that was.
-  int judge_every = 32;
+  /// Steps between two judgements; none: judge_interval(). The last step is judged too. Where one
+  /// finds the solution lost, the steps since the one before are done again to find the first that
+  /// was.
+  std::optional<int> judge_every;
   /// What half the step is to be simulated with, beside the run, to estimate its error:
   /// HalfStepRun.
   std::optional<StepSettings> half_step;
@@ -64,6 +69,10 @@ using Observer = std::function<void(long step, double t, const State& state)>;
 
 /// Number of steps that `duration` takes. Throws UsageError if settings are out of range.
 long count_steps(const RunSettings& settings);
+
+/// RunSettings::judge_every, or, if it has none, 128 steps, which keeps judging a small share of
+/// even the fastest steps, but fewer where the run would not be judged 64 times. 1 or more.
+long judge_interval(const RunSettings& settings);
 
 /// Throws UsageError, like run(), if settings are out of range or do not fit the scene's drivers:
 /// beyond a table, out of a range, too coarse steps.

@@ -15,8 +15,7 @@ namespace {
 
 /// Went to its end, so that its figures are those of the whole duration.
 bool is_complete(const RunSummary& summary) {
-  return summary.status == RunStatus::ok || summary.status == RunStatus::degraded ||
-         summary.status == RunStatus::not_converged;
+  return is_finished(summary.status) || summary.status == RunStatus::not_converged;
 }
 
 void store(Lane& lane, RunSummary summary, const OutputExtremes& extremes) {
