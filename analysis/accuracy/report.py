@@ -35,7 +35,7 @@ def write(folder):
     figures = {}
     for name, figure in _figures(tables, registry):
         figures[name] = page.embedded(folder, name, figure)
-    page.write(folder / "accuracy.html", render(tables, _json(folder / "run.json"), figures))
+    page.write(folder / "accuracy.html", render(tables, _json(folder / "run.json"), figures, registry))
 
 
 def file_name(subject):
@@ -63,8 +63,10 @@ def _figures(tables, registry):
             yield name, pairs_figure.draw(tables[name], look, title, goal)
 
 
-def render(tables, run, figures):
+def render(tables, run, figures, registry):
     """The page; `figures`: {name: SVG in base 64}."""
+    libraries = [variant["name"] for entry in registry if entry.get("library") != "none"
+                 for variant in entry["variants"]]
     work, gate = tables["work"], tables["gate"]
     references = tables["references"].to_dict("records")
     by_subject = dict(list(work.groupby("subject", sort=False)))
@@ -80,7 +82,7 @@ def render(tables, run, figures):
         refused=_records(gate[~gate.takes_part.astype(bool)]),
         inaccurate=_records(gate[gate.only_inaccurate.astype(bool)]), checked=len(gate),
         statuses=list(dict.fromkeys(["ok", "degraded", *sorted(work.status.unique())])),
-        summary=sentences.summary(tables["winners"]), regions=sentences.of_regions(tables),
+        summary=sentences.summary(tables["winners"], work, libraries), regions=sentences.of_regions(tables),
         fills=_records(tables["fills"]), forms=_records(tables["forms"]),
         forms_says=sentences.of_forms(tables["forms"]),
         precision=_records(tables["precision"]),

@@ -32,21 +32,29 @@ def of_subject(rows):
     return [first, second + "."]
 
 
-def summary(winners):
-    """Who wins at the mechanism's own fill, a sentence for each required error."""
+def summary(winners, work, libraries):
+    """Who wins at the mechanism's own fill for each required error, and who of those with a library, `libraries`,
+    is fastest on the curves there."""
     found = []
     if winners.empty:
         return found
     own = winners[winners.fill_asked.isna()]
+    curves = dict(list(work[work.implementation.isin(libraries)].groupby("loops")))
     for required, rows in sorted(own.groupby("required"), reverse=True):
-        groups = {}
+        first, second = {}, {}
         for row in rows.itertuples():
             words = ("nobody" if row.implementation == "nobody" else
                      f"{row.implementation}, {row.setting}" + ("" if row.decided is True else " (undecided)"))
-            groups.setdefault(words, []).append(f"{row.variables:.0f}")
-        found.append({"required": required, "winners": [
-            {"who": who, "sizes": ", ".join(sizes)} for who, sizes in groups.items()]})
+            first.setdefault(words, []).append(f"{row.variables:.0f}")
+            best = fastest(curves[row.loops], required) if row.loops in curves else None
+            words = "nobody" if best is None else f"{best.implementation}, {best.setting}"
+            second.setdefault(words, []).append(f"{row.variables:.0f}")
+        found.append({"required": required, "winners": _sizes(first), "with_library": _sizes(second)})
     return found
+
+
+def _sizes(groups):
+    return [{"who": who, "sizes": ", ".join(sizes)} for who, sizes in groups.items()]
 
 
 def of_regions(tables):

@@ -23,11 +23,12 @@ def winners(regions):
 
 def leaders(cell):
     """Index of the fastest that meets the error, also in its timed run, and of the fastest of another
-    implementation; less where there is none. `cell`: rows of one required error. Who has more rounds comes
-    first: these were the fastest when all had as many."""
+    implementation, not only of another variant; less where there is none. `cell`: rows of one required error.
+    Who has more rounds comes first: these were the fastest when all had as many."""
     done = _done(cell)
     first = done.index[:1]
-    others = done[done.implementation != done.implementation[first[0]]] if len(first) else done
+    folders = done.implementation.str.split("/").str[0]
+    others = done[folders != folders[first[0]]] if len(first) else done
     return [*first, *others.index[:1]]
 
 

@@ -155,7 +155,8 @@ def test_the_page_says_what_was_refused_and_what_the_reference_is_worth():
               "precision": pandas.DataFrame([pair("one/a", 1.5)]), "tangents": tangents(work())}
     context = {"compiler": "c", "commit": "0", "cpu_model": "a machine"}
     page = report.render(tables, {"contexts": {"own": context}, "inputs": {"duration": 5.0, "time_limit": 4.0}},
-                         {"work-four-bar-2": "AAAA"})
+                         {"work-four-bar-2": "AAAA"}, [{"library": "none", "variants": [{"name": "one/a"}]},
+                                                       {"library": "L", "variants": [{"name": "two/a"}]}])
     for text in ("one/a, single, four-bar:2: disagrees, free-running", "none: it diverged", "3·10⁻¹⁵",
-                 "1 were pruned by their pilots and 1 by a run of their own", "1 not-run", "1 diverged", "one/a, default (6)", "AAAA"):
+                 "1 were pruned by their pilots and 1 by a run of their own", "1 not-run", "1 diverged", "one/a, default (6)", "two/a, default (6)", "AAAA"):
         assert text in page, text

@@ -75,8 +75,12 @@ def _near(cells):
     """Of one required error: those near the fastest, and the fastest of another implementation."""
     meeting = [cell for cell in cells if cell["measured_error"] <= cell["required"]]
     order = sorted(meeting, key=lambda cell: cell["times"][0])
-    others = [cell for cell in order if cell["implementation"] != order[0]["implementation"]]
+    others = [cell for cell in order if _folder(cell) != _folder(order[0])]
     return [cell for cell in order if cell is next(iter(others), None) or cell["times"][0] <= NEAR * order[0]["times"][0]]
+
+
+def _folder(cell):
+    return cell["implementation"].partition("/")[0]
 
 
 def _round(bench, subject, entries, cells, number, tell):

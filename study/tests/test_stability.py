@@ -40,7 +40,7 @@ def test_what_is_served_is_run_and_can_be_drawn_again(run, tmp_path):
     run("--stored")
     assert len(drawn) == 2 and before == [path.read_bytes() for path in drawn]
     (results / "windows.csv").unlink()
-    with pytest.raises(StudyError, match="windows.csv: cannot be read"):
+    with pytest.raises(StudyError, match="windows.csv is missing"):
         run("--stored")
 
 
