@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -69,6 +70,15 @@ void require_files(const SimulateOptions& options) {
   }
 }
 
+void add_judging_warning(const RunSettings& settings, std::vector<std::string>& warnings) {
+  constexpr long kFew = 16;
+  const long steps = count_steps(settings), judged = (steps - 1) / judge_interval(settings) + 1;
+  if (judged >= std::min(kFew, steps)) return;
+  warnings.push_back(
+      fmt::format("--judge-every {} judges {} of {} steps: what is lost between them is not seen",
+                  judge_interval(settings), judged, steps));
+}
+
 int simulate(const SimulateOptions& options) {
   const NamedVariant variant = select_variant(options.implementation);
   if (options.every < 1) {
@@ -90,7 +100,8 @@ int simulate(const SimulateOptions& options) {
     settings.half_step = half.resolve(scene.model);
   }
   require_duration(scene, settings);
-  const std::vector<std::string> warnings = setting_warnings(scene.model, settings.step);
+  std::vector<std::string> warnings = setting_warnings(scene.model, settings.step);
+  add_judging_warning(settings, warnings);
   const RunSummary summary = run_with_files(options, scene, *variant.variant, settings);
   nlohmann::json json = summary_json(scene, variant, settings, summary);
   json["warnings"] = warnings;

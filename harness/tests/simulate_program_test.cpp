@@ -47,6 +47,15 @@ class SimulateProgram : public ::testing::Test {
   std::string variant_;
 };
 
+TEST_F(SimulateProgram, WarnsWhereAlmostNothingIsJudged) {
+  const std::string arguments = "four-bar:1 --duration 0.5 --judge-every ";
+  const auto seldom = simulate(arguments + "100000");
+  EXPECT_EQ(seldom.status, 0);
+  EXPECT_NE(seldom.errors.find("--judge-every 100000 judges 1 of 400 steps"), std::string::npos)
+      << seldom.errors;
+  EXPECT_EQ(simulate(arguments + "20").errors, "");
+}
+
 TEST_F(SimulateProgram, SummaryHasEveryField) {
   const auto run = simulate("four-bar:3 --duration 0.5 --penalty 1e8 --tolerance 1e-8 --json");
   EXPECT_EQ(run.status, 0);

@@ -7,6 +7,7 @@ from study.accuracy_study import bench, estimate, fills, gate, pairs, regions, s
 from study.pipeline.contenders import from_json
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_run, write_csv
+from study.pipeline.options import need_steps
 from study.pipeline.prepare import digest, digest_of_scene, registry, select, start_named
 from study.pipeline.progress import Teller
 from study.scene_study import problems
@@ -29,6 +30,7 @@ class Choice:
 
 def choose(options, known):
     names = select(known, options.only)
+    need_steps(options.duration, [min(subjects.STEPS)])
     wanted = choose_problems(problems.read_list()[1], options.problems)
     chains = [one.name for one in wanted if one.scene.startswith("four-bar:")]
     if options.problems and chains:
