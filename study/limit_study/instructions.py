@@ -36,7 +36,8 @@ def _run(one, loops, steps, seconds, log):
     bench = replace(one, build=BUILD).call(
         "bench", f"four-bar:{loops}", "--implementation", one.variant, "--start", "0", "--steps",
         str(steps), "--benchmark_min_time=1e-9")
-    command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null",
+    command = ["valgrind", "--tool=callgrind", "--trace-children=yes",  # it executes itself again
+               "--callgrind-out-file=/dev/null",
                f"--log-file={log}", *bench]
     ended = child.run(command, seconds, MEMORY_MB)
     record = {"command": ["--log-file=LOG" if word.startswith("--log-file") else word

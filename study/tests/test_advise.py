@@ -145,7 +145,7 @@ def test_a_deadline_is_for_the_99th_percentile():
     assert found["b"].reason == "no time was left to time it"
 
 
-def verified(estimate, p99=1.0, deadline_us=None, others=()):
+def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None):
     """Advice on two implementations of a setting whose pilots at 10 and 5 ms were good, and `others`; what
     was run."""
     question = Question("bar", 1e-3, 1.0, deadline_us, 45.0)
@@ -159,7 +159,7 @@ def verified(estimate, p99=1.0, deadline_us=None, others=()):
     def run(kind, setting, name, step, *_, checks):
         ran.append((name, step))
         return {"status": "ok", "reason": "", "setting": setting.label, "step": step, "step_us_p99": p99,
-                "estimate": estimate(step)}
+                "estimate": estimate(step), "exact": exact}
     verify(advice, run, lambda: 1.0, lambda text: None)
     return advice, ran
 
@@ -189,6 +189,11 @@ def test_who_was_only_slower_comes_back_when_the_fastest_needs_a_shorter_step(us
 def test_an_estimate_below_that_of_a_shorter_step_is_raised():
     advice, _ = verified(lambda step: 1e-5)
     assert advice.verified["estimate"] == 2e-4  # the pilot's at 5 ms
+
+
+def test_where_the_exact_error_is_known_it_counts_if_it_is_larger():
+    assert verified(lambda step: 1e-5, exact=3e-4)[0].verified["estimate"] == 3e-4
+    assert verified(lambda step: 1e-5, exact=1e-2)[0].chosen is None
 
 
 def test_the_deadline_is_verified_too():

@@ -111,13 +111,6 @@ def test_a_run_is_held_to_the_nearest_of_its_motions_and_to_no_bad_reference():
     assert battery.truth(cell, {(cell, 4): sprung(0.3), (cell, 8): sprung(0.0)}, [0.0])[0] == []
 
 
-def test_a_line_of_refusal_is_no_crash():
-    failure = {"status": "crashed", "reason": "exit status 2: mbs: masses[0]: too small"}
-    assert tools.outcome({"failure": failure}) == ("refused", "mbs: masses[0]: too small")
-    killed = {"status": "crashed", "reason": "SIGSEGV (Segmentation fault)"}
-    assert tools.outcome({"failure": killed})[0] == "crashed"
-
-
 def test_scaling_of_unknowns_changes_no_bit_but_by_the_choice_of_pivots():
     table = pandas.DataFrame(scaling.rows())
     own = table.solver == "LU, pivots of its own"
@@ -210,7 +203,7 @@ def test_the_battery_on_the_real_program_is_resumed(place, monkeypatch):
     monkeypatch.setattr(battery, "battery", lambda: cells)
     table = battery.run(place)["battery"]
     assert list(table.setting) == 4 * ["penalty", "saddle-point"] and not table.silent.any()
-    assert list(table.status[:6]) == 4 * ["ok"] + 2 * ["refused"] and (table.true_error[:4] < 1e-4).all()
+    assert list(table.status[:6]) == 2 * ["ok"] + 2 * ["plausible"] + 2 * ["refused"] and (table.true_error[:4] < 1e-4).all()
     assert (table.status[6:] == "diverged").all() and table.failed_at[6:].notna().all()
     assert "allowed is one rod" in table.reason[4]
     files = [place.layout.results / name for name in table.raw_file]

@@ -7,6 +7,7 @@ import pytest
 from study.limit_study import instructions, lead, main, measure
 from study.limit_study.main import limit
 from study.pipeline.contenders import Contender, own
+from study.pipeline.errors import StudyError
 from study.pipeline.layout import Layout, write_json
 from study.tests.conftest import ROOT
 
@@ -62,9 +63,8 @@ def test_instructions_of_a_step_are_what_more_steps_take_more(tmp_path):
 
 @pytest.mark.parametrize("words", [["--loops", "0"], ["--rounds", "0"], ["--time-limit", "0"]])
 def test_what_is_refused(words):
-    with pytest.raises(SystemExit) as refused:
+    with pytest.raises(StudyError, match=rf"argument {words[0]}: {words[1]} is not a"):
         limit(words)
-    assert refused.value.code == 2
 
 
 def test_own_code_is_what_has_no_library():

@@ -8,6 +8,7 @@ import numpy
 import pandas
 import pytest
 
+from study.pipeline import runs
 from study.pipeline.errors import StudyError
 from study.scene_study import mechanics, metric, modelling, problems, references
 from study.scene_study.extrapolate import extrapolate, observed_order
@@ -161,7 +162,7 @@ def test_two_problems_through_the_real_program(tmp_path):
     done = run(*choice, TMPDIR=str(tmp_path))
     assert done.returncode == 0, done.stderr
     found = pandas.read_csv(results / "problems.csv")
-    assert set(found.status) == {"ok"}, found[["implementation", "status", "reason"]]
+    assert set(found.status) == {"plausible"}, found[["implementation", "status", "reason"]]
     finest = found[found.groupby("problem").step.transform("min") == found.step]
     assert set(finest.precision) == {"high"}, finest[["problem", "error_rms"]]
     assert set(pandas.read_csv(results / "gate.csv").verdict) == {"agrees"}
@@ -171,7 +172,7 @@ def test_two_problems_through_the_real_program(tmp_path):
     meaningful = orders[orders.order_meaningful]
     assert len(meaningful) and meaningful.order.between(1.9, 2.1).all(), meaningful
     pieces = pandas.read_csv(results / "modelling.csv")
-    lost = pieces[pieces.status != "ok"]  # no projections: lost at a singular position
+    lost = pieces[~pieces.status.isin(runs.GOOD)]  # no projections: lost at a singular position
     assert set(lost.piece) <= {"projections"} and lost.reason.notna().all(), lost.reason
     assert (pieces.position_error.dropna() < 0.05).all()
     for raw in [*found.raw_file, *pieces.raw_file]:

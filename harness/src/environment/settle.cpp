@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <utility>
 
 #include "environment/blas.hpp"
@@ -39,6 +40,14 @@ std::vector<std::pair<std::string, std::string>> missing_variables(const BlasPai
   return missing;
 }
 
+/// This program's file. Not the link itself where that can be: under Valgrind it leads to Valgrind.
+std::string own_path() {
+  const std::filesystem::path link = "/proc/self/exe";
+  std::error_code error;
+  const auto path = std::filesystem::read_symlink(link, error);
+  return (!error && std::filesystem::exists(path) ? path : link).string();
+}
+
 }  // namespace
 
 const std::vector<std::string>& thread_variables() {
@@ -65,11 +74,10 @@ void settle_environment(int argc, char** argv) {
   }
   setenv(kGuard, std::to_string(getpid()).c_str(), 1);
   for (const auto& [name, value] : missing) setenv(name.c_str(), value.c_str(), 1);
-  execv("/proc/self/exe", argv);
-  throw UsageError(
-      fmt::format("the program cannot execute itself again through /proc/self/exe ({}): "
-                  "set {} by hand",
-                  std::strerror(errno), first));
+  const std::string program = own_path();
+  execv(program.c_str(), argv);
+  throw UsageError(fmt::format("the program cannot execute itself again as {} ({}): set {} by hand",
+                               program, std::strerror(errno), first));
 }
 
 }  // namespace mbs
