@@ -1,5 +1,5 @@
 # The named settings of study/settings.yaml: what they pass to `mbs`, and which variants serve them.
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import yaml
@@ -33,6 +33,14 @@ class Entries:
     dense: dict       # whether it is
     settings: dict    # [Setting] that it serves, the default one first
     refused: dict     # {(variant, setting): why the gate excludes it}
+    own: frozenset = frozenset()  # variants that stand on no library
+
+    def families(self):
+        """[Entries] of the variants with a library, and of those without: each is measured as if the other were
+        not there, so that the fast code of one does not hide which library to take."""
+        names = [[name for name in self.settings if (name in self.own) == own] for own in (False, True)]
+        return [replace(self, settings={name: self.settings[name] for name in family})
+                for family in names if family]
 
     def setting(self, variant, name):
         return next(one for one in self.settings[variant] if one.name == name)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from analysis.accuracy.tangents import tangents
 from analysis.accuracy.winners import winners
 from study.accuracy_study import bench, estimate, fills, gate, pairs, regions, settings, subjects, work
-from study.pipeline.contenders import from_json
+from study.pipeline.contenders import from_json, own
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_run, write_csv
 from study.pipeline.options import need_steps
@@ -24,6 +24,7 @@ class Choice:
     problems: list    # those of study/problems.yaml that are not N-four-bars
     served: dict      # {variant: [Setting]}
     dense: dict       # {variant: bool}
+    own: frozenset    # variants that stand on no library
     duration: float
     time_limit: float
 
@@ -44,7 +45,7 @@ def choose(options, known):
                   [one for one in wanted if not one.scene.startswith("four-bar:")]
                   if "work" in options.parts else [],
                   settings.served(known, settings.read_list(), names),
-                  {name: bool(offers[name].get("dense")) for name in names},
+                  {name: bool(offers[name].get("dense")) for name in names}, frozenset(own(known)),
                   options.duration, options.time_limit)
 
 
@@ -93,7 +94,7 @@ def admit(place, contenders, choice, store, tell):
             rows += gate.check(place, setting, group)
     store("gate", rows)
     return settings.Entries(contenders, choice.dense, {name: choice.served[name] for name in contenders},
-                            gate.refused(rows))
+                            gate.refused(rows), choice.own)
 
 
 def _work(place, entries, choice, store, tell):

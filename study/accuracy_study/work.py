@@ -17,6 +17,14 @@ ROUNDS = 3
 def measure(bench, subject, entries, tell):
     """DataFrame of one subject's runs: work.csv."""
     import pandas
+    table = pandas.concat([_family(bench, subject, family, tell) for family in entries.families()],
+                          ignore_index=True)
+    table["front"] = table.index.isin(pareto(table))
+    return table
+
+
+def _family(bench, subject, entries, tell):
+    import pandas
     table = []
     for variant, settings in entries.settings.items():
         tell(f"{subject.name}: {variant}, {settings[0].name}")
@@ -33,7 +41,6 @@ def measure(bench, subject, entries, tell):
         table += brackets.refine(bench, subject, entries, pandas.DataFrame(table), tell)
     table = pandas.DataFrame(table)
     _repeat(bench, subject, entries, table, tell)
-    table["front"] = table.index.isin(pareto(table))
     return table
 
 
