@@ -16,6 +16,27 @@ MEMORY_WORDS = re.compile(r"bad_alloc|(out of|not enough) memory|cannot allocate
 OUTPUT_LIMIT = 256 * 2**20  # bytes a child may write to any file
 
 
+class Signalled(KeyboardInterrupt):
+    """SIGINT or SIGTERM: the study ends, and says how to resume."""
+
+    def __init__(self, number):
+        super().__init__()
+        self.number = number
+
+
+_signals = []  # received; compiled code of libraries may swallow what their handler raises
+
+
+def end_on_signals():
+    """Lets SIGINT, unless it is ignored, and SIGTERM end the study, at the latest before its next child."""
+    def end(number, _):
+        _signals.append(number)
+        raise Signalled(number)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, end)
+
+
 @dataclass(frozen=True)
 class Ended:
     status: str  # "exited", "crashed", "timeout" or "out-of-memory"
@@ -28,6 +49,8 @@ class Ended:
 def run(command, seconds, memory_mb, writes=None):
     """Runs `command` in ROOT; it and all its children are gone when this returns or raises, and in the
     second case the file that it `writes` with whatever has a name that begins like that."""
+    if _signals:
+        raise Signalled(_signals[0])
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         begin = time.monotonic()
         child = subprocess.Popen(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out,

@@ -7,7 +7,7 @@ import signal
 import sys
 from pathlib import Path
 
-from study.pipeline import estimate, profile as profiles
+from study.pipeline import child, estimate, profile as profiles
 from study.pipeline.contenders import Contender, contenders, from_json
 from study.pipeline.errors import StudyError
 from study.pipeline.front import run_workflow
@@ -24,17 +24,9 @@ STUDIES = {"view": "study.viewer.main", "scenes": "study.scene_study.main",
            "against": "study.pipeline.against"}
 
 
-class Terminated(KeyboardInterrupt):
-    """SIGTERM: as if it were interrupted."""
-
-
-def terminate(*_):
-    raise Terminated
-
-
 def main(arguments):
     command, *rest = arguments
-    signal.signal(signal.SIGTERM, terminate)
+    child.end_on_signals()
     try:
         if command == "run" and "--engines" in rest:
             return importlib.import_module("study.engines.main").engines(rest)
@@ -47,7 +39,7 @@ def main(arguments):
     except KeyboardInterrupt as cause:
         print("\ninterrupted; only complete files are kept. To resume:\n  "
               + shlex.join([f"study/{command}", *rest]), file=sys.stderr)
-        return 128 + (signal.SIGTERM if isinstance(cause, Terminated) else signal.SIGINT)
+        return 128 + (cause.number if isinstance(cause, child.Signalled) else signal.SIGINT)
 
 
 def run(arguments):

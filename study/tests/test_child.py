@@ -41,3 +41,10 @@ def test_time_limit_ends_grandchildren_too(tmp_path):
             return
         time.sleep(0.1)
     pytest.fail("the grandchild lives on")
+
+
+def test_a_signal_whose_exception_was_swallowed_ends_the_study_before_the_next_child(monkeypatch):
+    monkeypatch.setattr(child, "_signals", [15])
+    with pytest.raises(child.Signalled) as ended:
+        shell("exit 0")
+    assert ended.value.number == 15
