@@ -79,20 +79,20 @@ MBS_CHAIN_INLINE void substitute_inwards(Store& chain, const Terms& terms) {
   const auto* data = chain.constants.data();
   auto* const end = block + chain.last;
   if (block == end) {  // a single point
-    block->f = adjugate_times(block->factors.scaled, terms.point(*block, *data));
+    block->f = adjugate_times(block->factors.scaled, terms.point(*block, **data));
     return;
   }
-  Vec<V> before = terms.point(*block, *data);  // the right-hand side of the block before
-  Vec<V> inner;                                // what its link gives
-  terms.link(*block, block[1], *data, before, inner);
+  Vec<V> before = terms.point(*block, **data);  // the right-hand side of the block before
+  Vec<V> inner;                                 // what its link gives
+  terms.link(*block, block[1], **data, before, inner);
   block->f = before;
   for (++block, ++data; block != end; ++block, ++data) {
-    Vec<V> f = inner + terms.point(*block, *data);
-    terms.link(*block, block[1], *data, f, inner);
+    Vec<V> f = inner + terms.point(*block, **data);
+    terms.link(*block, block[1], **data, f, inner);
     before = forward(block[-1].factors.gain, f, before);  // only this waits for the block before
     block->f = before;
   }
-  const Vec<V> f = inner + (V{} + 0.5) * terms.point(*block, *data);
+  const Vec<V> f = inner + (V{} + 0.5) * terms.point(*block, **data);
   block->f = adjugate_times(block->factors.scaled,
                             meet<typename Store::Use>(forward(block[-1].factors.gain, f, before)));
 }
