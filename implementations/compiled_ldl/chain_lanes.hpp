@@ -48,13 +48,16 @@ struct Lanes<Wide> {
 #else
   static constexpr bool kMagnitudesLoseNaN = false;
 #endif
-  MBS_CHAIN_INLINE static V meet(V a) {
+  MBS_CHAIN_INLINE static V meet(V a) { return a + other_end(a); }
+  /// Of each lane, that of the chain's other end.
+  template <class Vector>
+  MBS_CHAIN_INLINE static Vector other_end(Vector a) {
 #if defined(__AVX512F__)
-    return a + __builtin_shufflevector(a, a, 1, 0, 3, 2, 5, 4, 7, 6);
+    return __builtin_shufflevector(a, a, 1, 0, 3, 2, 5, 4, 7, 6);
 #elif defined(__AVX__)
-    return a + __builtin_shufflevector(a, a, 1, 0, 3, 2);
+    return __builtin_shufflevector(a, a, 1, 0, 3, 2);
 #else
-    return a + __builtin_shufflevector(a, a, 1, 0);
+    return __builtin_shufflevector(a, a, 1, 0);
 #endif
   }
 };
