@@ -31,7 +31,7 @@ class ChainBatch final : public BatchSimulation {
 
  private:
   static constexpr std::size_t kFirstLevelCache = 40000;  // bytes of it that blocks may take
-  static constexpr std::size_t kMostTogether = 4;
+  static constexpr std::size_t kMostTogether = 2;
 
   void do_set_state(int lane, const State& state) override {
     group(lane).set_state(lane % Group::kChains, topologies_[lane], settings_[lane], state);

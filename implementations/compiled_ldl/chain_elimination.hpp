@@ -1,6 +1,8 @@
 // Elimination of one block of the chain, and substitution with its factors.
 #pragma once
 
+#include <type_traits>
+
 #include "chain_storage.hpp"
 
 namespace mbs::compiled_ldl::chain {
@@ -13,15 +15,20 @@ struct Carry {
   Vec<V> force{};   // what its right-hand side gains
 };
 
-/// Eliminates a block, A = own + what the one before leaves: S = A + e eᵀ, z = adj(A) e. (S is not
-/// made from A, but beside it: only its determinant is what the next block waits for.)
+/// Eliminates a block, A = own + what the one before leaves: S = A + e eᵀ, z = adj(A) e. In a
+/// single chain S is not made from A, but beside it: only its determinant is what the next block
+/// waits for.
 template <class V, class Mass>
 MBS_CHAIN_INLINE void eliminate(const Mass& mass, const Sym<V>& own, const Vec<V>& e, Sym<V>& S,
                                 Vec<V>& z, V& least, Carry<V>& carry) {
-  S = plus(plus_square(own, e), carry.reciprocal, carry.update);
+  const Sym<V> A = plus(own, carry.reciprocal, carry.update);
+  if constexpr (std::is_same_v<V, Pair>) {
+    S = plus(plus_square(own, e), carry.reciprocal, carry.update);
+  } else {
+    S = plus_square(A, e);
+  }
   const V sigma = determinant(S);
   const V reciprocal = reciprocal_of(sigma);
-  const Sym<V> A = plus(own, carry.reciprocal, carry.update);
   z = adjugate_times(A, e);
   carry.update = mass.update(determinant(A), z, e, S);
   carry.reciprocal = reciprocal;
@@ -79,20 +86,20 @@ MBS_CHAIN_INLINE void substitute_inwards(Store& chain, const Terms& terms) {
   const auto* data = chain.constants.data();
   auto* const end = block + chain.last;
   if (block == end) {  // a single point
-    block->f = adjugate_times(block->factors.scaled, terms.point(*block, *data));
+    block->f = adjugate_times(block->factors.scaled, terms.point(*block, **data));
     return;
   }
-  Vec<V> before = terms.point(*block, *data);  // the right-hand side of the block before
-  Vec<V> inner;                                // what its link gives
-  terms.link(*block, block[1], *data, before, inner);
+  Vec<V> before = terms.point(*block, **data);  // the right-hand side of the block before
+  Vec<V> inner;                                 // what its link gives
+  terms.link(*block, block[1], **data, before, inner);
   block->f = before;
   for (++block, ++data; block != end; ++block, ++data) {
-    Vec<V> f = inner + terms.point(*block, *data);
-    terms.link(*block, block[1], *data, f, inner);
+    Vec<V> f = inner + terms.point(*block, **data);
+    terms.link(*block, block[1], **data, f, inner);
     before = forward(block[-1].factors.gain, f, before);  // only this waits for the block before
     block->f = before;
   }
-  const Vec<V> f = inner + (V{} + 0.5) * terms.point(*block, *data);
+  const Vec<V> f = inner + (V{} + 0.5) * terms.point(*block, **data);
   block->f = adjugate_times(block->factors.scaled,
                             meet<typename Store::Use>(forward(block[-1].factors.gain, f, before)));
 }

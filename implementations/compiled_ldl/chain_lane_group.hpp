@@ -10,14 +10,14 @@ using WideMask = Lanes<Wide>::Mask;
 /// The chains for which a comparison holds in both lanes.
 template <class Comparison>
 WideMask where(const Comparison& comparison) {
-  WideMask result{};
-  for (int lane = 0; lane < kWideLanes; ++lane) {
-    result[lane] = comparison[lane] & comparison[lane ^ 1];
-  }
-  return result;
+  const auto lanes = (WideMask)comparison;
+  return lanes & Lanes<Wide>::other_end(lanes);
 }
 
 inline bool any(const WideMask& mask) {
+#if defined(__AVX512F__)
+  return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0;
+#endif
   long long bits = 0;
   for (int lane = 0; lane < kWideLanes; ++lane) bits |= mask[lane];
   return bits != 0;

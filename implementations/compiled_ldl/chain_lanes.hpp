@@ -33,6 +33,7 @@ struct Lanes<Pair> {
   using V = Pair;
   using Mask = long long __attribute__((vector_size(16)));
   static constexpr int kChains = 1;
+  static constexpr bool kMagnitudesLoseNaN = false;
   /// In both lanes of a chain, the sum of both.
   MBS_CHAIN_INLINE static V meet(V a) { return a + __builtin_shufflevector(a, a, 1, 0); }
 };
@@ -42,13 +43,21 @@ struct Lanes<Wide> {
   using V = double __attribute__((vector_size(8 * kWideLanes)));
   using Mask = long long __attribute__((vector_size(8 * kWideLanes)));
   static constexpr int kChains = kWideLanes / 2;
-  MBS_CHAIN_INLINE static V meet(V a) {
-#if defined(__AVX512F__)
-    return a + __builtin_shufflevector(a, a, 1, 0, 3, 2, 5, 4, 7, 6);
-#elif defined(__AVX__)
-    return a + __builtin_shufflevector(a, a, 1, 0, 3, 2);
+#if defined(__AVX512DQ__)
+  static constexpr bool kMagnitudesLoseNaN = true;
 #else
-    return a + __builtin_shufflevector(a, a, 1, 0);
+  static constexpr bool kMagnitudesLoseNaN = false;
+#endif
+  MBS_CHAIN_INLINE static V meet(V a) { return a + other_end(a); }
+  /// Of each lane, that of the chain's other end.
+  template <class Vector>
+  MBS_CHAIN_INLINE static Vector other_end(Vector a) {
+#if defined(__AVX512F__)
+    return __builtin_shufflevector(a, a, 1, 0, 3, 2, 5, 4, 7, 6);
+#elif defined(__AVX__)
+    return __builtin_shufflevector(a, a, 1, 0, 3, 2);
+#else
+    return __builtin_shufflevector(a, a, 1, 0);
 #endif
   }
 };
@@ -92,6 +101,28 @@ MBS_CHAIN_INLINE Pair larger<Pair>(Pair a, Pair b) {
   return _mm_max_pd(a, b);
 }
 #endif
+
+#if defined(__AVX512F__)
+template <>
+MBS_CHAIN_INLINE Lanes<Wide>::V larger<Lanes<Wide>::V>(Lanes<Wide>::V a, Lanes<Wide>::V b) {
+  return _mm512_maskz_max_pd(0xff, a, b);
+}
+#elif defined(__AVX__)
+template <>
+MBS_CHAIN_INLINE Lanes<Wide>::V larger<Lanes<Wide>::V>(Lanes<Wide>::V a, Lanes<Wide>::V b) {
+  return _mm256_max_pd(a, b);
+}
+#endif
+
+/// The larger one of a ≥ 0 and |b|. If b is a NaN: that, or with kMagnitudesLoseNaN a.
+template <class Use>
+MBS_CHAIN_INLINE typename Lanes<Use>::V larger_magnitude(typename Lanes<Use>::V a,
+                                                         typename Lanes<Use>::V b) {
+#if defined(__AVX512DQ__)
+  if constexpr (Lanes<Use>::kMagnitudesLoseNaN) return _mm512_maskz_range_pd(0xff, a, b, 0b1011);
+#endif
+  return larger(a, magnitude<Use>(b));
+}
 
 /// The smaller one; the second if there is a NaN.
 template <class V>

@@ -37,7 +37,7 @@ class Newton {
   /// The two sweeps of a pass; the least pivot, and max|2 s Δq|.
   static V inwards(Store& chain, const Taking<Mask>& taking) {
     B* block = chain.blocks.data();
-    const C* data = chain.constants.data();
+    const C* const* data = chain.constants.data();
     B* const end = block + chain.last;
     Carry<V> carry;
     V least = V{} + 1.0;
@@ -45,19 +45,19 @@ class Newton {
     if (block != end) {
       Pending before;
       if (kFirst) predict(block[1]);
-      eliminate_block(*block, block[1], *data, taking, least, carry, before);
+      eliminate_block(*block, block[1], **data, taking, least, carry, before);
       for (++block, ++data; block != end; ++block, ++data) {
         if (kFirst) predict(block[1]);
         Pending now;
-        eliminate_block(*block, block[1], *data, taking, least, carry, now);
-        finish_block(block[-1], data[-1], before, taking.active, carry);
+        eliminate_block(*block, block[1], **data, taking, least, carry, now);
+        finish_block(block[-1], *data[-1], before, taking.active, carry);
         before = now;
         before.f = carry.force + before.f;
       }
-      finish_block(block[-1], data[-1], before, taking.active, carry);
+      finish_block(block[-1], *data[-1], before, taking.active, carry);
     }
-    Vec<V> f = Vec<V>{} - data->force;
-    const Sym<V> own = point(*block, *data, f, taking.pending);
+    Vec<V> f = Vec<V>{} - (*data)->force;
+    const Sym<V> own = point(*block, **data, f, taking.pending);
     set<kMasked>(block->factors.scaled, meet<typename Store::Use>(own, carry, f, least, block->f),
                  taking.active);
     return least;
@@ -114,7 +114,7 @@ class Newton {
                                                Carry<V>& carry, Pending& pending) {
     Vec<V> f = data.mass.outer(next.u) - data.force;
     const Sym<V> own = point(block, data, f, taking.pending);
-    pending.e = data.link.vector(next.x - block.x);
+    pending.e = data.link.vector(next.x - block.x, block.offset);
     const V violation = data.link.violation(pending.e);
     const Vec<V> pull = tension(block.link, violation, taking.pending) * pending.e;
     pending.f = f - pull;

@@ -81,12 +81,18 @@ template <class Use>
 struct LargestOf {
   using V = typename Lanes<Use>::V;
   Vec<V> most{};
+  Vec<V> last{};
 
   MBS_CHAIN_INLINE void add(const Vec<V>& a) {
-    most.x = larger(most.x, magnitude<Use>(a.x));
-    most.y = larger(most.y, magnitude<Use>(a.y));
+    most.x = larger_magnitude<Use>(most.x, a.x);
+    most.y = larger_magnitude<Use>(most.y, a.y);
+    last = a;
   }
-  [[nodiscard]] MBS_CHAIN_INLINE V value() const { return larger(most.y, larger(most.x, most.y)); }
+  [[nodiscard]] MBS_CHAIN_INLINE V value() const {
+    const V most_of_all = larger(most.y, larger(most.x, most.y));
+    if (!Lanes<Use>::kMagnitudesLoseNaN) return most_of_all;
+    return larger(larger(most_of_all, magnitude<Use>(last.x)), magnitude<Use>(last.y));
+  }
 };
 
 template <class V, class Mask>

@@ -16,8 +16,8 @@ class Projection {
   static void settle(Store& chain, const Mask& pending = Mask()) {
     for (int k = 0; k <= chain.last; ++k) {
       B& block = chain.blocks[k];
-      rods(block, chain.constants[k], pending);
-      if (k < chain.last) link(block, chain.blocks[k + 1], chain.constants[k], pending);
+      rods(block, *chain.constants[k], pending);
+      if (k < chain.last) link(block, chain.blocks[k + 1], *chain.constants[k], pending);
       block.w = block.w + block.u;
     }
   }
@@ -57,7 +57,7 @@ class Projection {
     }
   }
   MBS_CHAIN_INLINE static void link(B& block, const B& next, const C& data, const Mask& pending) {
-    add(block.link, data.link.violation(data.link.vector(next.x - block.x)), pending);
+    add(block.link, data.link.violation(data.link.vector(next.x - block.x, block.offset)), pending);
   }
 
   /// M v*
@@ -86,7 +86,7 @@ class Projection {
     }
     MBS_CHAIN_INLINE void link(const B& block, const B& next, const C& data, Vec<V>& f,
                                Vec<V>& inner) const {
-      const Vec<V> e = data.link.vector(next.x - block.x);
+      const Vec<V> e = data.link.vector(next.x - block.x, block.offset);
       const Vec<V> rate = next.w - block.w;
       const Vec<V> pull = ((V{} + 0.5) * dot(rate, rate)) * e;
       f = f + (data.mass.outer(next.u) + pull);

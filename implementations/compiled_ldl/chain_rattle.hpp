@@ -108,7 +108,7 @@ class RattleStage {
     MBS_CHAIN_INLINE void link(const B& block, B& next, const C& data, Vec<V>& f,
                                Vec<V>& inner) const {
       if (kFirst) predict(next);
-      const V violation = data.link.violation(data.link.vector(next.x - block.x));
+      const V violation = data.link.violation(data.link.vector(next.x - block.x, block.offset));
       f = f - violation * block.e;
       inner = violation * block.e;
     }
@@ -143,29 +143,29 @@ class RattleStage {
   template <bool kVelocity>
   static V factorize_inwards(Store& chain, const V& length) {
     B* block = chain.blocks.data();
-    const C* data = chain.constants.data();
+    const C* const* data = chain.constants.data();
     B* const end = block + chain.last;
     const V inverse_length = (V{} + 1.0) / length;
     Carry<V> carry;
     V least = V{} + 1.0;
     for (; block != end; ++block, ++data) {
-      const Sym<V> own = rows(*block, *data);
-      const Vec<V> e = data->link.vector(block[1].x - block->x);
+      const Sym<V> own = rows(*block, **data);
+      const Vec<V> e = (*data)->link.vector(block[1].x - block->x, block->offset);
       block->e = e;
       Sym<V> S;
       Vec<V> z;
-      eliminate(data->mass, own, e, S, z, least, carry);
-      finish(block->factors, data->mass, S, z, carry.reciprocal, e);
+      eliminate((*data)->mass, own, e, S, z, least, carry);
+      finish(block->factors, (*data)->mass, S, z, carry.reciprocal, e);
       if (!kVelocity) continue;
       const Vec<V> w = inverse_length * block->way;
-      const Vec<V> f = carry.force + (data->mass.times(w) + length * data->force +
-                                      data->mass.outer(inverse_length * block[1].way));
+      const Vec<V> f = carry.force + ((*data)->mass.times(w) + length * (*data)->force +
+                                      (*data)->mass.outer(inverse_length * block[1].way));
       block->f = f;
-      carry.force = forward(block->factors.gain, data->mass.inner(w), f);
+      carry.force = forward(block->factors.gain, (*data)->mass.inner(w), f);
     }
-    const Vec<V> f = length * data->force + data->mass.times(inverse_length * block->way);
+    const Vec<V> f = length * (*data)->force + (*data)->mass.times(inverse_length * block->way);
     block->factors.scaled =
-        meet<typename Store::Use>(rows(*block, *data), carry, f, least, block->f);
+        meet<typename Store::Use>(rows(*block, **data), carry, f, least, block->f);
     return least;
   }
 };

@@ -79,7 +79,7 @@ class SaddleNewton {
                                                       V& least, Carry<V>& carry) {
     Vec<V> f = data.mass.outer(next.u) - data.force;
     point(block, data, f);
-    const Vec<V> e = data.link.vector(next.x - block.x);
+    const Vec<V> e = data.link.vector(next.x - block.x, block.offset);
     block.e = e;
     block.link_violation = data.link.violation(e);
     const Vec<V> pull = (block.link + block.link_violation) * e;
@@ -107,19 +107,19 @@ class SaddleNewton {
 
   static V inwards(Store& chain) {
     B* block = chain.blocks.data();
-    const C* data = chain.constants.data();
+    const C* const* data = chain.constants.data();
     B* const end = block + chain.last;
     Carry<V> carry;
     V least = V{} + 1.0;
     if (kFirst) predict(*block);
     for (; block != end; ++block, ++data) {
       if (kFirst) predict(block[1]);
-      assemble_and_eliminate(*block, block[1], *data, least, carry);
+      assemble_and_eliminate(*block, block[1], **data, least, carry);
     }
-    Vec<V> f = Vec<V>{} - data->force;
-    point(*block, *data, f);
+    Vec<V> f = Vec<V>{} - (*data)->force;
+    point(*block, **data, f);
     f = f + meet<typename Store::Use>(carry.force);
-    Sym<V> S = data->mass.matrix();
+    Sym<V> S = (*data)->mass.matrix();
     const V& r = carry.reciprocal;
     S.xx = S.xx + Lanes<typename Store::Use>::meet(r * carry.update.xx);
     S.xy = S.xy + Lanes<typename Store::Use>::meet(r * carry.update.xy);

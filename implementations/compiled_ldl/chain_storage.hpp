@@ -25,7 +25,8 @@ struct Block {
   Vec<V> x, u, w;       // position, acceleration, velocity
   V rods[Rods::kMost];  // multipliers
   V link;
-  Vec<V> f;  // right-hand side between a sweep inwards and the one outwards
+  Vec<V> offset;  // of the vector to the next point
+  Vec<V> f;       // right-hand side between a sweep inwards and the one outwards
   Factors<V> factors;
 };
 
@@ -44,6 +45,21 @@ struct AnyLength {
     square[lane] = unit * unit * from.value;
   }
   MBS_CHAIN_INLINE Vec<V> vector(const Vec<V>& difference) const {
+    return {weight * difference.x + offset.x, weight * difference.y + offset.y};
+  }
+  MBS_CHAIN_INLINE V violation(const Vec<V>& d) const { return d.x * d.x + (d.y * d.y - square); }
+};
+
+/// The same between neighbours. Its offset is kept apart: all else is often the same for many.
+template <class V>
+struct LinkLength {
+  V weight, square;
+
+  void set(int lane, const Distance& from, double unit) {
+    weight[lane] = 1.0;
+    square[lane] = unit * unit * from.value;
+  }
+  MBS_CHAIN_INLINE Vec<V> vector(const Vec<V>& difference, const Vec<V>& offset) const {
     return {weight * difference.x + offset.x, weight * difference.y + offset.y};
   }
   MBS_CHAIN_INLINE V violation(const Vec<V>& d) const { return d.x * d.x + (d.y * d.y - square); }
@@ -78,7 +94,7 @@ struct AtMostRods {
 template <class V, class Mass, class Rods>
 struct Constants {
   typename Rods::template Length<V> rods[Rods::kMost];
-  AnyLength<V> link;  // inner − outer point
+  LinkLength<V> link;  // inner − outer point
   Mass mass;
   Vec<V> force;
 };
@@ -108,14 +124,20 @@ struct Storage {
   static constexpr int kRods = Rods_::kMost;
 
   explicit Storage(int places)
-      : places(places), last(places / 2), blocks(last + 1), constants(last + 1) {}
+      : places(places),
+        last(places / 2),
+        blocks(last + 1),
+        constants(last + 1),
+        values_(last + 1) {}
+  Storage(const Storage&) = delete;  // constants point into it
 
   int places;
   int last;  // the block that is eliminated last, with the same in both lanes
   std::vector<B> blocks;
-  std::vector<C> constants;
+  std::vector<const C*> constants;  // of each block; blocks in a row share them where they can
 
-  [[nodiscard]] std::size_t bytes() const { return blocks.size() * (sizeof(B) + sizeof(C)); }
+  /// What a sweep has to do with, but for constants.
+  [[nodiscard]] std::size_t bytes() const { return blocks.size() * sizeof(B); }
 
   /// Constants and state of a chain.
   void set(int chain, const Topology& topology, const Units& units, const State& state);
@@ -124,6 +146,8 @@ struct Storage {
   void clear(int chain);
 
  private:
+  void share();  // finds the constants that are equal
+
   /// What a lane of a block stands for. Of two ends the right one may have one block more than
   /// there are places: `here` is null.
   struct Slot {
@@ -136,6 +160,8 @@ struct Storage {
   void clear_lane(int block, int lane);
   void set_constants(int block, int lane, const Slot& from, const Units& units);
   void set_state(int block, int lane, const Slot& from, const Units& units, const State& state);
+
+  std::vector<C> values_;
 };
 
 }  // namespace mbs::compiled_ldl::chain

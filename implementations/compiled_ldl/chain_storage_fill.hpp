@@ -1,6 +1,8 @@
 // How models and states get into the blocks of a chain, and out of them.
 #pragma once
 
+#include <cstring>
+
 #include "chain_storage.hpp"
 
 namespace mbs::compiled_ldl::chain {
@@ -25,8 +27,8 @@ auto Storage<Use, MassOf, Rods, BlockOf>::clear_lane(int block, int lane) -> voi
     for (std::size_t k = 0; k < sizeof(item) / sizeof(V); ++k) numbers[k][lane] = 0.0;
   };
   clear(blocks[block]);
-  clear(constants[block]);
-  constants[block].mass.set(lane, {1.0, 0.0, 1.0}, {});
+  clear(values_[block]);
+  values_[block].mass.set(lane, {1.0, 0.0, 1.0}, {});
 }
 
 template <class Use, template <class> class MassOf, class Rods,
@@ -36,20 +38,25 @@ auto Storage<Use, MassOf, Rods, BlockOf>::clear(int chain) -> void {
     clear_lane(k, 2 * chain);
     clear_lane(k, 2 * chain + 1);
   }
+  share();
 }
 
 template <class Use, template <class> class MassOf, class Rods,
           template <class, class> class BlockOf>
 auto Storage<Use, MassOf, Rods, BlockOf>::set_constants(int block, int lane, const Slot& from,
                                                         const Units& units) -> void {
-  C& to = constants[block];
+  C& to = values_[block];
   for (int j = 0; j < kRods; ++j) {
     const Distance& rod = from.here->rods[j];
     if (rod.row >= 0) to.rods[j].set(lane, rod, 1.0, units.length);
   }
   if (from.link) {
     const double sign = from.forward ? 1.0 : -1.0;
-    if (from.link->row >= 0) to.link.set(lane, *from.link, sign, units.length);
+    if (from.link->row >= 0) {
+      to.link.set(lane, *from.link, units.length);
+      blocks[block].offset.x[lane] = sign * units.length * from.link->offset[0];
+      blocks[block].offset.y[lane] = sign * units.length * from.link->offset[1];
+    }
     const auto& c = *from.coupling;
     to.mass.set(lane, from.here->mass,
                 from.forward ? c : std::array<double, 4>{c[0], c[2], c[1], c[3]});
@@ -93,6 +100,17 @@ auto Storage<Use, MassOf, Rods, BlockOf>::set(int chain, const Topology& topolog
       set_constants(k, lane, from, units);
       set_state(k, lane, from, units, state);
     }
+  }
+  share();
+}
+
+template <class Use, template <class> class MassOf, class Rods,
+          template <class, class> class BlockOf>
+auto Storage<Use, MassOf, Rods, BlockOf>::share() -> void {
+  for (int k = 0; k <= last; ++k) {
+    const C& own = values_[k];
+    const bool same = k > 0 && std::memcmp(constants[k - 1], &own, sizeof(C)) == 0;
+    constants[k] = same ? constants[k - 1] : &own;
   }
 }
 
