@@ -45,7 +45,7 @@ inline void store_first(F* x, const V& v) {
 /// Rows of the P columns c (L lanes each), N numbers apart.
 template <typename F, int P, int L, int N, typename V>
 inline void store_transposed(const V (&c)[P], F* rows) {
-  if constexpr (P == 8 && L == 8 && N == 8) {
+  if constexpr (P == 8 && L == 8) {
     V a[8], b[8];
 #pragma GCC unroll 4
     for (int i = 0; i < 8; i += 2) {
@@ -62,10 +62,19 @@ inline void store_transposed(const V (&c)[P], F* rows) {
     }
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) {
-      store<F, 8>(rows + i * 8, __builtin_shufflevector(b[i], b[i + 4], 0, 1, 2, 3, 8, 9, 10, 11));
-      store<F, 8>(rows + (i + 4) * 8,
+      store<F, 8>(rows + i * N, __builtin_shufflevector(b[i], b[i + 4], 0, 1, 2, 3, 8, 9, 10, 11));
+      store<F, 8>(rows + (i + 4) * N,
                   __builtin_shufflevector(b[i], b[i + 4], 4, 5, 6, 7, 12, 13, 14, 15));
     }
+  } else if constexpr (P == 4 && L == 4) {
+    const V one = __builtin_shufflevector(c[0], c[1], 0, 4, 2, 6);
+    const V one1 = __builtin_shufflevector(c[0], c[1], 1, 5, 3, 7);
+    const V two = __builtin_shufflevector(c[2], c[3], 0, 4, 2, 6);
+    const V two1 = __builtin_shufflevector(c[2], c[3], 1, 5, 3, 7);
+    store<F, 4>(rows, __builtin_shufflevector(one, two, 0, 1, 4, 5));
+    store<F, 4>(rows + N, __builtin_shufflevector(one1, two1, 0, 1, 4, 5));
+    store<F, 4>(rows + 2 * N, __builtin_shufflevector(one, two, 2, 3, 6, 7));
+    store<F, 4>(rows + 3 * N, __builtin_shufflevector(one1, two1, 2, 3, 6, 7));
   } else {
 #pragma GCC unroll 8
     for (int i = 0; i < L; ++i) {
