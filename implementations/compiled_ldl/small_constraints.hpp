@@ -22,7 +22,7 @@ class SmallConstraints {
   /// Φ and Φq at q, then λ += change Φ. With a matrix, it and y get what Eqs. (5) and (3) have of
   /// constraints, and Φq is kept for the projections.
   template <bool kAssembles>
-  void evaluate(const double* q, double change, Matrix& matrix, Row& y);
+  [[gnu::always_inline]] void evaluate(const double* q, double change, Matrix& matrix, Row& y);
   /// y −= (Δt²/4) α (Φqᵀ Φq x + Φqᵀ t), t = Φt or, if there is v, Φ̇q v + Φ̇t; the first two Φq are
   /// those of the matrix, and x is zero at fixed points.
   void project(const double* x, const double* v, const Prescribed* prescribed, Row& y) const;
@@ -56,7 +56,7 @@ class SmallConstraints {
   void add_product(const Model& model, const BilinearConstraint& c, int number);
   /// Given Φ and its gradient.
   template <bool kAssembles>
-  void finish(int number, double phi, double change, const Row& gradient, Row& y);
+  [[gnu::always_inline]] void finish(int number, double phi, double change, const Row& gradient, Row& y);
 
   double alpha_, h_;
   std::vector<Distance> distances_;

@@ -17,7 +17,7 @@ class SmallForces {
   SmallForces(const Model& model, double step);
 
   /// y += (Δt²/4) Q of (q, v) without its constant part, matrix += (Δt/2) C + (Δt²/4) K.
-  void add(const double* q, const double* v, Matrix& matrix, Row& y) const {
+  [[gnu::always_inline]] void add(const double* q, const double* v, Matrix& matrix, Row& y) const {
     for (const Stretched& spring : springs_) add_spring(spring, q, v, matrix, y);
     for (const Turned& spring : torsions_) add_torsion(spring, q, v, matrix, y);
     for (const Driven& couple : couples_) add_couple(couple, q, y);
@@ -38,11 +38,11 @@ class SmallForces {
     double torque;
     int axis;
   };
-  void add_spring(const Stretched& spring, const double* q, const double* v, Matrix& matrix,
+  [[gnu::always_inline]] void add_spring(const Stretched& spring, const double* q, const double* v, Matrix& matrix,
                   Row& y) const;
-  void add_torsion(const Turned& spring, const double* q, const double* v, Matrix& matrix,
+  [[gnu::always_inline]] void add_torsion(const Turned& spring, const double* q, const double* v, Matrix& matrix,
                    Row& y) const;
-  void add_couple(const Driven& couple, const double* q, Row& y) const;
+  [[gnu::always_inline]] void add_couple(const Driven& couple, const double* q, Row& y) const;
   /// y = z × x; planar z is (0, 0, 1).
   static void turn(const double* z, const double* x, double* y);
 

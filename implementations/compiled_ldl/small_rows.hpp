@@ -64,7 +64,7 @@ struct SmallMatrix {
     for (int j = 0; j < N; ++j) column[j].put(x + j * Row::kSize);
   }
   /// += s g gᵀ.
-  void add_square(double s, const double* g) {
+  [[gnu::always_inline]] void add_square(double s, const double* g) {
     Row scaled = Row::zero();
     scaled.add(s, g);
 #pragma GCC unroll 16
