@@ -56,7 +56,8 @@ class SmallConstraints {
   void add_product(const Model& model, const BilinearConstraint& c, int number);
   /// Given Φ and its gradient.
   template <bool kAssembles>
-  [[gnu::always_inline]] void finish(int number, double phi, double change, const Row& gradient, Row& y);
+  [[gnu::always_inline]] void finish(int number, double phi, double change, const Row& gradient,
+                                     Row& y);
 
   double alpha_, h_;
   std::vector<Distance> distances_;
@@ -89,7 +90,13 @@ inline void SmallConstraints<N, D>::evaluate(const double* q, double change, Mat
     c.u.add_transposed(g.at_u, row);
     row.put(g.row);
     finish<kAssembles>(c.number, dot<D>(u, u) - values[c.number], change, row, y);
-    if constexpr (kAssembles) matrix.add_square(weight, g.row);
+    if constexpr (kAssembles && kInRegisters<N>) {
+      matrix.add_square(weight, g.row);
+    } else if constexpr (kAssembles) {
+      Row scaled = Row::zero();
+      scaled.add(weight, row);
+      c.u.add_columns(scaled, g.at_u, matrix);
+    }
   }
   for (Product& c : products_) {
     Gradient& g = kAssembles ? c.of_matrix : c.last;
@@ -106,7 +113,14 @@ inline void SmallConstraints<N, D>::evaluate(const double* q, double change, Mat
     c.w.add_transposed(g.at_w, row);
     row.put(g.row);
     finish<kAssembles>(c.number, dot<D>(u, g.at_u) - values[c.number], change, row, y);
-    if constexpr (kAssembles) matrix.add_square(weight, g.row);
+    if constexpr (kAssembles && kInRegisters<N>) {
+      matrix.add_square(weight, g.row);
+    } else if constexpr (kAssembles) {
+      Row scaled = Row::zero();
+      scaled.add(weight, row);
+      c.u.add_columns(scaled, g.at_u, matrix);
+      c.w.add_columns(scaled, g.at_w, matrix);
+    }
   }
   for (const Linear& c : linear_) {
     double sum = 0.0;

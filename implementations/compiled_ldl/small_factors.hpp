@@ -26,8 +26,12 @@ class SmallFactors {
   alignas(64) double inverse_[kSize] = {};
 };
 
-/// As decompose() of panel_vectors.hpp. Row k of M is e_k less the multiples of those before it
-/// that L tells, so that x = Mᵀ D⁻¹ M y is complete when the last pivot is.
+/// Two pivots p, w with c between them at a time, as decompose() of panel_vectors.hpp does, but
+/// with b = p a' for the column a' = a_{k+1} − (c/p) a_k, which needs no division and is as exact:
+/// what the pair subtracts is a_k a_kᵀ/p + b bᵀ/(p det), so that of one pair to the next only 1/det
+/// is waited for; the next pair's three numbers are computed in scalars as well, which takes less
+/// than getting them out of vectors. Row k of M is e_k less the multiples of those before it that L
+/// tells, so that x = Mᵀ D⁻¹ M y is complete when the last pivot is.
 template <int N>
 bool SmallFactors<N>::factorize_and_solve(const SmallMatrix<N>& matrix, Row y, Row& x) {
   Row a[N], m[N];
@@ -39,37 +43,53 @@ bool SmallFactors<N>::factorize_and_solve(const SmallMatrix<N>& matrix, Row y, R
   }
   x = Row::zero();
   bool accepted = true;
+  double p = a[0].v[0][0], c = a[0].v[0][1], w = a[1].v[0][1];
 #pragma GCC unroll 8
   for (int k = 0; k < N; k += 2) {
     const int at = k / kLanes, i = k % kLanes;
-    const double p = a[k].v[at][i], c = a[k].v[at][i + 1], w = a[k + 1].v[at][i + 1];
-    const double of_pair = 1.0 / determinant(p, c, w);
-    const double inverse = 1.0 / p, inverse1 = p * of_pair;
+    const double of_pair = 1.0 / determinant(p, c, w), inverse = 1.0 / p;
     accepted &= p > 0.0 && of_pair > 0.0 && of_pair - of_pair == 0.0;
-    const double l = c * inverse;
-    Row l0, l1;
+    Row b, l0, b0, s;
     for (int r = at; r < kVectors; ++r) {
+      b.v[r] = p * a[k + 1].v[r] - c * a[k].v[r];
       l0.v[r] = a[k].v[r] * inverse;
-      a[k + 1].v[r] -= a[k].v[r] * l;
-      l1.v[r] = a[k + 1].v[r] * inverse1;
+      b0.v[r] = b.v[r] * inverse;
+      s.v[r] = b.v[r] * (inverse * of_pair);
     }
-    for (int r = 0; r <= at; ++r) m[k + 1].v[r] -= l * m[k].v[r];
-    const double y0 = y.v[at][i], y1 = y.v[at][i + 1] - l * y0;
-    const double z0 = y0 * inverse, z1 = y1 * inverse1;
-    for (int r = at; r < kVectors; ++r) y.v[r] = (y.v[r] - a[k].v[r] * z0) - a[k + 1].v[r] * z1;
-    for (int r = 0; r <= at; ++r) x.v[r] += m[k].v[r] * z0 + m[k + 1].v[r] * z1;
+    const double y0 = y.v[at][i], yb = p * y.v[at][i + 1] - c * y0;
+    Row m0, m1;
+    for (int r = 0; r <= at; ++r) {
+      m[k + 1].v[r] -= (c * inverse) * m[k].v[r];
+      m0.v[r] = m[k].v[r] * inverse;
+      m1.v[r] = m[k + 1].v[r] * of_pair;
+      x.v[r] += m0.v[r] * y0 + (m[k + 1].v[r] * yb) * of_pair;
+    }
+    for (int r = at; r < kVectors; ++r) y.v[r] = (y.v[r] - l0.v[r] * y0) - s.v[r] * yb;
     inverse_[k] = inverse;
-    inverse_[k + 1] = inverse1;
-#pragma GCC unroll 16
-    for (int j = k + 2; j < N; ++j) {
-      const double f0 = l0.v[j / kLanes][j % kLanes], f1 = l1.v[j / kLanes][j % kLanes];
-      for (int r = j / kLanes; r < kVectors; ++r) {
-        a[j].v[r] = (a[j].v[r] - a[k].v[r] * f0) - a[k + 1].v[r] * f1;
-      }
-      for (int r = 0; r <= at; ++r) m[j].v[r] = (m[j].v[r] - m[k].v[r] * f0) - m[k + 1].v[r] * f1;
-    }
+    inverse_[k + 1] = p * of_pair;
     m[k].put(rows_ + k * kSize);
     m[k + 1].put(rows_ + (k + 1) * kSize);
+    if (k + 2 < N) {
+      const int next = (k + 2) / kLanes, n = (k + 2) % kLanes;
+      const double f = a[k].v[next][n], g = a[k].v[next][n + 1];
+      const double fb = b.v[next][n], gb = b.v[next][n + 1];
+      p = (a[k + 2].v[next][n] - f * f * inverse) - fb * fb * inverse * of_pair;
+      c = (a[k + 2].v[next][n + 1] - f * g * inverse) - fb * gb * inverse * of_pair;
+      w = (a[k + 3].v[next][n + 1] - g * g * inverse) - gb * gb * inverse * of_pair;
+    }
+#pragma GCC unroll 16
+    for (int j = k + 2; j < N; ++j) {
+      const double f = a[k].v[j / kLanes][j % kLanes], fb = b.v[j / kLanes][j % kLanes];
+      for (int r = j / kLanes; r < kVectors; ++r) {
+        a[j].v[r] -= l0.v[r] * f;
+        if (j < k + 4) {
+          a[j].v[r] -= (b0.v[r] * fb) * of_pair;
+        } else {
+          a[j].v[r] -= s.v[r] * fb;
+        }
+      }
+      for (int r = 0; r <= at; ++r) m[j].v[r] = (m[j].v[r] - m0.v[r] * f) - m1.v[r] * fb;
+    }
   }
   return accepted;
 }

@@ -38,10 +38,10 @@ class SmallForces {
     double torque;
     int axis;
   };
-  [[gnu::always_inline]] void add_spring(const Stretched& spring, const double* q, const double* v, Matrix& matrix,
-                  Row& y) const;
-  [[gnu::always_inline]] void add_torsion(const Turned& spring, const double* q, const double* v, Matrix& matrix,
-                   Row& y) const;
+  [[gnu::always_inline]] void add_spring(const Stretched& spring, const double* q, const double* v,
+                                         Matrix& matrix, Row& y) const;
+  [[gnu::always_inline]] void add_torsion(const Turned& spring, const double* q, const double* v,
+                                          Matrix& matrix, Row& y) const;
   [[gnu::always_inline]] void add_couple(const Driven& couple, const double* q, Row& y) const;
   /// y = z × x; planar z is (0, 0, 1).
   static void turn(const double* z, const double* x, double* y);
@@ -76,13 +76,16 @@ inline void SmallForces<N, D>::add_spring(const Stretched& spring, const double*
   for (int x = 0; x < D; ++x) e[x] *= inverse;
   Row row = Row::zero();
   spring.d.add_transposed(e, row);
-  alignas(64) double g[Row::kSize];
-  row.put(g);
   y.add(-h_ * (spring.stiffness * (length - spring.length) + spring.damping * dot<D>(e, rate)),
         row);
   const double across = h_ * std::max(0.0, spring.stiffness * (1.0 - spring.length * inverse));
-  matrix.add_square(spring.weight - across, g);
-  for (int x = 0; x < D; ++x) matrix.add_square(across, spring.d.rows[x]);
+  Row columns[D];
+  for (int x = 0; x < D; ++x) {
+    columns[x] = Row::zero();
+    columns[x].add((spring.weight - across) * e[x], row);
+    columns[x].add(across, spring.d.rows[x]);
+  }
+  spring.d.add_outer(columns, matrix);
 }
 
 template <int N, int D>
@@ -105,10 +108,11 @@ inline void SmallForces<N, D>::add_torsion(const Turned& spring, const double* q
   Row row = Row::zero();
   spring.u.add_transposed(at_u, row);
   spring.w.add_transposed(at_w, row);
-  alignas(64) double g[Row::kSize];
-  row.put(g);
   y.add(-h_ * (spring.stiffness * turned + spring.damping * rate), row);
-  matrix.add_square(spring.weight, g);
+  Row scaled = Row::zero();
+  scaled.add(spring.weight, row);
+  spring.u.add_columns(scaled, at_u, matrix);
+  spring.w.add_columns(scaled, at_w, matrix);
 }
 
 template <int N, int D>

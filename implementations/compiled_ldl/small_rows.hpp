@@ -74,6 +74,10 @@ struct SmallMatrix {
   }
 };
 
+/// Whether the matrix stays in registers while elements are added to it.
+template <int N>
+inline constexpr bool kInRegisters = SmallRow<N>::kVectors == 1;
+
 /// u = r_a − r_b of two points, and ∂u/∂q.
 template <int N, int D>
 struct Difference {
@@ -104,6 +108,29 @@ struct Difference {
   /// row += (∂u/∂q)ᵀ f.
   void add_transposed(const double* f, Row& row) const {
     for (int x = 0; x < D; ++x) row.add(f[x], rows[x]);
+  }
+  /// matrix += Σ_x t_x ∂u_x/∂q: in registers to all columns, else to those of the two points.
+  [[gnu::always_inline]] void add_outer(const Row (&t)[D], SmallMatrix<N>& matrix) const {
+    if constexpr (kInRegisters<N>) {
+#pragma GCC unroll 8
+      for (int j = 0; j < N; ++j) {
+        for (int x = 0; x < D; ++x) matrix.column[j].add(rows[x][j], t[x]);
+      }
+    } else {
+      for (int x = 0; x < D; ++x) {
+        if (a < N) matrix.column[a + x].add(1.0, t[x]);
+        if (b < N) matrix.column[b + x].add(-1.0, t[x]);
+      }
+    }
+  }
+  /// matrix += g ((∂u/∂q)ᵀ f)ᵀ, in the columns of the two points.
+  void add_columns(const Row& g, const double* f, SmallMatrix<N>& matrix) const {
+    Row t[D];
+    for (int x = 0; x < D; ++x) {
+      t[x] = Row::zero();
+      t[x].add(f[x], g);
+    }
+    add_outer(t, matrix);
   }
 };
 

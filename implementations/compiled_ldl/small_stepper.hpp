@@ -1,6 +1,8 @@
 // Small scenes: "The step" of paper/README.md with everything dense, in double precision.
 #pragma once
 
+#include <type_traits>
+
 #include "mbs/simulation.hpp"
 #include "small_drivers.hpp"
 #include "small_factors.hpp"
@@ -143,14 +145,16 @@ void SmallStepper<N, D>::predict() {
 
 template <int N, int D>
 void SmallStepper<N, D>::linearize(double change) {
-  Matrix matrix = constants_;
+  std::conditional_t<kInRegisters<N>, Matrix, Matrix&> matrix = matrix_;
+#pragma GCC unroll 16
+  for (int j = 0; j < N; ++j) matrix.column[j] = constants_.column[j];
   Row y = Row::of(force_.data());
 #pragma GCC unroll 16
   for (int j = 0; j < N; ++j) y.add(-a_[j], mass_.column[j]);
   for (int r = 0; r < Row::kVectors; ++r) y.v[r] *= h_;
   forces_.add(q_.data(), v_.data(), matrix, y);
   constraints_.template evaluate<true>(q_.data(), change, matrix, y);
-  matrix_ = matrix;
+  if (kInRegisters<N>) matrix_ = matrix;
   y_ = y;
 }
 
