@@ -85,9 +85,10 @@ inline void SmallConstraints<N, D>::evaluate(const double* q, double change, Mat
     Gradient& g = kAssembles ? c.of_matrix : c.last;
     double u[D];
     c.u.of(q, u);
-    for (int x = 0; x < D; ++x) g.at_u[x] = 2.0 * u[x];
+    double at_u[D];
+    for (int x = 0; x < D; ++x) g.at_u[x] = at_u[x] = 2.0 * u[x];
     Row row = Row::zero();
-    c.u.add_transposed(g.at_u, row);
+    c.u.add_transposed(at_u, row);
     row.put(g.row);
     finish<kAssembles>(c.number, dot<D>(u, u) - values[c.number], change, row, y);
     if constexpr (kAssembles && kInRegisters<N>) {
@@ -95,7 +96,7 @@ inline void SmallConstraints<N, D>::evaluate(const double* q, double change, Mat
     } else if constexpr (kAssembles) {
       Row scaled = Row::zero();
       scaled.add(weight, row);
-      c.u.add_columns(scaled, g.at_u, matrix);
+      c.u.add_columns(scaled, at_u, matrix);
     }
   }
   for (Product& c : products_) {
@@ -103,23 +104,26 @@ inline void SmallConstraints<N, D>::evaluate(const double* q, double change, Mat
     double u[D], w[D];
     c.u.of(q, u);
     c.w.of(q, w);
+    double at_u[D], at_w[D];
     for (int x = 0; x < D; ++x) {
-      g.at_u[x] = g.at_w[x] = 0.0;
-      for (int y = 0; y < D; ++y) g.at_u[x] += c.B[x][y] * w[y];
-      for (int y = 0; y < D; ++y) g.at_w[x] += c.B[y][x] * u[y];
+      at_u[x] = at_w[x] = 0.0;
+      for (int y = 0; y < D; ++y) at_u[x] += c.B[x][y] * w[y];
+      for (int y = 0; y < D; ++y) at_w[x] += c.B[y][x] * u[y];
+      g.at_u[x] = at_u[x];
+      g.at_w[x] = at_w[x];
     }
     Row row = Row::zero();
-    c.u.add_transposed(g.at_u, row);
-    c.w.add_transposed(g.at_w, row);
+    c.u.add_transposed(at_u, row);
+    c.w.add_transposed(at_w, row);
     row.put(g.row);
-    finish<kAssembles>(c.number, dot<D>(u, g.at_u) - values[c.number], change, row, y);
+    finish<kAssembles>(c.number, dot<D>(u, at_u) - values[c.number], change, row, y);
     if constexpr (kAssembles && kInRegisters<N>) {
       matrix.add_square(weight, g.row);
     } else if constexpr (kAssembles) {
       Row scaled = Row::zero();
       scaled.add(weight, row);
-      c.u.add_columns(scaled, g.at_u, matrix);
-      c.w.add_columns(scaled, g.at_w, matrix);
+      c.u.add_columns(scaled, at_u, matrix);
+      c.w.add_columns(scaled, at_w, matrix);
     }
   }
   for (const Linear& c : linear_) {

@@ -37,18 +37,18 @@ bool SmallFactors<N>::factorize_and_solve(const SmallMatrix<N>& matrix, Row y, R
   Row a[N], m[N];
 #pragma GCC unroll 16
   for (int j = 0; j < N; ++j) {
-    a[j] = matrix.column[j];
-    m[j] = Row::zero();
+    for (int r = 0; r < kVectors; ++r) a[j].v[r] = matrix.column[j].v[r];
+    for (int r = 0; r < kVectors; ++r) m[j].v[r] = V{};
     m[j].v[j / kLanes][j % kLanes] = 1.0;
   }
-  x = Row::zero();
+  Row sum = Row::zero();
   bool accepted = true;
   double p = a[0].v[0][0], c = a[0].v[0][1], w = a[1].v[0][1];
 #pragma GCC unroll 8
   for (int k = 0; k < N; k += 2) {
     const int at = k / kLanes, i = k % kLanes;
     const double of_pair = 1.0 / determinant(p, c, w), inverse = 1.0 / p;
-    accepted &= p > 0.0 && of_pair > 0.0 && of_pair - of_pair == 0.0;
+    accepted &= (p > 0.0) & (of_pair > 0.0) & (of_pair - of_pair == 0.0);
     Row b, l0, b0, s;
     for (int r = at; r < kVectors; ++r) {
       b.v[r] = p * a[k + 1].v[r] - c * a[k].v[r];
@@ -62,13 +62,15 @@ bool SmallFactors<N>::factorize_and_solve(const SmallMatrix<N>& matrix, Row y, R
       m[k + 1].v[r] -= (c * inverse) * m[k].v[r];
       m0.v[r] = m[k].v[r] * inverse;
       m1.v[r] = m[k + 1].v[r] * of_pair;
-      x.v[r] += m0.v[r] * y0 + (m[k + 1].v[r] * yb) * of_pair;
+      sum.v[r] += m0.v[r] * y0 + (m[k + 1].v[r] * yb) * of_pair;
     }
     for (int r = at; r < kVectors; ++r) y.v[r] = (y.v[r] - l0.v[r] * y0) - s.v[r] * yb;
     inverse_[k] = inverse;
     inverse_[k + 1] = p * of_pair;
-    m[k].put(rows_ + k * kSize);
-    m[k + 1].put(rows_ + (k + 1) * kSize);
+    for (int r = 0; r <= at; ++r) {  // what lies right of it stays zero
+      store<double, kLanes>(rows_ + k * kSize + r * kLanes, m[k].v[r]);
+      store<double, kLanes>(rows_ + (k + 1) * kSize + r * kLanes, m[k + 1].v[r]);
+    }
     if (k + 2 < N) {
       const int next = (k + 2) / kLanes, n = (k + 2) % kLanes;
       const double f = a[k].v[next][n], g = a[k].v[next][n + 1];
@@ -91,6 +93,7 @@ bool SmallFactors<N>::factorize_and_solve(const SmallMatrix<N>& matrix, Row y, R
       for (int r = 0; r <= at; ++r) m[j].v[r] = (m[j].v[r] - m0.v[r] * f) - m1.v[r] * fb;
     }
   }
+  x = sum;
   return accepted;
 }
 

@@ -76,7 +76,7 @@ struct SmallMatrix {
 
 /// Whether the matrix stays in registers while elements are added to it.
 template <int N>
-inline constexpr bool kInRegisters = SmallRow<N>::kVectors == 1;
+inline constexpr bool kInRegisters = N <= 8;
 
 /// u = r_a − r_b of two points, and ∂u/∂q.
 template <int N, int D>
@@ -123,14 +123,20 @@ struct Difference {
       }
     }
   }
-  /// matrix += g ((∂u/∂q)ᵀ f)ᵀ, in the columns of the two points.
-  void add_columns(const Row& g, const double* f, SmallMatrix<N>& matrix) const {
-    Row t[D];
-    for (int x = 0; x < D; ++x) {
-      t[x] = Row::zero();
-      t[x].add(f[x], g);
+  /// matrix += g ((∂u/∂q)ᵀ f)ᵀ, likewise.
+  [[gnu::always_inline]] void add_columns(const Row& g, const double* f,
+                                          SmallMatrix<N>& matrix) const {
+    if constexpr (kInRegisters<N>) {
+#pragma GCC unroll 8
+      for (int j = 0; j < N; ++j) {
+        for (int x = 0; x < D; ++x) matrix.column[j].add(rows[x][j] * f[x], g);
+      }
+    } else {
+      for (int x = 0; x < D; ++x) {
+        if (a < N) matrix.column[a + x].add(f[x], g);
+        if (b < N) matrix.column[b + x].add(-f[x], g);
+      }
     }
-    add_outer(t, matrix);
   }
 };
 

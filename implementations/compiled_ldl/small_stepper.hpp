@@ -148,12 +148,14 @@ void SmallStepper<N, D>::linearize(double change) {
   std::conditional_t<kInRegisters<N>, Matrix, Matrix&> matrix = matrix_;
 #pragma GCC unroll 16
   for (int j = 0; j < N; ++j) matrix.column[j] = constants_.column[j];
-  Row y = Row::of(force_.data());
-#pragma GCC unroll 16
-  for (int j = 0; j < N; ++j) y.add(-a_[j], mass_.column[j]);
-  for (int r = 0; r < Row::kVectors; ++r) y.v[r] *= h_;
+  Row y = Row::zero();
   forces_.add(q_.data(), v_.data(), matrix, y);
   constraints_.template evaluate<true>(q_.data(), change, matrix, y);
+  Row inertia[2] = {Row::of(force_.data()), Row::zero()};  // two, for latency
+#pragma GCC unroll 16
+  for (int j = 0; j < N; ++j) inertia[j % 2].add(-a_[j], mass_.column[j]);
+  y.add(h_, inertia[0]);
+  y.add(h_, inertia[1]);
   if (kInRegisters<N>) matrix_ = matrix;
   y_ = y;
 }
