@@ -71,6 +71,13 @@ bool SmallFactors<N>::factorize_and_solve(const SmallMatrix<N>& matrix, Row y, R
       store<double, kLanes>(rows_ + k * kSize + r * kLanes, m[k].v[r]);
       store<double, kLanes>(rows_ + (k + 1) * kSize + r * kLanes, m[k + 1].v[r]);
     }
+    alignas(64) double work[2 * kSize];
+    for (int r = at; r < kVectors; ++r) {
+      store<double, kLanes>(work + r * kLanes, a[k].v[r]);
+      store<double, kLanes>(work + kSize + r * kLanes, b.v[r]);
+    }
+    const double* numbers = work;
+    asm volatile("" : "+r"(numbers) : : "memory");
     if (k + 2 < N) {
       const int next = (k + 2) / kLanes, n = (k + 2) % kLanes;
       const double f = a[k].v[next][n], g = a[k].v[next][n + 1];
@@ -81,7 +88,8 @@ bool SmallFactors<N>::factorize_and_solve(const SmallMatrix<N>& matrix, Row y, R
     }
 #pragma GCC unroll 16
     for (int j = k + 2; j < N; ++j) {
-      const double f = a[k].v[j / kLanes][j % kLanes], fb = b.v[j / kLanes][j % kLanes];
+      const double f = j < k + 4 ? a[k].v[j / kLanes][j % kLanes] : numbers[j];
+      const double fb = j < k + 4 ? b.v[j / kLanes][j % kLanes] : numbers[kSize + j];
       for (int r = j / kLanes; r < kVectors; ++r) {
         a[j].v[r] -= l0.v[r] * f;
         if (j < k + 4) {
