@@ -1,6 +1,7 @@
 // Small scenes: L D Lᵀ of the whole matrix in registers, solved for a right-hand side on the way.
 #pragma once
 
+#include "panel_transpose.hpp"
 #include "small_rows.hpp"
 
 namespace mbs::compiled_ldl {
@@ -21,16 +22,37 @@ class SmallFactors {
   static constexpr int kLanes = Row::kLanes, kVectors = Row::kVectors, kSize = Row::kSize;
   using V = typename Row::V;
 
+  struct Pair {
+    double p, c, w;
+  };
+  static Pair next_pair(const Row (&a)[N], const Row& b, int k, double inverse, double of_pair);
+
   alignas(64) double rows_[kSize * kSize] = {};
   alignas(64) double columns_[kSize * kSize] = {};
   alignas(64) double inverse_[kSize] = {};
 };
 
+/// What becomes of the two pivots after k and k + 1, in scalars: that takes less than getting it
+/// out of vectors, and the next pair waits for it.
+template <int N>
+inline typename SmallFactors<N>::Pair SmallFactors<N>::next_pair(const Row (&a)[N], const Row& b,
+                                                                 int k, double inverse,
+                                                                 double of_pair) {
+  const int next = (k + 2) / kLanes, n = (k + 2) % kLanes;
+  const double f = a[k].v[next][n], g = a[k].v[next][n + 1];
+  const double fb = b.v[next][n], gb = b.v[next][n + 1];
+  const auto eliminated = [&](double x, double of_a, double of_b) {
+    return (x - of_a * inverse) - of_b * inverse * of_pair;
+  };
+  return {eliminated(a[k + 2].v[next][n], f * f, fb * fb),
+          eliminated(a[k + 2].v[next][n + 1], f * g, fb * gb),
+          eliminated(a[k + 3].v[next][n + 1], g * g, gb * gb)};
+}
+
 /// Two pivots p, w with c between them at a time, as decompose() of panel_vectors.hpp does, but
 /// with b = p a' for the column a' = a_{k+1} − (c/p) a_k, which needs no division and is as exact:
 /// what the pair subtracts is a_k a_kᵀ/p + b bᵀ/(p det), so that of one pair to the next only 1/det
-/// is waited for; the next pair's three numbers are computed in scalars as well, which takes less
-/// than getting them out of vectors. Row k of M is e_k less the multiples of those before it that L
+/// is waited for. Row k of M is e_k less the multiples of those before it that L
 /// tells, so that x = Mᵀ D⁻¹ M y is complete when the last pivot is.
 template <int N>
 bool SmallFactors<N>::factorize_and_solve(const SmallMatrix<N>& matrix, Row y, Row& x) {
@@ -43,10 +65,11 @@ bool SmallFactors<N>::factorize_and_solve(const SmallMatrix<N>& matrix, Row y, R
   }
   Row sum = Row::zero();
   bool accepted = true;
-  double p = a[0].v[0][0], c = a[0].v[0][1], w = a[1].v[0][1];
+  Pair pair = {a[0].v[0][0], a[0].v[0][1], a[1].v[0][1]};
 #pragma GCC unroll 8
   for (int k = 0; k < N; k += 2) {
     const int at = k / kLanes, i = k % kLanes;
+    const auto [p, c, w] = pair;
     const double of_pair = 1.0 / determinant(p, c, w), inverse = 1.0 / p;
     accepted &= (p > 0.0) & (of_pair > 0.0) & (of_pair - of_pair == 0.0);
     Row b, l0, b0, s;
@@ -76,16 +99,9 @@ bool SmallFactors<N>::factorize_and_solve(const SmallMatrix<N>& matrix, Row y, R
       store<double, kLanes>(work + r * kLanes, a[k].v[r]);
       store<double, kLanes>(work + kSize + r * kLanes, b.v[r]);
     }
-    const double* numbers = work;
+    const double* numbers = work;  // a load is cheaper than getting a number out of a vector
     asm volatile("" : "+r"(numbers) : : "memory");
-    if (k + 2 < N) {
-      const int next = (k + 2) / kLanes, n = (k + 2) % kLanes;
-      const double f = a[k].v[next][n], g = a[k].v[next][n + 1];
-      const double fb = b.v[next][n], gb = b.v[next][n + 1];
-      p = (a[k + 2].v[next][n] - f * f * inverse) - fb * fb * inverse * of_pair;
-      c = (a[k + 2].v[next][n + 1] - f * g * inverse) - fb * gb * inverse * of_pair;
-      w = (a[k + 3].v[next][n + 1] - g * g * inverse) - gb * gb * inverse * of_pair;
-    }
+    if (k + 2 < N) pair = next_pair(a, b, k, inverse, of_pair);
 #pragma GCC unroll 16
     for (int j = k + 2; j < N; ++j) {
       const double f = j < k + 4 ? a[k].v[j / kLanes][j % kLanes] : numbers[j];
