@@ -1,4 +1,4 @@
-// Short vectors of a panel's width: loads, stores of a part, inversion of a diagonal block.
+// Short vectors of a panel's width: loads, stores of a part, factorization of a diagonal block.
 #pragma once
 
 #include "scalar.hpp"
@@ -39,39 +39,6 @@ inline void store_first(F* x, const V& v) {
     store<F, 2>(x, __builtin_shufflevector(v, v, 0, 1));
   } else {
     for (int i = 0; i < P; ++i) x[i] = v[i];
-  }
-}
-
-/// Rows of the P columns c (L lanes each), N numbers apart.
-template <typename F, int P, int L, int N, typename V>
-inline void store_transposed(const V (&c)[P], F* rows) {
-  if constexpr (P == 8 && L == 8 && N == 8) {
-    V a[8], b[8];
-#pragma GCC unroll 4
-    for (int i = 0; i < 8; i += 2) {
-      a[i] = __builtin_shufflevector(c[i], c[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
-      a[i + 1] = __builtin_shufflevector(c[i], c[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
-    }
-#pragma GCC unroll 2
-    for (int i = 0; i < 8; i += 4) {
-#pragma GCC unroll 2
-      for (int k = 0; k < 2; ++k) {
-        b[i + k] = __builtin_shufflevector(a[i + k], a[i + k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
-        b[i + k + 2] = __builtin_shufflevector(a[i + k], a[i + k + 2], 2, 3, 10, 11, 6, 7, 14, 15);
-      }
-    }
-#pragma GCC unroll 4
-    for (int i = 0; i < 4; ++i) {
-      store<F, 8>(rows + i * 8, __builtin_shufflevector(b[i], b[i + 4], 0, 1, 2, 3, 8, 9, 10, 11));
-      store<F, 8>(rows + (i + 4) * 8,
-                  __builtin_shufflevector(b[i], b[i + 4], 4, 5, 6, 7, 12, 13, 14, 15));
-    }
-  } else {
-#pragma GCC unroll 8
-    for (int i = 0; i < L; ++i) {
-#pragma GCC unroll 8
-      for (int j = 0; j < P; ++j) rows[i * N + j] = c[j][i];
-    }
   }
 }
 

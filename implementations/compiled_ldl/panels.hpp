@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "panel_vectors.hpp"
+#include "panel_transpose.hpp"
 #include "program.hpp"
 
 namespace mbs::compiled_ldl {
