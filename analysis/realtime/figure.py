@@ -70,7 +70,7 @@ def sizes(table):
                              & (table.scheme == form)]
                 for row in rows.itertuples():
                     y = place + (0.19 if form == "saddle-point" else -0.19)
-                    axes.barh(y, max(row.largest, 0.7), 0.36, left=0.7, color=colour)
+                    axes.barh(y, max(row.largest, 0.7) - 0.7, 0.36, left=0.7, color=colour)
                     late = str(row.next_reason).endswith("deadline") or row.next_reason != row.next_reason
                     axes.text(max(row.largest, 1) * 1.12, y, f"{row.largest}" + (
                         "" if late else f" ({str(row.next_reason).split(':')[0]} above)"),

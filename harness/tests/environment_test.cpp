@@ -1,6 +1,7 @@
 // One thread whatever the environment says, and a record that says what but not where or who.
 #include "environment/environment.hpp"
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -37,9 +38,13 @@ TEST(SingleThread, OverrulesAHostileEnvironment) {
   const std::string one =
       "BLIS_NUM_THREADS=1 GOTO_NUM_THREADS=1 MKL_NUM_THREADS=1 OMP_NUM_THREADS=1 "
       "OPENBLAS_NUM_THREADS=1";
-  EXPECT_EQ(threads_under("env -u OMP_NUM_THREADS"), one);
-  EXPECT_EQ(threads_under("OPENBLAS_NUM_THREADS=7"), one);
-  EXPECT_EQ(threads_under("OMP_NUM_THREADS=4,2 MKL_NUM_THREADS= BLIS_NUM_THREADS=1"), one);
+  // Which kernels OpenBLAS is told to take depends on the processor.
+  const std::string told = "OPENBLAS_CORETYPE=Haswell ";
+  const std::string wanted = std::string(one).insert(one.find("OPENBLAS"), told);
+  EXPECT_EQ(threads_under("env -u OMP_NUM_THREADS " + told), wanted);
+  EXPECT_EQ(threads_under(told + "OPENBLAS_NUM_THREADS=7"), wanted);
+  EXPECT_EQ(threads_under(told + "OMP_NUM_THREADS=4,2 MKL_NUM_THREADS= BLIS_NUM_THREADS=1"),
+            wanted);
 }
 
 TEST(SingleThread, IsNotSwitchedOffByAnInheritedGuard) {
@@ -54,6 +59,20 @@ TEST(SingleThread, KeepsArgumentsAndExitStatus) {
   const auto run = test::run_mbs("bench 'four-bar:1 2'", "OPENBLAS_NUM_THREADS=7");
   EXPECT_EQ(run.status, 2);
   EXPECT_NE(run.errors.find("four-bar:1 2"), std::string::npos) << run.errors;
+}
+
+TEST(SingleThread, OpenBlasDoesNotFallBackToItsOldestKernels) {
+  const std::string told = threads_under("env -u OPENBLAS_CORETYPE");
+#if defined(__x86_64__)
+  const auto name =
+      reinterpret_cast<const char* (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_corename"));
+  if (name != nullptr && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+    const bool unknown = std::string(name()) == "Prescott" && !std::getenv("OPENBLAS_CORETYPE");
+    EXPECT_EQ(told.find("OPENBLAS_CORETYPE=") != std::string::npos, unknown) << name() << told;
+  }
+#endif
+  EXPECT_NE(threads_under("OPENBLAS_CORETYPE=Prescott").find("OPENBLAS_CORETYPE=Prescott"),
+            std::string::npos);
 }
 
 TEST(SingleThread, RecordsOtherVariablesOfTheseLibraries) {

@@ -1,4 +1,5 @@
 // Sets one thread and the asked BLAS by executing the program again with the right environment.
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -15,16 +16,39 @@
 namespace mbs {
 namespace {
 
-/// Names the process that has already executed itself again. It holds the process id, which exec
-/// keeps, so that a value inherited from elsewhere cannot switch the guarantee off.
+/// What the process has already executed itself again for: its id, which exec keeps, so that a
+/// value inherited from elsewhere cannot switch the guarantee off, and names of variables.
 constexpr const char* kGuard = "MBS_EXECUTED_AGAIN";
+constexpr const char* kOpenBlasKernels = "OPENBLAS_CORETYPE";
 
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;
 }
 
-bool executed_again() { return variable(kGuard) == std::to_string(getpid()); }
+/// The guard's value, "<process id> NAME NAME ... "; without names before the first time.
+std::string executed_for() {
+  const std::string own = std::to_string(getpid()) + " ", found = variable(kGuard);
+  return found.starts_with(own) ? found : own;
+}
+
+/// What OpenBLAS has to be told where it does not know the processor and falls back to its oldest
+/// kernels, which take up to twice the time (0.3.21 on processors from 2023 on); empty if it does,
+/// was told already, or is not there.
+std::string kernels_for_openblas() {
+#if defined(__x86_64__)
+  if (!variable(kOpenBlasKernels).empty()) return "";
+  const auto name =
+      reinterpret_cast<const char* (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_corename"));
+  if (name == nullptr || std::string(name()) != "Prescott") return "";
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return "";
+  const bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                    __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+  return wide ? "SkylakeX" : "Haswell";
+#else
+  return "";
+#endif
+}
 
 /// What the loader and the libraries must find in the environment and do not.
 std::vector<std::pair<std::string, std::string>> missing_variables(const BlasPair* pair) {
@@ -32,6 +56,8 @@ std::vector<std::pair<std::string, std::string>> missing_variables(const BlasPai
   for (const std::string& name : thread_variables()) {
     if (variable(name.c_str()) != "1") missing.emplace_back(name, "1");
   }
+  const std::string kernels = kernels_for_openblas();
+  if (!kernels.empty()) missing.emplace_back(kOpenBlasKernels, kernels);
   if (pair == nullptr) return missing;
   for (auto& change :
        loader_environment(*pair, variable("LD_LIBRARY_PATH"), variable("LD_PRELOAD"))) {
@@ -68,12 +94,16 @@ void settle_environment(int argc, char** argv) {
     throw UsageError(fmt::format("--blas {}: did not take effect: {}", *asked, wrong));
   }
   const std::string& first = missing.front().first;
-  if (executed_again()) {
+  std::string tried = executed_for();
+  if (tried.find(" " + first + " ") != std::string::npos) {
     throw UsageError(fmt::format("the environment of this system does not keep {}={}", first,
                                  missing.front().second));
   }
-  setenv(kGuard, std::to_string(getpid()).c_str(), 1);
-  for (const auto& [name, value] : missing) setenv(name.c_str(), value.c_str(), 1);
+  for (const auto& [name, value] : missing) {
+    setenv(name.c_str(), value.c_str(), 1);
+    tried += name + " ";
+  }
+  setenv(kGuard, tried.c_str(), 1);
   const std::string program = own_path();
   execv(program.c_str(), argv);
   throw UsageError(fmt::format("the program cannot execute itself again as {} ({}): set {} by hand",
