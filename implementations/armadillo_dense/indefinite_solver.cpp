@@ -19,16 +19,18 @@ namespace mbs::armadillo_dense {
 
 using arma::blas_int;
 
+namespace {
+
+// The columns of workspace set how many columns dsytrf takes as one block. The 64 that it asks for
+// leave most of the work of matrices this small to dgemv instead of dgemm.
+constexpr arma::uword kBlockColumns = 24;
+
+}  // namespace
+
 IndefiniteSolver::IndefiniteSolver(int size)
-    : A_(size, size, arma::fill::zeros), pivots_(static_cast<std::size_t>(size)), workspace_(1) {
-  const blas_int n = size;
-  const blas_int ld = std::max(n, 1);
-  const blas_int query = -1;
-  blas_int info = 0;
-  arma_fortran(dsytrf)("L", &n, A_.memptr(), &ld, pivots_.data(), workspace_.memptr(), &query,
-                       &info, 1);
-  workspace_.set_size(static_cast<arma::uword>(std::max(workspace_[0], 1.0)));
-}
+    : A_(size, size, arma::fill::zeros),
+      pivots_(static_cast<std::size_t>(size)),
+      workspace_(kBlockColumns * static_cast<arma::uword>(std::max(size, 1))) {}
 
 bool IndefiniteSolver::factorize() {
   const auto n = static_cast<blas_int>(A_.n_rows);

@@ -14,7 +14,7 @@ namespace mbs::armadillo_dense {
 ///   solver.solve(b);                     // b <- A⁻¹ b
 class IndefiniteSolver {
  public:
-  /// Storage for a matrix of this size, and the workspace that LAPACK asks for.
+  /// Storage for a matrix of this size, with LAPACK's workspace.
   explicit IndefiniteSolver(int size);
 
   /// A, to be filled before factorize(), which overwrites its lower triangle with L and D.
