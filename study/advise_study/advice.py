@@ -93,7 +93,7 @@ def _pilots(advice, settings, speeds, variants, run, start, left, tell):
                     duration=duration, start=start, deadline_us=question.deadline_us)
     advice.found = search.search()
     if search.cut:
-        advice.cut_short.append("no time was left for some error pilots")
+        advice.cut_short.append("some error pilots would have taken longer than the time left")
 
 
 def _race(advice, speeds, variants, run, left, tell):

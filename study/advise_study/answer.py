@@ -8,6 +8,8 @@ from study.advise_study.settings import catalogue, fits, serving
 from study.advise_study.verify import expected_error
 from study.pipeline.runs import FINISHED
 
+MOST_REASONS = 3  # of pilots that were lost
+
 
 def as_json(advice, run, described, variants, layout):
     question = advice.question
@@ -102,8 +104,13 @@ def _why_not(advice):
         return ("no step is done within the deadline" if late else "no candidate could be timed")
     if any("a step takes" in found.reason for found in advice.found.values()):
         return "no step is done within the deadline"
+    pilots = [pilot for found in advice.found.values() for pilot in found.pilots]
+    if pilots and not any(pilot.status in FINISHED for pilot in pilots):
+        return "no pilot came to its end: " + "; ".join(
+            dict.fromkeys(f"{pilot.status}, {pilot.reason}" for pilot in pilots[:MOST_REASONS]))
     return "no setting reaches the error" + (
-        f" within the budget of {advice.question.budget:g} s (--budget)" if any("no time was left" in cut for cut in advice.cut_short) else "")
+        f" within the budget of {advice.question.budget:g} s (--budget)"
+        if any("left" in cut for cut in advice.cut_short) else "")
 
 
 def text(answer):

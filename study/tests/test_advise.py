@@ -6,7 +6,7 @@ import shlex
 
 import pytest
 
-from study.advise_study import timing
+from study.advise_study import answer, timing
 from study.advise_study.advice import Advice, Question
 from study.advise_study.choice import Pilot, allowed, counts, interval, local_order, next_step, tidy
 from study.advise_study.main import duration
@@ -311,3 +311,13 @@ def test_what_nothing_meets_is_said(tmp_path):
     done = study("advise", "four-bar:2", "--duration", "0.6", "--only", "csc_klu/refactor", "--error", "1e-2",
                  "--deadline-us", "1e-3", "--results", tmp_path / "late", **REAL)
     assert done.returncode == 1 and "No setting meets this: no step is done within the deadline" in done.stdout
+
+
+def test_where_every_pilot_was_lost_the_answer_says_how():
+    advice = Advice(Question("bar", 1e-3, 1.0, None, 45.0), pilot_duration=1.0, probe=[{"step_us": 1.0}],
+                    cut_short=["some error pilots would have taken longer than the time left"])
+    lost = [Pilot(1e-2 / 2**k, "diverged", None, reason="constraints violated: rod rocker") for k in range(3)]
+    advice.found = {PENALTY: Found(PENALTY, lost)}
+    assert answer._why_not(advice) == "no pilot came to its end: diverged, constraints violated: rod rocker"
+    advice.found[SADDLE] = Found(SADDLE, pilots(1.0))
+    assert answer._why_not(advice) == "no setting reaches the error within the budget of 45 s (--budget)"
