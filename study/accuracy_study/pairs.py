@@ -7,7 +7,7 @@ import numpy
 
 from analysis.statistics import ratio_interval
 from study.accuracy_study import classes, subjects
-from study.accuracy_study.bench import row
+from study.accuracy_study.bench import REPEATS, SHORT, row
 from study.pipeline import runs
 
 STEP = 1.25e-3
@@ -50,7 +50,8 @@ def _pair(bench, subject, entries, kind, variant, both):
     reason = next((f"{one.name}: {why}" for one, (whole, why) in zip(both, judged) if whole and why), "")
     if reason:
         return found | {"reason": reason}
-    rows = _rounds(bench, subject, entries, kind, variant, both, duration)
+    rows = _rounds(bench, subject, entries, kind, variant, both, duration,
+                   REPEATS if slowest * duration < SHORT else 1)
     reason = next((f"{setting.name}: {classes.lost(one)}" for setting in both for one in rows[setting.name]
                    if one["status"] not in runs.FINISHED), "")
     found |= {"duration": duration, "rounds": ROUNDS, "reason": reason}
@@ -63,13 +64,13 @@ def _pair(bench, subject, entries, kind, variant, both):
     return found
 
 
-def _rounds(bench, subject, entries, kind, variant, both, duration):
+def _rounds(bench, subject, entries, kind, variant, both, duration, repeats):
     """{name of the setting: rows}, a row a round."""
     rows = {one.name: [] for one in both}
     for number in range(1, ROUNDS + 1):
         for one in random.Random(f"{SEED}:{number}").sample(both, 2):
             record = bench.run(f"{kind}/{duration:g}s", subject, entries.contenders[variant], one,
-                               STEP, duration=duration, repeat=number)
+                               STEP, duration=duration, repeat=number, repeats=repeats)
             rows[one.name].append(row(subject, variant, one, STEP, record))
     return rows
 
