@@ -6,9 +6,11 @@ import resource
 import signal
 import subprocess
 import tempfile
+import threading
 import time
 from dataclasses import dataclass
 
+from study.pipeline.errors import StudyError
 from study.pipeline.layout import ROOT
 
 MEMORY_WORDS = re.compile(r"bad_alloc|(out of|not enough) memory|cannot allocate|std::length_error",
@@ -49,8 +51,9 @@ class Ended:
 def run(command, seconds, memory_mb, writes=None):
     """Runs `command` in ROOT; it and all its children are gone when this returns or raises, and in the
     second case the file that it `writes` with whatever has a name that begins like that."""
-    if _signals:
-        raise Signalled(_signals[0])
+    if _signals:  # a pool's thread would die of the first, with a traceback
+        own = threading.current_thread() is threading.main_thread()
+        raise Signalled(_signals[0]) if own else StudyError("interrupted")
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         begin = time.monotonic()
         child = subprocess.Popen(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out,
