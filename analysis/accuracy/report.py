@@ -5,6 +5,7 @@ import pandas
 
 from analysis import page
 from analysis.accuracy import names, pairs_figure, regions_figure, sentences, work_figure
+from analysis.limit.must_hold import own
 from analysis.loader import TableError, _json
 
 NEEDED = ("work", "gate", "references")
@@ -65,8 +66,6 @@ def _figures(tables, registry):
 
 def render(tables, run, figures, registry):
     """The page; `figures`: {name: SVG in base 64}."""
-    libraries = [variant["name"] for entry in registry if entry.get("library") != "none"
-                 for variant in entry["variants"]]
     work, gate = tables["work"], tables["gate"]
     references = tables["references"].to_dict("records")
     by_subject = dict(list(work.groupby("subject", sort=False)))
@@ -82,7 +81,7 @@ def render(tables, run, figures, registry):
         refused=_records(gate[~gate.takes_part.astype(bool)]),
         inaccurate=_records(gate[gate.only_inaccurate.astype(bool)]), checked=len(gate),
         statuses=list(dict.fromkeys(["ok", "degraded", *sorted(work.status.unique())])),
-        summary=sentences.summary(tables["winners"], work, libraries), regions=sentences.of_regions(tables),
+        summary=sentences.summary(tables["winners"], work, own(registry)), regions=sentences.of_regions(tables),
         fills=_records(tables["fills"]), forms=_records(tables["forms"]),
         forms_says=sentences.of_forms(tables["forms"]),
         precision=_records(tables["precision"]),

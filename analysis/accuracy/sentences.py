@@ -32,14 +32,14 @@ def of_subject(rows):
     return [first, second + "."]
 
 
-def summary(winners, work, libraries):
-    """Who wins at the mechanism's own fill for each required error, and who of those with a library, `libraries`,
-    is fastest on the curves there."""
+def summary(winners, work, without_library):
+    """Who wins at the mechanism's own fill for each required error, and who of those with a library is fastest on
+    the curves there."""
     found = []
     if winners.empty:
         return found
     own = winners[winners.fill_asked.isna()]
-    curves = dict(list(work[work.implementation.isin(libraries)].groupby("loops")))
+    curves = dict(list(work[~work.implementation.isin(without_library)].groupby("loops")))
     for required, rows in sorted(own.groupby("required"), reverse=True):
         first, second = {}, {}
         for row in rows.itertuples():

@@ -3,6 +3,7 @@ import json
 
 import pandas
 
+from analysis.accuracy.front import FINISHED, GOOD  # of simulations everywhere in the study
 from study.pipeline import child
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_json, write_json
@@ -63,10 +64,6 @@ def need(stored, path):
     """With `stored` nothing may be run: StudyError, since `path` is missing."""
     if stored:
         raise StudyError(f"{path} is missing: the results are not complete; run study/scenes again")
-
-
-GOOD = ("ok", "plausible")       # how a run ends of which nothing is known to be wrong
-FINISHED = (*GOOD, "degraded")   # how one ends that has all of its motion
 
 
 def status(record):
