@@ -1,4 +1,6 @@
 # What an implementation without a library is held to: bounds, and the worst that was measured for each.
+#
+# An implementation is a folder; of its variants the fastest counts, size by size and scene by scene.
 from dataclasses import dataclass
 
 import numpy
@@ -25,12 +27,21 @@ def own(registry):
             for variant in entry["variants"]]
 
 
-def leads(rows, name, mine, key):
-    """Series: the least time of those with a library over that of `name`, by `key`."""
-    good = rows[(rows.status == "ok") | (rows.status == "slower")]
+def own_folders(registry):
+    return list(dict.fromkeys(name.partition("/")[0] for name in own(registry)))
+
+
+def of_folder(rows, folder):
+    """Rows of the variants of `folder`."""
+    return rows[rows.implementation.str.partition("/")[0] == folder]
+
+
+def leads(rows, folder, mine, key):
+    """Series: the least time of those with a library over the least of `folder`'s, by `key`. `mine`: all variants
+    without a library."""
+    good = rows[rows.status.isin(["ok", "slower"])]
     others = good[~good.implementation.isin([*mine, LIMIT])].groupby(key).step_us.min()
-    ours = good[good.implementation == name].set_index(key).step_us
-    return (others / ours).dropna()
+    return (others / of_folder(good, folder).groupby(key).step_us.min()).dropna()
 
 
 def wanted(dimension, filled):
@@ -38,42 +49,41 @@ def wanted(dimension, filled):
     return 1 / BEHIND_FILLED if filled else AHEAD_PLANAR if dimension == 2 else AHEAD_SPATIAL
 
 
-def must_hold(name, registry, steps=None, scenes=None, batches=None):
-    """[Held] of `name`; a table that is None was not measured."""
+def must_hold(folder, registry, steps=None, scenes=None, batches=None):
+    """[Held] of `folder`; a table that is None was not measured."""
     mine, found = own(registry), []
     if steps is not None:
-        found += _sizes(name, mine, steps) + _growth(name, steps)
+        found += _sizes(folder, mine, steps) + _growth(folder, steps)
     if scenes is not None:
-        found += _scenes(name, mine, scenes)
+        found += _scenes(folder, mine, scenes)
     if batches is not None:
-        gains = batches[(batches.implementation == name) & (batches.status == "ok")].set_index("scene").gain
-        found.append(_least("throughput of a batch ÷ that of its lanes alone", gains, GAIN))
+        best = of_folder(batches[batches.status == "ok"], folder).groupby("scene")[["alone_us", "step_us"]].min()
+        found.append(_least("throughput of a batch ÷ that of its lanes alone", best.alone_us / best.step_us, GAIN))
     return found
 
 
-def _sizes(name, mine, steps):
-    ahead = leads(steps, name, mine, "variables")
-    limit = timed(steps)
-    near = limit[limit.implementation == name].set_index("variables").multiple
+def _sizes(folder, mine, steps):
+    ahead = leads(steps, folder, mine, "variables")
+    near = of_folder(timed(steps), folder).groupby("variables").multiple.min()
     return [_least("times faster than the fastest with a library, N-four-bar",
                    ahead[ahead.index.isin(AHEAD_SIZES)], AHEAD, "n = {}", len(AHEAD_SIZES)),
             _most("times the limit code's step", near[near.index.isin(NEAR_SIZES)], NEAR_LIMIT, "n = {}",
                   len(NEAR_SIZES))]
 
 
-def _scenes(name, mine, scenes):
+def _scenes(folder, mine, scenes):
     plain, filled = scenes[~scenes.filled], scenes[scenes.filled]
-    behind = 1 / leads(filled, name, mine, "scene")
+    behind = 1 / leads(filled, folder, mine, "scene")
     return [_least("times faster than the fastest with a library, planar scenes",
-                   leads(plain[plain.dimension == 2], name, mine, "scene"), AHEAD_PLANAR),
+                   leads(plain[plain.dimension == 2], folder, mine, "scene"), AHEAD_PLANAR),
             _least("times faster than the fastest with a library, spatial scenes",
-                   leads(plain[plain.dimension == 3], name, mine, "scene"), AHEAD_SPATIAL),
+                   leads(plain[plain.dimension == 3], folder, mine, "scene"), AHEAD_SPATIAL),
             _most("times the step of the fastest with a library, n = 100, filled", behind, BEHIND_FILLED)]
 
 
-def _growth(name, steps):
-    rows = steps[(steps.implementation == name) & (steps.status == "ok")
-                 & (steps.variables >= GROWTH_FROM)].sort_values("variables")
+def _growth(folder, steps):
+    rows = of_folder(steps[(steps.status == "ok") & (steps.variables >= GROWTH_FROM)], folder)
+    rows = rows.sort_values(["variables", "step_us"]).drop_duplicates("variables")
     whole = len(rows) > 1 and rows.variables.iloc[-1] >= GROWTH_TO
     found = []
     for column, what in (("step_us", "exponent of a step's time over n"),

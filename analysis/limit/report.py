@@ -3,7 +3,7 @@ from pathlib import Path
 
 from analysis import page
 from analysis.limit.figure import LIMIT, ahead, by_phase, over_size, timed
-from analysis.limit.must_hold import leads, must_hold, own, wanted
+from analysis.limit.must_hold import leads, must_hold, own, own_folders, wanted
 from analysis.loader import PHASES, TableError, _json, plain_table
 
 
@@ -20,8 +20,8 @@ def write(folder):
     if steps is not None:
         drawn |= {"over_size": over_size(tables["bounds"], steps, registry), "by_phase": by_phase(steps)}
     if scenes is not None and own(registry):
-        drawn["ahead"] = ahead({name: leads(scenes, name, own(registry), "scene")
-                                for name in own(registry)}, scenes, wanted)
+        drawn["ahead"] = ahead({folder: leads(scenes, folder, own(registry), "scene")
+                                for folder in own_folders(registry)}, scenes, wanted)
     figures = {name: page.embedded(folder, name, figure) for name, figure in drawn.items()}
     page.write(folder / "limit.html", render(tables, registry, _json(folder / "run.json"), figures))
 
@@ -34,12 +34,21 @@ def render(tables, registry, run, figures):
         counted=steps is not None and "instructions" in steps and steps.instructions.notna().any(),
         bounds=[] if steps is None else tables["bounds"].sort_values("loops").to_dict("records"),
         sizes=[] if steps is None else by_size(steps), phases=PHASES,
-        held={name: must_hold(name, registry, steps, scenes, batches) for name in own(registry)},
+        held={folder: must_hold(folder, registry, steps, scenes, batches) for folder in own_folders(registry)},
         batches=[] if batches is None else batches[batches.status == "ok"].to_dict("records"),
         scenes=[] if scenes is None else by_scene(scenes),
-        lost=[row | {"where": row.get("scene") or f"four-bar:{row.get('loops')}"}
-              for table in (steps, scenes, batches) if table is not None
-              for row in table[~table.status.isin(["ok", "slower"])].to_dict("records")])
+        lost=lost([table for table in (steps, scenes, batches) if table is not None]))
+
+
+def lost(tables):
+    """{(implementation, reason): scenes} of what was not timed."""
+    found = {}
+    for table in tables:
+        for row in table[~table.status.isin(["ok", "slower"])].to_dict("records"):
+            scene = row.get("scene") or f"four-bar:{row.get('loops')}"
+            found.setdefault((row["implementation"], row["reason"]), []).append(
+                scene.removeprefix("harness/scenes/").removesuffix(".json"))
+    return found
 
 
 def by_scene(scenes):

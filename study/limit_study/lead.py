@@ -27,7 +27,8 @@ def rows(layout, contenders, mine, scene, rounds, seconds, tell):
         tell(f"first look at {one.name}")
         found, reason = measure.bench(layout, one, scene, f"{folder}/{one.file_name}-0", seconds)
         if reason:
-            lost.append({"implementation": one.name, "status": "failed", "reason": reason})
+            status = "unsupported" if reason.startswith("unsupported") else "failed"
+            lost.append({"implementation": one.name, "status": status, "reason": reason})
         else:
             pilots[one.name] = found
     best = min((row["step_us"] for name, row in pilots.items() if name not in mine), default=0.0)
