@@ -89,11 +89,15 @@ def of_forms(forms):
     least, most = rows.loc[cost.idxmin()], rows.loc[cost.idxmax()]
     per_pass = (rows.second_step_us / rows.second_passes_per_step) / (
         rows.first_step_us / rows.first_passes_per_step)
-    return [f"A step of the saddle-point form takes {number(cost.min(), 2)} "
-            f"({least.implementation}, n = {least.variables:.0f}) to {number(cost.max(), 2)} times "
-            f"({most.implementation}, n = {most.variables:.0f}) that of the penalty form.",
+    return [f"A step of the saddle-point form takes {_cost(least)} to {_cost(most)} times as long as one of the "
+            "penalty form.",
             f"A pass takes {number(per_pass.min(), 2)} to {number(per_pass.max(), 2)} times as long; the "
             "rest is the number of passes."]
+
+
+def _cost(row):
+    return (f"{number(1 / row.ratio, 2)} ({number(1 / row.high, 2)} to {number(1 / row.low, 2)}; "
+            f"{row.implementation}, n = {row.variables:.0f})")
 
 
 def of_precision(precision):

@@ -1,5 +1,6 @@
 # study/accuracy: what is run, left out and refused, on the fake program; a curve on the real one.
 import os
+import re
 import shutil
 import tempfile
 
@@ -159,3 +160,10 @@ def test_a_curve_of_the_real_program(fake, monkeypatch):
     assert list(rows.status) == ["ok"] * 3 and rows.front.sum() >= 1
     ratios = rows.error.to_numpy()[:-1] / rows.error.to_numpy()[1:]
     assert ((3.5 < ratios) & (ratios < 4.5)).all()  # second order
+
+
+def test_the_page_explains_every_setting():
+    page = (ROOT / "analysis/accuracy/accuracy.html.j2").read_text(encoding="utf-8")
+    terms = " ".join(re.findall("<dt>(.*?)</dt>", page)).replace(",", "").split()
+    for setting in settings.read_list():
+        assert set(setting.name.split()) <= set(terms), setting.name
