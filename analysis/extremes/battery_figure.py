@@ -52,7 +52,7 @@ def draw(table):
     upright = table.groupby("setting").implementation.nunique().min() < NARROW
     below = (UPRIGHT if upright else 0.25) / (figure.get_figheight() * axes.get_position().height)
     axes.legend(handles=_legend(used), loc="upper center", bbox_to_anchor=(0.4, -below), ncols=5, fontsize=8.5,
-                title="number: exponent of the true error, in lengths of a link; =0: no error at all", title_fontsize=8.5)
+                title="number and shade: exponent of the true error, in lengths of a link; =0: no error at all", title_fontsize=8.5)
     return figure
 
 
