@@ -1,6 +1,5 @@
 # One run against a deadline, and the search for the largest scene that keeps it.
 import math
-import shlex
 from dataclasses import dataclass
 
 from study.pipeline import runs
@@ -104,4 +103,4 @@ def _figures(record, path, layout):
         key: summary.get(key) for key in ("judge_us", "steps", "deadline_us", "passes_per_step",
                                           "position_error_max")} | {
         "raw_file": layout.relative(path),
-        "command": shlex.join(["build/mbs", *record["command"][1:]])}
+        "command": runs.typed(record)}
