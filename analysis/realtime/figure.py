@@ -4,6 +4,7 @@ import numpy
 
 from analysis.style import GREY
 
+LEFT = 0.7  # of the axis of sizes
 FORMS = {"penalty": ("#0072B2", "o"), "saddle-point": ("#D55E00", "s")}
 
 
@@ -30,7 +31,11 @@ def distributions(table):
                plt.Line2D([], [], color=GREY, marker="x", linestyle="none", alpha=0.6, markersize=4,
                           label="largest with what interrupts"),
                 plt.Line2D([], [], color="black", linestyle=(0, (4, 2)), label="deadline")]
-    figure.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=6)
+    others = sorted(set(table.status[table.median_us.notna()]) - {"ok"})
+    if others:
+        handles.append(plt.Line2D([], [], color=GREY, marker="o", markerfacecolor="white", linestyle="none",
+                                  label=f"hollow: {', '.join(others)}"))
+    figure.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=len(handles))
     return figure
 
 
@@ -47,7 +52,11 @@ def _panel(axes, rows, names):
             for row in rows[(rows.implementation == name) & (rows.scheme == form)].itertuples():
                 y = place + (0.17 if form == "saddle-point" else -0.17)
                 axes.plot([row.median_us, row.max_us], [y, y], color=colour, linewidth=1, alpha=0.6)
-                axes.plot(row.median_us, y, marker, color=colour, markersize=4.5)
+                if row.median_us != row.median_us:  # there are no times
+                    axes.text(0.02, y, row.status, transform=axes.get_yaxis_transform(), color=colour,
+                              va="center", fontsize=6.5)
+                axes.plot(row.median_us, y, marker, color=colour, markersize=4.5,
+                          markerfacecolor=colour if row.status == "ok" else "white")
                 axes.plot([row.p99_us, row.p999_us], [y, y], "|", color=colour, markersize=8)
                 axes.plot(row.max_us, y, "x", color=colour, markersize=4.5)
                 axes.plot(row.observed_max_us, y, "x", color=GREY, alpha=0.6, markersize=3.5)
@@ -55,6 +64,16 @@ def _panel(axes, rows, names):
     axes.set_yticks(range(len(names)), names)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.grid(axis="x")
+
+
+def answer(row):
+    """The largest N of a row of largest.csv, with what else must be known of it."""
+    end = row.next != row.next  # nothing larger was tried
+    remarks = [row.status] if row.largest and row.status != "ok" else []
+    if end or not row.next_reason.endswith("deadline"):
+        remarks.append(row.next_reason if end else f"{row.next_reason.split(':')[0]} above")
+    remarks += [] if row.confirmed else ["not confirmed"]
+    return f"{row.largest}{' or more' * end}" + (f" ({'; '.join(remarks)})" if remarks else "")
 
 
 def sizes(table):
@@ -70,13 +89,10 @@ def sizes(table):
                              & (table.scheme == form)]
                 for row in rows.itertuples():
                     y = place + (0.19 if form == "saddle-point" else -0.19)
-                    axes.barh(y, max(row.largest, 0.7) - 0.7, 0.36, left=0.7, color=colour)
-                    late = str(row.next_reason).endswith("deadline") or row.next_reason != row.next_reason
-                    axes.text(max(row.largest, 1) * 1.12, y, f"{row.largest}" + (
-                        "" if late else f" ({str(row.next_reason).split(':')[0]} above)"),
-                        va="center", fontsize=7.5)
+                    axes.barh(y, max(row.largest, LEFT) - LEFT, 0.36, left=LEFT, color=colour)
+                    axes.text(max(row.largest, LEFT) * 1.12, y, answer(row), va="center", fontsize=7.5)
         axes.set_xscale("log")
-        axes.set_xlim(0.7, 30 * max(table.largest.max(), 1))
+        axes.set_xlim(LEFT, 300 * max(table.largest.max(), 1))
         axes.set_title(f"step and deadline {1e3 * step:g} ms")
         axes.set_xlabel("largest N in real time (n = 2N + 2)")
         axes.set_yticks(range(len(names)), names)

@@ -2,8 +2,9 @@
 from pathlib import Path
 
 from analysis import page
+from analysis.accuracy.front import FINISHED
 from analysis.loader import _json, plain_table
-from analysis.realtime.figure import distributions, sizes
+from analysis.realtime.figure import answer, distributions, sizes
 
 JUDGED_FROM = 50  # variables, from which judging may take GUARD of a step
 GUARD = 0.05
@@ -22,14 +23,16 @@ def write(folder):
 def render(steps, largest, run, figures):
     """The page; `figures`: {name: SVG in base 64}."""
     guards = guard(steps)
-    large = guards[guards.variables >= JUDGED_FROM]
+    large, small = (guards[(guards.variables >= JUDGED_FROM) == is_large] for is_large in (True, False))
     return page.template(Path(__file__).parent / "realtime.html.j2").render(
         context=next(iter(run["contexts"].values())), figures=figures, inputs=run["inputs"],
         steps=steps.to_dict("records"), largest=largest.to_dict("records"),
+        answers=[answer(row) for row in largest.itertuples()],
         late=steps[~steps.in_real_time.astype(bool)].to_dict("records"),
-        repeats=run["inputs"]["repeats"], pilot=run["inputs"]["pilot"],
+        repeats=run["inputs"]["repeats"], again=run["inputs"]["again"], pilot=run["inputs"]["pilot"],
         guards=guards.to_dict("records"), worst=None if large.empty else large.share.max(),
-        allowed=GUARD, judged_from=JUDGED_FROM)
+        smallest=None if small.empty else small.loc[small.share.idxmax()],
+        finished=FINISHED, allowed=GUARD, judged_from=JUDGED_FROM)
 
 
 def guard(steps):

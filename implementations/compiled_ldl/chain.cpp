@@ -2,7 +2,6 @@
 #include "chain.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -15,11 +14,12 @@
 namespace mbs::compiled_ldl::chain {
 namespace dispatch {
 
-bool is_served(const StepSettings& settings) {
-  return settings.multipliers == MultiplierUpdate::every_pass &&
-         settings.tangent == TangentReuse::none &&
-         settings.precision == Precision::double_precision && !settings.geometric_stiffness &&
-         settings.penalty > 0.0 && std::isfinite(settings.penalty) && settings.max_passes >= 1;
+Topology topology_of(const Model& model) {
+  auto topology = find_chain(model);
+  if (topology) return std::move(*topology);
+  throw Unsupported(
+      "the scene is not a chain of free points (planar; masses and distances alone, each between "
+      "neighbours or with at most two fixed points): use compiled_ldl/fronts");
 }
 
 /// Calls `make` with the kind of mass and rods that all of `chains` are.
@@ -42,20 +42,18 @@ auto with_kind(std::span<const Topology> chains, const Make& make) {
 }  // namespace dispatch
 
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
-  if (!dispatch::is_served(settings)) return nullptr;
-  auto topology = find_chain(model);
-  if (!topology) return nullptr;
-  return dispatch::with_kind({&*topology, 1}, [&]<template <class> class MassOf, class Rods>() {
+  Topology topology = dispatch::topology_of(model);
+  return dispatch::with_kind({&topology, 1}, [&]<template <class> class MassOf, class Rods>() {
     std::unique_ptr<Simulation> simulation;
     if (settings.scheme == Scheme::penalty) {
       using Kind = TrapezoidalSimulation<PenaltyForm, MassOf, Rods>;
-      simulation = std::make_unique<Kind>(model, settings, std::move(*topology));
+      simulation = std::make_unique<Kind>(model, settings, std::move(topology));
     } else if (settings.scheme == Scheme::saddle_point) {
       using Kind = TrapezoidalSimulation<SaddlePointForm, MassOf, Rods>;
-      simulation = std::make_unique<Kind>(model, settings, std::move(*topology));
+      simulation = std::make_unique<Kind>(model, settings, std::move(topology));
     } else {
       using Kind = RattleSimulation<MassOf, Rods>;
-      simulation = std::make_unique<Kind>(model, settings, std::move(*topology));
+      simulation = std::make_unique<Kind>(model, settings, std::move(topology));
     }
     return simulation;
   });
@@ -63,16 +61,11 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
 
 std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> models,
                                               std::span<const StepSettings> settings) {
-  std::vector<Topology> chains;
-  for (std::size_t lane = 0; lane < models.size() && lane < settings.size(); ++lane) {
-    if (settings[lane].scheme == Scheme::saddle_point || !dispatch::is_served(settings[lane])) {
-      return nullptr;
-    }
-    auto topology = find_chain(*models[lane]);
-    if (!topology) return nullptr;
-    chains.push_back(std::move(*topology));
+  if (settings.front().scheme == Scheme::saddle_point) {
+    throw Unsupported("batches are not for the saddle-point form");
   }
-  if (chains.empty()) return nullptr;
+  std::vector<Topology> chains;
+  for (const Model* model : models) chains.push_back(dispatch::topology_of(*model));
   return dispatch::with_kind(chains, [&]<template <class> class MassOf, class Rods>() {
     std::unique_ptr<BatchSimulation> batch;
     if (settings[0].scheme == Scheme::penalty) {

@@ -9,10 +9,10 @@
 
 namespace mbs::compiled_ldl::chain {
 
-/// nullptr unless `model` is a chain and `settings` are among those served here.
+/// Throws Unsupported unless `model` is a chain.
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings);
 
-/// The same for many at once, one a vector lane; nullptr as above.
+/// The same for many at once, one a vector lane; Unsupported in the saddle-point form, too.
 std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> models,
                                               std::span<const StepSettings> settings);
 

@@ -9,14 +9,15 @@
 namespace mbs::compiled_ldl {
 namespace {
 
-constexpr Serves kAll = {.saddle_point = true,
-                         .rattle = true,
-                         .multiplier_update = true,
-                         .tangent_reuse = true,
-                         .projections_every = true,
-                         .single_precision = true,
-                         .mixed_precision = true,
-                         .geometric_stiffness = true};
+constexpr Serves kFronts = {.saddle_point = true,
+                            .rattle = true,
+                            .multiplier_update = true,
+                            .tangent_reuse = true,
+                            .projections_every = true,
+                            .single_precision = true,
+                            .mixed_precision = true,
+                            .geometric_stiffness = true};
+constexpr Serves kChains = {.saddle_point = true, .rattle = true, .projections_every = true};
 
 std::unique_ptr<Simulation> create_fronts(const Model& model, const StepSettings& settings) {
   switch (settings.precision) {
@@ -29,37 +30,28 @@ std::unique_ptr<Simulation> create_fronts(const Model& model, const StepSettings
   }
 }
 
-std::unique_ptr<Simulation> create_chains(const Model& model, const StepSettings& settings) {
-  auto simulation = chain::create(model, settings);
-  return simulation ? std::move(simulation) : create_fronts(model, settings);
-}
-
-std::unique_ptr<BatchSimulation> create_chain_batch(std::span<const Model* const> models,
-                                                    std::span<const StepSettings> settings) {
-  auto batch = chain::create_batch(models, settings);
-  return batch ? std::move(batch) : create_batch(models, settings);
-}
-
 }  // namespace
 
 Implementation implementation() {
   Variant fronts;
   fronts.name = "fronts";
-  fronts.description = "dense fronts of points, merged and ordered by predicted time, for any scene";
+  fronts.description =
+      "dense fronts of points, merged and ordered by predicted time, for any scene";
   fronts.create = create_fronts;
-  fronts.serves = kAll;
+  fronts.serves = kFronts;
   fronts.create_batch = create_batch;
   fronts.batch_lanes = Lanes::kCount;
-  Variant chains = fronts;
+  Variant chains;
   chains.name = "chains";
-  chains.description = "kernels for a chain of points where the scene is one, else fronts";
-  chains.create = create_chains;
-  chains.create_batch = create_chain_batch;
+  chains.description = "kernels for chains of points, no other scene";
+  chains.create = chain::create;
+  chains.serves = kChains;
+  chains.create_batch = chain::create_batch;
   chains.batch_lanes = chain::batch_lanes();
   Implementation all;
   all.description = "the scene compiled into a flat program; block L D L^T in dense fronts";
   all.library = "none";
-  all.variants = {chains, fronts};
+  all.variants = {fronts, chains};
   return all;
 }
 

@@ -1,5 +1,4 @@
 # Runs one simulation of a subject with an implementation and a setting, and reads its row.
-import shlex
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -72,7 +71,7 @@ def row(subject, variant, setting, step, record):
         found |= {"time": time, "time_low": time, "time_high": time,
                   "error": max(error, subject.own_error), "at_most": error <= subject.own_error}
     return found | {"raw_file": record["raw_file"],
-                    "command": shlex.join(["build/mbs", *record["command"][1:]])}
+                    "command": runs.typed(record)}
 
 
 def time_of(record):

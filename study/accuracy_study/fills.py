@@ -1,5 +1,4 @@
 # Does artificial fill leave the motion and its error as they are? The premise of regions.py, checked.
-import shlex
 
 from study.accuracy_study import subjects
 from study.pipeline import runs
@@ -33,7 +32,7 @@ def _compare(bench, entries, variant, setting):
                       "error": summary.get("position_error_max"),
                       "passes_per_step": summary.get("passes_per_step"),
                       "raw_file": record["raw_file"],
-                      "command": shlex.join(["build/mbs", *record["command"][1:]])})
+                      "command": runs.typed(record)})
     natural = found[0]
     for row in found:
         known = row["error"] is not None and natural["error"]

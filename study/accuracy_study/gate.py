@@ -3,7 +3,6 @@
 # Two checks of `mbs check`, "exact" and "convergence-order", do not compare with the reference but judge the
 # discretization: a loose tolerance fails them in the reference too. What that costs in accuracy is what this
 # study measures, so that a setting which fails these alone takes part.
-import shlex
 
 from study.pipeline import child, runs
 from study.pipeline.layout import read_json, write_json
@@ -73,5 +72,5 @@ def _rows(bench, setting, path, record):
                       "implementation": row["implementation"], "verdict": row["verdict"],
                       "reason": row["reason"], "takes_part": row["verdict"] == "agrees" or inaccurate,
                       "only_inaccurate": inaccurate, "raw_file": bench.layout.relative(path),
-                      "command": shlex.join(["build/mbs", *record["command"][1:]])})
+                      "command": runs.typed(record)})
     return found

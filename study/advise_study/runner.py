@@ -32,11 +32,6 @@ def scene_name(text):
     return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
 
 
-def command_line(record):
-    """What repeats a run, to be typed."""
-    return shlex.join(["build/mbs", *(word for word in record["command"][1:] if word != "--json")])
-
-
 def without_checks(command):
     """A command line as it was timed: `command` without what only tells its error."""
     words = shlex.split(command)
@@ -71,7 +66,7 @@ class Runner:
                "deadline_misses": times.get("deadline_misses")} | {
                    key: summary.get(key) for key in ("steps", "passes_per_step", "penalty",
                                                      "tolerance")} | {
-               "seconds": record["seconds"], "command": command_line(record),
+               "seconds": record["seconds"], "command": runs.typed(record),
                "raw_file": self.layout.relative(path)}
         self.rows.append(row)
         return row

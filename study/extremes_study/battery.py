@@ -103,4 +103,4 @@ def _row(study, cell, setting, contender, record, references):
         "steps": cell.steps, "step": cell.step, "penalty": summary.get("penalty"),
         "passes_per_step": summary.get("passes_per_step"),
         "raw_file": study.layout.relative(_path(study, cell, setting.file_name, contender)),
-        "command": tools.command(record)}
+        "command": runs.typed(record)}

@@ -29,7 +29,7 @@ def run(study):
         rows.append({"loops": loops, "scheme": form, "implementation": one.variant, "status": status,
                      "reason": reason} | {f"at_{instant:g}_s": _at(times, found, instant)
                                           for instant in INSTANTS}
-                    | {"raw_file": study.layout.relative(path), "command": tools.command(record)})
+                    | {"raw_file": study.layout.relative(path), "command": runs.typed(record)})
         growth.append(pandas.DataFrame({"loops": loops, "scheme": form, "implementation": one.variant,
                                         "t": times, "difference": found,
                                         "speed": Chain(loops).speed(numpy.asarray(times, dtype=float))}))

@@ -1,5 +1,4 @@
 # What all parts share: who takes part, the long-double reference, how a run becomes a row.
-import shlex
 from dataclasses import dataclass
 from multiprocessing.pool import ThreadPool
 from pathlib import Path
@@ -65,13 +64,6 @@ def path_of_scene(study, name, document):
     """Where the scene is, relative to ROOT if it can be, so that its command runs from there."""
     path = study.layout.results / "scenes" / f"{name}.json"
     return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
-
-
-def command(record):
-    """The command of a raw file, to be typed where the repository is."""
-    program, *rest = record["command"]
-    folder = "build" if Path(program).name == "mbs" else f"build/{Path(CONTROLS).parent}"
-    return shlex.join([f"{folder}/{Path(program).name}", *rest])
 
 
 def error_of(record, solutions, length):

@@ -120,7 +120,7 @@ def _row(study, way, one, place, record):
             "safe": status in runs.GOOD and error <= CLASS, "silent": tools.is_silent(record, error, CLASS),
             "passes_per_step": record.get("summary", {}).get("passes_per_step"),
             "raw_file": study.layout.relative(_path(study, way, one, place.name)),
-            "command": tools.command(record)}
+            "command": runs.typed(record)}
 
 
 def _costs(study, served):
@@ -138,6 +138,6 @@ def _costs(study, served):
                      "loops": loops, "round": number, "status": status, "reason": reason,
                      "step_us": summary.get("step_us", {}).get("mean"),
                      "passes_per_step": summary.get("passes_per_step"),
-                     "raw_file": study.layout.relative(path), "command": tools.command(record)})
+                     "raw_file": study.layout.relative(path), "command": runs.typed(record)})
         study.tell(f"ways times: run {done} of {len(jobs)}")
     return rows

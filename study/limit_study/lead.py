@@ -26,6 +26,8 @@ def rows(layout, contenders, mine, scene, rounds, seconds, tell):
     for one in contenders:
         tell(f"first look at {one.name}")
         found, reason = measure.bench(layout, one, scene, f"{folder}/{one.file_name}-0", seconds)
+        if reason.startswith("unsupported"):
+            continue
         if reason:
             status = "unsupported" if reason.startswith("unsupported") else "failed"
             lost.append({"implementation": one.name, "status": status, "reason": reason})

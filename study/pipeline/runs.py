@@ -1,5 +1,6 @@
 # One simulation in a child process: its summary and its sampled outputs, kept as one raw file.
 import json
+import shlex
 
 import pandas
 
@@ -9,6 +10,7 @@ from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_json, write_json
 
 MEMORY_MB = 4096
+OUTPUTS = "OUTPUT.csv"  # stands in records for a file that was read and removed
 USAGE = 2  # the exit status of `mbs` where it refuses what it is asked for
 
 
@@ -29,7 +31,7 @@ def simulate(path, contender, scene, *, step, duration, every, context, seconds,
                              *map(str, more))
     ended = child.run(command, seconds, MEMORY_MB, outputs)
     record = {"context": context, "seconds": ended.seconds,
-              "command": ["OUTPUT.csv" if word == str(outputs) else word for word in command]}
+              "command": [OUTPUTS if word == str(outputs) else word for word in command]}
     try:
         if ended.status != "exited" or ended.code not in (0, 1):
             raise ValueError(ended.reason)
@@ -42,6 +44,15 @@ def simulate(path, contender, scene, *, step, duration, every, context, seconds,
     outputs.unlink(missing_ok=True)
     write_json(path, record)
     return record
+
+
+def typed(record):
+    """What repeats the run of a record, to be typed where the repository is: the outputs are only the study's."""
+    words = ["build/mbs", *(word for word in record["command"][1:] if word != "--json")]
+    if OUTPUTS in words:
+        at = words.index(OUTPUTS) - 1
+        del words[at:at + len(("--output", OUTPUTS, "--every", "K"))]
+    return shlex.join(words)
 
 
 def _failure(ended, reason):

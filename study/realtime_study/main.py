@@ -31,11 +31,11 @@ def realtime(arguments):
 
 def _run(layout, options):
     import pandas
-    from study.realtime_study.search import PILOT, REPEATS, Case, largest, step_row
+    from study.realtime_study.search import AGAIN, PILOT, REPEATS, Case, largest, step_row
     need_steps(options.duration, options.steps)
     known = registry()
     start_named(layout, "realtime", select(known, options.only), {
-        "duration": options.duration, "repeats": REPEATS, "pilot": PILOT})
+        "duration": options.duration, "repeats": REPEATS, "again": AGAIN, "pilot": PILOT})
     run = read_run(layout)
     served = {variant["name"]: variant.get("settings", []) for entry in known["implementations"]
               if entry["available"] for variant in entry["variants"]}

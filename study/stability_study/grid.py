@@ -57,7 +57,7 @@ def row(cell, record, layout, duration):
                     "failed_at", "position_error_max", "energy_drift_max", "passes_per_step",
                     "steps_at_limit")} | {
             "raw_file": layout.relative(cell.path(layout, duration)),
-            "command": shlex.join(["build/mbs", *record["command"][1:]])}
+            "command": runs.typed(record)}
 
 
 def windows(loops, steps):

@@ -10,6 +10,7 @@ import pytest
 
 from study.accuracy_study import gate, pairs, settings, subjects, work
 from study.accuracy_study.main import accuracy
+from study.pipeline import runs
 from study.pipeline.contenders import Contender
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_json
@@ -56,7 +57,7 @@ def test_every_setting_that_is_served_has_its_rows(run, tmp_path):
     page = (tmp_path / "results" / "accuracy.html").read_text()
     assert "6 diverged" in page and "2 agree, but are less accurate" in page
     for row in rows[rows.raw_file.notna()].itertuples():
-        assert row.command.split()[1:] == read_json(tmp_path / "results" / row.raw_file)["command"][1:]
+        assert row.command == runs.typed(read_json(tmp_path / "results" / row.raw_file))
 
 
 def test_what_is_stored_is_never_run_again_and_can_be_drawn_again(run, tmp_path):

@@ -14,6 +14,7 @@ from study.advise_study.search import Found, Search
 from study.advise_study.settings import Setting, catalogue, fits, serving
 from study.advise_study.validate import fastest, luck
 from study.advise_study.verify import verify
+from study.pipeline import runs
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_json
 from study.tests.conftest import ROOT, study
@@ -275,7 +276,7 @@ def test_the_advice_is_as_accurate_as_asked_and_traces_to_its_raw_files(advised)
     assert told["error"]["exact"] <= 3e-5 and told["error"]["estimate"] <= told["error"]["allowed_estimate"] < 3e-5
     for run in answer["runs"]:
         record = read_json(folder / "results" / run["raw_file"])
-        assert shlex.split(run["command"])[1:] == [word for word in record["command"][1:] if word != "--json"]
+        assert run["command"] == runs.typed(record)
         assert run["estimate"] == record["summary"]["position_error_estimate"]
     assert {entry["setting"] for entry in answer["settings"]} == {setting.label for setting in catalogue()}
     assert all(entry["step"] or entry["reason"] for entry in answer["settings"])

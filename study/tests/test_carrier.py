@@ -1,4 +1,5 @@
 # What studies share: tables that were changed, runs that are refused, damaged or interrupted, bad options.
+import shlex
 import signal
 import subprocess
 import time
@@ -56,6 +57,28 @@ def test_a_raw_file_that_tells_of_no_run_is_damaged(tmp_path, damage):
     path.write_text(damage)
     with pytest.raises(StudyError, match="run.json is damaged"):
         runs.simulate(path, None, "four-bar:1", step=1e-3, duration=1.0, every=0, context={}, seconds=1)
+
+
+def test_what_is_typed_writes_nothing():
+    words = ["simulate", "four-bar:1,fill=0.6", "--step", "1e-3"]
+    for written in ([], ["--json"], ["--json", "--output", "OUTPUT.csv", "--every", "3"]):
+        record = {"command": ["/elsewhere/mbs", *words, *written, "--blas", "atlas"]}
+        assert runs.typed(record) == "build/mbs simulate four-bar:1,fill=0.6 --step 1e-3 --blas atlas"
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "results").glob("[!l]*/*.csv")), ids=lambda path: path.stem)
+def test_commands_of_stored_tables_name_scenes_that_are_there_and_run(path):
+    table = pandas.read_csv(path)
+    columns = [column for column in table if column.endswith("command")]
+    commands = [shlex.split(text) for column in columns for text in table[column].dropna()
+                if text.startswith("build/mbs simulate ")]
+    for words in commands:
+        assert not any("OUTPUT" in word for word in words)
+        assert words[2].startswith("four-bar:") or (ROOT / words[2]).exists(), words[2]
+    mbs = ROOT / "build" / "mbs"
+    if commands and mbs.exists():
+        done = subprocess.run([mbs, *commands[0][1:]], cwd=ROOT, capture_output=True, text=True, timeout=100)
+        assert done.returncode in (0, 1), done.stderr
 
 
 class Program:

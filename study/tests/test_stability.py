@@ -6,6 +6,7 @@ import tempfile
 import pandas
 import pytest
 
+from study.pipeline import runs
 from study.pipeline.contenders import Contender
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_json
@@ -63,8 +64,7 @@ def test_a_run_that_ends_is_kept_and_never_run_again(run, tmp_path):
     assert len(before) == 6 and sum(after[path] != before[path] for path in before) == 1
     assert (tmp_path / "results" / "stability.csv").read_bytes() == content
     for row in table(tmp_path).itertuples():
-        command = read_json(tmp_path / "results" / row.raw_file)["command"]
-        assert row.command.split()[1:] == command[1:]
+        assert row.command == runs.typed(read_json(tmp_path / "results" / row.raw_file))
     assert not list((tmp_path / "results").rglob("*.partial"))
 
 
