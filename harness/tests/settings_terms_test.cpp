@@ -4,6 +4,7 @@
 
 #include "check/gate.hpp"
 #include "registry/registry.hpp"
+#include "run/initial_state.hpp"
 #include "run/setting_names.hpp"
 #include "run/settings.hpp"
 #include "support/gtest_name.hpp"
@@ -72,6 +73,40 @@ TEST_P(SettingsTerms, Agree) {
     const Verdict verdict = check_implementation(scene, variant, settings, reference);
     if (test::is_left_to_another(verdict, variant, scene.model, settings)) continue;
     EXPECT_EQ(verdict.verdict, suited ? "agrees" : "unsupported") << verdict.reason;
+  }
+}
+
+/// Two rods and the one between their ends, hanging at rest.
+Model hanging() {
+  ModelData data;
+  data.points = {
+      {"A", -1, {0.0, 0.0}}, {"B", -1, {1.0, 0.0}}, {"C", 0, {0.0, -1.0}}, {"D", 2, {1.0, -1.0}}};
+  data.dot_constraints = {
+      {2, 0, 2, 0, 1.0, "AC"}, {3, 1, 3, 1, 1.0, "BD"}, {3, 2, 3, 2, 1.0, "CD"}};
+  for (int i = 0; i < 4; ++i) data.mass.push_back({i, i, 1.0});
+  data.force = {0.0, -9.81, 0.0, -9.81};
+  data.initial_velocity.assign(4, 0.0);
+  return Model(std::move(data));
+}
+
+/// Residuals become smaller than any number that has an inverse.
+TEST(MixedPrecision, StaysAtRest) {
+  const Model model = hanging();
+  for (const NamedVariant& variant : all_variants()) {
+    if (!variant.variant->serves.mixed_precision) continue;
+    SCOPED_TRACE(variant.name);
+    for (const Scheme scheme : {Scheme::penalty, Scheme::saddle_point}) {
+      StepSettings settings{.scheme = scheme, .precision = Precision::mixed};
+      settings.penalty = automatic_penalty(model, settings);
+      const auto simulation = create_simulation(*variant.variant, model, settings);
+      State state = initial_state(model);
+      simulation->set_state(state);
+      for (int i = 0; i < 400; ++i) EXPECT_EQ(simulation->step().status, StepStatus::converged);
+      simulation->get_state(state);
+      for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_NEAR(state.q[i], model.initial_position()[i], 1e-9);
+      }
+    }
   }
 }
 

@@ -37,8 +37,8 @@ class Constraints {
   void add_transposed(const S* t, S* y) const;
   /// y −= h Φqᵀ (λ + α φ).
   void add_forces(const S* lambda, const S* phi, const S& alpha, const S& h, S* y) const;
-  /// y −= f (Φqᵀ Φq x + Φqᵀ t) with t = Φ̇q v if there is v, the first two Φq the earlier ones; x is
-  /// zero at fixed points.
+  /// y −= f (Φqᵀ Φq x + Φqᵀ t) with t = Φ̇q v if there is v, the first two Φq the earlier ones (in
+  /// single precision the present ones); x is zero at fixed points.
   void add_projection(const S* x, const S* v, const S& f, S* y) const;
   /// Whether one of these rows is among those of constraint k's points.
   [[nodiscard]] bool touches(int k, const std::vector<int>& point_rows) const;

@@ -1,14 +1,17 @@
 // Constraints<S, D>: right-hand sides of the projections in one sweep. Part of constraints.hpp.
 #pragma once
 
+#include <type_traits>
+
 #include "constraints.hpp"
 
 namespace mbs::compiled_ldl {
 
 template <typename S, int D>
 void Constraints<S, D>::add_projection(const S* x, const S* v, const S& f, S* y) const {
+  constexpr bool kPresent = std::is_same_v<S, float>;
   const S* u = u_.data();
-  const S* e = earlier_u_.data();
+  const S* e = (kPresent ? u_ : earlier_u_).data();
   for (int k = 0; k < pairs_.one; ++k, u += D, e += D) {
     const Pair& pair = pairs_.list[k];
     S sum = S(0.0), square = S(0.0), force[D];
@@ -28,7 +31,7 @@ void Constraints<S, D>::add_projection(const S* x, const S* v, const S& f, S* y)
     for (int i = 0; i < D; ++i) y[pair.b + i] += force[i];
   }
   const S* g = vectors_.data() + 2 * D;
-  const S* earlier = earlier_vectors_.data() + 2 * D;
+  const S* earlier = (kPresent ? vectors_ : earlier_vectors_).data() + 2 * D;
   for (int k = 0; k < static_cast<int>(quads_.size()); ++k, g += kQuad, earlier += kQuad) {
     const Quad& quad = quads_[k];
     S sum = S(0.0);

@@ -1,6 +1,8 @@
 // System: residual, matrix and solves. Part of system.hpp.
 #pragma once
 
+#include <limits>
+
 #include "system.hpp"
 
 namespace mbs::compiled_ldl {
@@ -53,7 +55,8 @@ template <typename S, typename F, int D>
 S System<S, F, D>::scale_down() {
   S scale = S(0.0);
   for (int i = 0; i < program.padded; ++i) scale = larger(scale, magnitude(y[i]));
-  const S inverse = scale > S(0.0) ? S(1.0) / scale : S(0.0);
+  // At rest it shrinks from step to step, until it has no finite inverse: then it counts as zero.
+  const S inverse = scale >= std::numeric_limits<S>::min() ? S(1.0) / scale : S(0.0);
   for (int i = 0; i < program.padded; ++i) rounded_[i] = static_cast<F>(y[i] * inverse);
   return scale;
 }
