@@ -100,7 +100,9 @@ int simulate(const SimulateOptions& options) {
     settings.half_step = half.resolve(scene.model);
   }
   require_duration(scene, settings);
-  std::vector<std::string> warnings = setting_warnings(scene.model, settings.step);
+  std::vector<std::string> warnings =
+      setting_warnings(scene.model, settings.step,
+                       options.step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user);
   add_judging_warning(settings, warnings);
   const RunSummary summary = run_with_files(options, scene, *variant.variant, settings);
   nlohmann::json json = summary_json(scene, variant, settings, summary);

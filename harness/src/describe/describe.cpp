@@ -84,7 +84,8 @@ void add_settings(json& result, const Model& model, const Structure& structure, 
   if (model.constraints() > 0) {
     const PenaltyWindow window = penalty_window(model, structure, step);
     result["penalty_window"] = penalty_json(window, step);
-    warnings.push_back(penalty_warning(window, window.automatic, step));
+    warnings.push_back(
+        penalty_warning(window, {.step = step, .penalty = window.automatic}, PenaltyFrom::rule));
   }
   for (const std::string& warning : warnings) {
     if (!warning.empty()) result["warnings"].push_back(warning);
