@@ -62,6 +62,7 @@ TEST(Describe, FourBar) {
   EXPECT_EQ(d["redundant_constraints"], nlohmann::json::array());
   EXPECT_EQ(d["singular_start"], false);
   EXPECT_EQ(d["assembly"]["position_correction"], 0.0);
+  EXPECT_EQ(d["judged_length"], 1.0);
   EXPECT_TRUE(d["artificial_fill"].is_null());
 }
 
@@ -76,6 +77,8 @@ TEST(Describe, Text) {
         "fixed points (3)\n",
         "terms absent          torques, springs and dampers, torsion springs, stiffness (K), "
         "damping (C)",
+        "length l              1 m, of the fastest part: ok to an estimated error (--half-step) of "
+        "0.01 m, plausible to a sum of local errors of 0.003 m\n",
         "penalty factor        ", "(singular positions) to ", "for step 0.00125 s; automatic ",
         "14 non-zeros, 46.67 % of m n", "28 non-zeros, 77.78 % of n^2"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\nnot in\n" << text;

@@ -13,6 +13,7 @@
 #include "describe/warnings.hpp"
 #include "model_math/kinematics.hpp"
 #include "run/driver_end.hpp"
+#include "run/judge.hpp"
 #include "scene/row_names.hpp"
 
 namespace mbs {
@@ -126,6 +127,7 @@ json describe_json(const Scene& scene, double step) {
       {"mass", matrix(2 * static_cast<long>(model.mass().size()) - model.variables(), n * n)},
       {"jacobian", matrix(static_cast<long>(jacobian_entries), m * n)},
       {"tangent", matrix(tangent_nonzeros(model), n * n)},
+      {"judged_length", judged_length(model)},
       {"drivers_end", finite_or_null(driver_end(model))},
       {"artificial_fill", fill_json(scene.fill)},
       {"elements", elements_json(scene)}};
