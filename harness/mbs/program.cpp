@@ -117,8 +117,10 @@ void refuse_empty(CLI::App& command) {
 NamedVariant select_variant(const std::string& name) {
   const std::vector<NamedVariant> variants = select_variants({name});
   if (variants.size() == 1) return variants[0];
-  throw UsageError(fmt::format("--implementation '{}' has {} variants: name one, folder/variant",
-                               name, variants.size()));
+  std::vector<std::string> names;
+  for (const NamedVariant& variant : variants) names.push_back(variant.name);
+  throw UsageError(fmt::format("--implementation '{}' has {} variants: name one of {}", name,
+                               names.size(), fmt::join(names, ", ")));
 }
 
 void require_step(double step) {

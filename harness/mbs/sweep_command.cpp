@@ -120,8 +120,8 @@ int sweep(const SweepOptions& options) {
     fmt::print("{} lanes: {}\n", grid.lanes(), text_of(outcomes));
     return 0;
   }
-  fmt::print(stderr, "mbs: {} on {}: {} of {} lanes failed: {}\n", variant.name, grid.base().name,
-             failed, grid.lanes(), text_of(outcomes));
+  fmt::print(stderr, "mbs: {} on {}: {} of {} lanes failed: {} (column status_reason says why)\n",
+             variant.name, grid.base().name, failed, grid.lanes(), text_of(outcomes));
   return 1;
 }
 

@@ -294,6 +294,17 @@ TEST(Warnings, NeverBlameThePenaltyFactorOfTheRule) {
   }
 }
 
+TEST(Warnings, SendToNoOtherStepWhereNoneSuits) {
+  for (const double step : {1e-2, kStep, 1e-4}) {
+    const Model model(four_bar(4000));
+    StepSettings settings{.step = step};
+    settings.penalty = automatic_penalty(model, settings);
+    const auto warnings = setting_warnings(model, settings, PenaltyFrom::rule);
+    ASSERT_EQ(warnings.size(), 1u) << step;
+    EXPECT_TRUE(warnings[0].starts_with("no step suits")) << warnings[0];
+  }
+}
+
 TEST(Warnings, SayWhereNoPenaltyFactorSuits) {
   const Model model(four_bar(1000));
   StepSettings settings;

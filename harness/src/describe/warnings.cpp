@@ -80,13 +80,20 @@ class SpringDiagonal {
 namespace {
 
 /// Where no penalty factor of the user's own is to blame: what to change instead.
-std::string step_warning(const StepSettings& settings, bool is_long) {
+std::string step_warning(const PenaltyWindow& window, const StepSettings& settings, bool is_long) {
+  const bool no_step = window.widest * kFarAbove < 1.0;
+  const char* precision =
+      is_long || settings.precision == Precision::double_precision ? "" : ", --precision double";
+  if (no_step) {
+    return fmt::format(
+        "no step suits the penalty form on this scene (an estimate: mbs describe): try --scheme "
+        "saddle-point{}",
+        precision);
+  }
   return fmt::format(
       "the step {:g} s is too {} for the penalty form on this scene (an estimate: mbs describe): "
       "try --scheme saddle-point{}, or a {} step",
-      settings.step, is_long ? "long" : "short",
-      is_long || settings.precision == Precision::double_precision ? "" : ", --precision double",
-      is_long ? "shorter" : "longer");
+      settings.step, is_long ? "long" : "short", precision, is_long ? "shorter" : "longer");
 }
 
 }  // namespace
@@ -99,13 +106,14 @@ std::string penalty_warning(const PenaltyWindow& window, const StepSettings& set
         "estimate: mbs describe)",
         settings.penalty, side, bound, what, settings.step);
   };
-  if (window.lower > window.upper * kFarAbove) return step_warning(settings, !window.cancellation);
+  if (window.lower > window.upper * kFarAbove)
+    return step_warning(window, settings, !window.cancellation);
   if (settings.penalty < window.lower / kFarBelow) {
-    if (from == PenaltyFrom::rule) return step_warning(settings, false);
+    if (from == PenaltyFrom::rule) return step_warning(window, settings, false);
     return far("below", window.lower, "least that is sure to hold the constraints");
   }
   if (settings.penalty > window.upper * kFarAbove) {
-    if (from == PenaltyFrom::rule) return step_warning(settings, !window.cancellation);
+    if (from == PenaltyFrom::rule) return step_warning(window, settings, !window.cancellation);
     return far("above", window.upper, "most without loss of accuracy");
   }
   return "";
