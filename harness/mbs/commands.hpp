@@ -32,6 +32,10 @@ struct StepOptions {
   [[nodiscard]] StepSettings resolve(const Model& model) const;
 };
 
+/// Makes every option and argument of `command` refuse an empty text, which would count as 0 or as
+/// not given.
+void refuse_empty(CLI::App& command);
+
 /// The one variant that the value of --implementation names. Throws UsageError.
 NamedVariant select_variant(const std::string& name);
 

@@ -10,6 +10,7 @@
 #include "environment/build_info.hpp"
 #include "mbs/bench_command.hpp"
 #include "mbs/commands.hpp"
+#include "run/run.hpp"
 #include "run/setting_names.hpp"
 #include "run/settings.hpp"
 #include "usage_error.hpp"
@@ -44,6 +45,19 @@ void add_choice(CLI::App& command, const std::string& option, Choice& value,
   command.add_option_function<std::string>(option, take, what)
       ->default_str(name_of(value))
       ->check(CLI::IsMember(choice_names<Choice>()));
+}
+
+/// What `status` of a run may be, a line each.
+std::string outcomes_text() {
+  std::string text = "Outcomes of a run (bounds: harness/README.md), exit status 0:\n";
+  bool finished = true;
+  for (const auto& [status, name, meaning] : outcomes()) {
+    if (finished && !is_finished(status)) text += "exit status 1:\n";
+    finished = is_finished(status);
+    text += fmt::format("  {:<14} {}\n", name, meaning);
+  }
+  return text +
+         "Exit status 2: the input was refused and nothing was run; standard error says why.";
 }
 
 bool is_subcommand(const CLI::App& app, const std::string& name) {
@@ -92,11 +106,21 @@ void StepOptions::add_to(CLI::App& command) {
   add_blas_option(command);
 }
 
+void refuse_empty(CLI::App& command) {
+  for (CLI::Option* option : command.get_options()) {
+    option->check([](const std::string& text) {
+      return text.empty() ? std::string("the value is empty") : std::string();
+    });
+  }
+}
+
 NamedVariant select_variant(const std::string& name) {
   const std::vector<NamedVariant> variants = select_variants({name});
   if (variants.size() == 1) return variants[0];
-  throw UsageError(fmt::format("--implementation '{}' has {} variants: name one, folder/variant",
-                               name, variants.size()));
+  std::vector<std::string> names;
+  for (const NamedVariant& variant : variants) names.push_back(variant.name);
+  throw UsageError(fmt::format("--implementation '{}' has {} variants: name one of {}", name,
+                               names.size(), fmt::join(names, ", ")));
 }
 
 void require_step(double step) {
@@ -142,7 +166,13 @@ int run_program(int argc, char** argv) {
   add_check_command(app, status);
   add_limit_command(app, status);
   app.add_subcommand("bench", "time implementations with Google Benchmark (see mbs bench --help)");
-  for (CLI::App* command : app.get_subcommands({})) command->footer(kScenes);
+  for (CLI::App* command : app.get_subcommands({})) {
+    refuse_empty(*command);
+    command->footer(kScenes);
+  }
+  for (const char* name : {"simulate", "sweep"}) {
+    app.get_subcommand(name)->footer(std::string(kScenes) + "\n\n" + outcomes_text());
+  }
   if (argc > 1 && argv[1][0] != '-' && !is_subcommand(app, argv[1])) {
     throw UsageError(fmt::format(
         "unknown subcommand '{}': there are list, describe, simulate, sweep, check, limit, bench",

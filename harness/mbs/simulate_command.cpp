@@ -100,7 +100,9 @@ int simulate(const SimulateOptions& options) {
     settings.half_step = half.resolve(scene.model);
   }
   require_duration(scene, settings);
-  std::vector<std::string> warnings = setting_warnings(scene.model, settings.step);
+  std::vector<std::string> warnings =
+      setting_warnings(scene.model, settings.step,
+                       options.step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user);
   add_judging_warning(settings, warnings);
   const RunSummary summary = run_with_files(options, scene, *variant.variant, settings);
   nlohmann::json json = summary_json(scene, variant, settings, summary);
@@ -108,7 +110,7 @@ int simulate(const SimulateOptions& options) {
   if (options.json) {
     fmt::print("{}\n", json.dump(2));
   } else {
-    fmt::print("{}", summary_text(json));
+    fmt::print("{}", summary_text(json, summary));
   }
   if (summary.status == RunStatus::degraded) {
     fmt::print(stderr, "mbs: degraded: {}\n", summary.reason);
@@ -133,18 +135,12 @@ void add_simulate_command(CLI::App& app, int& status) {
   command->add_option("--implementation", options->implementation, "folder/variant (see mbs list)")
       ->required();
   options->step.add_to(*command);
-  command->add_option("--duration", options->duration, "simulated time, s")->capture_default_str();
-  const auto is_file_name = [](const std::string& path) {
-    return path.empty() ? std::string("is empty: it must be a file name") : std::string();
-  };
-  command
-      ->add_option("--trajectory", options->trajectory,
-                   "write all points, energies and the constraint violation to this CSV file")
-      ->check(is_file_name);
-  command
-      ->add_option("--output", options->output,
-                   "write the scene's \"outputs\", and nothing else, to this CSV file")
-      ->check(is_file_name);
+  command->add_option("--duration", options->duration, "simulated time, s, rounded to whole steps")
+      ->capture_default_str();
+  command->add_option("--trajectory", options->trajectory,
+                      "write all points, energies and the constraint violation to this CSV file");
+  command->add_option("--output", options->output,
+                      "write the scene's \"outputs\", and nothing else, to this CSV file");
   command->add_option("--every", options->every, "write every K-th step only, K >= 1")
       ->capture_default_str();
   command->add_option(

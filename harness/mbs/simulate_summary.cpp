@@ -25,6 +25,13 @@ nlohmann::json times_json(const StepTimes& us) {
   return json;
 }
 
+/// The value, or why there is none: a run that was lost, or else `without`.
+std::string figure(std::optional<double> value, const char* unit, const char* without = "") {
+  if (!value) return without;
+  if (!std::isfinite(*value)) return "not known: the run was lost";
+  return fmt::format("{:.3g}{}", *value, unit);
+}
+
 /// One line, and one more where there is a deadline.
 std::string times_text(const std::string& label, const nlohmann::json& us,
                        const nlohmann::json& run) {
@@ -77,11 +84,7 @@ nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
   return json;
 }
 
-std::string summary_text(const nlohmann::json& json) {
-  const auto number = [&json](const char* key, const char* unit, const char* without) {
-    return json[key].is_null() ? std::string(json["status"] == "diverged" ? "none" : without)
-                               : fmt::format("{:.3g}{}", json[key].get<double>(), unit);
-  };
+std::string summary_text(const nlohmann::json& json, const RunSummary& summary) {
   std::string text = fmt::format("{} on {}\n", json["implementation"].get<std::string>(),
                                  json["scene"].get<std::string>());
   text += fmt::format("  status                 {}\n", json["status"].get<std::string>());
@@ -95,6 +98,7 @@ std::string summary_text(const nlohmann::json& json) {
       json["other_settings"] == "" ? std::string()
                                    : ", " + json["other_settings"].get<std::string>());
   text += fmt::format("  start                  {}\n", assembly_text(json["assembly"]));
+  if (summary.steps == 0) return text + "  steps                  none was done\n";
   const double passes = json["passes_per_step"], factorizations = json["factorizations_per_step"];
   text += fmt::format(
       "  steps                  {}, {:.3f} passes{} each, {} at the pass limit\n",
@@ -103,20 +107,21 @@ std::string summary_text(const nlohmann::json& json) {
       json["steps_at_limit"].get<long>());
   text +=
       fmt::format("  position error max     {}\n",
-                  number("position_error_max", " m",
+                  figure(summary.position_error_max, " m",
                          "not known: no exact motion of this scene is (--half-step estimates)"));
-  if (!json["position_error_estimate"].is_null()) {
-    text += fmt::format("  estimated error max    {:.3g} m, by half the step\n",
-                        json["position_error_estimate"].get<double>());
+  if (summary.position_error_estimate) {
+    text += fmt::format("  estimated error max    {}\n",
+                        figure(summary.position_error_estimate, " m, by half the step"));
   }
   if (!json["local_error_sum"].is_null()) {
     text +=
         fmt::format("  local errors add up to {:.3g} m\n", json["local_error_sum"].get<double>());
   }
   text += fmt::format("  energy drift max       {}\n",
-                      number("energy_drift_max", " of its scale", "none: energy is not conserved"));
+                      figure(summary.energy_drift_max, " of its scale",
+                             "not judged: dampers, torques or drivers change the energy"));
   text += fmt::format("  constraint violation   {}\n",
-                      number("constraint_violation_max", " m^2", "lost"));
+                      figure(summary.constraint_violation_max, " m^2"));
   text += fmt::format("  set-up                 {:.1f} us\n", json["setup_us"].get<double>());
   text +=
       fmt::format("  judging                {:.2f} us a step\n", json["judge_us"].get<double>());

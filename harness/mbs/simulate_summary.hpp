@@ -12,7 +12,8 @@ namespace mbs {
 nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
                             const RunSettings& settings, const RunSummary& summary);
 
-/// The same for people, several lines.
-std::string summary_text(const nlohmann::json& summary);
+/// The same for people, several lines; `summary` tells a figure that is lost from one that there is
+/// none of, which are both null in `json`.
+std::string summary_text(const nlohmann::json& json, const RunSummary& summary);
 
 }  // namespace mbs

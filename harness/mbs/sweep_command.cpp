@@ -120,8 +120,8 @@ int sweep(const SweepOptions& options) {
     fmt::print("{} lanes: {}\n", grid.lanes(), text_of(outcomes));
     return 0;
   }
-  fmt::print(stderr, "mbs: {} on {}: {} of {} lanes failed: {}\n", variant.name, grid.base().name,
-             failed, grid.lanes(), text_of(outcomes));
+  fmt::print(stderr, "mbs: {} on {}: {} of {} lanes failed: {} (column status_reason says why)\n",
+             variant.name, grid.base().name, failed, grid.lanes(), text_of(outcomes));
   return 1;
 }
 
@@ -139,7 +139,8 @@ void add_sweep_command(CLI::App& app, int& status) {
   command->add_option("--implementation", options->implementation, "folder/variant (see mbs list)")
       ->required();
   options->step.add_to(*command);
-  command->add_option("--duration", options->duration, "simulated time, s")->capture_default_str();
+  command->add_option("--duration", options->duration, "simulated time, s, rounded to whole steps")
+      ->capture_default_str();
   command->add_flag("--half-step", options->half_step,
                     "also simulate with half the step, and estimate the error by the difference");
   command

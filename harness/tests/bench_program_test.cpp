@@ -78,6 +78,16 @@ TEST(BenchProgram, HasTheRecordInItsContext) {
       << context;
 }
 
+TEST(BenchProgram, PrintsNoFigureThatIsNotThere) {
+  const std::string scenes =
+      "bench --implementation null --steps 2 --benchmark_min_time=0 '" MBS_ROOT
+      "/harness/scenes/double_pendulum.json'";
+  const auto run = test::run_mbs(scenes);
+  EXPECT_EQ(run.status, 0) << run.errors;
+  EXPECT_NE(run.output.find("step_us="), std::string::npos) << run.output;
+  EXPECT_EQ(run.output.find("nan"), std::string::npos) << run.output;
+}
+
 TEST(BenchProgram, AgreesWithItselfOnWhatItTimed) {
   if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
   const std::string name = all_variants().front().name;

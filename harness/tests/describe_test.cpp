@@ -62,6 +62,7 @@ TEST(Describe, FourBar) {
   EXPECT_EQ(d["redundant_constraints"], nlohmann::json::array());
   EXPECT_EQ(d["singular_start"], false);
   EXPECT_EQ(d["assembly"]["position_correction"], 0.0);
+  EXPECT_EQ(d["judged_length"], 1.0);
   EXPECT_TRUE(d["artificial_fill"].is_null());
 }
 
@@ -76,6 +77,8 @@ TEST(Describe, Text) {
         "fixed points (3)\n",
         "terms absent          torques, springs and dampers, torsion springs, stiffness (K), "
         "damping (C)",
+        "length l              1 m, of the fastest part: ok to an estimated error (--half-step) of "
+        "0.01 m, plausible to a sum of local errors of 0.003 m\n",
         "penalty factor        ", "(singular positions) to ", "for step 0.00125 s; automatic ",
         "14 non-zeros, 46.67 % of m n", "28 non-zeros, 77.78 % of n^2"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\nnot in\n" << text;
@@ -255,10 +258,10 @@ TEST(Describe, DriversOfFunctionsNeverEnd) {
 TEST(Warnings, TellOfPenaltyFactorsFarOutsideTheWindow) {
   const Model model(four_bar(3));
   StepSettings settings;
-  EXPECT_TRUE(setting_warnings(model, settings).empty());
+  EXPECT_TRUE(setting_warnings(model, settings, PenaltyFrom::user).empty());
   for (const auto& [penalty, word] : {std::pair{1e-300, "far below"}, {1e16, "far above"}}) {
     settings.penalty = penalty;
-    const auto warnings = setting_warnings(model, settings);
+    const auto warnings = setting_warnings(model, settings, PenaltyFrom::user);
     ASSERT_EQ(warnings.size(), 1u) << penalty;
     EXPECT_NE(warnings[0].find(word), std::string::npos) << warnings[0];
   }
@@ -267,16 +270,51 @@ TEST(Warnings, TellOfPenaltyFactorsFarOutsideTheWindow) {
   EXPECT_TRUE(describe_json(load_scene("four-bar:40"), kStep)["warnings"].empty());
 }
 
+TEST(Warnings, NeverBlameThePenaltyFactorOfTheRule) {
+  const Model model(four_bar(10));
+  const struct {
+    double step;
+    Precision precision;
+    std::string words;
+  } cases[] = {
+      {1e-2, Precision::double_precision, "0.01 s is too long"},
+      {5e-2, Precision::double_precision, "or a shorter step"},
+      {1e-6, Precision::double_precision, "1e-06 s is too short"},
+      {1e-6, Precision::double_precision, "saddle-point, or a longer step"},
+      {1e-6, Precision::single_precision, "saddle-point, --precision double, or a longer step"},
+  };
+  for (const auto& [step, precision, words] : cases) {
+    StepSettings settings{.step = step};
+    settings.precision = precision;
+    settings.penalty = automatic_penalty(model, settings);
+    const auto warnings = setting_warnings(model, settings, PenaltyFrom::rule);
+    ASSERT_EQ(warnings.size(), 1u) << step;
+    EXPECT_NE(warnings[0].find(words), std::string::npos) << warnings[0];
+    EXPECT_EQ(warnings[0].find("penalty factor"), std::string::npos) << warnings[0];
+  }
+}
+
+TEST(Warnings, SendToNoOtherStepWhereNoneSuits) {
+  for (const double step : {1e-2, kStep, 1e-4}) {
+    const Model model(four_bar(4000));
+    StepSettings settings{.step = step};
+    settings.penalty = automatic_penalty(model, settings);
+    const auto warnings = setting_warnings(model, settings, PenaltyFrom::rule);
+    ASSERT_EQ(warnings.size(), 1u) << step;
+    EXPECT_TRUE(warnings[0].starts_with("no step suits")) << warnings[0];
+  }
+}
+
 TEST(Warnings, SayWhereNoPenaltyFactorSuits) {
   const Model model(four_bar(1000));
   StepSettings settings;
   settings.step = 1e-5;
   settings.penalty = 1e14;
-  const auto warnings = setting_warnings(model, settings);
+  const auto warnings = setting_warnings(model, settings, PenaltyFrom::user);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("--scheme saddle-point"), std::string::npos) << warnings[0];
   settings.scheme = Scheme::saddle_point;
-  EXPECT_TRUE(setting_warnings(model, settings).empty());
+  EXPECT_TRUE(setting_warnings(model, settings, PenaltyFrom::user).empty());
 }
 
 TEST(Warnings, TellOfALooseTolerance) {
@@ -296,7 +334,9 @@ TEST(Warnings, TellOfSingularStarts) {
     const Model model(parse_scene(text, "test.json").model);
     settings.penalty = automatic_penalty(model, settings);
     std::string all;
-    for (const std::string& warning : setting_warnings(model, settings)) all += warning + "\n";
+    for (const std::string& warning : setting_warnings(model, settings, PenaltyFrom::rule)) {
+      all += warning + "\n";
+    }
     return all;
   };
   EXPECT_NE(warnings(R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},

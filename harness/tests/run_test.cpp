@@ -424,7 +424,11 @@ TEST(CountSteps, RoundsToWholeSteps) {
   EXPECT_EQ(count_steps(settings), 16'000);
   settings.duration = 1.9e-3;
   EXPECT_EQ(count_steps(settings), 2);
-  settings.duration = 0.63e-3;
+  settings.duration = 3 * 0.1;  // a rounding above 0.3
+  settings.step.step = 0.3;
+  EXPECT_EQ(count_steps(settings), 1);
+  settings.duration = 0.3;
+  settings.step.step = 3 * 0.1;
   EXPECT_EQ(count_steps(settings), 1);
 }
 
@@ -450,7 +454,8 @@ TEST(CountSteps, RefusesWhatIsOutOfRange) {
     expect_refusal([bad](RunSettings& s) { s.repeats = bad; }, "--repeats");
     expect_refusal([bad](RunSettings& s) { s.step.max_passes = bad; }, "--max-passes");
   }
-  expect_refusal([](RunSettings& s) { s.duration = 0.6e-3; }, "shorter than half a step");
+  expect_refusal([](RunSettings& s) { s.duration = 0.9 * s.step.step; },
+                 "shorter than one step: it must be at least --step, 0.00125 s");
   expect_refusal([](RunSettings& s) { s.duration = 1e6; }, "at most 1e+08");
   expect_refusal([](RunSettings& s) { s.step.step = 1e-300; }, "at most 1e+08");
 }

@@ -125,6 +125,52 @@ TEST_F(SimulateProgram, ADivergedRunStillHasItsSummary) {
   EXPECT_EQ(std::ranges::count(run.errors, '\n'), 1) << run.errors;
 }
 
+TEST_F(SimulateProgram, SaysWhichFiguresAreNotKnown) {
+  const auto expect = [](const test::ProgramResult& run, const std::string& line) {
+    EXPECT_NE(run.output.find("  " + line + "\n"), std::string::npos) << line << "\n" << run.output;
+  };
+  const std::string scenes = "'" MBS_ROOT "/harness/scenes/";
+  const std::string pendulum = scenes + "double_pendulum.json' --duration 1 --step 0.5 --half-step";
+  const std::string unknown = "position error max     not known: no exact motion of this scene is";
+  const auto lost = simulate(pendulum);
+  EXPECT_EQ(lost.status, 1);
+  expect(lost, unknown + " (--half-step estimates)");
+  expect(lost, "estimated error max    not known: the run was lost");
+  const auto driven = simulate(scenes + "problems/half_car.json' --duration 0.1");
+  expect(driven,
+         "energy drift max       not judged: dampers, torques or drivers change the energy");
+  const auto failed = simulate("four-bar:10 --duration 1 --step 1");
+  EXPECT_EQ(failed.status, 1);
+  expect(failed, "position error max     not known: the run was lost");
+  expect(failed, "energy drift max       not known: the run was lost");
+  const auto refused =
+      test::run_program(MBS_CONTROLS, "simulate four-bar:2 --implementation control/unsupported");
+  EXPECT_TRUE(refused.output.ends_with("  steps                  none was done\n"));
+}
+
+TEST_F(SimulateProgram, HelpDefinesTheOutcomes) {
+  for (const char* command : {"simulate", "sweep"}) {
+    const auto help = test::run_mbs(command + std::string(" --help"));
+    EXPECT_EQ(help.status, 0);
+    for (const Outcome& outcome : outcomes()) {
+      EXPECT_NE(help.output.find("\n  " + outcome.name + " "), std::string::npos) << outcome.name;
+      EXPECT_NE(help.output.find(outcome.meaning), std::string::npos) << outcome.meaning;
+    }
+  }
+}
+
+TEST_F(SimulateProgram, RefusesEmptyValues) {
+  for (const char* option : {"--step", "--judge-every", "--deadline-us", "--repeats", "--every",
+                             "--output", "--trajectory", "--max-passes"}) {
+    expect_refusal(std::string("four-bar:2 ") + option + " ''",
+                   std::string(option) + ": the value is empty");
+  }
+  expect_refusal("''", "scene: the value is empty");
+  expect_one_line(test::run_mbs("bench four-bar:2 --start ''"), "bench", "--start: the value is");
+  expect_one_line(test::run_mbs("check --time-limit ''"), "check", "--time-limit: the value is");
+  expect_one_line(test::run_mbs("limit ''"), "limit", "N: the value is empty");
+}
+
 TEST_F(SimulateProgram, ARunThatDoesNotConvergeSaysSo) {
   const auto run = simulate("four-bar:2 --duration 0.2 --max-passes 1 --json");
   EXPECT_EQ(run.status, 1);
@@ -311,6 +357,7 @@ TEST_F(SimulateProgram, RefusesBadOptions) {
   }
   expect_refusal("four-bar:2 --duration 1e300", "--duration");
   expect_refusal("four-bar:2 --duration 1e-9", "--duration");
+  expect_refusal("four-bar:2 --step 1 --duration 0.9", "at least --step, 1 s");
   expect_refusal("four-bar:2 --no-such-option", "--no-such-option");
   expect_refusal("four-bar:2 four-bar:3", "four-bar:3");
   expect_refusal("four-bar:2 --step", "--step");

@@ -125,7 +125,8 @@ TEST_F(SweepProgram, CountsTheLanesThatFailAndWritesThemAll) {
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.output, "");
   EXPECT_EQ(run.errors,
-            "mbs: batch/lost_lane on four-bar:1: 2 of 6 lanes failed: 4 plausible, 2 diverged\n");
+            "mbs: batch/lost_lane on four-bar:1: 2 of 6 lanes failed: 4 plausible, 2 diverged "
+            "(column status_reason says why)\n");
   const std::vector<Row> lost = rows_of(file_);
   ASSERT_EQ(sweep(arguments).status, 0);
   const std::vector<Row> sound = rows_of(file_);

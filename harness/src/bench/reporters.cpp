@@ -1,6 +1,7 @@
 // Adapts Google Benchmark's reporters.
 #include "bench/reporters.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -70,12 +71,14 @@ void JsonReporter::Finalize() {
 
 void DisplayReporter::ReportRuns(const std::vector<Run>& runs) {
   Runs shown = as_registered(runs);
+  // The CSV reporter aborts unless all runs have the same counters.
+  const bool all_alike = dynamic_cast<benchmark::CSVReporter*>(inner_.get()) != nullptr;
   for (auto& run : shown) {
     const benchmark::UserCounters all = std::exchange(run.counters, {});
     for (const std::string& name : shown_) {
-      // A failed run has none, but the CSV reporter aborts unless all runs have the same.
-      const auto counter = all.find(name);
-      run.counters[name] = counter != all.end() ? counter->second : benchmark::Counter(kNone);
+      const auto found = all.find(name);
+      const auto counter = found != all.end() ? found->second : benchmark::Counter(kNone);
+      if (all_alike || std::isfinite(counter.value)) run.counters[name] = counter;
     }
   }
   inner_->ReportRuns(shown);

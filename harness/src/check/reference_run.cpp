@@ -55,7 +55,7 @@ ReferenceRun run_reference(const Scene& scene, const StepSettings& settings) {
     if (!finite || result.outcomes.back().status == StepStatus::factorization_failed) {
       throw UsageError(fmt::format(
           "scene '{}': the reference fails at t = {:g} s with step {:g} s and penalty {:.3g}; "
-          "choose other settings",
+          "choose a shorter step, or let --penalty be auto",
           scene.name, result.stretch.start + (i + 1) * settings.step, settings.step,
           settings.penalty));
     }

@@ -13,6 +13,7 @@
 #include "describe/warnings.hpp"
 #include "model_math/kinematics.hpp"
 #include "run/driver_end.hpp"
+#include "run/judge.hpp"
 #include "scene/row_names.hpp"
 
 namespace mbs {
@@ -84,7 +85,8 @@ void add_settings(json& result, const Model& model, const Structure& structure, 
   if (model.constraints() > 0) {
     const PenaltyWindow window = penalty_window(model, structure, step);
     result["penalty_window"] = penalty_json(window, step);
-    warnings.push_back(penalty_warning(window, window.automatic, step));
+    warnings.push_back(
+        penalty_warning(window, {.step = step, .penalty = window.automatic}, PenaltyFrom::rule));
   }
   for (const std::string& warning : warnings) {
     if (!warning.empty()) result["warnings"].push_back(warning);
@@ -125,6 +127,7 @@ json describe_json(const Scene& scene, double step) {
       {"mass", matrix(2 * static_cast<long>(model.mass().size()) - model.variables(), n * n)},
       {"jacobian", matrix(static_cast<long>(jacobian_entries), m * n)},
       {"tangent", matrix(tangent_nonzeros(model), n * n)},
+      {"judged_length", judged_length(model)},
       {"drivers_end", finite_or_null(driver_end(model))},
       {"artificial_fill", fill_json(scene.fill)},
       {"elements", elements_json(scene)}};

@@ -19,6 +19,7 @@ namespace mbs {
 /// - assembly {position_correction, velocity_correction, point};
 /// - terms {name: count or true/false};
 /// - mass, jacobian and tangent {nonzeros, fill}, fill as a share of n^2 or m n;
+/// - judged_length (m), what `mbs simulate` judges estimated and local errors by;
 /// - drivers_end (s; null if drivers are known for ever or there are none);
 /// - penalty_window {step, lower, upper, automatic, lower_from, upper_from} or null;
 /// - warnings [text]: why the automatic penalty factor or the step is likely to be wrong;

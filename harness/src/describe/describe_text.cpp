@@ -7,6 +7,7 @@
 
 #include "describe/describe.hpp"
 #include "describe/terms.hpp"
+#include "run/judge.hpp"
 
 namespace mbs {
 namespace {
@@ -66,6 +67,15 @@ std::string start_text(const json& d) {
                      singular["rank"].get<int>(), listed(singular["constraints"]));
 }
 
+std::string length_text(const json& d) {
+  constexpr AccurateBounds bounds;
+  const double length = d["judged_length"];
+  return fmt::format(
+      "{:.3g} m, of the fastest part: ok to an estimated error (--half-step) of {:.2g} m, "
+      "plausible to a sum of local errors of {:.2g} m",
+      length, bounds.estimated_error * length, bounds.local_error * length);
+}
+
 std::string penalty_text(const json& window) {
   if (window.is_null()) return "any, there are no constraints";
   const double lower = window["lower"], upper = window["upper"];
@@ -111,6 +121,7 @@ std::string describe_text(const Scene& scene, double step) {
   text += line("mass matrix M", matrix_text(d["mass"], "n^2"));
   text += line("Jacobian", matrix_text(d["jacobian"], "m n"));
   text += line("tangent", matrix_text(d["tangent"], "n^2"));
+  text += line("length l", length_text(d));
   text += line("penalty factor", penalty_text(d["penalty_window"]));
   for (const json& warning : d["warnings"]) text += line("warning", warning);
   if (const auto& fill = scene.fill) {

@@ -39,6 +39,10 @@ PenaltyWindow penalty_window(const Model& model, const Structure& structure, dou
   const double for_rounding =
       std::pow(kCancellation * fastest.length * std::pow(turn, 4) / noise, 2) /
       mean_constraint_eigenvalue(model);
+  // At the turn a step where both upper bounds meet: they go as its powers -3 and 8, the lower one
+  // as -1.
+  const double longer = std::pow(for_newton / for_rounding, 1.0 / 11);
+  window.widest = for_newton / std::max(for_slowest, for_singular) / (longer * longer);
   window.slowest_mode = for_slowest > for_singular;
   window.cancellation = for_rounding < for_newton;
   const double per_beta = 4.0 / (step * step);

@@ -77,24 +77,43 @@ class SpringDiagonal {
 
 }  // namespace
 
-std::string penalty_warning(const PenaltyWindow& window, double penalty, double step) {
+namespace {
+
+/// Where no penalty factor of the user's own is to blame: what to change instead.
+std::string step_warning(const PenaltyWindow& window, const StepSettings& settings, bool is_long) {
+  const bool no_step = window.widest * kFarAbove < 1.0;
+  const char* precision =
+      is_long || settings.precision == Precision::double_precision ? "" : ", --precision double";
+  if (no_step) {
+    return fmt::format(
+        "no step suits the penalty form on this scene (an estimate: mbs describe): try --scheme "
+        "saddle-point{}",
+        precision);
+  }
+  return fmt::format(
+      "the step {:g} s is too {} for the penalty form on this scene (an estimate: mbs describe): "
+      "try --scheme saddle-point{}, or a {} step",
+      settings.step, is_long ? "long" : "short", precision, is_long ? "shorter" : "longer");
+}
+
+}  // namespace
+
+std::string penalty_warning(const PenaltyWindow& window, const StepSettings& settings,
+                            PenaltyFrom from) {
   const auto far = [&](const char* side, double bound, const char* what) {
     return fmt::format(
         "the penalty factor {:.2g} is far {} {:.2g}, the {} at step {:g} s (an "
         "estimate: mbs describe)",
-        penalty, side, bound, what, step);
+        settings.penalty, side, bound, what, settings.step);
   };
-  if (window.lower > window.upper * kFarAbove) {
-    return fmt::format(
-        "no penalty factor suits this scene at step {:g} s, least {:.2g} and most {:.2g} "
-        "(estimates: "
-        "mbs describe); --scheme saddle-point does not depend on one",
-        step, window.lower, window.upper);
-  }
-  if (penalty < window.lower / kFarBelow) {
+  if (window.lower > window.upper * kFarAbove)
+    return step_warning(window, settings, !window.cancellation);
+  if (settings.penalty < window.lower / kFarBelow) {
+    if (from == PenaltyFrom::rule) return step_warning(window, settings, false);
     return far("below", window.lower, "least that is sure to hold the constraints");
   }
-  if (penalty > window.upper * kFarAbove) {
+  if (settings.penalty > window.upper * kFarAbove) {
+    if (from == PenaltyFrom::rule) return step_warning(window, settings, !window.cancellation);
     return far("above", window.upper, "most without loss of accuracy");
   }
   return "";
@@ -137,7 +156,8 @@ std::string start_warning(const Model& model, const Structure& structure) {
       row_name(model, structure.singular_rows.front()));
 }
 
-std::vector<std::string> setting_warnings(const Model& model, const StepSettings& settings) {
+std::vector<std::string> setting_warnings(const Model& model, const StepSettings& settings,
+                                          PenaltyFrom from) {
   std::vector<std::string> result;
   const auto add = [&result](std::string warning) {
     if (!warning.empty()) result.push_back(std::move(warning));
@@ -147,7 +167,7 @@ std::vector<std::string> setting_warnings(const Model& model, const StepSettings
     add(start_warning(model, structure));
     if (settings.scheme == Scheme::penalty) {
       const PenaltyWindow window = penalty_window(model, structure, settings.step);
-      add(penalty_warning(window, settings.penalty, settings.step));
+      add(penalty_warning(window, settings, from));
     }
   }
   add(tolerance_warning(model, settings));

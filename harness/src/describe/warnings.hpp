@@ -24,9 +24,14 @@ inline constexpr double kLongestShare = 0.1;
 /// count.
 inline constexpr double kLoosest = 1000.0;
 
-/// Whether `penalty` is beyond the window, which is for `step` (s), that far, or whether the window
-/// is empty by as much; one line, empty if not.
-std::string penalty_warning(const PenaltyWindow& window, double penalty, double step);
+/// Who chose the penalty factor: `--penalty auto`, or a number of the user's.
+enum class PenaltyFrom { rule, user };
+
+/// Whether the penalty factor of `settings` is beyond the window, which is for their step, that
+/// far, or whether the window is empty by as much; one line, empty if not. It asks for another
+/// factor only where the user chose it and one would do; else the step or the form is to change.
+std::string penalty_warning(const PenaltyWindow& window, const StepSettings& settings,
+                            PenaltyFrom from);
 
 /// 2 pi sqrt(M_ii / K_ii) at the start, the least of the coordinates that swing (C_ii^2 < 4 K_ii
 /// M_ii), s; infinite without springs. An estimate.
@@ -42,6 +47,7 @@ std::string start_warning(const Model& model, const Structure& structure);
 std::string tolerance_warning(const Model& model, const StepSettings& settings);
 
 /// All of these, one line each.
-std::vector<std::string> setting_warnings(const Model& model, const StepSettings& settings);
+std::vector<std::string> setting_warnings(const Model& model, const StepSettings& settings,
+                                          PenaltyFrom from);
 
 }  // namespace mbs

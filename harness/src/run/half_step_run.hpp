@@ -1,6 +1,7 @@
 // The same simulation with half the step, run beside it to estimate its error.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -28,7 +29,7 @@ class HalfStepRun {
   void compare(const State& whole);
 
   /// Largest estimated distance of a point (not of unit vectors) so far, m; infinite once the
-  /// half-step simulation is lost.
+  /// half-step simulation is lost, not a number before compare().
   [[nodiscard]] double position_error_max() const { return error_; }
 
  private:
@@ -36,7 +37,7 @@ class HalfStepRun {
   std::unique_ptr<Simulation> simulation_;
   State state_;
   double factor_;
-  double error_ = 0.0;
+  double error_ = std::numeric_limits<double>::quiet_NaN();  // nothing was compared
 };
 
 }  // namespace mbs

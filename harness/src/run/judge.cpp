@@ -72,6 +72,10 @@ double trapezoidal_error(const Model& model, const State& before, const State& a
   return step * step / 12 * largest_point_distance(model, after.a, before.a);
 }
 
+double judged_length(const Model& model) {
+  return std::min(extent(model.points()), fastest_turning(model).length);
+}
+
 Judge::Judge(const Scene& scene, const State& initial, double start)
     : scene_(&scene),
       phi_(static_cast<std::size_t>(scene.model.constraints())),
@@ -90,7 +94,7 @@ Judge::Judge(const Scene& scene, const State& initial, double start)
   double rest = 0.0;  // J, of a speed that is none; at rest without forces all else is rounding
   for (const double mass : mass_diagonal(model)) rest += mass * std::pow(1e-6 * size, 2) / 2;
   energy_scale_ = std::max(energy_scale_, rest);
-  length_ = std::min(size, fastest_turning(model).length);
+  length_ = judged_length(model);
   for (const Torsion& torsion : torsions(model, start, initial.q)) twists_.push_back(torsion.twist);
   if (scene.four_bar_loops) {
     exact_.emplace(*scene.four_bar_loops);

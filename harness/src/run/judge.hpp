@@ -36,6 +36,10 @@ struct AccurateBounds {
 /// m; `after` is one step (s) after `before`.
 double trapezoidal_error(const Model& model, const State& before, const State& after, double step);
 
+/// What errors are small against where the exact motion is not known, m: the length of the part
+/// that turns fastest, at most the extent.
+double judged_length(const Model& model);
+
 /// Figures of one state, and the worst so far; NaN never passes for small.
 class Judge {
  public:
@@ -53,10 +57,12 @@ class Judge {
   /// multiplies it, such as the lag behind the exact motion, which neither energy nor constraints
   /// show.
   [[nodiscard]] double local_error_sum() const { return local_error_; }
-  /// What errors are small against where the exact motion is not known, m: the length of the part
-  /// that turns fastest, at most the extent.
+  /// judged_length() of the scene, m.
   [[nodiscard]] double length() const { return length_; }
   [[nodiscard]] bool knows_exact_motion() const { return exact_.has_value(); }
+
+  /// Marks every figure as lost: infinite.
+  void spoil();
 
   /// Whether the state that judge() refused satisfies the constraints and conserves energy, but is
   /// on another branch of the motion than the exact one.
@@ -78,9 +84,6 @@ class Judge {
   std::string judge_energy(double t, const State& state);
   /// Whether Eq. (11) still means a spring: across its axis, and less than half a turn from rest.
   std::string judge_torsion(double t, const State& state);
-  /// Marks every figure as lost.
-  void spoil();
-
   const Scene* scene_;  // a pointer, so that judges can be copied
   RunBounds bounds_;
   std::optional<FourBarExact> exact_;

@@ -96,6 +96,7 @@ void JudgedRun::judge_present() {
   const long step = summary_.steps;
   access_.get_state(state_);
   std::string lost = judge_.judge(time(step), state_);
+  has_figures_ = true;
   if (!lost.empty() && !locate_loss(lost)) {
     // Where another simulation did the steps again, this state itself is still to be judged.
     lost = judge_.judge(time(step), state_);
@@ -198,6 +199,9 @@ void JudgedRun::conclude() {
 
 std::string JudgedRun::beyond_estimates() const {
   const double allowed = AccurateBounds{}.estimated_error * judge_.length();
+  if (half_ && !std::isfinite(half_->position_error_max())) {
+    return "the run with half the step was lost, so that the position error is not known";
+  }
   if (half_ && !(half_->position_error_max() <= allowed)) {
     return fmt::format("estimated position error {:.1e} m (ok to {:.2g})",
                        half_->position_error_max(), allowed);
@@ -216,6 +220,7 @@ RunSummary JudgedRun::finish() {
                           : std::chrono::duration<double, std::micro>(judging_).count() /
                                 static_cast<double>(summary_.steps);
   if (half_) summary_.position_error_estimate = half_->position_error_max();
+  if (!has_figures_) judge_.spoil();  // those of the start say nothing of the run
   summary_.position_error_max = judge_.position_error_max();
   summary_.energy_drift_max = judge_.energy_drift_max();
   summary_.constraint_violation_max = judge_.constraint_violation_max();

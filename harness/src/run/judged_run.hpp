@@ -78,6 +78,7 @@ class JudgedRun {
   std::optional<HalfStepRun> half_;
   std::optional<LocalHalfSteps> local_half_;
   bool samples_local_error_;  // nothing better tells
+  bool has_figures_ = false;  // of a state beyond the start
   bool is_over_ = false;
   std::chrono::steady_clock::duration judging_{};
   RunSummary summary_;

@@ -45,29 +45,28 @@ void repeat(Simulation& simulation, const State& start, std::vector<float>& leas
 
 }  // namespace
 
+const std::vector<Outcome>& outcomes() {
+  static const std::vector<Outcome> all{
+      {RunStatus::ok, "ok",
+       "within bounds; the position error is known (exact motion) or estimated (--half-step)"},
+      {RunStatus::plausible, "plausible",
+       "nothing is known to be wrong; no position error is known"},
+      {RunStatus::degraded, "degraded", "simulated to its end, but less accurate than ok allows"},
+      {RunStatus::not_converged, "not-converged", "too many steps ended at the pass limit"},
+      {RunStatus::diverged, "diverged", "the solution was lost; a shorter step often helps"},
+      {RunStatus::wrong_branch, "wrong-branch",
+       "the mechanism went on as another assembly that its constraints allow"},
+      {RunStatus::unsupported, "unsupported",
+       "the implementation does not offer this scene or these settings"}};
+  return all;
+}
+
 std::string to_string(RunStatus status) {
-  switch (status) {
-    case RunStatus::ok:
-      return "ok";
-    case RunStatus::plausible:
-      return "plausible";
-    case RunStatus::degraded:
-      return "degraded";
-    case RunStatus::not_converged:
-      return "not-converged";
-    case RunStatus::diverged:
-      return "diverged";
-    case RunStatus::wrong_branch:
-      return "wrong-branch";
-    case RunStatus::unsupported:
-      return "unsupported";
-  }
-  return "unknown";
+  return std::ranges::find(outcomes(), status, &Outcome::status)->name;
 }
 
 bool is_finished(RunStatus status) {
-  return status == RunStatus::ok || status == RunStatus::plausible ||
-         status == RunStatus::degraded;
+  return status == RunStatus::ok || status == RunStatus::plausible || status == RunStatus::degraded;
 }
 
 long count_steps(const RunSettings& settings) {
@@ -95,9 +94,11 @@ long count_steps(const RunSettings& settings) {
   }
   constexpr double kMostSteps = 1e8;
   const double steps = std::round(settings.duration / settings.step.step);
-  if (steps < 1.0) {
-    throw UsageError(fmt::format("--duration {:g} s is shorter than half a step of {:g} s",
-                                 settings.duration, settings.step.step));
+  if (settings.duration < settings.step.step * (1 - 1e-9)) {
+    throw UsageError(
+        fmt::format("--duration {:g} s is shorter than one step: it must be at least "
+                    "--step, {:g} s",
+                    settings.duration, settings.step.step));
   }
   if (!(steps <= kMostSteps)) {
     throw UsageError(fmt::format("--duration {:g} s takes {:g} steps of {:g} s: at most {:g}",

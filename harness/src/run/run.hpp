@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "registry/registry.hpp"
 #include "run/judge.hpp"
@@ -21,10 +22,19 @@ enum class RunStatus {
   unsupported,    ///< the implementation cannot simulate this scene
 };
 
+/// How results name a RunStatus, and what it means to users, on one line.
+struct Outcome {
+  RunStatus status;
+  std::string name, meaning;
+};
+
+/// Of every RunStatus, the best first.
+const std::vector<Outcome>& outcomes();
+
 /// Whether the whole duration was simulated, with every step converged: ok, plausible or degraded.
 bool is_finished(RunStatus status);
 
-/// "ok", "plausible", "degraded", "not-converged", "diverged", "wrong-branch", "unsupported".
+/// Its name among outcomes().
 std::string to_string(RunStatus status);
 
 struct RunSettings {
