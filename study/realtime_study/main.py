@@ -45,7 +45,7 @@ def _run(layout, options):
     tell, rows, found = Teller(), [], []
     for number, case in enumerate(cases, start=1):
         def told(what, at=f"{case.step:g} s; {case.contender.name}; {case.scheme}"):
-            tell(f"{at}: {number} of {len(cases)}, {what}")
+            tell(f"{at}: {what}; case {number} of {len(cases)}", (number - 1) / len(cases))
         for size in options.loops:
             told(f"N = {size}")
             rows.append(step_row(case, size, layout, run["contexts"], options.duration))
