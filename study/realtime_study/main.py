@@ -16,7 +16,7 @@ def realtime(arguments):
         prog="study/realtime", description="Steps against the deadline that real time sets them, "
         "their own length: the distribution of their times over 20 s, misses, and the largest "
         "N-four-bar that each implementation simulates in real time. Writes steps.csv, largest.csv, "
-        "figures and realtime.html; about 25 minutes.")
+        "figures and realtime.html; about 35 minutes.")
     add_only(parser)
     parser.add_argument("--loops", nargs="+", type=loops, default=LOOPS, metavar="N",
                         help="sizes whose distributions are shown (10 40)")
