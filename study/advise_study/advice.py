@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from study.advise_study import timing
 from study.advise_study.choice import LEAST_STEPS, tidy
+from study.advise_study.runner import REPEATS
 from study.advise_study.search import DOMINATED, Search
 from study.advise_study.settings import Setting, fits, serving
 from study.advise_study.verify import verify
@@ -114,7 +115,7 @@ def _race(advice, speeds, variants, run, left, tell):
             elif slower > PROBE_FACTOR:
                 one.drop(f"{slower:.1f} times slower than the best in the probe")
     length = timing.stretch(question.duration, least)
-    limit = max(5.0, 1e-5 * least * length)
+    limit = max(5.0, 1e-5 * REPEATS * least * length)
 
     def timed(one, number):
         tell(f"timing: round {number}, {one.implementation}, {one.setting.label}")

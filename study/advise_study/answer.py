@@ -44,7 +44,7 @@ def _advised(advice):
             "penalty": row["penalty"], "tolerance": row["tolerance"], "status": row["status"],
             "error": {"estimate": estimate, "low": low, "high": high, "exact": row["exact"],
                       "allowed_estimate": allowed(advice.question.error, one.setting.order)},
-            **_times(one), "verified_step_us": {"mean": row["step_us"], "p99": row["step_us_p99"],
+            **_times(one), "verified_step_us": {"median": row["step_us_median"], "p99": row["step_us_p99"],
                                                 "max": row["step_us_max"]},
             "deadline_misses": row["deadline_misses"], "steps": row["steps"],
             "command": without_checks(row["command"]), "raw_file": row["raw_file"]}
@@ -145,8 +145,8 @@ def _advice_lines(answer):
              _row("tolerance", f"{number(told['tolerance'])} m"), _row("precision", told["precision"]),
              _row("expected error", f"{_spread(error['estimate'], error, 'm')}, verified over "
                   f"{answer['question']['duration']:g} s: {told['status']}"),
-             _row("time per step", f"{_spread(step['median'], step, 'us')} in {told['rounds']} round"
-                  f"{'s' * (told['rounds'] > 1)}, 99th percentile {number(step['p99'])} us"),
+             _row("time per step", f"{_spread(step['median'], step, 'us')} without interruptions, "
+                  f"{told['rounds']} round{'s' * (told['rounds'] > 1)}; with them 99th percentile {number(step['p99'])} us"),
              _row("per simulated second", _spread(times["median"] / 1e3, {
                  key: times[key] / 1e3 for key in ("low", "high")}, "ms"))]
     if told["deadline_misses"] is not None:

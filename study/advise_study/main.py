@@ -52,7 +52,7 @@ def ask(options, folder=None):
     """(answer, Advice) of one question; its raw files and advice.json are kept."""
     from study.advise_study.advice import Question, advise as seek  # these need the modules
     from study.advise_study.answer import as_json
-    from study.advise_study.runner import Runner, describe, scene_name
+    from study.advise_study.runner import REPEATS, Runner, describe, scene_name
     from study.advise_study.settings import catalogue
     known = registry()
     names = select(known, options.only)
@@ -62,7 +62,7 @@ def ask(options, folder=None):
                         options.deadline_us, options.budget or BUDGET)
     inputs = {"scene": scene, "file": digest_of_scene(scene), "error": question.error,
               "duration": question.duration, "deadline_us": question.deadline_us,
-              "budget": question.budget}
+              "budget": question.budget, "repeats": REPEATS}
     layout = Layout(Path(folder or options.results or DEFAULT / _folder(inputs, names)).absolute())
     writable(layout.results)
     with only_one(layout), only_one_measuring():

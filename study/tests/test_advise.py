@@ -10,6 +10,7 @@ from study.advise_study import answer, timing
 from study.advise_study.advice import Advice, Question
 from study.advise_study.choice import Pilot, allowed, counts, interval, local_order, next_step, tidy
 from study.advise_study.main import duration
+from study.advise_study.runner import REPEATS
 from study.advise_study.search import Found, Search
 from study.advise_study.settings import Setting, catalogue, fits, serving
 from study.advise_study.validate import fastest, luck
@@ -290,12 +291,24 @@ def test_what_is_advised_is_what_was_timed_and_errors_are_judged_after_every_ste
     place = command.index("--duration") + 1
 
     def alike(run):  # but for the time that a timing covers
-        words = shlex.split(run["command"])
+        words = shlex.split(run["command"].replace(f" --repeats {REPEATS}", ""))
         return words[:place] + words[place + 1:] == command[:place] + command[place + 1:]
     runs = advised[2]["runs"]
     assert any(alike(run) for run in runs if run["kind"].startswith("round"))
     checked = {run["kind"]: " --half-step --judge-every 1 " in run["command"] for run in runs}
     assert {kind for kind, yes in checked.items() if yes} == {"pilots", "verification"}
+    repeated = {run["kind"]: f" --repeats {REPEATS}" in run["command"] for run in runs}
+    assert {kind for kind, yes in repeated.items() if not yes} == {"pilots", "verification"}
+
+
+def test_runs_are_ranked_by_what_interruptions_do_not_reach(advised):
+    folder, _, answer = advised
+    timed = [run for run in answer["runs"] if run["kind"].startswith("round")]
+    assert timed
+    for run in timed:
+        summary = read_json(folder / "results" / run["raw_file"])["summary"]
+        assert run["step_us"] == summary["least_us"]["mean"] <= summary["step_us"]["mean"]
+        assert run["step_us_p99"] == summary["step_us"]["p99"]
 
 
 def test_estimates_that_count_are_near_the_exact_errors(advised):
