@@ -3,7 +3,7 @@ from dataclasses import asdict
 
 from analysis.text import number
 from study.advise_study.choice import allowed, counts, halvings
-from study.advise_study.runner import without_checks
+from study.advise_study.runner import advised
 from study.advise_study.settings import catalogue, fits, serving
 from study.advise_study.verify import expected_error
 from study.pipeline.runs import FINISHED
@@ -16,7 +16,8 @@ def as_json(advice, run, described, variants, layout):
     answer = {"question": {"scene": question.scene, "error": question.error,
                            "duration": question.duration, "deadline_us": question.deadline_us},
               "met": advice.verified is not None,
-              "advice": _advised(advice) if advice.verified else None,
+              "advice": _advised(advice, variants[advice.chosen.implementation]["library"]) if advice.verified
+              else None,
               "runner_up": None, "best_reached": None,
               "why_not": None if advice.verified else _why_not(advice),
               "pilot_duration": advice.pilot_duration, "cut_short": advice.cut_short,
@@ -35,7 +36,7 @@ def _times(one):
             "us_per_second": {"median": middle, "low": low, "high": high}, "rounds": len(one.rows)}
 
 
-def _advised(advice):
+def _advised(advice, library):
     one, row = advice.chosen, advice.verified
     estimate, low, high = expected_error(advice)
     return {"implementation": one.implementation, "setting": one.setting.label,
@@ -47,7 +48,7 @@ def _advised(advice):
             **_times(one), "verified_step_us": {"median": row["step_us_median"], "p99": row["step_us_p99"],
                                                 "max": row["step_us_max"]},
             "deadline_misses": row["deadline_misses"], "steps": row["steps"],
-            "command": without_checks(row["command"]), "raw_file": row["raw_file"]}
+            "command": advised(row["command"], library), "raw_file": row["raw_file"]}
 
 
 def _setting(setting, advice, described, variants):

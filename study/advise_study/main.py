@@ -69,7 +69,7 @@ def ask(options, folder=None):
         start_named(layout, "advise", names, inputs)
         run = read_run(layout)
         contenders = from_json(run["contenders"])
-        variants = {variant["name"]: variant for entry in known["implementations"]
+        variants = {variant["name"]: variant | {"library": entry.get("library")} for entry in known["implementations"]
                     for variant in entry.get("variants", [])
                     if variant["name"] in contenders and not contenders[variant["name"]].missing}
         runner = Runner(layout, scene, contenders, run["contexts"], question.deadline_us)

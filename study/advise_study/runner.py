@@ -33,11 +33,14 @@ def scene_name(text):
     return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
 
 
-def without_checks(command):
-    """A command line as it was timed: `command` without what only tells its error."""
+def advised(command, library):
+    """A verified command line as it is advised: without what only tells its error, and without a BLAS where
+    `library` of `mbs list --json` is "none"."""
     words = shlex.split(command)
-    at = words.index(HALVED[0]) if HALVED[0] in words else len(words)
-    return shlex.join(words[:at] + words[at + len(HALVED):])
+    for option, count in ((HALVED[0], len(HALVED)), *([("--blas", 2)] if library == "none" else [])):
+        at = words.index(option) if option in words else len(words)
+        del words[at:at + count]
+    return shlex.join(words)
 
 
 class Runner:

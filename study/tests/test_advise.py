@@ -10,7 +10,7 @@ from study.advise_study import answer, timing
 from study.advise_study.advice import Advice, Question
 from study.advise_study.choice import Pilot, allowed, counts, interval, local_order, next_step, tidy
 from study.advise_study.main import duration
-from study.advise_study.runner import REPEATS
+from study.advise_study.runner import REPEATS, advised as advised_line
 from study.advise_study.search import Found, Search
 from study.advise_study.settings import Setting, catalogue, fits, serving
 from study.advise_study.validate import fastest, luck
@@ -299,6 +299,12 @@ def test_what_is_advised_is_what_was_timed_and_errors_are_judged_after_every_ste
     assert {kind for kind, yes in checked.items() if yes} == {"pilots", "verification"}
     repeated = {run["kind"]: f" --repeats {REPEATS}" in run["command"] for run in runs}
     assert {kind for kind, yes in repeated.items() if not yes} == {"pilots", "verification"}
+
+
+def test_who_uses_no_library_is_advised_without_a_blas():
+    line = "build/mbs simulate four-bar:2 --half-step --judge-every 1 --blas openblas"
+    assert advised_line(line, "none") == "build/mbs simulate four-bar:2"
+    assert advised_line(line, "KLU") == "build/mbs simulate four-bar:2 --blas openblas"
 
 
 def test_runs_are_ranked_by_what_interruptions_do_not_reach(advised):
