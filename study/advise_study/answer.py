@@ -14,7 +14,8 @@ MOST_REASONS = 3  # of pilots that were lost
 def as_json(advice, run, described, variants, layout):
     question = advice.question
     answer = {"question": {"scene": question.scene, "error": question.error,
-                           "duration": question.duration, "deadline_us": question.deadline_us},
+                           "duration": question.duration, "deadline_us": question.deadline_us,
+                           "step": question.step},
               "met": advice.verified is not None,
               "advice": _advised(advice, variants[advice.chosen.implementation]["library"]) if advice.verified
               else None,
@@ -110,6 +111,7 @@ def _why_not(advice):
         return "no pilot came to its end: " + "; ".join(
             dict.fromkeys(f"{pilot.status}, {pilot.reason}" for pilot in pilots[:MOST_REASONS]))
     return "no setting reaches the error" + (
+        f" in steps of {advice.question.step:g} s" if advice.question.step else "") + (
         f" within the budget of {advice.question.budget:g} s (--budget)"
         if any("left" in cut for cut in advice.cut_short) else "")
 
@@ -117,7 +119,7 @@ def _why_not(advice):
 def text(answer):
     asked = answer["question"]
     lines = [f"{asked['scene']} over {asked['duration']:g} s, error at most {number(asked['error'])} m"
-             + (f", 99 % of the steps within {asked['deadline_us']:g} us" if asked["deadline_us"] else "")]
+             + (f", 99 % of the steps within {asked['deadline_us']:g} us" if asked["deadline_us"] else "") + (f", in steps of {asked['step']:g} s" if asked["step"] else "")]
     lines += _advice_lines(answer) if answer["met"] else _refusal_lines(answer)
     lines += [""] + [_row("note", sentence) for sentence in answer["cut_short"]]
     lines += [_row("tried", _tried(answer)), _row("raw files", answer["results"])]

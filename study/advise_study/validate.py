@@ -120,7 +120,7 @@ def fastest(found, error):
 def _compare(scene, error, duration, options, layout, run, variants, found, speeds):
     """The row of validation.csv of one question."""
     asked = Namespace(scene=scene, error=error, duration=duration, deadline_us=None, only=options.only,
-                      budget=None, results=None)
+                      budget=None, step=None, results=None)
     answer, advice = ask(asked, folder=layout.results / f"error-{error:g}")
     settings = {setting.label: setting for setting in catalogue()}
     candidates = [timing.Candidate(settings[row["setting"]], name, row["step"])
