@@ -119,7 +119,8 @@ def _why_not(advice):
 def text(answer):
     asked = answer["question"]
     lines = [f"{asked['scene']} over {asked['duration']:g} s, error at most {number(asked['error'])} m"
-             + (f", 99 % of the steps within {asked['deadline_us']:g} us" if asked["deadline_us"] else "") + (f", in steps of {asked['step']:g} s" if asked["step"] else "")]
+             + (f", 99 % of the steps within {asked['deadline_us']:g} us" if asked["deadline_us"] else "")
+             + (f", in steps of {asked['step']:g} s" if asked["step"] else "")]
     lines += _advice_lines(answer) if answer["met"] else _refusal_lines(answer)
     lines += [""] + [_row("note", sentence) for sentence in answer["cut_short"]]
     lines += [_row("tried", _tried(answer)), _row("raw files", answer["results"])]

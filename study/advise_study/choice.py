@@ -127,7 +127,8 @@ def next_at(step, pilots, limit, duration):
     for witness in (2 * step, step / 2):
         if witness not in by_step and duration / MOST_STEPS <= witness <= duration / LEAST_STEPS:
             return Next(step=witness)
-    return Next(reason=f"the estimate {here.estimate:.2g} m at step {step:g} s is not shown to be right by halving the step")
+    return Next(reason=f"the estimate {here.estimate:.2g} m at step {step:g} s is not shown to be right by halving "
+                       "the step")
 
 
 def _between(step, longer, pilots, limit, order):
