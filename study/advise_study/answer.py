@@ -149,8 +149,8 @@ def _advice_lines(answer):
              _row("tolerance", f"{number(told['tolerance'])} m"), _row("precision", told["precision"]),
              _row("expected error", f"{_spread(error['estimate'], error, 'm')}, verified over "
                   f"{answer['question']['duration']:g} s: {told['status']}"),
-             _row("time per step", f"{_spread(step['median'], step, 'us')} without interruptions, "
-                  f"{told['rounds']} round{'s' * (told['rounds'] > 1)}; with them 99th percentile {number(step['p99'])} us"),
+             _row("time per step", f"{_spread(step['median'], step, 'us')} without interruptions, {told['rounds']} "
+                  f"round{'s' * (told['rounds'] > 1)}; with them 99th percentile {number(step['p99'])} us"),
              _row("per simulated second", _spread(times["median"] / 1e3, {
                  key: times[key] / 1e3 for key in ("low", "high")}, "ms"))]
     if told["deadline_misses"] is not None:
