@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from study.advise_study import timing
 from study.advise_study.choice import LEAST_STEPS, tidy
+from study.advise_study.runner import REPEATS
 from study.advise_study.search import DOMINATED, Search
 from study.advise_study.settings import Setting, fits, serving
 from study.advise_study.verify import verify
@@ -22,6 +23,7 @@ class Question:
     duration: float
     deadline_us: float | None
     budget: float  # s
+    step: float | None = None  # s, where it is given
 
 
 @dataclass
@@ -45,7 +47,7 @@ def advise(question, settings, described, variants, run, tell):
 
     def left(share):
         return share * question.budget - (time.monotonic() - began)
-    start = min(FIRST_STEP, question.duration / (5 * LEAST_STEPS))
+    start = question.step or min(FIRST_STEP, question.duration / (5 * LEAST_STEPS))
     tell("probe: one short run of each implementation")
     advice.probe, speeds = probe(variants, run, start, question.duration)
     usable = [setting for setting in settings
@@ -90,7 +92,7 @@ def _pilots(advice, settings, speeds, variants, run, start, left, tell):
         tell(f"error pilots: {setting.label}, step {step:g} s")
         return run.pilot(setting, name, step, duration, max(5.0, 4 * expected))
     search = Search(settings, pilot, error=question.error * duration / question.duration,
-                    duration=duration, start=start, deadline_us=question.deadline_us)
+                    duration=duration, start=start, deadline_us=question.deadline_us, step=question.step)
     advice.found = search.search()
     if search.cut:
         advice.cut_short.append("some error pilots would have taken longer than the time left")
@@ -104,7 +106,7 @@ def _race(advice, speeds, variants, run, left, tell):
     promises = {setting: found.step_us() / found.chosen for setting, found in chosen.items()}
     least = min(promises.values())
     for setting, found in sorted(chosen.items(), key=lambda item: promises[item[0]]):
-        step = tidy(found.chosen, question.duration)
+        step = question.step or tidy(found.chosen, question.duration)
         for name in (name for name in speeds if name in serving(setting, variants)):
             one = timing.Candidate(setting, name, step)
             advice.candidates.append(one)
@@ -114,7 +116,7 @@ def _race(advice, speeds, variants, run, left, tell):
             elif slower > PROBE_FACTOR:
                 one.drop(f"{slower:.1f} times slower than the best in the probe")
     length = timing.stretch(question.duration, least)
-    limit = max(5.0, 1e-5 * least * length)
+    limit = max(5.0, 1e-5 * REPEATS * least * length)
 
     def timed(one, number):
         tell(f"timing: round {number}, {one.implementation}, {one.setting.label}")

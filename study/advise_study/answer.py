@@ -3,7 +3,7 @@ from dataclasses import asdict
 
 from analysis.text import number
 from study.advise_study.choice import allowed, counts, halvings
-from study.advise_study.runner import without_checks
+from study.advise_study.runner import advised
 from study.advise_study.settings import catalogue, fits, serving
 from study.advise_study.verify import expected_error
 from study.pipeline.runs import FINISHED
@@ -14,9 +14,11 @@ MOST_REASONS = 3  # of pilots that were lost
 def as_json(advice, run, described, variants, layout):
     question = advice.question
     answer = {"question": {"scene": question.scene, "error": question.error,
-                           "duration": question.duration, "deadline_us": question.deadline_us},
+                           "duration": question.duration, "deadline_us": question.deadline_us,
+                           "step": question.step},
               "met": advice.verified is not None,
-              "advice": _advised(advice) if advice.verified else None,
+              "advice": _advised(advice, variants[advice.chosen.implementation]["library"]) if advice.verified
+              else None,
               "runner_up": None, "best_reached": None,
               "why_not": None if advice.verified else _why_not(advice),
               "pilot_duration": advice.pilot_duration, "cut_short": advice.cut_short,
@@ -35,7 +37,7 @@ def _times(one):
             "us_per_second": {"median": middle, "low": low, "high": high}, "rounds": len(one.rows)}
 
 
-def _advised(advice):
+def _advised(advice, library):
     one, row = advice.chosen, advice.verified
     estimate, low, high = expected_error(advice)
     return {"implementation": one.implementation, "setting": one.setting.label,
@@ -44,10 +46,10 @@ def _advised(advice):
             "penalty": row["penalty"], "tolerance": row["tolerance"], "status": row["status"],
             "error": {"estimate": estimate, "low": low, "high": high, "exact": row["exact"],
                       "allowed_estimate": allowed(advice.question.error, one.setting.order)},
-            **_times(one), "verified_step_us": {"mean": row["step_us"], "p99": row["step_us_p99"],
+            **_times(one), "verified_step_us": {"median": row["step_us_median"], "p99": row["step_us_p99"],
                                                 "max": row["step_us_max"]},
             "deadline_misses": row["deadline_misses"], "steps": row["steps"],
-            "command": without_checks(row["command"]), "raw_file": row["raw_file"]}
+            "command": advised(row["command"], library), "raw_file": row["raw_file"]}
 
 
 def _setting(setting, advice, described, variants):
@@ -109,6 +111,7 @@ def _why_not(advice):
         return "no pilot came to its end: " + "; ".join(
             dict.fromkeys(f"{pilot.status}, {pilot.reason}" for pilot in pilots[:MOST_REASONS]))
     return "no setting reaches the error" + (
+        f" in steps of {advice.question.step:g} s" if advice.question.step else "") + (
         f" within the budget of {advice.question.budget:g} s (--budget)"
         if any("left" in cut for cut in advice.cut_short) else "")
 
@@ -116,7 +119,8 @@ def _why_not(advice):
 def text(answer):
     asked = answer["question"]
     lines = [f"{asked['scene']} over {asked['duration']:g} s, error at most {number(asked['error'])} m"
-             + (f", 99 % of the steps within {asked['deadline_us']:g} us" if asked["deadline_us"] else "")]
+             + (f", 99 % of the steps within {asked['deadline_us']:g} us" if asked["deadline_us"] else "")
+             + (f", in steps of {asked['step']:g} s" if asked["step"] else "")]
     lines += _advice_lines(answer) if answer["met"] else _refusal_lines(answer)
     lines += [""] + [_row("note", sentence) for sentence in answer["cut_short"]]
     lines += [_row("tried", _tried(answer)), _row("raw files", answer["results"])]
@@ -145,8 +149,8 @@ def _advice_lines(answer):
              _row("tolerance", f"{number(told['tolerance'])} m"), _row("precision", told["precision"]),
              _row("expected error", f"{_spread(error['estimate'], error, 'm')}, verified over "
                   f"{answer['question']['duration']:g} s: {told['status']}"),
-             _row("time per step", f"{_spread(step['median'], step, 'us')} in {told['rounds']} round"
-                  f"{'s' * (told['rounds'] > 1)}, 99th percentile {number(step['p99'])} us"),
+             _row("time per step", f"{_spread(step['median'], step, 'us')} without interruptions, {told['rounds']} "
+                  f"round{'s' * (told['rounds'] > 1)}; with them 99th percentile {number(step['p99'])} us"),
              _row("per simulated second", _spread(times["median"] / 1e3, {
                  key: times[key] / 1e3 for key in ("low", "high")}, "ms"))]
     if told["deadline_misses"] is not None:

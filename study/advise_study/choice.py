@@ -112,6 +112,25 @@ def next_step(pilots, limit, order, start, duration):
     return _shorter(pilots, limit, order, fits)
 
 
+def next_at(step, pilots, limit, duration):
+    """The Next of a setting whose step is given: other steps are run only to believe the estimate at that one."""
+    by_step = {pilot.step: pilot for pilot in pilots}
+    if step not in by_step:
+        return Next(step=step)
+    here = by_step[step]
+    if not here.valid:
+        return Next(reason=f"{here.status} at step {step:g} s: {here.reason}")
+    if here.estimate > limit:
+        return Next(reason=f"estimate {here.estimate:.2g} m at step {step:g} s")
+    if counts(step, pilots, limit):
+        return Next(chosen=step)
+    for witness in (2 * step, step / 2):
+        if witness not in by_step and duration / MOST_STEPS <= witness <= duration / LEAST_STEPS:
+            return Next(step=witness)
+    return Next(reason=f"the estimate {here.estimate:.2g} m at step {step:g} s is not shown to be right by halving "
+                       "the step")
+
+
 def _between(step, longer, pilots, limit, order):
     """The step between a good one and twice that, where the estimate is expected to meet the limit."""
     if longer is None or not longer.valid:

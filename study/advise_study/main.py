@@ -14,7 +14,7 @@ from study.pipeline.prepare import (digest_of_scene, need_modules, only_one, onl
 from study.pipeline.progress import Teller
 
 DURATION, BUDGET, LONGEST = 20.0, 45.0, 1e6  # s
-OF_A_QUESTION = ("SCENE", "--error", "--deadline-us", "--duration", "--budget", "--json", "--plot")
+OF_A_QUESTION = ("SCENE", "--error", "--deadline-us", "--step", "--duration", "--budget", "--json", "--plot")
 DEFAULT = ROOT / "results" / "local" / "advice"
 
 
@@ -52,24 +52,25 @@ def ask(options, folder=None):
     """(answer, Advice) of one question; its raw files and advice.json are kept."""
     from study.advise_study.advice import Question, advise as seek  # these need the modules
     from study.advise_study.answer import as_json
-    from study.advise_study.runner import Runner, describe, scene_name
+    from study.advise_study.runner import REPEATS, Runner, describe, scene_name
     from study.advise_study.settings import catalogue
     known = registry()
     names = select(known, options.only)
     scene = scene_name(options.scene)
     described = describe(scene)
     question = Question(options.scene, options.error, duration(options.scene, options.duration, described),
-                        options.deadline_us, options.budget or BUDGET)
+                        options.deadline_us, options.budget or BUDGET, options.step)
+    _need_possible(question)
     inputs = {"scene": scene, "file": digest_of_scene(scene), "error": question.error,
               "duration": question.duration, "deadline_us": question.deadline_us,
-              "budget": question.budget}
+              "budget": question.budget, "step": question.step, "repeats": REPEATS}
     layout = Layout(Path(folder or options.results or DEFAULT / _folder(inputs, names)).absolute())
     writable(layout.results)
     with only_one(layout), only_one_measuring():
         start_named(layout, "advise", names, inputs)
         run = read_run(layout)
         contenders = from_json(run["contenders"])
-        variants = {variant["name"]: variant for entry in known["implementations"]
+        variants = {variant["name"]: variant | {"library": entry.get("library")} for entry in known["implementations"]
                     for variant in entry.get("variants", [])
                     if variant["name"] in contenders and not contenders[variant["name"]].missing}
         runner = Runner(layout, scene, contenders, run["contexts"], question.deadline_us)
@@ -91,6 +92,10 @@ def _parser():
                         help="largest position error of any point over the whole time, m")
     parser.add_argument("--deadline-us", type=positive, metavar="D",
                         help="99 %% of the steps must be done within D microseconds")
+    parser.add_argument("--step", type=seconds, metavar="S",
+                        help="only steps of S seconds, also as a fraction (1/60): for a loop with a fixed frame. A "
+                        "frame of 1/60 s is one step of 1/60 s, or k steps of 1/(60 k) s, each of which then has a "
+                        "k-th of the frame's time as its deadline")
     parser.add_argument("--duration", type=positive, metavar="T",
                         help=f"simulated time ({DURATION:g} s, or up to where the drivers end)")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
@@ -104,6 +109,26 @@ def _parser():
     parser.add_argument("--validate", action="store_true", help="hold the advice against an exhaustive "
                         "search on scenes with exact solutions; about 20 minutes")
     return parser
+
+
+def seconds(text):
+    """A number or a fraction of numbers; ValueError, which argparse tells, for others."""
+    over, _, under = text.partition("/")
+    if not under:
+        return positive(text)
+    return positive(str(positive(over) / positive(under)))
+
+
+def _need_possible(question):
+    """StudyError if a step is given in which there is nothing to advise on."""
+    from study.advise_study.choice import LEAST_STEPS, MOST_STEPS
+    least, most = question.duration / MOST_STEPS, question.duration / LEAST_STEPS
+    if question.step and not least <= question.step <= most:
+        raise StudyError(f"--step {question.step:g}: a run of {question.duration:g} s has {LEAST_STEPS} to "
+                         f"{MOST_STEPS:g} steps, so from {least:g} to {most:g} s each")
+    if question.step and question.deadline_us and question.deadline_us > 1.000001e6 * question.step:
+        raise StudyError(f"--deadline-us {question.deadline_us:g}: more than the step itself, "
+                         f"{1e6 * question.step:g} us, is not in real time")
 
 
 def duration(scene, asked, described):

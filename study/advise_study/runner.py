@@ -14,6 +14,7 @@ from study.pipeline.layout import ROOT, program
 # After every step: the usual judging of a few of them may keep pace with the motion and miss its worst.
 EXACT = ("--judge-every", "1")  # for the exact error
 HALVED = ("--half-step", *EXACT)  # for an estimate beside it
+REPEATS = 3  # of a motion whose time matters; each step's least counts, as what interrupts one run spares another
 
 
 def describe(scene):
@@ -32,11 +33,14 @@ def scene_name(text):
     return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
 
 
-def without_checks(command):
-    """A command line as it was timed: `command` without what only tells its error."""
+def advised(command, library):
+    """A verified command line as it is advised: without what only tells its error, and without a BLAS where
+    `library` of `mbs list --json` is "none"."""
     words = shlex.split(command)
-    at = words.index(HALVED[0]) if HALVED[0] in words else len(words)
-    return shlex.join(words[:at] + words[at + len(HALVED):])
+    for option, count in ((HALVED[0], len(HALVED)), *([("--blas", 2)] if library == "none" else [])):
+        at = words.index(option) if option in words else len(words)
+        del words[at:at + count]
+    return shlex.join(words)
 
 
 class Runner:
@@ -50,8 +54,10 @@ class Runner:
 
     def __call__(self, kind, setting, variant, step, duration, seconds, checks=()):
         """The row of a run: kind, setting, implementation, step, outcome, times, command, raw_file. `checks`: EXACT
-        or HALVED where its error matters, not only its time."""
-        more = [*setting.options(self._tolerance(setting, variant, step)), *self.deadline, *checks]
+        or HALVED where its error matters, not only its time. `step_us`, by which runs are ranked, is the mean over
+        the steps of each one's least time over the repeats; the other times are those of the first repeat."""
+        repeats = [] if checks == HALVED else ["--repeats", str(REPEATS)]
+        more = [*setting.options(self._tolerance(setting, variant, step)), *self.deadline, *repeats, *checks]
         record, path = self._simulate(kind, setting, variant, step, duration, seconds, more)
         status, reason = runs.status(record)
         summary = record.get("summary", {})
@@ -60,7 +66,7 @@ class Runner:
                "duration": duration, "status": status, "reason": reason,
                "estimate": summary.get("position_error_estimate"),
                "exact": summary.get("position_error_max"),
-               "step_us": _usual(times, summary), "step_us_median": times.get("median"),
+               "step_us": (summary.get("least_us") or {}).get("mean"), "step_us_median": times.get("median"),
                "step_us_p99": times.get("p99"),
                "step_us_max": times.get("max"),
                "deadline_misses": times.get("deadline_misses")} | {
@@ -88,13 +94,6 @@ class Runner:
         plain = setting.parent
         record, _ = self._simulate("automatic", plain, variant, step, step, 60, plain.options())
         return LOOSE * record.get("summary", {}).get("tolerance", 1e-9)
-
-
-def _usual(times, summary):
-    """Mean time of a step without the longest, which the operating system may have interrupted, us."""
-    if summary.get("steps", 0) < 2:
-        return times.get("mean")
-    return (times["mean"] * summary["steps"] - times["max"]) / (summary["steps"] - 1)
 
 
 def as_pilot(row):

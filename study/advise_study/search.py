@@ -2,7 +2,7 @@
 import math
 from dataclasses import dataclass, field
 
-from study.advise_study.choice import allowed, counts, local_order, next_step
+from study.advise_study.choice import allowed, counts, local_order, next_at, next_step
 from study.pipeline.runs import FINISHED
 
 DOMINATED = 1.6  # a setting that promises this times the best one's time is not followed further,
@@ -38,10 +38,11 @@ class Found:
 class Search:
     """`run(setting, step)` gives a Pilot, or None if no time is left for it."""
 
-    def __init__(self, settings, run, *, error, duration, start, deadline_us=None):
+    def __init__(self, settings, run, *, error, duration, start, deadline_us=None, step=None):
         self.found = {setting: Found(setting) for setting in settings}
         self.run, self.error, self.duration, self.start = run, error, duration, start
         self.deadline_us = deadline_us or math.inf
+        self.step = step  # where only one may be chosen
         self.cut = False
 
     def search(self):
@@ -77,6 +78,8 @@ class Search:
 
     def _needed(self, one):
         """The step that a setting's estimates ask for."""
+        if self.step:
+            return self.step
         valid = [pilot for pilot in one.pilots if pilot.valid]
         if not valid:
             return min(pilot.step for pilot in one.pilots) / 2
@@ -94,8 +97,9 @@ class Search:
     def _advance(self, one):
         parent = self._parent(one)
         start = parent.rung() if parent and parent.pilots else self.start
-        after = next_step(one.pilots, allowed(self.error, one.setting.order), one.setting.order, start,
-                          self.duration)
+        limit = allowed(self.error, one.setting.order)
+        after = (next_at(self.step, one.pilots, limit, self.duration) if self.step else
+                 next_step(one.pilots, limit, one.setting.order, start, self.duration))
         if after.step is None:
             one.chosen, one.reason = after.chosen, after.reason
             return
@@ -114,7 +118,8 @@ class Search:
         """Out of time: the longest step that is known to be good enough, if any."""
         limit = allowed(self.error, one.setting.order)
         good = [pilot.step for pilot in one.pilots
-                if pilot.valid and pilot.estimate <= limit and counts(pilot.step, one.pilots, limit)]
+                if pilot.valid and pilot.estimate <= limit and counts(pilot.step, one.pilots, limit)
+                and self.step in (None, pilot.step)]
         if good:
             one.chosen = max(good)
         else:

@@ -7,7 +7,7 @@ import pandas
 from study.advise_study import timing
 from study.advise_study.advice import PROBE_FACTOR, probe
 from study.advise_study.main import DEFAULT, ask
-from study.advise_study.runner import EXACT, Runner
+from study.advise_study.runner import EXACT, REPEATS, Runner
 from study.advise_study.settings import catalogue, serving
 from study.pipeline.contenders import from_json
 from study.pipeline.layout import Layout, read_run, write_csv
@@ -33,7 +33,7 @@ def validate(options, loops=LOOPS, errors=ERRORS, duration=DURATION):
             scene = f"four-bar:{count}"
             layout = Layout(results / f"n{count}")
             writable(layout.results)
-            start_named(layout, "advise", names, {"scene": scene, "duration": duration})
+            start_named(layout, "advise", names, {"scene": scene, "duration": duration, "repeats": REPEATS})
             variants, runner = _runner(layout, scene, known)
             with only_one_measuring():
                 found, speeds = search(runner, variants, duration, errors, scene)
@@ -120,7 +120,7 @@ def fastest(found, error):
 def _compare(scene, error, duration, options, layout, run, variants, found, speeds):
     """The row of validation.csv of one question."""
     asked = Namespace(scene=scene, error=error, duration=duration, deadline_us=None, only=options.only,
-                      budget=None, results=None)
+                      budget=None, step=None, results=None)
     answer, advice = ask(asked, folder=layout.results / f"error-{error:g}")
     settings = {setting.label: setting for setting in catalogue()}
     candidates = [timing.Candidate(settings[row["setting"]], name, row["step"])

@@ -67,7 +67,7 @@ def _reconsider(one, row, advice):
     if failed > 1 and advice.pilot_duration == question.duration and found.rung() < one.step:
         step = found.rung()  # its pilot was good enough
     for other in (other for other in advice.candidates if other.setting == one.setting):
-        if failed > 4 or step < one.step / 8:
+        if question.step or failed > 4 or step < one.step / 8:
             other.drop(f"estimate {row['estimate']:.2g} m when verified over {question.duration:g} s")
         else:
             other.step = tidy(step, question.duration)

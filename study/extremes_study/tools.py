@@ -56,7 +56,7 @@ def side_by_side(study, what, function, items):
     with ThreadPool(AT_ONCE) as pool:
         for item, result in zip(items, pool.imap(function, items)):
             done.append(result)
-            study.tell(f"{what(item)}: run {len(done)} of {len(items)}")
+            study.tell(f"{what(item)}: run {len(done)} of {len(items)}", len(done) / len(items))
     return done
 
 

@@ -139,5 +139,5 @@ def _costs(study, served):
                      "step_us": summary.get("step_us", {}).get("mean"),
                      "passes_per_step": summary.get("passes_per_step"),
                      "raw_file": study.layout.relative(path), "command": runs.typed(record)})
-        study.tell(f"ways times: run {done} of {len(jobs)}")
+        study.tell(f"ways times: run {done} of {len(jobs)}", done / len(jobs))
     return rows

@@ -47,9 +47,9 @@ def rows(layout, contenders, mine, scene, rounds, seconds, tell):
 def batches(layout, contenders, seconds, tell):
     """Rows of batches.csv: many lanes side by side against each alone."""
     found = []
-    for scene in BATCHES:
-        for one in contenders:
-            tell(f"{scene}, lanes of {one.name}")
+    for number, scene in enumerate(BATCHES):
+        for place, one in enumerate(contenders):
+            tell(f"{scene}, lanes of {one.name}", (number + place / len(contenders)) / len(BATCHES))
             row, reason = measure.bench(layout, one, scene, f"batches/{one.file_name}-{scene[9:]}",
                                         seconds, "--batch")
             if reason.startswith("unsupported"):

@@ -66,7 +66,8 @@ def _run(layout, options):
         rows, scenes = [], lead.scenes()
         for number, scene in enumerate(scenes, start=1):
             rows += lead.rows(layout, contenders, mine, scene, options.rounds, options.time_limit,
-                              _telling(tell, f"{scene}: scene {number} of {len(scenes)}"))
+                              _telling(tell, f"{scene}: scene {number} of {len(scenes)}",
+                                       (number - 1) / len(scenes)))
         write_csv(layout.results / "scenes.csv", pandas.DataFrame(rows))
     if "batches" in options.parts:
         rows = lead.batches(layout, contenders, options.time_limit, tell)
@@ -94,8 +95,8 @@ def _sizes(layout, options, contenders, mine, tell):
     return rows
 
 
-def _telling(tell, where):
-    return lambda what: tell(f"{where}, {what}")
+def _telling(tell, where, share=None):
+    return lambda what: tell(f"{where}, {what}", share)
 
 
 def _prepare_counting(layout, instructions):

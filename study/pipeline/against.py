@@ -15,6 +15,7 @@ from study.pipeline.errors import StudyError
 from study.pipeline.layout import NULL, ROOT, Layout, program, read_json, write_csv, write_json
 from study.pipeline.prepare import (continues, digest, digest_of_scene, need_modules, only_one,
                                     only_one_measuring, registry, select, set_up, writable)
+from study.pipeline.progress import Teller
 
 SEED = 20080101
 SECONDS, MEMORY_MB = 60, 4096
@@ -90,9 +91,12 @@ def _measure(layout, options, programs, variants):
     import pandas
     work = [(tree, path, variant, scene) for tree, path in programs.items()
             for variant in variants for scene in options.scenes]
-    rows, skipped = [], set()
+    rows, skipped, tell = [], set(), Teller()
     for number in range(1, options.rounds + 1):
-        for tree, path, variant, scene in random.Random(f"{SEED}:{number}").sample(work, len(work)):
+        order = random.Random(f"{SEED}:{number}").sample(work, len(work))
+        for place, (tree, path, variant, scene) in enumerate(order):
+            tell(f"round {number} of {options.rounds}: {variant}, {scene}, {tree}",
+                 (number - 1 + place / len(work)) / options.rounds)
             if (variant, scene) in skipped:
                 continue
             raw = layout.results / "raw" / f"round{number}" / (
@@ -104,7 +108,7 @@ def _measure(layout, options, programs, variants):
                          "raw_file": str(raw.relative_to(layout.results))})
             if reason:
                 skipped.add((variant, scene))
-        print(f"round {number} of {options.rounds} done", flush=True)
+    tell.end()
     table = pandas.DataFrame(rows)
     write_csv(layout.results / "samples.csv", table)
     return table

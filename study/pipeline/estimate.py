@@ -116,13 +116,3 @@ def seconds_left(plan, spent, predicted):
     correction = spent / predicted if spent > 2 and predicted > 0 else 1.0
     return sum(work.left() * (1.0 if stage == "refine" else correction)
                for (stage, _), work in plan.items())
-
-
-def duration(seconds):
-    """The text "1 min 20 s"."""
-    seconds = max(0, round(seconds))
-    if seconds < 60:
-        return f"{seconds} s"
-    if seconds < 3600:
-        return f"{seconds // 60} min {seconds % 60} s"
-    return f"{seconds // 3600} h {seconds % 3600 // 60} min"

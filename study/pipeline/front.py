@@ -9,7 +9,7 @@ import time
 from study.pipeline import estimate
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import ROOT
-from study.pipeline.progress import Reader
+from study.pipeline.progress import Reader, duration
 
 STAGES = ("set-up", "verify", "measure", "refine", "collect", "figures", "report")
 
@@ -115,7 +115,7 @@ class _Follower:
         mine = {key: work for key, work in self.plan.items() if key[0] == self.stage}
         done = sum(work.done for work in mine.values())
         total = sum(work.cells for work in mine.values())
-        left = estimate.duration(estimate.seconds_left(self.plan, self.spent, self.predicted))
+        left = duration(estimate.seconds_left(self.plan, self.spent, self.predicted))
         size = f"n = {self.column}: " if self.column else ""
         self.display.show(self.stage, f"{size}{done:.0f} of {total:.0f} cells, about {left} left")
 

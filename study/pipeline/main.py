@@ -15,6 +15,7 @@ from study.pipeline.layout import Layout, ROOT, program, read_run
 from study.pipeline.options import Parser
 from study.pipeline.prepare import (need_modules, only_one, only_one_measuring, registry,
                                     reopen_incomplete, select, set_up, start, writable)
+from study.pipeline.progress import duration
 
 
 STUDIES = {"view": "study.viewer.main", "scenes": "study.scene_study.main",
@@ -78,7 +79,7 @@ def run(arguments):
         plan = estimate.work(profile, taking_part)
         seconds = sum(work.left() for work in plan.values())
         print(f"{len(taking_part)} contenders; a whole run of profile {profile.name} takes about "
-              f"{estimate.duration(seconds)}")
+              f"{duration(seconds)}")
         run_workflow(layout, profile.columns, plan)
     print(f"report: {layout.results / 'report.html'}")
     return 0
@@ -150,12 +151,12 @@ def dry_run(options, layout):
         seconds = plan["verify", variables].left() + plan["measure", variables].left()
         done = layout.measured(variables).exists()
         print(f"  n = {variables:4}  fills {', '.join(fills)}: "
-              + ("done" if done else f"about {estimate.duration(seconds)}"))
+              + ("done" if done else f"about {duration(seconds)}"))
         for stage in ("verify", "measure"):
             plan[stage, variables].done = plan[stage, variables].cells if done else 0
     if layout.refined_stamp.exists():
         plan["refine", 0].done = plan["refine", 0].cells
-    print(f"  refinement of the maps: {estimate.duration(profile.refine['seconds'])}")
+    print(f"  refinement of the maps: {duration(profile.refine['seconds'])}")
     builds = sorted({one.build for one in others if one.build})
     if builds:
         print(f"  further builds, by set-up: {', '.join(builds)}")

@@ -63,10 +63,18 @@ def continues(layout, record, keys):
     stored = read_run(layout, {"contexts", *keys})
     differing = [text for environment, context in stored["contexts"].items()
                  for text in _differing(context, record["contexts"].get(environment, {}))]
-    differing += [key for key in keys if stored[key] != record[key]]
+    differing += [_changed(key, stored[key], record[key]) for key in keys if stored[key] != record[key]]
     if differing:
         raise _other(layout, differing[0])
     return True
+
+
+def _changed(key, old, new):
+    """What differs between two values of run.json."""
+    if key != "inputs":
+        return key
+    names = [name for name in {**old, **new} if old.get(name) != new.get(name)]
+    return "inputs: " + ", ".join(f"{name} {old.get(name, 'none')}, now {new.get(name, 'none')}" for name in names)
 
 
 def _other(layout, what):

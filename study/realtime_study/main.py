@@ -16,7 +16,7 @@ def realtime(arguments):
         prog="study/realtime", description="Steps against the deadline that real time sets them, "
         "their own length: the distribution of their times over 20 s, misses, and the largest "
         "N-four-bar that each implementation simulates in real time. Writes steps.csv, largest.csv, "
-        "figures and realtime.html; about 25 minutes.")
+        "figures and realtime.html; about 35 minutes.")
     add_only(parser)
     parser.add_argument("--loops", nargs="+", type=loops, default=LOOPS, metavar="N",
                         help="sizes whose distributions are shown (10 40)")
@@ -45,7 +45,7 @@ def _run(layout, options):
     tell, rows, found = Teller(), [], []
     for number, case in enumerate(cases, start=1):
         def told(what, at=f"{case.step:g} s; {case.contender.name}; {case.scheme}"):
-            tell(f"{at}: {number} of {len(cases)}, {what}")
+            tell(f"{at}: {what}; case {number} of {len(cases)}", (number - 1) / len(cases))
         for size in options.loops:
             told(f"N = {size}")
             rows.append(step_row(case, size, layout, run["contexts"], options.duration))

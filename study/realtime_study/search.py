@@ -46,8 +46,8 @@ def in_real_time(record):
 
 
 def largest(case, layout, contexts, tell):
-    """The row of largest.csv. The two sizes that decide are probed again, with more repeats: the search goes on
-    from one that was only interrupted, and the answer is confirmed if it keeps the deadline both times."""
+    """The row of largest.csv. The two sizes that decide are probed again, with more repeats: from a larger one that
+    was only interrupted the search goes on, and the answer is confirmed if it keeps the deadline then."""
     probed, late_once = {0: (True, "", {})}, set()  # {loops: fits, why not, figures}: the last probe counts
 
     def probe(loops, repeats):

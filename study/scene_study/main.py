@@ -65,9 +65,10 @@ def _run(layout, options):
     raw, tell = layout.results / "raw", Teller()
     if options.stored:
         tell.quiet = True
-    found = {problem: problems.run_problem(problem, raw, contenders, compared, run["contexts"], tell,
-                                           options.stored)
-             for problem in chosen}
+    found = {problem: problems.run_problem(
+        problem, raw, contenders, compared, run["contexts"],
+        lambda text, share=place / len(chosen): tell(text, share), options.stored)
+        for place, problem in enumerate(chosen)}
     rounds = (len(list((raw / "modelling").glob("round*"))) if options.stored else options.rounds)
     pieces = modelling.measure(raw, contenders, run["contexts"], rounds, tell, options.stored)
     tell.end()

@@ -105,8 +105,9 @@ def measure(raw, contenders, contexts, rounds, tell, stored=False):
     work = [(one, loops, case) for one in contenders if one.name in IMPLEMENTATIONS
             for loops in LOOPS for case in CASES]
     for number in range(1, rounds + 1):
-        for one, loops, case in random.Random(f"{SEED}:{number}").sample(work, len(work)):
-            tell(f"round {number} of {rounds}: {case.name}, N = {loops}, {one.name}")
+        for done, (one, loops, case) in enumerate(random.Random(f"{SEED}:{number}").sample(work, len(work))):
+            tell(f"round {number} of {rounds}: {case.name}, N = {loops}, {one.name}",
+                 (number - 1 + done / len(work)) / rounds)
             found[one.name, loops, case.name, number] = _run(
                 folder, one, loops, case, number, contexts[one.environment], stored)
     return found

@@ -70,7 +70,8 @@ def _run(layout, options):
                                                   options.time_limit), cells)
         for number, (cell, record) in enumerate(zip(cells, records), start=1):
             found[cell] = record
-            tell(f"N = {cell.loops}; {cell.scheme}; {cell.precision}: run {number} of {len(cells)}")
+            tell(f"N = {cell.loops}; {cell.scheme}; {cell.precision}: run {number} of {len(cells)}",
+                 number / len(cells))
     tell.end()
     write_csv(layout.results / "windows.csv", pandas.DataFrame(windows))
     write_csv(layout.results / "stability.csv", pandas.DataFrame(
@@ -89,7 +90,7 @@ def _long(cells, layout, contexts, seconds):
         records = pool.imap(lambda cell: long.record(cell, layout, contexts, seconds), cells)
         for number, (cell, record) in enumerate(zip(cells, records), start=1):
             rows.append(long.judged(cell, record, layout))
-            tell(f"20 s; {cell.scheme}; N = {cell.loops}: run {number} of {len(cells)}")
+            tell(f"20 s; {cell.scheme}; N = {cell.loops}: run {number} of {len(cells)}", number / len(cells))
     tell.end()
     write_csv(layout.results / "long.csv", pandas.DataFrame(rows))
 

@@ -74,7 +74,7 @@ def test_what_is_stored_is_never_run_again_and_can_be_drawn_again(run, tmp_path)
     run("--stored")
     assert len(drawn) == 3 and before == [path.read_bytes() for path in drawn]
     assert not list(results.rglob("*.partial"))
-    with pytest.raises(StudyError, match=r"holds results of something else \(inputs\)"):
+    with pytest.raises(StudyError, match=r"holds results of something else \(inputs: duration \S+, now 2.0\)"):
         run("--duration", "2")
 
 

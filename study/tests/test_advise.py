@@ -8,8 +8,9 @@ import pytest
 
 from study.advise_study import answer, timing
 from study.advise_study.advice import Advice, Question
-from study.advise_study.choice import Pilot, allowed, counts, interval, local_order, next_step, tidy
+from study.advise_study.choice import Next, Pilot, allowed, counts, interval, local_order, next_at, next_step, tidy
 from study.advise_study.main import duration
+from study.advise_study.runner import REPEATS, advised as advised_line
 from study.advise_study.search import Found, Search
 from study.advise_study.settings import Setting, catalogue, fits, serving
 from study.advise_study.validate import fastest, luck
@@ -107,6 +108,30 @@ def test_the_search_follows_what_is_fast_and_says_why_others_are_left():
     assert found[LOOSE].pilots and len(found[Setting("rattle")].pilots) < 3
 
 
+def at_step(step, estimate, limit=1e-3):
+    """(Next, steps that were run) of a setting whose step is given."""
+    found = []
+    while True:
+        after = next_at(step, found, limit, 1.0)
+        if after.step is None:
+            return after, [pilot.step for pilot in found]
+        value = estimate(after.step)
+        found.append(Pilot(after.step, "diverged" if value is None else "ok", value, 1.0, reason="lost"))
+
+
+def test_a_given_step_is_chosen_or_refused_and_no_other():
+    assert at_step(1e-2, lambda step: step**2) == (Next(chosen=1e-2), [1e-2, 2e-2])
+    assert at_step(1e-2, lambda step: step**2 if step < 1.5e-2 else None) == (Next(chosen=1e-2), [1e-2, 2e-2, 5e-3])
+    assert at_step(1e-2, lambda step: 0.5)[0].reason == "estimate 0.5 m at step 0.01 s"
+    assert at_step(1e-2, lambda step: None)[0].reason == "diverged at step 0.01 s: lost"
+    after, ran = at_step(1e-2, lambda step: 9e-4)
+    assert after.chosen is None and "not shown to be right" in after.reason and ran == [1e-2, 2e-2, 5e-3]
+    assert at_step(0.1, lambda step: step**2, 1.0)[1] == [0.1, 0.05]  # no run of less than ten steps
+    _, found = search({PENALTY: lambda step: step**2, SADDLE: lambda step: step}, {PENALTY: 9.0, SADDLE: 1.0},
+                      [PENALTY, SADDLE], step=2e-2)
+    assert found[PENALTY].chosen == 2e-2 and found[SADDLE].chosen is None
+
+
 def test_without_time_nothing_is_made_up():
     made = Search([PENALTY], lambda setting, step: None, error=1e-3, duration=1.0, start=1e-2)
     found = made.search()
@@ -146,10 +171,10 @@ def test_a_deadline_is_for_the_99th_percentile():
     assert found["b"].reason == "no time was left to time it"
 
 
-def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None):
+def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=None):
     """Advice on two implementations of a setting whose pilots at 10 and 5 ms were good, and `others`; what
     was run."""
-    question = Question("bar", 1e-3, 1.0, deadline_us, 45.0)
+    question = Question("bar", 1e-3, 1.0, deadline_us, 45.0, step)
     advice = Advice(question, pilot_duration=1.0, candidates=[
         timing.Candidate(PENALTY, name, 8e-3, [{"step_us": us, "step_us_p99": 1.0}] * 3)
         for name, us in (("a", 10.0), ("b", 11.0))])
@@ -174,6 +199,12 @@ def test_a_candidate_that_fails_gets_a_shorter_step_and_then_one_that_is_known()
     assert ran[-1][1] == 5e-3 and len(ran) == 3 and advice.chosen
     advice, _ = verified(lambda step: 1.0)
     assert advice.chosen is None and all("when verified" in one.reason for one in advice.candidates)
+
+
+def test_a_given_step_is_not_made_shorter():
+    advice, ran = verified(lambda step: 12 * step**2, step=8e-3)
+    assert ran == [("a", 8e-3)] and advice.chosen is None
+    assert advice.candidates[1].reason == "estimate 0.00077 m when verified over 1 s"
 
 
 @pytest.mark.parametrize("us, then", [(12.0, "c"), (30.0, "a")])
@@ -241,6 +272,13 @@ def test_a_step_whose_next_shorter_one_fails_is_luck():
     (["--validate", "--deadline-us", "9", "--duration", "1", "--budget", "3"],
      "its own: --deadline-us, --duration, --budget do not go"),
     (["--validate", "--json", "--error", "1"], "its own: --error, --json do not go"),
+    (["four-bar:2", "--error", "1", "--step", "0"], "argument --step: 0 is not a positive number"),
+    (["four-bar:2", "--error", "1", "--step", "1/0"], "argument --step: 0 is not a positive number"),
+    (["four-bar:2", "--error", "1", "--step", "60 Hz"], "argument --step: invalid seconds value: '60 Hz'"),
+    (["four-bar:2", "--error", "1", "--step", "3"], "--step 3: a run of 20 s has 10 to 1e+07 steps, so from 2e-06 to 2 s"),
+    (["four-bar:2", "--error", "1", "--step", "1/240", "--deadline-us", "16666"],
+     "--deadline-us 16666: more than the step itself, 4166.67 us"),
+    (["--validate", "--step", "1/60"], "its own: --step does not go"),
     (["four-bar:2", "--error", "1", "--plot", "a.pdf"], "must end in .svg or .png")])
 def test_what_is_wrong_is_said_in_a_line(tmp_path, arguments, what):
     done = study("advise", *arguments, "--results", tmp_path / "results", **REAL)
@@ -290,12 +328,30 @@ def test_what_is_advised_is_what_was_timed_and_errors_are_judged_after_every_ste
     place = command.index("--duration") + 1
 
     def alike(run):  # but for the time that a timing covers
-        words = shlex.split(run["command"])
+        words = shlex.split(run["command"].replace(f" --repeats {REPEATS}", ""))
         return words[:place] + words[place + 1:] == command[:place] + command[place + 1:]
     runs = advised[2]["runs"]
     assert any(alike(run) for run in runs if run["kind"].startswith("round"))
     checked = {run["kind"]: " --half-step --judge-every 1 " in run["command"] for run in runs}
     assert {kind for kind, yes in checked.items() if yes} == {"pilots", "verification"}
+    repeated = {run["kind"]: f" --repeats {REPEATS}" in run["command"] for run in runs}
+    assert {kind for kind, yes in repeated.items() if not yes} == {"pilots", "verification"}
+
+
+def test_who_uses_no_library_is_advised_without_a_blas():
+    line = "build/mbs simulate four-bar:2 --half-step --judge-every 1 --blas openblas"
+    assert advised_line(line, "none") == "build/mbs simulate four-bar:2"
+    assert advised_line(line, "KLU") == "build/mbs simulate four-bar:2 --blas openblas"
+
+
+def test_runs_are_ranked_by_what_interruptions_do_not_reach(advised):
+    folder, _, answer = advised
+    timed = [run for run in answer["runs"] if run["kind"].startswith("round")]
+    assert timed
+    for run in timed:
+        summary = read_json(folder / "results" / run["raw_file"])["summary"]
+        assert run["step_us"] == summary["least_us"]["mean"] <= summary["step_us"]["mean"]
+        assert run["step_us_p99"] == summary["step_us"]["p99"]
 
 
 def test_estimates_that_count_are_near_the_exact_errors(advised):
@@ -312,6 +368,14 @@ def test_what_nothing_meets_is_said(tmp_path):
     done = study("advise", "four-bar:2", "--duration", "0.6", "--only", "csc_klu/refactor", "--error", "1e-2",
                  "--deadline-us", "1e-3", "--results", tmp_path / "late", **REAL)
     assert done.returncode == 1 and "No setting meets this: no step is done within the deadline" in done.stdout
+
+
+def test_a_given_step_is_advised_or_nothing(tmp_path):
+    done, answer = ask(tmp_path, "--error", "1e-2", "--step", "1/240")
+    assert done.returncode == 0 and answer["question"]["step"] == answer["advice"]["step"] == 0.00416667
+    assert {one["step"] for one in answer["candidates"]} == {0.00416667}
+    done, answer = ask(tmp_path / "exact", "--error", "1e-9", "--step", "1/240")
+    assert done.returncode == 1 and answer["why_not"] == "no setting reaches the error in steps of 0.00416667 s"
 
 
 def test_where_every_pilot_was_lost_the_answer_says_how():

@@ -7,7 +7,7 @@ import time
 import pandas
 import pytest
 
-from study.pipeline import child, runs
+from study.pipeline import child, progress, runs
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import need_unchanged, write_csv, write_json
 from study.pipeline.options import Parser, need_steps
@@ -57,6 +57,21 @@ def test_a_raw_file_that_tells_of_no_run_is_damaged(tmp_path, damage):
     path.write_text(damage)
     with pytest.raises(StudyError, match="run.json is damaged"):
         runs.simulate(path, None, "four-bar:1", step=1e-3, duration=1.0, every=0, context={}, seconds=1)
+
+
+def test_a_log_has_a_line_a_subject_and_one_half_a_minute_with_the_rest(monkeypatch, capsys):
+    now = [100.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+    tell = progress.Teller()
+    for run in range(1, 101):  # of which 20 are kept, the others take 10 s each
+        now[0] += 10.0 if run > 20 else 0.001
+        tell(f"N = {run > 50:d}: run {run} of 100", run / 100)
+    tell("next", 0.0)
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "[0 s] N = 0: run 1 of 100 (1 % done)"
+    assert lines[1] == "[30 s] N = 0: run 23 of 100 (23 % done, about 12 min 50 s left)"
+    assert "[5 min 10 s] N = 1: run 51 of 100 (51 % done, about 8 min 10 s left)" in lines
+    assert lines[-1] == "[13 min 20 s] next (0 % done)" and 20 <= len(lines) <= 30
 
 
 def test_what_is_typed_writes_nothing():

@@ -102,7 +102,7 @@ def test_what_is_stored_is_never_run_again(run, tmp_path):
     run()
     changed = {path for path, time in before.items() if path.stat().st_mtime_ns != time}
     assert changed == set(gone) and (results / "equal_error.csv").read_bytes() == content
-    with pytest.raises(StudyError, match=r"holds results of something else \(inputs\)"):
+    with pytest.raises(StudyError, match=r"holds results of something else \(inputs: duration \S+, now 2.0\)"):
         run("--duration", "2")
     shutil.rmtree(results / "raw")
     run("--stored")

@@ -191,7 +191,7 @@ def place(tmp_path, monkeypatch):
     monkeypatch.setenv("MBS_PROGRAM", os.environ.get("MBS_PROGRAM", str(ROOT / "build" / "mbs")))
     one = Contender("csc_klu/refactor", "csc_klu/refactor")
     return tools.Study(Layout(tmp_path), [one], {one.variant: {"dense": False, "settings": ["saddle-point"]}},
-                       {one.environment: {}}, 20.0, lambda text: None)
+                       {one.environment: {}}, 20.0, lambda text, share=None: None)
 
 
 def test_the_battery_on_the_real_program_is_resumed(place, monkeypatch):

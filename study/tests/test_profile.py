@@ -7,6 +7,7 @@ import yaml
 from study.pipeline import estimate, profile as profiles
 from study.pipeline.contenders import Contender, contenders
 from study.pipeline.errors import StudyError
+from study.pipeline.progress import duration
 from study.pipeline.verify import best_cost, fastest_of_families, stretch_steps
 
 
@@ -98,7 +99,7 @@ def test_estimates():
     for work in plan.values():
         work.done = work.cells
     assert estimate.seconds_left(plan, 10, 5) == 0
-    assert [estimate.duration(s) for s in (5, 65, 3660)] == ["5 s", "1 min 5 s", "1 h 1 min"]
+    assert [duration(s) for s in (5, 65, 3660)] == ["5 s", "1 min 5 s", "1 h 1 min"]
 
 
 KNOWN = {"implementations": [{"variants": [{"name": "a/x", "operations": True}]}],

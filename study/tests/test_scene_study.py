@@ -200,8 +200,9 @@ def runs_nothing(tmp_path, monkeypatch):
                                  "--rounds", "0", *more])
 
 
-@pytest.mark.parametrize("edited, what", [("scene.json", "inputs"), ("problems.yaml", "inputs"),
-                                          ("", "variants")])
+@pytest.mark.parametrize("edited, what", [
+    ("scene.json", r"inputs: \S*scene.json \w+, now \w+"), ("problems.yaml", r"inputs: problems.yaml \w+, now \w+"),
+    ("", "variants")])
 def test_a_results_directory_is_of_one_selection_and_one_state_of_the_scenes(
         runs_nothing, tmp_path, edited, what):
     runs_nothing()

@@ -79,7 +79,7 @@ def test_a_run_that_does_not_end_is_data(run, tmp_path, monkeypatch, name, statu
 def test_a_results_directory_is_of_one_selection_and_program(run, monkeypatch):
     run("--implementation", "good_sparse/only")
     for more, what in ((("--implementation", "good_dense/first"), "variants"),
-                       (("--duration", "1"), "inputs")):
+                       (("--duration", "1"), r"inputs: duration \S+, now 1.0")):
         with pytest.raises(StudyError, match=rf"holds results of something else \({what}\)"):
             run("--implementation", "good_sparse/only", *more)
     monkeypatch.setenv("FAKE_COMMIT", "def5678")
