@@ -11,7 +11,7 @@
 namespace mbs {
 
 /// "The step", "Other schemes" and "Other settings" of paper/README.md, literally, in 80-bit
-/// arithmetic; `precision` only refines the projections where mixed does. Used for nothing but
+/// arithmetic; `precision` only refines the projections as it asks for. Used for nothing but
 /// checking. Stored zeros of M are skipped: they do not change the physics.
 ///
 /// All of its systems of equations are one, Eqs. (12) to (15),
@@ -103,6 +103,7 @@ class ReferenceSimulation final : public Simulation {
   void predict();
   /// Projections of the step; adds to `factorizations`. False if a factorization failed.
   [[nodiscard]] bool project(int& factorizations);
+  [[nodiscard]] bool refines_once() const;
   /// Eq. (15): x from x* on, until a correction is at most `small`.
   [[nodiscard]] bool refine(const std::vector<Row>& rows, Vector& x, const Vector& rate, Real small,
                             int& factorizations);

@@ -98,7 +98,8 @@ bool ReferenceSimulation::project(int& factorizations) {
   const Real h = settings_.step, tolerance = settings_.tolerance;
   const bool both = settings_.projections == Projections::both;
   const std::vector<Row> rows = jacobian();
-  if (settings_.tangent != TangentReuse::none || settings_.precision == Precision::mixed) {
+  if (settings_.tangent != TangentReuse::none || settings_.precision == Precision::mixed ||
+      refines_once()) {
     if (!refine(rows, v_, partial_rate(), 2 / h * tolerance, factorizations)) return false;
     return !both || refine(rows, a_, curvature(), 4 / (h * h) * tolerance, factorizations);
   }
@@ -107,14 +108,20 @@ bool ReferenceSimulation::project(int& factorizations) {
   return true;
 }
 
+/// Eq. (15) once, in single precision's penalty form.
+bool ReferenceSimulation::refines_once() const {
+  return settings_.precision == Precision::single_precision && !is_saddle() &&
+         settings_.tangent == TangentReuse::none;
+}
+
 bool ReferenceSimulation::refine(const std::vector<Row>& rows, Vector& x, const Vector& rate,
                                  Real small, int& factorizations) {
-  constexpr int kMost = 5;
+  const int most = refines_once() ? 1 : 5;
   const Real eps = 4 / (Real{settings_.penalty} * settings_.step * settings_.step);
   const Vector start = x;
   Vector y(m_, Real{0});
   Real last = 0;
-  for (int round = 1; round <= kMost; ++round) {
+  for (int round = 1; round <= most; ++round) {
     Vector top(n_);  // the residual of Eqs. (6), (13)
     for (int i = 0; i < n_; ++i) top[i] = start[i] - x[i];
     top = weighted_mass_times(top);
