@@ -71,8 +71,10 @@ def of_regions(tables):
                     f"{settings.index[0]} ({settings.iloc[0]}); {decided} are decided.")
     reasons = regions.reason.dropna()
     pruned = int(reasons.str.startswith("pruned").sum())
-    said.append(f"Of {len(regions)} candidates {pruned} were pruned by their pilots and {len(reasons) - pruned} by "
-                "a run of their own that does not have the error class, each with its reason in regions.csv.")
+    unknown = int(reasons.str.startswith("error class not known").sum())
+    said.append(f"Of {len(regions)} candidates {pruned} were pruned by their pilots, {len(reasons) - pruned - unknown} by "
+                f"a run of their own that does not have the error class, and {unknown} because a run that tells it would "
+                "take too long; each has its reason in regions.csv.")
     if len(fills):
         same = fills.same.astype(bool)
         worst = fills.difference.max()
@@ -101,15 +103,22 @@ def _cost(row):
 
 
 def of_precision(precision):
+    """What factors in single precision with refined projections (mixed) gain over double, and what single gains."""
     if precision.empty or "ratio" not in precision or precision.ratio.notna().sum() == 0:
         return []
     rows = precision[precision.ratio.notna()]
+    mixed = rows.second.str.split().map(lambda words: "mixed" in words)
+    return [sentence for what, kind in (("Mixed precision", rows[mixed]), ("Single precision", rows[~mixed]))
+            if len(kind) for sentence in _gain(what, kind)]
+
+
+def _gain(what, rows):
     won, same = gains(rows), rows[same_class(rows)]
-    if won.empty and same.empty:
-        return [f"None of {len(rows)} pairs is in the same error class."]
+    if same.empty:
+        return [f"{what}: none of {len(rows)} pairs with double is in the same error class."]
     if won.empty:
         best = same.loc[same.low.idxmax()]
-        return [f"Lower precision is nowhere at least {GAIN:g} times faster at the same error class: the best there "
+        return [f"{what} is nowhere at least {GAIN:g} times faster than double at the same error class: the best there "
                 f"is {number(best.ratio)} ({number(best.low)} to {number(best.high)}; "
                 f"{best.implementation}, {best.second}, n = {best.variables:.0f}), error "
                 f"{number(best.second_error, 2)} m against {number(best.first_error, 2)} m in double.",
@@ -117,7 +126,7 @@ def of_precision(precision):
                 f"from {number(same.first_passes_per_step.median(), 2)} to "
                 f"{number(same.second_passes_per_step.median(), 2)} (medians)."]
     best = won.loc[won.low.idxmax()]
-    return [f"At the same error class lower precision is at least {GAIN:g} times faster in {len(won)} of {len(rows)} "
+    return [f"{what} is at least {GAIN:g} times faster than double at the same error class in {len(won)} of {len(rows)} "
             f"pairs: {_list(f'{r.implementation}, {r.second}, n = {r.variables:.0f}' for r in won.itertuples())}.",
             f"The best is {number(best.ratio)} ({number(best.low)} to {number(best.high)}) of "
             f"{best.implementation}, {best.second}, n = {best.variables:.0f}."]

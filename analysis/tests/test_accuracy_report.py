@@ -125,9 +125,12 @@ def test_a_gain_needs_the_same_class_and_the_whole_interval():
     assert list(pairs_figure.gains(table).implementation) == ["one/a"]
     assert "one/a, mixed, n = 22" in sentences.of_precision(table)[0]
     nowhere = sentences.of_precision(table.iloc[1:3])
-    assert nowhere[0].startswith("Lower precision is nowhere") and "1 of 2 pairs" in nowhere[1]
+    assert nowhere[0].startswith("Mixed precision is nowhere") and "1 of 2 pairs" in nowhere[1]
     assert "three/a" in nowhere[0]  # two/a is faster, but of another class
-    assert sentences.of_precision(table.iloc[[1, 3]]) == ["None of 2 pairs is in the same error class."]
+    assert sentences.of_precision(table.iloc[[1, 3]]) == [
+        "Mixed precision: none of 2 pairs with double is in the same error class."]
+    single = sentences.of_precision(pandas.concat([table, table.iloc[:1].assign(second="single")]))
+    assert single[0].startswith("Mixed precision is at least") and single[2].startswith("Single precision is at least")
     figure = pairs_figure.draw(table, names.look(REGISTRY + [
         {"folder": name, "variants": [{"name": f"{name}/a"}]} for name in ("three", "four")]), "t", 1.2)
     assert {text.get_text() for text in figure.axes[0].get_legend().get_texts()} == set(table.implementation)
@@ -158,5 +161,5 @@ def test_the_page_says_what_was_refused_and_what_the_reference_is_worth():
                          {"work-four-bar-2": "AAAA"}, [{"library": "none", "variants": [{"name": "one/a"}]},
                                                        {"library": "L", "variants": [{"name": "two/a"}]}])
     for text in ("one/a, single, four-bar:2: disagrees, free-running", "none: it diverged", "3·10⁻¹⁵",
-                 "1 were pruned by their pilots and 1 by a run of their own", "1 not-run", "1 diverged", "one/a, default (6)", "two/a, default (6)", "AAAA"):
+                 "1 were pruned by their pilots, 1 by a run of their own", "1 not-run", "1 diverged", "one/a, default (6)", "two/a, default (6)", "AAAA"):
         assert text in page, text

@@ -12,7 +12,7 @@ from study.pipeline.progress import Teller
 LOOPS, LARGE = (1, 2, 5, 10, 20, 40, 80), (200, 500)
 STEPS = tuple(1.25e-3 * 2.0**power for power in range(-3, 4))
 PENALTIES = tuple(10.0**power for power in range(13))
-IMPLEMENTATIONS = {"double": "csc_klu/refactor", "single": "eigen_dense/llt"}
+IMPLEMENTATIONS = {"double": "csc_klu/refactor", "single": "compiled_ldl/fronts"}
 AT_ONCE = 2
 
 

@@ -26,7 +26,7 @@ struct AccurateBounds {
   double position_error = 1e-2;  ///< m, where an exact solution is known
   /// Of Judge::length(), where the error is estimated: HalfStepRun.
   double estimated_error = 1e-2;
-  /// Of Judge::length(): local_error_sum(), of which errors are usually one to ten times.
+  /// Of Judge::length(): local_error_sum(), of which errors are usually one to twelve times.
   double local_error = 3e-3;
   double energy_drift = 1e-2;  ///< as RunBounds
   double constraint_violation = 1e-4;
