@@ -34,9 +34,10 @@ def draw(table, windows, scheme, precision):
     used = set()
     for place, (axes, loops) in enumerate(zip(panels.flat, sizes)):
         used |= _panel(axes, rows[rows.loops == loops])
-        _lines(axes, rows[rows.loops == loops], windows[windows.loops == loops],
-               # The estimates of the upper end hold for the penalty form in double precision.
-               ("lower", "upper") if (scheme, precision) == ("penalty", "double") else ("lower",))
+        _lines(axes, rows[rows.loops == loops],
+               windows[(windows.loops == loops) & (windows.precision == precision)],
+               # The estimates of the upper end hold for the penalty form.
+               ("lower", "upper") if scheme == "penalty" else ("lower",))
         axes.set_title(f"N = {loops}, n = {2 * loops + 2}")
         if place + columns >= len(sizes):
             axes.set_xlabel("step Δt, ms")

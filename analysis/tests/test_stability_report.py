@@ -20,7 +20,7 @@ def table():
 
 
 def windows():
-    return pandas.DataFrame([{"loops": 2, "step": step, "lower": 1e6, "upper": 1e9}
+    return pandas.DataFrame([{"loops": 2, "precision": "double", "step": step, "lower": 1e6, "upper": 1e9}
                              for step in (1e-3, 2e-3)])
 
 

@@ -20,6 +20,9 @@ void add_limit_command(CLI::App& app, int& status);
 /// Adds --blas to `command`, for its help; main() has already obeyed it (settle_environment()).
 void add_blas_option(CLI::App& command);
 
+/// Adds --precision to `command`.
+void add_precision_option(CLI::App& command, Precision& precision);
+
 /// Time-stepping options as typed; "auto" needs the model.
 struct StepOptions {
   StepSettings settings;  ///< but for the next two

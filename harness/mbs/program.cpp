@@ -79,6 +79,10 @@ void add_blas_option(CLI::App& command) {
       ->type_name("NAME");
 }
 
+void add_precision_option(CLI::App& command, Precision& precision) {
+  add_choice<Precision>(command, "--precision", precision, "what a step computes in");
+}
+
 void StepOptions::add_to(CLI::App& command) {
   command.add_option("--step", settings.step, "time step, s")->capture_default_str();
   command.add_option("--penalty", penalty, "penalty factor alpha, or 'auto'")
@@ -100,7 +104,7 @@ void StepOptions::add_to(CLI::App& command) {
       .add_option("--projections-every", settings.projections_every,
                   "project every K-th step only, K >= 1")
       ->capture_default_str();
-  add_choice<Precision>(command, "--precision", settings.precision, "what a step computes in");
+  add_precision_option(command, settings.precision);
   command.add_flag("--geometric-stiffness", settings.geometric_stiffness,
                    "add what the constraint forces change by to the tangent, Eq. (16)");
   add_blas_option(command);

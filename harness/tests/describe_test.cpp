@@ -17,7 +17,7 @@
 namespace mbs {
 namespace {
 
-constexpr double kStep = 1.25e-3;
+const StepSettings kSettings;  // a step of 1.25e-3 s
 
 Scene scene_of(const std::string& json) {
   SceneData data = parse_scene(json, "test");
@@ -41,7 +41,7 @@ constexpr const char* kRedundant = R"({"points": [
   ]})";
 
 TEST(Describe, FourBar) {
-  const auto d = describe_json(load_scene("four-bar:2"), kStep);
+  const auto d = describe_json(load_scene("four-bar:2"), kSettings);
   EXPECT_EQ(d["scene"], "four-bar:2");
   EXPECT_EQ(d["variables"], 6);
   EXPECT_EQ(d["constraints"], 5);
@@ -67,7 +67,7 @@ TEST(Describe, FourBar) {
 }
 
 TEST(Describe, Text) {
-  const std::string text = describe_text(load_scene("four-bar:2"), kStep);
+  const std::string text = describe_text(load_scene("four-bar:2"), kSettings);
   for (const char* part :
        {"coordinates n         6 (3 free and 3 fixed", "constraints m         5\n",
         "degrees of freedom    1 (n - rank of the Jacobian, 5)\n", "redundant             none\n",
@@ -88,19 +88,19 @@ TEST(Describe, Text) {
 
 TEST(Describe, ArtificialFill) {
   const Scene scene = load_scene("four-bar:5,fill=0.50");
-  const auto d = describe_json(scene, kStep);
+  const auto d = describe_json(scene, kSettings);
   EXPECT_EQ(d["artificial_fill"]["asked"], 0.5);
   EXPECT_EQ(d["artificial_fill"]["natural"], 64.0 / 144.0);
   EXPECT_EQ(d["artificial_fill"]["reached"], 0.5);
   EXPECT_EQ(d["artificial_fill"]["seed"], kFillSeed);
   EXPECT_EQ(d["tangent"]["fill"], 0.5);
-  EXPECT_NE(
-      describe_text(scene, kStep).find("asked 50 %, natural 44.44 %, reached 50 %, seed 607615"),
-      std::string::npos);
+  EXPECT_NE(describe_text(scene, kSettings)
+                .find("asked 50 %, natural 44.44 %, reached 50 %, seed 607615"),
+            std::string::npos);
 }
 
 TEST(Describe, LargeScenesHaveTheirRank) {
-  const auto d = describe_json(load_scene("four-bar:9999"), kStep);  // 20 000 coordinates
+  const auto d = describe_json(load_scene("four-bar:9999"), kSettings);  // 20 000 coordinates
   EXPECT_EQ(d["jacobian_rank"], 19'999);
   EXPECT_EQ(d["degrees_of_freedom"], 1);
   EXPECT_EQ(d["singular_start"], false);
@@ -108,7 +108,7 @@ TEST(Describe, LargeScenesHaveTheirRank) {
 
 TEST(Describe, NamesRedundantConstraints) {
   const Scene scene = scene_of(kRedundant);
-  const auto d = describe_json(scene, kStep);
+  const auto d = describe_json(scene, kSettings);
   EXPECT_EQ(d["variables"], 6);
   EXPECT_EQ(d["constraints"], 6);
   EXPECT_EQ(d["jacobian_rank"], 5);
@@ -117,8 +117,9 @@ TEST(Describe, NamesRedundantConstraints) {
   EXPECT_NE(d["redundant_constraints"][0].get<std::string>().find("middle y"), std::string::npos)
       << d["redundant_constraints"];
   EXPECT_EQ(d["singular_start"], false);
-  EXPECT_NE(describe_text(scene, kStep).find("redundant             1, implied by those before"),
-            std::string::npos);
+  EXPECT_NE(
+      describe_text(scene, kSettings).find("redundant             1, implied by those before"),
+      std::string::npos);
   // Redundancy does not stretch the window down to nothing.
   EXPECT_LT(d["penalty_window"]["lower"], d["penalty_window"]["upper"]);
 }
@@ -137,11 +138,11 @@ TEST(Describe, TellsASingularStartFromRedundancy) {
   EXPECT_TRUE(structure.redundant.empty());
   EXPECT_EQ(structure.singular_rows.size(), 2u);
   const Scene scene{"test", straight, {}, {}};
-  const auto d = describe_json(scene, kStep);
+  const auto d = describe_json(scene, kSettings);
   EXPECT_EQ(d["degrees_of_freedom"], 1);
   EXPECT_EQ(d["singular_start"]["rank"], 3);
   EXPECT_EQ(d["singular_start"]["constraints"].size(), 2u);
-  EXPECT_NE(describe_text(scene, kStep).find("start                 singular, rank 3 only: "),
+  EXPECT_NE(describe_text(scene, kSettings).find("start                 singular, rank 3 only: "),
             std::string::npos);
 }
 
@@ -155,24 +156,25 @@ TEST(Describe, RankShowsDegreesOfFreedomThatCountingMisses) {
                       {"type": "linear", "terms": [{"point": "B", "axis": "y", "coefficient": 1},
                                                    {"point": "C", "axis": "y", "coefficient": 1}]}
       ]})");
-  const auto d = describe_json(scene, kStep);
+  const auto d = describe_json(scene, kSettings);
   EXPECT_EQ(d["constraints"], 3);
   EXPECT_EQ(d["degrees_of_freedom"], 2);
   EXPECT_EQ(d["terms"]["gravity"], false);
   EXPECT_EQ(d["terms"]["linear_constraints"], 3);
-  EXPECT_NE(describe_text(scene, kStep).find("terms absent          gravity or constant forces"),
-            std::string::npos);
+  EXPECT_NE(
+      describe_text(scene, kSettings).find("terms absent          gravity or constant forces"),
+      std::string::npos);
 }
 
 TEST(Describe, SaysWhatAssemblyMoved) {
   const Scene scene = scene_of(R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
       {"name": "B", "position": [1.01, 0], "velocity": [0, 2]}],
       "rods": [{"between": ["A", "B"], "mass": 1, "length": 1}]})");
-  const auto d = describe_json(scene, kStep);
+  const auto d = describe_json(scene, kSettings);
   EXPECT_NEAR(d["assembly"]["position_correction"].get<double>(), 0.01, 1e-12);
   EXPECT_EQ(d["assembly"]["velocity_correction"], 0.0);
   EXPECT_EQ(d["assembly"]["point"], "B");
-  EXPECT_NE(describe_text(scene, kStep).find("points moved by up to 0.01 m (B)\n"),
+  EXPECT_NE(describe_text(scene, kSettings).find("points moved by up to 0.01 m (B)\n"),
             std::string::npos);
 }
 
@@ -188,7 +190,7 @@ TEST(Describe, CountsTerms) {
   data.couples.push_back({1, 0, -1, 2.0, "motor"});
   data.driven_points.push_back({0, {}});
   const Scene scene{"test", Model(data), {}, {}};
-  const auto terms = describe_json(scene, kStep)["terms"];
+  const auto terms = describe_json(scene, kSettings)["terms"];
   EXPECT_EQ(terms["bilinear_constraints"], 1);
   EXPECT_EQ(terms["springs"], 1);
   EXPECT_EQ(terms["torsion_springs"], 1);
@@ -207,7 +209,7 @@ TEST(Describe, ListsElementsForPictures) {
   scene.elements.markers.push_back({"middle",
                                     {{0, {{{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}}}},
                                      {1, {{{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}}}}}});
-  const auto elements = describe_json(scene, kStep)["elements"];
+  const auto elements = describe_json(scene, kSettings)["elements"];
   ASSERT_EQ(elements["points"].size(), 5u);
   EXPECT_EQ(elements["points"][0]["kind"], "fixed");
   EXPECT_EQ(elements["points"][1]["kind"], "free");
@@ -217,7 +219,7 @@ TEST(Describe, ListsElementsForPictures) {
   EXPECT_EQ(elements["bodies"][0]["points"], nlohmann::json({"A", "B", "middle"}));
   EXPECT_EQ(elements["bodies"][0]["vectors"], nlohmann::json::array({"C"}));
   EXPECT_TRUE(elements["rods"].empty());
-  const auto four_bar = describe_json(load_scene("four-bar:1"), kStep)["elements"];
+  const auto four_bar = describe_json(load_scene("four-bar:1"), kSettings)["elements"];
   ASSERT_EQ(four_bar["rods"].size(), 3u);
   EXPECT_EQ(four_bar["rods"][2]["between"], nlohmann::json::array({"B0", "B1"}));
 }
@@ -233,7 +235,7 @@ TEST(Describe, ListsDistancesBesideBodiesAndMarksHelpers) {
                 "pose": {"position": [3, 1]}}],
     "constraints": [{"name": "rope", "type": "distance", "between": ["B", "C"]},
                     {"type": "distance", "between": ["D", "C"]}]})"),
-                               kStep);
+                               kSettings);
   EXPECT_EQ(d["drivers_end"], 4.0);
   const auto& elements = d["elements"];
   ASSERT_EQ(elements["distances"].size(), 2u);
@@ -252,7 +254,7 @@ TEST(Describe, ListsDistancesBesideBodiesAndMarksHelpers) {
 }
 
 TEST(Describe, DriversOfFunctionsNeverEnd) {
-  EXPECT_TRUE(describe_json(load_scene("four-bar:2"), kStep)["drivers_end"].is_null());
+  EXPECT_TRUE(describe_json(load_scene("four-bar:2"), kSettings)["drivers_end"].is_null());
 }
 
 TEST(Warnings, TellOfPenaltyFactorsFarOutsideTheWindow) {
@@ -267,7 +269,7 @@ TEST(Warnings, TellOfPenaltyFactorsFarOutsideTheWindow) {
   }
   // Automatic, at a step for which it is not made.
   EXPECT_FALSE(describe_json(load_scene("four-bar:40"), 2e-2)["warnings"].empty());
-  EXPECT_TRUE(describe_json(load_scene("four-bar:40"), kStep)["warnings"].empty());
+  EXPECT_TRUE(describe_json(load_scene("four-bar:40"), kSettings)["warnings"].empty());
 }
 
 TEST(Warnings, NeverBlameThePenaltyFactorOfTheRule) {
@@ -295,7 +297,7 @@ TEST(Warnings, NeverBlameThePenaltyFactorOfTheRule) {
 }
 
 TEST(Warnings, SendToNoOtherStepWhereNoneSuits) {
-  for (const double step : {1e-2, kStep, 1e-4}) {
+  for (const double step : {1e-2, 1.25e-3, 1e-4}) {
     const Model model(four_bar(4000));
     StepSettings settings{.step = step};
     settings.penalty = automatic_penalty(model, settings);
@@ -385,7 +387,7 @@ TEST(PenaltyWindow, IsWhereRunsAreGood) {
                {40, 6.25e-4, 1e3, 1e5}, {10, 6.25e-4, 300, 1.5e5}};
   for (const auto& [loops, step, good_from, good_to] : cases) {
     const Model model(four_bar(loops));
-    const PenaltyWindow window = penalty_window(model, find_structure(model), step);
+    const PenaltyWindow window = penalty_window(model, find_structure(model), {.step = step});
     const double per_beta = 4.0 / (step * step);
     EXPECT_LE(window.lower, window.upper) << loops << ", " << step;
     for (const auto& [bound, measured] :
@@ -396,9 +398,38 @@ TEST(PenaltyWindow, IsWhereRunsAreGood) {
   }
 }
 
+// In single precision, against results/stability: what of beta (decades) is ok, where any is.
+TEST(PenaltyWindow, OfSinglePrecisionIsWhereRunsAreGood) {
+  const struct {
+    int loops;
+    double step, good_from, good_to;
+  } cases[] = {{1, 1.25e-3, 1e2, 1e4}, {1, 6.25e-4, 1e3, 1e4}, {10, 1.25e-3, 1e3, 1e4},
+               {10, 2.5e-3, 1e2, 1e4}, {20, 2.5e-3, 1e2, 1e4}, {20, 1.25e-3, 3e3, 1e4}};
+  for (const auto& [loops, step, good_from, good_to] : cases) {
+    const Model model(four_bar(loops));
+    const PenaltyWindow window = penalty_window(
+        model, find_structure(model), {.step = step, .precision = Precision::single_precision});
+    const double per_beta = 4.0 / (step * step);
+    EXPECT_GT(window.upper, kClosedInSingle * window.lower) << loops << ", " << step;
+    EXPECT_LT(std::abs(std::log10(window.lower / (per_beta * good_from))), 1.0)
+        << loops << ", " << step << ": " << window.lower / per_beta;
+    EXPECT_LT(std::abs(std::log10(window.upper / (per_beta * good_to))), 1.0)
+        << loops << ", " << step << ": " << window.upper / per_beta;
+  }
+  for (const auto& [loops, step] : {std::pair(10, 3.125e-4), std::pair(5, 3.125e-4),
+                                    std::pair(20, 6.25e-4), std::pair(200, 1.25e-3)}) {
+    const Model model(four_bar(loops));
+    const StepSettings settings{.step = step, .precision = Precision::single_precision};
+    const PenaltyWindow window = penalty_window(model, find_structure(model), settings);
+    EXPECT_LT(window.upper, kClosedInSingle * window.lower) << loops << ", " << step;
+    const std::string warning = penalty_warning(window, settings, PenaltyFrom::rule);
+    EXPECT_NE(warning.find("saddle-point, --precision double"), std::string::npos) << warning;
+  }
+}
+
 TEST(PenaltyWindow, IsEmptyWhereNoPenaltyWorks) {
   const Model model(four_bar(1000));
-  const PenaltyWindow window = penalty_window(model, find_structure(model), 1e-4);
+  const PenaltyWindow window = penalty_window(model, find_structure(model), {.step = 1e-4});
   EXPECT_GT(window.lower, window.upper);
   EXPECT_TRUE(window.cancellation);
   EXPECT_TRUE(window.slowest_mode);
@@ -406,12 +437,13 @@ TEST(PenaltyWindow, IsEmptyWhereNoPenaltyWorks) {
 
 TEST(Describe, FreeFlightHasNoConstraints) {
   const Scene scene = test::free_fall();
-  const auto d = describe_json(scene, kStep);
+  const auto d = describe_json(scene, kSettings);
   EXPECT_EQ(d["constraints"], 0);
   EXPECT_EQ(d["degrees_of_freedom"], 4);
   EXPECT_EQ(d["jacobian"]["fill"], 0.0);
   EXPECT_TRUE(d["penalty_window"].is_null());
-  EXPECT_NE(describe_text(scene, kStep).find("any, there are no constraints"), std::string::npos);
+  EXPECT_NE(describe_text(scene, kSettings).find("any, there are no constraints"),
+            std::string::npos);
 }
 
 }  // namespace

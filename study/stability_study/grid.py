@@ -60,18 +60,18 @@ def row(cell, record, layout, duration):
             "command": runs.typed(record)}
 
 
-def windows(loops, steps):
+def windows(loops, steps, precisions):
     """The rows of windows.csv: what `mbs describe` says of the penalty factor."""
-    found = []
-    for count in loops:
-        for step in steps:
-            command = [program(), "describe", f"four-bar:{count}", "--step", f"{step:g}", "--json"]
-            ended = child.run(command, 60, runs.MEMORY_MB)
-            try:
-                window = json.loads(ended.stdout)["penalty_window"]
-            except (ValueError, KeyError) as error:
-                raise StudyError(ended.reason.partition("mbs: ")[2] or
-                                 f"`{shlex.join(command)}` does not work: {ended.reason}") from error
-            found.append({"loops": count} | {key: window[key] for key in (
-                "step", "lower", "lower_from", "upper", "upper_from")})
-    return found
+    return [{"loops": count, "precision": precision} | _window(count, step, precision)
+            for count in loops for precision in precisions for step in steps]
+
+
+def _window(count, step, precision):
+    command = [program(), "describe", f"four-bar:{count}", "--step", f"{step:g}", "--precision", precision, "--json"]
+    ended = child.run(command, 60, runs.MEMORY_MB)
+    try:
+        window = json.loads(ended.stdout)["penalty_window"]
+    except (ValueError, KeyError) as error:
+        raise StudyError(ended.reason.partition("mbs: ")[2] or
+                         f"`{shlex.join(command)}` does not work: {ended.reason}") from error
+    return {key: window[key] for key in ("step", "lower", "lower_from", "upper", "upper_from")}

@@ -53,7 +53,7 @@ def _run(layout, options):
     loops = sorted(set(options.loops or LOOPS + (LARGE if options.all else ())))
     steps, penalties = sorted(set(options.steps)), sorted(set(options.penalties))
     need_steps(options.duration, steps)
-    windows = grid.windows(loops, steps)  # refuses what `mbs` would refuse
+    windows = grid.windows(loops, steps, IMPLEMENTATIONS)  # refuses what `mbs` would refuse
     start_named(layout, "stability", list(dict.fromkeys(served.values())),
                 {"duration": options.duration, "time_limit": options.time_limit})
     run = read_run(layout)

@@ -78,15 +78,16 @@ json penalty_json(const PenaltyWindow& window, double step) {
 }
 
 /// The window, and what is likely to go wrong with the automatic factor and this step.
-void add_settings(json& result, const Model& model, const Structure& structure, double step) {
+void add_settings(json& result, const Model& model, const Structure& structure,
+                  StepSettings settings) {
   result["penalty_window"] = nullptr;
   result["warnings"] = json::array();
-  std::vector<std::string> warnings{period_warning(model, step)};
+  std::vector<std::string> warnings{period_warning(model, settings.step)};
   if (model.constraints() > 0) {
-    const PenaltyWindow window = penalty_window(model, structure, step);
-    result["penalty_window"] = penalty_json(window, step);
-    warnings.push_back(
-        penalty_warning(window, {.step = step, .penalty = window.automatic}, PenaltyFrom::rule));
+    const PenaltyWindow window = penalty_window(model, structure, settings);
+    result["penalty_window"] = penalty_json(window, settings.step);
+    settings.penalty = window.automatic;
+    warnings.push_back(penalty_warning(window, settings, PenaltyFrom::rule));
   }
   for (const std::string& warning : warnings) {
     if (!warning.empty()) result["warnings"].push_back(warning);
@@ -111,7 +112,7 @@ json assembly_json(const AssemblyReport& report) {
           {"point", report.point}};
 }
 
-json describe_json(const Scene& scene, double step) {
+json describe_json(const Scene& scene, const StepSettings& settings) {
   const Model& model = scene.model;
   const double n = model.variables();
   const double m = model.constraints();
@@ -133,7 +134,7 @@ json describe_json(const Scene& scene, double step) {
       {"elements", elements_json(scene)}};
   add_points(result, scene);
   add_structure(result, model, structure);
-  add_settings(result, model, structure, step);
+  add_settings(result, model, structure, settings);
   return result;
 }
 

@@ -25,10 +25,11 @@ namespace mbs {
 /// - warnings [text]: why the automatic penalty factor or the step is likely to be wrong;
 /// - artificial_fill {asked, natural, reached, seed} or null;
 /// - elements, see elements_json().
-nlohmann::json describe_json(const Scene& scene, double step);
+/// Step and precision of `settings` count, for the last two but one.
+nlohmann::json describe_json(const Scene& scene, const StepSettings& settings);
 
 /// The same for people, several lines.
-std::string describe_text(const Scene& scene, double step);
+std::string describe_text(const Scene& scene, const StepSettings& settings);
 
 /// What the assembly of the start changed: keys position_correction, velocity_correction, point.
 nlohmann::json assembly_json(const AssemblyReport& report);

@@ -107,8 +107,8 @@ std::string assembly_text(const json& assembly) {
   return changes.empty() ? "consistent as given" : fmt::format("{}", fmt::join(changes, ", "));
 }
 
-std::string describe_text(const Scene& scene, double step) {
-  const json d = describe_json(scene, step);
+std::string describe_text(const Scene& scene, const StepSettings& settings) {
+  const json d = describe_json(scene, settings);
   std::string text = line("scene", scene.name);
   text += line("coordinates n", points_text(d));
   text += line("constraints m", fmt::format("{}", d["constraints"].get<int>()));

@@ -3,13 +3,14 @@
 
 #include "describe/structure.hpp"
 #include "mbs/model.hpp"
+#include "mbs/simulation.hpp"
 
 namespace mbs {
 
 /// An estimate from the start alone; README.md here has the derivation and what it was fitted to.
 /// On mechanisms that meet singular positions it is right to a factor of about ten, others work
-/// below it too. Empty, lower > upper, if the step is too long for the motion or too short for
-/// double precision.
+/// below it too. Empty, lower > upper, if the step is too long for the motion or too short for the
+/// precision.
 struct PenaltyWindow {
   double lower = 0.0;         ///< alpha; below it the multipliers do not converge
   double upper = 0.0;         ///< alpha; above it errors grow in proportion
@@ -20,7 +21,9 @@ struct PenaltyWindow {
   bool cancellation = false;  ///< whether rounding sets `upper`, not the nonlinearity in a step
 };
 
-/// `step` in s. The model must have a constraint that is not redundant.
-PenaltyWindow penalty_window(const Model& model, const Structure& structure, double step);
+/// For the step and precision of `settings`; mixed precision has double's. The model must have a
+/// constraint that is not redundant.
+PenaltyWindow penalty_window(const Model& model, const Structure& structure,
+                             const StepSettings& settings);
 
 }  // namespace mbs

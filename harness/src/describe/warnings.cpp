@@ -79,9 +79,14 @@ class SpringDiagonal {
 
 namespace {
 
+/// upper / lower of a window that is worth a warning when it is no wider.
+double least_width(const StepSettings& settings) {
+  return settings.precision == Precision::single_precision ? kClosedInSingle : 1 / kFarAbove;
+}
+
 /// Where no penalty factor of the user's own is to blame: what to change instead.
 std::string step_warning(const PenaltyWindow& window, const StepSettings& settings, bool is_long) {
-  const bool no_step = window.widest * kFarAbove < 1.0;
+  const bool no_step = window.widest < least_width(settings);
   const char* precision =
       is_long || settings.precision == Precision::double_precision ? "" : ", --precision double";
   if (no_step) {
@@ -106,8 +111,9 @@ std::string penalty_warning(const PenaltyWindow& window, const StepSettings& set
         "estimate: mbs describe)",
         settings.penalty, side, bound, what, settings.step);
   };
-  if (window.lower > window.upper * kFarAbove)
+  if (window.upper < window.lower * least_width(settings)) {
     return step_warning(window, settings, !window.cancellation);
+  }
   if (settings.penalty < window.lower / kFarBelow) {
     if (from == PenaltyFrom::rule) return step_warning(window, settings, false);
     return far("below", window.lower, "least that is sure to hold the constraints");
@@ -166,7 +172,7 @@ std::vector<std::string> setting_warnings(const Model& model, const StepSettings
     const Structure structure = find_structure(model);
     add(start_warning(model, structure));
     if (settings.scheme == Scheme::penalty) {
-      const PenaltyWindow window = penalty_window(model, structure, settings.step);
+      const PenaltyWindow window = penalty_window(model, structure, settings);
       add(penalty_warning(window, settings, from));
     }
   }

@@ -17,6 +17,9 @@ inline constexpr int kMostVariablesToWarn = 20'000;
 /// that meet no singular position work well below it.
 inline constexpr double kFarBelow = 100.0, kFarAbove = 10.0;
 
+/// In single precision runs are lost from where the window has closed to this factor.
+inline constexpr double kClosedInSingle = 2.0;
+
 /// Longest step as a share of the shortest period of springs; there the period is 3 % off.
 inline constexpr double kLongestShare = 0.1;
 
