@@ -9,14 +9,15 @@ from analysis.accuracy.front import GOOD
 from analysis.extremes.numbers import FORMS, ran
 from analysis.style import GREY
 
-SHADES, DIGITS = plt.get_cmap("Greens"), Normalize(-16, -2)  # of "ok", by the exponent of the true error
+SHADES, DIGITS = plt.get_cmap("Greens"), Normalize(-16, -2)  # of what is ok or plausible, by the exponent of the true error
 LOOKS = {  # (colour, hatch)
     "degraded": ("#F2C14E", ""), "not-converged": ("#E69F00", "////"), "wrong-branch": ("#CC79A7", ""),
     "diverged": ("#9a9a9a", ""), "timeout": ("#56B4E9", ""), "crashed": ("#5B3A9E", ""),
     "out-of-memory": ("#8C4A1F", ""), "refused": ("#e9edf3", "...."), "unsupported": ("#ffffff", "xxxx"),
     "not run": ("#ffffff", "")}
 OTHER = ("#ffffff", "++++")
-SILENT, UNJUDGED = "#D00000", "ok, not judged"
+SILENT, UNJUDGED = "#D00000", "ok or plausible, not judged"
+WORDS = {"ok": "ok or plausible", "silent": "silently wrong: ok or plausible beyond its class"}
 NARROW, UPRIGHT = 6, 2.3  # the name of a setting with fewer columns is upright and takes so many inches
 
 
@@ -118,5 +119,5 @@ def _legend(used):
     looks = {"silent": (SILENT, ""), "ok": (SHADES(0.4), ""), UNJUDGED: (SHADES(0.1), "////"), **LOOKS,
              "other failure": OTHER}
     return [Patch(facecolor=colour, hatch=hatch, edgecolor=GREY,
-                  label="silently wrong: ok beyond its class" if name == "silent" else name)
+                  label=WORDS.get(name, name))
             for name, (colour, hatch) in looks.items() if name in used]

@@ -30,7 +30,7 @@ def not_served(rows):
 
 
 def share(rows):
-    """(cells that are ok and right, cells) of rows of one way and implementation."""
+    """(cells that are safe, cells) of rows of one way and implementation."""
     region = rows[rows.axis.notna()]
     return int(region.safe.astype(bool).sum()), len(region)
 

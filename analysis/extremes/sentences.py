@@ -17,14 +17,14 @@ def battery(table):
             counts = ", ".join(f"{count} {status}" for status, count in outcomes.items())
             nobody.append(f"{axis}, {value}: {counts}")
     good = (runs.status.isin(GOOD) & ~runs.silent).sum()
-    found.append(f"{good} of {len(runs)} runs are ok and right; {int(runs.silent.sum())} are ok and wrong.")
+    found.append(f"{good} of {len(runs)} runs are ok or plausible, and right; {int(runs.silent.sum())} are ok or plausible, and wrong.")
     for setting, rows in runs.groupby("setting", sort=False):
-        found.append(f"{setting}: ok and right in {(rows.status.isin(GOOD) & ~rows.silent).sum()} of {len(rows)}.")
+        found.append(f"{setting}: ok or plausible, and right, in {(rows.status.isin(GOOD) & ~rows.silent).sum()} of {len(rows)}.")
     return found, nobody
 
 
 def silent(rows):
-    """What is ok and wrong, a cell of battery.csv or ways.csv an entry: its runs, errors and first command."""
+    """What is ok or plausible and wrong, a cell of battery.csv or ways.csv an entry: its runs, errors and first command."""
     return [{"axis": axis, "value": value, "runs": len(group), "least": group.true_error.min(),
              "most": group.true_error.max(), "implementation": group.implementation.iloc[0],
              "command": group.command.iloc[0]}
