@@ -53,7 +53,7 @@ def draw(table):
     upright = table.groupby("setting").implementation.nunique().min() < NARROW
     below = (UPRIGHT if upright else 0.25) / (figure.get_figheight() * axes.get_position().height)
     axes.legend(handles=_legend(used), loc="upper center", bbox_to_anchor=(0.4, -below), ncols=5, fontsize=8.5,
-                title="number and shade: exponent of the true error, in lengths of a link; =0: no error at all", title_fontsize=8.5)
+                title="number and shade: exponent of the true error, in lengths of a link; ≤: no larger than that of the truth", title_fontsize=8.5)
     return figure
 
 
@@ -82,7 +82,8 @@ def _places(cells):
 
 def _draw_cell(axes, x, y, row):
     what = kind(row)
-    power = _power(row.true_error)
+    bound = row.true_error <= row.truth_error  # nothing is shown below what the truth itself is good for
+    power = _power(row.truth_error if bound else row.true_error)
     if what == "ok":
         colour, hatch = SHADES(0.08 + 0.6 * DIGITS(power)), ""
     else:
@@ -91,7 +92,7 @@ def _draw_cell(axes, x, y, row):
     axes.add_patch(Rectangle((x, y), 1, 1, facecolor=colour, hatch=hatch, linewidth=0.4,
                              edgecolor="#b5b5b5" if hatch or what == "not run" else "white"))
     if what in ("ok", "silent", "degraded"):
-        shown = "=0" if row.true_error == 0 else f"{power:d}".replace("-", "−")
+        shown = f"{'≤' * bound}{power:d}".replace("-", "−")
         axes.text(x + 0.5, y + 0.53, shown, ha="center", va="center", fontsize=6.5,
                   color="white" if what == "silent" else "black")
     return what

@@ -5,6 +5,8 @@ from analysis.accuracy.front import GOOD
 from analysis.extremes.numbers import FLOOR, INSTANTS, NEAR, growth, later, ran, with_speed
 from analysis.text import number
 
+SHORT = 1.0  # s of a motion of size or step: the first two singular positions are near 0.7 and 1.2 s
+
 
 def battery(table):
     """Where all are right, where none is, who fails where others do not."""
@@ -21,6 +23,23 @@ def battery(table):
     for setting, rows in runs.groupby("setting", sort=False):
         found.append(f"{setting}: ok or plausible, and right, in {(rows.status.isin(GOOD) & ~rows.silent).sum()} of {len(rows)}.")
     return found, nobody
+
+
+def left_out(table):
+    """What was not run and why, and the cells of extreme size and step whose motions are short."""
+    found = []
+    for reason, rows in table[table.status == "not run"].groupby("reason", sort=False):
+        cells = ", ".join(dict.fromkeys(rows.axis + " " + rows.value))
+        found.append(f"Not run in {cells}: {', '.join(dict.fromkeys(rows.implementation))} ({reason}).")
+    cells = table.dropna(subset=["steps", "step"]).drop_duplicates(["axis", "value"])
+    seconds = cells.steps * cells.step
+    short = cells[cells.axis.isin(["loops", "step"]) & (seconds < SHORT)]
+    if len(short):
+        told = "; ".join(f"{row.value}: {row.steps:.0f} steps of {row.step:g} s, {row.steps * row.step:.3g} s"
+                         for row in short.itertuples())
+        found.append(f"Motions last {seconds.mode().iloc[0]:g} s in most cells. Those of extreme size and step that are "
+                     f"shorter than {SHORT:g} s may miss what happens later: {told}.")
+    return found
 
 
 def silent(rows):

@@ -74,7 +74,7 @@ def _remark(axes, rows, cost, folder, way, groups, top):
     if not_served(rows):
         axes.text(groups[0][3], top + 1.5, fill(not_served(rows), 48), va="center", fontsize=8.5, color="#666666")
         return
-    times = dict(costs(cost, folder, way))
+    times = {loops: ratio for loops, ratio, *_ in costs(cost, folder, way)}
     axes.text(right, top + 1.5, "\n".join([f"{good} of {total} safe", *(
         f"N = {loops:g}: ×{times[loops]:.2f}" if loops in times else f"N = {loops:g}: lost"
         for loops in sorted(cost.loops.unique()))]), va="center", fontsize=8)
