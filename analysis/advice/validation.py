@@ -49,5 +49,6 @@ def draw(table, most):
         axes.xaxis.set_minor_locator(NullLocator())
         axes.set_xlabel("asked error E, m")
         axes.grid(True, axis="y")
-    left.legend(fontsize=8.5)
+    handles, _ = left.get_legend_handles_labels()
+    figure.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=len(handles), fontsize=8.5)
     return figure

@@ -9,14 +9,15 @@ from analysis.accuracy.front import GOOD
 from analysis.extremes.numbers import FORMS, ran
 from analysis.style import GREY
 
-SHADES, DIGITS = plt.get_cmap("Greens"), Normalize(-16, -2)  # of "ok", by the exponent of the true error
+SHADES, DIGITS = plt.get_cmap("Greens"), Normalize(-16, -2)  # of what is ok or plausible, by the exponent of the true error
 LOOKS = {  # (colour, hatch)
     "degraded": ("#F2C14E", ""), "not-converged": ("#E69F00", "////"), "wrong-branch": ("#CC79A7", ""),
     "diverged": ("#9a9a9a", ""), "timeout": ("#56B4E9", ""), "crashed": ("#5B3A9E", ""),
     "out-of-memory": ("#8C4A1F", ""), "refused": ("#e9edf3", "...."), "unsupported": ("#ffffff", "xxxx"),
     "not run": ("#ffffff", "")}
 OTHER = ("#ffffff", "++++")
-SILENT, UNJUDGED = "#D00000", "ok, not judged"
+SILENT, UNJUDGED = "#D00000", "ok or plausible, not judged"
+WORDS = {"ok": "ok or plausible", "silent": "silently wrong: ok or plausible beyond its class"}
 NARROW, UPRIGHT = 6, 2.3  # the name of a setting with fewer columns is upright and takes so many inches
 
 
@@ -52,7 +53,7 @@ def draw(table):
     upright = table.groupby("setting").implementation.nunique().min() < NARROW
     below = (UPRIGHT if upright else 0.25) / (figure.get_figheight() * axes.get_position().height)
     axes.legend(handles=_legend(used), loc="upper center", bbox_to_anchor=(0.4, -below), ncols=5, fontsize=8.5,
-                title="number and shade: exponent of the true error, in lengths of a link; =0: no error at all", title_fontsize=8.5)
+                title="number and shade: exponent of the true error, in lengths of a link; ≤: no larger than that of the truth", title_fontsize=8.5)
     return figure
 
 
@@ -81,7 +82,8 @@ def _places(cells):
 
 def _draw_cell(axes, x, y, row):
     what = kind(row)
-    power = _power(row.true_error)
+    bound = row.true_error <= row.truth_error  # nothing is shown below what the truth itself is good for
+    power = _power(row.truth_error if bound else row.true_error)
     if what == "ok":
         colour, hatch = SHADES(0.08 + 0.6 * DIGITS(power)), ""
     else:
@@ -90,7 +92,7 @@ def _draw_cell(axes, x, y, row):
     axes.add_patch(Rectangle((x, y), 1, 1, facecolor=colour, hatch=hatch, linewidth=0.4,
                              edgecolor="#b5b5b5" if hatch or what == "not run" else "white"))
     if what in ("ok", "silent", "degraded"):
-        shown = "=0" if row.true_error == 0 else f"{power:d}".replace("-", "−")
+        shown = f"{'≤' * bound}{power:d}".replace("-", "−")
         axes.text(x + 0.5, y + 0.53, shown, ha="center", va="center", fontsize=6.5,
                   color="white" if what == "silent" else "black")
     return what
@@ -118,5 +120,5 @@ def _legend(used):
     looks = {"silent": (SILENT, ""), "ok": (SHADES(0.4), ""), UNJUDGED: (SHADES(0.1), "////"), **LOOKS,
              "other failure": OTHER}
     return [Patch(facecolor=colour, hatch=hatch, edgecolor=GREY,
-                  label="silently wrong: ok beyond its class" if name == "silent" else name)
+                  label=WORDS.get(name, name))
             for name, (colour, hatch) in looks.items() if name in used]

@@ -30,13 +30,14 @@ def not_served(rows):
 
 
 def share(rows):
-    """(cells that are ok and right, cells) of rows of one way and implementation."""
+    """(cells that are safe, cells) of rows of one way and implementation."""
     region = rows[rows.axis.notna()]
     return int(region.safe.astype(bool).sum()), len(region)
 
 
 def costs(cost, folder, way):
-    """[(loops, time of a step over that of plain)]: median over the rounds, for each size that both finished."""
+    """[(loops, time of a step over that of plain, least, largest)]: median and range of the ratios within a round, for
+    each size that both finished. The rounds are too few for an interval."""
     found = []
     if cost.empty:
         return found
@@ -44,7 +45,7 @@ def costs(cost, folder, way):
     for loops, rows in own.groupby("loops"):
         pairs = rows[rows.way == way].set_index("round").step_us / rows[rows.way == PLAIN].set_index("round").step_us
         if pairs.notna().any():
-            found.append((int(loops), float(pairs.median())))
+            found.append((int(loops), *map(float, (pairs.median(), pairs.min(), pairs.max()))))
     return found
 
 

@@ -50,10 +50,10 @@ def render(tables, run, figures):
 def _battery(battery):
     said, nobody = sentences.battery(battery)
     return {"said": said, "nobody": nobody, "total": len(numbers.ran(battery)), "rows": len(battery),
-            "unlike": sentences.unlike(battery),
+            "left_out": sentences.left_out(battery), "unlike": sentences.unlike(battery),
             "counts": battery.groupby("setting", sort=False).status.value_counts().unstack(
                 fill_value=0).to_dict("index"),
-            "statuses": list(dict.fromkeys(["ok", "degraded", *sorted(battery.status.unique())])),
+            "statuses": list(dict.fromkeys([*GOOD, "degraded", *sorted(battery.status.unique())])),
             "silent": sentences.silent(battery),
             "unjudged": battery[battery.status.isin(GOOD) & battery.true_error.isna()].to_dict("records")}
 

@@ -5,6 +5,8 @@ from analysis.accuracy.front import GOOD
 from analysis.extremes.numbers import FLOOR, INSTANTS, NEAR, growth, later, ran, with_speed
 from analysis.text import number
 
+SHORT = 1.0  # s of a motion of size or step: the first two singular positions are near 0.7 and 1.2 s
+
 
 def battery(table):
     """Where all are right, where none is, who fails where others do not."""
@@ -17,14 +19,31 @@ def battery(table):
             counts = ", ".join(f"{count} {status}" for status, count in outcomes.items())
             nobody.append(f"{axis}, {value}: {counts}")
     good = (runs.status.isin(GOOD) & ~runs.silent).sum()
-    found.append(f"{good} of {len(runs)} runs are ok and right; {int(runs.silent.sum())} are ok and wrong.")
+    found.append(f"{good} of {len(runs)} runs are ok or plausible, and right; {int(runs.silent.sum())} are ok or plausible, and wrong.")
     for setting, rows in runs.groupby("setting", sort=False):
-        found.append(f"{setting}: ok and right in {(rows.status.isin(GOOD) & ~rows.silent).sum()} of {len(rows)}.")
+        found.append(f"{setting}: ok or plausible, and right, in {(rows.status.isin(GOOD) & ~rows.silent).sum()} of {len(rows)}.")
     return found, nobody
 
 
+def left_out(table):
+    """What was not run and why, and the cells of extreme size and step whose motions are short."""
+    found = []
+    for reason, rows in table[table.status == "not run"].groupby("reason", sort=False):
+        cells = ", ".join(dict.fromkeys(rows.axis + " " + rows.value))
+        found.append(f"Not run in {cells}: {', '.join(dict.fromkeys(rows.implementation))} ({reason}).")
+    cells = table.dropna(subset=["steps", "step"]).drop_duplicates(["axis", "value"])
+    seconds = cells.steps * cells.step
+    short = cells[cells.axis.isin(["loops", "step"]) & (seconds < SHORT)]
+    if len(short):
+        told = "; ".join(f"{row.value}: {row.steps:.0f} steps of {row.step:g} s, {row.steps * row.step:.3g} s"
+                         for row in short.itertuples())
+        found.append(f"Motions last {seconds.mode().iloc[0]:g} s in most cells. Those of extreme size and step that are "
+                     f"shorter than {SHORT:g} s may miss what happens later: {told}.")
+    return found
+
+
 def silent(rows):
-    """What is ok and wrong, a cell of battery.csv or ways.csv an entry: its runs, errors and first command."""
+    """What is ok or plausible and wrong, a cell of battery.csv or ways.csv an entry: its runs, errors and first command."""
     return [{"axis": axis, "value": value, "runs": len(group), "least": group.true_error.min(),
              "most": group.true_error.max(), "implementation": group.implementation.iloc[0],
              "command": group.command.iloc[0]}

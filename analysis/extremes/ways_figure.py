@@ -9,7 +9,7 @@ from analysis.extremes.numbers import NOT_SERVED, costs, folders, not_served, sh
 
 COLOURS = {"safe": "#009E73", "silent": SILENT, "degraded": "#F2C14E", "lost": "#c4c4c4",
            "unsupported": "#ffffff"}
-WORDS = {"safe": "ok", "silent": "silently wrong", "lost": "did not get through",
+WORDS = {"safe": "safe: ok or plausible, and right", "silent": "silently wrong", "lost": "did not get through",
          "unsupported": "not served or refused"}
 GAP, BLOCK = 2.0, 4.4  # between groups of columns; height of a way
 
@@ -74,8 +74,8 @@ def _remark(axes, rows, cost, folder, way, groups, top):
     if not_served(rows):
         axes.text(groups[0][3], top + 1.5, fill(not_served(rows), 48), va="center", fontsize=8.5, color="#666666")
         return
-    times = dict(costs(cost, folder, way))
-    axes.text(right, top + 1.5, "\n".join([f"{good} of {total} ok", *(
+    times = {loops: ratio for loops, ratio, *_ in costs(cost, folder, way)}
+    axes.text(right, top + 1.5, "\n".join([f"{good} of {total} safe", *(
         f"N = {loops:g}: ×{times[loops]:.2f}" if loops in times else f"N = {loops:g}: lost"
         for loops in sorted(cost.loops.unique()))]), va="center", fontsize=8)
 

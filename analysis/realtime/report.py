@@ -22,17 +22,22 @@ def write(folder):
 
 def render(steps, largest, run, figures):
     """The page; `figures`: {name: SVG in base 64}."""
-    guards = guard(steps)
-    large, small = (guards[(guards.variables >= JUDGED_FROM) == is_large] for is_large in (True, False))
+    guards, searched = guard(steps), guard(largest.rename(columns={"largest": "loops"}))
+    small = guards[guards.variables < JUDGED_FROM]
     return page.template(Path(__file__).parent / "realtime.html.j2").render(
         context=next(iter(run["contexts"].values())), figures=figures, inputs=run["inputs"],
         steps=steps.to_dict("records"), largest=largest.to_dict("records"),
         answers=[answer(row) for row in largest.itertuples()],
         late=steps[~steps.in_real_time.astype(bool)].to_dict("records"),
         repeats=run["inputs"]["repeats"], again=run["inputs"]["again"], pilot=run["inputs"]["pilot"],
-        guards=guards.to_dict("records"), worst=None if large.empty else large.share.max(),
-        smallest=None if small.empty else small.loc[small.share.idxmax()],
+        guards=guards.to_dict("records"), worst=[_worst(rows[rows.variables >= JUDGED_FROM]) for rows in (guards, searched)],
+        smallest=_worst(small),
         finished=FINISHED, allowed=GUARD, judged_from=JUDGED_FROM)
+
+
+def _worst(guards):
+    """The row of the largest share; None if there is no row."""
+    return None if guards.empty else guards.loc[guards.share.idxmax()]
 
 
 def guard(steps):
@@ -41,5 +46,5 @@ def guard(steps):
     rows = steps[steps.judge_us.notna() & steps.observed_mean_us.notna()].copy()
     rows["variables"] = 2 * rows.loops + 2
     rows["share"] = rows.judge_us / rows.observed_mean_us
-    return rows[["implementation", "scheme", "step", "variables", "judge_us", "observed_mean_us",
+    return rows[["implementation", "scheme", "step", "steps", "variables", "judge_us", "observed_mean_us",
                  "share"]]

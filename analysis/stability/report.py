@@ -31,11 +31,16 @@ def render(table, run, figures, long=None):
         part |= {"implementation": rows.implementation.iloc[0],
                  "counts": rows.status.value_counts().to_dict(), "valleys": valleys(rows),
                  "automatic": automatic(rows)}
+    missed = {}  # {precision: cells of its maps whose automatic penalty factor misses a valley}
+    for part in parts:
+        missed[part["precision"]] = missed.get(part["precision"], 0) + len(part["automatic"][0])
     scaled = table[table.penalty_asked != "auto"].alpha_dt2_4
     return page.template(Path(__file__).parent / "stability.html.j2").render(
         context=next(iter(run["contexts"].values())), inputs=run["inputs"], parts=parts,
         least=scaled.min(), most=scaled.max(),
         statuses=list(dict.fromkeys(["ok", "degraded", *sorted(table.status.unique())])),
+        missed=missed, whole=[] if long is None else [
+            (*key, list(rows.loops)) for key, rows in long.groupby(["scheme", "implementation"], sort=False)],
         long=[] if long is None else long.fillna({"must_hold": ""}).to_dict("records"),
         limit=ACCURATE, total=len(table), inaccurate=inaccurate(table).to_dict("records"))
 

@@ -54,5 +54,8 @@ def test_the_validation_names_what_did_not_hold():
     held, sentence = verdict(table, 1.5)
     assert not held and sentence.endswith("not so: four-bar:1 at 0.01 m, four-bar:2 at 0.001 m")
     figure = draw_validation(table, 1.5)
-    assert len(figure.axes) == 2
+    [legend] = figure.legends  # below the axes: on them it would lie on a line
+    assert len(figure.axes) == 2 and {"four-bar:1", "four-bar:2", "estimate"} == {text.get_text() for text in legend.get_texts()}
+    figure.canvas.draw()
+    assert legend.get_window_extent().y1 <= min(axes.get_tightbbox().y0 for axes in figure.axes)
     plt.close(figure)

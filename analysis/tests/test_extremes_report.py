@@ -18,6 +18,7 @@ def battery():
     return pandas.DataFrame([
         {"axis": axis, "value": status, "implementation": name, "setting": form, "status": status, "reason": "why",
          "true_error": 1e-5 if status in ("ok", "degraded") else float("nan"), "truth": "exact", "silent": False,
+         "truth_error": 2e-16, "steps": 24.0 if status == "ok" else 2000.0, "step": 1e-3,
          "command": f"run {axis} {status} {name} {form}"}
         for axis in ("loops", "step") for status in STATUSES for name in ("a/v", "b/v")
         for form in ("penalty", "saddle-point")])
@@ -75,19 +76,37 @@ def test_the_matrix_names_every_outcome_and_counts_what_is_silently_wrong():
     table = battery()
     figure = battery_figure.draw(table)
     named = {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
-    assert set(STATUSES) <= named and battery_figure.title(table) == "0 silent wrongs in 56 runs"
+    assert {"ok or plausible", *STATUSES[1:]} <= named and battery_figure.title(table) == "0 silent wrongs in 56 runs"
     table.loc[0, "silent"], table.loc[4, "status"], table.loc[1, "true_error"] = True, "strange", 0.0
     figure = battery_figure.draw(table)
     named = {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
-    assert {"silently wrong: ok beyond its class", "other failure"} <= named
+    assert {"silently wrong: ok or plausible beyond its class", "other failure"} <= named
     assert battery_figure.title(table) == "1 silent wrong in 56 runs"
-    assert [text.get_text() for text in figure.axes[0].texts].count("=0") == 1
     plt.close("all")
+
+
+def test_no_error_is_shown_below_that_of_the_truth():
+    table = battery()
+    table.loc[[0, 1, 2], "true_error"] = [0.0, 2e-16, 2.1e-16]
+    shown = [text.get_text() for text in battery_figure.draw(table).axes[0].texts]
+    assert (shown.count("≤−16"), shown.count("−16"), shown.count("−5")) == (2, 1, 13)
+    plt.close("all")
+
+
+def test_what_was_left_out_and_what_is_short_is_told():
+    table = battery()
+    table["reason"] = table.reason.mask(table.status == "not run", "dense implementations run up to 200 loops")
+    table = table[(table.status != "not run") | (table.axis == "loops") & (table.implementation == "a/v")]
+    assert sentences.left_out(table) == [
+        "Not run in loops not run: a/v (dense implementations run up to 200 loops).",
+        "Motions last 2 s in most cells. Those of extreme size and step that are shorter than 1 s may miss what happens "
+        "later: ok: 24 steps of 0.001 s, 0.024 s; ok: 24 steps of 0.001 s, 0.024 s."]
+    assert sentences.left_out(table[table.status == "degraded"]) == []
 
 
 def test_sentences_of_the_battery_find_where_nobody_is_ok():
     said, nobody = sentences.battery(battery())
-    assert said[0].startswith("8 of 56 runs are ok and right; 0") and len(nobody) == 14
+    assert said[0].startswith("8 of 56 runs are ok or plausible, and right; 0 are") and len(nobody) == 14
     table = battery()
     table.loc[(table.value == "diverged") & (table.implementation == "a/v"), "status"] = "ok"
     assert len(sentences.battery(table)[1]) == 12
@@ -95,7 +114,7 @@ def test_sentences_of_the_battery_find_where_nobody_is_ok():
 
 
 def test_costs_are_medians_of_ratios_within_a_round():
-    assert numbers.costs(cost(), "csc_klu", "saddle-point") == [(10, 2.0)]
+    assert numbers.costs(cost(), "csc_klu", "saddle-point") == [(10, 2.0, 2.0, 2.5)]
     assert numbers.costs(cost(), "csc_klu", "mixed precision") == []
     lost = cost()
     lost.loc[lost.way == "α auto", "status"] = "diverged"
@@ -159,6 +178,7 @@ def test_the_page_has_the_parts_that_were_run(tmp_path):
     write(tmp_path)
     page = (tmp_path / "extremes.html").read_text()
     assert "<code>run loops ok a/v penalty</code>" in page and "run w" in page
+    assert "N = 10: 2.00 (2.00 to 2.50)" in page
     assert "no variant serves mixed" in page and "Cholesky: the same bit for bit" in page
     assert {path.name for path in (tmp_path / "figures").glob("*.png")} == {
         "battery.png", "battery-settings.png", "ways.png", "pivots.png", "roundoff-penalty.png"}

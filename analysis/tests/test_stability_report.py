@@ -24,10 +24,10 @@ def windows():
                              for step in (1e-3, 2e-3)])
 
 
-def page(rows):
+def page(rows, long=None):
     context = {"compiler": "c", "commit": "0"}
     return render(rows, {"contexts": {"own": context}, "inputs": {"duration": 2.0}},
-                  {("penalty", "double"): "AAAA"})
+                  {("penalty", precision): "AAAA" for precision in dict.fromkeys(rows.precision)}, long)
 
 
 def test_the_map_names_every_outcome_that_occurs():
@@ -74,3 +74,21 @@ def test_where_the_automatic_penalty_factor_misses_a_valley_is_told_from_where_t
     assert "In no cell where another" in page(rows) and "In 1 where no α is ok either: N = 2 at 1 ms" in page(rows)
     rows.loc[rows.penalty_asked == "auto", "status"] = "ok"
     assert automatic(rows) == ([], []) and "no α is ok either" not in page(rows)
+
+
+def test_valleys_that_are_missed_are_a_limit_of_single_precision_if_double_misses_none():
+    single = table().assign(precision="single")
+    double = table().assign(status=lambda rows: rows.status.mask(rows.penalty_asked == "auto", "ok"))
+    text = page(pandas.concat([double, single]))
+    assert "in 1 cell (below" in text and "there is no such cell: it is a limit of single precision" in text
+    text = page(pandas.concat([table(), single]))
+    assert "there is 1 such" in text and "it is a limit" not in text
+    assert "it is a limit" not in page(single) and "neighbouring" not in page(table())
+
+
+def test_the_page_says_what_the_whole_runs_are_of():
+    long = pandas.DataFrame([{"scheme": scheme, "implementation": "one/a", "loops": loops, "status": "ok", "must_hold": "yes",
+                              "position_error_max": 1e-3, "passes_per_step": 2.0, "steps_at_limit": 0}
+                             for scheme, loops in (("penalty", 1), ("penalty", 40), ("rattle", 2))])
+    text = page(table(), long)
+    assert "everything automatic: penalty (one/a) N = 1, 40; rattle (one/a) N = 2. In" in text and "All do." in text

@@ -36,9 +36,17 @@ def run(study):
     singular = [{"loops": loops, "t": t} for loops in LOOPS
                 for t in singular_times(Chain(loops), DURATION)]
     return {"roundoff": pandas.DataFrame(rows), "singular": pandas.DataFrame(singular),
-            "roundoff_growth": pandas.concat(growth, ignore_index=True) if growth else
+            "roundoff_growth": _short(pandas.concat(growth, ignore_index=True)) if growth else
             pandas.DataFrame(columns=["loops", "scheme", "implementation", "t", "difference",
                                   "speed"])}
+
+
+def _short(table):
+    """Numbers with four significant digits: a line has a thousand of them."""
+    found = table.copy()
+    for column in ("t", "difference", "speed"):
+        found[column] = [float(f"{value:.4g}") for value in table[column]]
+    return found
 
 
 def differences(record, reference):

@@ -98,6 +98,11 @@ def test_what_is_ok_beyond_its_class_is_silently_wrong():
 
 def test_a_run_is_held_to_the_nearest_of_its_motions_and_to_no_bad_reference():
     flat = Flat(1, angle=numpy.pi / 2, rate=0.0)
+    ulp = 2.0**-52
+    for chain, least in ((flat, ulp), (Chain(1, rate=0.0), ulp), (Chain(1), 8 * ulp), (Chain(1, offset=1e6), 1e6 * ulp)):
+        own = battery.truth(Cell("x", "x", "", chain), {}, TIMES)[1]  # of closed forms, as they are evaluated
+        assert least <= own < 30 * least
+    assert battery.truth(Cell("x", "x", "", flat), {}, [])[1] == 0
     [_, second] = flat.solutions(TIMES)
     other = record("ok") | {"outputs": {"t": list(TIMES)} | {key: list(values) for key, values in second.items()}}
     assert tools.error_of(other, flat.solutions(TIMES), 1.0) == 0
@@ -136,6 +141,8 @@ def test_growth_is_taken_as_long_as_both_have_steps():
     theirs["outputs"] = {key: values[:5] for key, values in theirs["outputs"].items()}
     times, found = roundoff.differences(ours, theirs)
     assert len(times) == 5 and found == pytest.approx(numpy.full(5, 1e-3 * 2**0.5))
+    line = pandas.DataFrame({"loops": [40], "t": [19.98000001], "difference": [1.23456e-13], "speed": [float("nan")]})
+    assert roundoff._short(line).to_csv(index=False).splitlines()[1] == "40,19.98,1.235e-13,"
     assert roundoff._at([0.0, 1.0], [0.0, 2.0], 1.0) == 2 and roundoff._at([0.0], [0.0], 1.0) is None
 
 

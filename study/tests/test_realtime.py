@@ -116,3 +116,9 @@ def _told_what_judging_costs(steps, largest, run):
     assert "at most\n50 %, 0.2 µs a step beside 0.4 µs" in text and "judging takes longer" not in text
     text = render(steps.assign(judge_us=0.6, observed_mean_us=0.4), largest, run, figures)
     assert "150 %" in text and "n = 6): judging takes longer than such a step." in text
+    large = steps.assign(loops=40, judge_us=0.01, observed_mean_us=1.0, steps=20000)
+    short = largest.assign(largest=80, judge_us=0.12, observed_mean_us=1.0, steps=2000)
+    text = render(large, short, run, figures)
+    assert ("of 0.5 s, at most\n<span class=\"good\">1.00 % of a step</span> (csc_klu/refactor, penalty, "
+            "n = 82, 20000 steps)") in text
+    assert '<span class="bad">12.00 % of a step</span> (csc_klu/refactor, penalty, n = 162, 2000 steps)' in text
