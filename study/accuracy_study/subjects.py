@@ -19,7 +19,7 @@ from study.scene_study.references import CLOSED, EXTRAPOLATED, KNOWN, four_bar, 
 # s, from where nobody keeps 1e-1 m
 STEPS = tuple(8e-2 / 2**halvings for halvings in range(12))
 AROUND = (4, 2, 1, 0.5, 0.25)  # a scene's own first step times these
-JUDGED_S = 1e-2  # the error of a four-bar is evaluated at these times; at every step that is longer than half of it
+JUDGED_S = 1e-2  # the error of a four-bar is evaluated once in as much; at every step that is longer than half of it
 ULP = 2.0**-52
 REFERENCE_SECONDS = 300
 COLUMNS = ("subject", "title", "scene", "reference", "own_error", "unit", "own_error_from", "duration")
@@ -49,7 +49,7 @@ class Subject:
         return 0 if self.loops else _samples(self.duration, step)[0]
 
     def judging(self, step):
-        """A four-bar's errors are those at the same times for all steps below 5 ms."""
+        """A four-bar is judged as often in a run at all steps below 5 ms."""
         return ["--judge-every", max(1, int(JUDGED_S / step + 1e-3))] if self.loops else []
 
     def error(self, record):
