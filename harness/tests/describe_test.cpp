@@ -268,7 +268,7 @@ TEST(Warnings, TellOfPenaltyFactorsFarOutsideTheWindow) {
     EXPECT_NE(warnings[0].find(word), std::string::npos) << warnings[0];
   }
   // Automatic, at a step for which it is not made.
-  EXPECT_FALSE(describe_json(load_scene("four-bar:40"), 2e-2)["warnings"].empty());
+  EXPECT_FALSE(describe_json(load_scene("four-bar:40"), {.step = 2e-2})["warnings"].empty());
   EXPECT_TRUE(describe_json(load_scene("four-bar:40"), kSettings)["warnings"].empty());
 }
 

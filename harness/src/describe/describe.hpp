@@ -4,11 +4,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "mbs/simulation.hpp"
 #include "scene/scene.hpp"
 
 namespace mbs {
 
-/// The description for programs; `step` (s) is what the penalty window is for. Keys:
+/// The description for programs. Step and precision of `settings` are what the penalty window and
+/// the warnings are for. Keys:
 ///
 /// - scene, dimension, variables, constraints; free_points, free_vectors: those that own the
 ///   variables; fixed_points, fixed_vectors, driven_points, driven_vectors: those that the scene
@@ -25,7 +27,6 @@ namespace mbs {
 /// - warnings [text]: why the automatic penalty factor or the step is likely to be wrong;
 /// - artificial_fill {asked, natural, reached, seed} or null;
 /// - elements, see elements_json().
-/// Step and precision of `settings` count, for the last two but one.
 nlohmann::json describe_json(const Scene& scene, const StepSettings& settings);
 
 /// The same for people, several lines.

@@ -84,6 +84,13 @@ double least_width(const StepSettings& settings) {
   return settings.precision == Precision::single_precision ? kClosedInSingle : 1 / kFarAbove;
 }
 
+/// Whether the window is wider at shorter steps. The bound of the slowest mode in single precision
+/// recedes faster with longer steps than the nonlinearity comes.
+bool is_too_long(const PenaltyWindow& window, const StepSettings& settings) {
+  const bool single = settings.precision == Precision::single_precision;
+  return !window.cancellation && !(single && window.slowest_mode);
+}
+
 /// Where no penalty factor of the user's own is to blame: what to change instead.
 std::string step_warning(const PenaltyWindow& window, const StepSettings& settings, bool is_long) {
   const bool no_step = window.widest < least_width(settings);
@@ -112,14 +119,15 @@ std::string penalty_warning(const PenaltyWindow& window, const StepSettings& set
         settings.penalty, side, bound, what, settings.step);
   };
   if (window.upper < window.lower * least_width(settings)) {
-    return step_warning(window, settings, !window.cancellation);
+    return step_warning(window, settings, is_too_long(window, settings));
   }
   if (settings.penalty < window.lower / kFarBelow) {
     if (from == PenaltyFrom::rule) return step_warning(window, settings, false);
     return far("below", window.lower, "least that is sure to hold the constraints");
   }
   if (settings.penalty > window.upper * kFarAbove) {
-    if (from == PenaltyFrom::rule) return step_warning(window, settings, !window.cancellation);
+    if (from == PenaltyFrom::rule)
+      return step_warning(window, settings, is_too_long(window, settings));
     return far("above", window.upper, "most without loss of accuracy");
   }
   return "";
