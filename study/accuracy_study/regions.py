@@ -53,9 +53,10 @@ def _pilots(bench, subject, entries, steps):
         record = bench.run("pilots", subject, entries.contenders[variant],
                            entries.setting(variant, name), step, duration=PILOT_STEPS * step,
                            seconds=PILOT_SECONDS)
+        status, reason = runs.status(record)
         speeds[variant, name] = (
-            (1e-6 * record["summary"]["step_us"]["median"], "") if "summary" in record else
-            (numpy.inf, f"pruned: its pilot {runs.status(record)[1]}"))
+            (1e-6 * record["summary"]["step_us"]["median"], "") if status in FINISHED else
+            (numpy.inf, f"pruned: its pilot is {status}: {reason}"))
     return speeds
 
 

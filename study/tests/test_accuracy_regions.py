@@ -1,4 +1,6 @@
 # Which step meets a required error, error classes and rounds of study/accuracy, on the fake program.
+from types import SimpleNamespace
+
 import numpy
 import pandas
 import pytest
@@ -90,3 +92,20 @@ def test_the_largest_step_that_meets_an_error_is_borrowed_where_there_is_no_curv
     assert (found[1e-2].step, found[1e-2].implementation) == (6.67e-3, "good_sparse/only")
     assert (found[1e-3].step, found[1e-1].step) == (5e-3, 1e-2)
     assert list(largest.largest_steps(rows, admitted(refused))) == [("good_sparse/only", "default")]
+
+
+def test_who_does_not_serve_a_fill_is_pruned():
+    """Such a run has a summary without any step."""
+    class Filled:
+        def run(self, kind, subject, contender, *_, **__):
+            unserved = contender.variant == "good_sparse/only"
+            return {"summary": {"status": "unsupported" if unserved else "ok", "status_reason": "it is no chain",
+                                "step_us": {"median": 0.0 if unserved else 2.0}}}
+    entries = admitted(dense=("default",), spars=("default", "saddle"))
+    steps = {(name, setting.name): {1e-2: SimpleNamespace(step=1e-3)}
+             for name, settings in entries.settings.items() for setting in settings}
+    speeds = regions._pilots(Filled(), subjects.chain(2, 1.0, 1.0), entries, steps)
+    assert speeds["good_dense/first", "default"] == (2e-6, "")
+    for setting in ("default", "saddle"):
+        assert numpy.isinf(speeds["good_sparse/only", setting][0])
+    assert "unsupported: it is no chain" in speeds["good_sparse/only", "default"][1]
