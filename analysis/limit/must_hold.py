@@ -33,7 +33,7 @@ def own_folders(registry):
 
 def of_folder(rows, folder):
     """Rows of the variants of `folder`."""
-    return rows[rows.implementation.str.partition("/")[0] == folder]
+    return rows[rows.implementation.str.startswith(f"{folder}/", na=False)]
 
 
 def leads(rows, folder, mine, key):
