@@ -1,5 +1,4 @@
 # Does artificial fill leave the motion and its error as they are? The premise of regions.py, checked.
-
 from study.accuracy_study import subjects
 from study.pipeline import runs
 

@@ -3,7 +3,6 @@
 # Two checks of `mbs check`, "exact" and "convergence-order", do not compare with the reference but judge the
 # discretization: a loose tolerance fails them in the reference too. What that costs in accuracy is what this
 # study measures, so that a setting which fails these alone takes part.
-
 from study.pipeline import child, runs
 from study.pipeline.layout import read_json, write_json
 

@@ -52,7 +52,7 @@ def ask(options, folder=None):
     """(answer, Advice) of one question; its raw files and advice.json are kept."""
     from study.advise_study.advice import Question, advise as seek  # these need the modules
     from study.advise_study.answer import as_json
-    from study.advise_study.runner import REPEATS, Runner, describe, scene_name
+    from study.advise_study.runner import REPEATS, describe, scene_name
     from study.advise_study.settings import catalogue
     known = registry()
     names = select(known, options.only)
@@ -68,18 +68,24 @@ def ask(options, folder=None):
     writable(layout.results)
     with only_one(layout), only_one_measuring():
         start_named(layout, "advise", names, inputs)
-        run = read_run(layout)
-        contenders = from_json(run["contenders"])
-        variants = {variant["name"]: variant | {"library": entry.get("library")} for entry in known["implementations"]
-                    for variant in entry.get("variants", [])
-                    if variant["name"] in contenders and not contenders[variant["name"]].missing}
-        runner = Runner(layout, scene, contenders, run["contexts"], question.deadline_us)
+        variants, runner = runner_of(layout, scene, known, question.deadline_us)
         tell = Teller()
         advice = seek(question, catalogue(), described, variants, runner, tell)
         tell.end()
         answer = as_json(advice, runner, described, variants, layout)
         write_json(layout.results / "advice.json", answer)
     return answer, advice
+
+
+def runner_of(layout, scene, known, deadline_us=None):
+    """({name: what `mbs list --json` says of a variant that takes part, and its library}, Runner)"""
+    from study.advise_study.runner import Runner  # it needs the modules
+    run = read_run(layout)
+    contenders = from_json(run["contenders"])
+    variants = {variant["name"]: variant | {"library": entry.get("library")} for entry in known["implementations"]
+                for variant in entry.get("variants", [])
+                if variant["name"] in contenders and not contenders[variant["name"]].missing}
+    return variants, Runner(layout, scene, contenders, run["contexts"], deadline_us)
 
 
 def _parser():

@@ -6,11 +6,10 @@ import pandas
 
 from study.advise_study import timing
 from study.advise_study.advice import PROBE_FACTOR, probe
-from study.advise_study.main import DEFAULT, ask
-from study.advise_study.runner import EXACT, REPEATS, Runner
+from study.advise_study.main import DEFAULT, ask, runner_of
+from study.advise_study.runner import EXACT, REPEATS
 from study.advise_study.settings import catalogue, serving
-from study.pipeline.contenders import from_json
-from study.pipeline.layout import Layout, read_run, write_csv
+from study.pipeline.layout import Layout, write_csv
 from study.pipeline.prepare import only_one, only_one_measuring, registry, select, start_named, writable
 from study.pipeline.progress import Teller
 from study.pipeline.runs import FINISHED
@@ -34,7 +33,7 @@ def validate(options, loops=LOOPS, errors=ERRORS, duration=DURATION):
             layout = Layout(results / f"n{count}")
             writable(layout.results)
             start_named(layout, "advise", names, {"scene": scene, "duration": duration, "repeats": REPEATS})
-            variants, runner = _runner(layout, scene, known)
+            variants, runner = runner_of(layout, scene, known)
             with only_one_measuring():
                 found, speeds = search(runner, variants, duration, errors, scene)
             searched += [{"scene": scene} | row for row in found]
@@ -50,15 +49,6 @@ def validate(options, loops=LOOPS, errors=ERRORS, duration=DURATION):
     held, sentence = verdict(table, MOST)
     print(f"{sentence}\ntable: {results / 'validation.csv'}\nfigure: {results / 'validation.svg'}")
     return 0 if held else 1
-
-
-def _runner(layout, scene, known):
-    run = read_run(layout)
-    contenders = from_json(run["contenders"])
-    variants = {variant["name"]: variant for entry in known["implementations"]
-                for variant in entry.get("variants", [])
-                if variant["name"] in contenders and not contenders[variant["name"]].missing}
-    return variants, Runner(layout, scene, contenders, run["contexts"])
 
 
 def search(run, variants, duration, errors, scene):

@@ -29,8 +29,7 @@ def rows(layout, contenders, mine, scene, rounds, seconds, tell):
         if reason.startswith("unsupported"):
             continue
         if reason:
-            status = "unsupported" if reason.startswith("unsupported") else "failed"
-            lost.append({"implementation": one.name, "status": status, "reason": reason})
+            lost.append({"implementation": one.name, "status": "failed", "reason": reason})
         else:
             pilots[one.name] = found
     best = min((row["step_us"] for name, row in pilots.items() if name not in mine), default=0.0)

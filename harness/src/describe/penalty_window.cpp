@@ -22,6 +22,14 @@ constexpr double kCancellation = 0.4;  // u l_r sqrt(beta s_mean) <= this times 
 constexpr double kOnePass = 2e-7;      // beta s_min (omega dt)^4 >= this
 constexpr double kRoundedMass = 1e-2;  // u beta s_mean <= this
 
+struct Bounds {
+  double slowest, singular;  // of beta from below
+  double newton, rounding;   // and from above
+
+  [[nodiscard]] double lower() const { return std::max(slowest, singular); }
+  [[nodiscard]] double upper() const { return std::min(newton, rounding); }
+};
+
 }  // namespace
 
 PenaltyWindow penalty_window(const Model& model, const Structure& structure,
@@ -38,26 +46,31 @@ PenaltyWindow penalty_window(const Model& model, const Structure& structure,
   if (!structure.singular.value_or(true)) {
     smallest = smallest_constraint_eigenvalue(model, model.initial_position());
   }
-  const double for_slowest =
-      single ? kOnePass / (smallest * std::pow(turn, 4)) : kSlowestMode / (smallest * turn);
-  const double for_singular = kSingular / (row * turn);
-  const double for_newton = kNonlinear / (row * std::pow(turn, 3));
   const double mean = mean_constraint_eigenvalue(model);
   const double noise = std::numeric_limits<double>::epsilon() / 2 * rounding_length(model);
-  const double for_rounding =
-      single ? kRoundedMass / (std::numeric_limits<float>::epsilon() / 2 * mean)
-             : std::pow(kCancellation * fastest.length * std::pow(turn, 4) / noise, 2) / mean;
-  // At the turn a step where both upper bounds meet: they go as its powers -3 and 8 (in single
-  // precision 0), the lower one as -1 (the slowest mode in single precision as -4).
-  double longer = std::pow(for_newton / for_rounding, single ? 1.0 / 3 : 1.0 / 11);
-  if (single) longer = std::max(longer, std::cbrt(for_slowest / for_singular));
-  window.widest = for_newton * std::pow(longer, -3) /
-                  std::max(for_slowest * std::pow(longer, single ? -4 : -1), for_singular / longer);
-  window.slowest_mode = for_slowest > for_singular;
-  window.cancellation = for_rounding < for_newton;
+  const auto bounds_at = [&](double turned) {
+    return Bounds{
+        .slowest = single ? kOnePass / (smallest * std::pow(turned, 4))
+                          : kSlowestMode / (smallest * turned),
+        .singular = kSingular / (row * turned),
+        .newton = kNonlinear / (row * std::pow(turned, 3)),
+        .rounding =
+            single
+                ? kRoundedMass / (std::numeric_limits<float>::epsilon() / 2 * mean)
+                : std::pow(kCancellation * fastest.length * std::pow(turned, 4) / noise, 2) / mean};
+  };
+  const Bounds bounds = bounds_at(turn);
+  // At the turn a step where both upper bounds meet; in single precision, where the slowest mode's
+  // bound falls faster than they do, at that where it meets the other lower one, if that is longer.
+  double longer = std::pow(bounds.newton / bounds.rounding, single ? 1.0 / 3 : 1.0 / 11);
+  if (single) longer = std::max(longer, std::cbrt(bounds.slowest / bounds.singular));
+  const Bounds widest = bounds_at(turn * longer);
+  window.widest = widest.upper() / widest.lower();
+  window.slowest_mode = bounds.slowest > bounds.singular;
+  window.cancellation = bounds.rounding < bounds.newton;
   const double per_beta = 4.0 / (step * step);
-  window.lower = per_beta * std::max(for_slowest, for_singular);
-  window.upper = per_beta * std::min(for_newton, for_rounding);
+  window.lower = per_beta * bounds.lower();
+  window.upper = per_beta * bounds.upper();
   window.automatic = automatic_penalty(model, {.step = step, .precision = settings.precision});
   return window;
 }

@@ -75,10 +75,6 @@ class SpringDiagonal {
   std::vector<double> stiffness, damping;  // N/m, N s/m
 };
 
-}  // namespace
-
-namespace {
-
 /// upper / lower of a window that is worth a warning when it is no wider.
 double least_width(const StepSettings& settings) {
   return settings.precision == Precision::single_precision ? kClosedInSingle : 1 / kFarAbove;
