@@ -1,0 +1,198 @@
+// Warnings about settings, and the window of the penalty factor, against what was measured.
+#include "describe/warnings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "describe/describe.hpp"
+#include "describe/penalty_window.hpp"
+#include "describe/structure.hpp"
+#include "run/settings.hpp"
+#include "support/sample_models.hpp"
+
+namespace mbs {
+namespace {
+
+TEST(Warnings, TellOfPenaltyFactorsFarOutsideTheWindow) {
+  const Model model(four_bar(3));
+  StepSettings settings;
+  EXPECT_TRUE(setting_warnings(model, settings, PenaltyFrom::user).empty());
+  for (const auto& [penalty, word] : {std::pair{1e-300, "far below"}, {1e16, "far above"}}) {
+    settings.penalty = penalty;
+    const auto warnings = setting_warnings(model, settings, PenaltyFrom::user);
+    ASSERT_EQ(warnings.size(), 1u) << penalty;
+    EXPECT_NE(warnings[0].find(word), std::string::npos) << warnings[0];
+  }
+  // Automatic, at a step for which it is not made.
+  EXPECT_FALSE(describe_json(load_scene("four-bar:40"), {.step = 2e-2})["warnings"].empty());
+  EXPECT_TRUE(describe_json(load_scene("four-bar:40"), {})["warnings"].empty());
+}
+
+TEST(Warnings, NeverBlameThePenaltyFactorOfTheRule) {
+  const Model model(four_bar(10));
+  const struct {
+    double step;
+    Precision precision;
+    std::string words;
+  } cases[] = {
+      {1e-2, Precision::double_precision, "0.01 s is too long"},
+      {5e-2, Precision::double_precision, "or a shorter step"},
+      {1e-6, Precision::double_precision, "1e-06 s is too short"},
+      {1e-6, Precision::double_precision, "saddle-point, or a longer step"},
+      {1e-6, Precision::single_precision, "saddle-point, --precision double, or a longer step"},
+  };
+  for (const auto& [step, precision, words] : cases) {
+    StepSettings settings{.step = step};
+    settings.precision = precision;
+    settings.penalty = automatic_penalty(model, settings);
+    const auto warnings = setting_warnings(model, settings, PenaltyFrom::rule);
+    ASSERT_EQ(warnings.size(), 1u) << step;
+    EXPECT_NE(warnings[0].find(words), std::string::npos) << warnings[0];
+    EXPECT_EQ(warnings[0].find("penalty factor"), std::string::npos) << warnings[0];
+  }
+}
+
+TEST(Warnings, SendToNoOtherStepWhereNoneSuits) {
+  for (const double step : {1e-2, 1.25e-3, 1e-4}) {
+    const Model model(four_bar(4000));
+    StepSettings settings{.step = step};
+    settings.penalty = automatic_penalty(model, settings);
+    const auto warnings = setting_warnings(model, settings, PenaltyFrom::rule);
+    ASSERT_EQ(warnings.size(), 1u) << step;
+    EXPECT_TRUE(warnings[0].starts_with("no step suits")) << warnings[0];
+  }
+}
+
+TEST(Warnings, SayWhereNoPenaltyFactorSuits) {
+  const Model model(four_bar(1000));
+  StepSettings settings;
+  settings.step = 1e-5;
+  settings.penalty = 1e14;
+  const auto warnings = setting_warnings(model, settings, PenaltyFrom::user);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("--scheme saddle-point"), std::string::npos) << warnings[0];
+  settings.scheme = Scheme::saddle_point;
+  EXPECT_TRUE(setting_warnings(model, settings, PenaltyFrom::user).empty());
+}
+
+TEST(Warnings, TellOfALooseTolerance) {
+  const Model model = load_scene("four-bar:2").model;
+  StepSettings settings;
+  settings.penalty = automatic_penalty(model, settings);
+  const double automatic = automatic_tolerance(model, settings);
+  settings.tolerance = 0.9 * kLoosest * automatic;
+  EXPECT_EQ(tolerance_warning(model, settings), "");
+  settings.tolerance = 1.1 * kLoosest * automatic;
+  EXPECT_NE(tolerance_warning(model, settings).find("tolerance"), std::string::npos);
+}
+
+TEST(Warnings, TellOfSingularStarts) {
+  const auto warnings = [](const char* text) {
+    StepSettings settings;
+    const Model model(parse_scene(text, "test.json").model);
+    settings.penalty = automatic_penalty(model, settings);
+    std::string all;
+    for (const std::string& warning : setting_warnings(model, settings, PenaltyFrom::rule)) {
+      all += warning + "\n";
+    }
+    return all;
+  };
+  EXPECT_NE(warnings(R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "B", "position": [1, 0]}, {"name": "C", "position": [2, 0]},
+      {"name": "D", "position": [3, 0], "fixed": true}],
+    "rods": [{"between": ["A", "B"], "mass": 1}, {"name": "last", "between": ["B", "C"], "mass": 1},
+             {"between": ["C", "D"], "mass": 1}]})")
+                .find("singular position"),
+            std::string::npos);
+  EXPECT_EQ(warnings(R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "B", "position": [1, 0]}], "rods": [{"between": ["A", "B"], "mass": 1}]})"),
+            "");
+}
+
+/// 1 kg on a spring of 1e4 N/m along x, `damping` in N s/m.
+Model oscillator(double damping) {
+  ModelData data;
+  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1, 0, 0}}};
+  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
+  data.force = data.initial_velocity = {0.0, 0.0};
+  data.springs.push_back({0, 1, 1e4, damping, 1.0, "spring"});
+  return Model(std::move(data));
+}
+
+TEST(Warnings, TellOfStepsTooLongForSprings) {
+  EXPECT_NEAR(shortest_period(oscillator(0.0)), 2 * std::numbers::pi / 100, 1e-15);
+  EXPECT_EQ(period_warning(oscillator(0.0), 6e-3), "");
+  EXPECT_NE(period_warning(oscillator(0.0), 7e-3).find("shortest period"), std::string::npos);
+  EXPECT_EQ(period_warning(oscillator(200.1), 7e-3), "");  // creeps back
+  EXPECT_EQ(period_warning(Model(four_bar(2)), 1.0), "");
+  ModelData data;  // a rod of 2 m, 3 kg at its end, on 12 N m/rad
+  data.points = {{"A", -1, {0, 0, 0}}, {"X", -1, {1, 0, 0}}, {"B", 0, {0, 2, 0}}};
+  data.mass = {{0, 0, 3.0}, {1, 1, 3.0}};
+  data.force = data.initial_velocity = {0.0, 0.0};
+  data.torsion_springs.push_back({1, 0, 2, 0, -1, 12.0, 0.0, 1.5, "torsion"});
+  EXPECT_NEAR(shortest_period(Model(std::move(data))), 2 * std::numbers::pi, 1e-14);
+}
+
+// The window against what was measured over 5 s: harness/README.md.
+TEST(PenaltyWindow, IsWhereRunsAreGood) {
+  const struct {
+    int loops;
+    double step, good_from, good_to;  // alpha dt^2/4 with an error of at most twice the best
+  } cases[] = {{2, 5e-3, 3, 560},       {2, 1.25e-3, 100, 3e4},   {10, 5e-3, 10, 560},
+               {10, 1.25e-3, 100, 3e4}, {40, 2.5e-3, 100, 2e3},   {40, 1.25e-3, 300, 3e4},
+               {40, 6.25e-4, 1e3, 1e5}, {10, 6.25e-4, 300, 1.5e5}};
+  for (const auto& [loops, step, good_from, good_to] : cases) {
+    const Model model(four_bar(loops));
+    const PenaltyWindow window = penalty_window(model, find_structure(model), {.step = step});
+    const double per_beta = 4.0 / (step * step);
+    EXPECT_LE(window.lower, window.upper) << loops << ", " << step;
+    for (const auto& [bound, measured] :
+         {std::pair(window.lower, good_from), std::pair(window.upper, good_to)}) {
+      EXPECT_LT(std::abs(std::log10(bound / (per_beta * measured))), std::log10(12.0))
+          << loops << ", " << step << ": " << bound / per_beta << " against " << measured;
+    }
+  }
+}
+
+// In single precision, against results/stability: what of beta (decades) is ok, where any is.
+TEST(PenaltyWindow, OfSinglePrecisionIsWhereRunsAreGood) {
+  const struct {
+    int loops;
+    double step, good_from, good_to;
+  } cases[] = {{1, 1.25e-3, 1e2, 1e4}, {1, 6.25e-4, 1e3, 1e4}, {10, 1.25e-3, 1e3, 1e4},
+               {10, 2.5e-3, 1e2, 1e4}, {20, 2.5e-3, 1e2, 1e4}, {20, 1.25e-3, 3e3, 1e4}};
+  for (const auto& [loops, step, good_from, good_to] : cases) {
+    const Model model(four_bar(loops));
+    const PenaltyWindow window = penalty_window(
+        model, find_structure(model), {.step = step, .precision = Precision::single_precision});
+    const double per_beta = 4.0 / (step * step);
+    EXPECT_GT(window.upper, kClosedInSingle * window.lower) << loops << ", " << step;
+    EXPECT_LT(std::abs(std::log10(window.lower / (per_beta * good_from))), 1.0)
+        << loops << ", " << step << ": " << window.lower / per_beta;
+    EXPECT_LT(std::abs(std::log10(window.upper / (per_beta * good_to))), 1.0)
+        << loops << ", " << step << ": " << window.upper / per_beta;
+  }
+  for (const auto& [loops, step] : {std::pair(10, 3.125e-4), std::pair(5, 3.125e-4),
+                                    std::pair(20, 6.25e-4), std::pair(200, 1.25e-3)}) {
+    const Model model(four_bar(loops));
+    const StepSettings settings{.step = step, .precision = Precision::single_precision};
+    const PenaltyWindow window = penalty_window(model, find_structure(model), settings);
+    EXPECT_LT(window.upper, kClosedInSingle * window.lower) << loops << ", " << step;
+    const std::string warning = penalty_warning(window, settings, PenaltyFrom::rule);
+    EXPECT_NE(warning.find("saddle-point, --precision double"), std::string::npos) << warning;
+  }
+}
+
+TEST(PenaltyWindow, IsEmptyWhereNoPenaltyWorks) {
+  const Model model(four_bar(1000));
+  const PenaltyWindow window = penalty_window(model, find_structure(model), {.step = 1e-4});
+  EXPECT_GT(window.lower, window.upper);
+  EXPECT_TRUE(window.cancellation);
+  EXPECT_TRUE(window.slowest_mode);
+}
+
+}  // namespace
+}  // namespace mbs
