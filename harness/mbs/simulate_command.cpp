@@ -145,8 +145,8 @@ void add_simulate_command(CLI::App& app, int& status) {
       ->capture_default_str();
   command->add_option(
       "--judge-every", options->judge_every,
-      "judge the state after every K-th step and the last, K >= 1 (default: 128, fewer "
-      "in runs below 8192 steps)");
+      "judge the state after every K-th step and the last, K >= 1 (default: 64, fewer "
+      "in runs below 2048 steps)");
   command->add_flag("--half-step", options->half_step,
                     "also simulate with half the step, and estimate the error by the difference");
   command->add_flag("--scale-equations", options->scale_equations,

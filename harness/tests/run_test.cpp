@@ -121,15 +121,15 @@ TEST(Run, FindsTheFirstLostStepHoweverSeldomItJudges) {
   }
 }
 
-TEST(Run, JudgesOneStepIn128OrSixtyFourTimes) {
+TEST(Run, JudgesOneStepIn64OrThirtyTwoTimes) {
   RunSettings settings;
   settings.step.step = 1e-3;
   const auto interval = [&](double duration) {
     settings.duration = duration;
     return judge_interval(settings);
   };
-  EXPECT_EQ(interval(20.0), 128);
-  EXPECT_EQ(interval(6.4), 100);
+  EXPECT_EQ(interval(20.0), 64);
+  EXPECT_EQ(interval(1.6), 50);
   EXPECT_EQ(interval(0.01), 1);
   settings.judge_every = 7;
   EXPECT_EQ(interval(20.0), 7);

@@ -35,11 +35,18 @@ class FourBarExact {
   [[nodiscard]] double first_singular_time() const;
 
  private:
+  struct Theta {
+    long double first = 0, second = 0, third = 1, fourth = 1;
+  };
+  [[nodiscard]] Theta theta(long double z) const;
+
   int loops_;
   long double k_;        // Eq. (9), 1/s^2
   long double w_;        // Eq. (10), 1/s
   long double modulus_;  // sqrt(mu)
   long double quarter_;  // K(mu)
+  long double nome_;     // exp(-pi K(1 - mu) / K(mu))
+  Theta at_zero_;
 };
 
 }  // namespace mbs

@@ -302,11 +302,14 @@ void mass_times(const Model& model, Coordinates x, std::span<double> y) {
 }
 
 double kinetic_energy(const Model& model, Coordinates v) {
-  std::vector<double> momentum(v.size());
-  mass_times(model, v, momentum);
-  double doubled = 0.0;
-  for (std::size_t i = 0; i < v.size(); ++i) doubled += v[i] * momentum[i];
-  return doubled / 2;
+  require_size(v.size(), model.variables(), "v");
+  double result = 0.0;
+  for (const MassEntry& entry : model.mass()) {
+    const double term = entry.value * v[static_cast<std::size_t>(entry.row)] *
+                        v[static_cast<std::size_t>(entry.col)];
+    result += entry.row == entry.col ? term / 2 : term;
+  }
+  return result;
 }
 
 double potential_energy(const Model& model, double t, Coordinates q) {

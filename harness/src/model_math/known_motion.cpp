@@ -1,6 +1,8 @@
 // Samples the drivers.
 #include "model_math/known_motion.hpp"
 
+#include <algorithm>
+
 namespace mbs {
 
 KnownMotion::KnownMotion(const Model& model, double t)
@@ -12,10 +14,12 @@ KnownMotion::KnownMotion(const Model& model, double t)
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     driven_[static_cast<std::size_t>(model.driven_points()[i].point)] = static_cast<int>(i);
   }
-  values_.reserve(static_cast<std::size_t>(model.constraints()));
-  for (const auto& constraint : model.dot_constraints()) values_.push_back({constraint.value});
-  for (const auto& constraint : model.bilinear_constraints()) values_.push_back({constraint.value});
-  for (const auto& constraint : model.linear_constraints()) values_.push_back({constraint.value});
+  values_.resize(static_cast<std::size_t>(model.constraints()));
+  auto place = values_.begin();
+  const auto add = [&place](const auto& constraint) { (place++)->value = constraint.value; };
+  std::ranges::for_each(model.dot_constraints(), add);
+  std::ranges::for_each(model.bilinear_constraints(), add);
+  std::ranges::for_each(model.linear_constraints(), add);
   set_time(t);
 }
 

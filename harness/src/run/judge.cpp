@@ -117,9 +117,10 @@ std::string Judge::judge(double t, const State& state) {
       spoil();
       return "the state is too large to be judged";
     }
-    violation_ = std::max(violation_, std::abs(phi_[k]));
-    if (std::abs(phi_[k]) / phi_scale_[k] > relative) {
-      relative = std::abs(phi_[k]) / phi_scale_[k];
+    const double size = std::abs(phi_[k]);
+    violation_ = std::max(violation_, size);
+    if (size > relative * phi_scale_[k]) {
+      relative = size / phi_scale_[k];
       worst = k;
     }
   }

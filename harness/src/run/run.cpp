@@ -109,7 +109,7 @@ long count_steps(const RunSettings& settings) {
 
 long judge_interval(const RunSettings& settings) {
   if (settings.judge_every) return *settings.judge_every;
-  return std::clamp(count_steps(settings) / 64, 1L, 128L);
+  return std::clamp(count_steps(settings) / 32, 1L, 64L);
 }
 
 void require_duration(const Scene& scene, const RunSettings& settings) {

@@ -80,8 +80,8 @@ using Observer = std::function<void(long step, double t, const State& state)>;
 /// Number of steps that `duration` takes. Throws UsageError if settings are out of range.
 long count_steps(const RunSettings& settings);
 
-/// RunSettings::judge_every, or, if it has none, 128 steps, which keeps judging a small share of
-/// even the fastest steps, but fewer where the run would not be judged 64 times. 1 or more.
+/// RunSettings::judge_every, or, if it has none, 64 steps, which keeps judging a small share of
+/// even the fastest steps, but fewer where the run would not be judged 32 times. 1 or more.
 long judge_interval(const RunSettings& settings);
 
 /// Throws UsageError, like run(), if settings are out of range or do not fit the scene's drivers:
