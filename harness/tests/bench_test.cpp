@@ -265,7 +265,7 @@ TEST(BenchPlan, KeepsAwayFromAPositionThatCannotBeCrossed) {
   EXPECT_GT(stretch.steps, 100);
   EXPECT_GE(stretch.start, 0.0);
   EXPECT_LE(stretch.start, 1.25e-3);
-  EXPECT_NEAR(stretch.start + stretch.steps * 1.25e-3, singular - 0.2, 1e-12);
+  EXPECT_NEAR(stretch.start + stretch.steps * 1.25e-3, singular - kClearance, 1e-12);
 }
 
 TEST(BenchPlan, LongStretchesStartAtZero) {

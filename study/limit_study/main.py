@@ -38,8 +38,9 @@ def limit(arguments):
                         "step up to N = 40 with Valgrind, in a build of their own")
     parser.add_argument("--rounds", type=loops, default=5, metavar="R",
                         help="processes a cell, in turn over all implementations (5)")
-    parser.add_argument("--time-limit", type=positive, default=60.0, metavar="S",
-                        help="for one process (60 s); what takes longer is kept as a timeout")
+    parser.add_argument("--time-limit", type=positive, default=20.0, metavar="S",
+                        help="for one timed process (20 s); what takes longer is kept as a timeout, "
+                        "and not tried at larger sizes")
     add_results(parser, "limit")
     options = parser.parse_args(arguments)
     return carry_out(layout_of(options, "limit", "implementations.json"), options, "limit", _run)

@@ -9,6 +9,7 @@ from study.pipeline.layout import read_json, write_json
 
 LIMIT = Contender("limit/limit", "limit/limit")
 MEMORY_MB = 4096
+GATE_S = 60
 PHASES = ("evaluation", "assembly", "factorization", "solve", "projection", "other")
 
 
@@ -32,7 +33,7 @@ def cell(layout, contenders, scene, folder, rounds, seconds, tell):
     rows, timed = [], []
     for one in contenders:
         tell(f"gate of {one.name}")
-        reason = _objection(layout, one, scene, folder, seconds)
+        reason = _objection(layout, one, scene, folder)
         rows.append({"scene": scene, "implementation": one.name,
                      "status": "disagrees" if reason else "ok", "reason": reason})
         timed.append(not reason)
@@ -81,14 +82,14 @@ def _kept(layout, name, command, seconds):
     return record
 
 
-def _objection(layout, one, scene, folder, seconds):
+def _objection(layout, one, scene, folder):
     """Why the gate rejects it; empty if it does not."""
     path = layout.results / "raw" / folder / f"{one.file_name}-gate.json"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
         ended = child.run(one.call("check", scene, "--implementation", one.variant,
-                                   "--time-limit", f"{seconds:g}", "--json", str(path)),
-                          2 * seconds + 60, MEMORY_MB)
+                                   "--time-limit", str(GATE_S), "--json", str(path)),
+                          3 * GATE_S, MEMORY_MB)
         if not path.exists():
             write_json(path, {"rows": [{"verdict": ended.status, "reason": ended.reason}]})
     row = read_json(path)["rows"][0]

@@ -18,7 +18,7 @@ namespace mbs {
 namespace {
 
 constexpr int kRetired = 0, kSpoiled = 2;  // lanes
-constexpr int kSteps = 200, kRetiredAt = 50;
+constexpr std::size_t kSteps = 200, kRetiredAt = 10;
 
 /// A batch at its start; one lane is so fast that its numbers overflow.
 std::unique_ptr<BatchSimulation> start_batch(const Variant& variant, const VariedLanes& lanes) {
@@ -50,13 +50,15 @@ void add_lock_steps(LockStep& check, const Variant& variant, const VariedLanes& 
 
 /// What running batches beside simulations alone has found so far.
 struct Running {
-  Check check{"batch-running", 0.0, 0.0, true, ""};
+  FreeRunningTolerance allowed;
+  std::size_t most_steps;  // of a batch
+  Check check{"batch-running", 0.0, allowed.q, true, ""};
   long passes = 0, expected_passes = 0;
   long steps = 0;
 };
 
 /// Compares lane k after step `step`, which `outcome` is of; false: it differs.
-bool compare(Running& running, const VariedLanes& lanes, int k, int step,
+bool compare(Running& running, const VariedLanes& lanes, int k, std::size_t step,
              const StepOutcome& outcome, const State& state, const State& expected) {
   const std::string lane = fmt::format("lane {} of {}", k + 1, lanes.count());
   if (outcome.status == StepStatus::factorization_failed) {
@@ -83,7 +85,7 @@ void run_beside(Running& running, const Variant& variant, const VariedLanes& lan
   }
   std::vector<StepOutcome> outcomes(lanes.models.size());
   State state, expected;
-  for (int step = 1; step <= kSteps && processor_seconds() < end; ++step) {
+  for (std::size_t step = 1; step <= running.most_steps && processor_seconds() < end; ++step) {
     if (step == kRetiredAt) batch->retire(kRetired);
     batch->step(outcomes);
     for (int k = 0; k < lanes.count(); ++k) {
@@ -103,8 +105,8 @@ void run_beside(Running& running, const Variant& variant, const VariedLanes& lan
 Check conclude(Running running) {
   if (!*running.check.passed) return running.check;
   const double differ = std::abs(static_cast<double>(running.passes - running.expected_passes));
-  // As in the check `passes`: where max |Delta q| comes to lie at the tolerance, rounding decides.
-  const double allowed = std::floor(0.005 * static_cast<double>(running.expected_passes));
+  const double allowed =
+      std::floor(running.allowed.passes * static_cast<double>(running.expected_passes));
   running.check.detail = fmt::format("m; {} steps of 3 and 11 lanes", running.steps);
   if (running.steps == 0) {
     running.check.passed = false;
@@ -123,8 +125,8 @@ std::vector<Check> batch_checks(const Variant& variant, const Model& model,
                                 const StepSettings& settings, const ReferenceRun& reference,
                                 double seconds) {
   LockStep lock_step("batch");
-  Running running;
-  running.check.tolerance = free_running_tolerance(settings.precision);
+  Running running{free_running_tolerance(reference.probes.back(), settings),
+                  std::min(kSteps, reference.positions.size())};
   const double begin = processor_seconds();
   int part = 0;
   try {

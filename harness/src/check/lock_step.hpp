@@ -18,11 +18,18 @@ struct LockStepTolerance {
 };
 LockStepTolerance lock_step_tolerance(const Probe& probe, const StepSettings& settings);
 
-/// What q (m) may differ by after every step of a free-running motion. In double precision far
-/// above what rounding grows to, far below the method's own error of about 1e-6 m and more. Single
+/// What a free-running motion may differ by.
+struct FreeRunningTolerance {
+  double q;          ///< m, after every step
+  double passes;     ///< share of all of them
+  bool multipliers;  ///< whether they can be judged
+};
+/// In double precision q is far above what rounding grows to and far below the method's own error,
+/// of about 1e-6 m and more. Where rounding may move q by more than a tenth of that in one step, it
+/// also decides on many a pass, and one pass more changes lambda by as much as it moves. Single
 /// precision has no solution to agree on beyond its own digits: here it must only follow the same
 /// motion.
-double free_running_tolerance(Precision precision);
+FreeRunningTolerance free_running_tolerance(const Probe& probe, const StepSettings& settings);
 
 /// Gathers comparisons into one check: the worst difference in units of its tolerance.
 class LockStep {

@@ -21,7 +21,7 @@ struct Stretch {
 inline constexpr int kMostLoopsToCross = 300;
 
 /// Above it, a stretch ends this long before the singular position, s.
-inline constexpr double kClearance = 0.2;
+inline constexpr double kClearance = 0.4;
 
 /// The stretch of `steps` steps of `step` s. On the N-four-bar it starts on the exact motion with
 /// consistent a and lambda, and is centred on the first singular position, or for N above
