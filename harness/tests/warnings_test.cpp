@@ -38,7 +38,7 @@ TEST(Warnings, NeverBlameThePenaltyFactorOfTheRule) {
     Precision precision;
     std::string words;
   } cases[] = {
-      {1e-2, Precision::double_precision, "0.01 s is too long"},
+      {3e-2, Precision::double_precision, "0.03 s is too long"},
       {5e-2, Precision::double_precision, "or a shorter step"},
       {1e-6, Precision::double_precision, "1e-06 s is too short"},
       {1e-6, Precision::double_precision, "saddle-point, or a longer step"},

@@ -76,8 +76,9 @@ class SpringDiagonal {
 };
 
 /// upper / lower of a window that is worth a warning when it is no wider.
-double least_width(const StepSettings& settings) {
-  return settings.precision == Precision::single_precision ? kClosedInSingle : 1 / kFarAbove;
+double least_width(const StepSettings& settings, PenaltyFrom from) {
+  if (settings.precision == Precision::single_precision) return kClosedInSingle;
+  return from == PenaltyFrom::rule ? kClosedByRule : 1 / kFarAbove;
 }
 
 /// Whether the window is wider at shorter steps. The bound of the slowest mode in single precision
@@ -88,8 +89,10 @@ bool is_too_long(const PenaltyWindow& window, const StepSettings& settings) {
 }
 
 /// Where no penalty factor of the user's own is to blame: what to change instead.
-std::string step_warning(const PenaltyWindow& window, const StepSettings& settings, bool is_long) {
-  const bool no_step = window.widest < least_width(settings);
+std::string step_warning(const PenaltyWindow& window, const StepSettings& settings,
+                         PenaltyFrom from) {
+  const bool is_long = is_too_long(window, settings);
+  const bool no_step = window.widest < least_width(settings, from);
   const char* precision =
       is_long || settings.precision == Precision::double_precision ? "" : ", --precision double";
   if (no_step) {
@@ -114,16 +117,18 @@ std::string penalty_warning(const PenaltyWindow& window, const StepSettings& set
         "estimate: mbs describe)",
         settings.penalty, side, bound, what, settings.step);
   };
-  if (window.upper < window.lower * least_width(settings)) {
-    return step_warning(window, settings, is_too_long(window, settings));
+  if (window.upper < window.lower * least_width(settings, from)) {
+    return step_warning(window, settings, from);
+  }
+  if (from == PenaltyFrom::rule) {
+    const bool is_spoiled =
+        !window.cancellation && settings.penalty > window.upper * kFarAboveByRule;
+    return is_spoiled ? step_warning(window, settings, from) : "";
   }
   if (settings.penalty < window.lower / kFarBelow) {
-    if (from == PenaltyFrom::rule) return step_warning(window, settings, false);
     return far("below", window.lower, "least that is sure to hold the constraints");
   }
   if (settings.penalty > window.upper * kFarAbove) {
-    if (from == PenaltyFrom::rule)
-      return step_warning(window, settings, is_too_long(window, settings));
     return far("above", window.upper, "most without loss of accuracy");
   }
   return "";
