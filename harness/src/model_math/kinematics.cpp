@@ -181,13 +181,16 @@ void evaluate_constraints(const Model& model, double t, Coordinates q, std::span
   const Motion motion(model, t, q);
   require_size(phi.size(), model.constraints(), "phi");
   std::size_t row = 0;
-  const auto& values = motion.values();
+  const bool is_driven = !model.driven_values().empty();
+  const auto value = [&](const auto& c) {
+    return is_driven ? motion.values()[row].value : c.value;
+  };
   for_quadratic(model, [&](const auto& c) {  // Eq. (7)
-    phi[row] = product(c, motion.r(c.a, c.b), motion.r(c.c, c.d)) - values[row].value;
+    phi[row] = product(c, motion.r(c.a, c.b), motion.r(c.c, c.d)) - value(c);
     ++row;
   });
   for (const LinearConstraint& constraint : model.linear_constraints()) {  // Eq. (8)
-    phi[row] = sum_of_terms(constraint, q) - values[row].value;
+    phi[row] = sum_of_terms(constraint, q) - value(constraint);
     ++row;
   }
 }

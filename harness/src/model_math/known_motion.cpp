@@ -14,12 +14,6 @@ KnownMotion::KnownMotion(const Model& model, double t)
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     driven_[static_cast<std::size_t>(model.driven_points()[i].point)] = static_cast<int>(i);
   }
-  values_.resize(static_cast<std::size_t>(model.constraints()));
-  auto place = values_.begin();
-  const auto add = [&place](const auto& constraint) { (place++)->value = constraint.value; };
-  std::ranges::for_each(model.dot_constraints(), add);
-  std::ranges::for_each(model.bilinear_constraints(), add);
-  std::ranges::for_each(model.linear_constraints(), add);
   set_time(t);
 }
 
@@ -33,9 +27,21 @@ void KnownMotion::set_time(double t) {
       accelerations_[i][k] = sample.acceleration;
     }
   }
+  if (!model_.driven_values().empty()) values();
   for (const DrivenValue& driven : model_.driven_values()) {
     values_[static_cast<std::size_t>(driven.constraint)] = driven.value.at(t);
   }
+}
+
+const std::vector<TimeFunction::Sample>& KnownMotion::values() const {
+  if (!values_.empty()) return values_;
+  values_.resize(static_cast<std::size_t>(model_.constraints()));
+  auto place = values_.begin();
+  const auto add = [&place](const auto& constraint) { (place++)->value = constraint.value; };
+  std::ranges::for_each(model_.dot_constraints(), add);
+  std::ranges::for_each(model_.bilinear_constraints(), add);
+  std::ranges::for_each(model_.linear_constraints(), add);
+  return values_;
 }
 
 KnownMotion::Vector KnownMotion::of(int point, const std::vector<Vector>& motion) const {

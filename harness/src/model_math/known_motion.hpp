@@ -30,7 +30,7 @@ class KnownMotion {
   [[nodiscard]] Vector acceleration(int point) const { return of(point, accelerations_); }
 
   /// The value of each constraint, in the order of Phi, with its derivatives.
-  [[nodiscard]] const std::vector<TimeFunction::Sample>& values() const { return values_; }
+  [[nodiscard]] const std::vector<TimeFunction::Sample>& values() const;
 
  private:
   [[nodiscard]] Vector of(int point, const std::vector<Vector>& motion) const;
@@ -38,7 +38,7 @@ class KnownMotion {
   const Model& model_;
   std::vector<int> driven_;  // index into driven_points() of a point, -1 without
   std::vector<Vector> positions_, velocities_, accelerations_;  // of the driven points
-  std::vector<TimeFunction::Sample> values_;
+  mutable std::vector<TimeFunction::Sample> values_;            // empty until somebody asks
 };
 
 }  // namespace mbs

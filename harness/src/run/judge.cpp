@@ -5,7 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -59,11 +61,15 @@ std::vector<double> constraint_scales(const Model& model) {
   return scales;
 }
 
+/// By the largest exponent, as integers: eight numbers at a time, unlike std::isfinite.
+bool is_finite(const std::vector<double>& values) {
+  std::uint64_t largest = 0;
+  for (const double x : values) largest = std::max(largest, std::bit_cast<std::uint64_t>(x) << 1);
+  return largest < std::bit_cast<std::uint64_t>(std::numeric_limits<double>::infinity()) << 1;
+}
+
 bool is_finite(const State& state) {
-  const auto finite = [](const std::vector<double>& values) {
-    return std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
-  };
-  return finite(state.q) && finite(state.v) && finite(state.a) && finite(state.lambda);
+  return is_finite(state.q) && is_finite(state.v) && is_finite(state.a) && is_finite(state.lambda);
 }
 
 }  // namespace
@@ -90,15 +96,16 @@ Judge::Judge(const Scene& scene, const State& initial, double start)
     in_springs += model.force()[i] * initial.q[i];
   }
   const double size = extent(model.points());
-  energy_scale_ = 1e-3 * (force * size + std::max(in_springs, 0.0));
+  so_far_.energy_scale = 1e-3 * (force * size + std::max(in_springs, 0.0));
   double rest = 0.0;  // J, of a speed that is none; at rest without forces all else is rounding
   for (const double mass : mass_diagonal(model)) rest += mass * std::pow(1e-6 * size, 2) / 2;
-  energy_scale_ = std::max(energy_scale_, rest);
+  so_far_.energy_scale = std::max(so_far_.energy_scale, rest);
   length_ = judged_length(model);
-  for (const Torsion& torsion : torsions(model, start, initial.q)) twists_.push_back(torsion.twist);
+  for (const Torsion& torsion : torsions(model, start, initial.q))
+    so_far_.twists.push_back(torsion.twist);
   if (scene.four_bar_loops) {
     exact_.emplace(*scene.four_bar_loops);
-    position_error_ = 0.0;
+    so_far_.position_error = 0.0;
   }
   judge(start, initial);
 }
@@ -109,32 +116,33 @@ std::string Judge::judge(double t, const State& state) {
     return "the state is not finite";
   }
   evaluate_constraints(scene_->model, t, state.q, phi_);
+  if (!is_finite(phi_)) {  // huge coordinates
+    spoil();
+    return "the state is too large to be judged";
+  }
   double relative = 0.0;
   std::size_t worst = 0;
   for (std::size_t k = 0; k < phi_.size(); ++k) {
-    // max() would drop a NaN that finite but huge coordinates make.
-    if (!std::isfinite(phi_[k])) {
-      spoil();
-      return "the state is too large to be judged";
-    }
     const double size = std::abs(phi_[k]);
-    violation_ = std::max(violation_, size);
+    so_far_.violation = std::max(so_far_.violation, size);
     if (size > relative * phi_scale_[k]) {
       relative = size / phi_scale_[k];
       worst = k;
     }
   }
-  relative_violation_ = std::max(relative_violation_, relative);
+  so_far_.relative_violation = std::max(so_far_.relative_violation, relative);
   const std::string lost = judge_energy(t, state);
-  if (!std::isfinite(energy_difference_)) return lost;
+  if (!std::isfinite(so_far_.energy_difference)) return lost;
   if (exact_) {
     const double error = exact_->position_error(t, state.q);
-    position_error_ = std::max(*position_error_, error);
+    so_far_.position_error = std::max(*so_far_.position_error, error);
     if (!(error <= bounds_.position_error)) {
       const double apart = exact_->distance_from_branch(state.q);
       // Late on the branch, rods are as parallel as they satisfy the constraints.
-      off_branch_ = apart > error / 4 && lost.empty() && relative <= bounds_.constraint_violation;
-      if (off_branch_) return fmt::format("rods that are parallel differ by {:.2e} m", apart);
+      so_far_.off_branch =
+          apart > error / 4 && lost.empty() && relative <= bounds_.constraint_violation;
+      if (so_far_.off_branch)
+        return fmt::format("rods that are parallel differ by {:.2e} m", apart);
       return fmt::format("position error {:.2e} m against the exact solution (allowed {:g})", error,
                          bounds_.position_error);
     }
@@ -149,12 +157,12 @@ std::string Judge::judge(double t, const State& state) {
 }
 
 void Judge::add_local_error(double local, const State& judged, double step, long steps) {
-  if (conservative_ && last_kinetic_ > 0.0) {
+  if (conservative_ && so_far_.last_kinetic > 0.0) {
     const std::vector<double> rest(judged.v.size(), 0.0);
     local += step * largest_point_distance(scene_->model, judged.v, rest) *
-             (std::sqrt(1 + last_energy_difference_ / last_kinetic_) - 1);
+             (std::sqrt(1 + so_far_.last_energy_difference / so_far_.last_kinetic) - 1);
   }
-  local_error_ += static_cast<double>(steps) * local;
+  so_far_.local_error += static_cast<double>(steps) * local;
 }
 
 std::string Judge::judge_torsion(double t, const State& state) {
@@ -167,8 +175,8 @@ std::string Judge::judge_torsion(double t, const State& state) {
           "(allowed {:g})",
           spring.name, now[i].tilt, bounds_.tilt);
     }
-    twists_[i] += std::remainder(now[i].twist - twists_[i], 2 * std::numbers::pi);
-    if (spring.stiffness > 0.0 && !(std::abs(twists_[i]) <= std::numbers::pi)) {
+    so_far_.twists[i] += std::remainder(now[i].twist - so_far_.twists[i], 2 * std::numbers::pi);
+    if (spring.stiffness > 0.0 && !(std::abs(so_far_.twists[i]) <= std::numbers::pi)) {
       return fmt::format(
           "{}: it is more than half a turn from its free angle, where its torque "
           "would change sign",
@@ -187,18 +195,19 @@ std::string Judge::judge_energy(double t, const State& state) {
     return "the state is too large to be judged";
   }
   if (!conservative_) return "";
-  energy_scale_ = std::max(energy_scale_, kinetic);
-  last_kinetic_ = kinetic;
-  last_energy_difference_ = difference;
-  energy_difference_ = std::max(energy_difference_, difference);
+  so_far_.energy_scale = std::max(so_far_.energy_scale, kinetic);
+  so_far_.last_kinetic = kinetic;
+  so_far_.last_energy_difference = difference;
+  so_far_.energy_difference = std::max(so_far_.energy_difference, difference);
   if (*energy_drift_max() <= bounds_.energy_drift) return "";
   return fmt::format("energy drifted by {:.2e} of its scale (allowed {:g})", *energy_drift_max(),
                      bounds_.energy_drift);
 }
 
 void Judge::spoil() {
-  violation_ = relative_violation_ = energy_difference_ = std::numeric_limits<double>::infinity();
-  if (exact_) position_error_ = std::numeric_limits<double>::infinity();
+  so_far_.violation = so_far_.relative_violation = so_far_.energy_difference =
+      std::numeric_limits<double>::infinity();
+  if (exact_) so_far_.position_error = std::numeric_limits<double>::infinity();
 }
 
 std::string Judge::degradation() const {
@@ -208,15 +217,16 @@ std::string Judge::degradation() const {
     if (!(value <= bound))
       beyond.push_back(fmt::format("{} {:.1e} (ok to {:g})", what, value, bound));
   };
-  add(position_error_.value_or(0.0), accurate.position_error, "position error");
+  add(so_far_.position_error.value_or(0.0), accurate.position_error, "position error");
   add(energy_drift_max().value_or(0.0), accurate.energy_drift, "energy drift");
-  add(relative_violation_, accurate.constraint_violation, "constraint violation");
+  add(so_far_.relative_violation, accurate.constraint_violation, "constraint violation");
   return fmt::format("{}", fmt::join(beyond, ", "));
 }
 
 std::optional<double> Judge::energy_drift_max() const {
   if (!conservative_) return std::nullopt;
-  return energy_scale_ > 0.0 ? energy_difference_ / energy_scale_ : energy_difference_;
+  return so_far_.energy_scale > 0.0 ? so_far_.energy_difference / so_far_.energy_scale
+                                    : so_far_.energy_difference;
 }
 
 }  // namespace mbs

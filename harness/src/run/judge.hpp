@@ -56,29 +56,45 @@ class Judge {
   /// Sum of the above over the run, m: what the position error comes to if nothing damps or
   /// multiplies it, such as the lag behind the exact motion, which neither energy nor constraints
   /// show.
-  [[nodiscard]] double local_error_sum() const { return local_error_; }
+  [[nodiscard]] double local_error_sum() const { return so_far_.local_error; }
   /// judged_length() of the scene, m.
   [[nodiscard]] double length() const { return length_; }
   [[nodiscard]] bool knows_exact_motion() const { return exact_.has_value(); }
+
+  /// The worst so far and what the next state is judged by, without the rest of the judge.
+  struct Figures {
+    std::vector<double> twists;  // of the torsion springs, continued; rad
+    double energy_scale = 0.0;
+    double energy_difference = 0.0;                           // J, the largest
+    double last_kinetic = 0.0, last_energy_difference = 0.0;  // J, of the last judged state
+    std::optional<double> position_error;
+    double violation = 0.0;           // m^2, m
+    double relative_violation = 0.0;  // as RunBounds
+    bool off_branch = false;
+    double local_error = 0.0;  // m
+  };
+  [[nodiscard]] const Figures& figures() const { return so_far_; }
+  /// Judges on from where another judge of the same run had these.
+  void take_back(const Figures& figures) { so_far_ = figures; }
 
   /// Marks every figure as lost: infinite.
   void spoil();
 
   /// Whether the state that judge() refused satisfies the constraints and conserves energy, but is
   /// on another branch of the motion than the exact one.
-  [[nodiscard]] bool off_branch() const { return off_branch_; }
+  [[nodiscard]] bool off_branch() const { return so_far_.off_branch; }
   /// The worst figures that are beyond AccurateBounds, for people; empty if none is.
   [[nodiscard]] std::string degradation() const;
 
   /// Largest distance of a point from the exact motion, m; none if no exact solution is known.
-  [[nodiscard]] std::optional<double> position_error_max() const { return position_error_; }
+  [[nodiscard]] std::optional<double> position_error_max() const { return so_far_.position_error; }
   /// Largest |E - E_0| over the energy scale: the largest kinetic energy so far, but at least a
   /// thousandth of the work that the applied forces do over the scene's extent and of what springs
   /// hold at the start, and that of a millionth of the extent a second, which is rest.
   /// Dimensionless; none if the model is not conservative.
   [[nodiscard]] std::optional<double> energy_drift_max() const;
   /// Largest |Phi_k|, m^2 (m for linear constraints).
-  [[nodiscard]] double constraint_violation_max() const { return violation_; }
+  [[nodiscard]] double constraint_violation_max() const { return so_far_.violation; }
 
  private:
   std::string judge_energy(double t, const State& state);
@@ -89,18 +105,10 @@ class Judge {
   std::optional<FourBarExact> exact_;
   std::vector<double> phi_;
   std::vector<double> phi_scale_;
-  std::vector<double> twists_;  // of the torsion springs, continued; rad
   bool conservative_;
-  double initial_energy_ = 0.0;
-  double energy_scale_ = 0.0;
-  double energy_difference_ = 0.0;                            // J, the largest
-  double last_kinetic_ = 0.0, last_energy_difference_ = 0.0;  // J, of the last judged state
-  std::optional<double> position_error_;
-  double violation_ = 0.0;           // m^2, m
-  double relative_violation_ = 0.0;  // as RunBounds
-  bool off_branch_ = false;
-  double length_ = 1.0;       // m
-  double local_error_ = 0.0;  // m
+  double initial_energy_ = 0.0;  // J
+  double length_ = 1.0;          // m
+  Figures so_far_;
 };
 
 }  // namespace mbs

@@ -33,7 +33,7 @@ JudgedRun::JudgedRun(const Scene& scene, const Variant& variant, const RunSettin
       state_(std::move(start)),
       before_(state_),
       judge_(scene, state_, 0.0),
-      good_{0, state_, judge_},
+      good_{0, state_, judge_.figures()},
       samples_local_error_(!settings.half_step && !judge_.knows_exact_motion()) {}
 
 void JudgedRun::begin(Access access) {
@@ -86,8 +86,9 @@ void JudgedRun::take(const StepOutcome& outcome) {
     judging_ += Clock::now() - begin;
   }
   if ((observer_ || half_) && !is_judged) access_.get_state(state_);
-  if (half_) half_->compare(state_);
-  if (observer_) observer_(step, time(step), state_);
+  const State& present = is_judged ? good_.state : state_;
+  if (half_) half_->compare(present);
+  if (observer_) observer_(step, time(step), present);
   if (step == steps_) conclude();
 }
 
@@ -107,8 +108,8 @@ void JudgedRun::judge_present() {
     judge_.add_local_error(local_error(), state_, settings_.step.step, step - good_.step);
   }
   good_.step = step;
-  good_.state = state_;
-  good_.judge = judge_;
+  std::swap(good_.state, state_);
+  good_.figures = judge_.figures();
   judging_ += Clock::now() - begin;
 }
 
@@ -128,7 +129,8 @@ bool JudgedRun::locate_loss(const std::string& reason) {
     lose(judge_, reason, step);
     return true;
   }
-  Judge judge = good_.judge;
+  Judge judge = judge_;
+  judge.take_back(good_.figures);
   State state = good_.state;
   Simulation& simulation = access_.again();
   simulation.set_state(state);

@@ -49,7 +49,7 @@ class JudgedRun {
   struct LastGood {
     long step;
     State state;
-    Judge judge;
+    Judge::Figures figures;
   };
 
   [[nodiscard]] double time(long step) const;
