@@ -1,12 +1,10 @@
 // In which order to eliminate the saddle-point matrix, found once.
 #include "elimination_order.hpp"
 
-#include <amd.h>
-
 #include <algorithm>
 #include <utility>
 
-#include "mbs/simulation.hpp"
+#include "shallow_order.hpp"
 
 namespace mbs::csc_klu {
 namespace {
@@ -41,12 +39,8 @@ Pattern tangent_pattern(const Pattern& saddle, int n) {
 }  // namespace
 
 std::vector<int> interleaved_order(const Pattern& saddle, int n) {
-  const Pattern tangent = tangent_pattern(saddle, n);
-  std::vector<int> coordinates(n), rank(n);
-  if (amd_order(n, tangent.column_begin.data(), tangent.row.data(), coordinates.data(), nullptr,
-                nullptr) < AMD_OK) {
-    throw Unsupported("amd_order refused the pattern of the tangent matrix");
-  }
+  const std::vector<int> coordinates = shallow_order(tangent_pattern(saddle, n));
+  std::vector<int> rank(n);
   for (int k = 0; k < n; ++k) rank[coordinates[k]] = k;
 
   // Multipliers that follow the coordinate of a rank; those without coordinates follow the first.

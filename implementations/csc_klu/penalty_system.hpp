@@ -24,10 +24,9 @@ class PenaltySystem {
         geometric_(hessians_, pattern_.pattern, equations.weight),
         right_(equations.n, 0.0),
         weighted_(equations.m, 0.0),
-        solver_(
-            pattern_.pattern, assemble(),
-            Structure{geometric_.any() ? Structure::Kind::indefinite : Structure::Kind::definite}) {
-  }
+        solver_(pattern_.pattern, assemble(),
+                {geometric_.any() ? Structure::Kind::indefinite : Structure::Kind::definite,
+                 pattern_.order}) {}
 
   std::span<const double> assemble() {
     tangent_.assemble(equations_.jacobian);

@@ -26,7 +26,8 @@ class NewtonSimulation final : public Simulation {
                  equations_.weight * settings.penalty),
         right_v_(equations_.v),
         right_a_(equations_.n, 0.0),
-        solver_(tangent_.pattern(), assemble_tangent()) {}
+        solver_(tangent_.pattern(), assemble_tangent(),
+                {Structure::Kind::definite, tangent_pattern_.order}) {}
 
  private:
   void do_set_state(const State& state) override { equations_.set_state(state); }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "element_blocks.hpp"
+#include "shallow_order.hpp"
 
 namespace mbs::csc_klu {
 namespace {
@@ -97,6 +98,7 @@ TangentPattern<dim>::TangentPattern(const Model& model, const JacobianPattern<di
   const std::vector<Pair> pairs = point_pairs(jacobian);
   const std::vector<ElementBlock> elements = element_blocks(forces, dim);
   pattern = union_pattern(model, jacobian, pairs, elements);
+  order = shallow_order(pattern);
   const auto columns = [&](int p, int q) {
     Columns offsets;
     for (int k = 0; k < dim; ++k) offsets[k] = pattern.offset(dim * p, dim * q + k);

@@ -38,6 +38,7 @@ struct TangentPattern {
                  const ForcePattern& forces);
 
   Pattern pattern;
+  std::vector<int> order;  ///< of elimination
   std::vector<Diagonal> diagonals;
   std::vector<Coupling> couplings;          ///< the first product for each pair of points
   std::vector<Coupling> further_couplings;  ///< more products for pairs that have them

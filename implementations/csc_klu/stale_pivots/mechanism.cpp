@@ -76,7 +76,7 @@ Matrix tangent_matrix(const Instant& instant) {
   tangent.assemble(e.jacobian);
   tangent.add(e.forces);
   tangent.add(at.geometric(instant, pattern.pattern));
-  return {pattern.pattern, {}, copy(tangent.values())};
+  return {pattern.pattern, pattern.order, copy(tangent.values())};
 }
 
 std::vector<double> scales_at(const Instant& instant) {

@@ -25,7 +25,7 @@ struct Instant {
 /// A matrix on its pattern.
 struct Matrix {
   Pattern pattern;
-  std::vector<int> order;  ///< of elimination; empty: AMD's
+  std::vector<int> order;  ///< of elimination
   std::vector<double> values;
 };
 

@@ -68,6 +68,7 @@ Sequence penalty_form(const char* name, const Motion& motion) {
   for (int k = 0; k < kMatrices; ++k) {
     Matrix matrix = tangent_matrix(motion(k));
     sequence.pattern = std::move(matrix.pattern);
+    sequence.order = std::move(matrix.order);
     sequence.matrices.push_back(std::move(matrix.values));
   }
   return sequence;
