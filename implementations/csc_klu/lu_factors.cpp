@@ -109,8 +109,8 @@ bool LuFactors::refactor(std::span<const double> values) {
 
 void LuFactors::solve(std::span<double> x) {
   Handles& klu = *klu_;
-  // With the transpose, the same matrix, KLU sums up instead of scattering. Pivots off the diagonal
-  // are stable for columns only: see README.md.
+  // With the transpose, the same matrix, KLU sums up instead of scattering; but that loses digits
+  // once pivots are off the diagonal: see README.md.
   const auto solve_with = klu.common.noffdiag == 0 ? klu_tsolve : klu_solve;
   if (!solve_with(klu.symbolic.get(), klu.numeric.get(), klu.columns, 1, x.data(), &klu.common)) {
     std::ranges::fill(x, std::numeric_limits<double>::quiet_NaN());
