@@ -7,8 +7,8 @@
 
 namespace mbs::csc_klu {
 
-/// An order for the matrix of Eq. (12) on `saddle`, n coordinates before its multipliers: AMD's for
-/// the coordinates of T, every multiplier right after the last of its coordinates. So it never is
+/// An order for the matrix of Eq. (12) on `saddle`, n coordinates before its multipliers: that of T
+/// for the coordinates, every multiplier right after the last of its coordinates. So it never is
 /// -eps alone that becomes a pivot, by which 1/eps Phi_q^T Phi_q would come into T_0 as it does in
 /// the penalty form, but -(eps + Phi_q S^-1 Phi_q^T) with the row of the constraint whole.
 ///
