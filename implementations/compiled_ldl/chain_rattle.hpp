@@ -9,11 +9,6 @@ namespace mbs::compiled_ldl::chain {
 /// Of a velocity or an acceleration.
 inline constexpr int kMostRefinements = 5;
 
-template <class V, class Rods>
-struct RattleBlock : RowBlock<V, Rods> {
-  Vec<V> way;  // s (q' − q) of the stage
-};
-
 /// With `kMasked` refinements and further passes are for the lanes `active` only.
 template <class Store, bool kMasked = false>
 class RattleStage {
@@ -24,16 +19,19 @@ class RattleStage {
   using Mask = typename Lanes<typename Store::Use>::Mask;
 
   /// Steps 1 and 2: the first pass of a stage of `length` steps predicts. Returns max|2 s Δq|.
+  /// (q' − q)/h takes the place of v; it is summed up, not made from q', so that it keeps its
+  /// digits.
   template <bool kFirst>
   static V pass(Store& chain, double length, const Mask& active = Mask()) {
     const Position<kFirst> terms{V{} + length};
+    const V inverse_length = V{} + 1.0 / length;
     if (kFirst) terms.predict(chain.blocks[0]);
     substitute_inwards(chain, terms);
     LargestOf<typename Store::Use> largest;
     substitute_outwards(chain, [&](B& block, const Vec<V>& x) {
       const Vec<V> half = (V{} + 0.5) * x;
       set<kMasked>(block.x, block.x - half, active);
-      set<kMasked>(block.way, block.way - half, active);
+      set<kMasked>(block.w, block.w - inverse_length * half, active);
       largest.add(x);
     });
     return largest.value();
@@ -43,13 +41,15 @@ class RattleStage {
   template <bool kVelocity>
   static V factorize(Store& chain, double length) {
     const V least = factorize_inwards<kVelocity>(chain, V{} + length);
-    if (kVelocity) substitute_outwards(chain, [](B& block, const Vec<V>& x) { block.w = x; });
+    if (kVelocity) {
+      substitute_outwards(chain, [](B& block, const Vec<V>& x) { block.w = block.w + x; });
+    }
     return least;
   }
 
   /// Step 4, one refinement: max|s Δt δ|.
   static V refine_velocity(Store& chain, const Mask& active = Mask()) {
-    velocity_residual(chain, [](const B& block) { return block.w; });
+    substitute_inwards(chain, VelocityTerms{});
     LargestOf<typename Store::Use> largest;
     substitute_outwards(chain, [&](B& block, const Vec<V>& x) {
       set<kMasked>(block.w, block.w + x, active);
@@ -95,8 +95,8 @@ class RattleStage {
     V length;
 
     MBS_CHAIN_INLINE void predict(B& block) const {
-      block.way = length * (block.w + length * block.u);
-      block.x = block.x + block.way;
+      block.w = block.w + length * block.u;
+      block.x = block.x + length * block.w;
     }
     MBS_CHAIN_INLINE Vec<V> point(const B& block, const C& data) const {
       Vec<V> f{};
@@ -113,6 +113,11 @@ class RattleStage {
       inner = violation * block.e;
     }
   };
+
+  struct Velocity {
+    MBS_CHAIN_INLINE const Vec<V>& operator()(const B& block) const { return block.w; }
+  };
+  using VelocityTerms = VelocityResidual<Store, Velocity>;
 
   /// Q − ε⁻¹ Φqᵀ Φ̇q v
   struct Acceleration {
@@ -140,14 +145,16 @@ class RattleStage {
     return A;
   }
 
+  /// With `kVelocity` also substitutes inwards for what v' is more than (q' − q)/h: it is small, so
+  /// that what M has lost in T hardly matters.
   template <bool kVelocity>
   static V factorize_inwards(Store& chain, const V& length) {
     B* block = chain.blocks.data();
     const C* const* data = chain.constants.data();
     B* const end = block + chain.last;
-    const V inverse_length = (V{} + 1.0) / length;
     Carry<V> carry;
     V least = V{} + 1.0;
+    const VelocityTerms terms{};
     for (; block != end; ++block, ++data) {
       const Sym<V> own = rows(*block, **data);
       const Vec<V> e = (*data)->link.vector(block[1].x - block->x, block->offset);
@@ -157,15 +164,16 @@ class RattleStage {
       eliminate((*data)->mass, own, e, S, z, least, carry);
       finish(block->factors, (*data)->mass, S, z, carry.reciprocal, e);
       if (!kVelocity) continue;
-      const Vec<V> w = inverse_length * block->way;
-      const Vec<V> f = carry.force + ((*data)->mass.times(w) + length * (*data)->force +
-                                      (*data)->mass.outer(inverse_length * block[1].way));
+      Vec<V> f = length * (*data)->force + terms.point(*block, **data);
+      Vec<V> inner;
+      terms.link(*block, block[1], **data, f, inner);
+      f = carry.force + f;
       block->f = f;
-      carry.force = forward(block->factors.gain, (*data)->mass.inner(w), f);
+      carry.force = forward(block->factors.gain, inner, f);
     }
-    const Vec<V> f = length * (*data)->force + (*data)->mass.times(inverse_length * block->way);
-    block->factors.scaled =
-        meet<typename Store::Use>(rows(*block, **data), carry, f, least, block->f);
+    const Sym<V> own = rows(*block, **data);
+    const Vec<V> f = length * (*data)->force + terms.point(*block, **data);
+    block->factors.scaled = meet<typename Store::Use>(own, carry, f, least, block->f);
     return least;
   }
 };

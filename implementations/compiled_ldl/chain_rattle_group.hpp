@@ -10,9 +10,9 @@
 namespace mbs::compiled_ldl::chain {
 
 template <template <class> class MassOf, class Rods>
-class RattleGroup : public LaneGroup<Storage<Wide, MassOf, Rods, RattleBlock>> {
+class RattleGroup : public LaneGroup<Storage<Wide, MassOf, Rods, RowBlock>> {
  public:
-  using Store = Storage<Wide, MassOf, Rods, RattleBlock>;
+  using Store = Storage<Wide, MassOf, Rods, RowBlock>;
 
   RattleGroup(int places, const StepSettings& settings)
       : Base(places, settings), stages_(stage_lengths(settings.scheme)) {

@@ -22,7 +22,7 @@ class RattleSimulation final : public Simulation {
         chain_(static_cast<int>(topology_.places.size())) {}
 
  private:
-  using Store = Storage<Pair, MassOf, Rods, RattleBlock>;
+  using Store = Storage<Pair, MassOf, Rods, RowBlock>;
   using Stage = RattleStage<Store>;
 
   void do_set_state(const State& state) override {
