@@ -19,6 +19,7 @@ void Constraints::evaluate_jacobian(const double* q) {
   const int* plus = distance.plus.data();
   const int* minus = distance.minus.data();
   const int elements = lowered_.dimension * distance.count;
+#pragma GCC unroll 4  // else a third of the loop counts
   for (int e = 0; e < elements; ++e) values[e] = 2.0 * (q[plus[e]] - q[minus[e]]);  // Eq. (7)
   for (PairValues& block : pairs_) {
     block.take(q);

@@ -1,7 +1,9 @@
-// Each stored entry m_ij of the half serves row i and row j.
+// Rows of few entries one by one; in segments each entry m_ij of the half serves rows i and j.
 #include "mass.hpp"
 
 #include <algorithm>
+#include <tuple>
+#include <type_traits>
 
 namespace mbs::csc_cholmod {
 namespace {
@@ -39,22 +41,26 @@ MassMatrix::MassMatrix(const Model& model, Half half, const std::vector<int>& nu
   for (const MassEntry& e : model.mass()) {
     values[pattern.index({number[e.row], number[e.col]})] = e.value;
   }
+  std::vector<Entry> loose;
   for (int j = 0; j < pattern.size(); ++j) {
     int first = pattern.column_start()[j];
     int last = pattern.column_start()[j + 1];
     diagonal_[j] = values[half == Half::lower ? first++ : --last];
-    add_column(j, pattern.row().data() + first, values.data() + first, last - first);
+    add_column(j, pattern.row().data() + first, values.data() + first, last - first, loose);
   }
+  add_rows(loose);
 }
 
-void MassMatrix::add_column(int column, const int* row, const double* value, int count) {
-  const std::size_t before = row_.size();
+void MassMatrix::add_column(int column, const int* row, const double* value, int count,
+                            std::vector<Entry>& loose) {
   for (int begin = 0, end = 0; begin < count; begin = end) {
     for (end = begin + 1; end < count && row[end] - row[end - 1] <= kLongestGap + 1;) ++end;
     const int length = row[end - 1] - row[begin] + 1;
     if (length < kShortestRun) {
-      row_.insert(row_.end(), row + begin, row + end);
-      value_.insert(value_.end(), value + begin, value + end);
+      for (int e = begin; e < end; ++e) {
+        loose.push_back({row[e], column, value[e]});
+        loose.push_back({column, row[e], value[e]});
+      }
       continue;
     }
     segments_.push_back({column, row[begin], length});
@@ -62,23 +68,64 @@ void MassMatrix::add_column(int column, const int* row, const double* value, int
     segment_value_.resize(start + length);
     for (int e = begin; e < end; ++e) segment_value_[start + row[e] - row[begin]] = value[e];
   }
-  const int entries = static_cast<int>(row_.size() - before);
-  if (entries > 0) columns_.push_back({column, entries});
+}
+
+void MassMatrix::add_rows(std::vector<Entry>& loose) {
+  std::vector<int> entries(diagonal_.size());
+  for (const Entry& e : loose) ++entries[e.row];
+  std::sort(loose.begin(), loose.end(), [&](const Entry& a, const Entry& b) {
+    return std::tuple(entries[a.row], a.row, a.column) <
+           std::tuple(entries[b.row], b.row, b.column);
+  });
+  for (const Entry& e : loose) {
+    column_.push_back(e.column);
+    value_.push_back(e.value);
+    if (!row_.empty() && row_.back() == e.row) continue;
+    row_.push_back(e.row);
+    if (groups_.empty() || groups_.back().entries != entries[e.row]) {
+      groups_.push_back({entries[e.row]});
+    }
+    ++groups_.back().rows;
+  }
+}
+
+template <typename Visit>
+void MassMatrix::for_rows(Visit visit) const {
+  const int* row = row_.data();
+  const int* column = column_.data();
+  const double* value = value_.data();
+  const auto run = [&](auto entries, int rows) {
+    for (int k = 0; k < rows; ++k, column += entries, value += entries) {
+      visit(*row++, entries, column, value);
+    }
+  };
+  for (const Group& g : groups_) {
+    switch (g.entries) {
+      case 1:
+        run(std::integral_constant<int, 1>(), g.rows);
+        break;
+      case 2:
+        run(std::integral_constant<int, 2>(), g.rows);
+        break;
+      case 3:
+        run(std::integral_constant<int, 3>(), g.rows);
+        break;
+      case 4:
+        run(std::integral_constant<int, 4>(), g.rows);
+        break;
+      default:
+        run(g.entries, g.rows);
+    }
+  }
 }
 
 template <int kSign>
 void MassMatrix::add_off_diagonal(const double* __restrict x, double* __restrict result) const {
-  const int* row = row_.data();
-  const double* value = value_.data();
-  for (const Column& c : columns_) {
-    const double x_column = kSign * x[c.column];
+  for_rows([=](int row, auto entries, const int* column, const double* value) {
     double sum = 0.0;
-    for (int e = 0; e < c.entries; ++e, ++row, ++value) {
-      sum += *value * x[*row];
-      result[*row] += *value * x_column;
-    }
-    result[c.column] += kSign * sum;
-  }
+    for (int e = 0; e < entries; ++e) sum += value[e] * x[column[e]];
+    result[row] += kSign * sum;
+  });
   const double* m = segment_value_.data();
   for (const Segment& s : segments_) {
     result[s.column] += kSign * multiply_segment(m, s.length, x + s.first_row, kSign * x[s.column],
@@ -104,22 +151,16 @@ void MassMatrix::products(const double* __restrict x, const double* __restrict y
     first[j] = diagonal_[j] * x[j];
     second[j] = diagonal_[j] * y[j];
   }
-  const int* row = row_.data();
-  const double* value = value_.data();
-  for (const Column& c : columns_) {
-    const double x_column = x[c.column];
-    const double y_column = y[c.column];
+  for_rows([=](int row, auto entries, const int* column, const double* value) {
     double first_sum = 0.0;
     double second_sum = 0.0;
-    for (int e = 0; e < c.entries; ++e, ++row, ++value) {
-      first_sum += *value * x[*row];
-      second_sum += *value * y[*row];
-      first[*row] += *value * x_column;
-      second[*row] += *value * y_column;
+    for (int e = 0; e < entries; ++e) {
+      first_sum += value[e] * x[column[e]];
+      second_sum += value[e] * y[column[e]];
     }
-    first[c.column] += first_sum;
-    second[c.column] += second_sum;
-  }
+    first[row] += first_sum;
+    second[row] += second_sum;
+  });
   const double* m = segment_value_.data();
   for (const Segment& s : segments_) {
     const int r = s.first_row;

@@ -8,9 +8,11 @@
 
 namespace mbs::csc_cholmod {
 
-/// M (n x n, kg), one half: the diagonal, then the other entries by columns. Where rows of a column
-/// lie close together they become a segment, a run of consecutive rows with zeros in its gaps,
-/// which vector instructions multiply; artificial fill makes long ones.
+/// M (n x n, kg): the diagonal, then the other entries. Where rows of a column of one half lie
+/// close together they become a segment, a run of consecutive rows with zeros in its gaps, which
+/// vector instructions multiply; artificial fill makes long ones. What is left stands by rows, of
+/// both halves: rows of few entries sum up on their own, whereas a column would add to several
+/// places.
 class MassMatrix {
  public:
   /// Unknown i of the model is row `number[i]` here. Stored zeros stay stored.
@@ -24,9 +26,15 @@ class MassMatrix {
   void products(const double* x, const double* y, double* first, double* second) const;
 
  private:
-  struct Column {
+  struct Entry {
+    int row = 0;
     int column = 0;
-    int entries = 0;
+    double value = 0.0;
+  };
+  /// Rows of equally many entries.
+  struct Group {
+    int entries = 0;  ///< of each row
+    int rows = 0;
   };
   struct Segment {
     int column = 0;
@@ -36,11 +44,19 @@ class MassMatrix {
   /// result += kSign * M x but for the diagonal.
   template <int kSign>
   void add_off_diagonal(const double* x, double* result) const;
-  void add_column(int column, const int* row, const double* value, int count);
+  /// Calls visit(row, number of entries, columns, values) for each row; the number is a constant
+  /// where it is small.
+  template <typename Visit>
+  void for_rows(Visit visit) const;
+  /// Makes segments, and `loose` of the rest.
+  void add_column(int column, const int* row, const double* value, int count,
+                  std::vector<Entry>& loose);
+  void add_rows(std::vector<Entry>& loose);
 
   std::vector<double> diagonal_;
-  std::vector<Column> columns_;  ///< those with entries outside segments
-  std::vector<int> row_;
+  std::vector<Group> groups_;
+  std::vector<int> row_;     ///< group after group
+  std::vector<int> column_;  ///< the entries of each row, in the same order
   std::vector<double> value_;
   std::vector<Segment> segments_;
   std::vector<double> segment_value_;  ///< one after another

@@ -24,7 +24,8 @@ PenaltyForm::PenaltyForm(const Model& model, const StepSettings& settings,
 
 PenaltyForm::PenaltyForm(const Model& model, const StepSettings& settings,
                          const HalfPattern& pattern, Factorization factorization)
-    : Assembly(model, settings, fill_reducing_order(pattern), preferred_half(factorization)),
+    : Assembly(model, settings, fill_reducing_order(pattern, factorization),
+               preferred_half(factorization)),
       penalty_(settings.penalty),
       pattern_(pattern.renumbered(preferred_half(factorization), coordinates_.number())),
       schedule_(tangent_contributions(lowered_, lowered_forces_, pattern_)),

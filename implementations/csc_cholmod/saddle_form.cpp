@@ -12,7 +12,8 @@ namespace mbs::csc_cholmod {
 
 SaddleForm::SaddleForm(const Model& model, const StepSettings& settings,
                        Factorization factorization)
-    : SaddleForm(model, settings, factorization, fill_reducing_order(tangent_pattern(model))) {}
+    : SaddleForm(model, settings, factorization,
+                 fill_reducing_order(tangent_pattern(model), factorization)) {}
 
 SaddleForm::SaddleForm(const Model& model, const StepSettings& settings,
                        Factorization factorization, std::vector<int> number)

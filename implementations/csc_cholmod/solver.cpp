@@ -4,10 +4,13 @@
 #include <cholmod.h>
 #include <dlfcn.h>
 
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "elimination_order.hpp"
 
 namespace mbs::csc_cholmod {
 namespace {
@@ -97,21 +100,46 @@ cholmod_factor* analyze(cholmod_sparse& matrix, Common& common) {
                            std::to_string(common.status));
 }
 
+std::vector<double> identity_values(const HalfPattern& pattern) {
+  std::vector<double> values(pattern.nonzeros());
+  for (int j = 0; j < pattern.size(); ++j) values[pattern.index({j, j})] = 1.0;
+  return values;
+}
+
+/// Positions of L below its diagonal; `factor` is a simplicial one.
+std::vector<Position> below_diagonal(const cholmod_factor& factor) {
+  const int* start = static_cast<const int*>(factor.p);
+  const int* count = static_cast<const int*>(factor.nz);
+  const int* row = static_cast<const int*>(factor.i);
+  std::vector<Position> result;
+  for (int j = 0; j < static_cast<int>(factor.n); ++j) {
+    for (int k = 1; k < count[j]; ++k) result.push_back({row[start[j] + k], j});
+  }
+  return result;
+}
+
 }  // namespace
 
 Half preferred_half(Factorization factorization) {
   return factorization == Factorization::simplicial ? Half::upper : Half::lower;
 }
 
-std::vector<int> fill_reducing_order(const HalfPattern& pattern) {
+std::vector<int> fill_reducing_order(const HalfPattern& pattern, Factorization factorization) {
   Common common;
   common.supernodal = CHOLMOD_SIMPLICIAL;
   common.method[0].ordering = CHOLMOD_AMD;
-  cholmod_sparse matrix = view(pattern, nullptr);
+  const std::vector<double> identity = identity_values(pattern);
+  cholmod_sparse matrix = view(pattern, identity.data());
   cholmod_factor* factor = analyze(matrix, common);
+  std::vector<int> place(pattern.size());  // of what comes k-th in AMD's order
+  std::iota(place.begin(), place.end(), 0);
+  if (factorization == Factorization::simplicial) {
+    cholmod_factorize(&matrix, factor, &common);  // the pattern of L comes with its values
+    place = outside_in_order(pattern.size(), below_diagonal(*factor));
+  }
   std::vector<int> number(pattern.size());
   const int* old = static_cast<const int*>(factor->Perm);
-  for (int k = 0; k < pattern.size(); ++k) number[old[k]] = k;
+  for (int k = 0; k < pattern.size(); ++k) number[old[k]] = place[k];
   cholmod_free_factor(&factor, &common);
   return number;
 }

@@ -18,8 +18,9 @@ enum class Factorization {
 Half preferred_half(Factorization factorization);
 
 /// Fill-reducing order: unknown i becomes `result[i]`. AMD with a postorder of the elimination
-/// tree.
-std::vector<int> fill_reducing_order(const HalfPattern& pattern);
+/// tree; for the simplicial code the same fill from the outside in, so that a column seldom waits
+/// for the one before it.
+std::vector<int> fill_reducing_order(const HalfPattern& pattern, Factorization factorization);
 
 /// Cholesky factorization of one symmetric matrix after the other, positive definite or (LDL')
 /// quasi-definite, all of one pattern, which is expected in fill-reducing order already: CHOLMOD
