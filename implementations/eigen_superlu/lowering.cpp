@@ -1,6 +1,7 @@
 // Set-up of Constraints: sorting by kind, the pattern of Phi_q.
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "constraints.hpp"
 
@@ -13,13 +14,24 @@ bool is_distance(const Coordinates& coordinates, const DotConstraint& constraint
          (coordinates.is_free(constraint.a) || coordinates.is_free(constraint.b));
 }
 
-/// Sorts first ... last of `order` by what `kind` gives for them, computed once each.
-template <class Kind>
-void sort_by(std::vector<int>& order, std::size_t first, std::size_t last, Kind kind) {
-  std::vector<std::size_t> kinds;
-  for (std::size_t k = first; k < last; ++k) kinds.push_back(kind(k - first));
+/// What rows are sorted by: the kind, then the elimination of the first of their points. Rows next
+/// to each other then seldom share a point, and need not wait for each other in products with
+/// Phi_q^T.
+std::pair<std::size_t, int> key_of(const Coordinates& coordinates, std::span<const int> ends,
+                                   bool distance) {
+  const std::vector<int> free = free_ones(coordinates, ends);
+  int first = coordinates.variables();
+  for (const int point : free) first = std::min(first, coordinates.of_point(point, 0));
+  return {distance ? free.size() : 3 + free.size(), first};
+}
+
+/// Sorts first ... last of `order` by what `key` gives for them, computed once each.
+template <class Key>
+void sort_by(std::vector<int>& order, std::size_t first, std::size_t last, Key key) {
+  std::vector<std::pair<std::size_t, int>> keys;
+  for (std::size_t k = first; k < last; ++k) keys.push_back(key(k - first));
   std::stable_sort(order.begin() + first, order.begin() + last,
-                   [&](int k, int l) { return kinds[k - first] < kinds[l - first]; });
+                   [&](int k, int l) { return keys[k - first] < keys[l - first]; });
 }
 
 /// The points of quadratic constraint `k` in the order of Phi.
@@ -44,15 +56,12 @@ void Constraints::sort_rows(const Model& model, const Coordinates& coordinates) 
   const auto dots = model.dot_constraints();
   const auto bilinear = model.bilinear_constraints();
   const auto linear = model.linear_constraints();
-  const auto free = [&](const auto& constraint) {
-    return free_ones(coordinates, ends_of(constraint)).size();
-  };
   std::iota(order_.begin(), order_.end(), 0);
   sort_by(order_, 0, dots.size(), [&](std::size_t k) {
-    return is_distance(coordinates, dots[k]) ? free(dots[k]) : 3 + free(dots[k]);
+    return key_of(coordinates, ends_of(dots[k]), is_distance(coordinates, dots[k]));
   });
   sort_by(order_, dots.size(), dots.size() + bilinear.size(),
-          [&](std::size_t k) { return free(bilinear[k]); });
+          [&](std::size_t k) { return key_of(coordinates, ends_of(bilinear[k]), false); });
   for (std::size_t row = 0; row < dots.size(); ++row) {
     const DotConstraint& constraint = dots[order_[row]];
     value_[row] = constraint.value;

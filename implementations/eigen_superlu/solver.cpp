@@ -1,26 +1,7 @@
 // Simplicial LDL^T on the matrix in elimination order.
 #include "solver.hpp"
 
-#include <Eigen/OrderingMethods>
-#include <numeric>
-
 namespace mbs::eigen_superlu {
-
-template <class Scalar>
-std::vector<int> SimplicialSolver<Scalar>::elimination_order(const SparseMatrix& pattern) {
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-  Eigen::AMDOrdering<int>()(pattern, order);
-  std::vector<int> position(pattern.cols());
-  for (int k = 0; k < pattern.cols(); ++k) position[order.indices()[k]] = k;
-  return position;
-}
-
-template <class Scalar>
-std::vector<int> SimplicialSolver<Scalar>::equivalent_order(const SparseMatrix& pattern) {
-  std::vector<int> identity(pattern.cols());
-  std::iota(identity.begin(), identity.end(), 0);
-  return identity;
-}
 
 template <class Scalar>
 SimplicialSolver<Scalar>::SimplicialSolver(const Values& matrix, Definiteness definiteness)
