@@ -25,9 +25,15 @@ class ChainBatch final : public BatchSimulation {
     for (int first = 0; first < lanes(); first += Group::kChains) {
       groups_.push_back(std::make_unique<Group>(places, settings_[0]));
     }
+    const std::size_t fitting = kFittingBytes / groups_[0]->bytes();
+    together_ = std::clamp<std::size_t>(fitting, 1, kMostTogether);
   }
 
  private:
+  /// Larger groups are quicker one after the other.
+  static constexpr std::size_t kFittingBytes = 56000;
+  static constexpr std::size_t kMostTogether = 2;
+
   void do_set_state(int lane, const State& state) override {
     group(lane).set_state(lane % Group::kChains, topologies_[lane], settings_[lane], state);
   }
@@ -38,8 +44,8 @@ class ChainBatch final : public BatchSimulation {
   void do_retire(int lane) override { group(lane).clear(lane % Group::kChains); }
 
   void do_step(std::span<StepOutcome> outcomes) override {
-    for (std::size_t first = 0; first < groups_.size(); first += 2) {
-      const std::size_t count = std::min<std::size_t>(2, groups_.size() - first);
+    for (std::size_t first = 0; first < groups_.size(); first += together_) {
+      const std::size_t count = std::min(together_, groups_.size() - first);
       Group::step_together({groups_.data() + first, count});
     }
     for (int lane = 0; lane < lanes(); ++lane) {
@@ -52,6 +58,7 @@ class ChainBatch final : public BatchSimulation {
   std::vector<StepSettings> settings_;
   std::vector<Topology> topologies_;
   std::vector<std::unique_ptr<Group>> groups_;
+  std::size_t together_ = 1;
 };
 
 }  // namespace mbs::compiled_ldl::chain

@@ -32,6 +32,7 @@ class LaneGroup {
   LaneGroup(int places, const StepSettings& settings) : settings_(settings), chain_(places) {
     for (int chain = 0; chain < kChains; ++chain) clear(chain);
   }
+  [[nodiscard]] std::size_t bytes() const { return chain_.bytes(); }
 
   void set_state(int chain, const Topology& topology, const StepSettings& settings,
                  const State& state) {

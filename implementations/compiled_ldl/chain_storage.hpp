@@ -136,6 +136,9 @@ struct Storage {
   std::vector<B> blocks;
   std::vector<const C*> constants;  // of each block; blocks in a row share them where they can
 
+  /// What a sweep has to do with, but for constants.
+  [[nodiscard]] std::size_t bytes() const { return blocks.size() * sizeof(B); }
+
   /// Constants and state of a chain.
   void set(int chain, const Topology& topology, const Units& units, const State& state);
   void get(int chain, const Topology& topology, const Units& units, State& state) const;
