@@ -79,6 +79,6 @@ std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> mode
   });
 }
 
-int batch_lanes() { return 4 * Lanes<Wide>::kChains; }
+int batch_lanes() { return 2 * Lanes<Wide>::kChains; }
 
 }  // namespace mbs::compiled_ldl::chain

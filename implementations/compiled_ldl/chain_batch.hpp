@@ -25,12 +25,13 @@ class ChainBatch final : public BatchSimulation {
     for (int first = 0; first < lanes(); first += Group::kChains) {
       groups_.push_back(std::make_unique<Group>(places, settings_[0]));
     }
-    const std::size_t fitting = kFirstLevelCache / groups_[0]->bytes();
+    const std::size_t fitting = kFittingBytes / groups_[0]->bytes();
     together_ = std::clamp<std::size_t>(fitting, 1, kMostTogether);
   }
 
  private:
-  static constexpr std::size_t kFirstLevelCache = 40000;  // bytes of it that blocks may take
+  /// Larger groups are quicker one after the other.
+  static constexpr std::size_t kFittingBytes = 56000;
   static constexpr std::size_t kMostTogether = 2;
 
   void do_set_state(int lane, const State& state) override {

@@ -118,4 +118,25 @@ MBS_CHAIN_INLINE void substitute_outwards(Store& chain, const Apply& apply) {
   }
 }
 
+/// Two of them by turns, block by block.
+template <class Store, class Apply>
+MBS_CHAIN_INLINE void substitute_outwards(Store& first, const Apply& apply_first, Store& second,
+                                          const Apply& apply_second) {
+  auto* a = first.blocks.data() + first.last;
+  auto* b = second.blocks.data() + second.last;
+  auto* const begin = first.blocks.data();
+  auto x = a->f;
+  auto y = b->f;
+  apply_first(*a, x);
+  apply_second(*b, y);
+  while (a != begin) {
+    --a;
+    --b;
+    x = backward(a->factors.gain, adjugate_times(a->factors.scaled, a->f), x);
+    y = backward(b->factors.gain, adjugate_times(b->factors.scaled, b->f), y);
+    apply_first(*a, x);
+    apply_second(*b, y);
+  }
+}
+
 }  // namespace mbs::compiled_ldl::chain

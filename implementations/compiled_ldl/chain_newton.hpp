@@ -56,20 +56,32 @@ class Newton {
       }
       finish_block(block[-1], *data[-1], before, taking.active, carry);
     }
-    Vec<V> f = Vec<V>{} - (*data)->force;
-    const Sym<V> own = point(*block, **data, f, taking.pending);
-    set<kMasked>(block->factors.scaled, meet<typename Store::Use>(own, carry, f, least, block->f),
-                 taking.active);
+    finish_chain(*block, **data, taking, least, carry);
     return least;
+  }
+  /// Of two groups by turns, block by block: what one waits for is the other's work.
+  static void inwards(Store& a, const Taking<Mask>& taking_a, V& least_a, Store& b,
+                      const Taking<Mask>& taking_b, V& least_b) {
+    InwardsSweep sweep_a(a, taking_a), sweep_b(b, taking_b);  // elsewhere they would be in memory
+    const int last = a.last;
+    for (int k = 0; k < last; ++k) {
+      sweep_a.advance();
+      sweep_b.advance();
+    }
+    least_a = sweep_a.finish();
+    least_b = sweep_b.finish();
   }
   static V outwards(Store& chain, const Mask& active) {
     LargestOf<typename Store::Use> largest;
-    substitute_outwards(chain, [&](B& block, const Vec<V>& x) {  // Eqs. (4), (2)
-      largest.add(x);
-      set<kMasked>(block.x, block.x - (V{} + 0.5) * x, active);
-      set<kMasked>(block.u, block.u - x, active);
-    });
+    substitute_outwards(chain, Move{largest, active});
     return largest.value();
+  }
+  static void outwards(Store& a, const Mask& active_a, V& largest_a, Store& b, const Mask& active_b,
+                       V& largest_b) {
+    LargestOf<typename Store::Use> of_a, of_b;
+    substitute_outwards(a, Move{of_a, active_a}, b, Move{of_b, active_b});
+    largest_a = of_a.value();
+    largest_b = of_b.value();
   }
 
  private:
@@ -86,6 +98,18 @@ class Newton {
     if (!kFirst) set<kMasked>(multiplier, V(multiplier + violation), pending);
     return multiplier + violation;
   }
+
+  /// Eqs. (4), (2)
+  struct Move {
+    LargestOf<typename Store::Use>& largest;
+    const Mask& active;
+
+    MBS_CHAIN_INLINE void operator()(B& block, const Vec<V>& x) const {
+      largest.add(x);
+      set<kMasked>(block.x, block.x - (V{} + 0.5) * x, active);
+      set<kMasked>(block.u, block.u - x, active);
+    }
+  };
 
   /// M + Σ d dᵀ of a point, and its right-hand side but for links.
   MBS_CHAIN_INLINE static Sym<V> point(B& block, const C& data, Vec<V>& f, const Mask& pending) {
@@ -131,6 +155,44 @@ class Newton {
     carry.force = forward(factors.gain, pending.inner, pending.f);
     set<kMasked>(block.factors.scaled, factors.scaled, active);
     for (int k = 0; k < 4; ++k) set<kMasked>(block.factors.gain[k], factors.gain[k], active);
+  }
+
+  /// A sweep inwards that stops after every block.
+  struct InwardsSweep {
+    InwardsSweep(Store& chain, const Taking<Mask>& taking)
+        : block(chain.blocks.data()), data(chain.constants.data()), taking(taking) {
+      if (kFirst) predict(*block);
+    }
+
+    MBS_CHAIN_INLINE void advance() {
+      if (kFirst) predict(block[1]);
+      Pending pending;
+      eliminate_block(*block, block[1], **data, taking, least, carry, pending);
+      pending.f = carry.force + pending.f;
+      finish_block(*block, **data, pending, taking.active, carry);
+      ++block;
+      ++data;
+    }
+    /// The last block; the least pivot of all.
+    MBS_CHAIN_INLINE V finish() {
+      finish_chain(*block, **data, taking, least, carry);
+      return least;
+    }
+
+    B* block;
+    const C* const* data;
+    Taking<Mask> taking;
+    Carry<V> carry;
+    V least = V{} + 1.0;
+  };
+
+  /// Eliminates the last block.
+  MBS_CHAIN_INLINE static void finish_chain(B& block, const C& data, const Taking<Mask>& taking,
+                                            V& least, const Carry<V>& carry) {
+    Vec<V> f = Vec<V>{} - data.force;
+    const Sym<V> own = point(block, data, f, taking.pending);
+    set<kMasked>(block.factors.scaled, meet<typename Store::Use>(own, carry, f, least, block.f),
+                 taking.active);
   }
 };
 

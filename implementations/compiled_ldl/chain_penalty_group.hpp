@@ -20,21 +20,32 @@ class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods>> {
     chain_.get(chain, topology, Units(settings), state);
   }
 
-  /// Sweeps of a few groups by turns: while one waits at the end of a sweep for the number that the
-  /// next one begins with, the processor has another's to do.
+  /// Two groups at most, sweep by sweep: while one waits at the end of a sweep for the number that
+  /// the next one begins with, the processor has the other's to do.
   static void step_together(std::span<const std::unique_ptr<PenaltyGroup>> groups) {
-    for (const auto& group : groups) group->first_inwards();
-    for (const auto& group : groups) group->first_outwards();
+    for (const auto& group : groups) group->begin();
+    inwards_of<true>(groups);
+    outwards_of<true>(groups);
     for (bool more = true; more;) {
       more = false;
       for (const auto& group : groups) more = group->decide() || more;
-      for (const auto& group : groups) group->inwards();
-      for (const auto& group : groups) group->outwards();
+      inwards_of<false>(groups);
+      outwards_of<false>(groups);
     }
     for (const auto& group : groups) group->velocity_inwards();
-    for (const auto& group : groups) group->velocity_outwards();
+    const bool both = groups.size() == 2 && groups[0]->projections_ == Projections::both &&
+                      groups[1]->projections_ == Projections::both;
+    if (both) {
+      Projection<Store>::velocity_outwards(groups[0]->chain_, groups[1]->chain_);
+    } else {
+      for (const auto& group : groups) group->velocity_outwards();
+    }
     for (const auto& group : groups) group->acceleration_inwards();
-    for (const auto& group : groups) group->acceleration_outwards();
+    if (both) {
+      Projection<Store>::acceleration_outwards(groups[0]->chain_, groups[1]->chain_);
+    } else {
+      for (const auto& group : groups) group->acceleration_outwards();
+    }
   }
 
  private:
@@ -43,14 +54,12 @@ class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods>> {
   using typename Base::V;
   using Mask = WideMask;
 
-  void first_inwards() {
+  void begin() {
     passes_ = failed_ = limit_ = Mask{};
     whole_ = more_ = true;
     pass_ = 1;
     active_ = running_;
-    result_.least = Newton<Store, true>::inwards(chain_, Taking<Mask>());
   }
-  void first_outwards() { result_.largest = Newton<Store, true>::outwards(chain_, Mask()); }
 
   /// Books the pass that has been done, and decides about another one. A chain that has converged
   /// or failed takes no part in further ones.
@@ -69,15 +78,54 @@ class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods>> {
     whole_ = whole_ && !(more_ && any(running_ & ~active_));
     return more_;
   }
+  using Groups = std::span<const std::unique_ptr<PenaltyGroup>>;
+
+  /// Two groups that both make another pass sweep block by block.
+  static bool by_turns(Groups groups) {
+    return groups.size() == 2 && groups[0]->more_ && groups[1]->more_;
+  }
+  template <bool kFirst>
+  static void inwards_of(Groups groups) {
+    if (!by_turns(groups)) {
+      for (const auto& group : groups) group->template inwards<kFirst>();
+    } else if (kFirst || (groups[0]->whole_ && groups[1]->whole_)) {
+      both_inwards<Newton<Store, kFirst>>(*groups[0], *groups[1]);
+    } else {
+      both_inwards<Newton<Store, false, true>>(*groups[0], *groups[1]);
+    }
+  }
+  template <bool kFirst>
+  static void outwards_of(Groups groups) {
+    if (!by_turns(groups)) {
+      for (const auto& group : groups) group->template outwards<kFirst>();
+    } else if (kFirst || (groups[0]->whole_ && groups[1]->whole_)) {
+      both_outwards<Newton<Store, kFirst>>(*groups[0], *groups[1]);
+    } else {
+      both_outwards<Newton<Store, false, true>>(*groups[0], *groups[1]);
+    }
+  }
+  template <class Passes>
+  static void both_inwards(PenaltyGroup& a, PenaltyGroup& b) {
+    Passes::inwards(a.chain_, {a.last_, a.active_}, a.result_.least, b.chain_, {b.last_, b.active_},
+                    b.result_.least);
+  }
+  template <class Passes>
+  static void both_outwards(PenaltyGroup& a, PenaltyGroup& b) {
+    Passes::outwards(a.chain_, a.active_, a.result_.largest, b.chain_, b.active_,
+                     b.result_.largest);
+  }
+  template <bool kFirst>
   void inwards() {
     if (!more_) return;
-    result_.least = whole_ ? Newton<Store, false>::inwards(chain_, Taking<Mask>())
-                           : Newton<Store, false, true>::inwards(chain_, {last_, active_});
+    result_.least = kFirst || whole_
+                        ? Newton<Store, kFirst>::inwards(chain_, Taking<Mask>())
+                        : Newton<Store, false, true>::inwards(chain_, {last_, active_});
   }
+  template <bool kFirst>
   void outwards() {
     if (!more_) return;
-    result_.largest = whole_ ? Newton<Store, false>::outwards(chain_, Mask())
-                             : Newton<Store, false, true>::outwards(chain_, active_);
+    result_.largest = kFirst || whole_ ? Newton<Store, kFirst>::outwards(chain_, Mask())
+                                       : Newton<Store, false, true>::outwards(chain_, active_);
   }
 
   void velocity_inwards() {

@@ -28,10 +28,14 @@ class Projection {
     velocity_outwards(chain);
   }
   static void velocity_inwards(Store& chain, const Mask& pending) {
-    substitute_inwards(chain, Velocity{pending});
+    substitute_inwards(chain, Velocity{pending, chain.blocks[0].w + chain.blocks[0].u});
   }
   static void velocity_outwards(Store& chain) {
     substitute_outwards(chain, [](B& block, const Vec<V>& x) { block.w = x; });
+  }
+  static void velocity_outwards(Store& a, Store& b) {
+    const auto set_velocity = [](B& block, const Vec<V>& x) { block.w = x; };
+    substitute_outwards(a, set_velocity, b, set_velocity);
   }
 
   /// The projected a, with that v.
@@ -42,6 +46,10 @@ class Projection {
   static void acceleration_inwards(Store& chain) { substitute_inwards(chain, Acceleration{}); }
   static void acceleration_outwards(Store& chain) {
     substitute_outwards(chain, [](B& block, const Vec<V>& x) { block.u = x; });
+  }
+  static void acceleration_outwards(Store& a, Store& b) {
+    const auto set_acceleration = [](B& block, const Vec<V>& x) { block.u = x; };
+    substitute_outwards(a, set_acceleration, b, set_acceleration);
   }
 
  private:
@@ -63,16 +71,18 @@ class Projection {
   /// M v*
   struct Velocity {
     const Mask& pending;
+    mutable Vec<V> v{};  // of the block, from the one before
 
     MBS_CHAIN_INLINE Vec<V> point(B& block, const C& data) const {
       rods(block, data, pending);
-      return data.mass.times(block.w + block.u);
+      return data.mass.times(v);
     }
     MBS_CHAIN_INLINE void link(B& block, const B& next, const C& data, Vec<V>& f,
                                Vec<V>& inner) const {
       Projection::link(block, next, data, pending);
-      f = f + data.mass.outer(next.w + next.u);
-      inner = data.mass.inner(block.w + block.u);
+      inner = data.mass.inner(v);
+      v = next.w + next.u;
+      f = f + data.mass.outer(v);
     }
   };
 
