@@ -1,7 +1,7 @@
 # The settings that advice considers, as options of `mbs simulate`, and who serves them.
 from dataclasses import dataclass
 
-LOOSE = 100  # a loose tolerance is this times the automatic one
+LOOSE = 10  # a loose tolerance is this times the automatic one of the scheme
 ORDERS = {"rattle4": 4, "rattle6": 6}  # of a scheme; the others are of second order
 
 # What is changed beside the scheme, one combination a line. Measured on the N-four-bar: the penalty
@@ -63,7 +63,7 @@ class Setting:
         """The words of "settings" in `mbs list --json` that a variant must have."""
         found = {self.scheme.rstrip("46")} - {"penalty"}
         for option, value in self.changes:
-            found |= {value} if option == "precision" else {option} - {"projections", "tolerance"}
+            found |= {value} if option == "precision" else {option} - {"projections", "tolerance", "half-step"}
         return found
 
 

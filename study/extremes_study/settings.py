@@ -5,7 +5,9 @@ from study.extremes_study import tools
 FORMS = tuple(map(Setting, tools.FORMS))
 OTHERS = (Setting("rattle"), Setting("rattle4"), Setting("rattle6"),
           *(Setting(form.scheme, (change,)) for change in (
-              ("tangent", "kept"), ("precision", "single"), ("precision", "mixed")) for form in FORMS))
+              ("tangent", "kept"), ("precision", "single"), ("precision", "mixed")) for form in FORMS),
+          *(Setting(form.scheme, (*change, ("half-step", ""))) for change in ((), (("tangent", "kept"),)) for form in FORMS),
+          Setting("rattle4", (("half-step", ""),)))  # of which alone a scene whose motion nobody knows is `ok`
 CELLS = {  # axis: labels of the cells that run in OTHERS too
     "loops": ("N = 1", "N = 10", "N = 100"),
     "step": tuple(f"Δt = 1e{power} s" for power in range(-5, 0)),

@@ -3,8 +3,8 @@ from study.advise_study.settings import Setting
 from study.stability_study.grid import AUTOMATIC, Cell, row, run
 
 STEP, DURATION = 1.25e-3, 20.0
-LOOPS = {"penalty": (1, 2, 5, 10, 20, 40, 80, 100, 200, 300, 500),
-         "saddle-point": (1, 2, 5, 10, 20, 40, 80, 100, 200, 300, 500, 1000, 2000),
+LOOPS = {"penalty": (*range(1, 41), 80, 100, 150, 200, 300, 500),
+         "saddle-point": (*range(1, 41), 80, 100, 150, 200, 300, 500, 1000, 2000),
          "rattle": (1, 2, 5, 10, 40), "rattle4": (1, 2, 10), "rattle6": (1, 2, 10)}
 MUST_HOLD = {  # scheme: up to which N, position error (m), passes a step, steps at the pass limit
     "penalty": (200, 5e-3, 3.0, None), "saddle-point": (2000, 2e-3, 2.2, 0)}

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "model_math/point_distance.hpp"
+#include "run/judge.hpp"
+#include "run/scene_distance.hpp"
 #include "run/setting_names.hpp"
 
 namespace mbs {
@@ -19,6 +20,7 @@ HalfStepRun::HalfStepRun(const Scene& scene, const Variant& variant, const StepS
     : scene_(scene),
       simulation_(create_simulation(variant, scene.model, half)),
       state_(initial),
+      length_(judged_length(scene.model)),
       factor_(richardson_factor(half.scheme)) {
   simulation_->set_state(initial);
 }
@@ -33,7 +35,7 @@ void HalfStepRun::advance() {
 
 void HalfStepRun::compare(const State& whole) {
   simulation_->get_state(state_);
-  const double error = factor_ * largest_point_distance(scene_.model, whole.q, state_.q);
+  const double error = factor_ * largest_distance(scene_, length_, whole.q, state_.q);
   // Not std::max, which would drop a NaN.
   if (!(error <= error_)) {
     error_ = std::isnan(error) ? std::numeric_limits<double>::infinity() : error;

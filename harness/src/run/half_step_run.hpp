@@ -28,7 +28,7 @@ class HalfStepRun {
   /// Takes the whole-step simulation's state at the same time.
   void compare(const State& whole);
 
-  /// Largest estimated distance of a point (not of unit vectors) so far, m; infinite once the
+  /// Largest estimated distance by largest_distance() so far, m; infinite once the
   /// half-step simulation is lost, not a number before compare().
   [[nodiscard]] double position_error_max() const { return error_; }
 
@@ -36,6 +36,7 @@ class HalfStepRun {
   const Scene& scene_;
   std::unique_ptr<Simulation> simulation_;
   State state_;
+  double length_;  // of unit vectors, m
   double factor_;
   double error_ = std::numeric_limits<double>::quiet_NaN();  // nothing was compared
 };

@@ -14,9 +14,9 @@
 #include "model_math/extent.hpp"
 #include "model_math/kinematics.hpp"
 #include "model_math/known_motion.hpp"
-#include "model_math/point_distance.hpp"
 #include "model_math/turning.hpp"
 #include "model_math/vector3.hpp"
+#include "run/scene_distance.hpp"
 #include "scene/row_names.hpp"
 
 namespace mbs {
@@ -74,8 +74,9 @@ bool is_finite(const State& state) {
 
 }  // namespace
 
-double trapezoidal_error(const Model& model, const State& before, const State& after, double step) {
-  return step * step / 12 * largest_point_distance(model, after.a, before.a);
+double trapezoidal_error(const Scene& scene, const State& before, const State& after, double step,
+                         double length) {
+  return step * step / 12 * largest_distance(scene, length, after.a, before.a);
 }
 
 double judged_length(const Model& model) {
@@ -159,7 +160,7 @@ std::string Judge::judge(double t, const State& state) {
 void Judge::add_local_error(double local, const State& judged, double step, long steps) {
   if (conservative_ && so_far_.last_kinetic > 0.0) {
     const std::vector<double> rest(judged.v.size(), 0.0);
-    local += step * largest_point_distance(scene_->model, judged.v, rest) *
+    local += step * largest_distance(*scene_, length_, judged.v, rest) *
              (std::sqrt(1 + so_far_.last_energy_difference / so_far_.last_kinetic) - 1);
   }
   so_far_.local_error += static_cast<double>(steps) * local;

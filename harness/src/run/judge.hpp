@@ -33,8 +33,9 @@ struct AccurateBounds {
 };
 
 /// What the trapezoidal rule leaves in one step, dt^2/12 |a' - a| of the point where that is most,
-/// m; `after` is one step (s) after `before`.
-double trapezoidal_error(const Model& model, const State& before, const State& after, double step);
+/// m; `after` is one step (s) after `before`, unit vectors count as `length` (m) long.
+double trapezoidal_error(const Scene& scene, const State& before, const State& after, double step,
+                         double length);
 
 /// What errors are small against where the exact motion is not known, m: the length of the part
 /// that turns fastest, at most the extent.

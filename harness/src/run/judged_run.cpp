@@ -34,7 +34,7 @@ JudgedRun::JudgedRun(const Scene& scene, const Variant& variant, const RunSettin
       before_(state_),
       judge_(scene, state_, 0.0),
       good_{0, state_, judge_.figures()},
-      samples_local_error_(!settings.half_step && !judge_.knows_exact_motion()) {}
+      samples_local_error_(!judge_.knows_exact_motion()) {}
 
 void JudgedRun::begin(Access access) {
   access_ = std::move(access);
@@ -116,7 +116,7 @@ void JudgedRun::judge_present() {
 /// What the last step left, m, sampled where the state is judged.
 double JudgedRun::local_error() {
   if (local_half_) return local_half_->error(before_, state_);
-  return trapezoidal_error(scene_.model, before_, state_, settings_.step.step);
+  return trapezoidal_error(scene_, before_, state_, settings_.step.step, judge_.length());
 }
 
 /// The solution was found lost, for `reason`. Does the steps since the last good one again and
@@ -193,7 +193,7 @@ void JudgedRun::conclude() {
   summary_.reason += estimated;
   if (!summary_.reason.empty()) {
     summary_.status = RunStatus::degraded;
-  } else if (samples_local_error_) {
+  } else if (samples_local_error_ && !half_) {
     summary_.status = RunStatus::plausible;
     summary_.reason = "no exact motion is known; --half-step estimates the position error";
   }
@@ -210,10 +210,8 @@ std::string JudgedRun::beyond_estimates() const {
   }
   const double local_allowed = AccurateBounds{}.local_error * judge_.length();
   if (summary_.local_error_sum.value_or(0.0) <= local_allowed) return "";
-  return fmt::format(
-      "local errors add up to {:.1e} m (ok to {:.2g}): a shorter step, or --half-step for a "
-      "sharper estimate",
-      *summary_.local_error_sum, local_allowed);
+  return fmt::format("local errors add up to {:.1e} m (ok to {:.2g}): a shorter step",
+                     *summary_.local_error_sum, local_allowed);
 }
 
 RunSummary JudgedRun::finish() {

@@ -3,8 +3,9 @@
 
 #include <limits>
 
-#include "model_math/point_distance.hpp"
 #include "run/half_step_run.hpp"
+#include "run/judge.hpp"
+#include "run/scene_distance.hpp"
 #include "run/setting_names.hpp"
 
 namespace mbs {
@@ -23,6 +24,7 @@ LocalHalfSteps::LocalHalfSteps(const Scene& scene, const Variant& variant,
                                const StepSettings& settings)
     : scene_(scene),
       simulation_(create_simulation(variant, scene.model, halved(settings))),
+      length_(judged_length(scene.model)),
       factor_(richardson_factor(settings.scheme)) {}
 
 double LocalHalfSteps::error(const State& before, const State& after) {
@@ -33,7 +35,7 @@ double LocalHalfSteps::error(const State& before, const State& after) {
     }
   }
   simulation_->get_state(state_);
-  return factor_ * largest_point_distance(scene_.model, after.q, state_.q);
+  return factor_ * largest_distance(scene_, length_, after.q, state_.q);
 }
 
 }  // namespace mbs

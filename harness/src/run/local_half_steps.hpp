@@ -22,6 +22,7 @@ class LocalHalfSteps {
   const Scene& scene_;
   std::unique_ptr<Simulation> simulation_;
   State state_;
+  double length_;  // of unit vectors, m
   double factor_;
 };
 

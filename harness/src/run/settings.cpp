@@ -83,7 +83,7 @@ double automatic_penalty(const Model& model, const StepSettings& settings) {
   if (settings.scheme == Scheme::penalty) return per_beta * automatic_beta(model, settings);
   const double mean = mean_constraint_eigenvalue(model);
   if (settings.scheme != Scheme::saddle_point) return per_beta * 2e4 / mean;  // RATTLE
-  return per_beta * (settings.precision == Precision::double_precision ? 2.5e8 : 1e6) / mean;
+  return per_beta * (settings.precision == Precision::double_precision ? 2.5e7 : 1e6) / mean;
 }
 
 double parse_penalty(const std::string& text, const Model& model, const StepSettings& settings) {
@@ -100,7 +100,14 @@ double parse_penalty(const std::string& text, const Model& model, const StepSett
 double automatic_tolerance(const Model& model, const StepSettings& settings) {
   const double step = settings.step;
   const double length = std::min(fastest_turning(model).length, 1.0);
-  const double wanted = length * std::min(1e-9 * std::pow(step / 1.25e-3, 4), 1e-6);
+  // The saddle-point form converges quadratically, with a tangent of every pass: what it leaves is
+  // far below the last |Delta q|.
+  const bool is_quadratic =
+      settings.scheme == Scheme::saddle_point && settings.tangent == TangentReuse::none;
+  const double of_paper = step / 1.25e-3;
+  const double wanted =
+      length *
+      std::min(is_quadratic ? 1e-8 * std::pow(of_paper, 2) : 1e-9 * std::pow(of_paper, 4), 1e-6);
   const double largest = largest_coordinate(model), size = rounding_length(model);
   const double stiffness = model.constraints() == 0 ? 0.0
                                                     : settings.penalty * step * step / 4 *

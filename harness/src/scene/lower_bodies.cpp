@@ -201,7 +201,7 @@ class BodyLowering {
   void lower_marker(std::size_t item) {
     std::vector<Marker>& markers = scene_.lowered_.data.elements.markers;
     point(item).marker = static_cast<int>(markers.size());
-    Marker marker{point(item).name, {}};
+    Marker marker{point(item).name, {}, point(item).is_vector};
     const BodyMass::Weights weights = algebra_.weights(place(item));
     for (std::size_t k = 0; k < weights.size(); ++k) {
       if (weights[k] == 0.0) continue;

@@ -21,14 +21,16 @@ struct Fill {
   std::uint64_t seed = 0;  ///< of their random choice
 };
 
-/// A point of a body that is no coordinate: r = sum over `parts` of matrix * r_point.
+/// A point or unit vector of a body that is no coordinate: r = sum over `parts` of matrix *
+/// r_point.
 struct Marker {
   struct Part {
     int point = 0;  ///< index into Model::points()
     std::array<std::array<double, 3>, 3> matrix{};
   };
   std::string name;
-  std::vector<Part> parts;
+  std::vector<Part> parts = {};
+  bool is_vector = false;
 };
 
 /// From `from` to `to`, or a unit vector alone (`from` = -1); indices into Model::points().
@@ -173,12 +175,12 @@ SceneData parse_scene(std::string_view json, const std::string& where);
 /// Moves data.model's start onto its constraints: positions onto Phi(q, 0) = 0, then velocities
 /// onto Phi_q v = -Phi_t, each by the smallest change in the norm of M (Gauss-Newton; redundant
 /// constraints are fine). Velocities given, that is not zero, stay as they are if the others can
-/// follow, and change a millionth as easily as those if not. A start on its constraints to rounding is left bit for bit. What the file gives of
-/// points that are no coordinates counts like theirs. Fills data.assembly. Throws UsageError,
-/// prefixed by `where`, naming the constraint and by how much it fails, if that does not converge,
-/// if a point would move by more than data.largest_correction (a unit vector: by more than its
-/// share of the scene's extent), or if a given velocity would change by more than a tenth of the
-/// largest given.
+/// follow, and change a millionth as easily as those if not. A start on its constraints to rounding
+/// is left bit for bit. What the file gives of points that are no coordinates counts like theirs.
+/// Fills data.assembly. Throws UsageError, prefixed by `where`, naming the constraint and by how
+/// much it fails, if that does not converge, if a point would move by more than
+/// data.largest_correction (a unit vector: by more than its share of the scene's extent), or if a
+/// given velocity would change by more than a tenth of the largest given.
 void assemble_start(SceneData& data, const std::string& where);
 
 /// Number of non-zero positions of the tangent (5), both triangles: pattern of M, C, K and Phi_q^T
