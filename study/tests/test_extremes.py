@@ -63,6 +63,7 @@ def test_settings_that_few_serve_run_in_cells_that_there_are():
     assert settings.of("loops", "N = 10") == settings.FORMS + settings.OTHERS
     assert settings.of("loops", "N = 1000") == settings.FORMS
     assert {setting.scheme for setting in settings.OTHERS} == {"rattle", "rattle4", "rattle6", "penalty", "saddle-point"}
+    assert any(("half-step", "") in setting.changes for setting in settings.OTHERS)  # alone `ok` without exact motion
 
 
 def test_standing_still_is_right_only_where_nothing_moves():
@@ -202,7 +203,7 @@ def place(tmp_path, monkeypatch):
 
 
 def test_the_battery_on_the_real_program_is_resumed(place, monkeypatch):
-    cells = [Cell("loops", "N = 1", "four-bar:1", Chain(1), steps=80),
+    cells = [Cell("loops", "one", "four-bar:1", Chain(1), steps=80),
              Cell("length", "1e4 m", "", Chain(2, length=1e4, rate=1e-2),
                   Chain(2, length=1e4, rate=1e-2).document(), step=0.125, steps=80, length=1e4),
              Cell("redundant", "rod given twice", "", Chain(1), scenes.twin_rod(same_points=True), steps=80),
