@@ -83,7 +83,10 @@ double automatic_penalty(const Model& model, const StepSettings& settings) {
   if (settings.scheme == Scheme::penalty) return per_beta * automatic_beta(model, settings);
   const double mean = mean_constraint_eigenvalue(model);
   if (settings.scheme != Scheme::saddle_point) return per_beta * 2e4 / mean;  // RATTLE
-  return per_beta * (settings.precision == Precision::double_precision ? 2.5e7 : 1e6) / mean;
+  if (settings.precision != Precision::double_precision) return per_beta * 1e6 / mean;
+  const double ratio = fastest_turning(model).rate * settings.step / 6.8e-3;
+  const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
+  return per_beta * std::clamp(15 / (smallest * ratio * ratio), 2.5e7 / mean, 1e10 / mean);
 }
 
 double parse_penalty(const std::string& text, const Model& model, const StepSettings& settings) {

@@ -26,10 +26,11 @@ namespace mbs {
 /// predictor's error alpha turns into forces. harness/README.md has the measurements. 1 for a model
 /// without constraints.
 ///
-/// The saddle-point form: (4 / dt^2) 2.5e7 / s_mean, which is eps = 4e-8 s_mean; with factors in
-/// single precision 1e6 instead, since eps must be above their rounding. RATTLE: (4 / dt^2)
-/// 2e4 / s_mean: a smaller eps does not survive the poles of the multipliers at singular positions.
-/// For the step, scheme and precision of `settings`.
+/// The saddle-point form: (4 / dt^2) 15 / (s_min x^2), but from 2.5e7 / s_mean, which is eps = 4e-8
+/// s_mean, to 1e10 / s_mean (x = turn / 6.8e-3); with factors in single precision 1e6 instead,
+/// since eps must be above their rounding. RATTLE: (4 / dt^2) 2e4 / s_mean: a smaller eps does not
+/// survive the poles of the multipliers at singular positions. For the step, scheme and precision
+/// of `settings`.
 double automatic_penalty(const Model& model, const StepSettings& settings);
 
 /// Diagonal of Phi_q M^-1 Phi_q^T with the diagonal of M, at the start (m), m^2/kg.
@@ -50,13 +51,13 @@ double parse_penalty(const std::string& text, const Model& model, const StepSett
 double rounding_length(const Model& model);
 
 /// The tolerance `auto`, m: 1e-9 l at 1.25e-3 s and proportional to step^4, at most 1e-6 l, so that
-/// what Newton leaves stays below the integrator's own error at every step; in the saddle-point form
-/// with a tangent of every pass, which converges quadratically, 1e-8 l and step^2: tighter ones are
-/// below the noise of solves at singular positions, where passes then go on to their limit. l is
-/// that of fastest_turning(), at most 1 m. But not below ten times
-/// the rounding noise of a Newton step, which it could not reach: u max|q|, and in the constraints
-/// u l_r sqrt(1 + alpha dt^2/4 s_mean) with l_r = rounding_length(); u is that of the precision.
-/// For the step, penalty and precision of `settings`.
+/// what Newton leaves stays below the integrator's own error at every step; in the saddle-point
+/// form with a tangent of every pass, which converges quadratically, 1e-8 l and step^2: tighter
+/// ones are below the noise of solves at singular positions, where passes then go on to their
+/// limit. l is that of fastest_turning(), at most 1 m. But not below ten times the rounding noise
+/// of a Newton step, which it could not reach: u max|q|, and in the constraints u l_r sqrt(1 +
+/// alpha dt^2/4 s_mean) with l_r = rounding_length(); u is that of the precision. For the step,
+/// penalty and precision of `settings`.
 double automatic_tolerance(const Model& model, const StepSettings& settings);
 
 }  // namespace mbs
