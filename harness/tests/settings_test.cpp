@@ -62,6 +62,23 @@ TEST(AutomaticPenalty, IsTheDocumentedRule) {
   EXPECT_TRUE(lower && middle);  // both parts of the rule were met
 }
 
+TEST(AutomaticPenalty, OfTheSaddlePointFormIsTheDocumentedRule) {
+  bool lower = false, middle = false;
+  for (const int loops : {1, 10, 60}) {
+    const Model model(four_bar(loops));
+    const Spectrum s = spectrum_of(model);
+    for (const double step : {2e-5, 2e-4, kStep, 1e-2}) {
+      const double x = std::sqrt(3 * 9.81) * step / 6.8e-3, wanted = 15 / (s.smallest * x * x);
+      const double rule = 4 / (step * step) * std::clamp(wanted, 2.5e7 / s.mean, 1e10 / s.mean);
+      EXPECT_NEAR(automatic_penalty(model, {.step = step, .scheme = Scheme::saddle_point}), rule,
+                  0.05 * rule)
+          << loops << " " << step;
+      (wanted > 2.5e7 / s.mean ? middle : lower) = true;
+    }
+  }
+  EXPECT_TRUE(lower && middle);  // both parts of the rule were met
+}
+
 TEST(AutomaticPenalty, IsThatOfTheIndependentConstraintsWhereSomeAreRedundant) {
   ModelData data = four_bar(40);
   data.dot_constraints.push_back(data.dot_constraints[0]);
@@ -98,6 +115,16 @@ TEST(AutomaticTolerance, IsTheDocumentedRule) {
       10 * unit * 10.0 * std::sqrt(1 + alpha * step * step / 4 * spectrum_of(model).mean);
   EXPECT_GT(noise, 1e-9 * std::pow(step / kStep, 4));
   EXPECT_NEAR(automatic_tolerance(model, {.step = step, .penalty = alpha}), noise, 1e-9 * noise);
+}
+
+TEST(AutomaticTolerance, OfTheSaddlePointFormIsLooserWhereItConvergesQuadratically) {
+  const Model model(four_bar(10));
+  StepSettings settings{.step = kStep, .penalty = 1e10, .scheme = Scheme::saddle_point};
+  EXPECT_DOUBLE_EQ(automatic_tolerance(model, settings), 1e-8);
+  settings.tangent = TangentReuse::kept;
+  EXPECT_DOUBLE_EQ(automatic_tolerance(model, settings), 1e-9);
+  settings = {.step = 2 * kStep, .penalty = 1e10, .scheme = Scheme::saddle_point};
+  EXPECT_DOUBLE_EQ(automatic_tolerance(model, settings), 4e-8);
 }
 
 TEST(AutomaticTolerance, FarFromTheOriginIsTheRoundingOfCoordinates) {
