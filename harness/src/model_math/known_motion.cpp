@@ -27,7 +27,7 @@ void KnownMotion::set_time(double t) {
       accelerations_[i][k] = sample.acceleration;
     }
   }
-  if (!model_.driven_values().empty()) values();
+  if (!model_.driven_values().empty()) static_cast<void>(values());  // fills them
   for (const DrivenValue& driven : model_.driven_values()) {
     values_[static_cast<std::size_t>(driven.constraint)] = driven.value.at(t);
   }
