@@ -44,12 +44,14 @@ std::vector<double> constraint_diagonal(const Model& model) {
 
 namespace {
 
+constexpr double kMeasuredTurn = 6.8e-3;  // rad a step, at which the measured numbers hold
+
 /// beta = alpha dt^2/4 of the penalty form, kg/m^2.
 double automatic_beta(const Model& model, const StepSettings& settings) {
-  // rad a step, at which the measured three numbers hold. The coarse tolerance of single precision
-  // leaves the multipliers one pass a step, which needs more beta from longer steps on.
+  // The coarse tolerance of single precision leaves the multipliers one pass a step, which needs
+  // more beta from longer steps on.
   const bool single = settings.precision == Precision::single_precision;
-  const double at = single ? 13.6e-3 : 6.8e-3;
+  const double at = single ? 2 * kMeasuredTurn : kMeasuredTurn;
   const double mean = mean_constraint_eigenvalue(model);
   const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
   const double measured = std::clamp(30 / smallest, 4e3 / mean, 1e7 / mean);
@@ -84,7 +86,7 @@ double automatic_penalty(const Model& model, const StepSettings& settings) {
   const double mean = mean_constraint_eigenvalue(model);
   if (settings.scheme != Scheme::saddle_point) return per_beta * 2e4 / mean;  // RATTLE
   if (settings.precision != Precision::double_precision) return per_beta * 1e6 / mean;
-  const double ratio = fastest_turning(model).rate * settings.step / 6.8e-3;
+  const double ratio = fastest_turning(model).rate * settings.step / kMeasuredTurn;
   const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
   return per_beta * std::clamp(15 / (smallest * ratio * ratio), 2.5e7 / mean, 1e10 / mean);
 }
