@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "run/judge.hpp"
 #include "run/scene_distance.hpp"
 #include "run/setting_names.hpp"
 
@@ -16,11 +15,11 @@ double richardson_factor(Scheme scheme) {
 }
 
 HalfStepRun::HalfStepRun(const Scene& scene, const Variant& variant, const StepSettings& half,
-                         const State& initial)
+                         const State& initial, double length)
     : scene_(scene),
       simulation_(create_simulation(variant, scene.model, half)),
       state_(initial),
-      length_(judged_length(scene.model)),
+      length_(length),
       factor_(richardson_factor(half.scheme)) {
   simulation_->set_state(initial);
 }

@@ -18,9 +18,10 @@ double richardson_factor(Scheme scheme);
 /// needed.
 class HalfStepRun {
  public:
-  /// `half` is at half the step of the simulation beside it. `scene` must outlive this.
+  /// `half` is at half the step of the simulation beside it, unit vectors count as `length` (m)
+  /// long. `scene` must outlive this.
   HalfStepRun(const Scene& scene, const Variant& variant, const StepSettings& half,
-              const State& initial);
+              const State& initial, double length);
 
   /// Two half steps.
   void advance();

@@ -39,9 +39,11 @@ JudgedRun::JudgedRun(const Scene& scene, const Variant& variant, const RunSettin
 void JudgedRun::begin(Access access) {
   access_ = std::move(access);
   if (observer_) observer_(0, 0.0, state_);
-  if (settings_.half_step) half_.emplace(scene_, variant_, *settings_.half_step, state_);
+  if (settings_.half_step) {
+    half_.emplace(scene_, variant_, *settings_.half_step, state_, judge_.length());
+  }
   if (has_high_order(settings_.step.scheme)) {
-    local_half_.emplace(scene_, variant_, settings_.step);
+    local_half_.emplace(scene_, variant_, settings_.step, judge_.length());
   }
 }
 

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "run/half_step_run.hpp"
-#include "run/judge.hpp"
 #include "run/scene_distance.hpp"
 #include "run/setting_names.hpp"
 
@@ -21,10 +20,10 @@ StepSettings halved(StepSettings settings) {
 }  // namespace
 
 LocalHalfSteps::LocalHalfSteps(const Scene& scene, const Variant& variant,
-                               const StepSettings& settings)
+                               const StepSettings& settings, double length)
     : scene_(scene),
       simulation_(create_simulation(variant, scene.model, halved(settings))),
-      length_(judged_length(scene.model)),
+      length_(length),
       factor_(richardson_factor(settings.scheme)) {}
 
 double LocalHalfSteps::error(const State& before, const State& after) {

@@ -12,8 +12,10 @@ namespace mbs {
 /// leaves 2^p / (2^p - 1) times the difference to two half steps.
 class LocalHalfSteps {
  public:
-  /// `settings` are those of the whole step. `scene` must outlive this.
-  LocalHalfSteps(const Scene& scene, const Variant& variant, const StepSettings& settings);
+  /// `settings` are those of the whole step, unit vectors count as `length` (m) long. `scene` must
+  /// outlive this.
+  LocalHalfSteps(const Scene& scene, const Variant& variant, const StepSettings& settings,
+                 double length);
 
   /// Largest distance of a point, m; `after` is one step after `before`.
   [[nodiscard]] double error(const State& before, const State& after);
