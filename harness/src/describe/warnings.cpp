@@ -76,8 +76,10 @@ class SpringDiagonal {
 };
 
 /// upper / lower of a window that is worth a warning when it is no wider.
-double least_width(const StepSettings& settings, PenaltyFrom from) {
-  if (settings.precision == Precision::single_precision) return kClosedInSingle;
+double least_width(const PenaltyWindow& window, const StepSettings& settings, PenaltyFrom from) {
+  if (settings.precision == Precision::single_precision) {
+    return window.slowest_mode ? kClosedBySlowestInSingle : kClosedInSingle;
+  }
   return from == PenaltyFrom::rule ? kClosedByRule : 1 / kFarAbove;
 }
 
@@ -92,7 +94,7 @@ bool is_too_long(const PenaltyWindow& window, const StepSettings& settings) {
 std::string step_warning(const PenaltyWindow& window, const StepSettings& settings,
                          PenaltyFrom from) {
   const bool is_long = is_too_long(window, settings);
-  const bool no_step = window.widest < least_width(settings, from);
+  const bool no_step = window.widest < least_width(window, settings, from);
   const char* precision =
       is_long || settings.precision == Precision::double_precision ? "" : ", --precision double";
   if (no_step) {
@@ -117,7 +119,7 @@ std::string penalty_warning(const PenaltyWindow& window, const StepSettings& set
         "estimate: mbs describe)",
         settings.penalty, side, bound, what, settings.step);
   };
-  if (window.upper < window.lower * least_width(settings, from)) {
+  if (window.upper < window.lower * least_width(window, settings, from)) {
     return step_warning(window, settings, from);
   }
   if (from == PenaltyFrom::rule) {

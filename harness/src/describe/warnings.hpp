@@ -22,8 +22,9 @@ inline constexpr double kFarBelow = 100.0, kFarAbove = 10.0;
 /// bound by that one.
 inline constexpr double kClosedByRule = 0.01, kFarAboveByRule = 25.0;
 
-/// In single precision runs are lost from where the window has closed to this factor.
-inline constexpr double kClosedInSingle = 2.0;
+/// In single precision runs are lost from where the window has closed to these factors: where
+/// singular positions set the lower bound, and where the slowest mode does.
+inline constexpr double kClosedInSingle = 2.0, kClosedBySlowestInSingle = 3.25;
 
 /// Longest step as a share of the shortest period of springs; there the period is 3 % off.
 inline constexpr double kLongestShare = 0.1;
