@@ -50,7 +50,8 @@ struct RunSettings {
   bool scale_equations = false;       ///< simulate with ScaledEquations
   std::optional<double> deadline_us;  ///< steps that take longer are counted
   /// Times the motion is simulated. The repeats are only timed: what interrupts a step of one run
-  /// hardly interrupts the same step of another.
+  /// hardly interrupts the same step of another. Steps that are so short that reading the clock
+  /// counts are timed in blocks, whose steps then share one time.
   int repeats = 1;
 };
 
