@@ -21,15 +21,25 @@ def of_scope(ours, scope):
 
 def candidates(engines, ours):
     """(index of engines' rows, index of ours) of one subject that may be the fastest at some error."""
-    theirs, mine = set(), set()
-    for _, rows in finished(engines).groupby("engine"):
-        for limit in LIMITS:
-            theirs |= set(_near(rows[rows.error <= limit]))
-    for error in engines.loc[sorted(theirs)].error:
+    theirs, mine = _candidates(engines), set()
+    for error in engines.loc[theirs].error:
         for scope in SCOPES:
             done = finished(of_scope(ours, scope))
             mine |= set(_near(done[done.error <= error]))
-    return sorted(theirs), sorted(mine)
+    return theirs, sorted(mine)
+
+
+def errors_of(engines):
+    """Of the runs of one subject that may be an engine's fastest at some error, the largest first."""
+    return sorted(set(engines.loc[_candidates(engines)].error), reverse=True)
+
+
+def _candidates(engines):
+    found = set()
+    for _, rows in finished(engines).groupby("engine"):
+        for limit in LIMITS:
+            found |= set(_near(rows[rows.error <= limit]))
+    return sorted(found)
 
 
 def _near(rows):

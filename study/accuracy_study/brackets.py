@@ -1,7 +1,6 @@
 # Steps between those of a curve: halvings that just miss a required error would cost a factor of two.
 from analysis.accuracy.front import FINISHED, fastest
 from study.accuracy_study.bench import row
-from study.accuracy_study.classes import ERRORS
 
 # Of the longer of two steps: half-way on a logarithmic scale, nearly, and the times at which errors are judged
 # stay multiples of it (below 5 ms).
@@ -9,9 +8,9 @@ BETWEEN = 2 / 3
 WORTH = 2.0  # the shorter step meets the error in at most this times the least time of all
 
 
-def refine(bench, subject, entries, table, tell):
-    """The rows of runs between the two steps that bracket a required error, of curves near the fastest there."""
-    chosen = dict.fromkeys(place for error in ERRORS for place in _places(table, error))
+def refine(bench, subject, entries, table, errors, tell):
+    """The rows of runs between the two steps that bracket one of `errors`, of curves near the fastest there."""
+    chosen = dict.fromkeys(place for error in errors for place in _places(table, error))
     found = []
     for number, (variant, name, step) in enumerate(chosen, start=1):
         tell(f"{subject.name}: between steps, {number} of {len(chosen)}")

@@ -4,6 +4,7 @@ import numpy
 from analysis.accuracy.front import finished, near, pareto
 from study.accuracy_study import brackets
 from study.accuracy_study.bench import left_out, row, time_of
+from study.accuracy_study.classes import ERRORS
 from study.pipeline import runs
 
 SLOW = 2.0   # whose default setting is this much slower than the fastest is not tried in others
@@ -14,16 +15,19 @@ PASSES = 3.0  # a step at most, where the next run is predicted
 ROUNDS = 3
 
 
-def measure(bench, subject, entries, tell):
-    """DataFrame of one subject's runs: work.csv."""
+def measure(bench, subject, entries, tell, errors=None):
+    """DataFrame of one subject's runs: work.csv. `errors`: around which curves have closer steps, m; None: ERRORS
+    of the N-four-bar, none of others."""
     import pandas
-    table = pandas.concat([_family(bench, subject, family, tell) for family in entries.families()],
+    if errors is None:
+        errors = ERRORS if subject.loops else ()
+    table = pandas.concat([_family(bench, subject, family, errors, tell) for family in entries.families()],
                           ignore_index=True)
     table["front"] = table.index.isin(pareto(table))
     return table
 
 
-def _family(bench, subject, entries, tell):
+def _family(bench, subject, entries, errors, tell):
     import pandas
     table = []
     for variant, settings in entries.settings.items():
@@ -37,8 +41,8 @@ def _family(bench, subject, entries, tell):
                 table.append(left_out(subject, variant, setting, numpy.nan, slow[variant]))
             else:
                 table += _curve(bench, subject, variant, setting, entries, table)
-    if subject.loops:
-        table += brackets.refine(bench, subject, entries, pandas.DataFrame(table), tell)
+    if errors:
+        table += brackets.refine(bench, subject, entries, pandas.DataFrame(table), errors, tell)
     table = pandas.DataFrame(table)
     _repeat(bench, subject, entries, table, tell)
     return table

@@ -33,7 +33,7 @@ def _curve(bench, subject, setting, known):
             rows.append(named(subject, setting, value) | {
                 "status": NOT_RUN, "status_reason": reason, "rounds": 0})
             continue
-        record = bench.run(subject, setting, value)
+        record = bench.steady(subject, setting, value)
         rows.append(row(subject, setting, value, record))
         ahead = _ahead(subject, setting, record)
     return rows

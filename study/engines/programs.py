@@ -5,6 +5,7 @@ import shlex
 import subprocess
 from dataclasses import dataclass
 
+from study.accuracy_study.bench import REPEATS, SHORT
 from study.engines.subjects import error
 from study.pipeline import child, runs
 from study.pipeline.errors import StudyError
@@ -39,20 +40,31 @@ class Bench:
     layout: Layout
     time_limit: float  # s, a run that is predicted to take longer is not run
 
-    def run(self, subject, setting, value, *, kind="engines", repeat=1):
-        """The record of one run, with its "raw_file"; an existing file is never run again."""
-        name = f"{setting.engine}-{value:g}{f'-{repeat}' if repeat > 1 else ''}.json"
+    def run(self, subject, setting, value, *, kind="engines", repeat=1, repeats=1):
+        """The record of one run, with its "raw_file"; an existing file is never run again. `repeat`: the round;
+        `repeats`: of the simulation in its process."""
+        name = (f"{setting.engine}-{value:g}{'-least' if repeats > 1 else ''}"
+                f"{f'-{repeat}' if repeat > 1 else ''}.json")
         path = self.layout.results / "raw" / kind / subject.file_name / setting.file_name / name
         if not path.exists():
-            write_json(path, _simulate(subject, setting, value, 1.5 * self.time_limit))
+            write_json(path, _simulate(subject, setting, value, repeats, 1.5 * self.time_limit))
         return read_json(path) | {"raw_file": self.layout.relative(path)}
 
+    def steady(self, subject, setting, value):
+        """The record of `run`, of a finished run that is SHORT that of REPEATS at once, as ours are."""
+        record = self.run(subject, setting, value)
+        if (runs.status(record)[0] not in runs.FINISHED
+                or record["summary"]["time"] * subject.duration > SHORT):
+            return record
+        return self.run(subject, setting, value, repeats=REPEATS)
 
-def _simulate(subject, setting, value, seconds):
+
+def _simulate(subject, setting, value, repeats, seconds):
     model = ["--loops", str(subject.loops)] if subject.loops else ["--pendulum"]
     path = program(setting.engine)
     command = [os.path.relpath(path, ROOT) if path.is_relative_to(ROOT) else str(path), *model, "--duration",
-               f"{subject.duration:g}", *setting.words(value), "--json"]
+               f"{subject.duration:g}", *(["--repeats", str(repeats)] if repeats > 1 else []),
+               *setting.words(value), "--json"]
     ended = child.run(command, seconds, runs.MEMORY_MB)
     record = {"command": command, "seconds": ended.seconds}
     try:
@@ -70,7 +82,7 @@ def row(subject, setting, value, record):
     found = named(subject, setting, value) | {"status": status, "status_reason": reason, "rounds": 1}
     if "summary" in record:
         summary = record["summary"]
-        found |= {"time": summary["time"], "failed_at": summary["failed_at"],
+        found |= {"time": summary["time"], "repeats": summary["repeats"], "failed_at": summary["failed_at"],
                   "energy_drift": summary["energy_drift_max"], "joint_gap": summary["joint_gap_max"],
                   "version": summary["version"], "complaints": summary["complaints"],
                   "first_complaint": summary["first_complaint"]}

@@ -30,13 +30,15 @@ def _timed(subject, place, number, side, row):
     if side == ENGINE:
         found |= {"name": row.engine, "value": row.value}
         setting = place.setting_of(row.engine, row.setting)
-        record = place.engines.run(subject, setting, row.value, kind="rounds", repeat=number)
+        record = place.engines.run(subject, setting, row.value, kind="rounds", repeat=number,
+                                   repeats=int(row.repeats))
         time = record.get("summary", {}).get("time")
     else:
         found |= {"name": row.implementation, "value": row.step}
         entries = place.entries
         record = place.ours.run("rounds", subject, entries.contenders[row.implementation],
-                                entries.setting(row.implementation, row.setting), row.step, repeat=number)
+                                entries.setting(row.implementation, row.setting), row.step, repeat=number,
+                                repeats=int(row.repeats))
         time = time_of(record) if "summary" in record else None
     status, _ = runs.status(record)
     return found | {"status": status, "time": time if status in runs.FINISHED else numpy.nan,

@@ -2,7 +2,7 @@
 import argparse
 from dataclasses import dataclass
 
-from analysis.engines.equal_error import table
+from analysis.engines.equal_error import errors_of, table
 from study.accuracy_study import bench, estimate, stages as accuracy, subjects as references, work
 from study.accuracy_study.settings import Entries, LIST as OUR_LIST
 from study.engines import curves, programs, rounds, settings, subjects
@@ -72,7 +72,7 @@ def run(layout, options):
         theirs = pandas.DataFrame(curves.measure(place.engines, subject, listed, missing, tell))
         for column in ("time", "error"):  # of a subject that nobody finishes
             theirs[column] = theirs.get(column, float("nan"))
-        ours = work.measure(place.ours, subject, place.entries, tell)
+        ours = work.measure(place.ours, subject, place.entries, tell, errors_of(theirs))
         compared = pandas.DataFrame(rounds.measure(subject, theirs, ours, place, tell))
         for name, one in zip(found, (theirs, ours, compared)):
             found[name].append(one)

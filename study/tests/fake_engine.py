@@ -9,6 +9,7 @@ import time
 
 words = dict(word.split("=", 1) for word in sys.argv[sys.argv.index("--setting") + 1:] if "=" in word)
 does, step = words.get("does", "ok"), float(words["step"])
+repeats = int(sys.argv[sys.argv.index("--repeats") + 1]) if "--repeats" in sys.argv else 1
 duration = float(sys.argv[sys.argv.index("--duration") + 1])
 if does == "crash":
     os.kill(os.getpid(), signal.SIGABRT)
@@ -21,5 +22,5 @@ print(json.dumps({
     "status": "wrong-branch" if lost else "ok", "status_reason": "rods differ" if lost else "",
     "failed_at": 0.7 if lost else None, "position_error_max": 0.3 if lost else 1e2 * step**2,
     "energy_drift_max": 1e-3, "joint_gap_max": 1e-6, "time": (1e9 if does == "slow" else 1e-4) / step,
-    "complaints": int(lost), "first_complaint": "the matrix is singular" if lost else ""}))
+    "repeats": repeats, "complaints": int(lost), "first_complaint": "the matrix is singular" if lost else ""}))
 sys.exit(lost)
