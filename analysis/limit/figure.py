@@ -104,7 +104,7 @@ def by_phase(steps):
 
 def ahead(leads, scenes, wanted):
     """Bars a scene: how many times faster than the fastest with a library each of `leads`
-    ({implementation: Series by scene}) is; a mark where it is to be: `wanted(dimension, filled)`."""
+    ({implementation: Series by scene}) is; a mark where it is to be: `wanted(scene, dimension, filled)`."""
     about = scenes.groupby("scene", sort=False)[["variables", "dimension", "filled"]].first()
     order = about.sort_values(["filled", "dimension"], kind="stable").index
     names = [scene.removeprefix("harness/scenes/").removesuffix(".json") for scene in order]
@@ -118,7 +118,7 @@ def ahead(leads, scenes, wanted):
         for place, value in zip(places, values):
             text = f" {value:.3g}×" if value == value else " not timed"
             axes.text(max(value, 1) if value == value else 1, place, text, va="center", fontsize=7)
-    axes.plot([wanted(row.dimension, row.filled) for row in about.loc[order].itertuples()],
+    axes.plot([wanted(row.Index, row.dimension, row.filled) for row in about.loc[order].itertuples()],
               range(len(order)), linestyle="none", marker="|", markersize=13, markeredgewidth=2,
               color="black", label="at least")
     axes.axvline(1, color=GREY, linewidth=1)

@@ -104,15 +104,19 @@ def test_tables_without_the_limit_code_are_refused(tmp_path):
 OWN = [*REGISTRY, {"folder": "own", "library": "none", "variants": [{"name": "own/x"}]}]
 
 
+A, B, C = (f"harness/scenes/problems/{name}.json" for name in "abc")
+
+
 def scenes():
     def one(scene, name, step_us, status="ok", dimension=2, filled=False):
         return {"scene": scene, "implementation": name, "step_us": step_us, "status": status,
                 "reason": "", "variables": 6, "dimension": dimension, "filled": filled}
     return pandas.DataFrame([
-        one("a.json", "own/x", 1.0), one("a.json", "one/a", 3.0), one("a.json", "two/c", 2.5),
-        one("b.json", "own/x", 1.0), one("b.json", "one/a", 1.9), one("b.json", "two/c", 9.0, "slower"),
-        one("c.json", "own/x", 1.0, dimension=3), one("c.json", "one/a", 0.5, "failed", dimension=3),
-        one("c.json", "two/c", 1.6, dimension=3),
+        one(A, "own/x", 1.0), one(A, "one/a", 3.0), one(A, "two/c", 2.5),
+        one(B, "own/x", 1.0), one(B, "one/a", 1.9), one(B, "two/c", 9.0, "slower"),
+        one(C, "own/x", 1.0, dimension=3), one(C, "one/a", 0.5, "failed", dimension=3),
+        one(C, "two/c", 1.6, dimension=3),
+        one("harness/scenes/examples/e.json", "own/x", 1.0), one("harness/scenes/examples/e.json", "one/a", 1.2),
         one("f", "own/x", 1.0, filled=True), one("f", "one/a", 0.95, filled=True)])
 
 
@@ -122,14 +126,14 @@ def held(**tables):
 
 def test_a_lead_is_over_the_fastest_with_a_library_that_agreed():
     found = leads(scenes(), "own", ["own/x"], "scene")
-    assert found["a.json"] == 2.5 and found["b.json"] == 1.9 and found["c.json"] == 1.6
+    assert found[A] == 2.5 and found[B] == 1.9 and found[C] == 1.6
 
 
 def test_the_worst_scene_of_a_kind_counts():
     found = held(scenes=scenes())
-    planar = found["times faster than the fastest with a library, planar scenes"]
-    assert not planar.holds and planar.worst == "1.9 (b)"
-    assert found["times faster than the fastest with a library, spatial scenes"].holds
+    planar = found["times faster than the fastest with a library, planar standard problems"]
+    assert not planar.holds and planar.worst == "1.9 (problems/b)"
+    assert found["times faster than the fastest with a library, spatial standard problems"].holds
     filled = found["times the step of the fastest with a library, n = 100, filled"]
     assert filled.holds and filled.worst == "1.05 (f)"
 
@@ -174,9 +178,9 @@ def test_batches_gain():
 def test_the_fastest_variant_of_a_folder_counts_scene_by_scene():
     table = pandas.concat([scenes(), pandas.DataFrame([
         {"scene": scene, "implementation": "own/y", "step_us": 0.5, "status": status, "reason": "", "variables": 6,
-         "dimension": 2, "filled": False} for scene, status in (("a.json", "ok"), ("b.json", "failed"))])])
+         "dimension": 2, "filled": False} for scene, status in ((A, "ok"), (B, "failed"))])])
     found = leads(table, "own", ["own/x", "own/y"], "scene")
-    assert found["a.json"] == 5.0 and found["b.json"] == 1.9
+    assert found[A] == 5.0 and found[B] == 1.9
 
 
 def test_scenes_and_batches_need_no_sizes(tmp_path):
@@ -185,5 +189,5 @@ def test_scenes_and_batches_need_no_sizes(tmp_path):
     (tmp_path / "run.json").write_text(json.dumps({"contexts": {"own": {"compiler": "c", "commit": "0"}}}))
     write(tmp_path)
     text = (tmp_path / "limit.html").read_text()
-    assert "What own is held to" in text and "1.9 (b)" in text and "not measured" not in text
+    assert "What own is held to" in text and "1.9 (problems/b)" in text and "not measured" not in text
     assert (tmp_path / "figures" / "ahead.png").exists()
