@@ -71,9 +71,11 @@ def over_size(bounds, steps, registry):
 
 
 def by_phase(steps):
-    """A panel a size (at most three): phases of each folder's leader, in multiples of the limit code."""
+    """A panel a size (at most three that most were timed at): the share of each phase in a step of each folder's
+    leader, beside the step in multiples of the limit code."""
     rows, names = timed(steps), leaders(steps)
-    sizes = sorted(rows.loops.unique())
+    many = rows[rows.implementation.isin(names)].groupby("loops").size() > len(names) / 2
+    sizes = sorted(many.index[many])
     shown = sizes if len(sizes) <= 3 else [sizes[round(k * (len(sizes) - 1) / 2)] for k in range(3)]
     figure, panels = plt.subplots(1, len(shown), sharey=True, squeeze=False, constrained_layout=True,
                                   figsize=(3.9 * len(shown) + 1.8, 0.36 * len(names) + 1.5))
@@ -86,14 +88,14 @@ def by_phase(steps):
                 continue
             row, left = of_size.loc[name], 0.0
             for phase in PHASES:
-                width = row[f"{phase}_us"] / row.step_us * row.multiple
+                width = row[f"{phase}_us"] / row.step_us
                 axes.barh(place, width, 0.62, left=left, color=COLOURS[phase])
                 left += width
-            axes.text(left, place, f" {row.multiple:.3g}×", va="center", fontsize=8)
-        axes.axvline(1, color="black", linewidth=1.2)
-        axes.margins(x=0.14)
+            axes.text(1, place, f" {number(row.multiple)}×, {number(row.step_us)} µs", va="center", fontsize=8)
+        axes.set_xlim(0, 1.55)
+        axes.set_xticks([0, 0.5, 1], ["0", "50 %", "100 %"])
         axes.set_title(f"n = {2 * loops + 2}, limit {number(of_size.step_us[LIMIT])} µs")
-        axes.set_xlabel("multiple of the limit code's step")
+        axes.set_xlabel("share of the step")
         axes.set_yticks(range(len(names)), names)
         axes.set_ylim(len(names) - 0.4, -0.6)
     figure.legend(handles=[plt.Rectangle((0, 0), 1, 1, color=colour, label=phase)

@@ -52,11 +52,14 @@ def wanted(scene, dimension, filled):
     return (AHEAD_PLANAR if dimension == 2 else AHEAD_SPATIAL) if STANDARD in scene else numpy.nan
 
 
-def must_hold(folder, registry, steps=None, scenes=None, batches=None):
+def must_hold(folder, registry, steps=None, growth=None, scenes=None, batches=None):
     """[Held] of `folder`; a table that is None was not measured."""
     mine, found = own(registry), []
     if steps is not None:
         found += _sizes(folder, mine, steps) + _growth(folder, steps)
+    if growth is not None:
+        rows = _growing(folder, growth)
+        found.append(_exponent("a step's time", rows, rows.step_us, "saddle-point"))
     if scenes is not None:
         found += _scenes(folder, mine, scenes)
     if batches is not None:
@@ -84,20 +87,25 @@ def _scenes(folder, mine, scenes):
             _most("times the step of the fastest with a library, n = 100, filled", behind, BEHIND_FILLED)]
 
 
-def _growth(folder, steps):
+def _growing(folder, steps):
+    """The fastest of `folder` at each size from GROWTH_FROM on."""
     rows = of_folder(steps[(steps.status == "ok") & (steps.variables >= GROWTH_FROM)], folder)
-    rows = rows.sort_values(["variables", "step_us"]).drop_duplicates("variables")
-    whole = len(rows) > 1 and rows.variables.iloc[-1] >= GROWTH_TO
-    found = []
-    for column, what in (("step_us", "exponent of a step's time over n"),
-                         ("pass_us", "exponent of a pass's time over n"),
-                         ("memory_bytes", "exponent of memory over n")):
-        values = rows.step_us / rows.passes if column == "pass_us" else rows[column]
-        if not whole or values.isna().any():
-            found.append(Held(what, f"≤ {EXPONENT}", "", False))
-            continue
-        exponent = numpy.polyfit(numpy.log(rows.variables), numpy.log(values), 1)[0]
-        found.append(Held(what, f"≤ {EXPONENT}", number(exponent), bool(exponent <= EXPONENT)))
+    return rows.sort_values(["variables", "step_us"]).drop_duplicates("variables")
+
+
+def _exponent(what, rows, values, form):
+    what = f"exponent of {what} over n, {form} form"
+    if len(rows) < 2 or rows.variables.iloc[-1] < GROWTH_TO or values.isna().any():
+        return Held(what, f"≤ {EXPONENT}", "", False)
+    exponent = numpy.polyfit(numpy.log(rows.variables), numpy.log(values), 1)[0]
+    return Held(what, f"≤ {EXPONENT}", number(exponent), bool(exponent <= EXPONENT))
+
+
+def _growth(folder, steps):
+    rows = _growing(folder, steps)
+    found = [_exponent(what, rows, values, "penalty") for what, values in (
+        ("a step's time", rows.step_us), ("a pass's time", rows.step_us / rows.passes),
+        ("memory", rows.memory_bytes))]
     largest = rows[rows.variables >= GROWTH_TO].set_index("variables").setup_us / 1e6
     return [*found, _most("set-up, s", largest, SET_UP, "n = {}")]
 

@@ -11,7 +11,7 @@ def write(folder):
     """Writes figures/*.svg and .png of what was measured, and limit.html."""
     folder = Path(folder)
     tables = {name: plain_table(folder / f"{name}.csv") if (folder / f"{name}.csv").exists() else None
-              for name in ("bounds", "steps", "scenes", "batches")}
+              for name in ("bounds", "steps", "growth", "scenes", "batches")}
     steps, scenes = tables["steps"], tables["scenes"]
     if steps is not None and ("step_us" not in steps or timed(steps).empty):
         raise TableError(f"{folder / 'steps.csv'}: no size has a time of {LIMIT}")
@@ -28,16 +28,17 @@ def write(folder):
 
 def render(tables, registry, run, figures):
     """The page; `figures`: {name: SVG in base 64}."""
-    steps, scenes, batches = (tables[name] for name in ("steps", "scenes", "batches"))
+    steps, growth, scenes, batches = (tables[name] for name in ("steps", "growth", "scenes", "batches"))
     return page.template(Path(__file__).parent / "limit.html.j2").render(
         context=next(iter(run["contexts"].values())), figures=figures, limit=LIMIT,
         counted=steps is not None and "instructions" in steps and steps.instructions.notna().any(),
         bounds=[] if steps is None else tables["bounds"].sort_values("loops").to_dict("records"),
         sizes=[] if steps is None else by_size(steps), phases=PHASES,
-        held={folder: must_hold(folder, registry, steps, scenes, batches) for folder in own_folders(registry)},
+        held={folder: must_hold(folder, registry, steps, growth, scenes, batches) for folder in own_folders(registry)},
+        growth=[] if growth is None else growth[growth.status == "ok"].to_dict("records"),
         batches=[] if batches is None else batches[batches.status == "ok"].to_dict("records"),
         scenes=[] if scenes is None else by_scene(scenes),
-        lost=lost([table for table in (steps, scenes, batches) if table is not None]))
+        lost=lost([table for table in (steps, growth, scenes, batches) if table is not None]))
 
 
 def lost(tables):

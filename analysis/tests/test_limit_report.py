@@ -150,15 +150,23 @@ def test_sizes_and_growth():
     found = held(steps=sized(1.0))
     assert found["times faster than the fastest with a library, N-four-bar"].holds
     assert found["times the limit code's step"].holds
-    assert all(found[f"exponent of {what} over n"].worst == "1"
+    assert all(found[f"exponent of {what} over n, penalty form"].worst == "1"
                for what in ("a step's time", "a pass's time", "memory"))
     assert found["set-up, s"].worst == "0.1 (n = 20000)" and found["set-up, s"].holds
-    assert not held(steps=sized(1.1))["exponent of a step's time over n"].holds
+    assert not held(steps=sized(1.1))["exponent of a step's time over n, penalty form"].holds
+
+
+def test_growth_in_the_saddle_point_form():
+    what = "exponent of a step's time over n, saddle-point form"
+    rows = sized(1.0)
+    assert held(growth=rows)[what].holds and not held(growth=sized(1.1))[what].holds
+    assert held(growth=rows[rows.variables < 10000])[what].worst == ""
+    assert held(growth=rows[:0])[what].worst == ""
 
 
 def test_what_was_not_measured_does_not_hold():
     found = held(steps=sized(1.0, last=499).drop_duplicates())
-    for what in ("exponent of memory over n", "set-up, s"):
+    for what in ("exponent of memory over n, penalty form", "set-up, s"):
         assert found[what].worst == "" and not found[what].holds
     few = sized(1.0)
     few = few[few.loops != 24]

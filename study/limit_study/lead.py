@@ -1,5 +1,6 @@
 # How far ahead of the library-backed implementations those with code of their own are, scene by scene.
 import json
+import statistics
 
 from study.limit_study import measure
 from study.pipeline import child
@@ -43,21 +44,28 @@ def rows(layout, contenders, mine, scene, rounds, seconds, tell):
                                     *slow, *lost)]
 
 
-def batches(layout, contenders, seconds, tell):
-    """Rows of batches.csv: many lanes side by side against each alone."""
+def batches(layout, contenders, rounds, seconds, tell):
+    """Rows of batches.csv: many lanes side by side against each alone, medians of `rounds` processes."""
     found = []
     for number, scene in enumerate(BATCHES):
         for place, one in enumerate(contenders):
             tell(f"{scene}, lanes of {one.name}", (number + place / len(contenders)) / len(BATCHES))
-            row, reason = measure.bench(layout, one, scene, f"batches/{one.file_name}-{scene[9:]}",
-                                        seconds, "--batch")
-            if reason.startswith("unsupported"):
-                continue
-            found.append({"scene": scene, "implementation": one.name,
-                          "status": "failed" if reason else "ok", "reason": reason}
-                         | {key: row.get(key) for key in ("variables", "lanes", "step_us", "alone_us",
-                                                          "gain")})
+            row = _batch(layout, one, scene, rounds, seconds)
+            if not row["reason"].startswith("unsupported"):
+                found.append({"scene": scene, "implementation": one.name} | row)
     return found
+
+
+def _batch(layout, one, scene, rounds, seconds):
+    rows = []
+    for turn in range(1, rounds + 1):
+        row, reason = measure.bench(layout, one, scene, f"batches/{one.file_name}-{scene[9:]}-{turn}",
+                                    seconds, "--batch")
+        if reason:
+            return {"status": "failed", "reason": reason}
+        rows.append(row)
+    return {"status": "ok", "reason": "", "rounds": rounds} | {key: rows[0][key] for key in ("variables", "lanes")} | {
+        key: statistics.median(row[key] for row in rows) for key in ("step_us", "alone_us", "gain")}
 
 
 def _about(scene):

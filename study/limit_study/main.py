@@ -12,10 +12,11 @@ from study.pipeline.prepare import registry, select, start_named
 from study.pipeline.progress import Teller
 
 LOOPS = (2, 5, 10, 24, 40, 79, 160, 499, 1999)
-PARTS = ("sizes", "scenes", "batches")
+PARTS = ("sizes", "growth", "scenes", "batches")
 
 EPILOG = """parts:
   sizes     every implementation on the N-four-bar, and its bounds; code without a library to 20 000 variables
+  growth    code without a library from 100 to 20 000 variables in the saddle-point form
   scenes    the standard problems, the examples and fills of 100 variables: own code against libraries
   batches   simulations side by side against each alone
 """
@@ -26,8 +27,8 @@ def limit(arguments):
         prog="study/limit", description="The step of every implementation beside that of code "
         "written for the N-four-bar alone and beside the lower bounds of its arithmetic "
         "(harness/limit), and what each phase takes of it; how far ahead of libraries code without "
-        "any is, scene by scene; many lanes side by side. Writes bounds.csv, steps.csv, scenes.csv, "
-        "batches.csv, figures and limit.html; about an hour.", epilog=EPILOG,
+        "any is, scene by scene; many lanes side by side. Writes bounds.csv, steps.csv, growth.csv, "
+        "scenes.csv, batches.csv, figures and limit.html; about half an hour.", epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS, metavar="PART",
                         help=f"only these parts ({' '.join(PARTS)})")
@@ -63,6 +64,12 @@ def _run(layout, options):
         bounds = measure.bounds(layout, options.loops)
         write_csv(layout.results / "bounds.csv", pandas.DataFrame(bounds))
         write_csv(layout.results / "steps.csv", pandas.DataFrame(rows))
+    if "growth" in options.parts:
+        rows, here = [], [one for one in contenders if one.name in mine]
+        for number, size in enumerate(lead.LARGE, start=1):
+            rows += measure.growth(layout, here, size, options.rounds, options.time_limit,
+                                   _telling(tell, f"N = {size}, saddle-point form: size {number} of {len(lead.LARGE)}"))
+        write_csv(layout.results / "growth.csv", pandas.DataFrame(rows, columns=None if rows else ["implementation"]))
     if "scenes" in options.parts:
         rows, scenes = [], lead.scenes()
         for number, scene in enumerate(scenes, start=1):
@@ -71,7 +78,7 @@ def _run(layout, options):
                                        (number - 1) / len(scenes)))
         write_csv(layout.results / "scenes.csv", pandas.DataFrame(rows))
     if "batches" in options.parts:
-        rows = lead.batches(layout, contenders, options.time_limit, tell)
+        rows = lead.batches(layout, contenders, options.rounds, options.time_limit, tell)
         write_csv(layout.results / "batches.csv", pandas.DataFrame(rows))
     tell.end()
 

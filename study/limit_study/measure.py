@@ -28,12 +28,20 @@ def size(layout, contenders, loops, rounds, seconds, tell):
     return [{"loops": loops, "variables": 2 * loops + 2} | row for row in rows]
 
 
-def cell(layout, contenders, scene, folder, rounds, seconds, tell):
-    """A row a contender: the gate, then `rounds` in turn. Raw files go to raw/`folder`."""
+def growth(layout, contenders, loops, rounds, seconds, tell):
+    """The rows of growth.csv of one size: the saddle-point form."""
+    rows = cell(layout, contenders, f"four-bar:{loops}", f"growth/n{2 * loops + 2}", rounds, seconds, tell,
+                ("--scheme", "saddle-point"))
+    return [{"loops": loops, "variables": 2 * loops + 2} | row for row in rows]
+
+
+def cell(layout, contenders, scene, folder, rounds, seconds, tell, setting=()):
+    """A row a contender: the gate, then `rounds` in turn. Raw files go to raw/`folder`. `setting`: options of
+    `mbs check` and `mbs bench`."""
     rows, timed = [], []
     for one in contenders:
         tell(f"gate of {one.name}")
-        reason = _objection(layout, one, scene, folder)
+        reason = _objection(layout, one, scene, folder, setting)
         rows.append({"scene": scene, "implementation": one.name,
                      "status": "disagrees" if reason else "ok", "reason": reason})
         timed.append(not reason)
@@ -44,7 +52,7 @@ def cell(layout, contenders, scene, folder, rounds, seconds, tell):
                 continue
             tell(f"round {turn} of {rounds}, {one.name}")
             found, reason = bench(layout, one, scene, f"{folder}/{one.file_name}-{turn}", seconds,
-                                  "--phases")
+                                  "--phases", *setting)
             samples[place].append(found)
             if reason:
                 rows[place] |= {"status": "failed", "reason": reason}
@@ -82,12 +90,12 @@ def _kept(layout, name, command, seconds):
     return record
 
 
-def _objection(layout, one, scene, folder):
+def _objection(layout, one, scene, folder, setting):
     """Why the gate rejects it; empty if it does not."""
     path = layout.results / "raw" / folder / f"{one.file_name}-gate.json"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
-        ended = child.run(one.call("check", scene, "--implementation", one.variant,
+        ended = child.run(one.call("check", scene, "--implementation", one.variant, *setting,
                                    "--time-limit", str(GATE_S), "--json", str(path)),
                           3 * GATE_S, MEMORY_MB)
         if not path.exists():

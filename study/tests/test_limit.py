@@ -114,6 +114,7 @@ def test_a_tiny_study_on_the_real_program(tmp_path, monkeypatch):
         pytest.skip("build/mbs is not built")
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setenv("MBS_PROGRAM", str(ROOT / "build" / "mbs"))
+    monkeypatch.setattr(lead, "LARGE", (3,))
     monkeypatch.setattr(lead, "scenes", lambda: ["harness/scenes/double_pendulum.json"])
     words = ["--only", "csc_klu/refactor", "compiled_ldl/chains", "--loops", "1", "2", "--rounds", "1", "--results",
              str(tmp_path)]
@@ -121,6 +122,8 @@ def test_a_tiny_study_on_the_real_program(tmp_path, monkeypatch):
     steps, bounds = (pandas.read_csv(tmp_path / f"{name}.csv") for name in ("steps", "bounds"))
     assert list(steps.implementation) == ["limit/limit", "csc_klu/refactor", "compiled_ldl/chains"] * 2
     assert (steps.status == "ok").all() and (bounds.bound_ns > 0).all()
+    growth = pandas.read_csv(tmp_path / "growth.csv")
+    assert list(growth.implementation) == ["compiled_ldl/chains"] and (growth.status == "ok").all()
     scenes, batches = (pandas.read_csv(tmp_path / f"{name}.csv") for name in ("scenes", "batches"))
     assert set(scenes.status) <= {"ok", "slower"} and set(scenes.dimension) == {2}
     assert list(batches.implementation) == ["compiled_ldl/chains"] * 2 and (batches.gain > 0).all()
