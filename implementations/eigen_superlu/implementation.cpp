@@ -69,7 +69,7 @@ Implementation implementation() {
            .unsymmetric = true,
            .serves = kServes},
           {.name = "simplicial_ldlt",
-           .description = "Eigen's up-looking LDL^T, AMD ordering",
+           .description = "Eigen's up-looking LDL^T; AMD ordering, tree lowered",
            .create = create<SimplicialSolver>,
            .serves = kServes}}};
 }
