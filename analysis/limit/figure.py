@@ -24,23 +24,23 @@ def timed(steps):
     return rows[rows.multiple.notna()]
 
 
-def leaders(steps):
+def leaders(steps, own=()):
     """The variant of each folder with the least geometric mean multiple over the sizes that most of its
-    folder's variants have; in the order of that mean."""
+    folder's variants have; in the order of that mean. Of folders in `own` all variants."""
     rows = timed(steps)
     rows = rows[rows.implementation != LIMIT]
     rows = rows.assign(folder=rows.implementation.str.split("/").str[0], log=numpy.log(rows.multiple))
     chosen = []
-    for _, mine in rows.groupby("folder"):
+    for folder, mine in rows.groupby("folder"):
         most = mine.groupby("implementation").loops.nunique().max()
         whole = mine.groupby("implementation").filter(lambda one, most=most: len(one) == most)
-        means = whole.groupby("implementation").log.mean()
-        chosen.append((means.min(), means.idxmin()))
+        means = (mine if folder in own else whole).groupby("implementation").log.mean()
+        chosen += [(means[name], name) for name in (means.index if folder in own else [means.idxmin()])]
     return [name for _, name in sorted(chosen)]
 
 
-def over_size(bounds, steps, registry):
-    """Above: µs a step; below: multiples of the limit code."""
+def over_size(bounds, steps, registry, own=()):
+    """Above: µs a step; below: multiples of the limit code. `own`: as leaders() has it."""
     look = Look(SimpleNamespace(registry=registry, tidy=SimpleNamespace(blas=[], build=[])))
     rows, bounds = timed(steps), bounds.sort_values("variables")
     figure, (times, multiples) = plt.subplots(2, 1, sharex=True, figsize=(8.6, 8.4),
@@ -49,7 +49,7 @@ def over_size(bounds, steps, registry):
         times.plot(bounds.variables, bounds[column] / 1e3, dash, color=GREY, label=label)
     times.fill_between(bounds.variables, bounds.bound_ns / 1e3, times.get_ylim()[0], color=GREY,
                        alpha=0.12, linewidth=0)
-    for name in [LIMIT, *leaders(steps)]:
+    for name in [LIMIT, *leaders(steps, own)]:
         mine = rows[rows.implementation == name].sort_values("variables")
         style = ({"color": "black", "linewidth": 2.2, "marker": "o", "markersize": 4.5}
                  if name == LIMIT else look.line(name))
@@ -70,10 +70,10 @@ def over_size(bounds, steps, registry):
     return figure
 
 
-def by_phase(steps):
-    """A panel a size (at most three that most were timed at): the share of each phase in a step of each folder's
-    leader, beside the step in multiples of the limit code."""
-    rows, names = timed(steps), leaders(steps)
+def by_phase(steps, own=()):
+    """A panel a size (at most three that most were timed at): the share of each phase in a step of each of the
+    leaders(), beside the step in multiples of the limit code."""
+    rows, names = timed(steps), leaders(steps, own)
     many = rows[rows.implementation.isin(names)].groupby("loops").size() > len(names) / 2
     sizes = sorted(many.index[many])
     shown = sizes if len(sizes) <= 3 else [sizes[round(k * (len(sizes) - 1) / 2)] for k in range(3)]

@@ -38,11 +38,17 @@ def of_folder(rows, folder):
 
 
 def leads(rows, folder, mine, key):
-    """Series: the least time of those with a library over the least of `folder`'s, by `key`. `mine`: all variants
-    without a library."""
-    good = rows[rows.status.isin(["ok", "slower"])]
+    """Series: the least time of those with a library over the least of `folder`'s, by `key`, of what passed the gate.
+    `mine`: all variants without a library."""
+    good = rows[rows.status == "ok"]
     others = good[~good.implementation.isin([*mine, LIMIT])].groupby(key).step_us.min()
     return (others / of_folder(good, folder).groupby(key).step_us.min()).dropna()
+
+
+def fastest(rows, folder, key):
+    """Series: the fastest variant of `folder`, by `key`."""
+    rows = of_folder(rows[rows.status == "ok"], folder).sort_values("step_us").drop_duplicates(key).set_index(key)
+    return rows.implementation.str.partition("/")[2]
 
 
 def wanted(scene, dimension, filled):
@@ -64,27 +70,29 @@ def must_hold(folder, registry, steps=None, growth=None, scenes=None, batches=No
         found += _scenes(folder, mine, scenes)
     if batches is not None:
         best = of_folder(batches[batches.status == "ok"], folder).groupby("scene")[["alone_us", "step_us"]].min()
-        found.append(_least("throughput of a batch ÷ that of its lanes alone", best.alone_us / best.step_us, GAIN))
+        found.append(_least("throughput of a batch ÷ that of its lanes alone", best.alone_us / best.step_us, GAIN,
+                            fastest(batches, folder, "scene")))
     return found
 
 
 def _sizes(folder, mine, steps):
     ahead = leads(steps, folder, mine, "variables")
     near = of_folder(timed(steps), folder).groupby("variables").multiple.min()
+    by = fastest(steps, folder, "variables")
     return [_least("times faster than the fastest with a library, N-four-bar",
-                   ahead[ahead.index.isin(AHEAD_SIZES)], AHEAD, "n = {}", len(AHEAD_SIZES)),
-            _most("times the limit code's step", near[near.index.isin(NEAR_SIZES)], NEAR_LIMIT, "n = {}",
+                   ahead[ahead.index.isin(AHEAD_SIZES)], AHEAD, by, "n = {}", len(AHEAD_SIZES)),
+            _most("times the limit code's step", near[near.index.isin(NEAR_SIZES)], NEAR_LIMIT, by, "n = {}",
                   len(NEAR_SIZES))]
 
 
 def _scenes(folder, mine, scenes):
     plain, filled = scenes[scenes.scene.str.contains(STANDARD, regex=False)], scenes[scenes.filled]
-    behind = 1 / leads(filled, folder, mine, "scene")
+    behind, by = 1 / leads(filled, folder, mine, "scene"), fastest(scenes, folder, "scene")
     return [_least("times faster than the fastest with a library, planar standard problems",
-                   leads(plain[plain.dimension == 2], folder, mine, "scene"), AHEAD_PLANAR),
+                   leads(plain[plain.dimension == 2], folder, mine, "scene"), AHEAD_PLANAR, by),
             _least("times faster than the fastest with a library, spatial standard problems",
-                   leads(plain[plain.dimension == 3], folder, mine, "scene"), AHEAD_SPATIAL),
-            _most("times the step of the fastest with a library, n = 100, filled", behind, BEHIND_FILLED)]
+                   leads(plain[plain.dimension == 3], folder, mine, "scene"), AHEAD_SPATIAL, by),
+            _most("times the step of the fastest with a library, n = 100, filled", behind, BEHIND_FILLED, by)]
 
 
 def _growing(folder, steps):
@@ -107,22 +115,22 @@ def _growth(folder, steps):
         ("a step's time", rows.step_us), ("a pass's time", rows.step_us / rows.passes),
         ("memory", rows.memory_bytes))]
     largest = rows[rows.variables >= GROWTH_TO].set_index("variables").setup_us / 1e6
-    return [*found, _most("set-up, s", largest, SET_UP, "n = {}")]
+    return [*found, _most("set-up, s", largest, SET_UP, fastest(steps, folder, "variables"), "n = {}")]
 
 
-def _least(what, values, bound, where="{}", of=1):
+def _least(what, values, bound, by, where="{}", of=1):
     return _worst(what, f"≥ {bound}", values, values.idxmin() if len(values) else None,
-                  lambda worst: worst >= bound, where, of)
+                  lambda worst: worst >= bound, by, where, of)
 
 
-def _most(what, values, bound, where="{}", of=1):
+def _most(what, values, bound, by, where="{}", of=1):
     return _worst(what, f"≤ {bound}", values, values.idxmax() if len(values) else None,
-                  lambda worst: worst <= bound, where, of)
+                  lambda worst: worst <= bound, by, where, of)
 
 
-def _worst(what, bound, values, at, good, where, of):
-    """`of`: how many values there have to be."""
+def _worst(what, bound, values, at, good, by, where, of):
+    """`by`: the variants that the values are of; `of`: how many values there have to be."""
     if len(values) < of:
         return Held(what, bound, "", False)
     place = where.format(at).removeprefix("harness/scenes/").removesuffix(".json")
-    return Held(what, bound, f"{number(values[at])} ({place})", bool(good(values[at])))
+    return Held(what, bound, f"{number(values[at])} ({place}, {by[at]})", bool(good(values[at])))

@@ -18,7 +18,8 @@ def write(folder):
     registry = _json(folder / "implementations.json")["implementations"]
     drawn = {}
     if steps is not None:
-        drawn |= {"over_size": over_size(tables["bounds"], steps, registry), "by_phase": by_phase(steps)}
+        folders = own_folders(registry)
+        drawn |= {"over_size": over_size(tables["bounds"], steps, registry, folders), "by_phase": by_phase(steps, folders)}
     if scenes is not None and own(registry):
         drawn["ahead"] = ahead({folder: leads(scenes, folder, own(registry), "scene")
                                 for folder in own_folders(registry)}, scenes, wanted)

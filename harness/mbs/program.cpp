@@ -21,6 +21,11 @@ namespace {
 constexpr const char* kScenes =
     "A SCENE is four-bar:N (the N-loop four-bar mechanism), four-bar:N,fill=F (with artificial\n"
     "non-zeros in M until a share F of the tangent is filled, 0 < F <= 1), or a JSON file.";
+constexpr const char* kVaried =
+    "A SCENE is four-bar:N (the N-loop four-bar mechanism) or a JSON file. A lane whose start "
+    "cannot\n"
+    "be assembled is not-assembled; the others end as one run does.";
+constexpr const char* kExits = "Exit status: 0 done, 1 a result that is not right, 2 bad input.";
 
 /// A positive, finite number from "auto" or text.
 double parse_tolerance(const std::string& text, const Model& model, const StepSettings& settings) {
@@ -158,8 +163,7 @@ int run_program(int argc, char** argv) {
   }
   CLI::App app{"mbs: one multibody simulation on many linear algebra implementations.\n"};
   app.name("mbs");
-  app.footer(std::string(kScenes) +
-             "\nExit status: 0 done, 1 a result that is not right, 2 bad input.");
+  app.footer(fmt::format("{}\n{}", kScenes, kExits));
   app.set_version_flag("--version", build_info().version);
   app.require_subcommand(1);
   int status = 0;
@@ -172,10 +176,11 @@ int run_program(int argc, char** argv) {
   app.add_subcommand("bench", "time implementations with Google Benchmark (see mbs bench --help)");
   for (CLI::App* command : app.get_subcommands({})) {
     refuse_empty(*command);
-    command->footer(kScenes);
+    command->footer(kExits);
   }
-  for (const char* name : {"simulate", "sweep"}) {
-    app.get_subcommand(name)->footer(std::string(kScenes) + "\n\n" + outcomes_text());
+  for (const char* name : {"describe", "check"}) app.get_subcommand(name)->footer(kScenes);
+  for (const auto& [name, scenes] : {std::pair("simulate", kScenes), std::pair("sweep", kVaried)}) {
+    app.get_subcommand(name)->footer(std::string(scenes) + "\n\n" + outcomes_text());
   }
   if (argc > 1 && argv[1][0] != '-' && !is_subcommand(app, argv[1])) {
     throw UsageError(fmt::format(

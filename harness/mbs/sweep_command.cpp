@@ -10,6 +10,7 @@
 #include "mbs/file_names.hpp"
 #include "mbs/progress.hpp"
 #include "mbs/sweep_file.hpp"
+#include "scene/not_assembled.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -31,15 +32,35 @@ struct SweepOptions {
   std::string output;
 };
 
-/// "5 ok, 1 diverged".
-using Outcomes = std::map<RunStatus, long>;
+/// The status of a lane whose start cannot be assembled.
+constexpr const char* kNotAssembled = "not-assembled";
 
-std::string text_of(const Outcomes& outcomes) {
-  std::vector<std::string> parts;
-  for (const auto& [status, count] : outcomes) {
-    parts.push_back(fmt::format("{} {}", count, to_string(status)));
+/// How many lanes ended how.
+struct Outcomes {
+  std::map<RunStatus, long> simulated;
+  long not_assembled = 0;
+  bool alone = false;  // whether lanes that fit together ran one after the other
+
+  [[nodiscard]] long failed() const {
+    long count = not_assembled;
+    for (const auto& [status, lanes] : simulated) {
+      if (!is_finished(status)) count += lanes;
+    }
+    return count;
   }
-  return fmt::format("{}", fmt::join(parts, ", "));
+  /// "5 ok, 1 diverged".
+  [[nodiscard]] std::string text() const {
+    std::vector<std::string> parts;
+    for (const auto& [status, lanes] : simulated) {
+      parts.push_back(fmt::format("{} {}", lanes, to_string(status)));
+    }
+    if (not_assembled > 0) parts.push_back(fmt::format("{} {}", not_assembled, kNotAssembled));
+    return fmt::format("{}", fmt::join(parts, ", "));
+  }
+};
+
+std::string lanes_text(long lanes) {
+  return fmt::format("{} lane{}", lanes, lanes == 1 ? "" : "s");
 }
 
 /// Throws UsageError if they do not go with `scene`.
@@ -56,11 +77,14 @@ RunSettings resolve(const SweepOptions& options, const Scene& scene) {
   return settings;
 }
 
+/// Throws NotAssembled, and UsageError with the lane's values for what makes no scene.
 Lane prepare(const SweepOptions& options, const SweepGrid& grid, long index) {
   try {
     Scene scene = grid.scene(index);
     const RunSettings settings = resolve(options, scene);
     return {std::move(scene), settings};
+  } catch (const NotAssembled&) {
+    throw;
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}: {}", grid.describe(index), error.what()));
   }
@@ -72,7 +96,10 @@ void require_lanes(const SweepOptions& options, const SweepGrid& grid) {
   Progress progress(static_cast<double>(grid.lanes()), "lanes checked");
   for (long i = 0; i < grid.lanes(); ++i) {
     progress.at(static_cast<double>(i));
-    prepare(options, grid, i);
+    try {
+      prepare(options, grid, i);
+    } catch (const NotAssembled&) {  // a lane's own outcome
+    }
   }
 }
 
@@ -84,20 +111,27 @@ Outcomes run_grid(const SweepOptions& options, const SweepGrid& grid, const Vari
   std::vector<Lane> group;
   long written = 0;
   const auto finish_group = [&] {
-    run_lanes(group, variant,
-              [&](double done) { progress.at(static_cast<double>(written) + done); });
+    const bool side_by_side = run_lanes(
+        group, variant, [&](double done) { progress.at(static_cast<double>(written) + done); });
+    outcomes.alone |= group.size() > 1 && !side_by_side;
     for (const Lane& lane : group) {
       file.write(grid.values(written++), lane);
-      ++outcomes[lane.summary.status];
+      ++outcomes.simulated[lane.summary.status];
     }
     group.clear();
   };
   for (long i = 0; i < grid.lanes(); ++i) {
-    Lane lane = prepare(options, grid, i);
-    const bool fits = group.size() < lanes_at_once(variant) &&
-                      (group.empty() || fit_one_batch(group.front(), lane));
-    if (!fits) finish_group();
-    group.push_back(std::move(lane));
+    try {
+      Lane lane = prepare(options, grid, i);
+      const bool fits = group.size() < lanes_at_once(variant) &&
+                        (group.empty() || fit_one_batch(group.front(), lane));
+      if (!fits) finish_group();
+      group.push_back(std::move(lane));
+    } catch (const NotAssembled& error) {
+      finish_group();
+      file.write_failed(grid.values(written++), kNotAssembled, error.what());
+      ++outcomes.not_assembled;
+    }
   }
   finish_group();
   return outcomes;
@@ -112,16 +146,19 @@ int sweep(const SweepOptions& options) {
   require_lanes(options, grid);
   const Outcomes outcomes = run_grid(options, grid, *variant.variant, file);
   file.commit();
-  long failed = 0;
-  for (const auto& [status, count] : outcomes) {
-    if (!is_finished(status)) failed += count;
+  if (outcomes.alone) {
+    fmt::print(stderr,
+               "mbs: note: lanes ran one after the other: {} takes this scene with these settings "
+               "only so\n",
+               variant.name);
   }
-  if (failed == 0) {
-    fmt::print("{} lanes: {}\n", grid.lanes(), text_of(outcomes));
+  if (outcomes.failed() == 0) {
+    fmt::print("{}: {}\n", lanes_text(grid.lanes()), outcomes.text());
     return 0;
   }
-  fmt::print(stderr, "mbs: {} on {}: {} of {} lanes failed: {} (column status_reason says why)\n",
-             variant.name, grid.base().name, failed, grid.lanes(), text_of(outcomes));
+  fmt::print(stderr, "mbs: {} on {}: {} of {} failed: {} (column status_reason says why)\n",
+             variant.name, grid.base().name, outcomes.failed(), lanes_text(grid.lanes()),
+             outcomes.text());
   return 1;
 }
 

@@ -29,7 +29,19 @@ std::string cell(std::optional<double> value) {
 }  // namespace
 
 SweepFile::SweepFile(const std::string& path, const SweepGrid& grid)
-    : outputs_(OutputValues(grid.base()).columns().size()), file_(path, columns_of(grid)) {}
+    : columns_(columns_of(grid).size()),
+      outputs_(OutputValues(grid.base()).columns().size()),
+      file_(path, columns_of(grid)) {}
+
+void SweepFile::write_failed(const std::vector<double>& values, const std::string& status,
+                             const std::string& reason) {
+  std::vector<std::string> row;
+  for (const double value : values) row.push_back(cell(value));
+  row.push_back(status);
+  row.push_back(reason);
+  row.resize(columns_);
+  file_.write(row);
+}
 
 void SweepFile::write(const std::vector<double>& values, const Lane& lane) {
   const RunSummary& summary = lane.summary;

@@ -18,10 +18,13 @@ class SweepFile {
   /// Throws UsageError if `path` cannot be written.
   SweepFile(const std::string& path, const SweepGrid& grid);
   void write(const std::vector<double>& values, const Lane& lane);
+  /// The row of a lane that could not be simulated.
+  void write_failed(const std::vector<double>& values, const std::string& status,
+                    const std::string& reason);
   void commit() { file_.commit(); }
 
  private:
-  std::size_t outputs_;  // columns
+  std::size_t columns_, outputs_;
   CsvFile file_;
 };
 

@@ -69,7 +69,7 @@ AtomicFile::AtomicFile(std::string path) : name_(path), path_(std::move(path)) {
   };
   std::error_code error;
   const fs::file_status status = fs::status(path_, error);
-  if (path_.empty() || fs::is_directory(status)) refuse("it is not a file name");
+  if (path_.empty() || path_ == "-" || fs::is_directory(status)) refuse("it is not a file name");
   if (status.type() == fs::file_type::none) refuse(error.message().c_str());
   if (fs::is_fifo(status) || fs::is_socket(status)) refuse("it is a pipe or a socket");
   // A rename would replace a link; and a device such as /dev/stdout must be written to directly.

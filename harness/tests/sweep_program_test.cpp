@@ -144,6 +144,35 @@ TEST_F(SweepProgram, CountsTheLanesThatFailAndWritesThemAll) {
   }
 }
 
+TEST_F(SweepProgram, ALaneThatCannotBeAssembledHasItsRow) {
+  const auto run =
+      sweep("four-bar:2 --duration 0.1 --vary rods/A0-B0/length=1,3,1 --vary gravity/1=-9,-8",
+            "batch/sound");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.errors.find("2 of 6 lanes failed: 4 plausible, 2 not-assembled"), std::string::npos)
+      << run.errors;
+  const std::vector<Row> rows = rows_of(file_);
+  ASSERT_EQ(rows.size(), 6U);
+  for (const std::size_t i : {2U, 3U}) {
+    EXPECT_EQ(rows[i].at("status"), "not-assembled");
+    EXPECT_NE(rows[i].at("status_reason").find("would move by"), std::string::npos);
+    EXPECT_EQ(rows[i].at("steps"), "");
+  }
+  EXPECT_EQ(rows[4].at("B0.y.min"), rows[0].at("B0.y.min"));
+}
+
+TEST_F(SweepProgram, SaysWhereLanesRanOneAfterTheOther) {
+  const std::string arguments = "four-bar:1 --duration 0.1 --vary gravity/1=-9,-8";
+  EXPECT_EQ(sweep(arguments, "batch/lost_lane").errors.find("one after the other"),
+            std::string::npos);
+  const auto run = test::run_program(
+      MBS_PROGRAM, "sweep --implementation compiled_ldl/fronts --scheme saddle-point --output '" +
+                       file_ + "' " + arguments);
+  EXPECT_NE(run.errors.find("note: lanes ran one after the other: compiled_ldl/fronts"),
+            std::string::npos)
+      << run.errors;
+}
+
 TEST_F(SweepProgram, AnUnsupportedSceneHasRowsToo) {
   const auto run = sweep("four-bar:2 --duration 0.1 --vary gravity/1=-9,-8", "control/unsupported");
   EXPECT_EQ(run.status, 1);
@@ -179,6 +208,10 @@ TEST_F(SweepProgram, RefusesBadInputBeforeAnythingRuns) {
   expect_refusal(vary + "gravity/1=1 --duration -1", {"mbs: --duration is -1"});
   expect_refusal("four-bar:2,fill=0.9 --vary gravity/1=1", {"fill"});
   expect_refusal("nowhere.json --vary gravity/1=1", {"nowhere.json"});
+  const auto run = test::run_program(
+      MBS_PROGRAM, "sweep --implementation csc_klu/refactor --output - " + vary + "gravity/1=1");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.errors.find("'-'"), std::string::npos) << run.errors;
   const std::string scene = MBS_ROOT "/harness/scenes/point_mass_pendulum.json";
   expect_refusal("'" + scene + "' --vary masses/C/mass=1,2", {"no \"C\" in masses", "one of B"});
 }

@@ -16,23 +16,24 @@ ROUNDS = 3
 
 
 def measure(bench, subject, entries, tell, errors=None):
-    """DataFrame of one subject's runs: work.csv. `errors`: around which curves have closer steps, m; None: ERRORS
-    of the N-four-bar, none of others."""
+    """DataFrame of one subject's runs: work.csv. `errors`, m: those that are asked for, around which curves have closer
+    steps, and below which they end; None: ERRORS of the N-four-bar, and curves do not end for that."""
     import pandas
+    least = min(errors, default=0.0) if errors is not None else 0.0
     if errors is None:
         errors = ERRORS if subject.loops else ()
-    table = pandas.concat([_family(bench, subject, family, errors, tell) for family in entries.families()],
+    table = pandas.concat([_family(bench, subject, family, errors, least, tell) for family in entries.families()],
                           ignore_index=True)
     table["front"] = table.index.isin(pareto(table))
     return table
 
 
-def _family(bench, subject, entries, errors, tell):
+def _family(bench, subject, entries, errors, least, tell):
     import pandas
     table = []
     for variant, settings in entries.settings.items():
         tell(f"{subject.name}: {variant}, {settings[0].name}")
-        table += _curve(bench, subject, variant, settings[0], entries, table)
+        table += _curve(bench, subject, variant, settings[0], entries, table, least)
     slow = _slow(pandas.DataFrame(table), entries)
     for variant, settings in entries.settings.items():
         for setting in settings[1:]:
@@ -40,7 +41,7 @@ def _family(bench, subject, entries, errors, tell):
             if variant in slow:
                 table.append(left_out(subject, variant, setting, numpy.nan, slow[variant]))
             else:
-                table += _curve(bench, subject, variant, setting, entries, table)
+                table += _curve(bench, subject, variant, setting, entries, table, least)
     if errors:
         table += brackets.refine(bench, subject, entries, pandas.DataFrame(table), errors, tell)
     table = pandas.DataFrame(table)
@@ -48,15 +49,15 @@ def _family(bench, subject, entries, errors, tell):
     return table
 
 
-def _curve(bench, subject, variant, setting, entries, known):
+def _curve(bench, subject, variant, setting, entries, known, least):
     """The rows of a curve from the largest step on, until a run would take too long or smaller steps are of no
-    use. `known`: rows of other curves."""
+    use. `known`: rows of other curves; `least`: the least error that is asked for."""
     reason = entries.refused.get((variant, setting.name))
     if reason:
         return [left_out(subject, variant, setting, numpy.nan, reason)]
     rows, ahead = [], 0.0
     for step in subject.steps:
-        reason = too_long(ahead, bench.time_limit) or of_no_use(rows, known)
+        reason = too_long(ahead, bench.time_limit) or of_no_use(rows, known, least)
         if reason:
             rows.append(left_out(subject, variant, setting, step, reason))
             continue
@@ -75,10 +76,12 @@ def too_long(ahead, limit):
             "the run at twice the step did not end")
 
 
-def of_no_use(rows, known):
-    """Why a curve is not followed further: two halvings of the step in turn have not made the error smaller, or
-    it is far from the front and no nearer than before."""
+def of_no_use(rows, known, least=0.0):
+    """Why a curve is not followed further: the last error is the `least` that is asked for or smaller, two halvings
+    of the step in turn have not made the error smaller, or it is far from the front and no nearer than before."""
     made = [one for one in rows if one["rounds"]][-3:]
+    if made and made[-1].get("error", numpy.inf) <= least:
+        return f"the error is below {least:.2g} m, the least that is asked for"
     if len(made) < 3 or any("error" not in one for one in made):
         return ""
     errors = [one["error"] for one in made]

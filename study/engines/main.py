@@ -1,4 +1,6 @@
 # study/run --engines: the N-four-bar in other engines beside ours: tables, figures and page.
+import contextlib
+
 from study.pipeline.carrier import carry_out, layout_of
 from study.pipeline.options import Parser, add_only, add_results, loops, positive
 from study.pipeline.prepare import need_modules
@@ -6,6 +8,7 @@ from study.pipeline.prepare import need_modules
 
 def engines(arguments):
     options = _parser().parse_args(arguments)
+    _need_known(options.engines)
     layout = layout_of(options, "engines", "engines.csv")
     if options.dry_run:
         need_modules()
@@ -13,6 +16,13 @@ def engines(arguments):
         print(stages.sentence(*stages.choose(options)))
         return 0
     return carry_out(layout, options, "engines", _run, more_set_up=_build)
+
+
+def _need_known(names):
+    """StudyError if an engine is unknown: said before set-up, which takes minutes, where the list can be read."""
+    with contextlib.suppress(ImportError):
+        from study.engines import settings
+        settings.need_known(names)
 
 
 def _build():

@@ -26,6 +26,14 @@ class Setting:
         return ["--setting", *(f"{key}={text}" for key, text in pairs)]
 
 
+def need_known(engines):
+    """StudyError if one is not in the list."""
+    listed = read_list()
+    for name in engines:
+        if name not in listed:
+            raise StudyError(f"--engines: unknown engine '{name}'; known: {', '.join(listed)}")
+
+
 def read_list(path=LIST):
     """{engine: [Setting]}"""
     listed = yaml.safe_load(path.read_text())

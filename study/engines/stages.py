@@ -7,7 +7,6 @@ from study.accuracy_study import bench, estimate, stages as accuracy, subjects a
 from study.accuracy_study.settings import Entries, LIST as OUR_LIST
 from study.engines import curves, programs, rounds, settings, subjects
 from study.pipeline.contenders import from_json
-from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_run, write_csv
 from study.pipeline.prepare import digest, registry, start_named
 from study.pipeline.progress import Teller
@@ -30,12 +29,10 @@ class Place:
 
 def choose(options):
     """(Choice of study/accuracy, {engine: [Setting]})"""
+    settings.need_known(options.engines)
     listed = settings.read_list()
     wanted = argparse.Namespace(only=options.only, problems=["none"], loops=options.loops or LOOPS,
                                 parts=("work",), duration=options.duration, time_limit=options.time_limit)
-    unknown = [name for name in options.engines if name not in listed]
-    if unknown:
-        raise StudyError(f"--engines: unknown engine '{unknown[0]}'; known: {', '.join(listed)}")
     return accuracy.choose(wanted, registry()), {
         engine: found for engine, found in listed.items() if not options.engines or engine in options.engines}
 

@@ -17,6 +17,7 @@ from study.accuracy_study.subjects import JUDGED_S, STEPS, Subject
 REGULAR_S = 0.6   # s
 PENDULUM_S = 2.0  # s
 PENDULUM = "study/engines/double_pendulum.json"
+FINER = (2e-5, 1e-5)  # s: steps of ours beyond those of study/accuracy, since engines reach smaller errors there
 GRAVITY = 9.81
 LONGEST = 1e-3    # s, a step of the integration of the double pendulum: rounding alone is left
 
@@ -39,7 +40,7 @@ def all_of(loops, duration):
     chains = [subjects.chain(count, duration) for count in loops]
     short = [replace(subjects.chain(count, REGULAR_S), name=f"four-bar:{count} regular",
                      title=f"N = {count}, first {REGULAR_S:g} s") for count in loops]
-    return [*chains, *short, pendulum()]
+    return [replace(one, steps=(*one.steps, *FINER)) for one in (*chains, *short, pendulum())]
 
 
 def is_regular(name):

@@ -7,7 +7,7 @@ from study.pipeline.carrier import carry_out, layout_of
 from study.pipeline.contenders import from_json, own
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_run, write_csv
-from study.pipeline.options import Parser, add_only, add_results, loops, positive
+from study.pipeline.options import Parser, add_only, add_results, loops, positive, rounds
 from study.pipeline.prepare import registry, select, start_named
 from study.pipeline.progress import Teller
 
@@ -34,16 +34,17 @@ def limit(arguments):
                         help=f"only these parts ({' '.join(PARTS)})")
     add_only(parser)
     parser.add_argument("--loops", nargs="+", type=loops, default=LOOPS, metavar="N",
-                        help=f"sizes ({' '.join(map(str, LOOPS))})")
+                        help=f"sizes of the part of that name ({' '.join(map(str, LOOPS))})")
     parser.add_argument("--instructions", action="store_true", help="also count the instructions of a "
                         "step up to N = 40 with Valgrind, in a build of their own")
-    parser.add_argument("--rounds", type=loops, default=5, metavar="R",
+    parser.add_argument("--rounds", type=rounds, default=5, metavar="R",
                         help="processes a cell, in turn over all implementations (5)")
     parser.add_argument("--time-limit", type=positive, default=20.0, metavar="S",
                         help="for one timed process (20 s); what takes longer is kept as a timeout, "
                         "and not tried at larger sizes")
     add_results(parser, "limit")
     options = parser.parse_args(arguments)
+    options.loops = tuple(dict.fromkeys(options.loops))
     return carry_out(layout_of(options, "limit", "implementations.json"), options, "limit", _run)
 
 

@@ -22,6 +22,7 @@ def carry_out(layout, options, name, run, timed=True, more_set_up=lambda: None):
     """Sets up, calls run(layout, options) and writes figures and page, those of analysis/NAME/report.py;
     with --stored the page only. Alone in the results directory and, if `timed`, on the machine."""
     writable(layout.results)
+    _need_folders(getattr(options, "only", []))
     measures = timed and not options.stored
     with only_one(layout), only_one_measuring() if measures else contextlib.nullcontext():
         if "MBS_PROGRAM" not in os.environ and not options.stored:
@@ -34,6 +35,16 @@ def carry_out(layout, options, name, run, timed=True, more_set_up=lambda: None):
             run(layout, options)
         _write(layout, name)
     return 0
+
+
+def _need_folders(names):
+    """StudyError if one is of no folder: said before set-up, which takes minutes."""
+    if "MBS_PROGRAM" in os.environ:
+        return
+    folders = [path.parent.name for path in sorted((ROOT / "implementations").glob("*/README.md"))]
+    for name in names:
+        if name.partition("/")[0] not in folders:
+            raise StudyError(f"--only: unknown implementation '{name}'; known folders: {', '.join(folders)}")
 
 
 def _write(layout, name):

@@ -20,8 +20,16 @@ def positive(text):
 
 
 def loops(text):
+    return _count(text, "loops")
+
+
+def rounds(text):
+    return _count(text, "rounds")
+
+
+def _count(text, what):
     if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text} is not a number of loops (1, 2, ...)")
+        raise argparse.ArgumentTypeError(f"{text} is not a number of {what} (1, 2, ...)")
     return int(text)
 
 

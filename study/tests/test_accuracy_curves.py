@@ -8,7 +8,7 @@ from study.accuracy_study import bench, settings, subjects, work
 from study.tests.accuracy_fakes import admitted, fake  # noqa: F401 (a fixture)
 
 
-def curve(fake, monkeypatch, errors, seconds=0.01, status="ok", known=()):
+def curve(fake, monkeypatch, errors, seconds=0.01, status="ok", known=(), least=0.0):
     """work._curve over `errors`, of runs that take `seconds` and twice that from step to step."""
     subject, steps = subjects.chain(2, 1.0), iter(range(99))
 
@@ -25,7 +25,7 @@ def curve(fake, monkeypatch, errors, seconds=0.01, status="ok", known=()):
             "passes_per_step": 2.0,
             "position_error_max": errors[number], "step_us": {"mean": 1.0, "median": 1.0}}}
     monkeypatch.setattr(bench.Bench, "run", simulated)
-    return work._curve(fake, subject, "good_sparse/only", settings.Setting("default"), admitted(), known)
+    return work._curve(fake, subject, "good_sparse/only", settings.Setting("default"), admitted(), known, least)
 
 
 def test_a_curve_ends_where_it_would_take_too_long_or_rounding_has_won(fake, monkeypatch):
@@ -44,6 +44,9 @@ def test_a_curve_ends_where_it_would_take_too_long_or_rounding_has_won(fake, mon
     nearer = curve(fake, monkeypatch, [1, .1, .01, 1e-3, 1e-4, 1e-5], known=[
         {"time": 0.25e-4 * 4**k, "error": 10.0**-k} for k in range(2)])
     assert [row["status"] for row in nearer] == ["ok"] * 6
+    enough = curve(fake, monkeypatch, [1, .1, .01, 1e-3], least=0.01)
+    assert [row["status"] for row in enough] == ["ok"] * 3 + ["not-run"] * 3
+    assert enough[3]["status_reason"] == "the error is below 0.01 m, the least that is asked for"
     dead = curve(fake, monkeypatch, [], status="timeout")
     assert [row["status"] for row in dead] == ["timeout"] + ["not-run"] * 5
     assert dead[1]["status_reason"] == "the run at twice the step did not end"

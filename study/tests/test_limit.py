@@ -1,4 +1,5 @@
 # study/limit: what is counted and refused, and a tiny run on the real program.
+import json
 import tempfile
 
 import pandas
@@ -44,6 +45,26 @@ def test_a_cell_that_fails_keeps_its_row_with_the_reason(tmp_path):
     row, = measure.size(Layout(tmp_path), [ONE], 10, 3, 1.0, lambda text: None)
     assert (row["status"], row["reason"]) == ("failed", "did not end within 1 s")
     assert "step_us" not in row
+
+
+def test_what_was_interrupted_is_run_again_and_the_calmest_counts(tmp_path, monkeypatch):
+    from types import SimpleNamespace
+    made = iter([2.0, 1.3, 1.5, 1.05])
+
+    def run(*_):
+        found = {"benchmarks": [bench_row(1.0) | {"real_time": 10 * next(made), "cpu_time": 10.0}]}
+        return SimpleNamespace(status="exited", code=0, stdout=json.dumps(found))
+    monkeypatch.setattr(measure.child, "run", run)
+    assert measure.bench(Layout(tmp_path), ONE, "s", "n22/a", 1.0)[0]["real_time"] == 13.0
+    assert measure.bench(Layout(tmp_path), ONE, "s", "n22/b", 1.0)[0]["real_time"] == 10.5
+    assert measure.bench(Layout(tmp_path), ONE, "s", "n22/a", 1.0)[0]["real_time"] == 13.0  # stored
+
+
+def test_a_wrong_name_is_said_before_set_up(monkeypatch):
+    monkeypatch.delenv("MBS_PROGRAM", raising=False)
+    monkeypatch.setattr("study.pipeline.carrier.set_up", lambda layout: pytest.fail("set-up has begun"))
+    with pytest.raises(StudyError, match="--only: unknown implementation 'nope'; known folders: armadillo_dense, "):
+        limit(["--only", "nope"])
 
 
 def test_collected_instructions():

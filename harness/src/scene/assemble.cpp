@@ -11,6 +11,7 @@
 #include "model_math/vector3.hpp"
 #include "printable.hpp"
 #include "scene/row_names.hpp"
+#include "scene/not_assembled.hpp"
 #include "scene/scene.hpp"
 #include "usage_error.hpp"
 
@@ -52,7 +53,7 @@ class Assembly {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw UsageError(fmt::format("{}: {}", printable(where_), what));
+    throw NotAssembled(fmt::format("{}: {}", printable(where_), what));
   }
 
   void assemble_positions() {

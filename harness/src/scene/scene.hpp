@@ -177,7 +177,7 @@ SceneData parse_scene(std::string_view json, const std::string& where);
 /// constraints are fine). Velocities given, that is not zero, stay as they are if the others can
 /// follow, and change a millionth as easily as those if not. A start on its constraints to rounding
 /// is left bit for bit. What the file gives of points that are no coordinates counts like theirs.
-/// Fills data.assembly. Throws UsageError, prefixed by `where`, naming the constraint and by how
+/// Fills data.assembly. Throws NotAssembled, prefixed by `where`, naming the constraint and by how
 /// much it fails, if that does not converge, if a point would move by more than
 /// data.largest_correction (a unit vector: by more than its share of the scene's extent), or if a
 /// given velocity would change by more than a tenth of the largest given.

@@ -148,11 +148,12 @@ bool fit_one_batch(const Lane& a, const Lane& b) {
          count_steps(a.settings) == count_steps(b.settings);
 }
 
-void run_lanes(std::span<Lane> lanes, const Variant& variant, const LaneProgress& progress) {
-  if (run_side_by_side(lanes, variant, progress)) return;
+bool run_lanes(std::span<Lane> lanes, const Variant& variant, const LaneProgress& progress) {
+  if (run_side_by_side(lanes, variant, progress)) return true;
   for (std::size_t i = 0; i < lanes.size(); ++i) {
     run_alone(lanes[i], variant, [&](double share) { progress(static_cast<double>(i) + share); });
   }
+  return false;
 }
 
 std::size_t lanes_at_once(const Variant& variant) {

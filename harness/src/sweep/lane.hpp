@@ -25,8 +25,8 @@ bool fit_one_batch(const Lane& a, const Lane& b);
 
 /// Runs lanes of which each fits the first: side by side where `variant` takes them so, else one
 /// after the other. Each has the outcome that run() would give it alone. Settings must be in range,
-/// as require_duration() has it.
-void run_lanes(std::span<Lane> lanes, const Variant& variant, const LaneProgress& progress);
+/// as require_duration() has it. Returns whether they ran side by side.
+bool run_lanes(std::span<Lane> lanes, const Variant& variant, const LaneProgress& progress);
 
 /// As many as `variant` is best given at once.
 std::size_t lanes_at_once(const Variant& variant);
