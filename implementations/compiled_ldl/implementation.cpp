@@ -36,20 +36,20 @@ Implementation implementation() {
   Variant fronts;
   fronts.name = "fronts";
   fronts.description =
-      "dense fronts of points, merged and ordered by predicted time, for any scene";
+      "a flat program of dense fronts of points, a small scene one dense matrix; any scene";
   fronts.create = create_fronts;
   fronts.serves = kFronts;
   fronts.create_batch = create_batch;
   fronts.batch_lanes = Lanes::kCount;
   Variant chains;
   chains.name = "chains";
-  chains.description = "kernels for chains of points, no other scene";
+  chains.description = "kernels that eliminate a chain of points from both ends; no other scene";
   chains.create = chain::create;
   chains.serves = kChains;
   chains.create_batch = chain::create_batch;
   chains.batch_lanes = chain::batch_lanes();
   Implementation all;
-  all.description = "the scene compiled into a flat program; block L D L^T in dense fronts";
+  all.description = "the scene compiled at set-up; own block L D L^T";
   all.library = "none";
   all.variants = {fronts, chains};
   return all;
