@@ -1,8 +1,11 @@
 // compiled_ldl: describes it and makes its simulations.
 #include "mbs/implementation.hpp"
 
+#include <iostream>
+
 #include "batch.hpp"
 #include "chain.hpp"
+#include "listing.hpp"
 #include "scalar.hpp"
 #include "simulations.hpp"
 
@@ -20,6 +23,7 @@ constexpr Serves kFronts = {.saddle_point = true,
 constexpr Serves kChains = {.saddle_point = true, .rattle = true, .projections_every = true};
 
 std::unique_ptr<Simulation> create_fronts(const Model& model, const StepSettings& settings) {
+  if (is_listing_due()) list_fronts(std::cerr, model, settings);
   switch (settings.precision) {
     case Precision::single_precision:
       return create_single(model, settings);
@@ -28,6 +32,12 @@ std::unique_ptr<Simulation> create_fronts(const Model& model, const StepSettings
     default:
       return create_double(model, settings);
   }
+}
+
+std::unique_ptr<Simulation> create_chains(const Model& model, const StepSettings& settings) {
+  auto simulation = chain::create(model, settings);
+  if (is_listing_due()) list_chain(std::cerr, model);
+  return simulation;
 }
 
 }  // namespace
@@ -44,7 +54,7 @@ Implementation implementation() {
   Variant chains;
   chains.name = "chains";
   chains.description = "kernels that eliminate a chain of points from both ends; no other scene";
-  chains.create = chain::create;
+  chains.create = create_chains;
   chains.serves = kChains;
   chains.create_batch = chain::create_batch;
   chains.batch_lanes = chain::batch_lanes();
