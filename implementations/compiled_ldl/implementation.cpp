@@ -46,7 +46,7 @@ Implementation implementation() {
   Variant fronts;
   fronts.name = "fronts";
   fronts.description =
-      "a flat program of dense fronts of points, a small scene one dense matrix; any scene";
+      "dense fronts in a flat program, small scenes as one dense matrix; any scene";
   fronts.create = create_fronts;
   fronts.serves = kFronts;
   fronts.create_batch = create_batch;
