@@ -46,7 +46,9 @@ std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> mode
   if (s.scheme != Scheme::penalty || s.multipliers != MultiplierUpdate::every_pass ||
       s.tangent != TangentReuse::none || s.precision != Precision::double_precision ||
       s.geometric_stiffness) {
-    throw Unsupported("batches are for the default scheme");
+    throw Unsupported(
+        "batches are for the penalty form in double precision, multipliers and tangent of every "
+        "pass, no geometric stiffness");
   }
   // Constant torques drive through singular positions again and again, where rounding decides how
   // many passes a step takes: lanes would differ from simulations alone by more than rounding.

@@ -8,8 +8,8 @@
 
 namespace mbs::compiled_ldl {
 
-/// Throws Unsupported unless the scheme is the default one in double precision, its matrix
-/// factorized every pass.
+/// Throws Unsupported unless the scheme is the default one in double precision, with lambda updated
+/// and the matrix, without geometric stiffness, factorized every pass, and no model has couples.
 std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> models,
                                               std::span<const StepSettings> settings);
 

@@ -1,8 +1,11 @@
 // compiled_ldl: describes it and makes its simulations.
 #include "mbs/implementation.hpp"
 
+#include <iostream>
+
 #include "batch.hpp"
 #include "chain.hpp"
+#include "listing.hpp"
 #include "scalar.hpp"
 #include "simulations.hpp"
 
@@ -20,6 +23,7 @@ constexpr Serves kFronts = {.saddle_point = true,
 constexpr Serves kChains = {.saddle_point = true, .rattle = true, .projections_every = true};
 
 std::unique_ptr<Simulation> create_fronts(const Model& model, const StepSettings& settings) {
+  if (is_listing_due()) list_fronts(std::cerr, model, settings);
   switch (settings.precision) {
     case Precision::single_precision:
       return create_single(model, settings);
@@ -30,26 +34,32 @@ std::unique_ptr<Simulation> create_fronts(const Model& model, const StepSettings
   }
 }
 
+std::unique_ptr<Simulation> create_chains(const Model& model, const StepSettings& settings) {
+  auto simulation = chain::create(model, settings);
+  if (is_listing_due()) list_chain(std::cerr, model);
+  return simulation;
+}
+
 }  // namespace
 
 Implementation implementation() {
   Variant fronts;
   fronts.name = "fronts";
   fronts.description =
-      "dense fronts of points, merged and ordered by predicted time, for any scene";
+      "dense fronts in a flat program, small scenes as one dense matrix; any scene";
   fronts.create = create_fronts;
   fronts.serves = kFronts;
   fronts.create_batch = create_batch;
   fronts.batch_lanes = Lanes::kCount;
   Variant chains;
   chains.name = "chains";
-  chains.description = "kernels for chains of points, no other scene";
-  chains.create = chain::create;
+  chains.description = "kernels that eliminate a chain of points from both ends; no other scene";
+  chains.create = create_chains;
   chains.serves = kChains;
   chains.create_batch = chain::create_batch;
   chains.batch_lanes = chain::batch_lanes();
   Implementation all;
-  all.description = "the scene compiled into a flat program; block L D L^T in dense fronts";
+  all.description = "the scene compiled at set-up; own block L D L^T";
   all.library = "none";
   all.variants = {fronts, chains};
   return all;

@@ -49,7 +49,8 @@ void LaneGroup<D>::step(double time, std::span<StepOutcome> outcomes) {
   evaluate();
   LaneMask active = running_;
   for (int pass = 1; pass <= settings_.max_passes && any(active); ++pass) {
-    system_.linearize(false);
+    system_.begin_residual();
+    system_.finish_residual();
     system_.assemble_where(active);
     system_.factorize_and_solve();
     const LaneMask failed = active & (system_.fronts.least_pivot().v < 0.0);

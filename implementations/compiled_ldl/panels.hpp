@@ -49,9 +49,9 @@ class Panels {
   };
 
   void add_front(const Front& front);
-  void add_run(int pivots, int below);
+  void add_run(const PanelShape& shape);
   template <int P>
-  void choose_kernels(Run& run, int below) const;
+  void choose_kernels(Run& run, int lanes) const;
   template <int P, int L>
   void set_kernels(Run& run) const;
 
@@ -89,7 +89,8 @@ class Panels {
   Array<F> constants_, matrix_, factors_;
   std::vector<Panel> panels_;
   std::vector<Run> runs_;
-  int last_shape_ = -1, next_factors_ = 0;  // while tables are made
+  PanelShape last_shape_;  // while tables are made, as the next
+  int next_factors_ = 0;
   std::vector<int> rows_;
   Array<F> work_;
 };

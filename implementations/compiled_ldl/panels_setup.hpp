@@ -38,13 +38,12 @@ void Panels<F>::add_front(const Front& front) {
     next_factors_ = panel.factors + lanes_for(pivots) * (2 * pivots + 1 + round_up(panel.below, 8));
     next_factors_ = round_up(next_factors_, 8);
     panels_.push_back(panel);
-    add_run(pivots, panel.inside > 0 ? std::max(panel.below, 8) : panel.below);
+    add_run(panel_shape(front, from));
   }
 }
 
 template <typename F>
-void Panels<F>::add_run(int pivots, int below) {
-  const int shape = pivots * 16 + (below == 0 ? 0 : lanes_for(below));
+void Panels<F>::add_run(const PanelShape& shape) {
   const int last = static_cast<int>(panels_.size()) - 1;
   if (!runs_.empty() && last_shape_ == shape) {
     runs_.back().end = last + 1;
@@ -54,38 +53,38 @@ void Panels<F>::add_run(int pivots, int below) {
   Run run;
   run.begin = last;
   run.end = last + 1;
-  switch (pivots) {
+  switch (shape.pivots) {
     case 1:
-      choose_kernels<1>(run, below);
+      choose_kernels<1>(run, shape.lanes);
       break;
     case 2:
-      choose_kernels<2>(run, below);
+      choose_kernels<2>(run, shape.lanes);
       break;
     case 3:
-      choose_kernels<3>(run, below);
+      choose_kernels<3>(run, shape.lanes);
       break;
     case 4:
-      choose_kernels<4>(run, below);
+      choose_kernels<4>(run, shape.lanes);
       break;
     case 5:
-      choose_kernels<5>(run, below);
+      choose_kernels<5>(run, shape.lanes);
       break;
     case 6:
-      choose_kernels<6>(run, below);
+      choose_kernels<6>(run, shape.lanes);
       break;
     case 7:
-      choose_kernels<7>(run, below);
+      choose_kernels<7>(run, shape.lanes);
       break;
     default:
-      choose_kernels<8>(run, below);
+      choose_kernels<8>(run, shape.lanes);
   }
   runs_.push_back(run);
 }
 
 template <typename F>
 template <int P>
-void Panels<F>::choose_kernels(Run& run, int below) const {
-  switch (below == 0 ? 0 : lanes_for(below)) {
+void Panels<F>::choose_kernels(Run& run, int lanes) const {
+  switch (lanes) {
     case 0:
       set_kernels<P, 0>(run);
       break;

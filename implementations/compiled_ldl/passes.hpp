@@ -116,7 +116,13 @@ template <typename S, typename F, int D>
 bool Stepper<S, F, D>::solve_pass(StepOutcome& outcome) {
   phases_.enter(Phase::evaluation);
   const bool renews = factorizes(outcome.passes);
-  system_.linearize(renews);
+  system_.begin_residual();
+  if (renews) {
+    phases_.enter(Phase::assembly);
+    system_.assemble();
+    phases_.enter(Phase::evaluation);
+  }
+  system_.finish_residual();
   if (!renews) {
     phases_.enter(Phase::solve);
     system_.solve();

@@ -2,10 +2,10 @@
 #include "program.hpp"
 
 #include <algorithm>
-#include <ostream>
 
 #include "elimination_tree.hpp"
 #include "ordering.hpp"
+#include "panel_vectors.hpp"
 
 namespace mbs::compiled_ldl {
 namespace {
@@ -54,9 +54,8 @@ Tree best_tree(const Pattern& pattern, const std::vector<int>& sizes, int width)
 int stride_of(const Front& front, int width) {
   const int rows = front.pivots + front.border;
   if (width == 1) return rows;
-  const auto lanes = [](int count) { return count <= 2 ? 2 : count <= 4 ? 4 : 8; };
-  int stride = std::max(lanes(front.pivots), front.pivots);
-  if (front.border > 0) stride = front.pivots + round_up(front.border, lanes(front.border));
+  int stride = std::max(lanes_for(front.pivots), front.pivots);
+  if (front.border > 0) stride = front.pivots + round_up(front.border, lanes_for(front.border));
   if (front.pivots > kPanel) stride = std::max(stride, round_up(rows, width));
   return stride <= 4 ? stride : round_up(stride, 4);
 }
@@ -150,15 +149,10 @@ Program compile(const Pattern& pattern, int width) {
   return program;
 }
 
-std::ostream& operator<<(std::ostream& out, const Program& program) {
-  out << program.size << " rows, " << program.storage << " numbers, " << program.fronts.size()
-      << " fronts\n";
-  for (const Front& front : program.fronts) {
-    out << "rows " << front.first << " to " << front.first + front.pivots - 1 << ", border";
-    for (int i = 0; i < front.border; ++i) out << ' ' << program.border_rows[front.rows + i];
-    out << ", updates in " << front.groups_end - front.groups_begin << " group(s)\n";
-  }
-  return out;
+PanelShape panel_shape(const Front& front, int from) {
+  const int pivots = std::min(kPanel, front.pivots - from);
+  if (from + pivots < front.pivots) return {pivots, 8};
+  return {pivots, front.border == 0 ? 0 : lanes_for(front.border)};
 }
 
 }  // namespace mbs::compiled_ldl

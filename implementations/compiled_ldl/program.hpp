@@ -1,7 +1,6 @@
 // The symbolic program: which dense fronts are eliminated in which order, and where numbers lie.
 #pragma once
 
-#include <iosfwd>
 #include <vector>
 
 namespace mbs::compiled_ldl {
@@ -60,6 +59,13 @@ struct Program {
 /// `width`: how many numbers a processor handles at once.
 Program compile(const Pattern& pattern, int width);
 
-std::ostream& operator<<(std::ostream& out, const Program& program);
+/// What chooses the kernel of a panel: its pivots, and the lanes of vectors for rows below, 0:
+/// none.
+struct PanelShape {
+  int pivots = 0, lanes = 0;
+  bool operator==(const PanelShape&) const = default;
+};
+/// Of the panel that begins with this pivot of its front.
+PanelShape panel_shape(const Front& front, int from);
 
 }  // namespace mbs::compiled_ldl

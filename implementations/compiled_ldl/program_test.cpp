@@ -1,7 +1,5 @@
-// Compiles random patterns and solves with random numbers on them; --print shows a program.
+// Compiles random patterns and solves with random numbers on them.
 #include <cstdio>
-#include <cstring>
-#include <iostream>
 #include <random>
 
 #include "fronts.hpp"
@@ -95,12 +93,8 @@ double residual(Random& random, const Pattern& pattern, int width) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main() {
   Random random(1);
-  if (argc > 1 && std::strcmp(argv[1], "--print") == 0) {
-    std::cout << compile(random_pattern(random, 2, 10, 2, true), 8);
-    return 0;
-  }
   int failed = 0;
   for (int trial = 0; trial < 300; ++trial) {
     const int dimension = 2 + trial % 2, points = 1 + trial % 37, more = trial % 5 * points / 4;

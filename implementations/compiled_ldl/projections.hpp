@@ -115,8 +115,11 @@ S Stepper<S, F, D>::take_correction() {
 template <typename S, typename F, int D>
 bool Stepper<S, F, D>::renew_factors() {
   auto& s = system_;
+  phases_.enter(Phase::evaluation);
   s.forces.add(s.q.data(), s.v.data(), S(1.0), s.y.data());
+  phases_.enter(Phase::assembly);
   s.assemble();
+  phases_.enter(Phase::factorization);
   s.y = right_hand_side_;
   return s.factorize_and_solve();
 }

@@ -69,6 +69,11 @@ Pattern pattern_of(const Model& model, bool multipliers, bool second_derivatives
   return pattern;
 }
 
+Program program_of(const Model& model, const StepSettings& settings, int width) {
+  return compile(pattern_of(model, has_multiplier_rows(settings), settings.geometric_stiffness),
+                 width);
+}
+
 Rows::Rows(const Model& model, const Program& program)
     : of_point(model.points().size()), of_coordinate(model.variables()), free_(program.padded) {
   extent = program.padded;

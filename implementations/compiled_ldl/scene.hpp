@@ -9,6 +9,7 @@
 
 #include "blocks.hpp"
 #include "mbs/model.hpp"
+#include "mbs/simulation.hpp"
 #include "program.hpp"
 #include "scalar.hpp"
 
@@ -17,6 +18,10 @@ namespace mbs::compiled_ldl {
 /// The pattern that a scheme's matrix has: multipliers are rows of it in the saddle-point forms,
 /// where the points of a constraint couple with each other only by its second derivatives.
 Pattern pattern_of(const Model& model, bool multipliers, bool second_derivatives);
+
+inline bool has_multiplier_rows(const StepSettings& s) { return s.scheme != Scheme::penalty; }
+/// Compiles that of these settings; `width` as in compile().
+Program program_of(const Model& model, const StepSettings& settings, int width);
 
 /// Vectors of coordinates have `extent` numbers: the program's rows, then those of fixed points.
 struct Rows {

@@ -29,8 +29,10 @@ class System {
     constraints.evaluate_and_update(q.data(), phi.data(), alpha, lambda.data());
   }
 
-  /// y = −f of Eq. (3), or the right-hand side of Eq. (12), and the matrix if it is asked for.
-  void linearize(bool with_matrix);
+  /// y = −f of Eq. (3), or the right-hand side of Eq. (12), in two parts: without the forces of the
+  /// constraints, and these. assemble() belongs between them.
+  void begin_residual();
+  void finish_residual();
   /// The matrix of Eq. (5), (12) or (14), at the last evaluate() and the last forces.
   void assemble();
   /// The matrix of Eq. (5), in the other lanes the one that they had.

@@ -8,7 +8,6 @@ namespace mbs::compiled_ldl {
 inline bool is_rattle(const StepSettings& s) {
   return s.scheme == Scheme::rattle || s.scheme == Scheme::rattle4 || s.scheme == Scheme::rattle6;
 }
-inline bool has_multiplier_rows(const StepSettings& s) { return s.scheme != Scheme::penalty; }
 
 /// The number that the settings of each lane have.
 template <typename S>
@@ -23,9 +22,7 @@ S of_settings(std::span<const StepSettings> settings, double StepSettings::*memb
 template <typename S, typename F, int D>
 System<S, F, D>::System(std::span<const Model* const> models,
                         std::span<const StepSettings> settings)
-    : program(compile(
-          pattern_of(*models[0], has_multiplier_rows(settings[0]), settings[0].geometric_stiffness),
-          kLanesOf<F> == 1 ? 8 : 1)),
+    : program(program_of(*models[0], settings[0], kLanesOf<F> == 1 ? 8 : 1)),
       rows(*models[0], program),
       saddle(has_multiplier_rows(settings[0])),
       rattle(is_rattle(settings[0])),

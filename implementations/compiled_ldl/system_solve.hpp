@@ -7,12 +7,15 @@
 
 namespace mbs::compiled_ldl {
 
-/// The constraints' forces come last, so that the matrix is in the cache when it is factorized.
 template <typename S, typename F, int D>
-void System<S, F, D>::linearize(bool with_matrix) {
+void System<S, F, D>::begin_residual() {
   mass.residual(force.data(), a.data(), h, y.data());
   if (forces.any()) forces.add(q.data(), v.data(), h, y.data());
-  if (with_matrix) assemble();
+}
+
+/// Comes last, so that the matrix is in the cache when it is factorized.
+template <typename S, typename F, int D>
+void System<S, F, D>::finish_residual() {
   constraints.add_forces(lambda.data(), phi.data(), saddle ? S(0.0) : alpha, h, y.data());
   if (!saddle) return;
   for (int k = 0; k < constraints.count(); ++k) y[constraints.row(k)] = -phi[k];
