@@ -26,28 +26,30 @@ def verify(advice, run, left, tell):
         row |= {"estimate": _at_least(row, advice)}
         advice.verifications.append(row)
         if accepted(row, one.setting, question):
-            advice.chosen, advice.verified = one, row
+            advice.chosen = one
+            advice.verified = row | {"estimate": max(row["estimate"], row["exact"] or 0.0)}
             return
         _reconsider(one, row, advice)
 
 
 def _at_least(row, advice):
-    """The estimate of a whole run; its exact error, where that is known and larger; or a larger estimate that
-    the same setting has at a shorter step: then the two runs that gave it were wrong alike."""
-    if row["estimate"] is None:
-        return None
-    known = max(row["estimate"], row["exact"] or 0.0)
-    if advice.pilot_duration < advice.question.duration:
-        return known
+    """The estimate of a whole run, or a larger one that the same setting has at a shorter step: then the two runs
+    that gave it were wrong alike."""
+    if row["estimate"] is None or advice.pilot_duration < advice.question.duration:
+        return row["estimate"]
     found = next(found for setting, found in advice.found.items() if setting.label == row["setting"])
-    return max([known, *(pilot.estimate for pilot in found.pilots if pilot.valid and pilot.step < row["step"])])
+    return max([row["estimate"], *(pilot.estimate for pilot in found.pilots if pilot.valid and pilot.step < row["step"])])
 
 
 def accepted(row, setting, question):
     """Whether a whole run is as accurate, and as punctual, as asked."""
-    return (row["status"] in FINISHED and row["estimate"] is not None
-            and row["estimate"] <= allowed(question.error, setting.order)
+    return (row["status"] in FINISHED and row["estimate"] is not None and _excess(row, setting, question) <= 1
             and (not question.deadline_us or row["step_us_p99"] <= question.deadline_us))
+
+
+def _excess(row, setting, question):
+    """How many times the allowed error that of a whole run is; only estimates need a margin."""
+    return max(row["estimate"] / allowed(question.error, setting.order), (row["exact"] or 0.0) / question.error)
 
 
 def _reconsider(one, row, advice):
@@ -55,15 +57,15 @@ def _reconsider(one, row, advice):
     setting, their time scaled, or one candidate less."""
     timing.take_back(advice.candidates)
     question, found = advice.question, advice.found[one.setting]
-    limit = allowed(question.error, one.setting.order)
     if row["status"] not in FINISHED or row["estimate"] is None:
         one.drop(f"{row['status']} when verified over {question.duration:g} s: {row['reason']}")
         return
-    if row["estimate"] <= limit:
+    excess = _excess(row, one.setting, question)
+    if excess <= 1:
         one.drop(f"99th percentile {row['step_us_p99']:.3g} us when verified: beyond the deadline")
         return
     failed = sum(other["setting"] == one.setting.label for other in advice.verifications)
-    step = one.step * 0.95 * (limit / row["estimate"]) ** (1 / one.setting.order)
+    step = one.step * 0.95 * excess ** (-1 / one.setting.order)
     if failed > 1 and advice.pilot_duration == question.duration and found.rung() < one.step:
         step = found.rung()  # its pilot was good enough
     for other in (other for other in advice.candidates if other.setting == one.setting):
