@@ -8,7 +8,7 @@ from analysis.style import Look
 
 FAMILIES = {  # first word of a setting: the colours of its kind
     "penalty": plt.get_cmap("Blues"), "saddle": plt.get_cmap("Greens"),
-    "rattle": plt.get_cmap("Oranges"), "precision": plt.get_cmap("Purples"),
+    "rattle": plt.get_cmap("Oranges"), "multistep6": plt.get_cmap("Reds"), "precision": plt.get_cmap("Purples"),
     "tangent": plt.get_cmap("Greys")}
 
 
@@ -24,8 +24,8 @@ def family(setting):
         return "precision"
     if words[0].startswith("rattle"):
         return "rattle"
-    if words[0] == "saddle":
-        return "saddle"
+    if words[0] in ("saddle", "multistep6"):
+        return words[0]
     return "tangent" if words[0] in ("every-step", "kept") else "penalty"
 
 

@@ -6,7 +6,7 @@ from analysis.style import DASHES, DENSE, GREY, MARKERS, SPARSE, number_axis, sa
 from analysis.text import number
 
 COLOURS = {"penalty": SPARSE[0], "saddle-point": SPARSE[1], "rattle": DENSE[1], "rattle4": SPARSE[2],
-           "rattle6": DENSE[0]}
+           "rattle6": DENSE[0], "multistep6": DENSE[4]}
 
 
 def draw(answer):

@@ -44,7 +44,8 @@ TEST(HalfStep, EstimatesTheExactError) {
                {Scheme::saddle_point, 2.5e-3, 2.0},
                {Scheme::rattle, 2e-3, 0.6},
                {Scheme::rattle4, 1e-2, 0.6},
-               {Scheme::rattle6, 2.5e-2, 0.6}};
+               {Scheme::rattle6, 2.5e-2, 0.6},
+               {Scheme::multistep6, 1e-2, 0.6}};
   for (const auto& [scheme, step, duration] : cases) {
     const RunSummary summary =
         run(scene, reference(), with_half_step(scene, scheme, step, duration));

@@ -67,6 +67,7 @@ TEST(ReferenceSchemes, AreOfTheirOrderBeforeTheSingularPosition) {
     EXPECT_NEAR(order(Scheme::rattle, 2e-3), 2.0, 0.05) << loops;
     EXPECT_NEAR(order(Scheme::rattle4, 1e-2), 4.0, 0.2) << loops;
     EXPECT_NEAR(order(Scheme::rattle6, 2.5e-2), 6.0, 0.4) << loops;
+    EXPECT_NEAR(order(Scheme::multistep6, 1e-2), 6.0, 0.4) << loops;
   }
 }
 

@@ -35,6 +35,7 @@ std::vector<Setting> all_settings() {
       {"rattle", {.scheme = Scheme::rattle}},
       {"rattle4", {.scheme = Scheme::rattle4}},
       {"rattle6", {.scheme = Scheme::rattle6}},
+      {"multistep6", {.scheme = Scheme::multistep6}},
       {"converged", {.multipliers = MultiplierUpdate::converged}},
       {"every_step", {.tangent = TangentReuse::step}},
       {"kept", {.tangent = TangentReuse::kept}},

@@ -2,7 +2,7 @@
 from dataclasses import dataclass
 
 LOOSE = 10  # a loose tolerance is this times the automatic one of the scheme
-ORDERS = {"rattle4": 4, "rattle6": 6}  # of a scheme; the others are of second order
+ORDERS = {"rattle4": 4, "rattle6": 6, "multistep6": 6}  # of a scheme; the others are of second order
 
 # What is changed beside the scheme, one combination a line. Measured on the N-four-bar: the penalty
 # form bears neither a loose tolerance nor missing projections, whatever the step.
@@ -21,7 +21,7 @@ CHANGES = {
         {"tolerance": "loose", "tangent": "every-step"},
         {"tolerance": "loose", "tangent": "kept"},
         {"tolerance": "loose", "geometric-stiffness": ""}],
-    "rattle": [{}], "rattle4": [{}], "rattle6": [{}]}
+    "rattle": [{}], "rattle4": [{}], "rattle6": [{}], "multistep6": [{}]}
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def catalogue():
 def fits(setting, scene):
     """Why a scheme cannot be used for a scene (`mbs describe --json`), or ""."""
     terms = scene["terms"]
-    if setting.scheme.startswith("rattle"):
+    if setting.scheme.startswith(("rattle", "multistep")):
         if (terms["driven_constraints"] or scene["driven_points"] or scene["driven_vectors"]):
             return "not for scenes with drivers"
         if terms["damping"]:

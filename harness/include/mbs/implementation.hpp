@@ -18,6 +18,7 @@ namespace mbs {
 struct Serves {
   bool saddle_point = false;         ///< Scheme::saddle_point
   bool rattle = false;               ///< Scheme::rattle, rattle4 and rattle6
+  bool multistep = false;            ///< Scheme::multistep6
   bool multiplier_update = false;    ///< MultiplierUpdate::converged
   bool tangent_reuse = false;        ///< TangentReuse::step and kept
   bool projections_every = false;    ///< more than 1

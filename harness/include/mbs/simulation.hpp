@@ -17,6 +17,7 @@ enum class Scheme {
   rattle,        ///< second order, one saddle-point factorization
   rattle4,       ///< fourth order, five stages of rattle
   rattle6,       ///< sixth order, seven stages of rattle
+  multistep6,    ///< sixth order, symmetric multistep method, one factorization
 };
 
 /// Which projections end a step.

@@ -19,7 +19,8 @@ double error_constant(Scheme scheme) { return scheme == Scheme::rattle ? 1.45 : 
 
 /// Why these settings have no error of second order to be checked; empty if they have.
 std::string why_not(const StepSettings& settings) {
-  if (settings.scheme == Scheme::rattle4 || settings.scheme == Scheme::rattle6) {
+  if (settings.scheme == Scheme::rattle4 || settings.scheme == Scheme::rattle6 ||
+      settings.scheme == Scheme::multistep6) {
     return "a scheme of higher order is at rounding at such steps";
   }
   if (settings.precision == Precision::single_precision) return "single precision rounds more";

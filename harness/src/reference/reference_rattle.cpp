@@ -30,9 +30,9 @@ constexpr int kMostRefinements = 5;
 
 }  // namespace
 
-StepOutcome ReferenceSimulation::rattle_step() {
+StepOutcome ReferenceSimulation::rattle_step(Scheme scheme) {
   StepOutcome outcome{StepStatus::converged, 0, 0};
-  for (const Real length : stages(settings_.scheme)) {
+  for (const Real length : stages(scheme)) {
     const StageOutcome stage = rattle_stage(length * settings_.step);
     outcome.passes += stage.passes;
     ++outcome.factorizations;
@@ -67,6 +67,13 @@ ReferenceSimulation::StageOutcome ReferenceSimulation::rattle_stage(Real h) {
   const Vector applied = applied_force();
   for (int i = 0; i < n_; ++i) top[i] += h / 2 * applied[i];
   v_ = solve(rows, top, Vector(m_, Real{0})).x;
+  rattle_velocity(rows);
+  rattle_acceleration(rows);
+  return outcome;
+}
+
+void ReferenceSimulation::rattle_velocity(const std::vector<Row>& rows) {
+  const Vector zero(n_, Real{0});
   for (int round = 0; round < kMostRefinements; ++round) {
     Vector bottom = times(rows, v_);
     for (Real& value : bottom) value = -value;
@@ -74,8 +81,6 @@ ReferenceSimulation::StageOutcome ReferenceSimulation::rattle_stage(Real h) {
     for (int i = 0; i < n_; ++i) v_[i] += delta[i];
     if (all_within(delta, 2 / Real{settings_.step} * settings_.tolerance)) break;
   }
-  rattle_acceleration(rows);
-  return outcome;
 }
 
 void ReferenceSimulation::rattle_acceleration(const std::vector<Row>& rows) {

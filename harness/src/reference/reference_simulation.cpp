@@ -338,6 +338,8 @@ void ReferenceSimulation::do_set_state(const State& state) {
   known_.set_time(time());
   steps_ = 0;
   due_ = true;
+  w_.clear();
+  past_a_.clear();
   if (!is_rattle()) return;
   const std::vector<Row> rows = jacobian();
   if (factorize(rows)) rattle_acceleration(rows);
@@ -354,7 +356,8 @@ void ReferenceSimulation::do_get_state(State& state) const {
 StepOutcome ReferenceSimulation::do_step() {
   ++steps_;
   known_.set_time(time());
-  return is_rattle() ? rattle_step() : trapezoidal_step();
+  if (settings_.scheme == Scheme::multistep6) return multistep();
+  return is_rattle() ? rattle_step(settings_.scheme) : trapezoidal_step();
 }
 
 double ReferenceSimulation::tangent_condition() {

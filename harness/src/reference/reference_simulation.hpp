@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <vector>
 
 #include "mbs/simulation.hpp"
@@ -88,6 +89,7 @@ class ReferenceSimulation final : public Simulation {
     Vector x, y;  // n; m, empty in the penalty form
   };
   [[nodiscard]] bool is_saddle() const { return settings_.scheme != Scheme::penalty; }
+  /// Or the multistep method, which starts with it.
   [[nodiscard]] bool is_rattle() const {
     return is_saddle() && settings_.scheme != Scheme::saddle_point;
   }
@@ -108,7 +110,7 @@ class ReferenceSimulation final : public Simulation {
   [[nodiscard]] bool refine(const std::vector<Row>& rows, Vector& x, const Vector& rate, Real small,
                             int& factorizations);
 
-  StepOutcome rattle_step();
+  StepOutcome rattle_step(Scheme scheme);
   struct StageOutcome {
     StepStatus status = StepStatus::converged;
     int passes = 0;
@@ -116,6 +118,13 @@ class ReferenceSimulation final : public Simulation {
   StageOutcome rattle_stage(Real h);
   /// Step 5 of a stage: a and lambda at (q, v).
   void rattle_acceleration(const std::vector<Row>& rows);
+  /// v onto the constraints, as step 4 refines it.
+  void rattle_velocity(const std::vector<Row>& rows);
+
+  /// Eq. (17); the first steps are those of rattle6.
+  StepOutcome multistep();
+  /// v, a and lambda of the present q, which Eq. (17) does without.
+  void complete_multistep();
 
   const Model& model_;
   StepSettings settings_;
@@ -128,6 +137,7 @@ class ReferenceSimulation final : public Simulation {
   std::vector<int> place_;  // of q[i], then of y[k], in the matrix
   EnvelopeLdlt matrix_{{}};
   bool due_ = true;  // TangentReuse::kept: the factors are to be renewed
+  std::deque<Vector> w_, past_a_;  // of Eq. (17), the last five, the newest first
 };
 
 }  // namespace mbs

@@ -10,7 +10,8 @@
 namespace mbs {
 
 double richardson_factor(Scheme scheme) {
-  const int order = scheme == Scheme::rattle4 ? 4 : scheme == Scheme::rattle6 ? 6 : 2;
+  const bool is_sixth = scheme == Scheme::rattle6 || scheme == Scheme::multistep6;
+  const int order = scheme == Scheme::rattle4 ? 4 : is_sixth ? 6 : 2;
   return 1.0 / (1.0 - std::ldexp(1.0, -order));
 }
 

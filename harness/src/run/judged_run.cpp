@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 bool has_high_order(Scheme scheme) {
-  return scheme == Scheme::rattle4 || scheme == Scheme::rattle6;
+  return scheme == Scheme::rattle4 || scheme == Scheme::rattle6 || scheme == Scheme::multistep6;
 }
 
 }  // namespace

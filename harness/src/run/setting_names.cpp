@@ -17,7 +17,8 @@ const std::vector<std::pair<std::string, Scheme>>& choices<Scheme>() {
       {"saddle-point", Scheme::saddle_point},
       {"rattle", Scheme::rattle},
       {"rattle4", Scheme::rattle4},
-      {"rattle6", Scheme::rattle6}};
+      {"rattle6", Scheme::rattle6},
+      {"multistep6", Scheme::multistep6}};
   return all;
 }
 
@@ -57,8 +58,18 @@ const std::vector<std::pair<std::string, Precision>>& choices<Precision>() {
 
 namespace {
 
-bool is_rattle(Scheme scheme) {
+/// RATTLE or what starts with it: no trapezoidal rule.
+bool is_explicit(Scheme scheme) {
   return scheme != Scheme::penalty && scheme != Scheme::saddle_point;
+}
+
+bool is_scheme_served(const Serves& serves, Scheme scheme) {
+  switch (scheme) {
+    case Scheme::penalty: return true;
+    case Scheme::saddle_point: return serves.saddle_point;
+    case Scheme::multistep6: return serves.multistep;
+    default: return serves.rattle;
+  }
 }
 
 }  // namespace
@@ -75,7 +86,7 @@ void require_combination(const StepSettings& s) {
   if (s.scheme != Scheme::penalty && s.multipliers != MultiplierUpdate::every_pass) {
     refuse("--multipliers " + name_of(s.multipliers), "every-pass");
   }
-  if (is_rattle(s.scheme)) {
+  if (is_explicit(s.scheme)) {
     if (s.tangent != TangentReuse::none) refuse("--tangent " + name_of(s.tangent), "every-pass");
     if (s.projections != Projections::both) {
       refuse("--projections " + name_of(s.projections), "both");
@@ -83,7 +94,12 @@ void require_combination(const StepSettings& s) {
     if (s.projections_every != 1) {
       refuse(fmt::format("--projections-every {}", s.projections_every), "1");
     }
-    if (s.precision == Precision::mixed) refuse("--precision mixed", "double and single");
+    if (s.precision == Precision::mixed) {
+      refuse("--precision mixed", s.scheme == Scheme::multistep6 ? "double" : "double and single");
+    }
+    if (s.scheme == Scheme::multistep6 && s.precision == Precision::single_precision) {
+      refuse("--precision single", "double");
+    }
     if (s.geometric_stiffness) refuse("--geometric-stiffness", "none: its tangent is exact");
   }
   if (s.projections == Projections::none && s.projections_every != 1) {
@@ -124,10 +140,7 @@ std::string other_settings(const StepSettings& s) {
 }
 
 std::string why_not_served(const Serves& serves, const StepSettings& s) {
-  const bool scheme = s.scheme == Scheme::penalty        ? true
-                      : s.scheme == Scheme::saddle_point ? serves.saddle_point
-                                                         : serves.rattle;
-  if (!scheme) return "--scheme " + name_of(s.scheme);
+  if (!is_scheme_served(serves, s.scheme)) return "--scheme " + name_of(s.scheme);
   if (s.multipliers != MultiplierUpdate::every_pass && !serves.multiplier_update) {
     return "--multipliers " + name_of(s.multipliers);
   }
@@ -143,7 +156,7 @@ std::string why_not_served(const Serves& serves, const StepSettings& s) {
 }
 
 std::string why_unsuited(const Model& model, const StepSettings& settings) {
-  if (!is_rattle(settings.scheme)) return "";
+  if (!is_explicit(settings.scheme)) return "";
   const std::string only = "--scheme " + name_of(settings.scheme) + " is for scenes without ";
   if (!model.driven_points().empty() || !model.driven_values().empty()) return only + "drivers";
   const auto damped = [](const auto& springs) {
@@ -171,6 +184,7 @@ std::vector<std::string> served_settings(const Serves& serves) {
   };
   add(serves.saddle_point, "saddle-point");
   add(serves.rattle, "rattle");
+  add(serves.multistep, "multistep");
   add(serves.multiplier_update, "multipliers");
   add(serves.tangent_reuse, "tangent");
   add(serves.projections_every, "projections-every");

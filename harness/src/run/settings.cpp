@@ -84,6 +84,7 @@ double automatic_penalty(const Model& model, const StepSettings& settings) {
   const double per_beta = 4 / (settings.step * settings.step);
   if (settings.scheme == Scheme::penalty) return per_beta * automatic_beta(model, settings);
   const double mean = mean_constraint_eigenvalue(model);
+  if (settings.scheme == Scheme::multistep6) return per_beta * 1e7 / mean;
   if (settings.scheme != Scheme::saddle_point) return per_beta * 2e4 / mean;  // RATTLE
   if (settings.precision != Precision::double_precision) return per_beta * 1e6 / mean;
   const double ratio = fastest_turning(model).rate * settings.step / kMeasuredTurn;

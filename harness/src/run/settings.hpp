@@ -29,7 +29,8 @@ namespace mbs {
 /// The saddle-point form: (4 / dt^2) 15 / (s_min x^2), but from 2.5e7 / s_mean, which is eps = 4e-8
 /// s_mean, to 1e10 / s_mean (x = turn / 6.8e-3); with factors in single precision 1e6 instead,
 /// since eps must be above their rounding. RATTLE: (4 / dt^2) 2e4 / s_mean: a smaller eps does not
-/// survive the poles of the multipliers at singular positions. For the step, scheme and precision
+/// survive the poles of the multipliers at singular positions; the multistep method, which does not
+/// pass them anyway, 1e7, so that two passes are enough. For the step, scheme and precision
 /// of `settings`.
 double automatic_penalty(const Model& model, const StepSettings& settings);
 
