@@ -79,8 +79,9 @@ def positions(times, longest=LONGEST):
 
 @functools.cache
 def _motion(longest):
-    """The state at any times; between its steps it is interpolated in the seventh order."""
-    return solve_ivp(_rates, (0, PENDULUM_S), [0.0, 0.0, 0.0, 2.0], "DOP853", rtol=1e-13, atol=1e-14,
+    """The state at any times; between its steps it is interpolated in the seventh order. A little beyond the end, where
+    the last sample of a rounded step may lie: the last step, however short, does not extrapolate."""
+    return solve_ivp(_rates, (0, 1.01 * PENDULUM_S), [0.0, 0.0, 0.0, 2.0], "DOP853", rtol=1e-13, atol=1e-14,
                      max_step=longest, dense_output=True).sol
 
 

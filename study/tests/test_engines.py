@@ -146,6 +146,8 @@ def test_the_motion_of_the_double_pendulum():
     assert subject.error(record) == 0
     record["outputs"]["C.y"] = second[1] + 1e-3
     assert subject.error(record) == pytest.approx(1e-3)
+    end, after = subjects.positions(numpy.array([subjects.PENDULUM_S, 75 * 0.0266667])).transpose(2, 0, 1)
+    assert numpy.hypot(*(after - end).T).max() < 1e-4  # a rounded step ends 2.5e-6 s later
     points = numpy.moveaxis(numpy.array([first, second]), 2, 0).reshape(401, 4)
     summary = {"outputs": {"t": times.tolist(), "points": (points + [0, 0, 0, 1e-4]).tolist()}}
     assert subjects.error(subject, {"summary": summary}) == pytest.approx(1e-4)
