@@ -3,7 +3,7 @@ from study.advise_study.settings import Setting
 from study.extremes_study import tools
 
 FORMS = tuple(map(Setting, tools.FORMS))
-OTHERS = (Setting("rattle"), Setting("rattle4"), Setting("rattle6"),
+OTHERS = (Setting("rattle"), Setting("rattle4"), Setting("rattle6"), Setting("multistep6"),
           *(Setting(form.scheme, (change,)) for change in (
               ("tangent", "kept"), ("precision", "single"), ("precision", "mixed")) for form in FORMS),
           *(Setting(form.scheme, (*change, ("half-step", ""))) for change in ((), (("tangent", "kept"),)) for form in FORMS),

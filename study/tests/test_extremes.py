@@ -62,7 +62,7 @@ def test_settings_that_few_serve_run_in_cells_that_there_are():
     assert {(axis, label) for axis, labels in settings.CELLS.items() for label in labels} < known
     assert settings.of("loops", "N = 10") == settings.FORMS + settings.OTHERS
     assert settings.of("loops", "N = 1000") == settings.FORMS
-    assert {setting.scheme for setting in settings.OTHERS} == {"rattle", "rattle4", "rattle6", "penalty", "saddle-point"}
+    assert {setting.scheme for setting in settings.OTHERS} == {"rattle", "rattle4", "rattle6", "multistep6", "penalty", "saddle-point"}
     assert any(("half-step", "") in setting.changes for setting in settings.OTHERS)  # alone `ok` without exact motion
 
 
