@@ -12,6 +12,7 @@ namespace {
 
 constexpr Serves kServes = {.saddle_point = true,
                             .rattle = true,
+                            .multistep = true,
                             .multiplier_update = true,
                             .tangent_reuse = true,
                             .projections_every = true};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "equations.hpp"
+#include "multistep.hpp"
 #include "newmark.hpp"
 #include "rattle.hpp"
 #include "storage.hpp"
@@ -127,6 +128,7 @@ bool is_trapezoidal(const StepSettings& settings) {
 
 template <TangentSolver Solver>
 std::unique_ptr<Simulation> create_simulation(const Model& model, const StepSettings& settings) {
+  if (settings.scheme == Scheme::multistep6) return create_multistep<Solver>(model, settings);
   if (!is_trapezoidal(settings)) return create_rattle<Solver>(model, settings);
   if (!is_default(settings)) return create_trapezoidal<Solver>(model, settings);
   if (model.dimension() == 2) return std::make_unique<NewtonSimulation<2, Solver>>(model, settings);
