@@ -46,6 +46,13 @@ TEST(Stretch, OfALongChainEndsBeforeTheSingularPosition) {
   EXPECT_NEAR(longest.start + longest.steps * kTimeStep, singular - kClearance, 1e-12);
 }
 
+TEST(Stretch, OfASchemeThatDoesNotPassTheSingularPositionEndsBeforeIt) {
+  const Scene scene = load_scene("four-bar:2");
+  const double singular = FourBarExact(2).first_singular_time();
+  const Stretch stretch = make_stretch(scene, kTimeStep, 800, std::nullopt, Scheme::multistep6);
+  EXPECT_NEAR(stretch.start + stretch.steps * kTimeStep, singular - kClearance, 1e-12);
+}
+
 TEST(Stretch, StartsOnTheExactMotion) {
   const Scene scene = load_scene("four-bar:3");
   const Stretch stretch = make_stretch(scene, kTimeStep, 800);

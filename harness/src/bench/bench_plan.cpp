@@ -38,7 +38,7 @@ PlannedScene plan_scene(const std::string& name, const BenchRequest& request) {
   Scene scene = load_scene(name);
   const StepSettings settings = request.settings(scene.model);
   const int steps = request.steps.value_or(default_steps(scene, settings.step));
-  Stretch stretch = make_stretch(scene, settings.step, steps, request.start);
+  Stretch stretch = make_stretch(scene, settings.step, steps, request.start, settings.scheme);
   const double n = scene.model.variables();
   const double fill = 100.0 * static_cast<double>(tangent_nonzeros(scene.model)) / (n * n);
   return {std::move(scene), settings, std::move(stretch), fill};

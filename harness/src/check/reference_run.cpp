@@ -37,7 +37,7 @@ ReferenceRun run_reference(const Scene& scene, const StepSettings& settings) {
   constexpr int kProbes = 5;
   const int most = std::clamp(400'000 / std::max(scene.model.variables(), 1), 16, kSteps);
   ReferenceRun result;
-  result.stretch = make_stretch(scene, settings.step, most);
+  result.stretch = make_stretch(scene, settings.step, most, std::nullopt, settings.scheme);
   const int steps = result.stretch.steps;
 
   ReferenceSimulation reference(scene.model, settings);

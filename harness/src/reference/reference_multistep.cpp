@@ -15,8 +15,7 @@ constexpr Real kW[] = {0.1L, -0.2L, 0.2L, -0.1L, 1};
 constexpr Real kOuter = 3331.0L / 2400, kInner = -73.0L / 300, kMiddle = 3133.0L / 1200;
 constexpr Real kA[] = {kInner, kMiddle, kInner, kOuter};  // of the past; kOuter of the present too
 constexpr Real kPredicted[] = {5, -10, 10, -5, 1};
-constexpr Real kVelocity[] = {475.0L / 288, -247.0L / 90, 631.0L / 240, -58.0L / 45,
-                              367.0L / 1440};
+constexpr Real kVelocity[] = {475.0L / 288, -247.0L / 90, 631.0L / 240, -58.0L / 45, 367.0L / 1440};
 
 /// Sum of the newest vectors, the first of `past`, times `weights`.
 template <std::size_t size>
@@ -64,8 +63,8 @@ StepOutcome ReferenceSimulation::multistep() {
     Vector bottom = constraints();
     for (Real& value : bottom) value = -value;
     const Vector delta = solve({}, top, bottom).x;
-    const bool is_small = std::ranges::all_of(
-        delta, [this](Real x) { return std::abs(x) <= settings_.tolerance; });
+    const bool is_small =
+        std::ranges::all_of(delta, [this](Real x) { return std::abs(x) <= settings_.tolerance; });
     for (int i = 0; i < n_; ++i) {
       q_[i] += delta[i];
       w[i] += delta[i];

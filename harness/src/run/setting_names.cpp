@@ -13,12 +13,9 @@ namespace mbs {
 template <>
 const std::vector<std::pair<std::string, Scheme>>& choices<Scheme>() {
   static const std::vector<std::pair<std::string, Scheme>> all{
-      {"penalty", Scheme::penalty},
-      {"saddle-point", Scheme::saddle_point},
-      {"rattle", Scheme::rattle},
-      {"rattle4", Scheme::rattle4},
-      {"rattle6", Scheme::rattle6},
-      {"multistep6", Scheme::multistep6}};
+      {"penalty", Scheme::penalty}, {"saddle-point", Scheme::saddle_point},
+      {"rattle", Scheme::rattle},   {"rattle4", Scheme::rattle4},
+      {"rattle6", Scheme::rattle6}, {"multistep6", Scheme::multistep6}};
   return all;
 }
 
@@ -65,10 +62,14 @@ bool is_explicit(Scheme scheme) {
 
 bool is_scheme_served(const Serves& serves, Scheme scheme) {
   switch (scheme) {
-    case Scheme::penalty: return true;
-    case Scheme::saddle_point: return serves.saddle_point;
-    case Scheme::multistep6: return serves.multistep;
-    default: return serves.rattle;
+    case Scheme::penalty:
+      return true;
+    case Scheme::saddle_point:
+      return serves.saddle_point;
+    case Scheme::multistep6:
+      return serves.multistep;
+    default:
+      return serves.rattle;
   }
 }
 

@@ -13,7 +13,8 @@
 
 namespace mbs {
 
-Stretch make_stretch(const Scene& scene, double step, int steps, std::optional<double> start) {
+Stretch make_stretch(const Scene& scene, double step, int steps, std::optional<double> start,
+                     Scheme scheme) {
   if (!scene.four_bar_loops) {
     if (start && *start != 0.0) {
       throw UsageError(
@@ -34,7 +35,7 @@ Stretch make_stretch(const Scene& scene, double step, int steps, std::optional<d
   const FourBarExact exact(*scene.four_bar_loops);
   const double singular = exact.first_singular_time();
   double begin = singular - steps / 2 * step;
-  if (*scene.four_bar_loops > kMostLoopsToCross) {
+  if (*scene.four_bar_loops > kMostLoopsToCross || scheme == Scheme::multistep6) {
     const double room = std::floor((singular - kClearance) / step);
     if (!start) steps = static_cast<int>(std::clamp<double>(room, 1, steps));
     begin = singular - kClearance - steps * step;

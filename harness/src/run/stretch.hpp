@@ -25,10 +25,11 @@ inline constexpr double kClearance = 0.4;
 
 /// The stretch of `steps` steps of `step` s. On the N-four-bar it starts on the exact motion with
 /// consistent a and lambda, and is centred on the first singular position, or for N above
-/// kMostLoopsToCross ends kClearance before it, with fewer steps if fewer fit; clipped at t = 0.
+/// kMostLoopsToCross, and for a `scheme` that does not pass these, ends kClearance before it, with
+/// fewer steps if fewer fit; clipped at t = 0.
 /// Other scenes start at t = 0 and stop where a driver's table ends. `start` (s >= 0, N-four-bar
 /// only) overrides. Throws UsageError, also where the stretch does not fit the scene's drivers.
 Stretch make_stretch(const Scene& scene, double step, int steps,
-                     std::optional<double> start = std::nullopt);
+                     std::optional<double> start = std::nullopt, Scheme scheme = Scheme::penalty);
 
 }  // namespace mbs
