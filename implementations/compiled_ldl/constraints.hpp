@@ -28,6 +28,9 @@ class Constraints {
   void evaluate_and_update(const S* q, S* phi, const S& alpha, S* lambda) {
     evaluate_with(q, phi, true, [&](int k, const S& value) { lambda[k] += alpha * value; });
   }
+  /// then(k, Φ_k(q)); gradients stay what they are.
+  template <typename Then>
+  void values(const S* q, Then then) const;
   /// Gradients become `earlier` ones in these lanes.
   void keep_where(const LaneMask& mask) {
     copy_where(mask, u_, earlier_u_);
@@ -114,3 +117,4 @@ class Constraints {
 #include "constraints_projection.hpp"
 #include "constraints_setup.hpp"
 #include "constraints_single.hpp"
+#include "constraints_values.hpp"

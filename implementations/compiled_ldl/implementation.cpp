@@ -14,6 +14,7 @@ namespace {
 
 constexpr Serves kFronts = {.saddle_point = true,
                             .rattle = true,
+                            .multistep = true,
                             .multiplier_update = true,
                             .tangent_reuse = true,
                             .projections_every = true,

@@ -18,13 +18,19 @@ Stepper<S, F, D>::Stepper(const Model& model, const StepSettings& settings)
       star_(system_.rows.extent, S(0.0)),
       multipliers_(system_.constraints.count(), S(0.0)),
       difference_(system_.rows.extent, S(0.0)),
-      right_hand_side_(system_.rows.extent, S(0.0)) {}
+      right_hand_side_(system_.rows.extent, S(0.0)) {
+  if (settings.scheme != Scheme::multistep6) return;
+  const Program& program = system_.program;
+  history_ = std::make_unique<History>(program.size, program.padded, settings.step);
+}
 
 template <typename S, typename F, int D>
 void Stepper<S, F, D>::do_set_state(const State& state) {
   system_.put(0, state);
   due_ = true;
   unprojected_ = 0;
+  if (history_) history_->forget();
+  is_complete_ = true;
   if (!system_.rattle) return;
   system_.evaluate();
   system_.assemble();
@@ -35,12 +41,19 @@ void Stepper<S, F, D>::do_set_state(const State& state) {
 
 template <typename S, typename F, int D>
 void Stepper<S, F, D>::do_get_state(State& state) const {
+  if constexpr (kDouble) {
+    // No simulation is a constant one; nothing that a step reads changes.
+    if (!is_complete_) const_cast<Stepper*>(this)->complete();
+  }
   system_.get(0, state);
 }
 
 template <typename S, typename F, int D>
 StepOutcome Stepper<S, F, D>::do_step() {
   phases_.enter(Phase::other);
+  if constexpr (kDouble) {
+    if (history_) return multistep_step();
+  }
   return system_.rattle ? rattle_step() : trapezoidal_step();
 }
 

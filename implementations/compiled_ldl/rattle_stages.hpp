@@ -8,7 +8,7 @@
 
 namespace mbs::compiled_ldl {
 
-/// Lengths of a step's stages, in steps.
+/// Lengths of a step's stages, in steps; of the first steps of the multistep method too.
 inline std::span<const double> stage_lengths(Scheme scheme) {
   static constexpr double kOnce[] = {1.0};
   static const double g = 1.0 / (4.0 - std::cbrt(4.0));
@@ -19,7 +19,7 @@ inline std::span<const double> stage_lengths(Scheme scheme) {
   static constexpr double w0 = 1.0 - 2.0 * (w1 + w2 + w3);
   static constexpr double kSixth[] = {w3, w2, w1, w0, w1, w2, w3};
   if (scheme == Scheme::rattle4) return kFourth;
-  if (scheme == Scheme::rattle6) return kSixth;
+  if (scheme == Scheme::rattle6 || scheme == Scheme::multistep6) return kSixth;
   return kOnce;
 }
 

@@ -1,6 +1,9 @@
 // One simulation: the step of paper/README.md in every scheme and setting.
 #pragma once
 
+#include <memory>
+
+#include "history.hpp"
 #include "mbs/simulation.hpp"
 #include "system.hpp"
 
@@ -42,6 +45,13 @@ class Stepper final : public Simulation {
   void refine_velocity();
   void refine_acceleration();
   void solve_constraints(const S* errors);
+  // multistep.hpp
+  StepOutcome multistep_step();
+  StepOutcome recur();
+  void apply_to_history(S to_a);
+  void complete();
+
+  static constexpr bool kDouble = std::is_same_v<S, double> && std::is_same_v<F, double>;
 
   StepSettings settings_;
   System<S, F, D> system_;
@@ -53,10 +63,13 @@ class Stepper final : public Simulation {
   Array<S> star_, multipliers_;  // refinement: v* or a*, ν
   Array<S> difference_;          // coordinates, zero at fixed points
   Array<S> right_hand_side_;
+  std::unique_ptr<History> history_;  // of the multistep method
+  bool is_complete_ = true;           // v, a and λ are those of q
 };
 
 }  // namespace mbs::compiled_ldl
 
+#include "multistep.hpp"
 #include "passes.hpp"
 #include "projections.hpp"
 #include "rattle.hpp"

@@ -45,6 +45,8 @@ class System {
   void product(const S* x);
   /// y −= (Δt²/4) α Φqᵀ t, or the multipliers' rows = −t.
   void constrain(const S* t);
+  /// The multipliers' rows of y = −Φ(q), in the saddle-point forms; gradients stay.
+  void constrain_values();
   /// λ or ν += factor times the multipliers' rows of y, which become zero.
   void take_multipliers(S* multipliers, const S& factor);
   /// q' += y, v' += to_v y, a' += y/h; max|y| as below.

@@ -5,8 +5,9 @@
 
 namespace mbs::compiled_ldl {
 
+/// Or the multistep method, which begins with it and has the same matrix.
 inline bool is_rattle(const StepSettings& s) {
-  return s.scheme == Scheme::rattle || s.scheme == Scheme::rattle4 || s.scheme == Scheme::rattle6;
+  return s.scheme != Scheme::penalty && s.scheme != Scheme::saddle_point;
 }
 
 /// The number that the settings of each lane have.

@@ -112,6 +112,12 @@ void System<S, F, D>::constrain(const S* t) {
 }
 
 template <typename S, typename F, int D>
+void System<S, F, D>::constrain_values() {
+  S* const to = y.data();
+  constraints.values(q.data(), [&](int k, const S& phi_k) { to[constraints.row(k)] = -phi_k; });
+}
+
+template <typename S, typename F, int D>
 void System<S, F, D>::take_multipliers(S* multipliers, const S& factor) {
   for (int k = 0; k < constraints.count(); ++k) {
     S& value = y[constraints.row(k)];
