@@ -54,6 +54,8 @@ class Assembly {
 
   /// M into M (n×n, kg).
   void mass(Matrix& M) const { M = M_; }
+  /// M x into y (n), with x of n elements.
+  void mass_product(const Eigen::Ref<const Vector>& x, Vector& y) const { y.noalias() = M_ * x; }
   /// Whether T₀ is M always.
   [[nodiscard]] bool constant_leading() const { return !forces_.has_tangent(); }
   /// T₀ of Eq. (12) into the lower triangle of T (n×n, kg); the other half is scratch.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "lu_solver.hpp"
+#include "multistep.hpp"
 #include "newton.hpp"
 #include "penalty_system.hpp"
 #include "rattle.hpp"
@@ -35,15 +36,15 @@ void require_size(const Model& model, const StepSettings& settings) {
                     " variables would exceed 2 GiB");
 }
 
-/// RATTLE as it stands in paper/README.md knows neither.
+/// RATTLE and the multistep method as they stand in paper/README.md know neither.
 void require_no_drivers_or_dampers(const Model& model) {
   if (!model.driven_points().empty() || !model.driven_values().empty()) {
-    throw Unsupported("RATTLE does not serve drivers");
+    throw Unsupported("RATTLE and multistep6 do not serve drivers");
   }
   const auto damps = [](const auto& spring) { return spring.damping != 0.0; };
   if (std::ranges::any_of(model.springs(), damps) ||
       std::ranges::any_of(model.torsion_springs(), damps)) {
-    throw Unsupported("RATTLE does not serve dampers");
+    throw Unsupported("RATTLE and multistep6 do not serve dampers");
   }
 }
 
@@ -89,6 +90,7 @@ std::unique_ptr<mbs::Simulation> create_mixed(const Model& model, const StepSett
 std::unique_ptr<mbs::Simulation> create(const Model& model, const StepSettings& settings) {
   require_size(model, settings);
   if (!is_trapezoidal(settings.scheme)) require_no_drivers_or_dampers(model);
+  if (settings.scheme == Scheme::multistep6) return std::make_unique<Multistep>(model, settings);
   if (is_plain(settings)) return std::make_unique<Simulation>(model, settings);
   if (settings.precision == Precision::single_precision) return create_in<float>(model, settings);
   if (settings.precision == Precision::mixed) return create_mixed(model, settings);
@@ -114,6 +116,7 @@ Implementation implementation() {
                            .dense = true,
                            .serves = {.saddle_point = true,
                                       .rattle = true,
+                                      .multistep = true,
                                       .multiplier_update = true,
                                       .tangent_reuse = true,
                                       .projections_every = true,

@@ -1,7 +1,5 @@
-// RATTLE of order two, four and six: stages of Eq. (14).
-#include "rattle.hpp"
-
-#include <cmath>
+// One stage of RATTLE: Eq. (14).
+#include "rattle_stage.hpp"
 
 #include "largest.hpp"
 
@@ -11,28 +9,13 @@ namespace {
 
 constexpr int kRefinements = 5;
 
-/// The lengths of the stages, as shares of the step.
-std::vector<double> stage_shares(Scheme scheme) {
-  if (scheme == Scheme::rattle4) {
-    const double gamma = 1.0 / (4.0 - std::cbrt(4.0));
-    return {gamma, gamma, 1.0 - 4.0 * gamma, gamma, gamma};
-  }
-  if (scheme == Scheme::rattle6) {
-    constexpr double w1 = -1.17767998417887100694641568096431573;
-    constexpr double w2 = 0.235573213359358133684793182978534602;
-    constexpr double w3 = 0.784513610477557263819497633866349876;
-    constexpr double w0 = 1.0 - 2.0 * (w1 + w2 + w3);
-    return {w3, w2, w1, w0, w1, w2, w3};
-  }
-  return {1.0};
-}
-
 }  // namespace
 
 template <typename Scalar>
-Rattle<Scalar>::Rattle(const Model& model, const StepSettings& settings)
-    : mbs::Simulation(model, settings),
-      settings_(settings),
+RattleStage<Scalar>::RattleStage(const Model& model, const StepSettings& settings,
+                                 PhaseClock& phases)
+    : settings_(settings),
+      phases_(phases),
       layout_(model),
       assembly_(model, settings, layout_),
       solver_(model.variables(), model.constraints(),
@@ -44,9 +27,6 @@ Rattle<Scalar>::Rattle(const Model& model, const StepSettings& settings)
       force_(zero_),
       impulse_(zero_),
       x_(Vector::Zero(model.variables() + model.constraints())) {
-  for (const double share : stage_shares(settings.scheme)) {
-    stages_.push_back(Scalar(share * settings.step));
-  }
   assembly_.mass(solver_.leading());
   solver_.factorize_leading();
   refresh();
@@ -54,30 +34,18 @@ Rattle<Scalar>::Rattle(const Model& model, const StepSettings& settings)
 }
 
 template <typename Scalar>
-void Rattle<Scalar>::do_set_state(const State& state) {
+void RattleStage<Scalar>::set(const State& state) {
   motion_.set(state);
   refresh();
   find_acceleration();
 }
 
 template <typename Scalar>
-StepOutcome Rattle<Scalar>::do_step() {
-  StepOutcome outcome{StepStatus::converged, 0, 0};
-  for (const Scalar h : stages_) {
-    if (!factorized_ || !stage(h, outcome)) {
-      outcome.status = StepStatus::factorization_failed;
-      return outcome;
-    }
-  }
-  return outcome;
-}
-
-template <typename Scalar>
-bool Rattle<Scalar>::stage(Scalar h, StepOutcome& outcome) {
+bool RattleStage<Scalar>::advance(Scalar h, StepOutcome& outcome) {
+  if (!factorized_) return false;
   move(h, outcome);
   ++outcome.factorizations;
-  refresh();
-  if (!factorized_) return false;
+  if (!refresh()) return false;
   find_velocity(h);
   find_acceleration();
   return true;
@@ -86,7 +54,7 @@ bool Rattle<Scalar>::stage(Scalar h, StepOutcome& outcome) {
 // Keeps q' − q apart from q', which is rounded to the last digit of q: in float those digits would
 // drive w away from the motion.
 template <typename Scalar>
-void Rattle<Scalar>::move(Scalar h, StepOutcome& outcome) {
+void RattleStage<Scalar>::move(Scalar h, StepOutcome& outcome) {
   phases_.enter(Phase::other);
   const auto n = motion_.a.size();
   auto q = motion_.q.head(n);
@@ -107,7 +75,7 @@ void Rattle<Scalar>::move(Scalar h, StepOutcome& outcome) {
 }
 
 template <typename Scalar>
-void Rattle<Scalar>::refresh() {
+bool RattleStage<Scalar>::refresh() {
   phases_.enter(Phase::evaluation);
   assembly_.evaluate(motion_.q);
   assembly_.scaled_force(motion_.q, motion_.v, force_);
@@ -117,18 +85,25 @@ void Rattle<Scalar>::refresh() {
   phases_.enter(Phase::factorization);
   factorized_ = solver_.factorize();
   phases_.enter(Phase::other);
+  return factorized_;
 }
 
 // Solves for v' − w instead of v': [(h/2) Q; −Φq w] for [M w + (h/2) Q; 0] on the right.
 template <typename Scalar>
-void Rattle<Scalar>::find_velocity(Scalar h) {
-  const Scalar bound = Scalar(2 / settings_.step * settings_.tolerance);
+void RattleStage<Scalar>::find_velocity(Scalar h) {
   auto v = motion_.v.head(motion_.a.size());
   phases_.enter(Phase::projection);
   v = change_ / h;
   impulse_ = h / 2 * force_;
   solve(impulse_, assembly_.velocity_error(motion_.q, motion_.v));
   v += upper();
+  refine_velocity();
+}
+
+template <typename Scalar>
+void RattleStage<Scalar>::refine_velocity() {
+  const Scalar bound = Scalar(2 / settings_.step * settings_.tolerance);
+  auto v = motion_.v.head(motion_.a.size());
   for (int k = 0; k < kRefinements; ++k) {
     phases_.enter(Phase::projection);
     solve(zero_, assembly_.velocity_error(motion_.q, motion_.v));
@@ -138,7 +113,7 @@ void Rattle<Scalar>::find_velocity(Scalar h) {
 }
 
 template <typename Scalar>
-void Rattle<Scalar>::find_acceleration() {
+void RattleStage<Scalar>::find_acceleration() {
   const Scalar bound = Scalar(4 / (settings_.step * settings_.step) * settings_.tolerance);
   phases_.enter(Phase::projection);
   solve(force_, assembly_.acceleration_term(motion_.q, motion_.v));
@@ -154,7 +129,7 @@ void Rattle<Scalar>::find_acceleration() {
 }
 
 template <typename Scalar>
-void Rattle<Scalar>::solve(const Vector& upper, const Vector& minus_lower) {
+void RattleStage<Scalar>::solve(const Vector& upper, const Vector& minus_lower) {
   x_.head(upper.size()) = upper;
   x_.tail(minus_lower.size()) = -minus_lower;
   phases_.enter(Phase::solve);
@@ -162,7 +137,7 @@ void Rattle<Scalar>::solve(const Vector& upper, const Vector& minus_lower) {
   phases_.enter(Phase::other);
 }
 
-template class Rattle<double>;
-template class Rattle<float>;
+template class RattleStage<double>;
+template class RattleStage<float>;
 
 }  // namespace mbs::eigen_dense
