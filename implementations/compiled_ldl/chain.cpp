@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "chain_batch.hpp"
+#include "chain_multistep_simulation.hpp"
 #include "chain_penalty_group.hpp"
 #include "chain_rattle_group.hpp"
 #include "chain_rattle_simulation.hpp"
@@ -51,6 +52,9 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
     } else if (settings.scheme == Scheme::saddle_point) {
       using Kind = TrapezoidalSimulation<SaddlePointForm, MassOf, Rods>;
       simulation = std::make_unique<Kind>(model, settings, std::move(topology));
+    } else if (settings.scheme == Scheme::multistep6) {
+      using Kind = MultistepSimulation<MassOf, Rods>;
+      simulation = std::make_unique<Kind>(model, settings, std::move(topology));
     } else {
       using Kind = RattleSimulation<MassOf, Rods>;
       simulation = std::make_unique<Kind>(model, settings, std::move(topology));
@@ -63,6 +67,9 @@ std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> mode
                                               std::span<const StepSettings> settings) {
   if (settings.front().scheme == Scheme::saddle_point) {
     throw Unsupported("batches are not for the saddle-point form");
+  }
+  if (settings.front().scheme == Scheme::multistep6) {
+    throw Unsupported("batches are not for the multistep method");
   }
   std::vector<Topology> chains;
   for (const Model* model : models) chains.push_back(dispatch::topology_of(*model));

@@ -12,7 +12,8 @@ namespace mbs::compiled_ldl::chain {
 /// Throws Unsupported unless `model` is a chain.
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings);
 
-/// The same for many at once, one a vector lane; Unsupported in the saddle-point form, too.
+/// The same for many at once, one a vector lane; Unsupported in the saddle-point form and the
+/// multistep method, too.
 std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> models,
                                               std::span<const StepSettings> settings);
 

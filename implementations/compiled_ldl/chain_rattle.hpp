@@ -23,7 +23,7 @@ class RattleStage {
   /// digits.
   template <bool kFirst>
   static V pass(Store& chain, double length, const Mask& active = Mask()) {
-    const Position<kFirst> terms{V{} + length};
+    const Position<kFirst> terms(V{} + length);
     const V inverse_length = V{} + 1.0 / length;
     if (kFirst) terms.predict(chain.blocks[0]);
     substitute_inwards(chain, terms);
@@ -89,28 +89,19 @@ class RattleStage {
   }
 
  private:
-  /// −ε⁻¹ Φqᵀ Φ with the Φq of the factors and the Φ of where the points are.
   template <bool kFirst>
-  struct Position {
+  struct Position : PositionResidual<Store> {
     V length;
 
+    explicit Position(const V& length) : length(length) {}
     MBS_CHAIN_INLINE void predict(B& block) const {
       block.w = block.w + length * block.u;
       block.x = block.x + length * block.w;
     }
-    MBS_CHAIN_INLINE Vec<V> point(const B& block, const C& data) const {
-      Vec<V> f{};
-      for (int j = 0; j < Store::kRods; ++j) {
-        f = f + data.rods[j].violation(data.rods[j].vector(block.x)) * block.d[j];
-      }
-      return f;
-    }
     MBS_CHAIN_INLINE void link(const B& block, B& next, const C& data, Vec<V>& f,
                                Vec<V>& inner) const {
       if (kFirst) predict(next);
-      const V violation = data.link.violation(data.link.vector(next.x - block.x, block.offset));
-      f = f - violation * block.e;
-      inner = violation * block.e;
+      PositionResidual<Store>::link(block, next, data, f, inner);
     }
   };
 

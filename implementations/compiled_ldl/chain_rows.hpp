@@ -29,6 +29,28 @@ MBS_CHAIN_INLINE void pull_together(const V& force, const Vec<V>& e, Vec<V>& f, 
   inner = Vec<V>{} - force * e;
 }
 
+/// −ε⁻¹ Φqᵀ Φ with the Φq of the factors and the Φ of where the points are.
+template <class Store>
+struct PositionResidual {
+  using V = typename Store::V;
+  using B = typename Store::B;
+  using C = typename Store::C;
+
+  MBS_CHAIN_INLINE Vec<V> point(const B& block, const C& data) const {
+    Vec<V> f{};
+    for (int j = 0; j < Store::kRods; ++j) {
+      f = f + data.rods[j].violation(data.rods[j].vector(block.x)) * block.d[j];
+    }
+    return f;
+  }
+  MBS_CHAIN_INLINE void link(const B& block, const B& next, const C& data, Vec<V>& f,
+                             Vec<V>& inner) const {
+    const V violation = data.link.violation(data.link.vector(next.x - block.x, block.offset));
+    f = f - violation * block.e;
+    inner = violation * block.e;
+  }
+};
+
 /// −ε⁻¹ Φqᵀ Φq v, where `velocity(block)` is v.
 template <class Store, class Velocity>
 struct VelocityResidual {

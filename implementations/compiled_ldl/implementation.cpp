@@ -21,7 +21,8 @@ constexpr Serves kFronts = {.saddle_point = true,
                             .single_precision = true,
                             .mixed_precision = true,
                             .geometric_stiffness = true};
-constexpr Serves kChains = {.saddle_point = true, .rattle = true, .projections_every = true};
+constexpr Serves kChains = {
+    .saddle_point = true, .rattle = true, .multistep = true, .projections_every = true};
 
 std::unique_ptr<Simulation> create_fronts(const Model& model, const StepSettings& settings) {
   if (is_listing_due()) list_fronts(std::cerr, model, settings);
