@@ -65,6 +65,26 @@ MBS_CHAIN_INLINE Sym<V> meet(const Sym<V>& own, const Carry<V>& carry, const Vec
   return {reciprocal * S.xx, reciprocal * S.xy, reciprocal * S.yy};
 }
 
+/// The penalty form's way: d dᵀ and M are added before anything is eliminated.
+struct Together {
+  template <int kRods, class V, class Mass>
+  MBS_CHAIN_INLINE static Sym<V> own(const Mass& mass, const Vec<V>* d) {
+    Sym<V> A = mass.plus_square(d[0]);
+    for (int j = 1; j < kRods; ++j) A = plus_square(A, d[j]);
+    return A;
+  }
+  template <class V, class Mass>
+  MBS_CHAIN_INLINE static void eliminate(const Mass& mass, const Sym<V>& own, const Vec<V>& e,
+                                         Sym<V>& S, Vec<V>& z, V& least, Carry<V>& carry) {
+    chain::eliminate(mass, own, e, S, z, least, carry);
+  }
+  template <class Use, class V>
+  MBS_CHAIN_INLINE static Sym<V> meet(const Sym<V>& own, const Carry<V>& carry, const Vec<V>& f,
+                                      V& least, Vec<V>& c) {
+    return chain::meet<Use>(own, carry, f, least, c);
+  }
+};
+
 /// f − Gᵀ b
 template <class V>
 MBS_CHAIN_INLINE Vec<V> forward(const V* G, const Vec<V>& f, const Vec<V>& b) {

@@ -53,6 +53,10 @@ MBS_CHAIN_INLINE V dot(const Vec<V>& a, const Vec<V>& b) {
   return a.x * b.x + a.y * b.y;
 }
 template <class V>
+MBS_CHAIN_INLINE Sym<V> operator+(const Sym<V>& a, const Sym<V>& b) {
+  return {a.xx + b.xx, a.xy + b.xy, a.yy + b.yy};
+}
+template <class V>
 MBS_CHAIN_INLINE Vec<V> operator*(const Sym<V>& a, const Vec<V>& b) {
   return {a.xx * b.x + a.xy * b.y, a.xy * b.x + a.yy * b.y};
 }

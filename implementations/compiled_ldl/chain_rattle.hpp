@@ -10,7 +10,7 @@ namespace mbs::compiled_ldl::chain {
 inline constexpr int kMostRefinements = 5;
 
 /// With `kMasked` refinements and further passes are for the lanes `active` only.
-template <class Store, bool kMasked = false>
+template <class Store, bool kMasked = false, class Elimination = Together>
 class RattleStage {
  public:
   using V = typename Store::V;
@@ -126,14 +126,9 @@ class RattleStage {
   };
 
   /// Evaluates and keeps the rows of Φq of a point; M + Σ d dᵀ.
-  MBS_CHAIN_INLINE static Sym<V> rows(B& block, const C& data) {
-    Sym<V> A;
-    for (int j = 0; j < Store::kRods; ++j) {
-      const Vec<V> d = data.rods[j].vector(block.x);
-      block.d[j] = d;
-      A = j == 0 ? data.mass.plus_square(d) : plus_square(A, d);
-    }
-    return A;
+  MBS_CHAIN_INLINE static auto rows(B& block, const C& data) {
+    for (int j = 0; j < Store::kRods; ++j) block.d[j] = data.rods[j].vector(block.x);
+    return Elimination::template own<Store::kRods>(data.mass, block.d);
   }
 
   /// With `kVelocity` also substitutes inwards for what v' is more than (q' − q)/h: it is small, so
@@ -147,12 +142,12 @@ class RattleStage {
     V least = V{} + 1.0;
     const VelocityTerms terms{};
     for (; block != end; ++block, ++data) {
-      const Sym<V> own = rows(*block, **data);
+      const auto own = rows(*block, **data);
       const Vec<V> e = (*data)->link.vector(block[1].x - block->x, block->offset);
       block->e = e;
       Sym<V> S;
       Vec<V> z;
-      eliminate((*data)->mass, own, e, S, z, least, carry);
+      Elimination::eliminate((*data)->mass, own, e, S, z, least, carry);
       finish(block->factors, (*data)->mass, S, z, carry.reciprocal, e);
       if (!kVelocity) continue;
       Vec<V> f = length * (*data)->force + terms.point(*block, **data);
@@ -162,9 +157,10 @@ class RattleStage {
       block->f = f;
       carry.force = forward(block->factors.gain, inner, f);
     }
-    const Sym<V> own = rows(*block, **data);
+    const auto own = rows(*block, **data);
     const Vec<V> f = length * (*data)->force + terms.point(*block, **data);
-    block->factors.scaled = meet<typename Store::Use>(own, carry, f, least, block->f);
+    block->factors.scaled =
+        Elimination::template meet<typename Store::Use>(own, carry, f, least, block->f);
     return least;
   }
 };

@@ -10,10 +10,10 @@
 namespace mbs::compiled_ldl::chain {
 
 /// A chain and its stages.
-template <class Store>
+template <class Store, class Elimination = Together>
 class RattleSteps {
  public:
-  using Stage = RattleStage<Store>;
+  using Stage = RattleStage<Store, false, Elimination>;
 
   RattleSteps(const StepSettings& settings, const Topology& topology)
       : units(settings),
