@@ -113,8 +113,8 @@ TEST(MixedPrecision, StaysAtRest) {
 
 /// The settings that take most paths at once, for builds in which every one takes seconds.
 bool tells_much(const Setting& setting) {
-  for (const char* name : {"saddle_point", "saddle_point_kept", "rattle4", "converged",
-                           "single_saddle_point", "mixed_kept", "geometric_kept"}) {
+  for (const char* name : {"saddle_point", "saddle_point_kept", "rattle4", "multistep6",
+                           "converged", "single_saddle_point", "mixed_kept", "geometric_kept"}) {
     if (setting.name == name) return true;
   }
   return false;
