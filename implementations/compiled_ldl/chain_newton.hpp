@@ -132,7 +132,7 @@ class Newton {
   MBS_CHAIN_INLINE static void eliminate_block(B& block, const B& next, const C& data,
                                                const Taking<Mask>& taking, V& least,
                                                Carry<V>& carry, Pending& pending) {
-    Vec<V> f = data.mass.outer(next.u) - data.force;
+    Vec<V> f = data.mass.outer(read(next.u)) - data.force;
     const Sym<V> own = point(block, data, f, taking.pending);
     pending.e = data.link.vector(next.x - block.x, block.offset);
     const V violation = data.link.violation(pending.e);
