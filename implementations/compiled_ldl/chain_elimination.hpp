@@ -91,72 +91,120 @@ MBS_CHAIN_INLINE Vec<V> forward(const V* G, const Vec<V>& f, const Vec<V>& b) {
   return {f.x - G[0] * b.x - G[2] * b.y, f.y - G[1] * b.x - G[3] * b.y};
 }
 
-/// c − G x
-template <class V>
-MBS_CHAIN_INLINE Vec<V> backward(const V* G, const Vec<V>& c, const Vec<V>& x) {
+/// S⁻¹ f − G x
+template <class Block, class V>
+MBS_CHAIN_INLINE Vec<V> backward(const Block& block, const Vec<V>& x) {
+  const Vec<V> c = adjugate_times(read(block.factors.scaled), read(block.f));
+  const V* G = block.factors.gain;
   return {c.x - G[0] * x.x - G[1] * x.y, c.y - G[2] * x.x - G[3] * x.y};
+}
+
+/// Two sweeps by turns, block by block: what one waits for is the other's work.
+template <class Sweep>
+MBS_CHAIN_INLINE void by_turns(Sweep& a, Sweep& b, int blocks) {
+  for (int k = 0; k < blocks; ++k) {
+    a.advance();
+    b.advance();
+  }
+  a.finish();
+  b.finish();
 }
 
 /// A sweep inwards with the factors there are. `terms.point(block, data)` is a right-hand side but
 /// for links, `terms.link(block, next, data, f, inner)` adds to that of the block and of the next.
 template <class Store, class Terms>
-MBS_CHAIN_INLINE void substitute_inwards(Store& chain, const Terms& terms) {
+class InwardsSubstitution {
+ public:
   using V = typename Store::V;
-  auto* block = chain.blocks.data();
-  const auto* data = chain.constants.data();
-  auto* const end = block + chain.last;
-  if (block == end) {  // a single point
-    block->f = adjugate_times(block->factors.scaled, terms.point(*block, **data));
-    return;
+
+  MBS_CHAIN_INLINE InwardsSubstitution(Store& chain, const Terms& terms)
+      : terms_(terms), block_(chain.blocks.data()), data_(chain.constants.data()) {
+    if (chain.last == 0) return;
+    before_ = terms_.point(*block_, **data_);
+    terms_.link(*block_, block_[1], **data_, before_, inner_);
+    block_->f = before_;
+    ++block_;
+    ++data_;
   }
-  Vec<V> before = terms.point(*block, **data);  // the right-hand side of the block before
-  Vec<V> inner;                                 // what its link gives
-  terms.link(*block, block[1], **data, before, inner);
-  block->f = before;
-  for (++block, ++data; block != end; ++block, ++data) {
-    Vec<V> f = inner + terms.point(*block, **data);
-    terms.link(*block, block[1], **data, f, inner);
-    before = forward(block[-1].factors.gain, f, before);  // only this waits for the block before
-    block->f = before;
+  MBS_CHAIN_INLINE void advance() {
+    Vec<V> f = inner_ + terms_.point(*block_, **data_);
+    terms_.link(*block_, block_[1], **data_, f, inner_);
+    before_ = forward(block_[-1].factors.gain, f, before_);  // all that waits for the block before
+    block_->f = before_;
+    ++block_;
+    ++data_;
   }
-  const Vec<V> f = inner + (V{} + 0.5) * terms.point(*block, **data);
-  block->f = adjugate_times(block->factors.scaled,
-                            meet<typename Store::Use>(forward(block[-1].factors.gain, f, before)));
+  /// The last block.
+  MBS_CHAIN_INLINE void finish() {
+    const Vec<V> f = inner_ + (V{} + 0.5) * terms_.point(*block_, **data_);
+    block_->f =
+        adjugate_times(block_->factors.scaled,
+                       meet<typename Store::Use>(forward(block_[-1].factors.gain, f, before_)));
+  }
+  MBS_CHAIN_INLINE void finish_single() {
+    block_->f = adjugate_times(block_->factors.scaled, terms_.point(*block_, **data_));
+  }
+
+ private:
+  Terms terms_;
+  typename Store::B* block_;
+  const typename Store::C* const* data_;
+  Vec<V> before_;  // the right-hand side of the block before
+  Vec<V> inner_;   // what its link gives
+};
+
+template <class Store, class Terms>
+MBS_CHAIN_INLINE void substitute_inwards(Store& chain, const Terms& terms) {
+  InwardsSubstitution<Store, Terms> sweep(chain, terms);
+  if (chain.last == 0) return sweep.finish_single();
+  for (int k = 1; k < chain.last; ++k) sweep.advance();
+  sweep.finish();
+}
+template <class Store, class Terms>
+MBS_CHAIN_INLINE void substitute_inwards(Store& first, const Terms& first_terms, Store& second,
+                                         const Terms& second_terms) {
+  InwardsSubstitution<Store, Terms> a(first, first_terms), b(second, second_terms);
+  if (first.last == 0) {
+    a.finish_single();
+    b.finish_single();
+  } else {
+    by_turns(a, b, first.last - 1);
+  }
 }
 
 /// The sweep outwards: `apply(block, x)` gets the solution of each block.
 template <class Store, class Apply>
-MBS_CHAIN_INLINE void substitute_outwards(Store& chain, const Apply& apply) {
-  auto* block = chain.blocks.data() + chain.last;
-  auto* const begin = chain.blocks.data();
-  auto x = block->f;  // of the last block the solution itself
-  apply(*block, x);
-  while (block != begin) {
-    --block;
-    x = backward(block->factors.gain, adjugate_times(block->factors.scaled, block->f), x);
-    apply(*block, x);
-  }
-}
+class OutwardsSubstitution {
+ public:
+  using V = typename Store::V;
 
-/// Two of them by turns, block by block.
+  MBS_CHAIN_INLINE OutwardsSubstitution(Store& chain, const Apply& apply)
+      : apply_(apply), block_(chain.blocks.data() + chain.last), x_(block_->f) {
+    apply_(*block_, x_);  // of the last block f is the solution itself
+  }
+  MBS_CHAIN_INLINE void advance() {
+    --block_;
+    x_ = backward(*block_, x_);
+    apply_(*block_, x_);
+  }
+  MBS_CHAIN_INLINE void finish() {}
+
+ private:
+  const Apply& apply_;
+  typename Store::B* block_;
+  Vec<V> x_;
+};
+
+template <class Store, class Apply>
+MBS_CHAIN_INLINE void substitute_outwards(Store& chain, const Apply& apply) {
+  OutwardsSubstitution<Store, Apply> sweep(chain, apply);
+  for (int k = 0; k < chain.last; ++k) sweep.advance();
+}
 template <class Store, class Apply>
 MBS_CHAIN_INLINE void substitute_outwards(Store& first, const Apply& apply_first, Store& second,
                                           const Apply& apply_second) {
-  auto* a = first.blocks.data() + first.last;
-  auto* b = second.blocks.data() + second.last;
-  auto* const begin = first.blocks.data();
-  auto x = a->f;
-  auto y = b->f;
-  apply_first(*a, x);
-  apply_second(*b, y);
-  while (a != begin) {
-    --a;
-    --b;
-    x = backward(a->factors.gain, adjugate_times(a->factors.scaled, a->f), x);
-    y = backward(b->factors.gain, adjugate_times(b->factors.scaled, b->f), y);
-    apply_first(*a, x);
-    apply_second(*b, y);
-  }
+  OutwardsSubstitution<Store, Apply> a(first, apply_first), b(second, apply_second);
+  by_turns(a, b, first.last);
 }
 
 }  // namespace mbs::compiled_ldl::chain

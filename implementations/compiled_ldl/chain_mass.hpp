@@ -20,18 +20,20 @@ struct IsotropicMass {
   }
   MBS_CHAIN_INLINE Sym<V> matrix() const { return {m, V{}, m}; }
   MBS_CHAIN_INLINE Sym<V> plus_square(const Vec<V>& d) const {
-    return {m + d.x * d.x, d.x * d.y, m + d.y * d.y};
+    const V diagonal = read(m);
+    return {diagonal + d.x * d.x, d.x * d.y, diagonal + d.y * d.y};
   }
-  MBS_CHAIN_INLINE Vec<V> times(const Vec<V>& v) const { return m * v; }
+  MBS_CHAIN_INLINE Vec<V> times(const Vec<V>& v) const { return read(m) * v; }
   /// C v, of the inner point's v
-  MBS_CHAIN_INLINE Vec<V> outer(const Vec<V>& v) const { return c * v; }
+  MBS_CHAIN_INLINE Vec<V> outer(const Vec<V>& v) const { return read(c) * v; }
   /// Cᵀ v, of the outer point's v
-  MBS_CHAIN_INLINE Vec<V> inner(const Vec<V>& v) const { return c * v; }
+  MBS_CHAIN_INLINE Vec<V> inner(const Vec<V>& v) const { return read(c) * v; }
   /// δ e eᵀ + Cᵀz eᵀ + e zᵀC − Cᵀ adj(S) C
   MBS_CHAIN_INLINE Sym<V> update(const V& delta, const Vec<V>& z, const Vec<V>& e,
                                  const Sym<V>& S) const {
     const V half = V{} + 0.5;
-    const Vec<V> g{delta * e.x + twice * z.x, delta * e.y + twice * z.y};
+    const V k = read(twice);
+    const Vec<V> g{delta * e.x + k * z.x, delta * e.y + k * z.y};
     return {g.x * e.x - square * S.yy, half * (g.x * e.y + g.y * e.x) + square * S.xy,
             g.y * e.y - square * S.xx};
   }

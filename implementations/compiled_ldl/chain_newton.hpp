@@ -63,13 +63,9 @@ class Newton {
   static void inwards(Store& a, const Taking<Mask>& taking_a, V& least_a, Store& b,
                       const Taking<Mask>& taking_b, V& least_b) {
     InwardsSweep sweep_a(a, taking_a), sweep_b(b, taking_b);  // elsewhere they would be in memory
-    const int last = a.last;
-    for (int k = 0; k < last; ++k) {
-      sweep_a.advance();
-      sweep_b.advance();
-    }
-    least_a = sweep_a.finish();
-    least_b = sweep_b.finish();
+    by_turns(sweep_a, sweep_b, a.last);
+    least_a = sweep_a.least;
+    least_b = sweep_b.least;
   }
   static V outwards(Store& chain, const Mask& active) {
     LargestOf<typename Store::Use> largest;
@@ -136,7 +132,7 @@ class Newton {
   MBS_CHAIN_INLINE static void eliminate_block(B& block, const B& next, const C& data,
                                                const Taking<Mask>& taking, V& least,
                                                Carry<V>& carry, Pending& pending) {
-    Vec<V> f = data.mass.outer(next.u) - data.force;
+    Vec<V> f = data.mass.outer(read(next.u)) - data.force;
     const Sym<V> own = point(block, data, f, taking.pending);
     pending.e = data.link.vector(next.x - block.x, block.offset);
     const V violation = data.link.violation(pending.e);
@@ -173,11 +169,7 @@ class Newton {
       ++block;
       ++data;
     }
-    /// The last block; the least pivot of all.
-    MBS_CHAIN_INLINE V finish() {
-      finish_chain(*block, **data, taking, least, carry);
-      return least;
-    }
+    MBS_CHAIN_INLINE void finish() { finish_chain(*block, **data, taking, least, carry); }
 
     B* block;
     const C* const* data;

@@ -32,19 +32,13 @@ class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods>> {
       inwards_of<false>(groups);
       outwards_of<false>(groups);
     }
-    for (const auto& group : groups) group->velocity_inwards();
-    const bool both = groups.size() == 2 && groups[0]->projections_ == Projections::both &&
-                      groups[1]->projections_ == Projections::both;
-    if (both) {
-      Projection<Store>::velocity_outwards(groups[0]->chain_, groups[1]->chain_);
+    for (const auto& group : groups) group->choose_projections();
+    const bool by_turns = groups.size() == 2 && groups[0]->projections_ == Projections::both &&
+                          groups[1]->projections_ == Projections::both;
+    if (by_turns) {
+      project_both(*groups[0], *groups[1]);
     } else {
-      for (const auto& group : groups) group->velocity_outwards();
-    }
-    for (const auto& group : groups) group->acceleration_inwards();
-    if (both) {
-      Projection<Store>::acceleration_outwards(groups[0]->chain_, groups[1]->chain_);
-    } else {
-      for (const auto& group : groups) group->acceleration_outwards();
+      for (const auto& group : groups) group->project();
     }
   }
 
@@ -128,21 +122,28 @@ class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods>> {
                                        : Newton<Store, false, true>::outwards(chain_, active_);
   }
 
-  void velocity_inwards() {
+  void choose_projections() {
     const bool due = ++this->steps_ % this->settings_.projections_every == 0;
     projections_ = due ? this->settings_.projections : Projections::none;
-    if (projections_ == Projections::none) return Projection<Store, true>::settle(chain_, last_);
-    if (whole_) return Projection<Store>::velocity_inwards(chain_, Mask());
-    Projection<Store, true>::velocity_inwards(chain_, last_);
   }
-  void velocity_outwards() {
-    if (projections_ != Projections::none) Projection<Store>::velocity_outwards(chain_);
+  void project() {
+    using Project = Projection<Store>;
+    using MaskedProject = Projection<Store, true>;
+    if (projections_ == Projections::none) return MaskedProject::settle(chain_, last_);
+    if (whole_) {
+      Project::velocity_inwards(chain_, Mask());
+    } else {
+      MaskedProject::velocity_inwards(chain_, last_);
+    }
+    Project::velocity_outwards(chain_);
+    if (projections_ == Projections::both) Project::acceleration(chain_);
   }
-  void acceleration_inwards() {
-    if (projections_ == Projections::both) Projection<Store>::acceleration_inwards(chain_);
-  }
-  void acceleration_outwards() {
-    if (projections_ == Projections::both) Projection<Store>::acceleration_outwards(chain_);
+  static void project_both(PenaltyGroup& a, PenaltyGroup& b) {
+    if (a.whole_ && b.whole_) {
+      Projection<Store>::both(a.chain_, Mask(), b.chain_, Mask());
+    } else {
+      Projection<Store, true>::both(a.chain_, a.last_, b.chain_, b.last_);
+    }
   }
 
   Projections projections_ = Projections::both;  // that this step ends with

@@ -36,6 +36,16 @@ struct Sym {
   }
 };
 
+/// See read() of a number.
+template <class V>
+MBS_CHAIN_INLINE Vec<V> read(const Vec<V>& a) {
+  return {read(a.x), read(a.y)};
+}
+template <class V>
+MBS_CHAIN_INLINE Sym<V> read(const Sym<V>& a) {
+  return {read(a.xx), read(a.xy), read(a.yy)};
+}
+
 template <class V>
 MBS_CHAIN_INLINE Vec<V> operator+(const Vec<V>& a, const Vec<V>& b) {
   return {a.x + b.x, a.y + b.y};

@@ -28,27 +28,25 @@ class Projection {
     velocity_outwards(chain);
   }
   static void velocity_inwards(Store& chain, const Mask& pending) {
-    substitute_inwards(chain, Velocity{pending, chain.blocks[0].w + chain.blocks[0].u});
+    substitute_inwards(chain, Velocity<true>(chain, pending));
   }
   static void velocity_outwards(Store& chain) {
     substitute_outwards(chain, [](B& block, const Vec<V>& x) { block.w = x; });
   }
-  static void velocity_outwards(Store& a, Store& b) {
-    const auto set_velocity = [](B& block, const Vec<V>& x) { block.w = x; };
-    substitute_outwards(a, set_velocity, b, set_velocity);
-  }
 
   /// The projected a, with that v.
   static void acceleration(Store& chain) {
-    acceleration_inwards(chain);
-    acceleration_outwards(chain);
-  }
-  static void acceleration_inwards(Store& chain) { substitute_inwards(chain, Acceleration{}); }
-  static void acceleration_outwards(Store& chain) {
+    substitute_inwards(chain, Acceleration<false>(chain, Mask()));
     substitute_outwards(chain, [](B& block, const Vec<V>& x) { block.u = x; });
   }
-  static void acceleration_outwards(Store& a, Store& b) {
+
+  /// All of that, for two groups by turns. λ is left to the sweep that needs vectors anyway.
+  static void both(Store& a, const Mask& pending_a, Store& b, const Mask& pending_b) {
+    const auto set_velocity = [](B& block, const Vec<V>& x) { block.w = x; };
     const auto set_acceleration = [](B& block, const Vec<V>& x) { block.u = x; };
+    substitute_inwards(a, Velocity<false>(a, pending_a), b, Velocity<false>(b, pending_b));
+    substitute_outwards(a, set_velocity, b, set_velocity);
+    substitute_inwards(a, Acceleration<true>(a, pending_a), b, Acceleration<true>(b, pending_b));
     substitute_outwards(a, set_acceleration, b, set_acceleration);
   }
 
@@ -68,18 +66,30 @@ class Projection {
     add(block.link, data.link.violation(data.link.vector(next.x - block.x, block.offset)), pending);
   }
 
-  /// M v*
-  struct Velocity {
-    const Mask& pending;
-    mutable Vec<V> v{};  // of the block, from the one before
+  // Below, what a block has in common with the one before has been read with that; with `kSettles`
+  // λ of the last pass is completed.
 
-    MBS_CHAIN_INLINE Vec<V> point(B& block, const C& data) const {
-      rods(block, data, pending);
+  /// M v*
+  template <bool kSettles>
+  struct Velocity {
+    Mask pending;
+    Vec<V> x, v;  // of the block
+
+    MBS_CHAIN_INLINE Velocity(const Store& chain, const Mask& pending)
+        : pending(pending), x(chain.blocks[0].x), v(chain.blocks[0].w + chain.blocks[0].u) {}
+
+    MBS_CHAIN_INLINE Vec<V> point(B& block, const C& data) {
+      for (int j = 0; kSettles && j < Store::kRods; ++j) {
+        add(block.rods[j], data.rods[j].violation(data.rods[j].vector(x)), pending);
+      }
       return data.mass.times(v);
     }
-    MBS_CHAIN_INLINE void link(B& block, const B& next, const C& data, Vec<V>& f,
-                               Vec<V>& inner) const {
-      Projection::link(block, next, data, pending);
+    MBS_CHAIN_INLINE void link(B& block, const B& next, const C& data, Vec<V>& f, Vec<V>& inner) {
+      if constexpr (kSettles) {
+        const Vec<V> outer = x;
+        x = read(next.x);
+        add(block.link, data.link.violation(data.link.vector(x - outer, block.offset)), pending);
+      }
       inner = data.mass.inner(v);
       v = next.w + next.u;
       f = f + data.mass.outer(v);
@@ -87,20 +97,35 @@ class Projection {
   };
 
   /// M a* − (Δt²/4) α Φqᵀ Φ̇q v'
+  template <bool kSettles>
   struct Acceleration {
-    MBS_CHAIN_INLINE Vec<V> point(const B& block, const C& data) const {
-      Vec<V> f = data.mass.times(block.u);
-      const V half_square = (V{} + 0.5) * dot(block.w, block.w);
-      for (int j = 0; j < Store::kRods; ++j) f = f - half_square * data.rods[j].vector(block.x);
+    Mask pending;
+    Vec<V> x, w, u;  // of the block
+
+    MBS_CHAIN_INLINE Acceleration(const Store& chain, const Mask& pending)
+        : pending(pending), x(chain.blocks[0].x), w(chain.blocks[0].w), u(chain.blocks[0].u) {}
+
+    MBS_CHAIN_INLINE Vec<V> point(B& block, const C& data) {
+      Vec<V> f = data.mass.times(u);
+      const V half_square = (V{} + 0.5) * dot(w, w);
+      for (int j = 0; j < Store::kRods; ++j) {
+        const Vec<V> d = data.rods[j].vector(x);
+        if (kSettles) add(block.rods[j], data.rods[j].violation(d), pending);
+        f = f - half_square * d;
+      }
       return f;
     }
-    MBS_CHAIN_INLINE void link(const B& block, const B& next, const C& data, Vec<V>& f,
-                               Vec<V>& inner) const {
-      const Vec<V> e = data.link.vector(next.x - block.x, block.offset);
-      const Vec<V> rate = next.w - block.w;
+    MBS_CHAIN_INLINE void link(B& block, const B& next, const C& data, Vec<V>& f, Vec<V>& inner) {
+      const Vec<V> x_inner = read(next.x), w_inner = read(next.w), u_inner = read(next.u);
+      const Vec<V> e = data.link.vector(x_inner - x, block.offset);
+      if (kSettles) add(block.link, data.link.violation(e), pending);
+      const Vec<V> rate = w_inner - w;
       const Vec<V> pull = ((V{} + 0.5) * dot(rate, rate)) * e;
-      f = f + (data.mass.outer(next.u) + pull);
-      inner = data.mass.inner(block.u) - pull;
+      f = f + (data.mass.outer(u_inner) + pull);
+      inner = data.mass.inner(u) - pull;
+      x = x_inner;
+      w = w_inner;
+      u = u_inner;
     }
   };
 };

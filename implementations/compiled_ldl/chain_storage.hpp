@@ -60,7 +60,8 @@ struct LinkLength {
     square[lane] = unit * unit * from.value;
   }
   MBS_CHAIN_INLINE Vec<V> vector(const Vec<V>& difference, const Vec<V>& offset) const {
-    return {weight * difference.x + offset.x, weight * difference.y + offset.y};
+    const V k = read(weight);
+    return {k * difference.x + offset.x, k * difference.y + offset.y};
   }
   MBS_CHAIN_INLINE V violation(const Vec<V>& d) const { return d.x * d.x + (d.y * d.y - square); }
 };
