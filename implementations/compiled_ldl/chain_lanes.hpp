@@ -72,6 +72,25 @@ MBS_CHAIN_INLINE V read(V a) {
   return a;
 }
 
+/// A product that is used more than once: fused into each sum, it would be made as often.
+template <class V>
+MBS_CHAIN_INLINE V product(const V& a, const V& b) {
+  return read(V(a * b));
+}
+
+/// Has the lanes of a register whose bits are those of `bits` and those of `a`.
+template <class V>
+MBS_CHAIN_INLINE V masked(const V& bits, const V& a) {
+  using Mask = decltype(a == a);
+  return (V)((Mask)bits & (Mask)a);
+}
+template <class V>
+void set_all_bits(V& a, int lane) {
+  decltype(a == a) bits{};
+  bits[lane] = -1;
+  a = (V)((decltype(bits))a | bits);
+}
+
 /// |a|, of each lane; by its sign bit, which is no arithmetic.
 template <class Use>
 MBS_CHAIN_INLINE typename Lanes<Use>::V magnitude(typename Lanes<Use>::V a) {

@@ -10,12 +10,11 @@ namespace mbs::compiled_ldl::chain {
 /// m I at a point, c I between it (outer) and the next one inwards (inner).
 template <class V>
 struct IsotropicMass {
-  V m, c, twice, square;  // m, c, 2c, c²
+  V m, c, square;  // m, c, c²
 
   void set(int lane, const std::array<double, 3>& mass, const std::array<double, 4>& coupling) {
     m[lane] = mass[0];
     c[lane] = coupling[0];
-    twice[lane] = 2.0 * coupling[0];
     square[lane] = coupling[0] * coupling[0];
   }
   MBS_CHAIN_INLINE Sym<V> matrix() const { return {m, V{}, m}; }
@@ -31,18 +30,20 @@ struct IsotropicMass {
   /// δ e eᵀ + Cᵀz eᵀ + e zᵀC − Cᵀ adj(S) C
   MBS_CHAIN_INLINE Sym<V> update(const V& delta, const Vec<V>& z, const Vec<V>& e,
                                  const Sym<V>& S) const {
-    const V half = V{} + 0.5;
-    const V k = read(twice);
-    const Vec<V> g{delta * e.x + k * z.x, delta * e.y + k * z.y};
-    return {g.x * e.x - square * S.yy, half * (g.x * e.y + g.y * e.x) + square * S.xy,
-            g.y * e.y - square * S.xx};
+    const V k = read(square);
+    const Vec<V> y = product(read(c), z);
+    const Vec<V> h{delta * e.x + y.x, delta * e.y + y.y};
+    const Vec<V> g = h + y;
+    return {g.x * e.x - k * S.yy, h.x * e.y + (y.y * e.x + k * S.xy), g.y * e.y - k * S.xx};
   }
   /// G = S⁻¹ C − y eᵀ, given S/σ
   MBS_CHAIN_INLINE void gain(const Sym<V>& R, const Vec<V>& y, const Vec<V>& e, V (&G)[4]) const {
-    G[0] = c * R.yy - y.x * e.x;
-    G[1] = -c * R.xy - y.x * e.y;
-    G[2] = -c * R.xy - y.y * e.x;
-    G[3] = c * R.xx - y.y * e.y;
+    const V k = read(c);
+    const V xy = product(k, R.xy);
+    G[0] = k * R.yy - y.x * e.x;
+    G[1] = -xy - y.x * e.y;
+    G[2] = -xy - y.y * e.x;
+    G[3] = k * R.xx - y.y * e.y;
   }
 };
 

@@ -58,6 +58,15 @@ template <class V>
 MBS_CHAIN_INLINE Vec<V> operator*(const V& a, const Vec<V>& b) {
   return {a * b.x, a * b.y};
 }
+/// See product() of numbers.
+template <class V>
+MBS_CHAIN_INLINE Vec<V> product(const V& a, const Vec<V>& b) {
+  return {product(a, b.x), product(a, b.y)};
+}
+template <class V>
+MBS_CHAIN_INLINE Vec<V> masked(const V& bits, const Vec<V>& a) {
+  return {masked(bits, a.x), masked(bits, a.y)};
+}
 template <class V>
 MBS_CHAIN_INLINE V dot(const Vec<V>& a, const Vec<V>& b) {
   return a.x * b.x + a.y * b.y;

@@ -30,22 +30,22 @@ struct Block {
   Factors<V> factors;
 };
 
-/// The vector weight * (difference of local coordinates) + offset, whose square is to be `square`.
-/// All are zero where there is none.
+/// The vector difference of local coordinates + offset, whose square is to be `square`. It is zero
+/// where there is none.
 template <class V>
 struct AnyLength {
-  V weight;
+  V there;  // all bits of a lane, or none
   Vec<V> offset;
   V square;
 
   void set(int lane, const Distance& from, double sign, double unit) {
-    weight[lane] = 1.0;
+    set_all_bits(there, lane);
     offset.x[lane] = sign * unit * from.offset[0];
     offset.y[lane] = sign * unit * from.offset[1];
     square[lane] = unit * unit * from.value;
   }
   MBS_CHAIN_INLINE Vec<V> vector(const Vec<V>& difference) const {
-    return {weight * difference.x + offset.x, weight * difference.y + offset.y};
+    return masked(read(there), difference + offset);
   }
   MBS_CHAIN_INLINE V violation(const Vec<V>& d) const { return d.x * d.x + (d.y * d.y - square); }
 };
@@ -53,15 +53,14 @@ struct AnyLength {
 /// The same between neighbours. Its offset is kept apart: all else is often the same for many.
 template <class V>
 struct LinkLength {
-  V weight, square;
+  V there, square;
 
   void set(int lane, const Distance& from, double unit) {
-    weight[lane] = 1.0;
+    set_all_bits(there, lane);
     square[lane] = unit * unit * from.value;
   }
   MBS_CHAIN_INLINE Vec<V> vector(const Vec<V>& difference, const Vec<V>& offset) const {
-    const V k = read(weight);
-    return {k * difference.x + offset.x, k * difference.y + offset.y};
+    return masked(read(there), difference + offset);
   }
   MBS_CHAIN_INLINE V violation(const Vec<V>& d) const { return d.x * d.x + (d.y * d.y - square); }
 };
