@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <string>
+#include <vector>
 
 #include "environment/build_info.hpp"
 #include "environment/machine.hpp"
@@ -34,7 +36,18 @@ std::string threads_under(const std::string& environment) {
   return context_under(environment).at("threads_environment");
 }
 
+/// Some machines tell OpenBLAS more than its kernels.
+void forget_openblas_variables() {
+  std::vector<std::string> names;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string text = *variable;
+    if (text.starts_with("OPENBLAS_")) names.push_back(text.substr(0, text.find('=')));
+  }
+  for (const std::string& name : names) unsetenv(name.c_str());
+}
+
 TEST(SingleThread, OverrulesAHostileEnvironment) {
+  forget_openblas_variables();
   const std::string one =
       "BLIS_NUM_THREADS=1 GOTO_NUM_THREADS=1 MKL_NUM_THREADS=1 OMP_NUM_THREADS=1 "
       "OPENBLAS_NUM_THREADS=1";
