@@ -69,10 +69,14 @@ def must_hold(folder, registry, steps=None, growth=None, scenes=None, batches=No
     if scenes is not None:
         found += _scenes(folder, mine, scenes)
     if batches is not None:
-        best = of_folder(batches[batches.status == "ok"], folder).groupby("scene")[["alone_us", "step_us"]].min()
-        found.append(_least("throughput of a batch ÷ that of its lanes alone", best.alone_us / best.step_us, GAIN,
-                            fastest(batches, folder, "scene")))
+        found += [_gain(folder, sets, rows) for sets, rows in batches.groupby("sets", sort=False)]
     return found
+
+
+def _gain(folder, sets, rows):
+    best = of_folder(rows[rows.status == "ok"], folder).groupby("scene")[["alone_us", "step_us"]].min()
+    return _least(f"throughput of batches ÷ that of their lanes alone, {sets:.0f} sets of parameters",
+                  best.alone_us / best.step_us, GAIN, fastest(rows, folder, "scene"))
 
 
 def _sizes(folder, mine, steps):

@@ -177,11 +177,13 @@ def test_what_was_not_measured_does_not_hold():
 
 def test_batches_gain():
     def gains(*values):
-        return pandas.DataFrame([{"scene": f"s{k}", "implementation": "own/x", "status": "ok", "step_us": 2.0, "alone_us": 2.0 * gain}
+        return pandas.DataFrame([{"scene": f"s{k}", "sets": 64, "implementation": "own/x", "status": "ok", "step_us": 2.0, "alone_us": 2.0 * gain}
                                  for k, gain in enumerate(values)])
-    what = "throughput of a batch ÷ that of its lanes alone"
-    assert held(batches=gains(5.0, 4.0))[what].holds
-    assert held(batches=gains(5.0, 3.9))[what].worst == "3.9 (s1, x)"
+    what = "throughput of batches ÷ that of their lanes alone, {} sets of parameters"
+    assert held(batches=gains(5.0, 4.0))[what.format(64)].holds
+    assert held(batches=gains(5.0, 3.9))[what.format(64)].worst == "3.9 (s1, x)"
+    found = held(batches=pandas.concat([gains(5.0, 4.0), gains(5.0, 3.9).assign(sets=8)]))
+    assert found[what.format(64)].holds and not found[what.format(8)].holds
 
 
 def test_the_fastest_variant_of_a_folder_counts_scene_by_scene():

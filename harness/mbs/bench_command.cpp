@@ -52,8 +52,11 @@ void add_options(CLI::App& app, BenchRequest& request, StepOptions& step) {
                "the variants that offer them one by one");
   app.add_flag(
       "--batch", request.batch,
-      "instead of single simulations, time as many varied lanes as a variant is best given, "
-      "side by side and alone: step_us and alone_us are of one lane, gain is their ratio");
+      "instead of single simulations, time parameter sets in batches of as many as a variant is "
+      "best given, and alone: step_us and alone_us are of one of them, gain is their ratio");
+  app.add_option("--sets", request.sets,
+                 "of --batch: parameter sets, spread evenly over a range of 28 % in masses and of "
+                 "14 % in lengths (default: 64)");
 }
 
 bool asks_for_help(int argc, char** argv) {
@@ -123,7 +126,7 @@ int run_cells(const std::vector<PlannedCell>& cells, const BenchRequest& request
   if (request.operations) {
     operations.add(cells);
   } else if (request.batch) {
-    batches.add(cells);
+    batches.add(cells, request.sets.value_or(kSets));
   } else {
     rows.add(cells, request.phases);
   }

@@ -1,4 +1,5 @@
 # How far ahead of the library-backed implementations those with code of their own are, scene by scene.
+import itertools
 import json
 import statistics
 
@@ -10,6 +11,7 @@ from study.pipeline.layout import ROOT, program
 FOLDERS = ("problems", "examples")
 FILLS = tuple(f"four-bar:49,fill={fill}" for fill in (0.12, 0.2, 0.3, 0.5, 0.75, 1))
 BATCHES = ("four-bar:10", "four-bar:40")
+SETS = (64, 8)  # of parameters over the same range: neighbours alike as in a what-if study, and a single wide batch
 LARGE = (49, 160, 499, 1999, 4999, 9999)  # sizes at which time, memory and set-up have to grow linearly
 NEAR = 1.5  # of the fastest with a library, in a first short run; who is slower is not timed further
 
@@ -46,21 +48,20 @@ def rows(layout, contenders, mine, scene, rounds, seconds, tell):
 
 def batches(layout, contenders, rounds, seconds, tell):
     """Rows of batches.csv: many lanes side by side against each alone, medians of `rounds` processes."""
-    found = []
-    for number, scene in enumerate(BATCHES):
-        for place, one in enumerate(contenders):
-            tell(f"{scene}, lanes of {one.name}", (number + place / len(contenders)) / len(BATCHES))
-            row = _batch(layout, one, scene, rounds, seconds)
-            if not row["reason"].startswith("unsupported"):
-                found.append({"scene": scene, "implementation": one.name} | row)
+    found, cells = [], list(itertools.product(BATCHES, SETS, contenders))
+    for place, (scene, sets, one) in enumerate(cells):
+        tell(f"{scene}, {sets} sets, {one.name}", place / len(cells))
+        row = _batch(layout, one, scene, sets, rounds, seconds)
+        if not row["reason"].startswith("unsupported"):
+            found.append({"scene": scene, "sets": sets, "implementation": one.name} | row)
     return found
 
 
-def _batch(layout, one, scene, rounds, seconds):
+def _batch(layout, one, scene, sets, rounds, seconds):
     rows = []
     for turn in range(1, rounds + 1):
-        row, reason = measure.bench(layout, one, scene, f"batches/{one.file_name}-{scene[9:]}-{turn}",
-                                    seconds, "--batch")
+        row, reason = measure.bench(layout, one, scene, f"batches/{one.file_name}-{scene[9:]}-{sets}-{turn}",
+                                    seconds, "--batch", "--sets", str(sets))
         if reason:
             return {"status": "failed", "reason": reason}
         rows.append(row)

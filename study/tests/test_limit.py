@@ -60,6 +60,13 @@ def test_what_was_interrupted_is_run_again_and_the_calmest_counts(tmp_path, monk
     assert measure.bench(Layout(tmp_path), ONE, "s", "n22/a", 1.0)[0]["real_time"] == 13.0  # stored
 
 
+def test_of_batches_both_halves_count_as_wall_time():
+    def unrest(cpu_time):
+        row = {"real_time": 80.0, "cpu_time": cpu_time, "sets": 8, "steps": 10, "step_us": 1.0, "alone_us": 4.0}
+        return measure._unrest({"found": {"benchmarks": [row]}})
+    assert unrest(400.0) == 1.0 and unrest(200.0) == 2.0
+
+
 def test_a_wrong_name_is_said_before_set_up(monkeypatch):
     monkeypatch.delenv("MBS_PROGRAM", raising=False)
     monkeypatch.setattr("study.pipeline.carrier.set_up", lambda layout: pytest.fail("set-up has begun"))
@@ -147,7 +154,8 @@ def test_a_tiny_study_on_the_real_program(tmp_path, monkeypatch):
     assert list(growth.implementation) == ["compiled_ldl/chains"] and (growth.status == "ok").all()
     scenes, batches = (pandas.read_csv(tmp_path / f"{name}.csv") for name in ("scenes", "batches"))
     assert set(scenes.status) <= {"ok", "slower"} and set(scenes.dimension) == {2}
-    assert list(batches.implementation) == ["compiled_ldl/chains"] * 2 and (batches.gain > 0).all()
+    assert list(batches.implementation) == ["compiled_ldl/chains"] * 4 and (batches.gain > 0).all()
+    assert list(batches.sets) == [64, 8] * 2
     page = (tmp_path / "limit.html").read_text()
     assert "csc_klu/refactor" in page and (tmp_path / "figures" / "by_phase.png").exists()
     limit([*words, "--stored"])

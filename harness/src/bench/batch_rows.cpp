@@ -1,4 +1,4 @@
-// Times a batch and its lanes alone by turns, so that both see the same machine.
+// Times batches and their lanes alone by turns, so that both see the same machine.
 #include "bench/batch_rows.hpp"
 
 #include <fmt/format.h>
@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <span>
 
 #include "bench/measurement.hpp"
 #include "check/varied_lanes.hpp"
@@ -14,45 +15,58 @@
 namespace mbs {
 namespace {
 
+constexpr double kRange = 0.28;  // from the least to the largest mass
+
 class BatchMeasurement {
  public:
   /// Throws CellFailure, Unsupported or what the variant throws.
-  explicit BatchMeasurement(const PlannedCell& cell)
+  BatchMeasurement(const PlannedCell& cell, int sets)
       : steps_(cell.scene->stretch.steps),
-        lanes_(vary_lanes(std::max(cell.variant->batch_lanes, 1), cell.scene->scene.model,
-                          cell.scene->settings, cell.scene->stretch.initial)),
-        outcomes_(static_cast<std::size_t>(lanes_.count())) {
+        sets_(vary_lanes(sets, kRange / (sets - 1), cell.scene->scene.model, cell.scene->settings,
+                         cell.scene->stretch.initial)) {
     if (cell.variant->create_batch == nullptr) {
       throw CellFailure("unsupported: this variant does not advance simulations side by side");
     }
-    for (std::size_t lane = 0; lane < lanes_.models.size(); ++lane) {
-      alone_.push_back(
-          create_simulation(*cell.variant, *lanes_.models[lane], lanes_.settings[lane]));
+    const std::size_t count = sets_.models.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      alone_.push_back(create_simulation(*cell.variant, *sets_.models[k], sets_.settings[k]));
     }
-    batch_ = cell.variant->create_batch(lanes_.pointers, lanes_.settings);
+    const std::span<const Model* const> models = sets_.pointers;
+    const std::span<const StepSettings> settings = sets_.settings;
+    const auto lanes = static_cast<std::size_t>(std::max(cell.variant->batch_lanes, 1));
+    for (std::size_t first = 0; first < count; first += lanes) {
+      const std::size_t size = std::min(lanes, count - first);
+      batches_.push_back(
+          cell.variant->create_batch(models.subspan(first, size), settings.subspan(first, size)));
+    }
   }
 
-  [[nodiscard]] int lanes() const { return lanes_.count(); }
+  /// Of the first batch; the last one may have fewer.
+  [[nodiscard]] int lanes() const { return batches_.front()->lanes(); }
 
-  /// Seconds of the steps of all lanes.
+  /// Seconds of the steps of all sets.
   double time_together() {
-    for (int lane = 0; lane < lanes(); ++lane) {
-      batch_->set_state(lane, lanes_.starts[static_cast<std::size_t>(lane)]);
+    double seconds = 0.0;
+    auto start = sets_.starts.begin();
+    for (const auto& batch : batches_) {
+      for (int lane = 0; lane < batch->lanes(); ++lane) batch->set_state(lane, *start++);
+      outcomes_.resize(static_cast<std::size_t>(batch->lanes()));
+      const auto begin = Clock::now();
+      for (long step = 1; step <= steps_; ++step) {
+        batch->step(outcomes_);
+        for (const StepOutcome& outcome : outcomes_) require(outcome, step);
+      }
+      seconds += seconds_since(begin);
     }
-    const auto begin = Clock::now();
-    for (long step = 1; step <= steps_; ++step) {
-      batch_->step(outcomes_);
-      for (const StepOutcome& outcome : outcomes_) require(outcome, step);
-    }
-    return seconds_since(begin);
+    return seconds;
   }
 
   double time_alone() {
     double seconds = 0.0;
-    for (std::size_t lane = 0; lane < alone_.size(); ++lane) {
-      alone_[lane]->set_state(lanes_.starts[lane]);
+    for (std::size_t k = 0; k < alone_.size(); ++k) {
+      alone_[k]->set_state(sets_.starts[k]);
       const auto begin = Clock::now();
-      for (long step = 1; step <= steps_; ++step) require(alone_[lane]->step(), step);
+      for (long step = 1; step <= steps_; ++step) require(alone_[k]->step(), step);
       seconds += seconds_since(begin);
     }
     return seconds;
@@ -72,26 +86,27 @@ class BatchMeasurement {
   }
 
   long steps_;
-  VariedLanes lanes_;
+  VariedLanes sets_;
   std::vector<StepOutcome> outcomes_;
-  std::unique_ptr<BatchSimulation> batch_;
+  std::vector<std::unique_ptr<BatchSimulation>> batches_;
   std::vector<std::unique_ptr<Simulation>> alone_;
 };
 
 }  // namespace
 
-void BatchRows::add(const std::vector<PlannedCell>& cells) {
+void BatchRows::add(const std::vector<PlannedCell>& cells, int sets) {
   for (const PlannedCell& cell : cells) {
-    benchmark::RegisterBenchmark((cell.name + "/batch").c_str(),
-                                 [this, &cell](benchmark::State& state) { run(cell, state); })
+    benchmark::RegisterBenchmark(
+        (cell.name + "/batch").c_str(),
+        [this, &cell, sets](benchmark::State& state) { run(cell, sets, state); })
         ->UseManualTime()
         ->Unit(benchmark::kMicrosecond);
   }
 }
 
-void BatchRows::run(const PlannedCell& cell, benchmark::State& state) {
+void BatchRows::run(const PlannedCell& cell, int sets, benchmark::State& state) {
   try {
-    BatchMeasurement measurement(cell);
+    BatchMeasurement measurement(cell, sets);
     measurement.time_together();
     measurement.time_alone();
     double together = 0.0, alone = 0.0;
@@ -103,12 +118,13 @@ void BatchRows::run(const PlannedCell& cell, benchmark::State& state) {
       alone += measurement.time_alone();
     }
     const PlannedScene& planned = *cell.scene;
-    const double lane_steps = static_cast<double>(state.iterations()) * measurement.lanes() *
-                              static_cast<double>(planned.stretch.steps);
+    const double set_steps =
+        static_cast<double>(state.iterations()) * sets * static_cast<double>(planned.stretch.steps);
+    state.counters["sets"] = sets;
     state.counters["lanes"] = measurement.lanes();
     state.counters["steps"] = static_cast<double>(planned.stretch.steps);
-    state.counters["step_us"] = 1e6 * together / lane_steps;
-    state.counters["alone_us"] = 1e6 * alone / lane_steps;
+    state.counters["step_us"] = 1e6 * together / set_steps;
+    state.counters["alone_us"] = 1e6 * alone / set_steps;
     state.counters["gain"] = alone / together;
     state.counters["variables"] = planned.scene.model.variables();
     state.counters["constraints"] = planned.scene.model.constraints();

@@ -12,24 +12,25 @@
 namespace mbs {
 
 /// What rows of batches show people.
-inline constexpr std::array kBatchCounters{"lanes", "step_us", "alone_us", "gain"};
+inline constexpr std::array kBatchCounters{"sets", "lanes", "step_us", "alone_us", "gain"};
 
 /// Registers "folder/variant/scene/batch": manual time, microseconds, an iteration being one
-/// stretch of as many lanes as the variant is best given, which differ in masses, forces and
-/// lengths. Counters: lanes; steps; step_us, the time of a step of one lane (that of all over their
-/// number); alone_us, the same for a Simulation of each lane, one after the other, in the same
-/// iterations; gain, alone_us / step_us; variables, constraints and fill_percent. A variant without
-/// batches, a lane that is lost, or a batch that is refused is a row with error_occurred and a
-/// CellFailure's text as error_message.
+/// stretch of each set of parameters, as in a what-if study: the sets cover evenly 28 % in masses
+/// and forces and 14 % in lengths, and as many neighbours as the variant is best given are the
+/// lanes of a batch. Counters: sets; lanes of a batch; steps; step_us, the time of a step of one
+/// set (that of all over their number); alone_us, the same for a Simulation of each set, one after
+/// the other, in the same iterations; gain, alone_us / step_us; variables, constraints and
+/// fill_percent. A variant without batches, a lane that is lost, or a batch that is refused is a
+/// row with error_occurred and a CellFailure's text as error_message.
 class BatchRows {
  public:
   /// `cells` and what they point to must outlive the object, and the object the benchmarks' run.
-  void add(const std::vector<PlannedCell>& cells);
+  void add(const std::vector<PlannedCell>& cells, int sets);
   /// Whether a row that has run failed.
   [[nodiscard]] bool failed() const { return failed_; }
 
  private:
-  void run(const PlannedCell& cell, benchmark::State& state);
+  void run(const PlannedCell& cell, int sets, benchmark::State& state);
 
   bool failed_ = false;
 };

@@ -27,6 +27,11 @@ void check(const BenchRequest& request) {
   if (request.batch && (request.operations || request.phases)) {
     throw UsageError("--batch goes with neither --operations nor --phases");
   }
+  constexpr int kMostSets = 4096;
+  if (request.sets && !request.batch) throw UsageError("--sets goes with --batch");
+  if (request.sets && (*request.sets < 2 || *request.sets > kMostSets)) {
+    throw UsageError(fmt::format("--sets is {}: it must be 2 to {}", *request.sets, kMostSets));
+  }
   constexpr double kLatestStart = 1e6;  // s; later, the elliptic functions' argument loses digits
   if (request.start && !(*request.start >= 0.0 && *request.start <= kLatestStart)) {
     throw UsageError(

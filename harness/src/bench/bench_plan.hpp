@@ -12,6 +12,8 @@
 
 namespace mbs {
 
+inline constexpr int kSets = 64;
+
 /// As given on the command line.
 struct BenchRequest {
   std::vector<std::string> scenes;           ///< empty: four-bar:10 and four-bar:40
@@ -23,6 +25,7 @@ struct BenchRequest {
   bool phases = false;
   bool operations = false;  ///< the operations of Table 2 instead of steps
   bool batch = false;       ///< many lanes at once, and alone, instead of single simulations
+  std::optional<int> sets;  ///< of parameters, with batch; kSets if not given
 };
 
 /// A scene with what is common to all of its cells.

@@ -18,6 +18,7 @@ namespace mbs {
 namespace {
 
 constexpr int kRetired = 0, kSpoiled = 2;  // lanes
+constexpr double kApart = 0.04;            // of masses
 constexpr std::size_t kSteps = 200, kRetiredAt = 10;
 
 /// A batch at its start; one lane is so fast that its numbers overflow.
@@ -131,7 +132,8 @@ std::vector<Check> batch_checks(const Variant& variant, const Model& model,
   int part = 0;
   try {
     for (const int count : {3, 11}) {
-      const VariedLanes lanes = vary_lanes(count, model, settings, reference.stretch.initial);
+      const VariedLanes lanes =
+          vary_lanes(count, kApart, model, settings, reference.stretch.initial);
       add_lock_steps(lock_step, variant, lanes);
       run_beside(running, variant, lanes, begin + seconds * ++part / 2);
       if (!*running.check.passed) break;
