@@ -400,6 +400,19 @@ TEST(Run, TellsThatAFactorizationFailed) {
   EXPECT_EQ(summary.steps, 1);
 }
 
+TEST(Run, TellsWhatTheMultistepMethodCannotPass) {
+  const Scene scene = load_scene("four-bar:2");
+  RunSettings settings = settings_for(scene, 0.5);
+  settings.step.scheme = Scheme::multistep6;
+  Variant variant = control("factorization_failed");
+  variant.serves.multistep = true;
+  const RunSummary summary = run(scene, variant, settings);
+  EXPECT_EQ(summary.status, RunStatus::diverged);
+  EXPECT_EQ(summary.reason,
+            "the tangent matrix could not be factorized (multistep6 does not pass singular "
+            "positions; rattle does)");
+}
+
 TEST(Run, TellsThatASceneIsUnsupported) {
   const Scene scene = load_scene("four-bar:2");
   const RunSummary summary = run(scene, control("unsupported"), settings_for(scene, 0.5));

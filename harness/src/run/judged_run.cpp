@@ -159,6 +159,9 @@ void JudgedRun::lose(const Judge& judge, std::string reason, long step) {
 void JudgedRun::lose(RunStatus status, std::string reason, std::optional<double> t) {
   summary_.status = status;
   summary_.reason = std::move(reason);
+  if (status == RunStatus::diverged && settings_.step.scheme == Scheme::multistep6) {
+    summary_.reason += " (multistep6 does not pass singular positions; rattle does)";
+  }
   summary_.failed_at = t;
   is_over_ = true;
 }
