@@ -134,7 +134,7 @@ class Newton {
                                                Carry<V>& carry, Pending& pending) {
     Vec<V> f = data.mass.outer(read(next.u)) - data.force;
     const Sym<V> own = point(block, data, f, taking.pending);
-    pending.e = data.link.vector(next.x - block.x, block.offset);
+    pending.e = data.link.vector(next.x - block.x);
     const V violation = data.link.violation(pending.e);
     const Vec<V> pull = tension(block.link, violation, taking.pending) * pending.e;
     pending.f = f - pull;

@@ -25,7 +25,6 @@ struct Block {
   Vec<V> x, u, w;       // position, acceleration, velocity
   V rods[Rods::kMost];  // multipliers
   V link;
-  Vec<V> offset;  // of the vector to the next point
   Vec<V> f;       // right-hand side between a sweep inwards and the one outwards
   Factors<V> factors;
 };
@@ -45,21 +44,6 @@ struct AnyLength {
     square[lane] = unit * unit * from.value;
   }
   MBS_CHAIN_INLINE Vec<V> vector(const Vec<V>& difference) const {
-    return masked(read(there), difference + offset);
-  }
-  MBS_CHAIN_INLINE V violation(const Vec<V>& d) const { return d.x * d.x + (d.y * d.y - square); }
-};
-
-/// The same between neighbours. Its offset is kept apart: all else is often the same for many.
-template <class V>
-struct LinkLength {
-  V there, square;
-
-  void set(int lane, const Distance& from, double unit) {
-    set_all_bits(there, lane);
-    square[lane] = unit * unit * from.value;
-  }
-  MBS_CHAIN_INLINE Vec<V> vector(const Vec<V>& difference, const Vec<V>& offset) const {
     return masked(read(there), difference + offset);
   }
   MBS_CHAIN_INLINE V violation(const Vec<V>& d) const { return d.x * d.x + (d.y * d.y - square); }
@@ -94,7 +78,7 @@ struct AtMostRods {
 template <class V, class Mass, class Rods>
 struct Constants {
   typename Rods::template Length<V> rods[Rods::kMost];
-  LinkLength<V> link;  // inner − outer point
+  AnyLength<V> link;  // inner − outer point
   Mass mass;
   Vec<V> force;
 };

@@ -52,11 +52,7 @@ auto Storage<Use, MassOf, Rods, BlockOf>::set_constants(int block, int lane, con
   }
   if (from.link) {
     const double sign = from.forward ? 1.0 : -1.0;
-    if (from.link->row >= 0) {
-      to.link.set(lane, *from.link, units.length);
-      blocks[block].offset.x[lane] = sign * units.length * from.link->offset[0];
-      blocks[block].offset.y[lane] = sign * units.length * from.link->offset[1];
-    }
+    if (from.link->row >= 0) to.link.set(lane, *from.link, sign, units.length);
     const auto& c = *from.coupling;
     to.mass.set(lane, from.here->mass,
                 from.forward ? c : std::array<double, 4>{c[0], c[2], c[1], c[3]});
