@@ -85,14 +85,15 @@ struct Constants {
 
 /// Factors between the model's units and those of the chain.
 struct Units {
-  double length, velocity, acceleration, multiplier, force;
+  double mass, length, velocity, acceleration, multiplier, force;
 
-  explicit Units(const StepSettings& settings) {
-    length = std::sqrt(settings.penalty) * settings.step;
+  Units(const StepSettings& settings, const Topology& topology) {
+    mass = topology.coupling > 0.0 ? 1.0 / topology.coupling : 1.0;
+    length = std::sqrt(mass * settings.penalty) * settings.step;
     velocity = length * settings.step;
     acceleration = velocity * (0.5 * settings.step);
-    multiplier = settings.step * settings.step;
-    force = acceleration;
+    multiplier = mass * settings.step * settings.step;
+    force = mass * acceleration;
   }
 };
 

@@ -105,6 +105,11 @@ void add_mass(const Model& model, const std::vector<int>& place_of, Topology& ch
       chain.isotropic = false;
     }
   }
+  chain.coupling = std::max(0.0, chain.places[0].coupling[0]);
+  for (std::size_t k = 1; k + 1 < chain.places.size(); ++k) {
+    if (chain.places[k].coupling[0] != chain.coupling) chain.coupling = 0.0;
+  }
+  if (!chain.isotropic) chain.coupling = 0.0;
 }
 
 /// A point is kept relative to the first fixed one that it has a distance to, else to what the
