@@ -136,7 +136,7 @@ class Newton {
     const Sym<V> own = point(block, data, f, taking.pending);
     pending.e = data.link.vector(next.x - block.x);
     const V violation = data.link.violation(pending.e);
-    const Vec<V> pull = tension(block.link, violation, taking.pending) * pending.e;
+    const Vec<V> pull = product(tension(block.link, violation, taking.pending), pending.e);
     pending.f = f - pull;
     pending.inner = pull + data.mass.inner(block.u);
     eliminate(data.mass, own, pending.e, pending.S, pending.z, least, carry);
