@@ -27,16 +27,18 @@ Topology topology_of(const Model& model) {
 template <class Make>
 auto with_kind(std::span<const Topology> chains, const Make& make) {
   bool isotropic = true;
+  bool uniform = true;
   int least = kMostRods;
   int most = 0;
   for (const Topology& chain : chains) {
     isotropic = isotropic && chain.isotropic;
+    uniform = uniform && chain.coupling > 0.0;
     least = std::min(least, chain.least_rods);
     most = std::max(most, chain.most_rods);
   }
   if (!isotropic) return make.template operator()<GeneralMass, AtMostRods<kMostRods>>();
   if (most > 1) return make.template operator()<IsotropicMass, AtMostRods<kMostRods>>();
-  if (least == 1) return make.template operator()<IsotropicMass, OneRod>();
+  if (uniform && least == 1) return make.template operator()<UniformMass, OneRod>();
   return make.template operator()<IsotropicMass, AtMostRods<1>>();
 }
 

@@ -31,7 +31,7 @@ class ChainBatch final : public BatchSimulation {
 
  private:
   /// Larger groups are quicker one after the other.
-  static constexpr std::size_t kFittingBytes = 56000;
+  static constexpr std::size_t kFittingBytes = 65000;
   static constexpr std::size_t kMostTogether = 2;
 
   void do_set_state(int lane, const State& state) override {

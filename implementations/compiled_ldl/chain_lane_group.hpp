@@ -36,7 +36,7 @@ class LaneGroup {
 
   void set_state(int chain, const Topology& topology, const StepSettings& settings,
                  const State& state) {
-    const Units units(settings);
+    const Units units(settings, topology);
     chain_.set(chain, topology, units, state);
     mark(chain, 2.0 * units.length * settings.tolerance, -1);
     steps_ = 0;

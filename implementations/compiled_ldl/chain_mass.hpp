@@ -7,22 +7,29 @@
 
 namespace mbs::compiled_ldl::chain {
 
-/// m I at a point, c I between it (outer) and the next one inwards (inner).
+/// m I at a point.
 template <class V>
-struct IsotropicMass {
-  V m, c, square;  // m, c, c²
+struct PointMass {
+  V m;
 
-  void set(int lane, const std::array<double, 3>& mass, const std::array<double, 4>& coupling) {
-    m[lane] = mass[0];
-    c[lane] = coupling[0];
-    square[lane] = coupling[0] * coupling[0];
-  }
   MBS_CHAIN_INLINE Sym<V> matrix() const { return {m, V{}, m}; }
   MBS_CHAIN_INLINE Sym<V> plus_square(const Vec<V>& d) const {
     const V diagonal = read(m);
     return {diagonal + d.x * d.x, d.x * d.y, diagonal + d.y * d.y};
   }
   MBS_CHAIN_INLINE Vec<V> times(const Vec<V>& v) const { return read(m) * v; }
+};
+
+/// c I between it (outer) and the next one inwards (inner).
+template <class V>
+struct IsotropicMass : PointMass<V> {
+  V c, square;  // c, c²
+
+  void set(int lane, const std::array<double, 3>& mass, const std::array<double, 4>& coupling) {
+    this->m[lane] = mass[0];
+    c[lane] = coupling[0];
+    square[lane] = coupling[0] * coupling[0];
+  }
   /// C v, of the inner point's v
   MBS_CHAIN_INLINE Vec<V> outer(const Vec<V>& v) const { return read(c) * v; }
   /// Cᵀ v, of the outer point's v
@@ -44,6 +51,28 @@ struct IsotropicMass {
     G[1] = -xy - y.x * e.y;
     G[2] = -xy - y.y * e.x;
     G[3] = k * R.xx - y.y * e.y;
+  }
+};
+
+/// The same where c is 1 everywhere: Units sees to that.
+template <class V>
+struct UniformMass : PointMass<V> {
+  void set(int lane, const std::array<double, 3>& mass, const std::array<double, 4>& /*coupling*/) {
+    this->m[lane] = mass[0];
+  }
+  MBS_CHAIN_INLINE const Vec<V>& outer(const Vec<V>& v) const { return v; }
+  MBS_CHAIN_INLINE const Vec<V>& inner(const Vec<V>& v) const { return v; }
+  MBS_CHAIN_INLINE Sym<V> update(const V& delta, const Vec<V>& z, const Vec<V>& e,
+                                 const Sym<V>& S) const {
+    const Vec<V> h{delta * e.x + z.x, delta * e.y + z.y};
+    const Vec<V> g = h + z;
+    return {g.x * e.x - S.yy, h.x * e.y + (z.y * e.x + S.xy), g.y * e.y - S.xx};
+  }
+  MBS_CHAIN_INLINE void gain(const Sym<V>& R, const Vec<V>& y, const Vec<V>& e, V (&G)[4]) const {
+    G[0] = R.yy - y.x * e.x;
+    G[1] = -R.xy - y.x * e.y;
+    G[2] = -R.xy - y.y * e.x;
+    G[3] = R.xx - y.y * e.y;
   }
 };
 

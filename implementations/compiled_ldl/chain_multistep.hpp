@@ -92,9 +92,9 @@ class Multistep {
                                                Pending& pending) {
     Vec<V> f = data.mass.outer(next.pull) - force(data);
     const auto own = point(block, data, here, f);
-    pending.e = data.link.vector(next.from - here.from, block.offset);
+    pending.e = data.link.vector(next.from - here.from);
     block.e = pending.e;
-    const V violation = data.link.violation(data.link.vector(next.to - here.to, block.offset));
+    const V violation = data.link.violation(data.link.vector(next.to - here.to));
     const Vec<V> pull = violation * pending.e;
     pending.f = f - pull;
     pending.inner = pull + data.mass.inner(here.pull);

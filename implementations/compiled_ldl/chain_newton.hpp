@@ -59,11 +59,19 @@ class Newton {
     finish_chain(*block, **data, taking, least, carry);
     return least;
   }
-  /// Of two groups by turns, block by block: what one waits for is the other's work.
+  /// Of two groups by turns: between a block's division and its factors comes the other's block.
   static void inwards(Store& a, const Taking<Mask>& taking_a, V& least_a, Store& b,
                       const Taking<Mask>& taking_b, V& least_b) {
     InwardsSweep sweep_a(a, taking_a), sweep_b(b, taking_b);  // elsewhere they would be in memory
-    by_turns(sweep_a, sweep_b, a.last);
+    for (int k = 0; k < a.last; ++k) {
+      sweep_a.eliminate();
+      if (k > 0) sweep_b.complete();
+      sweep_b.eliminate();
+      sweep_a.complete();
+    }
+    if (a.last > 0) sweep_b.complete();
+    sweep_a.finish();
+    sweep_b.finish();
     least_a = sweep_a.least;
     least_b = sweep_b.least;
   }
@@ -134,9 +142,9 @@ class Newton {
                                                Carry<V>& carry, Pending& pending) {
     Vec<V> f = data.mass.outer(read(next.u)) - data.force;
     const Sym<V> own = point(block, data, f, taking.pending);
-    pending.e = data.link.vector(next.x - block.x, block.offset);
+    pending.e = data.link.vector(next.x - block.x);
     const V violation = data.link.violation(pending.e);
-    const Vec<V> pull = tension(block.link, violation, taking.pending) * pending.e;
+    const Vec<V> pull = product(tension(block.link, violation, taking.pending), pending.e);
     pending.f = f - pull;
     pending.inner = pull + data.mass.inner(block.u);
     eliminate(data.mass, own, pending.e, pending.S, pending.z, least, carry);
@@ -160,10 +168,11 @@ class Newton {
       if (kFirst) predict(*block);
     }
 
-    MBS_CHAIN_INLINE void advance() {
+    MBS_CHAIN_INLINE void eliminate() {
       if (kFirst) predict(block[1]);
-      Pending pending;
       eliminate_block(*block, block[1], **data, taking, least, carry, pending);
+    }
+    MBS_CHAIN_INLINE void complete() {
       pending.f = carry.force + pending.f;
       finish_block(*block, **data, pending, taking.active, carry);
       ++block;
@@ -176,6 +185,7 @@ class Newton {
     Taking<Mask> taking;
     Carry<V> carry;
     V least = V{} + 1.0;
+    Pending pending;
   };
 
   /// Eliminates the last block.

@@ -17,7 +17,7 @@ class PenaltyGroup : public LaneGroup<Storage<Wide, MassOf, Rods>> {
 
   void get_state(int chain, const Topology& topology, const StepSettings& settings,
                  State& state) const {
-    chain_.get(chain, topology, Units(settings), state);
+    chain_.get(chain, topology, Units(settings, topology), state);
   }
 
   /// Two groups at most, sweep by sweep: while one waits at the end of a sweep for the number that

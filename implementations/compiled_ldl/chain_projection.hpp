@@ -63,7 +63,7 @@ class Projection {
     }
   }
   MBS_CHAIN_INLINE static void link(B& block, const B& next, const C& data, const Mask& pending) {
-    add(block.link, data.link.violation(data.link.vector(next.x - block.x, block.offset)), pending);
+    add(block.link, data.link.violation(data.link.vector(next.x - block.x)), pending);
   }
 
   // Below, what a block has in common with the one before has been read with that; with `kSettles`
@@ -88,7 +88,7 @@ class Projection {
       if constexpr (kSettles) {
         const Vec<V> outer = x;
         x = read(next.x);
-        add(block.link, data.link.violation(data.link.vector(x - outer, block.offset)), pending);
+        add(block.link, data.link.violation(data.link.vector(x - outer)), pending);
       }
       inner = data.mass.inner(v);
       v = next.w + next.u;
@@ -117,7 +117,7 @@ class Projection {
     }
     MBS_CHAIN_INLINE void link(B& block, const B& next, const C& data, Vec<V>& f, Vec<V>& inner) {
       const Vec<V> x_inner = read(next.x), w_inner = read(next.w), u_inner = read(next.u);
-      const Vec<V> e = data.link.vector(x_inner - x, block.offset);
+      const Vec<V> e = data.link.vector(x_inner - x);
       if (kSettles) add(block.link, data.link.violation(e), pending);
       const Vec<V> rate = w_inner - w;
       const Vec<V> pull = ((V{} + 0.5) * dot(rate, rate)) * e;

@@ -143,7 +143,7 @@ class RattleStage {
     const VelocityTerms terms{};
     for (; block != end; ++block, ++data) {
       const auto own = rows(*block, **data);
-      const Vec<V> e = (*data)->link.vector(block[1].x - block->x, block->offset);
+      const Vec<V> e = (*data)->link.vector(block[1].x - block->x);
       block->e = e;
       Sym<V> S;
       Vec<V> z;

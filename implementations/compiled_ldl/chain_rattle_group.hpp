@@ -29,7 +29,7 @@ class RattleGroup : public LaneGroup<Storage<Wide, MassOf, Rods, RowBlock>> {
     prepare();
     if (!settled_) Stage::settle(chain_);
     settled_ = true;
-    chain_.get(chain, topology, Units(settings), state);
+    chain_.get(chain, topology, Units(settings, topology), state);
   }
 
   static void step_together(std::span<const std::unique_ptr<RattleGroup>> groups) {

@@ -16,7 +16,7 @@ class RattleSteps {
   using Stage = RattleStage<Store, false, Elimination>;
 
   RattleSteps(const StepSettings& settings, const Topology& topology)
-      : units(settings),
+      : units(settings, topology),
         max_passes(settings.max_passes),
         tolerance(2.0 * units.length * settings.tolerance),
         chain(static_cast<int>(topology.places.size())) {}

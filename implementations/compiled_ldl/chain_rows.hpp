@@ -45,7 +45,7 @@ struct PositionResidual {
   }
   MBS_CHAIN_INLINE void link(const B& block, const B& next, const C& data, Vec<V>& f,
                              Vec<V>& inner) const {
-    const V violation = data.link.violation(data.link.vector(next.x - block.x, block.offset));
+    const V violation = data.link.violation(data.link.vector(next.x - block.x));
     f = f - violation * block.e;
     inner = violation * block.e;
   }

@@ -79,7 +79,7 @@ class SaddleNewton {
                                                       V& least, Carry<V>& carry) {
     Vec<V> f = data.mass.outer(next.u) - data.force;
     point(block, data, f);
-    const Vec<V> e = data.link.vector(next.x - block.x, block.offset);
+    const Vec<V> e = data.link.vector(next.x - block.x);
     block.e = e;
     block.link_violation = data.link.violation(e);
     const Vec<V> pull = (block.link + block.link_violation) * e;

@@ -25,7 +25,6 @@ struct Block {
   Vec<V> x, u, w;       // position, acceleration, velocity
   V rods[Rods::kMost];  // multipliers
   V link;
-  Vec<V> offset;  // of the vector to the next point
   Vec<V> f;       // right-hand side between a sweep inwards and the one outwards
   Factors<V> factors;
 };
@@ -45,21 +44,6 @@ struct AnyLength {
     square[lane] = unit * unit * from.value;
   }
   MBS_CHAIN_INLINE Vec<V> vector(const Vec<V>& difference) const {
-    return masked(read(there), difference + offset);
-  }
-  MBS_CHAIN_INLINE V violation(const Vec<V>& d) const { return d.x * d.x + (d.y * d.y - square); }
-};
-
-/// The same between neighbours. Its offset is kept apart: all else is often the same for many.
-template <class V>
-struct LinkLength {
-  V there, square;
-
-  void set(int lane, const Distance& from, double unit) {
-    set_all_bits(there, lane);
-    square[lane] = unit * unit * from.value;
-  }
-  MBS_CHAIN_INLINE Vec<V> vector(const Vec<V>& difference, const Vec<V>& offset) const {
     return masked(read(there), difference + offset);
   }
   MBS_CHAIN_INLINE V violation(const Vec<V>& d) const { return d.x * d.x + (d.y * d.y - square); }
@@ -94,21 +78,22 @@ struct AtMostRods {
 template <class V, class Mass, class Rods>
 struct Constants {
   typename Rods::template Length<V> rods[Rods::kMost];
-  LinkLength<V> link;  // inner − outer point
+  AnyLength<V> link;  // inner − outer point
   Mass mass;
   Vec<V> force;
 };
 
 /// Factors between the model's units and those of the chain.
 struct Units {
-  double length, velocity, acceleration, multiplier, force;
+  double mass, length, velocity, acceleration, multiplier, force;
 
-  explicit Units(const StepSettings& settings) {
-    length = std::sqrt(settings.penalty) * settings.step;
+  Units(const StepSettings& settings, const Topology& topology) {
+    mass = topology.coupling > 0.0 ? 1.0 / topology.coupling : 1.0;
+    length = std::sqrt(mass * settings.penalty) * settings.step;
     velocity = length * settings.step;
     acceleration = velocity * (0.5 * settings.step);
-    multiplier = settings.step * settings.step;
-    force = acceleration;
+    multiplier = mass * settings.step * settings.step;
+    force = mass * acceleration;
   }
 };
 

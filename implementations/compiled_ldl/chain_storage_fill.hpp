@@ -2,10 +2,14 @@
 #pragma once
 
 #include <cstring>
+#include <utility>
 
 #include "chain_storage.hpp"
 
 namespace mbs::compiled_ldl::chain {
+
+/// Mass of a point that stays at rest, whatever couples it to others.
+inline constexpr double kImmovable = 1e50;
 
 template <class Use, template <class> class MassOf, class Rods,
           template <class, class> class BlockOf>
@@ -28,7 +32,7 @@ auto Storage<Use, MassOf, Rods, BlockOf>::clear_lane(int block, int lane) -> voi
   };
   clear(blocks[block]);
   clear(values_[block]);
-  values_[block].mass.set(lane, {1.0, 0.0, 1.0}, {});
+  values_[block].mass.set(lane, {kImmovable, 0.0, kImmovable}, {});
 }
 
 template <class Use, template <class> class MassOf, class Rods,
@@ -50,19 +54,16 @@ auto Storage<Use, MassOf, Rods, BlockOf>::set_constants(int block, int lane, con
     const Distance& rod = from.here->rods[j];
     if (rod.row >= 0) to.rods[j].set(lane, rod, 1.0, units.length);
   }
-  if (from.link) {
-    const double sign = from.forward ? 1.0 : -1.0;
-    if (from.link->row >= 0) {
-      to.link.set(lane, *from.link, units.length);
-      blocks[block].offset.x[lane] = sign * units.length * from.link->offset[0];
-      blocks[block].offset.y[lane] = sign * units.length * from.link->offset[1];
-    }
-    const auto& c = *from.coupling;
-    to.mass.set(lane, from.here->mass,
-                from.forward ? c : std::array<double, 4>{c[0], c[2], c[1], c[3]});
-  } else {
-    to.mass.set(lane, from.here->mass, {});
+  if (from.link && from.link->row >= 0) {
+    to.link.set(lane, *from.link, from.forward ? 1.0 : -1.0, units.length);
   }
+  std::array<double, 3> mass = from.here->mass;
+  std::array<double, 4> coupling{};
+  if (from.link) coupling = *from.coupling;
+  if (!from.forward) std::swap(coupling[1], coupling[2]);
+  for (double& entry : mass) entry *= units.mass;
+  for (double& entry : coupling) entry *= units.mass;
+  to.mass.set(lane, mass, coupling);
   to.force.x[lane] = units.force * from.here->force[0];
   to.force.y[lane] = units.force * from.here->force[1];
 }

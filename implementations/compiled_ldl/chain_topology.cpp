@@ -2,6 +2,8 @@
 #include "chain_topology.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace mbs::compiled_ldl::chain {
@@ -103,6 +105,11 @@ void add_mass(const Model& model, const std::vector<int>& place_of, Topology& ch
       chain.isotropic = false;
     }
   }
+  chain.coupling = std::max(0.0, chain.places[0].coupling[0]);
+  for (std::size_t k = 1; k + 1 < chain.places.size(); ++k) {
+    if (chain.places[k].coupling[0] != chain.coupling) chain.coupling = 0.0;
+  }
+  if (!chain.isotropic) chain.coupling = 0.0;
 }
 
 /// A point is kept relative to the first fixed one that it has a distance to, else to what the
@@ -137,6 +144,20 @@ Distance distance_between(int row, double value, const std::array<double, 2>& fr
   return {row, {to[0] - from[0], to[1] - from[1]}, value};
 }
 
+/// Links whose offsets differ by the rounding of coordinates alone get the same: blocks share it.
+void make_offsets_equal(Topology& chain) {
+  for (std::size_t k = 1; k + 1 < chain.places.size(); ++k) {
+    for (int axis = 0; axis < 2; ++axis) {
+      const double before = chain.places[k - 1].link.offset[axis];
+      double& offset = chain.places[k].link.offset[axis];
+      const double largest = std::max(std::abs(chain.places[k].origin[axis]),
+                                      std::abs(chain.places[k + 1].origin[axis]));
+      const double rounding = 2.0 * std::numeric_limits<double>::epsilon() * largest;
+      if (std::abs(offset - before) <= rounding) offset = before;
+    }
+  }
+}
+
 /// False if there are more distances at a point or between two than this folder's chain has.
 bool add_distances(const Model& model, const std::vector<int>& place_of, Topology& chain) {
   const auto rows = model.dot_constraints();
@@ -159,6 +180,7 @@ bool add_distances(const Model& model, const std::vector<int>& place_of, Topolog
     link =
         distance_between(k, rows[k].value, chain.places[first].origin, chain.places[second].origin);
   }
+  make_offsets_equal(chain);
   const auto [least, most] = std::minmax_element(rods.begin(), rods.end());
   chain.least_rods = *least;
   chain.most_rods = *most;

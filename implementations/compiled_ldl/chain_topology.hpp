@@ -34,6 +34,7 @@ struct Place {
 struct Topology {
   std::vector<Place> places;  // in the order of the chain; several chains one after the other
   bool isotropic = true;      // all blocks of M are multiples of the identity
+  double coupling = 0.0;      // of M between neighbours, kg, if all are the same multiple of it
   int least_rods = 0;         // of all points
   int most_rods = 0;
 };

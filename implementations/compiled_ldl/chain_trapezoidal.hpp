@@ -36,7 +36,7 @@ class TrapezoidalSimulation final : public Simulation {
       : Simulation(model, settings),
         settings_(settings),
         topology_(std::move(topology)),
-        units_(settings),
+        units_(settings, topology_),
         tolerance_(2.0 * units_.length * settings.tolerance),
         chain_(static_cast<int>(topology_.places.size())) {}
 
