@@ -143,6 +143,7 @@ Program compile(const Pattern& pattern, int width) {
   std::vector<int> sizes(pattern.points + pattern.borders.size(), 1);
   std::fill_n(sizes.begin(), pattern.points, pattern.dimension);
   const Tree tree = best_tree(pattern, sizes, width);
+  program.cycles = tree.cycles;
   place_rows(tree, sizes, program);
   place_borders(tree, sizes, program);
   place_updates(program);
