@@ -128,7 +128,7 @@ bool chain_is_eliminated_from_both_ends() {
   const Graph graph = graph_of(kPoints, pattern.cliques);
   const std::vector<int> sizes(kPoints, 2);
   const double one = eliminate(graph, from_one_end, sizes, 8).cycles;
-  const double both = eliminate(graph, minimum_degree(graph, Tie::longest), sizes, 8).cycles;
+  const double both = eliminate(graph, from_both_ends(graph), sizes, 8).cycles;
   return ends && waiting > 1 && both < one && program.cycles <= both;
 }
 
