@@ -2,24 +2,16 @@
 #include "elimination_tree.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
+
+#include "predicted_time.hpp"
 
 namespace mbs::compiled_ldl {
 namespace {
 
-/// Predicted cycles of a front of `pivots` columns and `border` more rows; constants fitted to
-/// measurements of the standard scenes and of filled four-bars.
-double front_cycles(int pivots, int border, int width) {
-  if (width == 1) {  // many side by side: arithmetic counts, latency less
-    const double rows = pivots + border;
-    return 10.0 + 20.0 * pivots + 0.7 * pivots * rows * rows;
-  }
-  const double packs = std::ceil(static_cast<double>(pivots + border) / width);
-  const double inside = 0.5 * pivots * pivots * packs;
-  const double outside = border * (10.0 + packs * (2.0 + 0.75 * pivots));
-  return 100.0 * std::ceil(pivots / 8.0) + 24.0 * pivots + inside + outside;
-}
+/// How the time of two fronts is predicted that might become one: the parent waits for its child to
+/// the end, or other fronts fill the waiting.
+enum class Waiting { counts, is_filled };
 
 class Symbolic {
  public:
@@ -38,8 +30,14 @@ class Symbolic {
     find_rows(graph);
   }
 
-  Tree tree() {
-    merge();
+  [[nodiscard]] Tree tree(Waiting waiting) const {
+    Symbolic copy = *this;
+    copy.merge(waiting);
+    return copy.by_levels();
+  }
+
+ private:
+  [[nodiscard]] Tree by_levels() const {
     std::vector<int> level(count_, 0), heads;
     for (int k = 0; k < count_; ++k) {
       if (pivots_[k].empty()) continue;
@@ -48,17 +46,22 @@ class Symbolic {
     }
     std::stable_sort(heads.begin(), heads.end(), [&](int a, int b) { return level[a] < level[b]; });
     Tree tree;
+    std::vector<FrontTime> times;
+    std::vector<int> index(count_), parents(heads.size(), -1);
     for (const int k : heads) {
       TreeFront front;
       for (const int i : pivots_[k]) front.pivots.push_back(order_[i]);
       for (const int i : rows_[k]) front.border.push_back(order_[i]);
-      tree.cycles += front_cycles(weight(pivots_[k]), weight(rows_[k]), width_);
+      index[k] = static_cast<int>(times.size());
+      for (const int c : children_[k]) parents[index[c]] = index[k];
+      const auto nodes = static_cast<int>(rows_[k].size());
+      times.push_back(front_time(weight(pivots_[k]), weight(rows_[k]), nodes, width_));
       tree.fronts.push_back(std::move(front));
     }
+    tree.cycles = predicted_cycles(times, parents);
     return tree;
   }
 
- private:
   [[nodiscard]] int weight(const std::vector<int>& places) const {
     return std::accumulate(places.begin(), places.end(), 0,
                            [&](int sum, int k) { return sum + size_[k]; });
@@ -82,9 +85,14 @@ class Symbolic {
     }
   }
 
-  void merge() {
-    pivots_.resize(count_);
+  void merge(Waiting waiting) {
     std::vector<int> pivot_weight(size_), border_weight(count_);
+    const auto cycles = [&](int pivots, int k) {  // of a front with the border of k
+      const auto nodes = static_cast<int>(rows_[k].size());
+      const FrontTime time = front_time(pivots, border_weight[k], nodes, width_);
+      return waiting == Waiting::counts ? time.work + time.latency : time.work;
+    };
+    pivots_.resize(count_);
     for (int k = 0; k < count_; ++k) {
       pivots_[k] = {k};
       border_weight[k] = weight(rows_[k]);
@@ -97,9 +105,7 @@ class Symbolic {
       std::vector<std::vector<int>> merged;
       for (const int c : children) {
         const int both = pivot_weight[c] + pivot_weight[k];
-        const double apart = front_cycles(pivot_weight[c], border_weight[c], width_) +
-                             front_cycles(pivot_weight[k], border_weight[k], width_);
-        if (front_cycles(both, border_weight[k], width_) > apart) {
+        if (cycles(both, k) > cycles(pivot_weight[c], c) + cycles(pivot_weight[k], k)) {
           kept.push_back(c);
           continue;
         }
@@ -130,7 +136,11 @@ class Symbolic {
 
 Tree eliminate(const Graph& graph, const std::vector<int>& order, const std::vector<int>& sizes,
                int width) {
-  return Symbolic(graph, order, sizes, width).tree();
+  const Symbolic symbolic(graph, order, sizes, width);
+  Tree tree = symbolic.tree(Waiting::counts);
+  if (width == 1) return tree;  // no latencies
+  Tree other = symbolic.tree(Waiting::is_filled);
+  return other.cycles < tree.cycles ? other : tree;
 }
 
 }  // namespace mbs::compiled_ldl

@@ -18,4 +18,8 @@ enum class Tie { longest, latest };
 /// Approximate minimum degree: the nodes in order of elimination.
 std::vector<int> minimum_degree(const Graph& graph, Tie tie);
 
+/// Each component by distance from one of its ends, as Cuthill and McKee have it, but taken from
+/// both ends to the middle by turns: two independent branches of nearly equal length.
+std::vector<int> from_both_ends(const Graph& graph);
+
 }  // namespace mbs::compiled_ldl

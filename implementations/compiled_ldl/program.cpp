@@ -2,6 +2,7 @@
 #include "program.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "elimination_tree.hpp"
 #include "ordering.hpp"
@@ -41,10 +42,12 @@ Tree best_tree(const Pattern& pattern, const std::vector<int>& sizes, int width)
   }
   const int nodes = pattern.points + static_cast<int>(pattern.borders.size());
   const Graph all = pattern.borders.empty() ? points : graph_of(nodes, cliques);
+  std::vector<int> given(pattern.points);
+  std::iota(given.begin(), given.end(), 0);
   Tree best;
-  for (const Tie tie : {Tie::longest, Tie::latest}) {
-    const auto order = insert_multipliers(minimum_degree(points, tie), pattern);
-    Tree tree = eliminate(all, order, sizes, width);
+  for (const auto& order : {minimum_degree(points, Tie::longest),
+                            minimum_degree(points, Tie::latest), from_both_ends(points), given}) {
+    Tree tree = eliminate(all, insert_multipliers(order, pattern), sizes, width);
     if (best.fronts.empty() || tree.cycles < best.cycles) best = std::move(tree);
   }
   return best;
@@ -143,6 +146,7 @@ Program compile(const Pattern& pattern, int width) {
   std::vector<int> sizes(pattern.points + pattern.borders.size(), 1);
   std::fill_n(sizes.begin(), pattern.points, pattern.dimension);
   const Tree tree = best_tree(pattern, sizes, width);
+  program.cycles = tree.cycles;
   place_rows(tree, sizes, program);
   place_borders(tree, sizes, program);
   place_updates(program);

@@ -41,10 +41,11 @@ struct Group {
 };
 
 struct Program {
-  int size = 0;     ///< rows; those of a point follow each other
-  int padded = 0;   ///< rows, a multiple of the width
-  int storage = 0;  ///< numbers in all fronts
-  int width = 1;    ///< how many numbers a processor handles at once
+  int size = 0;         ///< rows; those of a point follow each other
+  int padded = 0;       ///< rows, a multiple of the width
+  int storage = 0;      ///< numbers in all fronts
+  int width = 1;        ///< how many numbers a processor handles at once
+  double cycles = 0.0;  ///< predicted time of a factorization
   std::vector<int> row_of_node;
   std::vector<int> front_of_row;
   std::vector<Front> fronts;  ///< in order of elimination

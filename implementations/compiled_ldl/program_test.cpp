@@ -1,9 +1,12 @@
 // Compiles random patterns and solves with random numbers on them.
 #include <cstdio>
+#include <numeric>
 #include <random>
 
+#include "elimination_tree.hpp"
 #include "fronts.hpp"
 #include "panels.hpp"
+#include "predicted_time.hpp"
 
 namespace {
 
@@ -91,11 +94,57 @@ double residual(Random& random, const Pattern& pattern, int width) {
   return worst;
 }
 
+/// Points in a row, in a plane.
+Pattern chain_of(int points) {
+  Pattern pattern{.dimension = 2, .points = points, .cliques = {}, .borders = {}};
+  for (int i = 1; i < points; ++i) pattern.cliques.push_back({i - 1, i});
+  return pattern;
+}
+
+/// What is equal work is predicted to take longer where one front waits for the other, but never
+/// less than the work nor more than all of it and all latencies one after the other.
+bool dependency_chain_counts() {
+  const std::vector<FrontTime> fronts(6, FrontTime{10.0, 5.0});
+  const double in_a_row = predicted_cycles(fronts, {1, 2, 3, 4, 5, -1});
+  const double by_turns = predicted_cycles(fronts, {2, 3, 4, 5, 5, -1});
+  const double one_by_one = predicted_cycles(fronts, {3, 4, 5, -1, -1, -1});
+  const double independent = predicted_cycles(fronts, {-1, -1, -1, -1, -1, -1});
+  return in_a_row == 90.0 && by_turns < in_a_row && one_by_one < by_turns &&
+         independent <= one_by_one && independent >= 60.0;
+}
+
+/// The two ends are the first two fronts, independent, and that is predicted to be faster than one
+/// end, where fill and work are the same.
+bool chain_is_eliminated_from_both_ends() {
+  constexpr int kPoints = 41;
+  const Pattern pattern = chain_of(kPoints);
+  const Program program = compile(pattern, 8);
+  const auto front_of = [&](int point) { return program.front_of_row[program.row_of_node[point]]; };
+  const bool ends = std::min(front_of(0), front_of(kPoints - 1)) == 0 &&
+                    std::max(front_of(0), front_of(kPoints - 1)) == 1;
+  const int waiting = program.front_of_row[program.border_rows[program.fronts[0].rows]];
+  std::vector<int> from_one_end(kPoints);
+  std::iota(from_one_end.begin(), from_one_end.end(), 0);
+  const Graph graph = graph_of(kPoints, pattern.cliques);
+  const std::vector<int> sizes(kPoints, 2);
+  const double one = eliminate(graph, from_one_end, sizes, 8).cycles;
+  const double both = eliminate(graph, from_both_ends(graph), sizes, 8).cycles;
+  return ends && waiting > 1 && both < one && program.cycles <= both;
+}
+
 }  // namespace
 
 int main() {
   Random random(1);
   int failed = 0;
+  if (!dependency_chain_counts()) {
+    std::printf("chains of fronts are not predicted as they should be\n");
+    ++failed;
+  }
+  if (!chain_is_eliminated_from_both_ends()) {
+    std::printf("a chain is not eliminated from both ends\n");
+    ++failed;
+  }
   for (int trial = 0; trial < 300; ++trial) {
     const int dimension = 2 + trial % 2, points = 1 + trial % 37, more = trial % 5 * points / 4;
     const Pattern pattern = random_pattern(random, dimension, points, more, trial % 3 == 0);
