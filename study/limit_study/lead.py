@@ -47,24 +47,28 @@ def rows(layout, contenders, mine, scene, rounds, seconds, tell):
 
 
 def batches(layout, contenders, rounds, seconds, tell):
-    """Rows of batches.csv: many lanes side by side against each alone, medians of `rounds` processes."""
-    found, cells = [], list(itertools.product(BATCHES, SETS, contenders))
-    for place, (scene, sets, one) in enumerate(cells):
-        tell(f"{scene}, {sets} sets, {one.name}", place / len(cells))
-        row = _batch(layout, one, scene, sets, rounds, seconds)
-        if not row["reason"].startswith("unsupported"):
-            found.append({"scene": scene, "sets": sets, "implementation": one.name} | row)
-    return found
-
-
-def _batch(layout, one, scene, sets, rounds, seconds):
-    rows = []
+    """Rows of batches.csv: many lanes side by side against each alone, medians of `rounds` processes, in turn over
+    all cells: what disturbs the machine for some seconds is not all rounds of a cell."""
+    cells = list(itertools.product(BATCHES, SETS, contenders))
+    samples, reasons = [[] for _ in cells], ["" for _ in cells]
     for turn in range(1, rounds + 1):
-        row, reason = measure.bench(layout, one, scene, f"batches/{one.file_name}-{scene[9:]}-{sets}-{turn}",
-                                    seconds, "--batch", "--sets", str(sets))
-        if reason:
-            return {"status": "failed", "reason": reason}
-        rows.append(row)
+        for place, (scene, sets, one) in enumerate(cells):
+            if reasons[place]:
+                continue
+            tell(f"{scene}, {sets} sets, {one.name}: round {turn} of {rounds}",
+                 (turn - 1 + place / len(cells)) / rounds)
+            row, reasons[place] = measure.bench(
+                layout, one, scene, f"batches/{one.file_name}-{scene[9:]}-{sets}-{turn}", seconds,
+                "--batch", "--sets", str(sets))
+            samples[place].append(row)
+    return [{"scene": scene, "sets": sets, "implementation": one.name} | _batch(rows, reason, rounds)
+            for (scene, sets, one), rows, reason in zip(cells, samples, reasons)
+            if not reason.startswith("unsupported")]
+
+
+def _batch(rows, reason, rounds):
+    if reason:
+        return {"status": "failed", "reason": reason}
     return {"status": "ok", "reason": "", "rounds": rounds} | {key: rows[0][key] for key in ("variables", "lanes")} | {
         key: statistics.median(row[key] for row in rows) for key in ("step_us", "alone_us", "gain")}
 
