@@ -11,6 +11,7 @@ from study.pipeline.layout import ROOT, program
 FOLDERS = ("problems", "examples")
 FILLS = tuple(f"four-bar:49,fill={fill}" for fill in (0.12, 0.2, 0.3, 0.5, 0.75, 1))
 BATCHES = ("four-bar:10", "four-bar:40")
+TIMES_ROUNDS = 3  # for batches: they fill a core, and suffer most from whatever else the machine does with it
 SETS = (64, 8)  # of parameters over the same range: neighbours alike as in a what-if study, and a single wide batch
 LARGE = (49, 160, 499, 1999, 4999, 9999)  # sizes at which time, memory and set-up have to grow linearly
 NEAR = 1.5  # of the fastest with a library, in a first short run; who is slower is not timed further
@@ -47,8 +48,9 @@ def rows(layout, contenders, mine, scene, rounds, seconds, tell):
 
 
 def batches(layout, contenders, rounds, seconds, tell):
-    """Rows of batches.csv: many lanes side by side against each alone, medians of `rounds` processes, in turn over
-    all cells: what disturbs the machine for some seconds is not all rounds of a cell."""
+    """Rows of batches.csv: many lanes side by side against each alone, medians of TIMES_ROUNDS times `rounds`
+    processes, in turn over all cells: what disturbs the machine for some seconds is not all rounds of a cell."""
+    rounds *= TIMES_ROUNDS
     cells = list(itertools.product(BATCHES, SETS, contenders))
     samples, reasons = [[] for _ in cells], ["" for _ in cells]
     for turn in range(1, rounds + 1):

@@ -38,7 +38,7 @@ def limit(arguments):
     parser.add_argument("--instructions", action="store_true", help="also count the instructions of a "
                         "step up to N = 40 with Valgrind, in a build of their own")
     parser.add_argument("--rounds", type=rounds, default=5, metavar="R",
-                        help="processes a cell, in turn over all implementations (5)")
+                        help="processes a cell, in turn over all implementations (5); of batches three times as many")
     parser.add_argument("--time-limit", type=positive, default=20.0, metavar="S",
                         help="for one timed process (20 s); what takes longer is kept as a timeout, "
                         "and not tried at larger sizes")
