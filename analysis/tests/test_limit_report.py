@@ -177,7 +177,7 @@ def test_what_was_not_measured_does_not_hold():
 
 def test_batches_gain():
     def gains(*values):
-        return pandas.DataFrame([{"scene": f"s{k}", "sets": 64, "implementation": "own/x", "status": "ok", "step_us": 2.0, "alone_us": 2.0 * gain}
+        return pandas.DataFrame([{"scene": f"s{k}", "sets": 64, "implementation": "own/x", "status": "ok", "step_us": 2.0, "alone_us": 2.0 * gain, "gain": gain}
                                  for k, gain in enumerate(values)])
     what = "throughput of batches ÷ that of their lanes alone, {} sets of parameters"
     assert held(batches=gains(5.0, 4.0))[what.format(64)].holds

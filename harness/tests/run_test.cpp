@@ -409,8 +409,8 @@ TEST(Run, TellsWhatTheMultistepMethodCannotPass) {
   const RunSummary summary = run(scene, variant, settings);
   EXPECT_EQ(summary.status, RunStatus::diverged);
   EXPECT_EQ(summary.reason,
-            "the tangent matrix could not be factorized (multistep6 does not pass singular "
-            "positions; rattle does)");
+            "the tangent matrix could not be factorized (multistep6 cannot pass singular "
+            "positions: if there is one, try rattle)");
 }
 
 TEST(Run, TellsThatASceneIsUnsupported) {

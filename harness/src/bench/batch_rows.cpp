@@ -24,9 +24,6 @@ class BatchMeasurement {
       : steps_(cell.scene->stretch.steps),
         sets_(vary_lanes(sets, kRange / (sets - 1), cell.scene->scene.model, cell.scene->settings,
                          cell.scene->stretch.initial)) {
-    if (cell.variant->create_batch == nullptr) {
-      throw CellFailure("unsupported: this variant does not advance simulations side by side");
-    }
     const std::size_t count = sets_.models.size();
     for (std::size_t k = 0; k < count; ++k) {
       alone_.push_back(create_simulation(*cell.variant, *sets_.models[k], sets_.settings[k]));
@@ -106,6 +103,9 @@ void BatchRows::add(const std::vector<PlannedCell>& cells, int sets) {
 
 void BatchRows::run(const PlannedCell& cell, int sets, benchmark::State& state) {
   try {
+    if (cell.variant->create_batch == nullptr) {
+      throw CellFailure("unsupported: this variant does not advance simulations side by side");
+    }
     BatchMeasurement measurement(cell, sets);
     measurement.time_together();
     measurement.time_alone();

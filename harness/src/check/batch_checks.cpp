@@ -18,7 +18,7 @@ namespace mbs {
 namespace {
 
 constexpr int kRetired = 0, kSpoiled = 2;  // lanes
-constexpr double kApart = 0.04;            // of masses
+constexpr double kMassApart = 0.04;        // lane to lane
 constexpr std::size_t kSteps = 200, kRetiredAt = 10;
 
 /// A batch at its start; one lane is so fast that its numbers overflow.
@@ -133,7 +133,7 @@ std::vector<Check> batch_checks(const Variant& variant, const Model& model,
   try {
     for (const int count : {3, 11}) {
       const VariedLanes lanes =
-          vary_lanes(count, kApart, model, settings, reference.stretch.initial);
+          vary_lanes(count, kMassApart, model, settings, reference.stretch.initial);
       add_lock_steps(lock_step, variant, lanes);
       run_beside(running, variant, lanes, begin + seconds * ++part / 2);
       if (!*running.check.passed) break;

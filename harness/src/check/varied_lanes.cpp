@@ -38,11 +38,12 @@ ModelData varied(const Model& model, double heavier, double longer) {
 
 }  // namespace
 
-VariedLanes vary_lanes(int count, double apart, const Model& model, const StepSettings& settings,
-                       const State& start) {
+VariedLanes vary_lanes(int count, double mass_apart, const Model& model,
+                       const StepSettings& settings, const State& start) {
   VariedLanes lanes;
   for (int k = 0; k < count; ++k) {
-    const double heavier = 1 + apart * k, longer = can_grow(model) ? 1 + apart / 2 * k : 1.0;
+    const double heavier = 1 + mass_apart * k,
+                 longer = can_grow(model) ? 1 + mass_apart / 2 * k : 1.0;
     lanes.models.push_back(std::make_unique<Model>(varied(model, heavier, longer)));
     lanes.pointers.push_back(lanes.models.back().get());
     lanes.settings.push_back(settings);

@@ -20,8 +20,9 @@ struct VariedLanes {
 
 /// `count` lanes like `model`, each with masses, forces and penalty factor of its own, and lengths
 /// where nothing has one by itself, that start where `start`, a state of the model, is. From one to
-/// the next, masses grow by `apart` of the model's, lengths by half of that.
-VariedLanes vary_lanes(int count, double apart, const Model& model, const StepSettings& settings,
-                       const State& start);
+/// the next, masses grow by `mass_apart` of the model's, lengths by half of that; forces with the
+/// square of the mass.
+VariedLanes vary_lanes(int count, double mass_apart, const Model& model,
+                       const StepSettings& settings, const State& start);
 
 }  // namespace mbs

@@ -72,7 +72,7 @@ void JudgedRun::take(const StepOutcome& outcome) {
   const long step = summary_.steps;
   if (outcome.status == StepStatus::factorization_failed) {
     const std::string why = "the tangent matrix could not be factorized";
-    if (!locate_loss(why)) lose(RunStatus::diverged, why, time(step));
+    if (!locate_loss(why)) lose(RunStatus::diverged, why + hint(), time(step));
     return;
   }
   if (half_) half_->advance();
@@ -151,17 +151,20 @@ bool JudgedRun::locate_loss(const std::string& reason) {
   return false;
 }
 
-void JudgedRun::lose(const Judge& judge, std::string reason, long step) {
-  lose(judge.off_branch() ? RunStatus::wrong_branch : RunStatus::diverged, std::move(reason),
+std::string JudgedRun::hint() const {
+  return settings_.step.scheme == Scheme::multistep6
+             ? " (multistep6 cannot pass singular positions: if there is one, try rattle)"
+             : "";
+}
+
+void JudgedRun::lose(const Judge& judge, const std::string& reason, long step) {
+  lose(judge.off_branch() ? RunStatus::wrong_branch : RunStatus::diverged, reason + hint(),
        time(step));
 }
 
 void JudgedRun::lose(RunStatus status, std::string reason, std::optional<double> t) {
   summary_.status = status;
   summary_.reason = std::move(reason);
-  if (status == RunStatus::diverged && settings_.step.scheme == Scheme::multistep6) {
-    summary_.reason += " (multistep6 does not pass singular positions; rattle does)";
-  }
   summary_.failed_at = t;
   is_over_ = true;
 }

@@ -58,7 +58,9 @@ class JudgedRun {
   void judge_present();
   bool locate_loss(const std::string& reason);
   void lose(RunStatus status, std::string reason, std::optional<double> t);
-  void lose(const Judge& judge, std::string reason, long step);
+  void lose(const Judge& judge, const std::string& reason, long step);
+  /// What may be behind a loss with this scheme.
+  [[nodiscard]] std::string hint() const;
   [[nodiscard]] double local_error();
   void conclude();
   [[nodiscard]] std::string beyond_estimates() const;
