@@ -109,7 +109,10 @@ void add_mass(const Model& model, const std::vector<int>& place_of, Topology& ch
   for (std::size_t k = 1; k + 1 < chain.places.size(); ++k) {
     if (chain.places[k].coupling[0] != chain.coupling) chain.coupling = 0.0;
   }
-  if (!chain.isotropic) chain.coupling = 0.0;
+  // Units make the coupling 1: numbers of which products of three are taken must not be huge then.
+  const auto by_mass = [](const Place& a, const Place& b) { return a.mass[0] < b.mass[0]; };
+  const double most = std::ranges::max_element(chain.places, by_mass)->mass[0];
+  if (!chain.isotropic || !(chain.coupling > 1e-20 * most)) chain.coupling = 0.0;
 }
 
 /// A point is kept relative to the first fixed one that it has a distance to, else to what the

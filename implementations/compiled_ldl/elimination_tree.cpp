@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "predicted_time.hpp"
 
@@ -16,7 +17,7 @@ enum class Waiting { counts, is_filled };
 class Symbolic {
  public:
   Symbolic(const Graph& graph, const std::vector<int>& order, const std::vector<int>& sizes,
-           int width)
+           int width, std::size_t most)
       : order_(order),
         width_(width),
         count_(static_cast<int>(order.size())),
@@ -27,8 +28,10 @@ class Symbolic {
         children_(count_) {
     for (int k = 0; k < count_; ++k) place_[order[k]] = k;
     for (int k = 0; k < count_; ++k) size_[k] = sizes[order[k]];
-    find_rows(graph);
+    find_rows(graph, most);
   }
+
+  [[nodiscard]] std::size_t fill() const { return fill_; }
 
   [[nodiscard]] Tree tree(Waiting waiting) const {
     Symbolic copy = *this;
@@ -67,7 +70,8 @@ class Symbolic {
                            [&](int sum, int k) { return sum + size_[k]; });
   }
 
-  void find_rows(const Graph& graph) {
+  /// Stops where the fill is above `most`.
+  void find_rows(const Graph& graph, std::size_t most) {
     std::vector<int> mark(count_, -1);
     for (int k = 0; k < count_; ++k) {
       auto& rows = rows_[k];
@@ -79,6 +83,8 @@ class Symbolic {
       };
       for (const int node : graph[order_[k]]) add(place_[node]);
       for (const int c : children_[k]) std::for_each(rows_[c].begin(), rows_[c].end(), add);
+      fill_ += rows.size();
+      if (fill_ > most) return;
       if (rows.empty()) continue;
       parent_[k] = *std::min_element(rows.begin(), rows.end());
       children_[parent_[k]].push_back(k);
@@ -126,6 +132,7 @@ class Symbolic {
 
   const std::vector<int>& order_;
   int width_, count_;
+  std::size_t fill_ = 0;
   std::vector<int> place_, size_;
   std::vector<std::vector<int>> rows_;  // later places that a place is coupled with
   std::vector<int> parent_;
@@ -135,12 +142,16 @@ class Symbolic {
 }  // namespace
 
 Tree eliminate(const Graph& graph, const std::vector<int>& order, const std::vector<int>& sizes,
-               int width) {
-  const Symbolic symbolic(graph, order, sizes, width);
+               int width, std::size_t most) {
+  const Symbolic symbolic(graph, order, sizes, width, most);
+  if (symbolic.fill() > most) return {};
   Tree tree = symbolic.tree(Waiting::counts);
-  if (width == 1) return tree;  // no latencies
-  Tree other = symbolic.tree(Waiting::is_filled);
-  return other.cycles < tree.cycles ? other : tree;
+  if (width != 1) {  // there are latencies
+    Tree other = symbolic.tree(Waiting::is_filled);
+    if (other.cycles < tree.cycles) tree = std::move(other);
+  }
+  tree.fill = symbolic.fill();
+  return tree;
 }
 
 }  // namespace mbs::compiled_ldl

@@ -1,6 +1,8 @@
 // Dense fronts of an order of elimination, neighbours merged where that is predicted to save time.
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "ordering.hpp"
@@ -14,10 +16,11 @@ struct TreeFront {
 struct Tree {
   std::vector<TreeFront> fronts;  ///< in order of elimination
   double cycles = 0.0;            ///< predicted time of a factorization
+  std::size_t fill = 0;           ///< blocks below the diagonal, before fronts were merged
 };
 
-/// `sizes`: rows of each node.
+/// `sizes`: rows of each node. Without fronts if the fill is above `most`.
 Tree eliminate(const Graph& graph, const std::vector<int>& order, const std::vector<int>& sizes,
-               int width);
+               int width, std::size_t most = std::numeric_limits<std::size_t>::max());
 
 }  // namespace mbs::compiled_ldl

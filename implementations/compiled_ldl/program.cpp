@@ -44,11 +44,14 @@ Tree best_tree(const Pattern& pattern, const std::vector<int>& sizes, int width)
   const Graph all = pattern.borders.empty() ? points : graph_of(nodes, cliques);
   std::vector<int> given(pattern.points);
   std::iota(given.begin(), given.end(), 0);
-  Tree best;
-  for (const auto& order : {minimum_degree(points, Tie::longest),
-                            minimum_degree(points, Tie::latest), from_both_ends(points), given}) {
-    Tree tree = eliminate(all, insert_multipliers(order, pattern), sizes, width);
-    if (best.fronts.empty() || tree.cycles < best.cycles) best = std::move(tree);
+  Tree best = eliminate(all, insert_multipliers(minimum_degree(points, Tie::longest), pattern),
+                        sizes, width);
+  // An order with many times the fill is not the fastest, and may not fit the memory: a star's from
+  // both ends.
+  const std::size_t most = 4 * best.fill;
+  for (const auto& order : {minimum_degree(points, Tie::latest), from_both_ends(points), given}) {
+    Tree tree = eliminate(all, insert_multipliers(order, pattern), sizes, width, most);
+    if (!tree.fronts.empty() && tree.cycles < best.cycles) best = std::move(tree);
   }
   return best;
 }

@@ -132,11 +132,28 @@ bool chain_is_eliminated_from_both_ends() {
   return ends && waiting > 1 && both < one && program.cycles <= both;
 }
 
+/// Around a hub, what is taken from both ends by distance fills in completely.
+bool full_orders_are_given_up() {
+  constexpr int kPoints = 1000;
+  std::vector<std::vector<int>> cliques;
+  for (int i = 1; i < kPoints; ++i) cliques.push_back({0, i});
+  const Graph star = graph_of(kPoints, cliques);
+  const std::vector<int> sizes(kPoints, 2);
+  const std::vector<int> order = from_both_ends(star);
+  return eliminate(star, order, sizes, 8, 4 * kPoints).fronts.empty() &&
+         eliminate(star, order, sizes, 8).fill > 100 * kPoints &&
+         eliminate(star, minimum_degree(star, Tie::longest), sizes, 8).fill == kPoints - 1;
+}
+
 }  // namespace
 
 int main() {
   Random random(1);
   int failed = 0;
+  if (!full_orders_are_given_up()) {
+    std::printf("an order that fills in completely is not given up\n");
+    ++failed;
+  }
   if (!dependency_chain_counts()) {
     std::printf("chains of fronts are not predicted as they should be\n");
     ++failed;

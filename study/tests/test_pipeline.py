@@ -154,7 +154,7 @@ def test_ctrl_c_leaves_complete_files_and_says_how_to_resume(tmp_path):
 
 
 @pytest.mark.parametrize("arguments, message", [
-    (["--profile", "huge"], "unknown profile 'huge'; known: paper, quick, smoke"),
+    (["--profile", "huge"], "unknown profile 'huge'; known: map, paper, quick, smoke"),
     (["--profile", "smoke", "--only", "nobody"], "unknown implementation 'nobody'; known: good_"),
     (["--profile", "smoke", "--only", "absent"], "absent: unavailable: Foo is not installed"),
     (["--fast"], "unrecognized arguments: --fast"),
