@@ -161,7 +161,7 @@ class Newton {
     for (int k = 0; k < 4; ++k) set<kMasked>(block.factors.gain[k], factors.gain[k], active);
   }
 
-  /// A sweep inwards that stops after every block.
+  /// A sweep inwards that stops twice a block: when it is eliminated, and when it has its factors.
   struct InwardsSweep {
     InwardsSweep(Store& chain, const Taking<Mask>& taking)
         : block(chain.blocks.data()), data(chain.constants.data()), taking(taking) {

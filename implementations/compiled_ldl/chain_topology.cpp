@@ -148,15 +148,19 @@ Distance distance_between(int row, double value, const std::array<double, 2>& fr
 }
 
 /// Links whose offsets differ by the rounding of coordinates alone get the same: blocks share it.
+/// Not where coordinates are so far off that this would be felt in an offset.
 void make_offsets_equal(Topology& chain) {
+  constexpr double kUnfelt = 2e-13;
   for (std::size_t k = 1; k + 1 < chain.places.size(); ++k) {
+    const auto& link = chain.places[k].link.offset;
+    const double felt = kUnfelt * std::hypot(link[0], link[1]);
     for (int axis = 0; axis < 2; ++axis) {
       const double before = chain.places[k - 1].link.offset[axis];
       double& offset = chain.places[k].link.offset[axis];
       const double largest = std::max(std::abs(chain.places[k].origin[axis]),
                                       std::abs(chain.places[k + 1].origin[axis]));
       const double rounding = 2.0 * std::numeric_limits<double>::epsilon() * largest;
-      if (std::abs(offset - before) <= rounding) offset = before;
+      if (std::abs(offset - before) <= std::min(rounding, felt)) offset = before;
     }
   }
 }

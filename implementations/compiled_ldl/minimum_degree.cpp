@@ -36,7 +36,6 @@ class DegreeLists {
     remove(node);
     return node;
   }
-  [[nodiscard]] int degree(int node) const { return degree_[node]; }
 
  private:
   Tie tie_;

@@ -30,8 +30,8 @@ FrontTime front_time(int pivots, int border, int nodes, int width) {
   return time;
 }
 
-/// A front waits for its children, and it enters the processor when those before it have, of which
-/// all but the last must be done.
+/// A front waits for its children, until the work of those before it has been taken up, and until
+/// all of those but the last are done.
 double predicted_cycles(const std::vector<FrontTime>& fronts, const std::vector<int>& parents) {
   std::vector<double> ready(fronts.size(), 0.0);
   double entry = 0.0, done = 0.0, done_before = 0.0;  // done_before: all but the last

@@ -20,7 +20,7 @@ std::unique_ptr<Simulation> create_small(const Model& model, const StepSettings&
       settings.tangent != TangentReuse::none || settings.geometric_stiffness) {
     return nullptr;
   }
-  if (model.dimension() == 2) return create_of<2, 2, 4, 6, 8, 10, 12, 16>(model, settings);
+  if (model.dimension() == 2) return create_of<2, 2, 4, 6, 8, 10, 12, 14, 16>(model, settings);
   return create_of<3, 4, 6, 10, 12, 16>(model, settings);
 }
 
