@@ -19,7 +19,7 @@ inline bool any(const WideMask& mask) {
   return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0;
 #endif
   long long bits = 0;
-  for (int lane = 0; lane < kWideLanes; ++lane) bits |= mask[lane];
+  for (int lane = 0; lane < kRegisterDoubles; ++lane) bits |= mask[lane];
   return bits != 0;
 }
 

@@ -5,15 +5,9 @@
 #include <immintrin.h>
 #endif
 
-namespace mbs::compiled_ldl::chain {
+#include "register_width.hpp"
 
-#if defined(__AVX512F__)
-inline constexpr int kWideLanes = 8;
-#elif defined(__AVX__)
-inline constexpr int kWideLanes = 4;
-#else
-inline constexpr int kWideLanes = 2;
-#endif
+namespace mbs::compiled_ldl::chain {
 
 /// One chain: its two ends.
 using Pair = double __attribute__((vector_size(16)));
@@ -40,9 +34,9 @@ struct Lanes<Pair> {
 
 template <>
 struct Lanes<Wide> {
-  using V = double __attribute__((vector_size(8 * kWideLanes)));
-  using Mask = long long __attribute__((vector_size(8 * kWideLanes)));
-  static constexpr int kChains = kWideLanes / 2;
+  using V = double __attribute__((vector_size(8 * kRegisterDoubles)));
+  using Mask = long long __attribute__((vector_size(8 * kRegisterDoubles)));
+  static constexpr int kChains = kRegisterDoubles / 2;
 #if defined(__AVX512DQ__)
   static constexpr bool kMagnitudesLoseNaN = true;
 #else

@@ -25,7 +25,7 @@ struct Block {
   Vec<V> x, u, w;       // position, acceleration, velocity
   V rods[Rods::kMost];  // multipliers
   V link;
-  Vec<V> f;       // right-hand side between a sweep inwards and the one outwards
+  Vec<V> f;  // right-hand side between a sweep inwards and the one outwards
   Factors<V> factors;
 };
 

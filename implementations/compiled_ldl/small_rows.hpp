@@ -5,22 +5,14 @@
 
 #include "mbs/model.hpp"
 #include "panel_vectors.hpp"
+#include "register_width.hpp"
 
 namespace mbs::compiled_ldl {
-
-/// Doubles of a register. In wider vectors compilers reach a number through memory.
-#if defined(__AVX512F__)
-inline constexpr int kWidest = 8;
-#elif defined(__AVX__)
-inline constexpr int kWidest = 4;
-#else
-inline constexpr int kWidest = 2;
-#endif
 
 /// N numbers, one a coordinate of q, in its order; padded with zeros.
 template <int N>
 struct SmallRow {
-  static constexpr int kLanes = std::min(lanes_for(N), kWidest);
+  static constexpr int kLanes = std::min(lanes_for(N), kRegisterDoubles);
   static constexpr int kVectors = (N + kLanes - 1) / kLanes;
   static constexpr int kSize = kLanes * kVectors;
   using V = typename Short<double, kLanes>::Type;
@@ -85,7 +77,7 @@ struct SmallMatrix {
 
 /// Whether the matrix stays in registers while elements are added to it.
 template <int N>
-inline constexpr bool kInRegisters = N * SmallRow<N>::kVectors <= 8;
+inline constexpr bool kInRegisters = N* SmallRow<N>::kVectors <= 8;
 
 /// u = r_a − r_b of two points, and ∂u/∂q.
 template <int N, int D>

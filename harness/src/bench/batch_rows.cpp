@@ -11,6 +11,7 @@
 #include "bench/measurement.hpp"
 #include "check/varied_lanes.hpp"
 #include "run/setting_names.hpp"
+#include "sweep/lane.hpp"
 
 namespace mbs {
 namespace {
@@ -30,7 +31,7 @@ class BatchMeasurement {
     }
     const std::span<const Model* const> models = sets_.pointers;
     const std::span<const StepSettings> settings = sets_.settings;
-    const auto lanes = static_cast<std::size_t>(std::max(cell.variant->batch_lanes, 1));
+    const std::size_t lanes = lanes_at_once(*cell.variant);
     for (std::size_t first = 0; first < count; first += lanes) {
       const std::size_t size = std::min(lanes, count - first);
       batches_.push_back(
