@@ -76,7 +76,8 @@ def must_hold(folder, registry, steps=None, growth=None, scenes=None, batches=No
 def _gain(folder, sets, rows):
     good = of_folder(rows[rows.status == "ok"], folder).sort_values("step_us")
     return _least(f"throughput of batches ÷ that of their lanes alone, {sets:.0f} sets of parameters",
-                  good.drop_duplicates("scene").set_index("scene").gain, GAIN, fastest(rows, folder, "scene"))
+                  good.drop_duplicates("scene").set_index("scene").gain.dropna(), GAIN,
+                  fastest(rows, folder, "scene"), of=rows.scene.nunique())
 
 
 def _sizes(folder, mine, steps):

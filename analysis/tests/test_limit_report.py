@@ -184,6 +184,11 @@ def test_batches_gain():
     assert held(batches=gains(5.0, 3.9))[what.format(64)].worst == "3.9 (s1, x)"
     found = held(batches=pandas.concat([gains(5.0, 4.0), gains(5.0, 3.9).assign(sets=8)]))
     assert found[what.format(64)].holds and not found[what.format(8)].holds
+    for lost in ({"status": "failed"}, {"gain": float("nan")}):
+        part = gains(5.0, 4.0)
+        part.loc[1, list(lost)] = list(lost.values())
+        found = held(batches=part)[what.format(64)]
+        assert found.worst == "" and not found.holds
 
 
 def test_the_fastest_variant_of_a_folder_counts_scene_by_scene():

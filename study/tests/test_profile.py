@@ -23,6 +23,7 @@ def test_profiles_cover_what_the_study_promises():
     paper = profiles.load("paper")
     assert max(paper.columns) == 4000 and len(paper.columns[1000]) > 4
     assert {100} | set(paper.operations["columns"]) <= set(paper.columns)
+    assert profiles.load("map").columns == paper.columns
 
 
 def test_scene_names():
