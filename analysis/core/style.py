@@ -1,6 +1,5 @@
-# The common look of all figures, and the command line that every figure script has.
+# The common look of all figures.
 import string
-import sys
 from pathlib import Path
 
 import matplotlib
@@ -8,8 +7,6 @@ import matplotlib.pyplot as plt
 import numpy
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
-
-from analysis.loader import TableError, load
 
 # Warm colours are dense implementations, the others sparse: each starts with those of Okabe and Ito
 # (2008), safe for the colour-blind; markers and dashes tell the series apart without colour.
@@ -37,18 +34,16 @@ class Look:
     "folder/variant+gcc-O2" or "…+atlas-reference" has colour and marker by the first word behind
     the plus, dash and fill by the second."""
 
-    def __init__(self, results):
+    def __init__(self, registry, alternatives=()):
         self.place, self.shade, self.hue = {}, {}, {}
         palettes = {True: iter(DENSE * 9), False: iter(SPARSE * 9)}
-        for entry in results.registry:
-            for variant in entry["variants"]:
-                name, folder = variant["name"], variant["name"].split("/")[0]
-                if folder not in self.hue:
-                    self.hue[folder] = next(palettes[bool(variant.get("dense"))])
-                self.place[name] = len(self.place)
-                self.shade[name] = sum(other.startswith(f"{folder}/") for other in self.shade)
-        pairs = set(results.tidy.blas) | set(results.tidy.build)
-        self.words = sorted({pair.split("-")[0] for pair in pairs} - {""})
+        for name in registry.variants:
+            folder = name.split("/")[0]
+            if folder not in self.hue:
+                self.hue[folder] = next(palettes[name in registry.dense])
+            self.place[name] = len(self.place)
+            self.shade[name] = sum(other.startswith(f"{folder}/") for other in self.shade)
+        self.words = sorted({name.partition("+")[2].split("-")[0] for name in alternatives} - {""})
 
     def _alternative(self, name):
         """(place of the first word, whether the second is not "reference" or "O2")."""
@@ -149,16 +144,3 @@ def save(figure, path):
     figure.savefig(partial, format=path.suffix[1:] or "png", bbox_inches="tight",
                    metadata={"Date": None} if path.suffix == ".svg" else None)
     partial.replace(path)
-
-
-def figure_main(draw):
-    """Runs `draw(results) -> Figure` for the command line RESULTS_DIR OUTPUT..."""
-    if len(sys.argv) < 3:
-        sys.exit(f"usage: {sys.argv[0]} RESULTS_DIR OUTPUT.svg [OUTPUT.png ...]")
-    try:
-        figure = draw(load(sys.argv[1]))
-    except TableError as error:
-        sys.exit(f"error: {error}")
-    for output in sys.argv[2:]:
-        save(figure, output)
-    plt.close(figure)

@@ -1,4 +1,5 @@
 # Runs one `mbs` as a child with a hard time limit and a memory limit, and says how it ended.
+import contextlib
 import ctypes
 import os
 import re
@@ -10,16 +11,17 @@ import threading
 import time
 from dataclasses import dataclass
 
-from study.pipeline.errors import StudyError
-from study.pipeline.layout import ROOT
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT
 
 MEMORY_WORDS = re.compile(r"bad_alloc|(out of|not enough) memory|cannot allocate|std::length_error",
                           re.I)
+GRACE = 1.0  # s between being asked to end and being made to
 OUTPUT_LIMIT = 256 * 2**20  # bytes a child may write to any file
 
 
 class Signalled(KeyboardInterrupt):
-    """SIGINT or SIGTERM: the study ends, and says how to resume."""
+    """SIGINT, SIGTERM or SIGHUP: the study ends, and says how to resume."""
 
     def __init__(self, number):
         super().__init__()
@@ -30,11 +32,11 @@ _signals = []  # received; compiled code of libraries may swallow what their han
 
 
 def end_on_signals():
-    """Lets SIGINT, unless it is ignored, and SIGTERM end the study, at the latest before its next child."""
+    """Lets these signals, unless they are ignored, end the study, at the latest before its next child."""
     def end(number, _):
         _signals.append(number)
         raise Signalled(number)
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, end)
 
@@ -45,12 +47,12 @@ class Ended:
     reason: str
     code: int | None
     stdout: str
+    stderr: str  # its end
     seconds: float
 
 
-def run(command, seconds, memory_mb, writes=None):
-    """Runs `command` in ROOT; it and all its children are gone when this returns or raises, and in the
-    second case the file that it `writes` with whatever has a name that begins like that."""
+def run(command, seconds, memory_mb):
+    """Runs `command` in ROOT; it and all its children are gone when this returns or raises."""
     if _signals:  # a pool's thread would die of the first, with a traceback
         own = threading.current_thread() is threading.main_thread()
         raise Signalled(_signals[0]) if own else StudyError("interrupted")
@@ -63,16 +65,14 @@ def run(command, seconds, memory_mb, writes=None):
             code = child.wait(timeout=seconds)
         except subprocess.TimeoutExpired:
             code = None
-        except BaseException:
-            _end_group(child)
-            for path in writes.parent.glob(f"{writes.name}*") if writes else ():
-                path.unlink(missing_ok=True)
-            raise
+            child.terminate()  # so that it can say in what it was
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                child.wait(timeout=GRACE)
         finally:
             _end_group(child)
         took = time.monotonic() - begin
         stdout, stderr = _text(out), _text(err, tail=4000)
-    return Ended(*_judge(code, stderr, seconds, memory_mb), code, stdout, took)
+    return Ended(*_judge(code, stderr, seconds, memory_mb), code, stdout, stderr, took)
 
 
 def _limit(memory_mb):

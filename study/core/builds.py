@@ -1,7 +1,8 @@
 # The same program built by other compilers and flags, for comparing them within one run.
 import subprocess
 
-from study.pipeline.layout import ROOT, program
+from analysis.core.files import ROOT
+from study.core.executor import program_of
 
 BUILDS = {  # name: (C++ compiler, C compiler, flags)
     f"{family}-{level}": (*compilers, f"-{level} -DNDEBUG")
@@ -13,9 +14,9 @@ BUILDS["gcc-O3-no-avx512"] = ("g++", "gcc", "-O3 -DNDEBUG -mno-avx512f")
 
 
 def build(name, log, show):
-    """Builds `program(name)`; returns why that failed, or "". `show` is called with each line."""
+    """Builds `mbs` of the build `name`; returns why that failed, or "". `show` is called with each line."""
     cxx, cc, flags = BUILDS[name]
-    folder = (ROOT / program(name)).parent
+    folder = (ROOT / program_of(build=name)).parent
     for command in (["cmake", "-S", str(ROOT), "-B", str(folder), "-G", "Ninja",
                      "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_CXX_COMPILER={cxx}",
                      f"-DCMAKE_C_COMPILER={cc}", f"-DCMAKE_CXX_FLAGS_RELEASE={flags}"],

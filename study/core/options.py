@@ -2,7 +2,7 @@
 import argparse
 import math
 
-from study.pipeline.errors import StudyError
+from analysis.core.errors import StudyError
 
 
 class Parser(argparse.ArgumentParser):
@@ -39,14 +39,3 @@ def need_steps(duration, steps):
         if not 1 <= round(duration / step) <= 1e8:
             raise StudyError(f"{duration:g} s in steps of {step:g} s are {duration / step:.3g} steps: "
                              "a run has 1 to 1e8")
-
-
-def add_only(parser, whose="these implementations"):
-    parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
-                        help=f"only {whose} (folder or folder/variant)")
-
-
-def add_results(parser, name):
-    parser.add_argument("--results", metavar="DIR", help=f"results directory (results/local/{name})")
-    parser.add_argument("--stored", action="store_true",
-                        help="figures and page again from stored tables, without running anything")

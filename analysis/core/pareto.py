@@ -1,9 +1,9 @@
-# The Pareto front of error and time, and what lies close to it. Rows are those of work.csv.
+# The Pareto front of error and time, and what lies close to it. Rows have `status`, `error` and `time`.
 import numpy
 
+from analysis.core.outcomes import FINISHED
+
 SAME = 0.02
-GOOD = ("ok", "plausible")      # how a run ends of which nothing is known to be wrong
-FINISHED = (*GOOD, "degraded")  # how one ends that has all of its motion
 
 
 def finished(rows):

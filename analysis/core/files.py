@@ -1,0 +1,51 @@
+# Files that a reader sees whole or not at all, and digests that tell whether they are as they were written.
+import hashlib
+import json
+import os
+from pathlib import Path
+
+from analysis.core.errors import StudyError
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+
+
+def read_json(path):
+    """The JSON in `path`; StudyError naming the file and the position if it is damaged."""
+    try:
+        return json.loads(Path(path).read_bytes())
+    except ValueError as error:  # of JSON and of UTF-8
+        raise StudyError(f"{path} is damaged ({error})") from error
+    except OSError as error:
+        raise StudyError(f"cannot read {path}: {error.strerror}") from error
+
+
+def write_json(path, data):
+    write_text(path, json.dumps(data, indent=1, ensure_ascii=False) + "\n")
+
+
+def write_text(path, text):
+    write(path, lambda partial: partial.write_text(text, encoding="utf-8"))
+
+
+def write(path, fill):
+    """Calls `fill` with the path of a partial file, which then becomes `path`; StudyError if that fails."""
+    path = Path(path)
+    partial = path.with_name(f".partial-{os.getpid()}-{path.name}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        fill(partial)
+        os.replace(partial, path)
+    except OSError as error:
+        raise StudyError(f"cannot write {path}: {error.strerror}") from error
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def digest(data):
+    """SHA-256 of bytes, of a text or of the file at a path."""
+    if isinstance(data, Path):
+        try:
+            data = data.read_bytes()
+        except OSError as error:
+            raise StudyError(f"cannot read {data}: {error.strerror}") from error
+    return hashlib.sha256(data.encode() if isinstance(data, str) else data).hexdigest()

@@ -1,0 +1,109 @@
+# Records: one for every cell, what was run and what came of it. Loose files while a study runs, an archive a
+# part in a stored set.
+#
+# A record's file is {"sha256": D, "record": {…}} in two lines; D is the digest of the second one's value as it
+# stands there, so that a changed or truncated file is named and never believed.
+import io
+import json
+import re
+import tarfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from analysis.core.errors import StudyError
+from analysis.core.files import digest, write_text
+
+RUN_ENDED = "done"  # status of a cell whose program ended as it should
+FORM = re.compile(r'\{"sha256": "([0-9a-f]{64})",\n"record": (\{.*\})\}\n', re.S)
+
+
+@dataclass(frozen=True)
+class Record:
+    """What a cell was and how it ended. `status`: "done", or why there is no output: "crashed", "timeout",
+    "out-of-memory", "refused" (by the program, in a line), or of a cell that was not run "excluded",
+    "unavailable", "not-reached", "dropped" (the budget), always with a `reason`."""
+    name: str        # its file in raw/PART: "COLUMN/ROLE/WHO@WHAT-ID.json"
+    cell: dict       # study/core/cell.py
+    status: str
+    reason: str
+    seconds: float   # of the process
+    command: list
+    context: dict    # machine, build and BLAS of the run
+    output: dict = field(default_factory=dict)  # what the program printed
+    series: dict = field(default_factory=dict)  # {column: values} of the motion, where the cell keeps some
+
+    @property
+    def column(self):
+        return self.name.partition("/")[0]
+
+    @property
+    def role(self):
+        return self.cell["role"]
+
+    @property
+    def done(self):
+        return self.status == RUN_ENDED
+
+
+def to_text(data):
+    line = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    return f'{{"sha256": "{digest(line)}",\n"record": {line}}}\n'
+
+
+def from_text(text, name, where):
+    """The Record in `text`; StudyError naming `where` if it is not what was written."""
+    found = FORM.fullmatch(text)
+    if not found or digest(found[2]) != found[1]:
+        raise StudyError(f"{where} is {'changed' if found else 'truncated or no record'}: "
+                         "remove it to have it measured again, or restore it")
+    return Record(name, **json.loads(found[2]))
+
+
+def write(path, data):
+    """Writes the fields of a Record, without its name."""
+    write_text(path, to_text(data))
+
+
+def read(path, name):
+    try:
+        text = path.read_bytes().decode("utf-8", "replace")
+    except OSError as error:
+        raise StudyError(f"cannot read {path}: {error.strerror}") from error
+    return from_text(text, name, path)
+
+
+def files_of(folder, part):
+    """{name: path} of the records of a part that lie loose in a set's folder."""
+    base = Path(folder) / "raw" / part
+    return {path.relative_to(base).as_posix(): path for path in sorted(base.rglob("*.json"))
+            if path.parent != base / "scenes" and not path.name.startswith(".")}
+
+
+def archive_of(folder, part):
+    return Path(folder) / "raw" / f"{part}.tar.xz"
+
+
+def read_part(folder, part):
+    """All records of a part, by name; of a stored set from its archive."""
+    archive = archive_of(folder, part)
+    if not archive.exists():
+        return [read(path, name) for name, path in files_of(folder, part).items()]
+    try:
+        with tarfile.open(archive) as tar:
+            return [from_text(tar.extractfile(one).read().decode(), one.name, f"{archive}: {one.name}")
+                    for one in sorted(tar, key=lambda one: one.name)
+                    if one.name.endswith(".json") and not one.name.startswith("scenes/")]
+    except (OSError, EOFError, tarfile.TarError, UnicodeDecodeError) as error:
+        raise StudyError(f"{archive} is damaged ({error}): restore it") from error
+
+
+def pack(folder, part, target):
+    """Writes the archive of a part's records and scenes; equal records give equal archives."""
+    base = Path(folder) / "raw" / part
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with tarfile.open(target, "w:xz", preset=9) as tar:
+        for path in sorted(base.rglob("*.json")):
+            data = path.read_bytes()
+            entry = tarfile.TarInfo(path.relative_to(base).as_posix())
+            entry.size = len(data)
+            tar.addfile(entry, io.BytesIO(data))

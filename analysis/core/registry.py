@@ -1,0 +1,43 @@
+# What `mbs list --json` says: who there is, in the order that tables and figures use.
+from dataclasses import dataclass
+
+NULL = "null/null"  # the harness's control: a simulation that does nothing
+
+
+@dataclass(frozen=True)
+class Registry:
+    listed: dict  # as printed
+
+    @property
+    def entries(self):
+        """Folders with their variants, the unavailable ones too."""
+        return self.listed["implementations"]
+
+    @property
+    def variants(self):
+        """{name: what is said of it and of its folder} of those that are available."""
+        return {variant["name"]: entry | variant for entry in self.entries if entry["available"]
+                for variant in entry["variants"]}
+
+    @property
+    def own(self):
+        """Names of the variants that stand on no library."""
+        return frozenset(name for name, one in self.variants.items() if one.get("library") == "none")
+
+    @property
+    def libraries(self):
+        """Names of the others, in order."""
+        return [name for name in self.variants if name not in self.own]
+
+    @property
+    def dense(self):
+        return frozenset(name for name, one in self.variants.items() if one.get("dense"))
+
+    @property
+    def pairs(self):
+        """{name: why it cannot be used, or ""} of the BLAS and LAPACK pairs."""
+        return {pair["name"]: "" if pair["available"] else pair["reason"] for pair in self.listed.get("blas", [])}
+
+    def serves(self, name, *settings):
+        """Whether a variant serves settings by name; everyone serves the paper's step."""
+        return set(settings) <= {"penalty", "double", *self.variants[name].get("settings", [])}

@@ -1,0 +1,87 @@
+# The one schema of all tables: analysis/PART/schema.yaml says of every table its columns, each [type, unit, meaning].
+# Tables are written and read through it, and the pages print it.
+from pathlib import Path
+
+import pandas
+import yaml
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, digest, read_json, write, write_json
+
+TYPES = ("text", "number", "flag")
+DIGESTS = "tables.json"  # of a part: those of its records and tables
+
+
+def of_part(part):
+    """{table: {column: (type, unit, meaning)}}; every table has a `record`, the name of one that its row comes from."""
+    path = ROOT / "analysis" / part / "schema.yaml"
+    found = yaml.safe_load(path.read_text(encoding="utf-8"))
+    for table, columns in found.items():
+        wrong = [name for name, one in columns.items() if len(one) != 3 or one[0] not in TYPES]
+        if wrong or "record" not in columns:
+            raise StudyError(f"{path}: {table}: {', '.join(wrong) or 'record'}: needs [type, unit, meaning], types are "
+                             f"{', '.join(TYPES)}")
+    return found
+
+
+def conform(frame, columns, what):
+    """The table with exactly these columns, in this order and of these types; what it lacks is empty."""
+    unknown = [name for name in frame.columns if name not in columns]
+    if unknown:
+        raise StudyError(f"{what}: columns that its schema does not know: {', '.join(unknown)}")
+    frame = frame.reindex(columns=list(columns))
+    for name, (kind, _, _) in columns.items():
+        if kind == "number":
+            numbers = pandas.to_numeric(frame[name], errors="coerce").astype(float)
+            wrong = frame.index[numbers.isna() & frame[name].notna() & (frame[name] != "")]
+            if len(wrong):
+                raise StudyError(f"{what}: line {frame.index.get_loc(wrong[0]) + 2}: {name} is no number: "
+                                 f"'{frame[name][wrong[0]]}'")
+            frame[name] = numbers
+        elif kind == "flag":
+            frame[name] = frame[name].map({True: True, False: False, "True": True, "False": False}).astype("boolean")
+        else:
+            frame[name] = frame[name].fillna("").astype(str)
+    return frame.reset_index(drop=True)
+
+
+def write_tables(folder, part, tables, records):
+    """Writes the tables of a part into folder/PART and the digests of these and of the records; returns them as
+    the schema has them."""
+    schema = of_part(part)
+    if set(tables) != set(schema):
+        raise StudyError(f"analysis/{part}/tables.py makes {sorted(tables)}, its schema has {sorted(schema)}")
+    found, base = {}, Path(folder) / part
+    for name, columns in schema.items():
+        frame = tables[name]
+        found[name] = conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(columns)), columns,
+                              f"{part}/{name}.csv")
+        write(base / f"{name}.csv", lambda partial, table=found[name]: table.to_csv(partial, index=False))
+    write_json(base / DIGESTS, {"records": digest_of(records),
+                                "tables": {name: digest(base / f"{name}.csv") for name in found}})
+    return found
+
+
+def digest_of(records):
+    return digest("\n".join(f"{one.name} {one.status} {one.seconds} {one.reason}" for one in records))
+
+
+def read_table(folder, part, name):
+    """A table of a set; StudyError if it is not as it was written."""
+    path = Path(folder) / part / f"{name}.csv"
+    need_unchanged(folder, part)
+    try:
+        frame = pandas.read_csv(path, dtype=str, keep_default_na=False)
+    except (OSError, ValueError) as error:
+        raise StudyError(f"{path}: cannot be read: {error}") from error
+    return conform(frame, of_part(part)[name], str(path))
+
+
+def need_unchanged(folder, part):
+    """StudyError naming the first table of a part that is not what was written there."""
+    kept = Path(folder) / part / DIGESTS
+    for name, known in (read_json(kept)["tables"] if kept.exists() else {}).items():
+        path = kept.with_name(f"{name}.csv")
+        if not path.exists() or digest(path) != known:
+            raise StudyError(f"{path} is {'not as it was written' if path.exists() else 'missing'}: restore it, or "
+                             f"remove {kept} to have the tables made again from the records")

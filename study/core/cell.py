@@ -1,0 +1,47 @@
+# A cell: whatever runs a program. A small value with one identity; executor.py runs it.
+import json
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+
+from analysis.core.files import ROOT, digest
+
+
+@dataclass(frozen=True)
+class Cell:
+    kind: str               # subcommand of the program: simulate, check, bench, describe, limit; "" if it has none
+    scene: str = ""         # as the program takes it: a name, or a file relative to the repository
+    contenders: tuple = ()  # of one environment
+    settings: tuple = ()    # further words of the command line
+    role: str = ""          # what the part wants it for: a folder of its records
+    number: int = 0         # of equal cells: the process
+    program: str = "mbs"    # or another one of the build, for instance mbs_reference
+    timed: bool = False     # has the machine for itself
+    seconds: float = 60.0   # limit
+    memory_mb: int = 4096   # limit
+    keep: tuple = ()        # columns of the motion that the record keeps ("outputs": those of the scene) ...
+    every: int = 0          # ... and steps between two of its instants
+    inputs: str = field(default="", compare=False)  # digest of the scene's file; filled by `settled`
+
+    def settled(self):
+        """With words as text and the digest of the scene's file: what its identity is made of."""
+        path = ROOT / self.scene
+        return replace(self, settings=tuple(map(str, self.settings)),
+                       inputs=digest(path)[:12] if self.scene.endswith(".json") and path.exists() else "")
+
+    @property
+    def environment(self):
+        return self.contenders[0].environment if self.contenders else "own|system"
+
+    def document(self):
+        """As it stands in records."""
+        found = asdict(self)
+        found["contenders"] = [one.name for one in self.contenders]
+        return found | {"environment": self.environment}
+
+    def file_name(self):
+        """ROLE/WHO@WHAT-ID.json: readable, and its own for every cell."""
+        identity = digest(json.dumps(self.document(), sort_keys=True))[:10]
+        who = self.contenders[0].file_name if len(self.contenders) == 1 else "all" if self.contenders else "harness"
+        what = Path(self.scene).name.removesuffix(".json") or self.program
+        safe = "".join(c if c.isalnum() or c in "-+=,.:" else "_" for c in what)[:60].replace(":", "-")
+        return f"{self.role or self.kind or 'run'}/{who}@{safe}-{identity}.json"

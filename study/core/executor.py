@@ -1,0 +1,126 @@
+# The executor: runs one cell as a child under its limits and says how it ended.
+import csv
+import json
+import os
+import re
+import tempfile
+from pathlib import Path
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT
+from study.core import child
+
+USAGE = 2  # the exit status of a program that refuses what it is asked for
+BY_FILE = {"check": ("--json",), "bench": ("--benchmark_out_format=json", "--benchmark_out")}
+CULPRIT = re.compile(r"ended by \S+ in (\S+)")  # what `mbs bench` says where a contender ends it
+
+
+def program_of(name="mbs", build=""):
+    """Path of a program, relative to the repository; MBS_PROGRAM stands in for `mbs` in tests."""
+    if name == "mbs" and "MBS_PROGRAM" in os.environ:
+        return os.environ["MBS_PROGRAM"]
+    return f"build-{build}/{name}" if build else f"build/{name}"
+
+
+def command_of(cell, output="FILE", motion="MOTION"):
+    """The words of a cell's command line; files that it writes are `output` and `motion`."""
+    first = cell.contenders[0] if cell.contenders else None
+    words = [program_of(cell.program, first.build if first else ""), *filter(None, (cell.kind, cell.scene))]
+    words += [word for one in cell.contenders for word in ("--implementation", one.variant)]
+    words += map(str, cell.settings)
+    if cell.kind == "bench":
+        words += ["--benchmark_out_format=json", f"--benchmark_out={output}"]
+    elif cell.kind == "check":
+        words += ["--json", output]
+    elif cell.program in ("mbs", "mbs_reference"):
+        words += ["--json"]
+    if cell.every:
+        words += ["--output" if cell.keep == ("outputs",) else "--trajectory", motion, "--every", str(cell.every)]
+    if first and first.blas != "system":
+        words += ["--blas", first.blas]
+    return words
+
+
+def run(cell, context, scratch=None):
+    """The fields of a Record. `context`: what its environment is known to be, or None (then that of the output);
+    `scratch`: the folder for what the program writes."""
+    with tempfile.TemporaryDirectory(dir=scratch) as folder:
+        output, motion = Path(folder) / "output.json", Path(folder) / "motion.csv"
+        ended = child.run(command_of(cell, str(output), str(motion)), cell.seconds, cell.memory_mb)
+        record = {"cell": cell.document(), "command": command_of(cell), "seconds": round(ended.seconds, 6),
+                  "context": context or {}, "status": "done", "reason": "", "output": {}, "series": {}}
+        if ended.status != "exited" or ended.code not in (0, 1):
+            return record | _failure(ended)
+        try:
+            found = json.loads(output.read_text() if cell.kind in BY_FILE else ended.stdout, parse_constant=_no_number)
+            record["series"] = _columns(motion, cell.keep) if cell.every and motion.exists() else {}
+        except (OSError, ValueError) as error:
+            return record | {"status": "crashed", "reason": f"its output is no JSON: {error}"[:300]}
+    if not isinstance(found, dict):
+        return record | {"status": "crashed", "reason": "its output is no JSON object"}
+    own = found.pop("context", None)
+    if own and context:
+        need_same(context, own, " ".join(record["command"]))
+    return record | {"output": compact(found), "context": context or own or {}}
+
+
+def compact(output):
+    """Rows of Google Benchmark by name: what is the same in all samples once, what differs as a list; and
+    "stretch_us", always a list."""
+    if "benchmarks" not in output:
+        return output
+    groups = {}
+    for row in output["benchmarks"]:
+        if row.get("run_type", "iteration") == "iteration":
+            groups.setdefault(row["name"], []).append(row)
+    return {"rows": {name: {"stretch_us": [row.get("real_time") for row in rows]} | {
+        key: rows[0][key] if all(row.get(key) == rows[0][key] for row in rows) else [row.get(key) for row in rows]
+        for key in rows[0] if key not in ("name", "run_name", "run_type", "real_time", "threads", "repetitions",
+                                          "family_index", "per_family_instance_index", "repetition_index")}
+        for name, rows in groups.items()}}
+
+
+FINGERPRINT = ("machine", "commit", "dirty", "compiler", "flags", "build_type", "blas", "blas_loaded", "libraries")
+
+
+def fingerprint(context):
+    """What must be equal for two records to be comparable: the machine and the build."""
+    found = {key: str(context.get(key, "missing")) for key in FINGERPRINT}
+    return found | {"blas_loaded": ";".join(sorted(found["blas_loaded"].split(";")))}
+
+
+def need_same(known, found, what):
+    """StudyError naming the first thing in which two contexts differ."""
+    known, found = fingerprint(known), fingerprint(found)
+    for key in FINGERPRINT:
+        if known[key] != found[key]:
+            raise StudyError(f"{what}: comes from another machine or build ({key} is '{found[key]}', the set's is "
+                             f"'{known[key]}'): results are never merged; name another directory with --results")
+
+
+def _failure(ended):
+    if ended.status == "exited":
+        refused = ended.code == USAGE
+        reason = ended.reason.partition(": ")[2] or ended.reason
+        return {"status": "refused" if refused else "crashed", "reason": reason if refused else ended.reason}
+    culprit = CULPRIT.search(ended.reason + ended.stderr)
+    return {"status": ended.status, "reason": ended.reason, "output": {"culprit": culprit[1]} if culprit else {}}
+
+
+def _no_number(word):
+    raise ValueError(f"{word} is no number")
+
+
+def _columns(path, keep):
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = csv.reader(file)
+        names = next(rows, [])
+        chosen = [place for place, name in enumerate(names) if keep == ("outputs",) or name in ("t", *keep)]
+        values = [[_finite(row[place]) for place in chosen] for row in rows]
+    return {names[place]: [row[at] for row in values] for at, place in enumerate(chosen)}
+
+
+def _finite(text):
+    """None for a number that is not finite: JSON has none."""
+    value = float(text)
+    return value if value - value == 0 else None

@@ -1,0 +1,131 @@
+# Runs Snakemake in the background and shows the part, the cells done of all and the time left.
+import ctypes
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, write_json
+from study.core.job import FRONT
+from study.core.progress import Reader, duration
+
+
+class Display:
+    """One line that is rewritten on a terminal; a line now and then elsewhere."""
+    EVERY = 20.0  # s
+
+    def __init__(self):
+        self.terminal, self.shown, self.stage, self.when = sys.stdout.isatty(), "", None, 0.0
+
+    def show(self, stage, text=""):
+        line, now = f"{stage}: {text}" if text else stage, time.monotonic()
+        if self.terminal:
+            print(f"\r\033[K{line[:110]}", end="", flush=True)
+        elif stage != self.stage or (line != self.shown and now - self.when > self.EVERY):
+            print(line, flush=True)
+        else:
+            return
+        self.stage, self.shown, self.when = stage, line, now
+
+    def end(self):
+        if self.terminal and self.shown:
+            print(flush=True)
+        self.shown = ""
+
+
+def run_workflow(studyset, columns, stored=False):
+    """Runs the workflow to its end. `columns`: {part: {column: seconds}}. Raises StudyError, or KeyboardInterrupt
+    once all children are gone."""
+    write_json(studyset.folder / ".columns.json", {part: list(names) for part, names in columns.items()})
+    display = Display()
+    with open(studyset.log, "a", encoding="utf-8") as log:
+        follower = _Follower(studyset, columns, display)
+        process = subprocess.Popen(_command(studyset, stored), stdout=log, stderr=subprocess.STDOUT, cwd=studyset.folder,
+                                   start_new_session=True, preexec_fn=_die_with_parent,
+                                   env=os.environ | {FRONT: str(os.getpid())})
+        try:
+            while process.poll() is None:
+                follower.update()
+                time.sleep(0.15)
+            follower.update()
+        finally:
+            _stop(process)
+            display.end()
+    if process.returncode != 0:
+        raise StudyError(f"{follower.error or follower.last_words()} (log: {studyset.log})")
+
+
+def _command(studyset, stored):
+    return ["/usr/bin/python3", "-m", "snakemake", "--snakefile", str(ROOT / "study" / "Snakefile"),
+            "--directory", str(studyset.folder), "--cores", "all", "--scheduler", "greedy",
+            "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor", *(["--forceall"] if stored else []),
+            "--config", f"root={ROOT}", f"stored={int(stored)}", f"columns={studyset.folder / '.columns.json'}"]
+
+
+def _die_with_parent():
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+
+
+class _Follower:
+    """Turns progress events and Snakemake's log into what the display shows."""
+
+    def __init__(self, studyset, columns, display):
+        self.columns, self.display = columns, display
+        self.events, self.log = Reader(studyset.progress), open(studyset.log, encoding="utf-8", errors="replace")
+        self.log.seek(0, os.SEEK_END)
+        self.done_columns = {(part, column) for part, names in columns.items() for column in names
+                             if studyset.stamp(part, column).exists()}
+        self.now, self.cells, self.expected, self.text = None, 0, 0, ""
+        self.error, self.lines, self.since = None, [], time.monotonic()
+
+    def update(self):
+        for line in self.log.readlines():
+            self.lines = [*self.lines, line.strip()][-12:]
+            rule = re.match(r"rule (\w+):", line)
+            if rule and rule[1] in ("page", "index") and not self.now:
+                self.display.show("pages")
+            if line.startswith("error: "):
+                self.error = self.error or line.removeprefix("error: ").strip()
+        events = self.events.events()
+        for event in events:
+            self._take(event)
+        if self.now and events:
+            self._show()
+
+    def _take(self, event):
+        at = event["part"], event["column"]
+        if at != self.now:
+            if self.now:
+                self.done_columns.add(self.now)
+            self.now, self.cells, self.expected, self.text, self.since = at, 0, 0, "", time.monotonic()
+        self.expected += event.get("expected", 0)
+        self.cells += event.get("done", 0)
+        self.text = event.get("text", self.text)
+
+    def _show(self):
+        part, column = self.now
+        left = sum(seconds for one, names in self.columns.items() for name, seconds in names.items()
+                   if (one, name) not in self.done_columns) - (time.monotonic() - self.since)
+        place = list(self.columns).index(part) + 1
+        total = max(self.expected, self.cells)
+        self.display.show(f"[{place}/{len(self.columns)}] {part}", f"{column}: {self.cells} of {total} cells, "
+                          f"at most {duration(left)} left" + (f"; {self.text}" if self.text else ""))
+
+    def last_words(self):
+        wrong = [line for line in self.lines if "rror" in line]
+        return f"a stage failed: {(wrong or self.lines or ['no word of it'])[-1][:300]}"
+
+
+def _stop(process):
+    """Ends Snakemake and everything it started."""
+    for sign in (signal.SIGTERM, signal.SIGKILL):
+        if process.poll() is not None:
+            return
+        os.killpg(process.pid, sign)
+        try:
+            process.wait(timeout=10)
+        except subprocess.TimeoutExpired:
+            continue

@@ -1,0 +1,67 @@
+# One job of the workflow: a column of a part, the page of a part, or the front page.
+import os
+import select
+import signal
+import sys
+import threading
+from pathlib import Path
+
+from analysis.core.errors import StudyError
+from study.core import child
+from study.core.lab import Lab
+from study.core.profile import plan_of
+from study.core.studyset import StudySet, finish
+
+FRONT = "MBS_STUDY_FRONT"  # the process that everything here belongs to
+
+
+def main(arguments):
+    """Exit status; a StudyError becomes one line "error: …" that the front shows."""
+    end_with(os.environ.get(FRONT))
+    child.end_on_signals()
+    folder, verb, *rest = arguments
+    try:
+        {"run": run, "page": page, "index": index}[verb](StudySet(Path(folder).resolve()), *rest)
+        return 0
+    except StudyError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+
+
+def run(studyset, part, column):
+    plan = plan_of(part)
+    columns = plan.columns(studyset.profile.parts[part], studyset)
+    lab = Lab(studyset, part, column, columns[column])
+    plan.run(lab, column)
+    finish(studyset, part, column, lab.names)
+
+
+def page(studyset, part):
+    from analysis.core import site  # these need modules that take a second to load
+    site.write_part(studyset.folder, part)
+
+
+def index(studyset):
+    from analysis.core import site
+    site.write_index(studyset.folder)
+
+
+def end_with(front):
+    """Ends this process, and with it its children, when the process `front` ends, however that ends."""
+    if not front:
+        return
+    try:
+        watched = os.pidfd_open(int(front))
+    except OSError:
+        os._exit(1)  # it has ended already
+
+    def watch():
+        select.select([watched], [], [])
+        os.kill(os.getpid(), signal.SIGKILL)  # children die with their parent: child.py
+    threading.Thread(target=watch, daemon=True).start()
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,111 @@
+# The lab: where a part's plan has its cells run. A plan asks for cells, gets their records, and may ask for more.
+#
+# What has a record is never run again, so that a plan that was interrupted, begun anew, comes to the same point.
+# A plan must therefore ask for the same cells where it gets the same records.
+import os
+from concurrent.futures import ThreadPoolExecutor
+
+from analysis.core import records
+from analysis.core.files import write_json
+from study.core import executor, locks
+from study.core.progress import Progress
+
+SKIPPED = ("excluded", "unavailable", "unsupported", "not-reached", "dropped", "disagrees")
+
+
+class Lab:
+    """One column of a part in a set. `settings`: the profile's of the part; `seconds`: the column's budget."""
+
+    def __init__(self, studyset, part, column, seconds=float("inf")):
+        self.set, self.part, self.column, self.budget = studyset, part, column, seconds
+        self.settings = studyset.profile.parts[part]
+        self.registry, self.contenders = studyset.registry, studyset.contenders
+        self.base = studyset.folder / "raw" / part
+        self.progress, self.names, self.spent = Progress(studyset, part, column), [], 0.0
+
+    def contender(self, name):
+        """The one of a variant; None if it does not take part."""
+        return next((one for one in self.contenders if one.name == name), None)
+
+    def one(self, cell):
+        return self.run([cell])[0]
+
+    def run(self, cells, drop=False):
+        """Records of cells, in their order. Timed ones have the machine for themselves, one after the other; the
+        others run at once on all cores. With `drop`, what is left when the budget is spent gets a record that says
+        so: order cells by their worth."""
+        cells = [cell.settled() for cell in cells]
+        found, todo = {}, []
+        for cell in dict.fromkeys(cells):
+            path = self._path(cell)
+            if path.exists():
+                found[cell] = self._keep(records.read(path, self._name(cell)))
+            else:
+                todo.append(cell)
+        self.progress.expect(len(todo))
+        self.progress.done(len(found))
+        alone = [cell for cell in todo if cell.timed]
+        with ThreadPoolExecutor(cores()) as pool:
+            others = [cell for cell in todo if not cell.timed]
+            for cell, record in zip(others, pool.map(lambda one: self._made(one, drop, cores()), others)):
+                found[cell] = record
+        if alone:
+            with locks.only_one_timing():
+                for cell in alone:
+                    found[cell] = self._made(cell, drop, 1)
+        return [found[cell] for cell in cells]
+
+    def skip(self, cell, status, reason):
+        """The record of a cell that is not run, with its reason."""
+        if status not in SKIPPED:
+            raise ValueError(status)
+        cell = cell.settled()
+        path = self._path(cell)
+        if not path.exists():
+            records.write(path, {"cell": cell.document(), "status": status, "reason": reason, "seconds": 0.0,
+                                 "command": executor.command_of(cell), "context": self.set.facts["context"]})
+        return self._keep(records.read(path, self._name(cell)))
+
+    def scene(self, name, document):
+        """Writes a scene of the part's own; its name for cells."""
+        path = self.base / "scenes" / f"{name}.json"
+        if not path.exists():
+            write_json(path, document)
+        return os.path.relpath(path, executor.ROOT) if path.is_relative_to(executor.ROOT) else str(path)
+
+    def tell(self, text):
+        """Shown beside the cells that are done."""
+        self.progress.tell(text)
+
+    @property
+    def left(self):
+        """Seconds of the budget, counted in those of the processes: the same in a run that was resumed."""
+        return self.budget - self.spent
+
+    def _made(self, cell, drop, at_once):
+        if drop and self.left <= 0:
+            return self.skip(cell, "dropped", f"the budget of {self.budget:.0f} s was spent")
+        context = self.set.context(cell.contenders[0]) if cell.contenders else self.set.facts["context"]
+        data = executor.run(cell, context if cell.program == "mbs" else None, self.set.scratch)
+        if not data["context"]:
+            data["context"] = context
+        records.write(self._path(cell), data)
+        record = self._keep(records.read(self._path(cell), self._name(cell)), at_once)
+        self.progress.done()
+        return record
+
+    def _keep(self, record, at_once=None):
+        if record.name not in self.names:
+            self.names.append(record.name)
+            self.spent += record.seconds / (at_once or (1 if record.cell["timed"] else cores()))
+        return record
+
+    def _name(self, cell):
+        return f"{self.column}/{cell.file_name()}"
+
+    def _path(self, cell):
+        return self.base / self._name(cell)
+
+
+def cores():
+    return len(os.sched_getaffinity(0))

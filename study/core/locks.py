@@ -1,0 +1,59 @@
+# Locks that vanish with the process that holds them.
+import contextlib
+import fcntl
+import os
+import tempfile
+import time
+from pathlib import Path
+
+from analysis.core.errors import StudyError
+
+POLL = 0.5  # s
+
+
+def only_one(folder):
+    """Holds the results in `folder`."""
+    return _hold(Path(folder) / ".lock", f"another study is running in {folder}", 0)
+
+
+def only_one_study(wait=False, tell=print):
+    """Holds the machine for a study; with `wait` behind the others."""
+    path = Path(tempfile.gettempdir()) / "mbs-study.lock"
+    held = f"another study is measuring on this machine ({path} is held): wait until it is done, or queue with --wait"
+    return _hold(path, held, float("inf") if wait else 0, tell)
+
+
+def only_one_timing():
+    """Holds the machine for what is timed: whoever measures holds it, not the study that it belongs to, which may
+    have died a moment ago."""
+    path = Path(tempfile.gettempdir()) / "mbs-timing.lock"
+    return _hold(path, f"something else is being timed on this machine ({path} is held)", 30)
+
+
+@contextlib.contextmanager
+def _hold(path, held, seconds, tell=lambda text: None):
+    try:
+        # Another user's file in /tmp can be opened for reading only, and not with O_CREAT.
+        file = os.open(path, os.O_RDONLY | (0 if path.exists() else os.O_CREAT), 0o644)
+    except OSError as error:
+        raise StudyError(f"cannot open the lock {path}: {error.strerror}") from error
+    try:
+        end, told = time.monotonic() + seconds, False
+        while not _taken(file):
+            if time.monotonic() >= end:
+                raise StudyError(held)
+            if not told:
+                tell("waiting until another study is done")
+                told = True
+            time.sleep(POLL)
+        yield
+    finally:
+        os.close(file)
+
+
+def _taken(file):
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return True
+    except OSError:
+        return False

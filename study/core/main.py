@@ -1,0 +1,178 @@
+# The command lines of the study: study/run, study/figures, study/store; and the way into the tools beside the parts.
+import importlib
+import importlib.util
+import os
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT
+from analysis.core.parts import need_parts, parts
+from study.core import child, locks, profile as profiles
+from study.core.front import Display, run_workflow
+from study.core.options import Parser
+from study.core.progress import duration
+from study.core.studyset import StudySet, listed, reopen, select, start
+
+MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
+           "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
+TOOLS = {"view": "study.tools.viewer.main", "advise": "study.tools.advise.main", "against": "study.tools.against",
+         "compare": "study.tools.compare", "add": "study.tools.add", "store": "study.tools.store"}
+
+
+def main(arguments):
+    command, *rest = arguments
+    child.end_on_signals()
+    try:
+        if command in TOOLS:  # imported only now: they need modules that others do without
+            return getattr(importlib.import_module(TOOLS[command]), command)(rest)
+        return {"run": run, "figures": figures}[command](rest)
+    except StudyError as error:
+        print(f"study/{command}: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt as cause:
+        print("\ninterrupted; what is finished is kept. To resume:\n  "
+              + shlex.join([f"study/{command}", *rest]), file=sys.stderr)
+        return 128 + (cause.number if isinstance(cause, child.Signalled) else signal.SIGINT)
+
+
+def run(arguments):
+    parser = Parser(prog="study/run", description="Runs the study: verifies, measures, draws; ends in one site.",
+                    epilog="Interrupted, the same command goes on where it was. Parts and profiles: study/run --list.")
+    parser.add_argument("--profile", default="quick", help="how much: smoke, quick (default) or full")
+    parser.add_argument("--part", nargs="+", default=[], metavar="NAME", help="only these parts")
+    parser.add_argument("--only", nargs="+", default=[], metavar="IMPLEMENTATION",
+                        help="only these implementations (folder or folder/variant)")
+    parser.add_argument("--results", metavar="DIR", help="results directory (results/local/PROFILE)")
+    parser.add_argument("--dry-run", action="store_true", help="say what would run and for how long; build nothing")
+    parser.add_argument("--list", action="store_true", help="list parts, profiles and implementations")
+    parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
+    options = parser.parse_args(arguments)
+    if options.list:
+        return list_choices()
+    if options.results == "":
+        raise StudyError("--results is empty: it must be a directory")
+    need_modules("yaml")
+    profile = profiles.load(options.profile)
+    need_parts(options.part)
+    chosen = [part for part in parts() if not options.part or part in options.part]
+    name = "-".join([profile.name, *(only.replace("/", ".") for only in options.only)])
+    folder = Path(options.results).absolute() if options.results else ROOT / "results" / "local" / name
+    if options.dry_run:
+        return dry_run(profile, chosen, folder, options.only)
+    writable(folder)
+    with locks.only_one(folder), locks.only_one_study(options.wait):
+        if "MBS_PROGRAM" not in os.environ:
+            set_up(folder / "run.log")
+        need_modules()
+        studyset = start(folder, profile, options.only, chosen)
+        columns = columns_of(profile, studyset.facts["parts"], studyset)
+        reopen(studyset, columns)
+        print(f"{len(studyset.contenders)} implementations, {len(columns)} parts: at most "
+              f"{duration(sum(sum(names.values()) for names in columns.values()))}; the site grows in {folder}/index.html")
+        run_workflow(studyset, columns)
+    print(f"site: {folder / 'index.html'}")
+    return 0
+
+
+def columns_of(profile, chosen, studyset=None):
+    """{part: {column: seconds at most}}, in the order of the list."""
+    return {part: profiles.plan_of(part).columns(profile.parts[part], studyset) for part in parts() if part in chosen}
+
+
+def figures(arguments):
+    parser = Parser(prog="study/figures", description="Draws every table, figure and page of a set again, from its records.")
+    parser.add_argument("set", nargs="?", default=None, help="its directory (the newest in results/)")
+    given = parser.parse_args(arguments).set
+    need_modules()
+    folder = Path(given).absolute() if given else newest()
+    if not (folder / "set.json").exists():
+        raise StudyError(f"{folder} holds no set (no set.json)")
+    writable(folder)
+    studyset = StudySet(folder)
+    with locks.only_one(folder):
+        run_workflow(studyset, {part: [] for part in parts() if part in studyset.facts["parts"]}, stored=True)
+    print(f"site: {folder / 'index.html'}")
+    return 0
+
+
+def newest():
+    """The stored set of the latest date."""
+    found = [path.parent for path in (ROOT / "results").glob("*/set.json")]
+    if not found:
+        raise StudyError("results/ holds no set: name one, or make one with study/run")
+    return max(found, key=lambda folder: StudySet(folder).facts["date"])
+
+
+def list_choices():
+    need_modules("yaml")
+    print("parts:")
+    for part, question in parts().items():
+        print(f"  {part:28} {question}")
+    print("profiles:")
+    for name in profiles.names():
+        print(f"  {name:28} {profiles.load(name).title}")
+    print("implementations:")
+    for entry in listed().entries:
+        for variant in entry["variants"] if entry["available"] else []:
+            print(f"  {variant['name']:28} {variant['description']}")
+        if not entry["available"]:
+            print(f"  {entry['folder']:28} unavailable: {entry['reason']}")
+    return 0
+
+
+def dry_run(profile, chosen, folder, only):
+    if only and (ROOT / "build" / "mbs").exists():
+        select(listed(), only)
+    print(f"profile {profile.name}: {profile.title}\nresults: {folder}\nleft out: {profile.dropped}")
+    total = 0
+    for part, columns in columns_of(profile, chosen).items():
+        seconds = sum(0 if (folder / ".done" / part / column).exists() else most for column, most in columns.items())
+        print(f"  {part:10} {'done' if not seconds else 'at most ' + duration(seconds)}: {', '.join(columns)}")
+        total += seconds
+    print(f"at most {duration(total)}, besides set-up and build")
+    return 0
+
+
+def set_up(log):
+    """Runs study/setup; shows its last line while it works and all of its end if it fails."""
+    display, lines = Display(), []
+    display.show("set-up")
+    with open(log, "a", encoding="utf-8") as file:
+        process = subprocess.Popen([str(ROOT / "study" / "setup")], stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT, text=True, errors="replace")
+        for line in process.stdout:
+            lines = lines[-20:] + [line.rstrip()]
+            file.write(line)
+            display.show("set-up", line.strip())
+    display.end()
+    if process.wait() != 0:
+        print("\n".join(lines), file=sys.stderr)
+        raise StudyError(f"set-up failed, see above (log: {log})")
+
+
+def need_modules(*modules):
+    for module in modules or MODULES:
+        if importlib.util.find_spec(module) is None:
+            raise StudyError(f"Python module {module} is missing for /usr/bin/python3: run "
+                             f"study/setup, or apt-get install {MODULES[module]}")
+
+
+def writable(folder):
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / ".writable"
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise StudyError(f"cannot write to {folder}: {error.strerror}") from error
+    if shutil.disk_usage(folder).free < 100 * 2**20:
+        raise StudyError(f"less than 100 MB free for {folder}")
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

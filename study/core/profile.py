@@ -1,0 +1,70 @@
+# Profiles (study/profiles/NAME.yaml): how much of each part is run.
+import importlib
+from dataclasses import dataclass
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT
+from analysis.core.parts import parts
+
+FOLDER = ROOT / "study" / "profiles"
+
+
+@dataclass(frozen=True)
+class Profile:
+    name: str
+    title: str
+    blas: dict     # {folder or "all": BLAS and LAPACK pair}
+    dropped: str   # what a smaller budget leaves out, and why
+    parts: dict    # {part: its settings}
+
+
+def names():
+    return sorted(path.stem for path in FOLDER.glob("*.yaml"))
+
+
+def load(name):
+    if name not in names():
+        raise StudyError(f"unknown profile '{name}'; known: {', '.join(names())}")
+    return read(FOLDER / f"{name}.yaml", name)
+
+
+def read(path, name):
+    """The profile in a file; StudyError if a setting is missing, unknown or of another kind."""
+    import yaml
+    try:
+        data = yaml.safe_load(path.read_bytes().decode())
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise StudyError(f"{path}: not valid YAML: {' '.join(str(error).split())[:300]}") from error
+    except OSError as error:
+        raise StudyError(f"cannot read {path}: {error.strerror}") from error
+    need_keys(path, "the profile", data, {"title", "blas", "dropped", "parts"})
+    if not isinstance(data["blas"], dict) or "all" not in data["blas"]:
+        raise StudyError(f"{path}: blas must name a pair for all")
+    need_keys(path, "parts", data["parts"], set(parts()))
+    for part, settings in data["parts"].items():
+        wanted = plan_of(part).SETTINGS
+        need_keys(path, part, settings, {"seconds", *wanted})
+        for key, kind in {"seconds": float, **wanted}.items():
+            _need_kind(f"{path}: {part}: {key}", settings[key], kind)
+    return Profile(name, data["title"], data["blas"], data["dropped"], data["parts"])
+
+
+def plan_of(part):
+    """The module study/PART/plan.py."""
+    return importlib.import_module(f"study.{part}.plan")
+
+
+def need_keys(path, what, data, keys):
+    if not isinstance(data, dict):
+        raise StudyError(f"{path}: {what} needs settings, found {type(data).__name__}")
+    wrong = sorted(map(str, set(data) ^ keys))
+    if wrong:
+        raise StudyError(f"{path}: {what}: missing or unknown: {', '.join(wrong)}")
+
+
+def _need_kind(where, value, kind):
+    accepted = (int, float) if kind is float else kind
+    if not isinstance(value, accepted) or isinstance(value, bool) != (kind is bool):
+        raise StudyError(f"{where} must be of type {kind.__name__}, is {value!r}")
+    if kind in (int, float) and not 0 <= value < float("inf"):
+        raise StudyError(f"{where} must be a number of at least 0, is {value!r}")

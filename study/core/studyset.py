@@ -1,0 +1,155 @@
+# A set: the results of one commit, one build, one machine; its folder, and whether it may be continued.
+import datetime
+import shutil
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from analysis.core import records
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, digest, read_json, write_json
+from analysis.core.registry import Registry
+from study.core import executor, profile as profiles
+from study.core.cell import Cell
+from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
+from study.core.executor import need_same, program_of
+
+
+@dataclass(frozen=True)
+class StudySet:
+    folder: Path
+
+    @cached_property
+    def facts(self):
+        """set.json: profile, selection, parts, date, context of the usual environment, digests of the programs."""
+        found = read_json(self.folder / "set.json")
+        missing = {"profile", "only", "parts", "programs", "context", "date"} - set(found)
+        if missing:
+            raise StudyError(f"{self.folder / 'set.json'} is no record of a study: it lacks {', '.join(sorted(missing))}")
+        return found
+
+    @cached_property
+    def registry(self):
+        return Registry(read_json(self.folder / "registry.json"))
+
+    @cached_property
+    def profile(self):
+        return profiles.read(self.folder / "profile.yaml", self.facts["profile"])
+
+    @cached_property
+    def contenders(self):
+        """Those of the selection on their usual pairs, in the registry's order."""
+        return on_usual_pairs(self.registry, self.profile.blas, select(self.registry, self.facts["only"]))
+
+    def context(self, one):
+        """What is known of a contender's environment; asked of its program the first time."""
+        path = self.folder / "contexts" / f"{one.environment.replace('|', '-')}.json"
+        if not path.exists():
+            write_json(path, context_of(one))
+        return read_json(path)
+
+    def stamp(self, part, column):
+        return self.folder / ".done" / part / column
+
+    @property
+    def progress(self):
+        return self.folder / ".progress"
+
+    @property
+    def scratch(self):
+        return self.folder / ".scratch"
+
+    @property
+    def log(self):
+        return self.folder / "run.log"
+
+
+def context_of(one):
+    """The context of a contender's build and BLAS pair on this machine."""
+    null = Contender(one.name, CONTROL.variant, one.blas, one.build)
+    cell = Cell("bench", "four-bar:1", (null,), ("--steps", 1, "--benchmark_repetitions=1", "--benchmark_min_time=1e-6"))
+    found = executor.run(cell.settled(), None)
+    if not found["context"]:
+        raise StudyError(f"{program_of(build=one.build)} bench does not work: {found['reason']}")
+    return found["context"]
+
+
+def listed():
+    """The Registry of the present build."""
+    if not (ROOT / program_of()).exists():
+        raise StudyError(f"{program_of()} is missing: build it with study/setup")
+    found = executor.run(Cell("list").settled(), None)
+    if found["status"] != "done":
+        raise StudyError(f"`{program_of()} list --json` does not work: {found['reason']}")
+    return Registry(found["output"])
+
+
+def start(folder, profile, only, chosen):
+    """Records what a folder is for, or continues it; StudyError if it holds results of something else."""
+    registry = listed()
+    select(registry, only)
+    control = Contender(CONTROL.name, CONTROL.variant, usable(registry, profile.blas["all"]))
+    context = context_of(control)
+    record = {"profile": profile.name, "only": only, "parts": chosen, "context": context,
+              "programs": {name: digest(ROOT / program_of(name))[:16] for name in ("mbs", "mbs_reference")
+                           if (ROOT / program_of(name)).exists()},
+              "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M")}
+    text = (profiles.FOLDER / f"{profile.name}.yaml").read_text()
+    kept = folder / "profile.yaml"
+    if (folder / "set.json").exists():
+        old = StudySet(folder).facts
+        need_same(old["context"], context, str(folder))
+        for key in ("profile", "only", "programs"):
+            if old[key] != record[key]:
+                raise _other(folder, key)
+        if kept.read_bytes() != text.encode():
+            raise _other(folder, "the profile's settings")
+        record |= {"date": old["date"], "parts": [*old["parts"], *(part for part in chosen if part not in old["parts"])]}
+    shutil.rmtree(folder / ".scratch", ignore_errors=True)
+    (folder / ".scratch").mkdir(parents=True)
+    for path in folder.rglob(".partial-*"):  # of a process that was killed
+        path.unlink()
+    write_json(folder / "registry.json", registry.listed)
+    kept.write_text(text)
+    write_json(folder / "set.json", record)
+    return StudySet(folder)
+
+
+def _other(folder, what):
+    return StudyError(f"{folder} holds results of something else ({what}); results are never merged: "
+                      "name another directory with --results, or move this one away")
+
+
+def select(registry, only):
+    """Names "folder/variant" that `only` selects, in the registry's order; empty selects all."""
+    folders = {entry["folder"]: entry for entry in registry.entries}
+    for name in only:
+        entry = folders.get(name.split("/")[0])
+        if entry and not entry["available"]:
+            raise StudyError(f"--only {name}: unavailable: {entry['reason']}")
+        if name not in folders and name not in registry.variants:
+            raise StudyError(f"--only: unknown implementation '{name}'; known: "
+                             f"{', '.join([*folders, *registry.variants])}")
+    return [name for name in registry.variants if not only or name in only or name.split("/")[0] in only]
+
+
+def finish(studyset, part, column, names):
+    """Marks a column as done: its stamp lists its records with their digests."""
+    base = studyset.folder / "raw" / part
+    write_json(studyset.stamp(part, column), {name: digest(base / name) for name in sorted(set(names))})
+
+
+def reopen(studyset, columns):
+    """Makes the workflow run columns again of which a record is missing; StudyError naming one that was changed.
+    `columns`: {part: names}."""
+    for part, names in columns.items():
+        for column in names:
+            stamp = studyset.stamp(part, column)
+            for name, kept in (read_json(stamp) if stamp.exists() else {}).items():
+                path = studyset.folder / "raw" / part / name
+                if not path.exists():
+                    stamp.unlink(missing_ok=True)
+                elif digest(path) != kept:
+                    records.read(path, name)  # says what is wrong with it
+                    raise StudyError(f"{path} is not the one that was measured: restore it, or remove it to have "
+                                     "it measured again")
