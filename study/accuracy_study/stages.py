@@ -10,8 +10,8 @@ from study.pipeline.layout import read_run, write_csv
 from study.pipeline.options import need_steps
 from study.pipeline.prepare import digest, digest_of_scene, registry, select, start_named
 from study.pipeline.progress import Teller
-from study.scene_study import problems
-from study.scene_study.main import _choose as choose_problems
+from study.scenes import problems
+from study.scenes.main import _choose as choose_problems
 
 LOOPS = (2, 10, 40, 200)
 

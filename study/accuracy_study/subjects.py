@@ -12,9 +12,9 @@ import numpy
 
 from study.pipeline import runs
 from study.pipeline.errors import StudyError
-from study.scene_study import mechanics, metric
-from study.scene_study.extrapolate import extrapolate
-from study.scene_study.references import CLOSED, EXTRAPOLATED, KNOWN, four_bar, kind
+from study.scenes import mechanics, metric
+from study.scenes.extrapolate import extrapolate
+from study.scenes.references import CLOSED, EXTRAPOLATED, KNOWN, four_bar, kind
 
 # s, from where nobody keeps 1e-1 m
 STEPS = tuple(8e-2 / 2**halvings for halvings in range(12))

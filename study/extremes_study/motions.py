@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy
 from scipy.special import ellipj, ellipk, ellipkinc
 
-from study.scene_study.mechanics import GRAVITY
+from study.scenes.mechanics import GRAVITY
 
 
 @dataclass(frozen=True)

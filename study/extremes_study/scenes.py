@@ -1,6 +1,6 @@
 # The scenes of the battery that are more than a chain of four-bars: springs, redundant rods, denormals.
 from study.extremes_study.motions import Chain
-from study.scene_study.mechanics import GRAVITY
+from study.scenes.mechanics import GRAVITY
 
 
 def alternate(count, ratio):

@@ -14,7 +14,7 @@ from study.pipeline import runs
 from study.pipeline.contenders import Contender
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import read_json
-from study.scene_study import mechanics, problems
+from study.scenes import mechanics, problems
 from study.tests.accuracy_fakes import BOTH, STEPS, fake  # noqa: F401 (a fixture)
 from study.tests.conftest import FAKE, ROOT, study
 

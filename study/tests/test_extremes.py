@@ -15,7 +15,7 @@ from study.extremes_study.motions import Chain, Flat, singular_times
 from study.pipeline.contenders import Contender
 from study.pipeline.errors import StudyError
 from study.pipeline.layout import Layout, write_json
-from study.scene_study.references import four_bar
+from study.scenes.references import four_bar
 from study.tests.conftest import ROOT, study
 
 TIMES = numpy.linspace(0, 3, 31)

@@ -6,8 +6,8 @@
 import numpy
 from scipy.special import ellipj, ellipk
 
-from study.scene_study import mechanics
-from study.scene_study.mechanics import GRAVITY
+from study.scenes import mechanics
+from study.scenes.mechanics import GRAVITY
 
 
 def pendulum(times):

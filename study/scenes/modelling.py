@@ -11,8 +11,8 @@ import pandas
 
 from study.pipeline import runs
 from study.pipeline.layout import write_json
-from study.scene_study import metric
-from study.scene_study.references import four_bar
+from study.scenes import metric
+from study.scenes.references import four_bar
 
 IMPLEMENTATIONS = ("csc_klu/refactor", "csc_cholmod/simplicial", "eigen_dense/llt")
 LOOPS = (10, 40)
