@@ -1,4 +1,5 @@
 # Files that a reader sees whole or not at all, and digests that tell whether they are as they were written.
+import contextlib
 import hashlib
 import json
 import os
@@ -38,7 +39,8 @@ def write(path, fill):
     except OSError as error:
         raise StudyError(f"cannot write {path}: {error.strerror}") from error
     finally:
-        partial.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # of a folder that may not be written to
+            partial.unlink(missing_ok=True)
 
 
 def digest(data):

@@ -1,0 +1,161 @@
+# Statistics of timed cells: ratios within a process, intervals over processes, who is fastest and who is as fast.
+#
+# In a process all contenders of a scene take turns, so that what disturbs the machine disturbs all of them: the
+# ratio of two is the median over samples of their quotient there. Processes differ by the layout of memory. The
+# ratio is the mean of its logarithm over processes, with Student's interval [Kalibera and Jones 2013].
+import math
+from dataclasses import dataclass
+
+import numpy
+import pandas
+
+CONFIDENCE = 0.95
+EQUIVALENT = 1.05  # who is shown to take at most so many times the fastest's time is as fast
+COLUMNS = ("scene", "implementation", "environment", "process", "status", "reason", "step_us", "low_us", "high_us",
+           "samples", "record")
+
+
+def processes(records):
+    """One row for each contender of each process of timed cells (records of `study.core.timing.measure`):
+    scene, implementation, environment, process (its number), status, reason, step_us (median over samples, with
+    the least and the largest), samples (µs a step), record, and every counter of `mbs bench` by its name."""
+    rows = [row for record in records for row in _rows(record)]
+    return pandas.DataFrame(rows, columns=None if rows else list(COLUMNS))
+
+
+def _rows(record):
+    cell = record.cell
+    for name in cell["contenders"]:
+        row = {"scene": cell["scene"], "implementation": name, "environment": cell["environment"],
+               "process": cell["number"], "status": record.status, "reason": record.reason, "record": record.name}
+        found = record.output.get("rows", {}).get(f"{name.partition('+')[0]}/{cell['scene']}")
+        if not record.done:
+            yield row
+        elif found is None:
+            yield row | {"status": "crashed", "reason": "mbs bench gave no row of it"}
+        elif found.get("error_occurred"):
+            message = found.get("error_message", "")
+            kind, _, reason = message.partition(": ")
+            known = kind if kind in ("unsupported", "out-of-memory", "slower", "diverged") else "failed"
+            yield row | {"status": known, "reason": reason or message}
+        else:
+            samples = [one / found["steps"] for one in found["stretch_us"]]
+            counters = {key: value for key, value in found.items()
+                        if isinstance(value, (int, float)) and key not in ("step_us", "cpu_time", "iterations")}
+            yield counters | row | {"status": "ok", "reason": "", "step_us": float(numpy.median(samples)),
+                                    "low_us": min(samples), "high_us": max(samples), "samples": tuple(samples)}
+
+
+@dataclass(frozen=True)
+class Ratio:
+    value: float
+    low: float
+    high: float
+
+
+NONE = Ratio(math.nan, math.nan, math.nan)
+
+
+def ratio(rows, first, second):
+    """Time of `first` over that of `second` in `rows` of one scene; NaN where they share no process. Of one
+    process there is no interval: it reaches from 0 to infinity."""
+    logs = log_ratios(rows, first, second)
+    if not len(logs):
+        return NONE
+    middle = float(numpy.mean(logs))
+    if len(logs) == 1:
+        return Ratio(math.exp(middle), 0.0, math.inf)
+    from scipy import stats
+    half = stats.t.ppf((1 + CONFIDENCE) / 2, len(logs) - 1) * float(numpy.std(logs, ddof=1)) / math.sqrt(len(logs))
+    return Ratio(*(math.exp(middle + shift) for shift in (0.0, -half, half)))
+
+
+def log_ratios(rows, first, second):
+    """Logarithms of the ratio, one a process. Contenders of different environments are compared through the
+    variant that both environments have."""
+    mine, other = (_by_process(rows, name) for name in (first, second))
+    direct = [_log(mine[key], other[key]) for key in sorted(set(mine) & set(other))]
+    if direct or not (mine and other):
+        return numpy.array(direct)
+    environments = [next(iter(one))[0] for one in (mine, other)]
+    common = _common(rows, environments)
+    if common is None:
+        return numpy.array([])
+    anchors = [_by_process(rows, name) for name in common]
+    found = []
+    for number in sorted({key[1] for key in mine} & {key[1] for key in other}):
+        keys = [(environment, number) for environment in environments]
+        if keys[0] in anchors[0] and keys[1] in anchors[1]:
+            found.append(_log(mine[keys[0]], anchors[0][keys[0]]) - _log(other[keys[1]], anchors[1][keys[1]]))
+    return numpy.array(found)
+
+
+def _by_process(rows, name):
+    chosen = rows[(rows.implementation == name) & (rows.status == "ok")]
+    return {(row.environment, row.process): row.samples for row in chosen.itertuples()}
+
+
+def _log(first, second):
+    count = min(len(first), len(second))  # samples of a turn belong together
+    return float(numpy.median(numpy.log(numpy.array(first[:count]) / numpy.array(second[:count]))))
+
+
+def _common(rows, environments):
+    """Names, one in each environment, of a variant that both have."""
+    good = rows[rows.status == "ok"]
+    names = [{name.partition("+")[0]: name for name in good[good.environment == one].implementation.unique()}
+             for one in environments]
+    shared = sorted(set(names[0]) & set(names[1]))
+    return [one[shared[0]] for one in names] if shared else None
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """Who is fastest in a scene. `ratios`: {name: Ratio to the winner}, the fastest first."""
+    winner: str
+    ratios: dict
+
+    @property
+    def second(self):
+        return next((name for name in self.ratios if name != self.winner), None)
+
+    @property
+    def margin(self):
+        return self.ratios.get(self.second, NONE)
+
+    @property
+    def decided(self):
+        """Whether the winner is shown to be faster than each other one."""
+        return all(one.low > 1 for name, one in self.ratios.items() if name != self.winner)
+
+    @property
+    def equivalent(self):
+        """The winner and all that are shown to take at most EQUIVALENT times its time."""
+        return tuple(name for name, one in self.ratios.items() if name == self.winner or one.high <= EQUIVALENT)
+
+    @property
+    def open(self):
+        """Those of whom neither is shown: not that they are slower, not that they are as fast."""
+        return tuple(name for name, one in self.ratios.items()
+                     if name != self.winner and one.low <= 1 and one.high > EQUIVALENT)
+
+    @property
+    def settled(self):
+        """Whether it is said of each whether it is as fast as the winner."""
+        return not self.open
+
+
+def rank(rows, names=None):
+    """The Ranking of one scene's rows among `names` (all of their names); None if none of them was timed."""
+    good = rows[rows.status == "ok"]
+    lost = rows[(rows.status != "ok") & (rows.status != "dropped")].implementation
+    chosen = [name for name in good.implementation.unique()
+              if (names is None or name in names) and name not in set(lost)]
+    if not chosen:
+        return None
+    first = chosen[0]
+    to_first = {name: ratio(rows, name, first).value for name in chosen}
+    order = sorted((name for name in chosen if not math.isnan(to_first[name])), key=to_first.get)
+    winner = order[0]
+    return Ranking(winner, {name: Ratio(1.0, 1.0, 1.0) if name == winner else ratio(rows, name, winner)
+                            for name in order})

@@ -1,0 +1,70 @@
+# A setting of a step: the scheme and what is changed beside it, as options of `mbs simulate`, `bench` and `check`.
+from dataclasses import dataclass, field
+
+import yaml
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT
+
+LIST = ROOT / "study" / "settings.yaml"
+ORDERS = {"rattle4": 4, "rattle6": 6, "multistep6": 6}  # of a scheme; the others are of second order
+EVERYONE = {"scheme", "penalty", "tolerance", "max-passes", "projections", "half-step", "judge-every"}  # all serve these
+LOOSE = "loose"  # a tolerance that stands for another one, which the caller of `words` knows
+
+
+@dataclass(frozen=True)
+class Setting:
+    scheme: str = "penalty"
+    changes: tuple = ()  # (option, value) pairs; an option without a value has ""
+    title: str = field(default="", compare=False)
+
+    @property
+    def name(self):
+        """Its title, or "saddle-point, tangent kept"."""
+        return self.title or ", ".join([self.scheme, *(f"{option} {value}".strip() for option, value in self.changes)])
+
+    @property
+    def file_name(self):
+        return self.name.replace(", ", "-").replace(" ", ".")
+
+    @property
+    def order(self):
+        return ORDERS.get(self.scheme, 2)
+
+    @property
+    def loose(self):
+        return ("tolerance", LOOSE) in self.changes
+
+    @property
+    def parent(self):
+        """The scheme without changes: what this is compared with first."""
+        return Setting(self.scheme)
+
+    @property
+    def needs(self):
+        """The words of "settings" in `mbs list --json` that a variant must have: of Registry.serves."""
+        found = {self.scheme.rstrip("46")}
+        for option, value in self.changes:
+            found |= set() if option in EVERYONE else {value} if option == "precision" else {option}
+        return found - {"penalty", "double"}
+
+    def words(self, base=(), tolerance=None):
+        """Of the command line. `base`: (option, value) pairs that the setting's own go before; `tolerance`, m: what
+        the loose one stands for."""
+        pairs = dict(base) | {"scheme": self.scheme} | dict(self.changes)
+        if self.loose:
+            pairs["tolerance"] = f"{tolerance:.3g}"
+        return [word for option, value in pairs.items() for word in (f"--{option}", f"{value}") if word]
+
+
+def read_settings(path=LIST):
+    """[Setting] of study/settings.yaml, the default one first."""
+    found = []
+    for entry in yaml.safe_load(path.read_text(encoding="utf-8"))["settings"]:
+        if not isinstance(entry.get("name"), str) or set(entry) - {"name", "options"}:
+            raise StudyError(f"{path}: {entry} must have a name, may have options, no more")
+        options = {option: "" if value is True else str(value) for option, value in entry.get("options", {}).items()}
+        found.append(Setting(options.pop("scheme", "penalty"), tuple(options.items()), entry["name"]))
+    if len({one.name for one in found}) < len(found) or found[0] != Setting():
+        raise StudyError(f"{path}: names must differ, and the first setting must be the default one")
+    return found

@@ -1,0 +1,63 @@
+# A timed cell is a scene: its contenders take turns in one process (`mbs bench`), and several processes, each with
+# another layout of memory, say how far that matters. analysis/core/timing.py has the statistics.
+from dataclasses import replace
+
+from study.core.cell import Cell
+
+ANCHOR = "csc_klu/refactor"  # stands on no BLAS: in common to the processes of all pairs and builds
+
+
+def measure(lab, scene, contenders, *, processes=5, repetitions=None, settings=(), role="time", seconds=120.0,
+            anchor=ANCHOR, drop=False):
+    """Records of a scene: a process a number and environment. Those on another BLAS pair or build have processes of
+    their own, with the `anchor` in common. Who ends a process is left out with a record that says how, and the
+    environment is measured again without it. Several scenes: call for each."""
+    groups = {}
+    for one in contenders:
+        groups.setdefault(one.environment, []).append(one)
+    words = (*settings, *(("--benchmark_repetitions=%d" % repetitions,) if repetitions else ()))
+    main = max(groups, key=lambda name: len(groups[name]), default=None)
+    common = next((one for one in groups.get(main, []) if one.variant == anchor), None) or next(
+        iter(groups.get(main, [])), None)
+    found = []
+    for name, group in groups.items():
+        if name != main and common.variant not in [one.variant for one in group]:
+            label = f"{common.variant}+{group[0].build or group[0].blas}"
+            group = [replace(common, name=label, blas=group[0].blas, build=group[0].build), *group]
+        cell = Cell("bench", scene, tuple(group), words, role, timed=True, seconds=seconds)
+        found += _environment(lab, cell, processes, drop)
+    return found
+
+
+def _environment(lab, cell, processes, drop):
+    """All processes of one environment, without those who end them."""
+    lost = []
+    while cell.contenders:
+        found = []
+        for number in range(1, processes + 1):
+            record = lab.run([replace(cell, number=number, settings=(*cell.settings, "--seed", number))], drop)[0]
+            found.append(record)
+            if record.status == "dropped":
+                return [*lost, *found]
+            if not record.done:
+                break
+        else:
+            return [*lost, *found]
+        culprits = _culprits(lab, cell, record)
+        lost += [lab.skip(replace(cell, contenders=(one,), role=f"{cell.role}-left-out"), status, reason)
+                 for one, status, reason in culprits]
+        names = {one.name for one, _, _ in culprits}
+        cell = replace(cell, contenders=tuple(one for one in cell.contenders if one.name not in names))
+    return lost
+
+
+def _culprits(lab, cell, record):
+    """[(contender, status, reason)] of those who ended a process: the one that it named, or else each that ends one
+    when it is alone there; all, where none does."""
+    named = record.output.get("culprit", "")
+    chosen = [one for one in cell.contenders if named.startswith(one.variant)]
+    if chosen or len(cell.contenders) == 1:
+        return [(one, record.status, record.reason) for one in chosen or cell.contenders]
+    alone = [(one, lab.one(replace(cell, contenders=(one,), role=f"{cell.role}-alone"))) for one in cell.contenders]
+    return [(one, found.status, found.reason) for one, found in alone if not found.done] or [
+        (one, record.status, f"a process of all: {record.reason}") for one in cell.contenders]
