@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy
 import pytest
 
-from study.pipeline.errors import StudyError
+from analysis.core.errors import StudyError
 from study.tests import moving_mbs
 from study.tests.conftest import ROOT
-from study.viewer import picture, program, sheet, trajectory
-from study.viewer.scene import from_description, upward
+from study.tools.viewer import picture, program, sheet, trajectory
+from study.tools.viewer.scene import from_description, upward
 
 STAND_IN = Path(moving_mbs.__file__)
 
@@ -125,6 +125,7 @@ def test_one_row_is_no_motion(tmp_path):
     (["old"], "lacks something to draw"),
     (["crank", "--output", "page.txt"], "it must end with .html"),
     (["crank", "--output", "nowhere/page.html"], "there is no directory nowhere"),
+    (["crank", "--output", "/proc/page.html"], "cannot write /proc/page.html"),
     (["crank", "--png", "sheet.pdf"], "it must end with .png"),
     (["crank", "--duration", "-1"], "--duration"),
     (["crank", "--window", "3", "2"], "the first before the last"),
@@ -191,7 +192,7 @@ def test_no_name_in_a_scene_can_leave_its_element(tmp_path):
     scene = from_description(description, "</title><script>alert(1)</script>")
     scene.points = [(name.replace("O", "</script><b>"), kind) for name, kind in scene.points]
     motion = trajectory.read(csv_of(tmp_path, "crank"), scene_of("crank"), 100)
-    from study.viewer.page import render
+    from study.tools.viewer.page import render
     text = render(scene, motion, "<i>", [0, 1, 0])
     assert "<b>" not in text and "alert(1)</script>" not in text and "<i>" not in text
 

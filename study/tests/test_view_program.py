@@ -10,6 +10,7 @@ from study.tests.browser import Browser
 from study.tests.conftest import ROOT
 from study.tests.test_view import data_of, view
 
+pytestmark = pytest.mark.slow
 PROGRAM = Path(os.environ.get("MBS_PROGRAM", ROOT / "build" / "mbs"))
 
 

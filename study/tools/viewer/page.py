@@ -6,7 +6,7 @@ from pathlib import Path
 import jinja2
 import numpy
 
-from study.viewer import picture
+from study.tools.viewer import picture
 
 FOLDER = Path(__file__).parent / "page"
 SCRIPTS = ("data.js", "camera.js", "grid.js", "elements.js", "symbols.js", "stage.js", "charts.js",

@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from study.pipeline.errors import StudyError
+from analysis.core.errors import StudyError
 
 KINDS = ("free", "fixed", "driven", "vector", "marker")
 HIDDEN = "hidden"  # a point that the scene does not name and no element needs: not drawn

@@ -6,9 +6,10 @@ import tempfile
 import webbrowser
 from pathlib import Path
 
-from study.pipeline.errors import StudyError
-from study.pipeline.options import Parser
-from study.pipeline.prepare import need_modules
+from analysis.core.errors import StudyError
+from analysis.core.files import write
+from study.core.options import Parser
+from study.core.main import need_modules
 
 VALUES_AT_MOST = 2_000_000  # coordinates in a page: 11 MB of it
 IMPLEMENTATION = "csc_klu/refactor"
@@ -17,8 +18,8 @@ IMPLEMENTATION = "csc_klu/refactor"
 def view(arguments):
     options = _options(arguments)
     need_modules("matplotlib", "jinja2")
-    from study.viewer import program, trajectory  # they need the modules
-    from study.viewer.scene import upward
+    from study.tools.viewer import program, trajectory  # they need the modules
+    from study.tools.viewer.scene import upward
     scene = program.describe(options.scene)
     if not scene.points:
         raise StudyError(f"{options.scene} has no points to show")
@@ -100,26 +101,20 @@ def _check(options):
         path = Path(name)
         if path.suffix.lower() != ending:
             raise StudyError(f"{flag} is {name!r}: it must end with {ending}")
-        if path.resolve() in inputs or path.is_dir() or not path.parent.is_dir():
+        if path.resolve() in inputs or os.path.isdir(path) or not os.path.isdir(path.parent):
             raise StudyError(f"{flag}: cannot write {name}: "
                              + ("it is an input" if path.resolve() in inputs else
-                                "it is a directory" if path.is_dir() else
+                                "it is a directory" if os.path.isdir(path) else
                                 f"there is no directory {path.parent}"))
 
 
 def _write(options, scene, motion, note, up):
-    from study.viewer import page, sheet
+    from study.tools.viewer import page, sheet
     outputs = [(options.output, page.render(scene, motion, note, up).encode())]
     if options.png:
         outputs.append((options.png, sheet.draw(scene, motion, up, options.window)))
     for name, content in outputs:
-        partial = Path(f"{name}.partial")
-        try:
-            partial.write_bytes(content)
-            os.replace(partial, name)
-        except OSError as error:
-            partial.unlink(missing_ok=True)
-            raise StudyError(f"cannot write {name}: {error.strerror}") from error
+        write(name, lambda partial, content=content: partial.write_bytes(content))
         print(f"{name}: {len(motion.times)} frames" if name == options.output else name)
     if options.open and not webbrowser.open(Path(options.output).resolve().as_uri()):
         raise StudyError(f"no browser found to open {options.output} in")

@@ -5,9 +5,9 @@ import matplotlib.pyplot as plt
 import numpy
 from matplotlib.transforms import ScaledTranslation
 
-from study.pipeline.errors import StudyError
-from study.viewer import picture
-from study.viewer.instant import INK, draw_instant, draw_triad
+from analysis.core.errors import StudyError
+from study.tools.viewer import picture
+from study.tools.viewer.instant import INK, draw_instant, draw_triad
 
 FRAMES = 8
 INCHES = 10.0   # width of the sheet

@@ -3,7 +3,7 @@ from dataclasses import dataclass
 
 import numpy
 
-from study.viewer.scene import NO_PLACES
+from study.tools.viewer.scene import NO_PLACES
 
 TRACES = 2         # by default, at most
 CANDIDATES = 50    # points that are looked at for a trace

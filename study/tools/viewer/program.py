@@ -9,9 +9,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-from study.pipeline.errors import StudyError
-from study.pipeline.layout import ROOT, program
-from study.viewer.scene import from_description
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT
+from study.core.executor import program_of
+from study.tools.viewer.scene import from_description
 
 STEPS = (1.25e-3, 1.25e-4, 1.25e-5, 1.25e-6)  # s; tried in this order until the run is right
 STEPS_AT_MOST = 8000     # of an automatic step: 10 s of the first
@@ -86,9 +87,9 @@ def _simulate(scene, implementation, step, duration, more):
 
 def _run(arguments):
     """(exit status, standard output, lines of standard error); its progress is shown meanwhile."""
-    executable = ROOT / program()  # an absolute MBS_PROGRAM stays as it is
+    executable = ROOT / program_of()  # an absolute MBS_PROGRAM stays as it is
     if not os.access(executable, os.X_OK):
-        raise StudyError(f"{program()} is not built yet: run study/setup")
+        raise StudyError(f"{program_of()} is not built yet: run study/setup")
     ours, its = pty.openpty()  # mbs shows its progress to terminals only
     with tempfile.TemporaryFile("w+", encoding="utf-8") as out:
         process = subprocess.Popen([executable, *map(str, arguments)], stdin=subprocess.DEVNULL,

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy
 
-from study.pipeline.errors import StudyError
+from analysis.core.errors import StudyError
 
 CURVES = ("kinetic_energy", "potential_energy", "constraint_violation")
 NUMBERS = b"0123456789+-.eE,"
