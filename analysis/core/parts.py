@@ -8,7 +8,8 @@ LIST = ROOT / "study" / "parts.yaml"
 def parts():
     """{name: its question}, in order."""
     import yaml  # here, so that a bad command line is refused before anything is installed
-    return yaml.safe_load(LIST.read_text(encoding="utf-8"))
+    listed = yaml.safe_load(LIST.read_text(encoding="utf-8"))
+    return {name: question for name, question in listed.items() if (ROOT / "study" / name / "plan.py").exists()}
 
 
 def need_parts(names):

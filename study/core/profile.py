@@ -40,8 +40,10 @@ def read(path, name):
     need_keys(path, "the profile", data, {"title", "blas", "dropped", "parts"})
     if not isinstance(data["blas"], dict) or "all" not in data["blas"]:
         raise StudyError(f"{path}: blas must name a pair for all")
-    need_keys(path, "parts", data["parts"], set(parts()))
+    need_keys(path, "parts", data["parts"], set(parts()) | set(data["parts"]))
     for part, settings in data["parts"].items():
+        if part not in parts():
+            continue
         wanted = plan_of(part).SETTINGS
         need_keys(path, part, settings, {"seconds", *wanted})
         for key, kind in {"seconds": float, **wanted}.items():

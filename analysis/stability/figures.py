@@ -1,4 +1,4 @@
-# The map of one scheme and precision: a panel a size, outcome and error over step and penalty factor.
+# Maps: one a scheme and precision, a panel a size; outcome and error over step and penalty factor.
 import matplotlib.pyplot as plt
 import numpy
 from matplotlib.colors import LogNorm
@@ -6,7 +6,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
-from analysis.style import GREY, missing
+from analysis.core.style import GREY, missing
 
 HATCHES = {"not-converged": ("#ffffff", "////"), "diverged": ("#e4e4e4", ""),
            "wrong-branch": ("#ffffff", "xxxx"), "timeout": ("#ffffff", "----"),
@@ -21,8 +21,14 @@ LINES = {  # of windows.csv and, "automatic", of the runs that asked for it
     "automatic": {"color": "black", "linestyle": "-", "label": "automatic α"}}
 
 
-def draw(table, windows, scheme, precision):
-    """The figure of `table`'s rows (stability.csv) of one scheme and precision."""
+def draw(tables, view):
+    maps = tables["maps"][tables["maps"].status != "dropped"]
+    return {f"{scheme}-{precision}": one_map(maps, tables["windows"], scheme, precision)
+            for scheme, precision in dict.fromkeys(zip(maps.scheme, maps.precision))}
+
+
+def one_map(table, windows, scheme, precision):
+    """The figure of the rows of one scheme and precision."""
     rows = table[(table.scheme == scheme) & (table.precision == precision)]
     sizes = sorted(rows.loops.unique())
     columns = min(len(sizes), 3 if len(sizes) in (3, 5, 6, 9) else 4)
@@ -38,7 +44,7 @@ def draw(table, windows, scheme, precision):
                windows[(windows.loops == loops) & (windows.precision == precision)],
                # The estimates of the upper end hold for the penalty form.
                ("lower", "upper") if scheme == "penalty" else ("lower",))
-        axes.set_title(f"N = {loops}, n = {2 * loops + 2}")
+        axes.set_title(f"N = {loops:.0f}, n = {2 * loops + 2:.0f}")
         if place + columns >= len(sizes):
             axes.set_xlabel("step Δt, ms")
             axes.tick_params(labelbottom=True)

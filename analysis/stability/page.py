@@ -1,0 +1,49 @@
+# What the page says besides its maps: outcomes counted, valleys, where the automatic factor misses one.
+ACCURATE = 1e-2  # m, the largest position error that "ok" allows
+
+
+def context(tables, view):
+    table = tables["maps"][tables["maps"].status != "dropped"]
+    parts = []
+    for (scheme, precision), rows in table.groupby(["scheme", "precision"], sort=False):
+        parts.append({"scheme": scheme, "precision": precision, "name": f"{scheme}-{precision}",
+                      "implementation": rows.implementation.iloc[0], "counts": rows.status.value_counts().to_dict(),
+                      "valleys": valleys(rows), "automatic": automatic(rows)})
+    missed = {}  # {precision: cells of its maps whose automatic penalty factor misses a valley}
+    for part in parts:
+        missed[part["precision"]] = missed.get(part["precision"], 0) + len(part["automatic"][0])
+    scaled = table[table.penalty_asked != "auto"].alpha_dt2_4
+    whole = tables["whole"]
+    return {"settings": view.settings, "maps": parts, "missed": missed, "limit": ACCURATE, "total": len(table),
+            "least": scaled.min(), "most": scaled.max(), "dropped": len(tables["maps"]) - len(table),
+            "statuses": list(dict.fromkeys(["ok", "degraded", *sorted(table.status.unique())])),
+            "inaccurate": inaccurate(table).to_dict("records"), "whole": whole.to_dict("records"),
+            "sizes": [(*key, [round(one) for one in rows.loops])
+                      for key, rows in whole.groupby(["scheme", "implementation"], sort=False)]}
+
+
+def automatic(rows):
+    """(runs whose automatic penalty factor is not ok though another one at their step is; those where none is)"""
+    known, missed, none = valleys(rows), [], []
+    for row in rows[(rows.penalty_asked == "auto") & (rows.status != "ok")].to_dict("records"):
+        valley = known.get(row["loops"], {}).get(row["step"])
+        (missed if valley else none).append(row | {"valley": valley})
+    return missed, none
+
+
+def inaccurate(table):
+    """Rows that are "ok" without a position error of at most ACCURATE: there must be none."""
+    return table[(table.status == "ok") & ~(table.position_error_max <= ACCURATE)]
+
+
+def valleys(rows):
+    """{loops: {step: (least, largest, ok, between)}} of alpha step^2 / 4: the ends of the "ok" cells,
+    how many cells are ok and how many there are between the ends; None where none is ok."""
+    found = {}
+    grid = rows[rows.penalty_asked != "auto"]
+    for (loops, step), group in grid.groupby(["loops", "step"]):
+        good = group[group.status == "ok"].alpha_dt2_4
+        found.setdefault(loops, {})[step] = None if good.empty else (
+            good.min(), good.max(), len(good), int(group.alpha_dt2_4.between(good.min(),
+                                                                             good.max()).sum()))
+    return found

@@ -1,0 +1,60 @@
+# Rows of maps, windows and whole runs from their records.
+import pandas
+
+from analysis.core.outcomes import of_run
+
+FIGURES = ("failed_at", "position_error_max", "energy_drift_max", "passes_per_step", "steps_at_limit")
+MUST_HOLD = {  # scheme: up to which N, position error (m), passes a step, steps at the pass limit
+    "penalty": (200, 5e-3, 3.0, None), "saddle-point": (2000, 2e-3, 2.2, 0)}
+
+
+def build(records, view):
+    found = {"maps": [], "windows": [], "whole": []}
+    for record in records:
+        if record.role == "window" and record.done:
+            found["windows"].append(_window(record))
+        elif record.role == "map":
+            found["maps"].append(_run(record))
+        elif record.role == "whole":
+            row = {key: value for key, value in _run(record).items()
+                   if key not in ("precision", "step", "penalty_asked", "alpha_dt2_4", "failed_at")}
+            found["whole"].append(row | {"must_hold": holds(row)})
+    order = ["scheme", "precision", "loops", "step", "penalty"]
+    tables = {name: pandas.DataFrame(rows) for name, rows in found.items()}
+    return {name: table.sort_values([key for key in order if key in table], kind="stable") for name, table in tables.items()}
+
+
+def _options(record):
+    words = record.cell["settings"]
+    return {key.removeprefix("--"): value for key, value in zip(words[::2], words[1::2])}
+
+
+def _run(record):
+    asked, (status, reason) = _options(record), of_run(record)
+    penalty, step = asked["penalty"], float(asked["step"])
+    alpha = record.output.get("penalty", None if penalty == "auto" else float(penalty))
+    return {"loops": _loops(record), "scheme": asked["scheme"], "precision": asked["precision"],
+            "implementation": record.cell["contenders"][0], "step": step, "penalty_asked": penalty, "penalty": alpha,
+            "alpha_dt2_4": alpha and float(f"{alpha * step**2 / 4:.6g}"), "status": status, "reason": reason,
+            "record": record.name} | {key: record.output.get(key) for key in FIGURES}
+
+
+def _window(record):
+    asked, window = _options(record), record.output["penalty_window"]
+    return {"loops": _loops(record), "precision": asked["precision"], "record": record.name} | {
+        key: window[key] for key in ("step", "lower", "lower_from", "upper", "upper_from")}
+
+
+def _loops(record):
+    return int(record.cell["scene"].partition(":")[2])
+
+
+def holds(row):
+    """"yes", "no", or "" where nothing is asked or nothing was run."""
+    promised = MUST_HOLD.get(row["scheme"])
+    if promised is None or row["loops"] > promised[0] or row["status"] == "dropped":
+        return ""
+    _, error, passes, at_limit = promised
+    kept = (row["status"] == "ok" and row["position_error_max"] < error and row["passes_per_step"] <= passes
+            and (at_limit is None or row["steps_at_limit"] <= at_limit))
+    return "yes" if kept else "no"

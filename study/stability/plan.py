@@ -1,0 +1,71 @@
+# The N-four-bar over step and penalty factor: one untimed run a cell of the maps; whole runs with all automatic.
+from dataclasses import dataclass
+
+from study.core.cell import Cell
+from study.core.setting import Setting
+
+SETTINGS = {"loops": list,      # sizes of the maps
+            "powers": list,     # of two: the steps are 1.25e-3 s times these
+            "decades": list,    # of alpha step^2 / 4, in kg/m^2
+            "duration": float,  # s, of a run of the maps
+            "whole": dict}      # {scheme: sizes} of the runs of 20 s
+IMPLEMENTATIONS = {"double": "csc_klu/refactor", "single": "compiled_ldl/fronts"}
+FORMS = ("penalty", "saddle-point")
+STEP, WHOLE = 1.25e-3, 20.0
+AUTOMATIC = "auto"
+MAPS = 0.7  # of the budget
+
+
+def columns(settings, studyset):
+    return {"maps": MAPS * settings["seconds"], "whole": (1 - MAPS) * settings["seconds"]}
+
+
+def run(lab, column):
+    {"maps": maps, "whole": whole}[column](lab)
+
+
+def maps(lab):
+    steps = [STEP * 2.0**power for power in lab.settings["powers"]]
+    scaled = [AUTOMATIC, *(10.0**power for power in lab.settings["decades"])]
+    served = _served(lab)
+    lab.run([Cell("describe", f"four-bar:{loops}", (), ("--step", f"{step:g}", "--precision", precision), "window")
+             for loops in lab.settings["loops"] for precision in dict.fromkeys(one for _, one in served)
+             for step in steps])
+    lab.run([Cell("simulate", f"four-bar:{point.loops}", (one,), point.words(lab.settings["duration"]), "map")
+             for loops in lab.settings["loops"] for (scheme, precision), one in served.items()
+             for step in steps for value in scaled for point in [Point(loops, scheme, precision, step, value)]],
+            drop=True)
+
+
+@dataclass(frozen=True)
+class Point:
+    """One run of a map. `scaled`: alpha step^2 / 4, or AUTOMATIC."""
+    loops: int
+    scheme: str
+    precision: str
+    step: float
+    scaled: float | str
+
+    def words(self, duration):
+        penalty = AUTOMATIC if self.scaled == AUTOMATIC else f"{4 * self.scaled / self.step**2:.8g}"
+        return ("--scheme", self.scheme, "--precision", self.precision, "--penalty", penalty, "--step", f"{self.step:g}",
+                "--duration", f"{duration:g}", "--judge-every", "1")
+
+
+def whole(lab):
+    one = lab.contender(IMPLEMENTATIONS["double"])
+    cells = [Cell("simulate", f"four-bar:{loops}", (one,),
+                  Point(loops, scheme, "double", STEP, AUTOMATIC).words(WHOLE), "whole", seconds=300)
+             for scheme, sizes in lab.settings["whole"].items()
+             if one and lab.registry.serves(one.variant, *Setting(scheme).needs) for loops in sizes]
+    lab.run(sorted(cells, key=lambda cell: int(cell.scene.partition(":")[2])), drop=True)
+
+
+def _served(lab):
+    """{(scheme, precision): contender}: who draws which map, where it takes part and serves it."""
+    found = {}
+    for precision, name in IMPLEMENTATIONS.items():
+        one = lab.contender(name)
+        found |= {(scheme, precision): one for scheme in FORMS
+                  if one and lab.registry.serves(name, scheme, precision)}
+    return found
