@@ -1,14 +1,13 @@
 # The site of a set: a page a part, index.html with the answers, one look.
 import base64
 import importlib
-import json
 from pathlib import Path
 
 import jinja2
 import matplotlib.pyplot as plt
 
 from analysis.core import records, schema
-from analysis.core.files import ROOT, read_json, write_text
+from analysis.core.files import ROOT, read_json, write_json, write_text
 from analysis.core.parts import parts
 from analysis.core.style import save
 from analysis.core.text import number
@@ -27,21 +26,27 @@ def write_part(folder, part):
     known = _module(part, "page").context(tables, view)
     _write(folder, part, _template(ROOT / "analysis" / part / "page.html.j2").render(
         **_frame(folder, part), **known, figures=figures, schema=schema.of_part(part)))
-    write_text(folder / part / "answers.json", json.dumps(
-        _module(part, "sentences").answers(tables, view), ensure_ascii=False, indent=1) + "\n")
+    said = _module(part, "sentences")
+    write_json(folder / part / "answers.json", {
+        "answers": said.answers(tables, view), "cases": said.cases(tables, view) if hasattr(said, "cases") else []})
     write_index(folder)
 
 
 def write_index(folder):
     """index.html: the answers of the parts that are done; and a page for each of the others."""
     frame = _frame(folder, "index")
-    answers = {part: read_json(folder / part / "answers.json") if (folder / part / "answers.json").exists() else None
-               for part in parts()}
+    answers = answers_of(folder)
     _write(folder, "index", _template(HERE / "index.html.j2").render(**frame, answers=answers))
     for part, known in answers.items():
         if known is None:
             _write(folder, part, _template(HERE / "pending.html.j2").render(
                 **_frame(folder, part), chosen=part in frame["facts"]["parts"]))
+
+
+def answers_of(folder):
+    """{part: what its sentences.py says: "answers" and "cases" (your case, take this, link)}; None of one not done."""
+    return {part: read_json(folder / part / "answers.json") if (folder / part / "answers.json").exists() else None
+            for part in parts()}
 
 
 def _write(folder, name, text):
@@ -56,7 +61,7 @@ def _frame(folder, part):
     """What the frame of every page shows."""
     view = View(folder, part)
     return {"part": part, "parts": parts(), "question": parts().get(part, ""), "facts": view.facts,
-            "context": view.context, "libraries": view.libraries}
+            "context": view.context}
 
 
 def _template(path):

@@ -1,5 +1,4 @@
 # What tables, figures and pages of a part may know of their set besides its records.
-import json
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -33,9 +32,3 @@ class View:
     @property
     def context(self):
         return self.facts["context"]
-
-    @property
-    def libraries(self):
-        """{library: version}"""
-        text = self.context.get("libraries", "{}")
-        return json.loads(text) if text.startswith("{") else {"libraries": text}

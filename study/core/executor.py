@@ -16,8 +16,9 @@ CULPRIT = re.compile(r"ended by \S+ in (\S+)")  # what `mbs bench` says where a 
 
 
 def program_of(name="mbs", build=""):
-    """Path of a program, relative to the repository; MBS_PROGRAM stands in for `mbs` in tests."""
-    if name == "mbs" and "MBS_PROGRAM" in os.environ:
+    """Path of a program, relative to the repository; MBS_PROGRAM stands in for `mbs` in tests, but for that of
+    another revision ("against/REVISION/build")."""
+    if name == "mbs" and "/" not in build and "MBS_PROGRAM" in os.environ:
         return os.environ["MBS_PROGRAM"]
     return f"build-{build}/{name}" if build else f"build/{name}"
 
@@ -61,7 +62,7 @@ def run(cell, context, scratch=None):
     own = found.pop("context", None)
     if own and context:
         need_same(context, own, " ".join(record["command"]))
-    return record | {"output": compact(found), "context": context or own or {}}
+    return record | {"output": compact(found), "context": context or brief(own or {})}
 
 
 def compact(output):
@@ -81,6 +82,14 @@ def compact(output):
 
 
 FINGERPRINT = ("machine", "commit", "dirty", "compiler", "flags", "build_type", "blas", "blas_loaded", "libraries")
+
+
+KEPT = (*FINGERPRINT, "cpu_model", "kernel", "num_cpus")
+
+
+def brief(context):
+    """What a record keeps of the context that a program prints."""
+    return {key: context[key] for key in KEPT if key in context}
 
 
 def fingerprint(context):

@@ -11,18 +11,28 @@ from study.core import executor, locks
 from study.core.progress import Progress
 
 class Lab:
-    """One column of a part in a set. `settings`: the profile's of the part; `seconds`: the column's budget."""
+    """One column of a part in a set. `seconds`: the column's budget."""
 
     def __init__(self, studyset, part, column, seconds=float("inf")):
         self.set, self.part, self.column, self.budget = studyset, part, column, seconds
-        self.settings = studyset.profile.parts[part]
-        self.registry, self.contenders = studyset.registry, studyset.contenders
         self.base = studyset.folder / "raw" / part
         self.progress, self.names, self.spent = Progress(studyset, part, column), [], 0.0
 
     def contender(self, name):
         """The one of a variant; None if it does not take part."""
         return next((one for one in self.contenders if one.name == name), None)
+
+    @property
+    def settings(self):
+        return self.set.profile.parts[self.part]
+
+    @property
+    def registry(self):
+        return self.set.registry
+
+    @property
+    def contenders(self):
+        return self.set.contenders
 
     def one(self, cell):
         return self.run([cell])[0]
