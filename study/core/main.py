@@ -57,9 +57,9 @@ def run(arguments):
     if options.results == "":
         raise StudyError("--results is empty: it must be a directory")
     need_modules("yaml")
-    profile = profiles.load(options.profile)
     need_parts(options.part)
     chosen = [part for part in parts() if not options.part or part in options.part]
+    profile = profiles.load(options.profile, chosen)
     name = "-".join([profile.name, *(only.replace("/", ".") for only in options.only)])
     folder = Path(options.results).absolute() if options.results else ROOT / "results" / "local" / name
     if options.dry_run:
@@ -115,7 +115,7 @@ def list_choices():
         print(f"  {part:28} {question}")
     print("profiles:")
     for name in profiles.names():
-        print(f"  {name:28} {profiles.load(name).title}")
+        print(f"  {name:28} {profiles.load(name, []).title}")
     print("implementations:")
     for entry in listed().entries:
         for variant in entry["variants"] if entry["available"] else []:

@@ -22,13 +22,14 @@ def names():
     return sorted(path.stem for path in FOLDER.glob("*.yaml"))
 
 
-def load(name):
+def load(name, chosen=None):
+    """The profile called `name`; the settings of the `chosen` parts are checked, None: of all."""
     if name not in names():
         raise StudyError(f"unknown profile '{name}'; known: {', '.join(names())}")
-    return read(FOLDER / f"{name}.yaml", name)
+    return read(FOLDER / f"{name}.yaml", name, chosen)
 
 
-def read(path, name):
+def read(path, name, chosen=None):
     """The profile in a file; StudyError if a setting is missing, unknown or of another kind."""
     import yaml
     try:
@@ -42,7 +43,7 @@ def read(path, name):
         raise StudyError(f"{path}: blas must name a pair for all")
     need_keys(path, "parts", data["parts"], set(parts()) | set(data["parts"]))
     for part, settings in data["parts"].items():
-        if part not in parts():
+        if part not in (parts() if chosen is None else chosen):
             continue
         wanted = plan_of(part).SETTINGS
         need_keys(path, part, settings, {"seconds", *wanted})

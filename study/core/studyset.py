@@ -34,7 +34,7 @@ class StudySet:
 
     @cached_property
     def profile(self):
-        return profiles.read(self.folder / "profile.yaml", self.facts["profile"])
+        return profiles.read(self.folder / "profile.yaml", self.facts["profile"], self.facts["parts"])
 
     @cached_property
     def contenders(self):
