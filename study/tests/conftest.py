@@ -1,4 +1,5 @@
-# A study on the fake `mbs`, run once and copied for every test that damages it.
+# The study as a user starts it, on the real program; a whole run of the smoke profile that tests share.
+import fcntl
 import os
 import shutil
 import subprocess
@@ -8,31 +9,36 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent.parent
+PROGRAM = ROOT / "build" / "mbs"
 FAKE = Path(__file__).with_name("fake_mbs.py")
-TEMPORARY = tempfile.TemporaryDirectory()  # apart from the machine's lock: a real study may run
+TEMPORARY = tempfile.TemporaryDirectory()  # apart from the machine's locks: a real study may run
 
 
-def environment(**more):
-    clean = {key: value for key, value in os.environ.items()
-             if not key.startswith(("FAKE_", "MBS_"))}
-    return clean | {"MBS_PROGRAM": str(FAKE), "TMPDIR": TEMPORARY.name} | more
+def environment(program=PROGRAM, **more):
+    clean = {key: value for key, value in os.environ.items() if not key.startswith(("FAKE_", "MBS_"))}
+    return clean | {"MBS_PROGRAM": str(program), "TMPDIR": TEMPORARY.name} | more
 
 
-def study(*arguments, **more):
-    """Runs an entry point of study/, `study("run", ...)`, on the fake program."""
-    return subprocess.run([ROOT / "study" / arguments[0], *arguments[1:]], capture_output=True,
-                          text=True, env=environment(**more), timeout=300)
+def study(*arguments, program=PROGRAM, seconds=300, **more):
+    """Runs an entry point of study/, `study("run", ...)`; with MBS_PROGRAM there is no set-up."""
+    return subprocess.run([ROOT / "study" / arguments[0], *map(str, arguments[1:])], capture_output=True,
+                          text=True, env=environment(program, **more), timeout=seconds)
 
 
 @pytest.fixture(scope="session")
-def pristine(tmp_path_factory):
-    results = tmp_path_factory.mktemp("fake") / "results"
-    done = study("run", "--profile", "smoke", "--results", results)
-    assert done.returncode == 0, done.stderr
-    return results
+def smoke(tmp_path_factory, worker_id):
+    """Results of the whole smoke profile; made once, also for several workers. Not to be changed."""
+    base = tmp_path_factory.getbasetemp()
+    folder = (base if worker_id == "master" else base.parent) / "smoke"
+    with open(folder.with_name("smoke.lock"), "w", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not (folder / "index.html").exists():
+            done = study("run", "--profile", "smoke", "--results", folder, seconds=900)
+            assert done.returncode == 0, done.stderr + (folder / "run.log").read_text()[-3000:]
+    return folder
 
 
 @pytest.fixture
-def results(pristine, tmp_path):
-    """Results of one's own: a copy, times kept."""
-    return Path(shutil.copytree(pristine, tmp_path / "results"))
+def results(smoke, tmp_path):
+    """A copy of one's own, times kept."""
+    return Path(shutil.copytree(smoke, tmp_path / "results"))

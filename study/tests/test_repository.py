@@ -1,0 +1,67 @@
+# The repository as a visitor finds it: what stands at the top, how long texts are, numbers that come from sets.
+import re
+import subprocess
+
+import pytest
+
+from analysis.core import fragments, records
+from analysis.core.files import ROOT, read_json
+from analysis.core.parts import parts
+
+TRACKED = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\n")[:-1]
+SETS = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))
+# A measured number: one with a unit of time or a ratio behind it. Steps, durations and masses of scenes are settings.
+MEASURED = re.compile(r"\d(?:[\d.,]*\d)?\s?(?:µs|ns|times (?:faster|slower|less)|× (?:faster|slower))")
+
+
+def test_the_top_level_holds_what_the_readme_names():
+    named = (ROOT / "README.md").read_text(encoding="utf-8")
+    top = {path.split("/")[0] for path in TRACKED}
+    usual = {"README.md", "LICENSE", "CITATION.cff", "CMakeLists.txt", "CMakePresets.json", "CONTRIBUTING.md"}
+    strange = {name for name in top if not name.startswith(".") and name not in usual and f"`{name}/`" not in named}
+    assert strange == set()
+
+
+def test_there_are_fewer_than_1800_files():
+    assert len(TRACKED) < 1800
+
+
+def test_readmes_are_short():
+    assert len((ROOT / "README.md").read_text().splitlines()) <= 70
+    long = {path: count for path in TRACKED if path.endswith(".md")
+            for count in [len((ROOT / path).read_text().splitlines())] if count > 150}
+    assert long == {}
+
+
+@pytest.mark.parametrize("path", fragments.texts(), ids=lambda path: str(path.relative_to(ROOT)))
+def test_numbers_in_texts_are_those_of_the_sets(path):
+    text = path.read_text(encoding="utf-8")
+    assert fragments.filled(text) == text, "study/store fills it anew"
+
+
+def test_no_measured_number_is_typed():
+    typed = {}
+    for path in fragments.texts():
+        own = fragments.MARKED.sub("", path.read_text(encoding="utf-8"))
+        found = MEASURED.findall(own)
+        if found:
+            typed[str(path.relative_to(ROOT))] = found
+    assert typed == {}
+
+
+def test_at_most_three_sets_are_stored_each_of_a_clean_tree():
+    assert len(SETS) <= 3
+    for folder in SETS:
+        assert str(read_json(folder / "set.json")["context"]["dirty"]).lower() == "false"
+
+
+@pytest.mark.parametrize("folder", SETS, ids=lambda folder: folder.name)
+def test_a_stored_set_has_all_parts_of_one_build(folder):
+    facts = read_json(folder / "set.json")
+    assert set(facts["parts"]) == set(parts())
+    for part in parts():
+        found = records.read_part(folder, part)
+        assert found, part
+        for one in found:
+            assert (one.context["commit"], one.context["machine"]) == (
+                facts["context"]["commit"], facts["context"]["machine"]), one.name

@@ -1,0 +1,78 @@
+# The site of a whole run in headless Chromium: every page, light and dark, narrow and wide, every link.
+import pytest
+
+from analysis.core.parts import parts
+from study.tests.browser import Browser
+
+pytestmark = pytest.mark.slow
+PAGES = ["index", *parts()]
+
+LINKS = "[...document.querySelectorAll('a[href]')].map(one => one.getAttribute('href'))"
+# Elements that hide something of their width, and what the page itself has beyond its width.
+HIDDEN = """[...document.querySelectorAll('main *')].filter(one => one.scrollWidth > one.clientWidth + 1 &&
+  getComputedStyle(one).overflowX !== 'visible' && one.checkVisibility()).map(one => one.outerHTML.slice(0, 120))"""
+BEYOND = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+CONTRAST = """(() => {
+  const colour = getComputedStyle(document.body), brightness = text => text.match(/[\\d.]+/g).slice(0, 3)
+    .map(Number).reduce((sum, one) => sum + one, 0) / 3;
+  return Math.abs(brightness(colour.color) - brightness(colour.backgroundColor));
+})()"""
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    with Browser(tmp_path_factory.mktemp("profile")) as browser:
+        yield browser
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_is_whole_at_every_width(browser, smoke, name):
+    for width in (360, 1300, 1600):
+        browser.resize(width, 900)
+        browser.open(smoke / f"{name}.html")
+        assert browser.value(BEYOND) <= 0, f"{name}.html is wider than {width} px"
+        if width >= 1300:
+            browser.value("document.querySelectorAll('details').forEach(one => one.open = true)")
+            assert browser.value(HIDDEN) == [], f"{name}.html hides something at {width} px"
+    assert browser.value("document.querySelectorAll('h1').length") == 1
+    assert browser.value("[...document.images].every(one => one.complete && one.naturalWidth > 0 && one.alt)")
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_it_can_be_read_in_light_and_dark(browser, smoke, name):
+    for scheme in ("light", "dark"):
+        browser.prefer(prefers_color_scheme=scheme)
+        browser.open(smoke / f"{name}.html")
+        assert browser.value(CONTRAST) > 150, scheme
+    browser.prefer(prefers_color_scheme="light")
+
+
+def test_every_link_leads_somewhere(browser, smoke):
+    broken = []
+    for name in PAGES:
+        browser.open(smoke / f"{name}.html")
+        for link in browser.value(LINKS):
+            file, _, anchor = link.partition("#")
+            target = smoke / (file or f"{name}.html")
+            if not target.exists():
+                broken.append((name, link))
+            elif anchor and f'id="{anchor}"' not in target.read_text(encoding="utf-8"):
+                broken.append((name, link))
+    assert broken == []
+
+
+def test_one_clicks_through_all_parts_without_a_complaint(browser, smoke):
+    browser.open(smoke / "index.html")
+    for name in parts():
+        browser.value(f"document.querySelector('nav a[href=\"{name}.html\"]').click()")
+        browser.wait(f"location.pathname.endsWith('/{name}.html') && document.readyState === 'complete'")
+        assert browser.value("document.querySelector('nav a[aria-current]').textContent") == name
+    assert browser.complaints == []
+    assert all(address.startswith(("file:", "data:")) for address in browser.requests)
+
+
+def test_every_part_answers(smoke):
+    from analysis.core.files import read_json
+    for part in parts():
+        answers = read_json(smoke / part / "answers.json")["answers"]
+        assert 1 <= len(answers) <= 4 and all(one["text"].endswith(".") for one in answers), part
