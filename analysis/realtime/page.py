@@ -1,0 +1,28 @@
+# What the page says besides its figures: who is late, what judging costs.
+from analysis.core.outcomes import FINISHED
+from analysis.realtime.figures import answer
+from analysis.realtime.verdict import HOPELESS
+
+
+def context(tables, view):
+    steps, largest, machine = tables["steps"], tables["largest"], tables["machine"]
+    return {"settings": view.settings, "steps": steps.to_dict("records"), "finished": FINISHED, "hopeless": HOPELESS,
+            "largest": [row | {"answer": answer(one)} for row, one in zip(largest.to_dict("records"), largest.itertuples())],
+            "dropped": int((steps.status == "dropped").sum()), "incomplete": int((largest.complete == False).sum()),  # noqa: E712
+            "tried": len(tables["tried"]), "machine": losses(machine), "judging": judging(steps)}
+
+
+def losses(machine):
+    """[(deadline, processes, seconds, lost, largest gap)] of the null processes."""
+    done = machine[machine.status == "done"]
+    return [(step, len(rows), rows.seconds.sum(), rows.lost.sum(), rows.largest_us.max())
+            for step, rows in done.groupby("step")]
+
+
+def judging(steps):
+    """The row of the largest share of a step that judging takes; None without times."""
+    rows = steps[steps.judge_us.notna() & steps.mean_us.notna()]
+    if rows.empty:
+        return None
+    share = rows.judge_us / rows.mean_us
+    return rows.loc[share.idxmax()].to_dict() | {"share": share.max()}

@@ -1,0 +1,78 @@
+# Distributions, what the search tried and what it came to, and the losses of null processes, from their records.
+import pandas
+
+from analysis.core.outcomes import of_run
+from analysis.realtime.verdict import judge, lost, missed
+
+TIMES = ("mean", "median", "p99", "p999", "max")
+END = "end of the search"
+
+
+def build(records, view):
+    nulls = {_words(one)["beside"]: one for one in records if one.role == "null"}
+    order = {name: place for place, name in enumerate(view.registry.variants)}
+    found = {role: pandas.DataFrame([_run(one, nulls.get(one.name)) for one in records if one.role == role])
+             for role in ("steps", "search")}
+    found = {role: _sorted(table, order) if len(table) else table for role, table in found.items()}
+    return {"steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"),
+            "tried": found["search"], "largest": _largest(found["search"]), "machine": _machine(nulls.values())}
+
+
+def _words(record):
+    words = record.cell["settings"]
+    return {key.removeprefix("--"): value for key, value in zip(words[::2], words[1::2])}
+
+
+def _run(record, null):
+    words, (status, reason) = _words(record), of_run(record)
+    times = record.output.get("step_us") or {}
+    row = {"implementation": record.cell["contenders"][0], "scheme": words["scheme"], "step": float(words["step"]),
+           "loops": int(record.cell["scene"].partition(":")[2]), "run": record.cell["number"], "status": status,
+           "reason": reason, "steps": record.output.get("steps"), "missed": missed(record),
+           "judge_us": record.output.get("judge_us"), "record": record.name} | {
+           f"{key}_us": times.get(key) for key in TIMES}
+    if status == "dropped":
+        return row
+    verdict = judge(record, null)
+    return row | {"null_missed": None if null is None else lost(null), "kept": verdict.kept, "reason_not": verdict.reason}
+
+
+def _sorted(table, order):
+    return table.sort_values(["scheme", "step", "implementation", "loops", "run"], kind="stable",
+                             key=lambda column: column.map(order) if column.name == "implementation" else column)
+
+
+def _largest(tried):
+    """One row a search: the largest size all of whose runs kept the deadline, and the next one tried that did not."""
+    rows = []
+    for key, runs in tried.groupby(["scheme", "step", "implementation"], sort=False) if len(tried) else ():
+        made = runs[runs.status != "dropped"]
+        every = made.groupby("loops").kept.all() if len(made) else pandas.Series(dtype=bool)
+        good = int(every.index[every].max()) if every.any() else 0
+        above = [int(loops) for loops in every.index[~every] if loops > good]
+        row = dict(zip(("scheme", "step", "implementation"), key)) | {
+            "largest": good, "complete": len(made) == len(runs),
+            "next_reason": runs[runs.status == "dropped"].reason.iloc[0] if len(made) < len(runs) else END}
+        row |= _observed(made[made.loops == good], "")
+        if above:
+            row |= {"next": min(above)} | _observed(made[made.loops == min(above)], "next_")
+        rows.append(row)
+    return pandas.DataFrame(rows)
+
+
+def _observed(runs, prefix):
+    """Sums over the runs of a size, and the worst of them."""
+    if runs.empty:
+        return {"record": ""} if not prefix else {}
+    found = {f"{prefix}steps": runs.steps.sum(min_count=1), f"{prefix}missed": runs.missed.sum(min_count=1),
+             f"{prefix}null_missed": runs.null_missed.sum(min_count=1), f"{prefix}max_us": runs.max_us.max()}
+    if prefix:
+        return found | {"next_reason": next(one for one in runs.reason_not if one)}
+    return found | {"status": runs.status.iloc[-1], "reason": runs.reason.iloc[-1], "record": " ".join(runs.record)}
+
+
+def _machine(nulls):
+    return pandas.DataFrame([{
+        "beside": _words(one)["beside"], "step": float(f"{1e-6 * float(_words(one)['deadline-us']):g}"),
+        "seconds": float(_words(one)["seconds"]), "status": one.status, "reason": one.reason, "record": one.name} | {
+        key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for one in nulls])

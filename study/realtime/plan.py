@@ -1,0 +1,120 @@
+# Steps against the deadline that real time sets them, their own length: distributions of their times, and the search
+# for the largest N-four-bar that keeps it.
+from dataclasses import dataclass
+
+from analysis.realtime.verdict import judge, needs_null
+from study.core.cell import Cell
+from study.core.contender import Contender
+from study.core.setting import Setting
+
+SETTINGS = {"implementations": list,  # names; none for all
+            "schemes": list,
+            "steps": list,            # s, the deadlines too
+            "loops": list,            # sizes whose distributions are shown
+            "duration": float,        # s simulated, of a distribution ...
+            "pilot": float,           # ... and of a run of the search: past the first singular position of every size
+            "most": int}              # loops of the largest size that is tried
+GRID = sorted({round(2 ** (power / 4)) for power in range(60)})  # the sizes of the search
+JUMP = 8             # places on the grid, of the search's first steps: a factor of four
+PATIENCE = 2.0       # times real time that a run may take, besides its set-up
+SET_UP = 4.0         # s
+SHARE = 0.25         # of the budget, for distributions
+NULL = "../study/realtime/null_process"  # as seen from the build
+
+
+@dataclass(frozen=True)
+class Case:
+    contender: Contender
+    scheme: str
+    step: float
+
+    def cell(self, role, loops, duration, number=0):
+        return Cell("simulate", f"four-bar:{loops}", (self.contender,), (
+            "--scheme", self.scheme, "--step", f"{self.step:g}", "--duration", f"{duration:g}",
+            "--deadline-us", f"{1e6 * self.step:g}"), role, number, timed=True, seconds=PATIENCE * duration + SET_UP)
+
+
+def columns(settings, studyset):
+    return {"distributions": SHARE * settings["seconds"], "largest": (1 - SHARE) * settings["seconds"]}
+
+
+def run(lab, column):
+    {"distributions": distributions, "largest": largest}[column](lab)
+
+
+def cases(lab):
+    """What is worth most comes first."""
+    settings = lab.settings
+    chosen = [one for one in lab.contenders
+              if not settings["implementations"] or one.variant in settings["implementations"]]
+    return [Case(one, scheme, step) for scheme in settings["schemes"] for step in settings["steps"] for one in chosen
+            if lab.registry.serves(one.variant, *Setting(scheme).needs)]
+
+
+def distributions(lab):
+    duration = lab.settings["duration"]
+    for step in lab.settings["steps"]:
+        beside(lab, step, duration, "distributions")
+    lab.run([case.cell("steps", loops, duration) for case in cases(lab) for loops in lab.settings["loops"]], drop=True)
+
+
+def beside(lab, step, seconds, name):
+    """The record of a null process; `name`: what it belongs to."""
+    return lab.one(Cell("", settings=("--deadline-us", f"{1e6 * step:g}", "--seconds", f"{seconds:g}", "--beside", name),
+                        role="null", program=NULL, timed=True, seconds=PATIENCE * seconds + SET_UP))
+
+
+def largest(lab):
+    grid = [loops for loops in GRID if loops <= lab.settings["most"]]
+    for case in cases(lab):
+        probe = Probe(lab, case, grid)
+        found = search(probe, len(grid))
+        if found is not None and found >= 0:
+            probe.null(found)  # of the answer both numbers are shown
+
+
+class Probe:
+    """What the search asks of a place on the grid: "kept", "failed", "unsure" or, without budget, None."""
+
+    def __init__(self, lab, case, grid):
+        self.lab, self.case, self.grid, self.runs = lab, case, grid, {}
+
+    def __call__(self, place):
+        first = self._verdict(place, 1)
+        if first is None or first.kept or first.hopeless:
+            return first and ("kept" if first.kept else "failed")
+        second = self._verdict(place, 2)
+        return second and ("unsure" if second.kept else "failed")
+
+    def null(self, place):
+        return beside(self.lab, self.case.step, self.lab.settings["pilot"], self.runs[place].name)
+
+    def _verdict(self, place, number):
+        cell = self.case.cell("search", self.grid[place], self.lab.settings["pilot"], number)
+        self.runs[place] = record = self.lab.run([cell], drop=True)[0]
+        if record.status == "dropped":
+            return None
+        return judge(record, self.null(place) if needs_null(record) else None)
+
+
+def search(probe, count):
+    """The last place below `count` that `probe` says is "kept", -1 if none is, None where it gives up. Upwards in
+    jumps, then by bisection. A place that is "unsure", since one of its two runs failed, may have been interrupted: the
+    search goes on above it, but it is no answer."""
+    low, high, known = -1, count, {}
+
+    def ask(place):
+        if place not in known:
+            known[place] = probe(place)
+        return known[place]
+    while high - low > 1:
+        at = (low + high) // 2 if high < count else min(low + JUMP, count - 1)
+        answer = ask(at)
+        if answer is None:
+            return None
+        low, high = (low, at) if answer == "failed" else (at, high)
+    while low >= 0 and ask(low) != "kept":
+        if known[low] is None:
+            return None
+        low -= 1
+    return low
