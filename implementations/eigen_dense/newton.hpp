@@ -11,7 +11,7 @@
 
 namespace mbs::eigen_dense {
 
-/// "The step" with "Other settings" of paper/README.md over the linear systems of System, which is
+/// "The step" of paper/README.md with "Other settings" of paper/other_schemes.md over the linear systems of System, which is
 /// PenaltySystem or SaddleSystem.
 template <typename System>
 class Newton final : public mbs::Simulation {

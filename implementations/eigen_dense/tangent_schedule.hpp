@@ -1,4 +1,4 @@
-// When the tangent is factorized: paper/README.md, "Other settings".
+// When the tangent is factorized: paper/other_schemes.md, "Other settings".
 #pragma once
 
 #include "mbs/simulation.hpp"

@@ -5,7 +5,7 @@
 
 namespace mbs::eigen_superlu {
 
-/// paper/README.md, "Other settings".
+/// paper/other_schemes.md, "Other settings".
 template <class Form>
 class AdjustableSimulation final : public SparseSimulation<Form> {
  public:

@@ -10,7 +10,7 @@
 
 namespace mbs {
 
-/// How a step advances the state: paper/README.md, "The step" and "Other schemes".
+/// How a step advances the state: paper/README.md, "The step", and paper/other_schemes.md.
 enum class Scheme {
   penalty,       ///< trapezoidal rule, T of Eq. (5)
   saddle_point,  ///< trapezoidal rule, Eq. (12)

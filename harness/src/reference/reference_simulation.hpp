@@ -11,7 +11,7 @@
 
 namespace mbs {
 
-/// "The step", "Other schemes" and "Other settings" of paper/README.md, literally, in 80-bit
+/// "The step" of paper/README.md and paper/other_schemes.md, literally, in 80-bit
 /// arithmetic; `precision` only refines the projections as it asks for. Used for nothing but
 /// checking. Stored zeros of M are skipped: they do not change the physics.
 ///
