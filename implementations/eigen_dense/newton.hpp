@@ -11,8 +11,8 @@
 
 namespace mbs::eigen_dense {
 
-/// "The step" of paper/README.md with "Other settings" of paper/other_schemes.md over the linear systems of System, which is
-/// PenaltySystem or SaddleSystem.
+/// "The step" of paper/README.md with "Other settings" of paper/other_schemes.md over the linear
+/// systems of System, which is PenaltySystem or SaddleSystem.
 template <typename System>
 class Newton final : public mbs::Simulation {
  public:

@@ -13,8 +13,8 @@
 namespace mbs {
 
 /// Which settings beyond the defaults of StepSettings a variant honours, alone and in every
-/// combination that paper/other_schemes.md, "Which settings go together", allows. The harness refuses all
-/// else by name, so that no implementation has to.
+/// combination that paper/other_schemes.md, "Which settings go together", allows. The harness
+/// refuses all else by name, so that no implementation has to.
 struct Serves {
   bool saddle_point = false;         ///< Scheme::saddle_point
   bool rattle = false;               ///< Scheme::rattle, rattle4 and rattle6

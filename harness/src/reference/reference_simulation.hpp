@@ -136,7 +136,7 @@ class ReferenceSimulation final : public Simulation {
   std::vector<MatrixEntry> last_geometric_;
   std::vector<int> place_;  // of q[i], then of y[k], in the matrix
   EnvelopeLdlt matrix_{{}};
-  bool due_ = true;  // TangentReuse::kept: the factors are to be renewed
+  bool due_ = true;                // TangentReuse::kept: the factors are to be renewed
   std::deque<Vector> w_, past_a_;  // of Eq. (17), the last five, the newest first
 };
 

@@ -31,7 +31,8 @@ std::string name_of(Choice choice) {
   return "unknown";
 }
 
-/// Throws UsageError unless `settings` go together: paper/other_schemes.md, "Which settings go together".
+/// Throws UsageError unless `settings` go together: paper/other_schemes.md, "Which settings go
+/// together".
 void require_combination(const StepSettings& settings);
 
 /// The settings that differ from "The step" of the paper, as on a command line: "--scheme rattle
