@@ -4,21 +4,25 @@ import math
 import os
 import shlex
 
+import matplotlib.pyplot as plt
+import pandas
 import pytest
 
-from study.advise_study import answer, timing
-from study.advise_study.advice import Advice, Question
-from study.advise_study.choice import Next, Pilot, allowed, counts, interval, local_order, next_at, next_step, tidy
-from study.advise_study.main import duration
-from study.advise_study.runner import REPEATS, advised as advised_line
-from study.advise_study.search import Found, Search
-from study.advise_study.settings import Setting, catalogue, fits, serving
-from study.advise_study.validate import fastest, luck
-from study.advise_study.verify import verify
-from study.pipeline import runs
-from study.pipeline.errors import StudyError
-from study.pipeline.layout import read_json
+from analysis.core import records
+from analysis.core.errors import StudyError
+from analysis.core.files import read_json
+from study.core.setting import Setting
+from study.tools.advise import answer, timing
+from study.tools.advise.advice import Advice, Question
+from study.tools.advise.choice import Next, Pilot, allowed, counts, interval, local_order, next_at, next_step, tidy
+from study.tools.advise.main import duration
+from study.tools.advise.runner import REPEATS, advised as advised_line, typed
+from study.tools.advise.search import Found, Search
+from study.tools.advise.settings import catalogue, fits, serving
+from study.tools.advise.validate import fastest, luck, verdict
+from study.tools.advise.verify import verify
 from study.tests.conftest import ROOT, study
+from study.tools.advise.figure import draw
 
 REAL = {"MBS_PROGRAM": os.environ.get("MBS_PROGRAM", str(ROOT / "build" / "mbs"))}
 PENALTY, SADDLE = Setting("penalty"), Setting("saddle-point")
@@ -184,7 +188,7 @@ def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=No
 
     def run(kind, setting, name, step, *_, checks):
         ran.append((name, step))
-        return {"status": "ok", "reason": "", "setting": setting.label, "step": step, "step_us_p99": p99,
+        return {"status": "ok", "reason": "", "setting": setting.name, "step": step, "step_us_p99": p99,
                 "estimate": estimate(step), "exact": exact}
     verify(advice, run, lambda: 1.0, lambda text: None)
     return advice, ran
@@ -301,6 +305,10 @@ def ask(folder, *more):
     return done, json.loads(done.stdout)
 
 
+def record_of(folder, run):
+    return records.read(folder / "results" / run["raw_file"], run["raw_file"])
+
+
 @pytest.fixture(scope="module")
 def advised(tmp_path_factory):
     folder = tmp_path_factory.mktemp("advised")
@@ -313,10 +321,10 @@ def test_the_advice_is_as_accurate_as_asked_and_traces_to_its_raw_files(advised)
     told = answer["advice"]
     assert told["error"]["exact"] <= 3e-5 and told["error"]["estimate"] <= told["error"]["allowed_estimate"] < 3e-5
     for run in answer["runs"]:
-        record = read_json(folder / "results" / run["raw_file"])
-        assert run["command"] == runs.typed(record)
-        assert run["estimate"] == record["summary"]["position_error_estimate"]
-    assert {entry["setting"] for entry in answer["settings"]} == {setting.label for setting in catalogue()}
+        record = record_of(folder, run)
+        assert run["command"] == typed(record)
+        assert run["estimate"] == record.output["position_error_estimate"]
+    assert {entry["setting"] for entry in answer["settings"]} == {setting.name for setting in catalogue()}
     assert all(entry["step"] or entry["reason"] for entry in answer["settings"])
     assert all(one["reason"] or one["advised"] or one["rounds"] for one in answer["candidates"])
     assert (folder / "plot.svg").read_text().startswith("<?xml")
@@ -349,7 +357,7 @@ def test_runs_are_ranked_by_what_interruptions_do_not_reach(advised):
     timed = [run for run in answer["runs"] if run["kind"].startswith("round")]
     assert timed
     for run in timed:
-        summary = read_json(folder / "results" / run["raw_file"])["summary"]
+        summary = record_of(folder, run).output
         assert run["step_us"] == summary["least_us"]["mean"] <= summary["step_us"]["mean"]
         assert run["step_us_p99"] == summary["step_us"]["p99"]
 
@@ -386,3 +394,46 @@ def test_where_every_pilot_was_lost_the_answer_says_how():
     assert answer._why_not(advice) == "no pilot came to its end: diverged, constraints violated: rod rocker"
     advice.found[SADDLE] = Found(SADDLE, pilots(1.0))
     assert answer._why_not(advice) == "no setting reaches the error within the budget of 45 s (--budget)"
+
+
+def told_of(met=True, deadline=None):
+    pilots = [{"step": 1e-2 / 2**k, "status": "ok", "estimate": 1e-2 / 4**k, "counts": k > 0, "step_us": 2.0}
+              for k in range(3)]
+    settings = [{"setting": name, "pilots": pilots} for name in ("penalty", "saddle-point, tolerance loose")]
+    settings.append({"setting": "rattle", "pilots": [pilots[0] | {"status": "diverged"}]})
+    told = {"implementation": "one/a", "setting": "penalty", "step": 5e-3,
+            "us_per_second": {"median": 400.0, "low": 390.0, "high": 420.0},
+            "error": {"estimate": 2.5e-3, "low": 1.9e-3, "high": 2.5e-3}}
+    return {"question": {"scene": "some/where/car.json", "error": 5e-3, "duration": 5.0, "deadline_us": deadline},
+            "met": met, "advice": told if met else None, "pilot_duration": 5.0, "settings": settings}
+
+
+def labels(figure):
+    return {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
+
+
+def test_the_choice_and_what_does_not_count_are_named():
+    figure = draw(told_of(deadline=50.0))
+    told = {text.get_text() for text in figure.axes[0].texts}
+    assert {"E = 0.005 m", "D = 50 µs a step"} <= told and "car.json" in figure.axes[0].get_title(loc="left")
+    assert {"penalty", "estimate does not count", "advised: one/a,\npenalty, step 0.005 s"} <= labels(figure)
+    assert "rattle" not in labels(figure)  # a run that was lost has no estimate
+    plt.close(figure)
+
+
+def test_no_setting_is_drawn_as_such():
+    figure = draw(told_of(met=False))
+    assert "no setting meets this" in {text.get_text() for text in figure.axes[0].texts}
+    assert not any(label.startswith("advised") for label in labels(figure))
+    plt.close(figure)
+
+
+def test_the_validation_names_what_did_not_hold():
+    table = pandas.DataFrame([{"scene": scene, "error": error, "meets": True, "ratio": 1.2}
+                              for scene in ("four-bar:1", "four-bar:2") for error in (1e-2, 1e-3)])
+    held, sentence = verdict(table, 1.5)
+    assert held and sentence.startswith("4 of 4 advised runs are as accurate as asked; 4 take at most 1.5")
+    table.loc[0, ["meets", "ratio"]] = [False, float("nan")]
+    table.loc[3, "ratio"] = 1.6
+    held, sentence = verdict(table, 1.5)
+    assert not held and sentence.endswith("not so: four-bar:1 at 0.01 m, four-bar:2 at 0.001 m")

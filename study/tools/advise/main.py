@@ -1,17 +1,17 @@
 # study/advise: the command line; one question, its results directory, its answer.
-import hashlib
 import json
 import math
 import re
 from pathlib import Path
 
-from study.pipeline.contenders import from_json
-from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, ROOT, read_run, write_json
-from study.pipeline.options import Parser, positive
-from study.pipeline.prepare import (digest_of_scene, need_modules, only_one, only_one_measuring,
-                                    registry, select, start_named, writable)
-from study.pipeline.progress import Teller
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, digest, write_json
+from study.core import locks, profile as profiles
+from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
+from study.core.executor import program_of
+from study.core.main import need_modules, writable
+from study.core.options import Parser, positive
+from study.core.studyset import context_of, listed, select
 
 DURATION, BUDGET, LONGEST = 20.0, 45.0, 1e6  # s
 OF_A_QUESTION = ("SCENE", "--error", "--deadline-us", "--step", "--duration", "--budget", "--json", "--plot")
@@ -20,23 +20,24 @@ DEFAULT = ROOT / "results" / "local" / "advice"
 
 def advise(arguments):
     options = _parser().parse_args(arguments)
-    need_modules("yaml", "pandas", "matplotlib", "jinja2")
+    need_modules("yaml", "pandas", "matplotlib")
     if options.plot and Path(options.plot).suffix not in (".svg", ".png"):
         raise StudyError(f"--plot {options.plot}: the name must end in .svg or .png")
     if options.plot and not Path(options.plot).absolute().parent.is_dir():
         raise StudyError(f"--plot {options.plot}: there is no such directory")
     if options.validate:
         _nothing_beside_validate(options)
-        from study.advise_study.validate import validate
-        return validate(options)
+        from study.tools.advise.validate import validate
+        results = Path(options.results or DEFAULT / "validation").absolute()
+        writable(results)
+        return validate(options, ask, runner_of, results)
     if not options.scene or options.error is None:
         raise StudyError("a SCENE and --error E are needed (see study/advise --help)")
-    Teller.quiet = options.json
-    answer, advice = ask(options)
-    from study.advise_study.answer import text
+    answer, _ = ask(options)
+    from study.tools.advise.answer import text
     print(json.dumps(answer, indent=1) if options.json else text(answer))
     if options.plot:
-        from analysis.advice.figure import draw, write
+        from study.tools.advise.figure import draw, write
         write(draw(answer), options.plot)
     return 0 if answer["met"] else 1
 
@@ -49,43 +50,41 @@ def _nothing_beside_validate(options):
 
 
 def ask(options, folder=None):
-    """(answer, Advice) of one question; its raw files and advice.json are kept."""
-    from study.advise_study.advice import Question, advise as seek  # these need the modules
-    from study.advise_study.answer import as_json
-    from study.advise_study.runner import REPEATS, describe, scene_name
-    from study.advise_study.settings import catalogue
-    known = registry()
+    """(answer, Advice) of one question; its records and advice.json are kept."""
+    from study.tools.advise.advice import Question, advise as seek  # these need the modules
+    from study.tools.advise.answer import as_json
+    from study.tools.advise.runner import REPEATS, describe, scene_name
+    from study.tools.advise.settings import catalogue
+    known = listed()
     names = select(known, options.only)
     scene = scene_name(options.scene)
     described = describe(scene)
     question = Question(options.scene, options.error, duration(options.scene, options.duration, described),
                         options.deadline_us, options.budget or BUDGET, options.step)
     _need_possible(question)
-    inputs = {"scene": scene, "file": digest_of_scene(scene), "error": question.error,
-              "duration": question.duration, "deadline_us": question.deadline_us,
+    inputs = {"scene": scene, "file": digest(ROOT / scene) if (ROOT / scene).is_file() else "",
+              "error": question.error, "duration": question.duration, "deadline_us": question.deadline_us,
               "budget": question.budget, "step": question.step, "repeats": REPEATS}
-    layout = Layout(Path(folder or options.results or DEFAULT / _folder(inputs, names)).absolute())
-    writable(layout.results)
-    with only_one(layout), only_one_measuring():
-        start_named(layout, "advise", names, inputs)
-        variants, runner = runner_of(layout, scene, known, question.deadline_us)
-        tell = Teller()
-        advice = seek(question, catalogue(), described, variants, runner, tell)
-        tell.end()
-        answer = as_json(advice, runner, described, variants, layout)
-        write_json(layout.results / "advice.json", answer)
+    folder = Path(folder or options.results or DEFAULT / _folder(inputs, names)).absolute()
+    writable(folder)
+    with locks.only_one(folder), locks.only_one_study(options.wait):
+        variants, runner = runner_of(folder, inputs, names, known, question.deadline_us, options.json)
+        advice = seek(question, catalogue(), described, variants, runner, runner.lab.tell)
+        runner.lab.progress.end()
+        answer = as_json(advice, runner, described, variants, folder)
+        write_json(folder / "advice.json", answer)
     return answer, advice
 
 
-def runner_of(layout, scene, known, deadline_us=None):
-    """({name: what `mbs list --json` says of a variant that takes part, and its library}, Runner)"""
-    from study.advise_study.runner import Runner  # it needs the modules
-    run = read_run(layout)
-    contenders = from_json(run["contenders"])
-    variants = {variant["name"]: variant | {"library": entry.get("library")} for entry in known["implementations"]
-                for variant in entry.get("variants", [])
-                if variant["name"] in contenders and not contenders[variant["name"]].missing}
-    return variants, Runner(layout, scene, contenders, run["contexts"], deadline_us)
+def runner_of(folder, inputs, names, known, deadline_us=None, quiet=False):
+    """({name: what `mbs list --json` says of a variant that takes part}, Runner)"""
+    from study.tools.advise.runner import Runner  # these need the modules
+    from study.tools.shelf import ToolLab, open_shelf
+    pairs = profiles.load("quick", []).blas
+    context = context_of(Contender(CONTROL.name, CONTROL.variant, usable(known, pairs["all"])))
+    lab = ToolLab(open_shelf(folder, "advise", context, names, question=inputs), "advise", "runs", quiet=quiet)
+    return ({name: known.variants[name] for name in names},
+            Runner(lab, inputs["scene"], on_usual_pairs(known, pairs, names), deadline_us))
 
 
 def _parser():
@@ -108,10 +107,11 @@ def _parser():
                         help="only these implementations (folder or folder/variant)")
     parser.add_argument("--budget", type=positive, metavar="S",
                         help=f"for pilots and timings ({BUDGET:g} s); what is left out then is said")
-    parser.add_argument("--json", action="store_true", help="print everything as JSON (study/advise_study/README.md)")
+    parser.add_argument("--json", action="store_true", help="print everything as JSON (study/tools/advise/README.md)")
     parser.add_argument("--plot", metavar="FILE", help="draw the pilots and the choice (.svg or .png)")
     parser.add_argument("--results", metavar="DIR",
                         help="where raw files are kept (results/local/advice/, one folder a question)")
+    parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
     parser.add_argument("--validate", action="store_true", help="hold the advice against an exhaustive "
                         "search on scenes with exact solutions; about 20 minutes")
     return parser
@@ -127,7 +127,7 @@ def seconds(text):
 
 def _need_possible(question):
     """StudyError if a step is given in which there is nothing to advise on."""
-    from study.advise_study.choice import LEAST_STEPS, MOST_STEPS
+    from study.tools.advise.choice import LEAST_STEPS, MOST_STEPS
     least, most = question.duration / MOST_STEPS, question.duration / LEAST_STEPS
     if question.step and not least <= question.step <= most:
         raise StudyError(f"--step {question.step:g}: a run of {question.duration:g} s has {LEAST_STEPS} to "
@@ -151,8 +151,6 @@ def duration(scene, asked, described):
 
 def _folder(inputs, names):
     """One a question, so that an edited scene file asks another one."""
-    from study.pipeline.layout import program
-    from study.pipeline.prepare import digest
-    text = json.dumps([inputs, names, digest(ROOT / program())])
+    text = json.dumps([inputs, names, digest(ROOT / program_of())])
     stem = re.sub(r"[^A-Za-z0-9]+", "-", Path(inputs["scene"]).stem).strip("-")
-    return f"{stem}-{hashlib.sha256(text.encode()).hexdigest()[:8]}"
+    return f"{stem}-{digest(text)[:8]}"

@@ -1,18 +1,16 @@
 # study/advise --validate: the advice against an exhaustive search, on scenes whose exact motion is known.
 from argparse import Namespace
-from pathlib import Path
 
 import pandas
 
-from study.advise_study import timing
-from study.advise_study.advice import PROBE_FACTOR, probe
-from study.advise_study.main import DEFAULT, ask, runner_of
-from study.advise_study.runner import EXACT, REPEATS
-from study.advise_study.settings import catalogue, serving
-from study.pipeline.layout import Layout, write_csv
-from study.pipeline.prepare import only_one, only_one_measuring, registry, select, start_named, writable
-from study.pipeline.progress import Teller
-from study.pipeline.runs import FINISHED
+from analysis.core.files import write
+from analysis.core.outcomes import FINISHED
+from study.core import locks
+from study.core.studyset import listed, select
+from study.tools.advise import timing
+from study.tools.advise.advice import PROBE_FACTOR, probe
+from study.tools.advise.runner import EXACT, REPEATS
+from study.tools.advise.settings import catalogue, serving
 
 LOOPS, ERRORS, DURATION = (1, 2, 10, 40), (1e-1, 1e-2, 1e-3, 1e-4), 5.0
 LONGEST, SHORTEST, RATIO = 0.08, 5e-5, 2**-0.5  # steps of the search, s
@@ -21,47 +19,53 @@ MOST = 1.5        # times the best found that an advised run may take
 ROUNDS_AT_MOST = 600.0  # s of timing a question
 
 
-def validate(options, loops=LOOPS, errors=ERRORS, duration=DURATION):
-    results = Path(options.results or DEFAULT / "validation").absolute()
-    writable(results)
-    known = registry()
+def validate(options, ask, runner_of, results, loops=LOOPS, errors=ERRORS, duration=DURATION):
+    """`ask` and `runner_of` are those of main.py, which calls this."""
+    known = listed()
     names = select(known, options.only)
     rows, searched = [], []
-    with only_one(Layout(results)):
+    with locks.only_one(results):
         for count in loops:
             scene = f"four-bar:{count}"
-            layout = Layout(results / f"n{count}")
-            writable(layout.results)
-            start_named(layout, "advise", names, {"scene": scene, "duration": duration, "repeats": REPEATS})
-            variants, runner = runner_of(layout, scene, known)
-            with only_one_measuring():
-                found, speeds = search(runner, variants, duration, errors, scene)
+            folder = results / f"n{count}"
+            with locks.only_one_study(options.wait):
+                variants, run = runner_of(folder, {"scene": scene, "duration": duration, "repeats": REPEATS}, names, known)
+                found, speeds = search(run, variants, duration, errors, scene)
             searched += [{"scene": scene} | row for row in found]
             for error in errors:
-                rows.append(_compare(scene, error, duration, options, layout, runner, variants,
-                                     found, speeds))
-        write_csv(results / "searched.csv", pandas.DataFrame(searched))
-        table = pandas.DataFrame(rows)
-        write_csv(results / "validation.csv", table)
-        from analysis.advice.validation import draw, verdict, write
-        for suffix in ("svg", "png"):
-            write(draw(table, MOST), results / f"validation.{suffix}")
+                asked = Namespace(scene=scene, error=error, duration=duration, deadline_us=None, only=options.only,
+                                  budget=None, step=None, results=None, wait=options.wait, json=False)
+                answer, advice = ask(asked, folder=folder / f"error-{error:g}")
+                with locks.only_one_study(options.wait):
+                    rows.append(_compare(scene, error, duration, answer, advice, run, variants, found, speeds))
+            run.lab.progress.end()
+    table = pandas.DataFrame(rows)
+    for name, found in (("searched", pandas.DataFrame(searched)), ("validation", table)):
+        write(results / f"{name}.csv", lambda partial, found=found: found.to_csv(partial, index=False))
     held, sentence = verdict(table, MOST)
-    print(f"{sentence}\ntable: {results / 'validation.csv'}\nfigure: {results / 'validation.svg'}")
+    print(f"{sentence}\ntable: {results / 'validation.csv'}")
     return 0 if held else 1
+
+
+def verdict(table, most):
+    """(whether all held, a sentence)."""
+    late = ~(table.ratio <= most)  # no ratio is too late as well
+    named = [f"{row.scene} at {row.error:g} m" for row in table[~table.meets | late].itertuples()]
+    return not named, (f"{int(table.meets.sum())} of {len(table)} advised runs are as accurate as asked; "
+                       f"{int((~late).sum())} take at most {most:g} times the best found, the slowest "
+                       f"{table.ratio.max():.2f}" + (f"; not so: {', '.join(named)}" if named else ""))
 
 
 def search(run, variants, duration, errors, scene):
     """Rows of every setting at every step by its fastest implementation, and {implementation: us a step}.
     A setting's steps end where two in succession meet the smallest error or where they cost too much."""
-    tell = Teller()
     _, speeds = probe(variants, run, 1e-2, duration)
     rows, least = [], {}  # least time of a simulated second that meets the smallest error
     for setting in catalogue():
         served = [name for name in speeds if name in serving(setting, variants)]
         step, met = LONGEST, 0
         while served and met < 2 and step >= SHORTEST:
-            tell(f"search: {scene}, {setting.label}, step {step:.3g} s")
+            run.lab.tell(f"search: {scene}, {setting.name}, step {step:.3g} s")
             row = run("search", setting, served[0], float(f"{step:.3g}"), duration, 120, checks=EXACT)
             row |= {"us_per_second": row["step_us"] / row["step"] if row["step_us"] else None, "pruned": ""}
             rows.append(row)
@@ -74,7 +78,6 @@ def search(run, variants, duration, errors, scene):
                 row["pruned"] = "shorter steps are left out: far slower than a setting that meets all errors"
                 break
             step *= RATIO
-    tell.end()
     return rows, speeds
 
 
@@ -107,12 +110,9 @@ def fastest(found, error):
     return [row for row in rows if row["us_per_second"] <= NEAR * rows[0]["us_per_second"]]
 
 
-def _compare(scene, error, duration, options, layout, run, variants, found, speeds):
+def _compare(scene, error, duration, answer, advice, run, variants, found, speeds):
     """The row of validation.csv of one question."""
-    asked = Namespace(scene=scene, error=error, duration=duration, deadline_us=None, only=options.only,
-                      budget=None, step=None, results=None)
-    answer, advice = ask(asked, folder=layout.results / f"error-{error:g}")
-    settings = {setting.label: setting for setting in catalogue()}
+    settings = {setting.name: setting for setting in catalogue()}
     candidates = [timing.Candidate(settings[row["setting"]], name, row["step"])
                   for row in fastest(found, error) for name in speeds
                   if name in serving(settings[row["setting"]], variants)
@@ -132,7 +132,7 @@ def _compare(scene, error, duration, options, layout, run, variants, found, spee
             "meets": bool(answer["met"] and told["error"]["exact"] <= error),
             "seconds": answer["seconds"]} | _columns("advised", advised, lines) | _columns("best", best, lines) | {
             "best_exact": None if best is None else told["error"]["exact"] if best is advised
-            else exact[best.setting.label, best.step]["exact"],
+            else exact[best.setting.name, best.step]["exact"],
             "lucky_setting": lucky.get("setting"), "lucky_step": lucky.get("step"),
             "lucky_exact": lucky.get("exact"), "lucky_us_per_second": lucky.get("us_per_second"),
             "ratio": advised.us_per_second()[0] / best.us_per_second()[0] if advised and best else None}
@@ -140,16 +140,14 @@ def _compare(scene, error, duration, options, layout, run, variants, found, spee
 
 def _time(run, candidates, duration, error):
     """{candidate: (its command, raw file)} after timing all in the same rounds."""
-    tell, lines = Teller(), {}
+    lines = {}
 
     def timed(one, number):
-        tell(f"timing: error {error:g} m, round {number}, {one.implementation}, {one.setting.label}")
+        run.lab.tell(f"timing: error {error:g} m, round {number}, {one.implementation}, {one.setting.name}")
         row = run(f"timing-{error:g}/round{number}", one.setting, one.implementation, one.step, duration, 60)
         lines[_same(one)] = (row["command"], row["raw_file"])
         return row
-    with only_one_measuring():
-        timing.race(candidates, timed, lambda: ROUNDS_AT_MOST)
-    tell.end()
+    timing.race(candidates, timed, lambda: ROUNDS_AT_MOST)
     return lines
 
 
@@ -163,7 +161,7 @@ def _columns(prefix, one, lines):
     if one:
         middle, low, high = one.us_per_second()
         command, raw_file = lines.get(_same(one), (None, None))
-        values |= {"implementation": one.implementation, "setting": one.setting.label, "step": one.step,
+        values |= {"implementation": one.implementation, "setting": one.setting.name, "step": one.step,
                    "us_per_second": middle, "low": low, "high": high, "command": command,
                    "raw_file": raw_file}
     return {f"{prefix}_{key}": value for key, value in values.items()}

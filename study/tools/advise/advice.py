@@ -3,12 +3,13 @@ import math
 import time
 from dataclasses import dataclass, field
 
-from study.advise_study import timing
-from study.advise_study.choice import LEAST_STEPS, tidy
-from study.advise_study.runner import REPEATS
-from study.advise_study.search import DOMINATED, Search
-from study.advise_study.settings import Setting, fits, serving
-from study.advise_study.verify import verify
+from study.tools.advise import timing
+from study.tools.advise.choice import LEAST_STEPS, tidy
+from study.tools.advise.runner import REPEATS
+from study.tools.advise.search import DOMINATED, Search
+from study.core.setting import Setting
+from study.tools.advise.settings import fits, serving
+from study.tools.advise.verify import verify
 
 FIRST_STEP = 1e-2        # s; of the first pilot, where the run has enough such steps
 PROBE_STEPS = 100
@@ -89,7 +90,7 @@ def _pilots(advice, settings, speeds, variants, run, start, left, tell):
         expected = 3e-6 * duration / step * (speeds[name] if math.isnan(known) else known)
         if expected > seconds:
             return None
-        tell(f"error pilots: {setting.label}, step {step:g} s")
+        tell(f"error pilots: {setting.name}, step {step:g} s")
         return run.pilot(setting, name, step, duration, max(5.0, 4 * expected))
     search = Search(settings, pilot, error=question.error * duration / question.duration,
                     duration=duration, start=start, deadline_us=question.deadline_us, step=question.step)
@@ -119,7 +120,7 @@ def _race(advice, speeds, variants, run, left, tell):
     limit = max(5.0, 1e-5 * REPEATS * least * length)
 
     def timed(one, number):
-        tell(f"timing: round {number}, {one.implementation}, {one.setting.label}")
+        tell(f"timing: round {number}, {one.implementation}, {one.setting.name}")
         return run(f"round{number}", one.setting, one.implementation, one.step, length, limit)
     if not timing.race(advice.candidates, timed, lambda: left(TIMING_SHARE), question.deadline_us):
         advice.cut_short.append("no time was left for all rounds of timing")

@@ -1,9 +1,9 @@
 # The picture of an advice: error estimates of the pilots over time per simulated second, and the choice.
 import matplotlib.pyplot as plt
 
-from analysis.accuracy.front import FINISHED
-from analysis.style import DASHES, DENSE, GREY, MARKERS, SPARSE, number_axis, save
-from analysis.text import number
+from analysis.core.outcomes import FINISHED
+from analysis.core.style import DASHES, DENSE, GREY, MARKERS, SPARSE, number_axis, save
+from analysis.core.text import number
 
 COLOURS = {"penalty": SPARSE[0], "saddle-point": SPARSE[1], "rattle": DENSE[1], "rattle4": SPARSE[2],
            "rattle6": DENSE[0], "multistep6": DENSE[4]}

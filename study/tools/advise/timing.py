@@ -3,7 +3,7 @@ import math
 from dataclasses import dataclass, field
 from statistics import median
 
-from study.pipeline.runs import FINISHED
+from analysis.core.outcomes import FINISHED
 
 ROUNDS, TIE_BREAKS = 3, 2
 SLOWER = (2.0, 1.25, 1.1)  # this times the best one's time drops out after the first, second, later rounds

@@ -1,17 +1,17 @@
 # The answer as JSON (its keys: README.md) and as text.
 from dataclasses import asdict
 
-from analysis.text import number
-from study.advise_study.choice import allowed, counts, halvings
-from study.advise_study.runner import advised
-from study.advise_study.settings import catalogue, fits, serving
-from study.advise_study.verify import expected_error
-from study.pipeline.runs import FINISHED
+from analysis.core.text import number
+from study.tools.advise.choice import allowed, counts, halvings
+from study.tools.advise.runner import advised
+from study.tools.advise.settings import catalogue, fits, serving
+from study.tools.advise.verify import expected_error
+from analysis.core.outcomes import FINISHED
 
 MOST_REASONS = 3  # of pilots that were lost
 
 
-def as_json(advice, run, described, variants, layout):
+def as_json(advice, run, described, variants, folder):
     question = advice.question
     answer = {"question": {"scene": question.scene, "error": question.error,
                            "duration": question.duration, "deadline_us": question.deadline_us,
@@ -25,7 +25,7 @@ def as_json(advice, run, described, variants, layout):
               "seconds": round(advice.seconds, 2),
               "settings": [_setting(setting, advice, described, variants) for setting in catalogue()],
               "candidates": [_candidate(one, advice) for one in advice.candidates],
-              "runs": run.rows, "results": str(layout.results)}
+              "runs": run.rows, "results": str(folder)}
     return answer | {"runner_up": _runner_up(answer), "best_reached": _best_reached(answer)}
 
 
@@ -40,7 +40,7 @@ def _times(one):
 def _advised(advice, library):
     one, row = advice.chosen, advice.verified
     estimate, low, high = expected_error(advice)
-    return {"implementation": one.implementation, "setting": one.setting.label,
+    return {"implementation": one.implementation, "setting": one.setting.name,
             "scheme": one.setting.scheme, "changes": dict(one.setting.changes),
             "precision": dict(one.setting.changes).get("precision", "double"), "step": one.step,
             "penalty": row["penalty"], "tolerance": row["tolerance"], "status": row["status"],
@@ -58,7 +58,7 @@ def _setting(setting, advice, described, variants):
         "" if serving(setting, variants) else "no implementation serves it")
     orders = halvings(found.pilots) if found else {}
     limit = allowed(advice.question.error, setting.order)
-    return {"setting": setting.label, "step": found.chosen if found else None,
+    return {"setting": setting.name, "step": found.chosen if found else None,
             "reason": found.reason if found else reason or "no implementation simulates the scene",
             "pilots": [asdict(pilot) | {"order": orders.get(pilot.step),
                                         "counts": counts(pilot.step, found.pilots, limit)}
@@ -66,7 +66,7 @@ def _setting(setting, advice, described, variants):
 
 
 def _candidate(one, advice):
-    told = {"implementation": one.implementation, "setting": one.setting.label, "step": one.step,
+    told = {"implementation": one.implementation, "setting": one.setting.name, "step": one.step,
             "advised": advice.verified is not None and one is advice.chosen, "reason": one.reason}
     return told | (_times(one) if one.rows else {"step_us": None, "us_per_second": None, "rounds": 0})
 

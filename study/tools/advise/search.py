@@ -2,8 +2,8 @@
 import math
 from dataclasses import dataclass, field
 
-from study.advise_study.choice import allowed, counts, local_order, next_at, next_step
-from study.pipeline.runs import FINISHED
+from study.tools.advise.choice import allowed, counts, local_order, next_at, next_step
+from analysis.core.outcomes import FINISHED
 
 DOMINATED = 1.6  # a setting that promises this times the best one's time is not followed further,
 SCHEME = 3.0     # a scheme that promises this times, as its changes may make up for it

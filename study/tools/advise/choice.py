@@ -2,7 +2,7 @@
 import math
 from dataclasses import dataclass
 
-from study.pipeline.runs import FINISHED
+from analysis.core.outcomes import FINISHED
 
 LEAST_STEPS = 10   # of a whole run
 MOST_STEPS = 10**7

@@ -1,8 +1,8 @@
 # The last stage of an advice: the fastest candidate over the whole time, and what follows if it fails.
-from study.advise_study import timing
-from study.advise_study.choice import allowed, interval, local_order, tidy
-from study.advise_study.runner import HALVED
-from study.pipeline.runs import FINISHED
+from study.tools.advise import timing
+from study.tools.advise.choice import allowed, interval, local_order, tidy
+from study.tools.advise.runner import HALVED
+from analysis.core.outcomes import FINISHED
 
 VERIFICATIONS = 20
 
@@ -20,7 +20,7 @@ def verify(advice, run, left, tell):
         if advice.verifications and expected > left():
             advice.cut_short.append("no time was left to verify another candidate")
             return
-        tell(f"verification: {one.implementation}, {one.setting.label}, step {one.step:g} s")
+        tell(f"verification: {one.implementation}, {one.setting.name}, step {one.step:g} s")
         row = {} | run("verification", one.setting, one.implementation, one.step, question.duration,
                   max(60.0, 5 * expected), checks=HALVED)
         row |= {"estimate": _at_least(row, advice)}
@@ -37,7 +37,7 @@ def _at_least(row, advice):
     that gave it were wrong alike."""
     if row["estimate"] is None or advice.pilot_duration < advice.question.duration:
         return row["estimate"]
-    found = next(found for setting, found in advice.found.items() if setting.label == row["setting"])
+    found = next(found for setting, found in advice.found.items() if setting.name == row["setting"])
     return max([row["estimate"], *(pilot.estimate for pilot in found.pilots if pilot.valid and pilot.step < row["step"])])
 
 
@@ -64,7 +64,7 @@ def _reconsider(one, row, advice):
     if excess <= 1:
         one.drop(f"99th percentile {row['step_us_p99']:.3g} us when verified: beyond the deadline")
         return
-    failed = sum(other["setting"] == one.setting.label for other in advice.verifications)
+    failed = sum(other["setting"] == one.setting.name for other in advice.verifications)
     step = one.step * 0.95 * excess ** (-1 / one.setting.order)
     if failed > 1 and advice.pilot_duration == question.duration and found.rung() < one.step:
         step = found.rung()  # its pilot was good enough

@@ -1,0 +1,92 @@
+# One `mbs simulate` of the advice as a cell, and its row; what `mbs describe` says of the scene.
+import shlex
+from pathlib import Path
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT
+from analysis.core.outcomes import of_run
+from study.core import executor
+from study.core.cell import Cell
+from study.tools.advise.choice import Pilot
+
+# After every step: the usual judging of a few of them may keep pace with the motion and miss its worst.
+EXACT = ("--judge-every", "1")  # for the exact error
+HALVED = ("--half-step", *EXACT)  # for an estimate beside it
+REPEATS = 3  # of a motion whose time matters; each step's least counts, as what interrupts one run spares another
+LOOSER = 10  # a loose tolerance is this times the automatic one of the scheme
+OF_TIMES = {"step_us_median": "median", "step_us_p99": "p99", "step_us_max": "max", "deadline_misses": "deadline_misses"}
+
+
+def describe(scene):
+    """`mbs describe --json`; StudyError with its own words if there is no such scene."""
+    found = executor.run(Cell("describe", scene).settled(), None)
+    if found["status"] != "done":
+        raise StudyError(found["reason"].partition("mbs: ")[2] or f"{scene}: {found['reason']}")
+    return found["output"]
+
+
+def scene_name(text):
+    """A scene as programs that run in ROOT find it; a file in the repository without the machine's path."""
+    if not Path(text).is_file():
+        return text
+    path = Path(text).resolve()
+    return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
+
+
+def typed(record):
+    """What repeats the run of a record, to be typed where the repository is."""
+    return shlex.join(["build/mbs", *(word for word in record.command[1:] if word != "--json")])
+
+
+def advised(command, library):
+    """A verified command line as it is advised: without what only tells its error, and without a BLAS where
+    `library` of `mbs list --json` is "none"."""
+    words = shlex.split(command)
+    for option, count in ((HALVED[0], len(HALVED)), *([("--blas", 2)] if library == "none" else [])):
+        at = words.index(option) if option in words else len(words)
+        del words[at:at + count]
+    return shlex.join(words)
+
+
+class Runner:
+    """Runs simulations of one scene one after the other, and keeps a row of each."""
+
+    def __init__(self, lab, scene, contenders, deadline_us=None):
+        self.lab, self.scene, self.contenders = lab, scene, {one.name: one for one in contenders}
+        self.deadline = ["--deadline-us", f"{deadline_us:g}"] if deadline_us else []
+        self.rows = []
+
+    def __call__(self, kind, setting, variant, step, duration, seconds, checks=()):
+        """The row of a run: kind, setting, implementation, step, outcome, times, command, raw_file. `checks`: EXACT
+        or HALVED where its error matters, not only its time. `step_us`, by which runs are ranked, is the mean over
+        the steps of each one's least time over the repeats; the other times are those of the first repeat."""
+        repeats = [] if checks == HALVED else ["--repeats", str(REPEATS)]
+        words = [*setting.words(tolerance=self._tolerance(setting, variant, step)), *self.deadline, *repeats, *checks]
+        record = self._simulate(kind, variant, step, duration, seconds, words)
+        status, reason = of_run(record)
+        found = record.output
+        times = found.get("step_us", {})
+        row = {"kind": kind, "setting": setting.name, "implementation": variant, "step": step, "duration": duration,
+               "status": status, "reason": reason, "estimate": found.get("position_error_estimate"),
+               "exact": found.get("position_error_max"), "step_us": (found.get("least_us") or {}).get("mean")}
+        row |= {column: times.get(name) for column, name in OF_TIMES.items()}
+        row |= {key: found.get(key) for key in ("steps", "passes_per_step", "penalty", "tolerance")}
+        row |= {"seconds": record.seconds, "command": typed(record), "raw_file": f"raw/advise/{record.name}"}
+        self.rows.append(row)
+        return row
+
+    def pilot(self, setting, variant, step, duration, seconds):
+        row = self("pilots", setting, variant, step, duration, seconds, checks=HALVED)
+        return Pilot(row["step"], row["status"], row["estimate"], row["step_us_median"] or float("nan"),
+                     row["step_us_p99"] or float("nan"), row["reason"])
+
+    def _simulate(self, kind, variant, step, duration, seconds, words):
+        return self.lab.one(Cell("simulate", self.scene, (self.contenders[variant],), (
+            "--step", f"{step:g}", "--duration", f"{duration:g}", *words), kind, timed=True, seconds=round(seconds, 3)))
+
+    def _tolerance(self, setting, variant, step):
+        """What the automatic tolerance, which a run of one step tells, is loosened to, m."""
+        if not setting.loose:
+            return None
+        record = self._simulate("automatic", variant, step, step, 60, setting.parent.words())
+        return LOOSER * record.output.get("tolerance", 1e-9)

@@ -1,0 +1,65 @@
+# Where a tool keeps its records: a set without parts, so that cells run, resume and are refused as those of parts.
+import datetime
+import shutil
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, digest, write_json
+from study.core.executor import need_same, program_of
+from study.core.front import Display
+from study.core.lab import Lab
+from study.core.studyset import StudySet
+
+
+def open_shelf(folder, tool, context, only, **question):
+    """The StudySet in `folder`, new or continued; StudyError if it holds results of something else. `question`:
+    what must be equal for the records to be of use."""
+    facts = {"profile": tool, "only": only, "parts": [], "context": context,
+             "programs": {"mbs": digest(ROOT / program_of())[:16]},
+             "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M"), **question}
+    found = StudySet(folder)
+    if (folder / "set.json").exists():
+        need_same(found.facts["context"], context, str(folder))
+        for key in facts:
+            if key not in ("context", "date") and found.facts.get(key) != facts[key]:
+                raise StudyError(f"{folder} holds results of something else ({key}); results are never merged: name "
+                                 "another directory, or move this one away")
+    else:
+        write_json(folder / "set.json", facts)
+    shutil.rmtree(found.scratch, ignore_errors=True)
+    found.scratch.mkdir(parents=True)
+    for path in folder.rglob(".partial-*"):  # of a process that was killed
+        path.unlink()
+    return StudySet(folder)
+
+
+class ToolLab(Lab):
+    """A lab that shows what it does on the terminal. `quiet` shows nothing."""
+
+    def __init__(self, studyset, tool, column, expected=0, quiet=False):
+        super().__init__(studyset, tool, column)
+        self.progress = _Shown(tool, expected, quiet)
+
+
+class _Shown:
+    """Of Progress what a lab calls."""
+
+    def __init__(self, title, expected, quiet):
+        self.title, self.expected, self.known, self.cells, self.text = title, expected, 0, 0, ""
+        self.display, self.quiet = Display(), quiet
+
+    def expect(self, cells):
+        self.known += cells
+
+    def done(self, cells=1):
+        self.cells += cells
+        self.tell(self.text)
+
+    def tell(self, text):
+        self.text = text
+        if not self.quiet:
+            total = max(self.expected, self.known, self.cells)
+            self.display.show(self.title, f"{self.cells} of {total} cells{'; ' * bool(text)}{text}")
+
+    def end(self):
+        if not self.quiet:
+            self.display.end()
