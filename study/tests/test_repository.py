@@ -1,5 +1,6 @@
 # The repository as a visitor finds it: what stands at the top, how long texts are, numbers that come from sets.
 import re
+import shutil
 import subprocess
 
 import pytest
@@ -7,6 +8,7 @@ import pytest
 from analysis.core import fragments, records
 from analysis.core.files import ROOT, read_json
 from analysis.core.parts import parts
+from study.tests.conftest import study
 
 TRACKED = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\n")[:-1]
 SETS = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))
@@ -65,3 +67,14 @@ def test_a_stored_set_has_all_parts_of_one_build(folder):
         for one in found:
             assert (one.context["commit"], one.context["machine"]) == (
                 facts["context"]["commit"], facts["context"]["machine"]), one.name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("folder", SETS, ids=lambda folder: folder.name)
+def test_a_stored_set_is_drawn_again_as_it_was(folder, tmp_path):
+    copy = shutil.copytree(folder, tmp_path / folder.name)
+    done = study("figures", copy)
+    assert done.returncode == 0, done.stderr
+    for part in parts():
+        assert (copy / f"{part}.html").exists()
+        assert read_json(copy / part / "tables.json") == read_json(folder / part / "tables.json"), part
