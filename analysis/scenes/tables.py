@@ -1,98 +1,190 @@
-# The tables of study/scenes, read and reduced for its report.
-from pathlib import Path
+# Rows of the gate, of the standard problems and their convergence, and of what modelling costs.
+from functools import lru_cache
 
 import numpy
 import pandas
 
-from analysis.accuracy.front import GOOD
-from analysis.loader import TableError
-from analysis.statistics import median, ratio_interval
+from analysis.core import timing
+from analysis.core.errors import StudyError
+from analysis.core.outcomes import FINISHED, GOOD, of_run
+from analysis.core.statistics import median
+from study.scenes import metric
+from study.scenes.extrapolate import extrapolate, observed_order
+from study.scenes.modelling import CASES, OUTPUTS, PLAIN, slug
+from study.scenes.problems import read_list
+from study.scenes.references import EXTRAPOLATED, KNOWN, PUBLISHED, four_bar, kind
 
-PLAIN = "plain"
-TABLES = ("problems", "gate", "convergence", "modelling")
-
-
-def load(folder):
-    """{name: DataFrame}; empty tables where nothing was run."""
-    tables = {}
-    for name in TABLES:
-        path = Path(folder) / f"{name}.csv"
-        try:
-            tables[name] = pandas.read_csv(path, keep_default_na=True)
-        except pandas.errors.EmptyDataError:
-            tables[name] = pandas.DataFrame()
-        except (OSError, ValueError) as error:
-            raise TableError(f"{path}: cannot be read: {error}") from error
-    return tables
+NOT_JUDGED = "not judged"  # the precision of what has nothing to be compared with
+ORDER_NOISE = 1e-9  # differences of successive steps below this share of a component are rounding
+FIGURES = ("variables", "constraints", "penalty", "tolerance", "passes_per_step", "steps_at_limit", "energy_drift_max",
+           "constraint_violation_max")
 
 
-def costs(modelling):
-    """One row for each implementation, size and case: time of a step with its ratio to the case that
-    it is compared with, usually the plain model (paired by round, 95 % interval), time of the whole
-    process likewise, error, tangent."""
+def build(records, view):
+    listed = {problem.scene: problem for problem in read_list()[1]}
+    found = {"gate": [], "problems": [], "convergence": []}
+    runs = {}
+    for record in records:
+        if record.role in ("gate", "compared", "everyone"):
+            problem = listed.get(record.cell["scene"])
+            if problem is None:
+                raise StudyError(f"{record.name}: {record.cell['scene']} is no standard problem of study/scenes/problems.yaml")
+            if record.role == "gate":
+                found["gate"].append(_verdict(problem, record))
+            else:
+                runs.setdefault(problem.name, {})[record.cell["contenders"][0], _option(record, "--step")] = record
+    for problem in listed.values():
+        found["problems"] += problem_rows(problem, runs.get(problem.name, {}))
+        found["convergence"] += convergence_rows(problem, runs.get(problem.name, {}))
+    order = {problem.name: place for place, problem in enumerate(listed.values())}
+    found["gate"].sort(key=lambda row: order[row["problem"]])
+    found["modelling"], found["outputs"] = modelling_rows(records, view), output_rows(records)
+    return {name: pandas.DataFrame(rows) for name, rows in found.items()}
+
+
+def _option(record, name):
+    words = record.cell["settings"]
+    return float(words[words.index(name) + 1])
+
+
+def _verdict(problem, record):
+    row = {"problem": problem.name, "implementation": record.cell["contenders"][0], "record": record.name}
+    if not record.done:
+        return row | {"verdict": record.status, "reason": record.reason}
+    [found] = record.output["rows"]
+    return row | {"verdict": found["verdict"], "reason": found["reason"]}
+
+
+def problem_rows(problem, runs):
+    """One row a run. `runs`: {(implementation, step): record}."""
     result = []
-    if modelling.empty:
-        return result
-    for (implementation, loops), group in modelling.groupby(["implementation", "loops"], sort=False):
-        for case in dict.fromkeys(group[group["round"] == 1].case):
-            rows = group[group.case == case]
-            plain = group[group.case == rows.base.iloc[0]]
-            failed = rows[~rows.status.isin(GOOD)]
-            row = {"implementation": implementation, "loops": loops, "case": case,
-                   "piece": "" if case == PLAIN else rows.piece.iloc[0],
-                   "status": "ok" if failed.empty else failed.status.iloc[0],
-                   "reason": "" if failed.empty else failed.reason.iloc[0]}
-            if failed.empty:
-                row |= {"variables": int(rows.variables.iloc[0]),
-                        "constraints": int(rows.constraints.iloc[0]),
-                        "tangent": int(rows.tangent_nonzeros.iloc[0]),
-                        "passes": median(rows.passes_per_step), "step_us": median(rows.step_us),
-                        "error": median(rows.position_error.dropna()),
-                        "energy_drift": median(rows.energy_drift_max),
-                        "step": _ratio(rows, plain, "step_us"),
-                        "run": _ratio(rows, plain, "run_seconds"),
-                        "run_seconds": median(rows.run_seconds)}
-            result.append(row)
-    return sorted(result, key=lambda row: (row["implementation"], row["loops"]))
-
-
-def _ratio(rows, plain, column):
-    groups = [{number: group.to_numpy() for number, group in table.groupby("round")[column]}
-              for table in (rows, plain)]
-    return ratio_interval(*groups)
-
-
-def best_errors(problems):
-    """One row a problem: what is known, and for each implementation that ran it at the finest step
-    its error and class."""
-    result = []
-    for name, group in problems.groupby("problem", sort=False):
-        first = group.iloc[0]
-        runs = [row for _, of_one in group.groupby("implementation", sort=False)
-                for _, row in of_one[of_one.step == of_one.step.min()].iterrows()]
-        result.append({"problem": name, "title": first.title, "scene": first.scene,
-                       "variables": first.get("variables"), "constraints": first.get("constraints"),
-                       "duration": first.duration, "reference": first.reference,
-                       "conserved": bool(first.conserved), "runs": runs})
+    for (name, step), record in runs.items():
+        status, reason = of_run(record)
+        row = {"problem": problem.name, "title": problem.title, "implementation": name,
+               "compared": record.role == "compared", "step": step, "duration": problem.duration,
+               "reference": kind(problem.known), "status": status, "reason": reason, "precision": NOT_JUDGED,
+               "conserved": problem.conserved, "record": record.name} | {key: record.output.get(key) for key in FIGURES}
+        known = _known(problem, runs, name, step) if status in FINISHED else None
+        if known:
+            row["error_rms"], row["error_max"] = metric.errors({column: _values(record, column) for column in known}, known)
+            row["precision"] = metric.precision(row["error_rms"])
+        if status in FINISHED and problem.mirrored:
+            row["asymmetry"] = max(_apart(record, left, right, "x", 1) + _apart(record, left, right, "y", -1)
+                                   for left, right in problem.mirrored)
+        result.append(row)
     return result
 
 
-def agreement(gate):
-    """{problem: (how many agree, how many took part, [(implementation, verdict, reason)] others)}"""
-    result = {}
-    for name, group in gate.groupby("problem", sort=False):
-        others = group[group.verdict != "agrees"]
-        result[name] = (int((group.verdict == "agrees").sum()), len(group),
-                        list(others[["implementation", "verdict", "reason"]].fillna("").itertuples(
-                            index=False, name=None)))
+def _apart(record, left, right, axis, sign):
+    return float(max(abs(_values(record, f"{left}.{axis}") + sign * _values(record, f"{right}.{axis}"))))
+
+
+def _known(problem, runs, name, step):
+    """{column: values} that a run is judged by, or None if what it needs is missing: self-convergence needs the
+    finest two steps of the other one that is compared."""
+    if problem.known != EXTRAPOLATED:
+        solution = _solution(problem.known, tuple(numpy.round(_values(runs[name, step], "t"), 12)))
+        return {column: values for column, values in solution.items() if column.split(".")[0] in problem.judged}
+    other = next((one for one, _ in runs if one != name and runs[one, problem.steps[0]].role == "compared"), None)
+    finer, finest = (runs.get((other, one)) for one in problem.steps[1:])
+    if any(record is None or of_run(record)[0] not in FINISHED for record in (finer, finest)):
+        return None
+    return {column: extrapolate(_values(finer, column), _values(finest, column))
+            for column in problem.columns(finest.series)}
+
+
+@lru_cache(maxsize=None)
+def _solution(known, times):
+    return KNOWN[known](numpy.array(times))
+
+
+def _values(record, column):
+    return numpy.array(record.series[column], dtype=float)
+
+
+def convergence_rows(problem, runs):
+    """The final value of every judged component over three steps: order and extrapolated value; where it is
+    published, that and by how much the extrapolated value differs."""
+    result = []
+    published = PUBLISHED[problem.published]() if problem.published else {}
+    for name in dict.fromkeys(name for (name, _), record in runs.items() if record.role == "compared"):
+        three = [runs.get((name, step)) for step in problem.steps]
+        if len(three) != 3 or any(record is None or of_run(record)[0] not in FINISHED for record in three):
+            continue
+        for column in problem.columns(three[0].series):
+            values = [_values(record, column)[-1] for record in three]
+            limit, known = extrapolate(*values[1:]), published.get(column, numpy.nan)
+            result.append({
+                "problem": problem.name, "implementation": name, "component": column, "time": three[0].series["t"][-1],
+                "coarse": values[0], "finer": values[1], "finest": values[2], "order": float(observed_order(*values)),
+                "order_meaningful": bool(abs(values[1] - values[2]) > ORDER_NOISE * max(abs(values[2]), 1e-3)),
+                "extrapolated": limit, "published": known, "difference": limit - known, "record": three[2].name})
     return result
 
 
-def digits(value, count=8):
-    """`value` with `count` significant digits, never in powers of ten for positions."""
-    if not numpy.isfinite(value):
-        return "–"
-    if value == 0:
-        return "0"
-    places = max(0, count - 1 - int(numpy.floor(numpy.log10(abs(value)))))
-    return f"{value:.{places}f}"
+def _loops(record):
+    """Of a scene that study/scenes/modelling.py wrote."""
+    return int(record.cell["scene"].rpartition("/")[2].partition("-")[0])
+
+
+def modelling_rows(records, view):
+    """One row for each implementation, size and case: error of the whole run, time of a step, and its ratio to the
+    case that it is compared with, round by round."""
+    by_role = {}
+    for record in records:
+        by_role.setdefault(record.role, []).append(record)
+    motions = {(record.cell["contenders"][0], _loops(record), case.name): record
+               for case in CASES for record in by_role.get(f"motion.{case.file_name}", [])}
+    timed = pandas.concat([timing.processes(by_role.get(f"time.{case.file_name}", [])).assign(case=case.name)
+                           for case in CASES])
+    timed["loops"] = [int(scene.rpartition("/")[2].partition("-")[0]) for scene in timed.scene]
+    result, cases = [], {case.name: case for case in CASES}
+    for (name, loops, case), record in sorted(motions.items(), key=lambda one: one[0][:2]):
+        status, reason = of_run(record)
+        rows = timed[(timed.implementation == name) & (timed.loops == loops)]
+        mine, base = rows[rows.case == case], cases[case].base
+        wrong = mine[~mine.status.isin(["ok", "dropped"])]
+        if status in GOOD and len(wrong):
+            status, reason = wrong.status.iloc[0], wrong.reason.iloc[0]
+        good = mine[mine.status == "ok"]
+        by_case = rows.assign(implementation=rows.case)  # cases are compared as contenders are elsewhere
+        cost = timing.ratio(by_case, case, base) if case != base else timing.Ratio(1.0, 1.0, 1.0)
+        row = {"implementation": name, "loops": loops, "case": case, "piece": cases[case].piece, "base": base,
+               "status": status, "reason": reason, "rounds": len(good), "step_us": median(good.step_us),
+               "record": " ".join([record.name, *good.record[:1]])} | {
+            key: record.output.get(key) for key in (*FIGURES, "tangent_nonzeros")}
+        if len(good):
+            row |= {"ratio": cost.value, "ratio_low": cost.low, "ratio_high": cost.high}
+        if status in GOOD:
+            row["position_error"] = _error(record, loops)
+        result.append(row)
+    return result
+
+
+def _error(record, loops):
+    """Largest distance of B0 from the exact motion along an axis, m; over all instants that are kept."""
+    exact = four_bar(_values(record, "t"), loops)
+    return max(float(numpy.max(numpy.abs(_values(record, column) - exact[column]))) for column in ("B0.x", "B0.y"))
+
+
+def output_rows(records):
+    """One row for each size and kind of output: seconds of the whole process, and the ratio to writing nothing."""
+    result = []
+    runs = [record for record in records if record.role.startswith("output.")]
+    first = next(iter(OUTPUTS))
+    for loops in sorted({_loops(record) for record in runs}):
+        rows = pandas.DataFrame([
+            {"implementation": name, "environment": "", "process": record.cell["number"], "samples": (record.seconds,),
+             "status": "ok" if of_run(record)[0] in FINISHED else of_run(record)[0], "reason": of_run(record)[1],
+             "seconds": record.seconds, "who": record.cell["contenders"][0], "record": record.name}
+            for name in OUTPUTS for record in runs if record.role == f"output.{slug(name)}" and _loops(record) == loops])
+        for name in OUTPUTS:
+            mine = rows[rows.implementation == name]
+            good, wrong = mine[mine.status == "ok"], mine[~mine.status.isin(["ok", "dropped"])]
+            cost = timing.ratio(rows, name, first) if name != first else timing.Ratio(1.0, 1.0, 1.0)
+            result.append({"implementation": rows.who.iloc[0], "loops": loops, "output": name, "rounds": len(good),
+                           "status": wrong.status.iloc[0] if len(wrong) else "ok" if len(good) else "dropped",
+                           "reason": wrong.reason.iloc[0] if len(wrong) else "", "seconds": median(good.seconds),
+                           "record": " ".join(mine.record[:1])}
+                          | ({"ratio": cost.value, "ratio_low": cost.low, "ratio_high": cost.high} if len(good) else {}))
+    return result

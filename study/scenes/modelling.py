@@ -1,23 +1,17 @@
 # What each piece of modelling costs and buys: the N-four-bar, modelled in more ways than it needs.
 #
-# Every case is the same motion, known in closed form, so that each has a time and an error. Cases run in
-# rounds, in an order shuffled anew in each; the cost of a case is the median over rounds of its ratio to
-# the plain model in the same round.
+# Every case is the same motion, known in closed form, so that each has an error (a whole run, untimed) and a time
+# (the stretch of its first second). Contenders take turns within a process, but cases are scenes: they take turns
+# by processes, in an order shuffled anew in each round, and are compared round by round.
 import random
 from dataclasses import dataclass
 
-import numpy
-import pandas
-
-from study.pipeline import runs
-from study.pipeline.layout import write_json
+from study.core.cell import Cell
 from study.scenes import metric
-from study.scenes.references import four_bar
 
 IMPLEMENTATIONS = ("csc_klu/refactor", "csc_cholmod/simplicial", "eigen_dense/llt")
-LOOPS = (10, 40)
 STEP, DURATION = 1.25e-3, 10.0
-EARLY = 0.5  # s; the first singular position comes at 0.708 s or later
+STRETCH, EARLY = 800, 400  # steps; the first singular position comes at 0.708 s or later
 SEED = 20080101
 FAINT = 1e-9  # stiffness (N/m) and damping (N s/m) that cost like any other and move nothing
 PLAIN = "plain"
@@ -29,11 +23,15 @@ class Case:
     piece: str             # what it is compared for
     scene: str = PLAIN     # which of scenes()
     options: tuple = ()
-    output: str = "B0"     # "B0", "nothing" or "everything"
-    duration: float = DURATION
+    steps: int = STRETCH   # of the stretch; and of the run, where that is the early one
     base: str = PLAIN      # the case that it is compared with
 
+    @property
+    def file_name(self):
+        return slug(self.name)
 
+
+BEFORE = "plain, before singular"
 CASES = (
     Case(PLAIN, ""),
     Case("fixed points as unknowns", "points", "unknown grounds"),
@@ -44,14 +42,12 @@ CASES = (
     Case("redundant rods", "constraints", "redundant"),
     Case("velocities projected only", "projections", options=("--projections", "velocity")),
     Case("no projections", "projections", options=("--projections", "none")),
-    Case("plain, before singular", "early", duration=EARLY, base="plain, before singular"),
-    Case("velocities only, before singular", "early", options=("--projections", "velocity"),
-         duration=EARLY, base="plain, before singular"),
-    Case("no projections, before singular", "early", options=("--projections", "none"),
-         duration=EARLY, base="plain, before singular"),
-    Case("no output", "output", output="nothing"),
-    Case("output of everything", "output", output="everything"),
-)
+    Case(BEFORE, "early", steps=EARLY, base=BEFORE),
+    Case("velocities only, before singular", "early", options=("--projections", "velocity"), steps=EARLY, base=BEFORE),
+    Case("no projections, before singular", "early", options=("--projections", "none"), steps=EARLY, base=BEFORE))
+# Of whole processes of one implementation: what is written. The file system takes no part in "everything".
+OUTPUTS = {"nothing": {}, "a point in every 25 ms": {"keep": ("outputs",), "every": 20},
+           "everything at every step": {"settings": ("--trajectory", "/dev/null")}}
 
 
 def scenes(loops):
@@ -89,73 +85,45 @@ def scenes(loops):
     }
 
 
-def label(name):
-    """A case's name in those of files."""
+def slug(name):
+    """A case's or scene's name in those of files."""
     return name.replace(",", "").replace(" ", "-")
 
 
-def measure(raw, contenders, contexts, rounds, tell, stored=False):
-    """{(implementation, loops, case, round): record}; raw files and the scenes beside them."""
-    folder = raw / "modelling"
-    for loops in LOOPS if rounds and not stored else ():
-        for name, scene in scenes(loops).items():
-            path = folder / "scenes" / f"{loops}-{name.replace(' ', '-')}.json"
-            write_json(path, scene)
-    found = {}
-    work = [(one, loops, case) for one in contenders if one.name in IMPLEMENTATIONS
-            for loops in LOOPS for case in CASES]
-    for number in range(1, rounds + 1):
-        for done, (one, loops, case) in enumerate(random.Random(f"{SEED}:{number}").sample(work, len(work))):
-            tell(f"round {number} of {rounds}: {case.name}, N = {loops}, {one.name}",
-                 (number - 1 + done / len(work)) / rounds)
-            found[one.name, loops, case.name, number] = _run(
-                folder, one, loops, case, number, contexts[one.environment], stored)
-    return found
+def run(lab):
+    those = [one for name in IMPLEMENTATIONS if (one := lab.contender(name))]
+    groups = {}
+    for one in those:
+        groups.setdefault(one.environment, []).append(one)
+    motions, timed = [], []
+    for loops in lab.settings["loops"]:
+        paths = {name: lab.scene(f"{loops}-{slug(name)}", scene) for name, scene in scenes(loops).items()}
+        for case in CASES:
+            motions += [_motion(case, paths[case.scene], one) for one in those]
+            timed += [_timed(case, paths[case.scene], tuple(group), lab.settings["samples"]) for group in groups.values()]
+        timed += [_written(name, paths[PLAIN], those[0]) for name in OUTPUTS if those]
+    lab.run(motions)
+    for number in range(1, lab.settings["rounds"] + 1):
+        lab.tell(f"round {number} of {lab.settings['rounds']}")
+        cells = [cell(number) for cell in timed]
+        lab.run(random.Random(f"{SEED}:{number}").sample(cells, len(cells)), drop=True)
 
 
-def _run(folder, contender, loops, case, number, context, stored):
-    scene = folder / "scenes" / f"{loops}-{case.scene.replace(' ', '-')}.json"
-    path = folder / f"round{number}" / (
-        f"{contender.file_name}-{loops}-{label(case.name)}.json")
-    steps = round(case.duration / STEP)
-    every = {"B0": max(1, steps // metric.SAMPLES), "nothing": 0, "everything": 0}[case.output]
-    more = list(case.options)
-    trajectory = path.with_name(path.name + ".trajectory.csv")
-    if case.output == "everything":
-        path.parent.mkdir(parents=True, exist_ok=True)
-        more += ["--trajectory", str(trajectory)]
-    record = runs.simulate(path, contender, str(scene), step=STEP, duration=case.duration, every=every,
-                           context=context, seconds=120, more=more, stored=stored)
-    trajectory.unlink(missing_ok=True)
-    return record
+def _motion(case, scene, one):
+    duration = DURATION if case.steps == STRETCH else EARLY * STEP
+    return Cell("simulate", scene, (one,), ("--step", f"{STEP:g}", "--duration", f"{duration:g}", *case.options),
+                f"motion.{case.file_name}", seconds=120, keep=("outputs",), every=round(duration / STEP) // metric.SAMPLES)
 
 
-def rows(found, relative):
-    """The rows of modelling.csv: one a run."""
-    result = []
-    by_name = {case.name: case for case in CASES}
-    for (name, loops, case, number), record in found.items():
-        status, reason = runs.status(record)
-        row = {"implementation": name, "loops": loops, "case": case, "piece": by_name[case].piece,
-               "base": by_name[case].base,
-               "round": number, "status": status, "reason": reason, "step": STEP,
-               "duration": by_name[case].duration, "run_seconds": record["seconds"]}
-        if "summary" in record:
-            summary = record["summary"]
-            row |= {key: summary[key] for key in (
-                "variables", "constraints", "tangent_nonzeros", "penalty", "tolerance",
-                "passes_per_step", "energy_drift_max", "constraint_violation_max")}
-            row["step_us"] = summary["step_us"]["median"]
-        outputs = record.get("outputs", {})
-        if status in runs.GOOD and "B0.x" in outputs:
-            exact = four_bar(numpy.array(outputs["t"]), loops)
-            row["position_error"] = max(float(numpy.max(numpy.abs(
-                numpy.array(outputs[column]) - exact[column]))) for column in ("B0.x", "B0.y"))
-        row["raw_file"] = relative(name, loops, case, number)
-        result.append(row)
-    order = [case.name for case in CASES]
-    result.sort(key=lambda row: (row["round"], row["implementation"], row["loops"],
-                                 order.index(row["case"])))
-    return pandas.DataFrame(result)
+def _timed(case, scene, group, samples):
+    """The cell of a round, by its number."""
+    words = ("--step", f"{STEP:g}", "--steps", case.steps, *case.options, f"--benchmark_repetitions={samples}")
+    return lambda number: Cell("bench", scene, group, (*words, "--seed", number), f"time.{case.file_name}", number,
+                               timed=True, seconds=60)
 
 
+def _written(name, scene, one):
+    words = ("--step", f"{STEP:g}", "--duration", f"{DURATION:g}")
+    more = OUTPUTS[name] | {"settings": (*words, *OUTPUTS[name].get("settings", ()))}
+    return lambda number: Cell("simulate", scene, (one,), role=f"output.{slug(name)}", number=number, timed=True,
+                               seconds=120, **more)
