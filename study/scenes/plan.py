@@ -1,0 +1,46 @@
+# The standard problems: the gate of everyone, runs of the two that are compared; then what modelling costs.
+from study.core.cell import Cell
+from study.scenes import metric, modelling
+from study.scenes.problems import compared_of, read_list
+
+SETTINGS = {"problems": list,  # names in problems.yaml
+            "loops": list,     # sizes of the N-four-bar on which modelling is measured
+            "rounds": int,     # processes of each of its cases, in turn
+            "samples": int}    # of a process and contender
+SHARES = {"problems": 0.5, "modelling": 0.5}  # of the budget
+CHECK_S, RUN_S = 120, 600  # limits of a process
+
+
+def columns(settings, studyset):
+    return {name: share * settings["seconds"] for name, share in SHARES.items()}
+
+
+def run(lab, column):
+    {"problems": problems, "modelling": modelling.run}[column](lab)
+
+
+def problems(lab):
+    preferred, listed = read_list()
+    chosen = [one for one in listed if one.name in lab.settings["problems"]]
+    compared = compared_of(preferred, [one.name for one in lab.contenders])
+    runs, gates = [], []
+    for problem in chosen:
+        for one in lab.contenders:
+            runs += [simulate(problem, one, step, "compared" if one.name in compared else "everyone")
+                     for step in problem.steps if one.name in compared or (problem.everyone and step == problem.steps[0])]
+            gates.append(gate(problem, one))
+    lab.run(runs)
+    # Worth most first: dense ones take longest where their step is of least use.
+    lab.run(sorted(gates, key=lambda cell: cell.contenders[0].variant in lab.registry.dense), drop=True)
+
+
+def simulate(problem, one, step, role):
+    return Cell("simulate", problem.scene, (one,), ("--step", f"{step:g}", "--duration", f"{problem.duration:g}",
+                                                    *problem.settings), role, seconds=RUN_S, keep=("outputs",),
+                every=round(problem.duration / step) // metric.SAMPLES)
+
+
+def gate(problem, one):
+    settings = ("--step", f"{problem.check_step:g}") if problem.check_step else (
+        "--step", f"{problem.steps[0]:g}", *problem.settings)
+    return Cell("check", problem.scene, (one,), (*settings, "--time-limit", CHECK_S), "gate", seconds=2 * CHECK_S)
