@@ -1,0 +1,70 @@
+# Cells of the maps: who is fastest in a scene, in each layer.
+from dataclasses import dataclass
+
+import pandas
+
+from analysis.core.timing import NONE, Ranking
+from analysis.map.timed import layers
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One scene as a map shows it. `ranking` is None if nobody could be timed there."""
+    scene: str
+    variables: float
+    fill_asked: float | None  # share; None: the mechanism's own fill
+    fill_percent: float       # as measured
+    ranking: Ranking | None
+    excluded: tuple
+    failed: tuple
+
+    @property
+    def decided(self):
+        """Alone, one wins only if no rival failed: of those nothing is known; the excluded ones it has beaten."""
+        return bool(self.ranking and self.ranking.decided and (self.ranking.second or not self.failed))
+
+    @property
+    def settled(self):
+        return bool(self.ranking and self.ranking.settled and (self.ranking.second or not self.failed))
+
+    @property
+    def winners(self):
+        """Who may be called the fastest: the winner, or all of the equivalence set, or also those that are open."""
+        if self.ranking is None or self.decided:
+            return (self.ranking.winner,) if self.ranking else ()
+        return tuple(name for name in self.ranking.ratios if name in (*self.ranking.equivalent, *self.ranking.open))
+
+
+def map_cells(results, names):
+    """Cells by size, then fill, of these contenders alone."""
+    rows = results.timing[(results.timing.scene != "") & results.timing.fill_percent.notna()]
+    scenes = rows[["scene", "variables", "fill_asked", "fill_percent"]].drop_duplicates("scene")
+    return [Cell(one.scene, one.variables, None if pandas.isna(one.fill_asked) else one.fill_asked, one.fill_percent,
+                 results.rank(one.scene, names), tuple(results.excluded(one.scene, names)),
+                 tuple(results.failed(one.scene, names)))
+            for one in scenes.sort_values(["variables", "fill_percent"], kind="stable").itertuples()]
+
+
+def table(results):
+    return pandas.DataFrame([_row(results, cell, layer) for layer in layers(results.registry)
+                             for cell in map_cells(results, results.layer(layer))])
+
+
+def _row(results, cell, layer):
+    ranking = cell.ranking
+    row = {"scene": cell.scene, "layer": layer, "variables": cell.variables, "fill_asked": cell.fill_asked,
+           "fill_percent": cell.fill_percent, "decided": cell.decided, "settled": cell.settled,
+           "excluded": " ".join(cell.excluded), "failed": " ".join(cell.failed)}
+    rows = results.rows(cell.scene)
+    if ranking is None:
+        return row | {"record": next(iter(rows.record), "")}
+    mine = rows[(rows.implementation == ranking.winner) & (rows.status == "ok")]
+    margin = ranking.margin if ranking.second else NONE
+    return row | {"winner": ranking.winner, "second": ranking.second, "margin": margin.value, "low": margin.low,
+                  "high": margin.high, "equivalent": " ".join(ranking.equivalent), "open": " ".join(ranking.open),
+                  "processes": len(mine), "record": " ".join(mine.record)}
+
+
+def from_table(table, layer):
+    """{scene: row} of one layer of the table `cells`."""
+    return {row.scene: row for row in table[table.layer == layer].itertuples()}

@@ -1,0 +1,97 @@
+# What figures, claims and pages ask the tables of a set: who was timed, ratios and rankings of a scene.
+from functools import cached_property
+
+from analysis.core import timing
+from analysis.core.registry import NULL
+from analysis.map.timed import layers
+
+FAILURES = ("disagrees", "crashed", "timeout", "out-of-memory", "unsupported", "diverged", "failed", "refused")
+
+
+class Results:
+    def __init__(self, tables, view):
+        self.tidy, self.verification, self.view = tables["tidy"], tables["verification"], view
+        self.registry, self.variants = view.registry, view.registry.variants
+        self._ranked, self._ratios = {}, {}
+
+    @cached_property
+    def implementations(self):
+        """Names that take part in rankings, in the registry's order."""
+        present = set(self.tidy.implementation)
+        return [name for name in self.variants if name in present]
+
+    @cached_property
+    def timing(self):
+        """Rows of timed processes and of what was not timed."""
+        rows = self.tidy[self.tidy.kind == "timing"]
+        return rows.assign(samples=[tuple(map(float, text.split())) for text in rows.samples_us])
+
+    @cached_property
+    def _scenes(self):
+        return dict(list(self.timing.groupby("scene")))
+
+    def rows(self, scene):
+        """All timing rows of a scene, whatever their status."""
+        return self._scenes.get(scene, self.timing[:0])
+
+    def layer(self, name):
+        """Names of those that are ranked in a layer and took part."""
+        return [one for one in layers(self.registry)[name] if one in self.implementations]
+
+    def samples(self, natural_only=False):
+        """Rows of processes that timed ranked contenders."""
+        rows = self.timing
+        chosen = (rows.status == "ok") & rows.implementation.isin(list(self.variants))
+        return rows[chosen & rows.fill_asked.isna()] if natural_only else rows[chosen]
+
+    def natural(self, size):
+        """Name of a size's scene with its own fill."""
+        return f"four-bar:{round(size) // 2 - 1}"
+
+    @cached_property
+    def sizes(self):
+        """Sizes that were timed at their own fill."""
+        return sorted(self.samples(natural_only=True).variables.unique())
+
+    def alternatives(self, variant, builds=False):
+        """Rows of `variant` at natural fill on its pairs, or with `builds` in its builds, that have a time."""
+        rows = self.timing
+        mine = (rows.status == "ok") & (rows.folder + "/" + rows.variant == variant) & rows.fill_asked.isna()
+        return rows[mine & (rows.blas.eq(self.usual(variant)) if builds else rows.build.eq(""))]
+
+    def usual(self, variant):
+        """The pair that a variant is ranked on."""
+        return next(iter(self.tidy.blas[self.tidy.implementation == variant]), "")
+
+    def rank(self, scene, names):
+        key = scene, frozenset(names)
+        if key not in self._ranked:
+            self._ranked[key] = timing.rank(self.rows(scene), set(names) - {NULL})
+        return self._ranked[key]
+
+    def fastest(self, scene, names):
+        """The one of least time; None if nobody was timed."""
+        found = self.rank(scene, names)
+        return found.winner if found else None
+
+    def ratio(self, scene, slow, fast):
+        """Time of `slow` over that of `fast`; None if they cannot be compared."""
+        key = scene, slow, fast
+        if key not in self._ratios:
+            self._ratios[key] = timing.ratio(self.rows(scene), slow, fast)
+        found = self._ratios[key]
+        return None if found.value != found.value else found
+
+    def medians(self, scene):
+        """{name: µs a step}: median over its processes. For orientation: ratios compare."""
+        rows = self.rows(scene)
+        return rows[rows.status == "ok"].groupby("implementation").step_us.median().to_dict()
+
+    def failed(self, scene, names):
+        rows = self.rows(scene)
+        return [name for name in names if name in set(rows[rows.status.isin(FAILURES)].implementation)]
+
+    def excluded(self, scene, names):
+        rows = self.rows(scene)
+        lost = set(rows[rows.status.isin(["excluded", "slower"])].implementation)
+        return [name for name in names if name in lost and name not in self.failed(scene, names)]

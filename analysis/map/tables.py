@@ -1,0 +1,17 @@
+# The tables of the map from its records.
+import pandas
+
+from analysis.core import schema
+from analysis.map import tidy
+from analysis.map.cells import table as cells
+from analysis.map.claims import claims
+from analysis.map.results import Results
+
+
+def build(records, view):
+    found = {"tidy": tidy.tidy(records), "scenes": tidy.scenes(records), "verification": tidy.verification(records)}
+    known = schema.of_part("map")
+    found = {name: schema.conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(known[name])), known[name],
+                                  f"map/{name}.csv") for name, frame in found.items()}
+    results = Results(found, view)
+    return found | {"cells": cells(results), "claims": pandas.DataFrame(claims(results))}

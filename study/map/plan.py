@@ -1,0 +1,105 @@
+# The map: who is fastest at which size and fill of the N-four-bar. A column is a size; a scene a size at a fill.
+#
+# For each scene: rough pilots say who is hopeless, the gate says who is right, the rest is timed in turns. All of that
+# is decided from records, so that a run that was interrupted decides alike.
+from analysis.core.errors import StudyError
+from study.core.cell import Cell
+from study.core.contender import Contender
+from study.core.profile import need_keys
+from study.core.timing import measure
+from study.map.scene import NATURAL, Scene
+from study.map.timed import TimedScene
+from study.map.verify import alternatives, fit
+
+SETTINGS = {"processes": int,      # of a timed scene
+            "process": float,      # s of samples in each, about
+            "again": int,          # further processes of those who may be the fastest, where that is open
+            "between": int,        # fills to be put half-way where the winner changes, a column
+            "slower": dict,        # natural, filled: whoever is so many times slower than the fastest library is not timed
+            "limits": dict,        # s: pilot, check, time
+            "alternatives": list,  # the same on other BLAS pairs or in other builds, at natural fill; never ranked
+            "phases": dict,        # columns, processes: shares of a step by phase
+            "operations": dict,    # columns, processes: Table 2's operations one by one
+            "columns": list}       # variables, seconds, fills (natural, then shares of n^2), perhaps its own slower
+FIRST = 3       # processes of every scene that come before the others: of three there is an interval
+CLOSEST = 0.04  # fills nearer than this have none put between them, share
+
+
+def columns(settings, studyset):
+    for entry in settings["columns"]:
+        need_keys("profile: map", "a column", {key: 0 for key in entry if key != "slower"}, {"variables", "seconds", "fills"})
+        if entry["variables"] < 4 or entry["variables"] % 2 or entry["fills"][:1] != [NATURAL]:
+            raise StudyError("profile: map: a column has an even number of variables from 4 on, and fills that start with "
+                             f"{NATURAL}: found {entry!r}")
+    total = sum(entry["seconds"] for entry in settings["columns"])
+    if total > settings["seconds"]:
+        raise StudyError(f"profile: map: its columns take {total:g} s, the part has {settings['seconds']:g}")
+    return {_name(entry): float(entry["seconds"]) for entry in settings["columns"]}
+
+
+def _name(entry):
+    return f"n{entry['variables']:04d}"
+
+
+def run(lab, column):
+    [entry] = [one for one in lab.settings["columns"] if _name(one) == column]
+    natural, *filled = [Scene.of(entry["variables"], fill) for fill in entry["fills"]]
+    if entry == lab.settings["columns"][0]:
+        _unavailable(lab, natural)
+    timed = [TimedScene(lab, natural, *fit(lab, natural, [*lab.contenders, *alternatives(lab, natural)]))]
+    for scene in filled:
+        if 100 * scene.fill <= timed[0].fill:
+            lab.skip(Cell("bench", scene.name, role="not-reached"), "not-reached",
+                     f"the mechanism's own fill is {timed[0].fill:.3g} %")
+        else:
+            timed.append(TimedScene(lab, scene, *fit(lab, scene, lab.contenders)))
+    for count in (min(FIRST, lab.settings["processes"]), lab.settings["processes"]):
+        for one in timed:
+            one.time(count)
+    _phases(lab, timed[0])
+    _operations(lab, natural)
+    for _ in range(lab.settings["between"]):
+        _add_between(lab, timed)
+    for one in timed:
+        one.again(lab.settings["again"])
+
+
+def _unavailable(lab, scene):
+    """A record for each implementation that cannot take part at all."""
+    for entry in lab.registry.entries:
+        if not entry["available"] and (not lab.set.facts["only"] or entry["folder"] in lab.set.facts["only"]):
+            lab.skip(Cell("bench", scene.name, (Contender(entry["folder"], entry["folder"]),), role="unavailable"),
+                     "unavailable", entry["reason"])
+
+
+def _phases(lab, timed):
+    asked = lab.settings["phases"]
+    if timed.scene.variables in asked["columns"]:
+        measure(lab, timed.scene.name, [one for one in timed.costs if one.ranked], processes=asked["processes"],
+                repetitions=1, role="phases", settings=("--phases",), seconds=lab.settings["limits"]["time"], drop=True)
+
+
+def _operations(lab, scene):
+    """`mbs` checks their results itself, so that a step too slow to be timed excludes nobody."""
+    asked = lab.settings["operations"]
+    chosen = tuple(one for one in lab.contenders if lab.registry.variants[one.variant].get("operations"))
+    if scene.variables in asked["columns"] and chosen:
+        lab.run([Cell("bench", scene.name, chosen, ("--operations", "--benchmark_repetitions=3", "--benchmark_min_time=0.01"),
+                      "operations", number, timed=True, seconds=lab.settings["limits"]["time"])
+                 for number in range(1, asked["processes"] + 1)], drop=True)
+
+
+def _add_between(lab, timed):
+    """Times the fill half-way in the widest gap between two with other libraries ahead, if the budget has room."""
+    gaps = [(round(high.fill - low.fill, 6), low, high) for low, high in zip(timed, timed[1:])
+            if high.fill - low.fill >= 100 * CLOSEST and _other_winner(low, high)]
+    if gaps and lab.left > 0:
+        _, low, high = max(gaps, key=lambda gap: gap[0])
+        scene = Scene(low.scene.variables, round((low.fill + high.fill) / 200, 2))
+        timed.insert(timed.index(high), TimedScene(lab, scene, *fit(lab, scene, lab.contenders)))
+        timed[timed.index(high) - 1].time(lab.settings["processes"])
+
+
+def _other_winner(low, high):
+    first, second = low.rankings["libraries"], high.rankings["libraries"]
+    return bool(first and second and second.winner not in first.equivalent and first.winner not in second.equivalent)

@@ -1,0 +1,63 @@
+# A scene that is timed: its processes, without those whose stretch takes another number of passes; more where it is open.
+from dataclasses import dataclass, field
+
+from analysis.core.timing import rank
+from analysis.map.timed import differing, layers, timed_rows
+from study.core.cell import Cell
+from study.core.contender import CONTROL, Contender
+from study.core.timing import measure
+from study.map.scene import Scene
+
+LEAST_SAMPLES, MOST_SAMPLES = 2, 40
+BUSY = 1.5     # passes a step of a stretch, which crosses the singular position, over those of a pilot, about
+TURN = 0.005   # s, the least that a sample takes
+
+
+@dataclass
+class TimedScene:
+    lab: object
+    scene: Scene
+    costs: dict  # {contender: µs a step of its pilot}
+    fill: float  # percent, measured
+    records: list = field(default_factory=list)
+
+    def time(self, count):
+        """Processes 1 … `count` of all."""
+        while self.costs:
+            self.records = self._measure([*self._control(), *self.costs], count, "time")
+            wrong = differing(timed_rows(self.records))
+            if not wrong:
+                return
+            for one in [one for one in self.costs if one.name in wrong]:
+                del self.costs[one]
+                self.lab.skip(Cell("bench", self.scene.name, (one,), role="time-left-out"), "disagrees", wrong[one.name])
+
+    def again(self, count):
+        """Further processes of those who may be the fastest, of the libraries or of all, where that is open."""
+        open_names = {name for ranking in self.rankings.values() if ranking and not ranking.settled
+                      for name in (ranking.winner, *ranking.open)}
+        chosen = [one for one in self.costs if one.name in open_names]
+        if len(chosen) > 1 and count:
+            self.records += self._measure(chosen, count, "again")
+
+    @property
+    def rankings(self):
+        """{layer: Ranking or None}"""
+        rows = timed_rows(self.records)
+        return {layer: rank(rows, names) for layer, names in layers(self.lab.registry).items()}
+
+    def _control(self):
+        """The harness's own, which does nothing: at natural fill, on the pair of most."""
+        if self.scene.fill is not None:
+            return []
+        pairs = [one.blas for one in self.costs if not one.build]
+        return [Contender(CONTROL.name, CONTROL.variant, max(pairs, key=pairs.count))] if pairs else []
+
+    def _measure(self, contenders, count, role):
+        """The pilots decide how many samples fill a process, never what a sample is."""
+        lab, limit = self.lab, self.lab.settings["limits"]["time"]
+        sample = max(TURN * len(contenders),
+                     1e-6 * BUSY * self.scene.steps * sum(self.costs.get(one, 0.0) for one in contenders))
+        samples = min(max(round(lab.settings["process"] / sample), LEAST_SAMPLES), MOST_SAMPLES)
+        return measure(lab, self.scene.name, contenders, processes=count, role=role, drop=True, repetitions=samples,
+                       seconds=limit, settings=("--patience", limit / 10))

@@ -1,0 +1,149 @@
+# Who is fit to be timed in a scene: rough pilots, the rule that excludes the hopeless, the gate.
+#
+# A pilot is a few steps from the start. Who is slower than the fastest library by more than the profile's factor is
+# excluded: neither checked nor timed. Only what the gate has not rejected counts as fastest, so that a wrong but fast
+# one excludes nobody, and code of our own never excludes anybody. In filled scenes the two fastest of each family stay
+# within FAMILY times that factor: maps are drawn for families too.
+import math
+from dataclasses import dataclass
+from itertools import groupby
+
+from study.core.builds import BUILDS, build
+from study.core.cell import Cell
+from study.core.contender import Contender
+
+FAMILY = 5
+RUNS = 3  # of a pilot; the fastest counts
+WORK = 3200  # variables times steps of a pilot
+
+
+@dataclass(frozen=True)
+class Pilot:
+    record: object
+    step_us: float  # infinite if it failed; the least that is proved if it ran out of time
+    fill: float = math.nan
+
+    @property
+    def alive(self):
+        return math.isfinite(self.step_us)
+
+
+def fit(lab, scene, contenders):
+    """({contender: µs a step of its pilot} of those to be timed, the scene's fill in %); each other one gets a record
+    that says why not."""
+    pilots = dict(zip(contenders, _pilots(lab, scene, contenders)))
+    verdicts, rule = {}, _Rule(lab, scene, pilots)
+    while todo := [one for one in rule.chosen(verdicts) if one not in verdicts]:
+        verdicts |= _gate(lab, scene, todo)
+    best = rule.best(verdicts)
+    for one, pilot in pilots.items():
+        if pilot.alive and one not in verdicts:
+            late = "at least " if not pilot.record.done else ""
+            lab.skip(Cell("bench", scene.name, (one,), role="excluded"), "excluded",
+                     f"its pilot takes {late}{pilot.step_us / best:.3g} times as long as the fastest library's")
+    fill = next((pilot.fill for pilot in pilots.values() if not math.isnan(pilot.fill)), math.nan)
+    return {one: pilot.step_us for one, pilot in pilots.items() if verdicts.get(one)}, fill
+
+
+def _pilots(lab, scene, contenders):
+    steps = max(2, min(16, WORK // scene.variables))
+    limit = lab.settings["limits"]["pilot"]
+    cells = [Cell("bench", scene.name, (one,), ("--steps", steps, "--start", 0, f"--benchmark_repetitions={RUNS}",
+                                                "--benchmark_min_time=1e-6"), "pilot", seconds=limit) for one in contenders]
+    for record in lab.run(cells):
+        rows = [row for row in record.output.get("rows", {}).values() if not row.get("error_occurred")]
+        if rows:
+            yield Pilot(record, min(rows[0]["stretch_us"]) / steps, rows[0]["fill_percent"])
+        else:  # a warm-up and RUNS stretches were not done within the limit
+            late = record.status == "timeout"
+            yield Pilot(record, 1e6 * limit / (steps * (RUNS + 1)) if late else math.inf)
+
+
+@dataclass(frozen=True)
+class _Rule:
+    lab: object
+    scene: object
+    pilots: dict
+
+    def best(self, verdicts):
+        """Least time of the ranked ones that are not rejected; of the libraries, unless there is nobody else."""
+        alive = {one: pilot.step_us for one, pilot in self.pilots.items()
+                 if pilot.alive and one.ranked and verdicts.get(one, True)}
+        return min([time for one, time in alive.items() if one.variant not in self.lab.registry.own]
+                   or alive.values(), default=math.inf)
+
+    def chosen(self, verdicts):
+        limit = self._factor * self.best(verdicts)
+        kept = {one for one, pilot in self.pilots.items() if pilot.alive and pilot.step_us <= limit}
+        if self.scene.fill is not None:
+            kept |= self._families(verdicts, FAMILY * limit)
+        return [one for one in self.pilots if one in kept]
+
+    @property
+    def _factor(self):
+        known = self.lab.settings["slower"]
+        if self.scene.fill is not None:
+            return known["filled"]
+        [column] = [one for one in self.lab.settings["columns"] if one["variables"] == self.scene.variables]
+        return column.get("slower", known["natural"])
+
+    def _families(self, verdicts, limit):
+        alive = [one for one, pilot in self.pilots.items() if pilot.step_us <= limit and verdicts.get(one, True)]
+        alive.sort(key=lambda one: self.pilots[one].step_us)
+        said = self.lab.registry.variants
+        return {one for key in ("dense", "unsymmetric") for value in (True, False)
+                for one in [one for one in alive if said[one.variant].get(key, False) == value][:2]}
+
+
+def _gate(lab, scene, contenders):
+    """{contender: whether it agrees}. Several in a process save time; if it dies, one by one loses only the culprit."""
+    groups = [tuple(group) for _, group in groupby(sorted(contenders, key=lambda one: one.environment),
+                                                   lambda one: one.environment)]
+    records = lab.run([_check(lab, scene, group) for group in groups])
+    verdicts = {}
+    for group, record in zip(groups, records):
+        if record.done or len(group) == 1:
+            found = {row["implementation"]: row["verdict"] == "agrees" for row in record.output.get("rows", [])
+                     if row["scene"] == scene.name}
+            verdicts |= {one: found.get(one.variant, False) for one in group}
+        else:
+            for one in group:
+                verdicts |= _gate(lab, scene, [one])
+    return verdicts
+
+
+def _check(lab, scene, group):
+    # A limit of its own for each, with room left for the reference: the program can then blame the slow one, before
+    # the limit on the whole process takes all verdicts with it.
+    limit = lab.settings["limits"]["check"]
+    return Cell("check", scene.name, group, ("--time-limit", f"{limit / (len(group) + 1):g}"), "gate", seconds=limit)
+
+
+def alternatives(lab, scene):
+    """Contenders of the profile's other pairs and builds at this size; what is missing gets a record that says why."""
+    found = {}
+    for entry in lab.settings["alternatives"]:
+        usual = [one for one in lab.contenders if one.variant in entry["implementations"]
+                 or one.variant.split("/")[0] in entry["implementations"]]
+        for one in usual if scene.variables in entry["columns"] else []:
+            for pair in entry.get("blas", []):
+                if pair != one.blas:
+                    found[Contender(f"{one.name}+{pair}", one.variant, pair)] = lab.registry.pairs.get(pair, "unknown pair")
+            for name in entry.get("builds", []):
+                found[Contender(f"{one.name}+{name}", one.variant, one.blas, name)] = _missing(lab, name)
+    for one, reason in found.items():
+        if reason:
+            lab.skip(Cell("bench", scene.name, (one,), role="unavailable"), "unavailable", reason)
+    return [one for one, reason in found.items() if not reason]
+
+
+_built = {}  # {build: why it failed, or ""}
+
+
+def _missing(lab, name):
+    if name not in _built:
+        if name not in BUILDS:
+            return f"unknown build; known: {', '.join(BUILDS)}"
+        with open(lab.set.log, "a", encoding="utf-8") as log:
+            _built[name] = build(name, log, lab.tell)
+    return _built[name]
