@@ -41,10 +41,12 @@ def read(path, name, chosen=None):
     need_keys(path, "the profile", data, {"title", "blas", "dropped", "parts"})
     if not isinstance(data["blas"], dict) or "all" not in data["blas"]:
         raise StudyError(f"{path}: blas must name a pair for all")
-    need_keys(path, "parts", data["parts"], set(parts()) | set(data["parts"]))
-    for part, settings in data["parts"].items():
-        if part not in (parts() if chosen is None else chosen):
-            continue
+    if not isinstance(data["parts"], dict):
+        raise StudyError(f"{path}: parts needs settings, found {type(data['parts']).__name__}")
+    for part in parts() if chosen is None else chosen:
+        if part not in data["parts"]:
+            raise StudyError(f"{path}: parts: missing or unknown: {part}")
+        settings = data["parts"][part]
         wanted = plan_of(part).SETTINGS
         need_keys(path, part, settings, {"seconds", *wanted})
         for key, kind in {"seconds": float, **wanted}.items():
