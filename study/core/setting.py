@@ -8,7 +8,8 @@ from analysis.core.files import ROOT
 
 LIST = ROOT / "study" / "settings.yaml"
 ORDERS = {"rattle4": 4, "rattle6": 6, "multistep6": 6}  # of a scheme; the others are of second order
-EVERYONE = {"scheme", "penalty", "tolerance", "max-passes", "projections", "half-step", "judge-every"}  # all serve these
+EVERYONE = {"scheme", "penalty", "tolerance", "max-passes", "projections", "half-step", "scale-equations",
+            "judge-every"}  # all serve these
 LOOSE = "loose"  # a tolerance that stands for another one, which the caller of `words` knows
 
 
