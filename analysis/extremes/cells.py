@@ -3,29 +3,46 @@ import math
 import unicodedata
 from dataclasses import dataclass, field
 
-import numpy
-
-from study.extremes_study import scenes
-from study.extremes_study.motions import Chain, Flat
+from analysis.extremes import scenes
+from analysis.extremes.motions import Chain, Flat
+from study.core.setting import Setting
 
 STEP, STEPS = 1.25e-3, 2000
-SAMPLES, TURN = 200, 40  # instants of a run at least; in a turn of about 2 s, where a run has many
-DENSE_LOOPS = 200    # dense implementations run up to this size
+INSTANTS = 20        # of a run at least, at which it is judged ...
+TURN = 2             # ... and in a turn of about 2 s, where a run has many
+POINTS = 6           # whose places are kept, at most: all of them up to five loops
 LONGEST = 5.0        # s of simulated time where the step is what is varied
 LENGTHY = 160000     # steps of 200 s
 SIZES = {1: STEPS, 10: STEPS, 100: STEPS, 1000: 100, 10000: 24}  # loops: steps
 JSON_LOOPS = 1000    # up to this size the scene is a file: the program knows the exact motion of `four-bar:N`
 LOOPS = 5            # where size is not what is varied
-CLASS = 1e-2         # of a link's length, what "ok" allows: AccurateBounds of harness/src/run/judge.hpp
-STILL = 1e-9         # lengths; what moves less rests
+
+FORMS = (Setting("penalty"), Setting("saddle-point"))  # of every cell
+OTHERS = (Setting("rattle"), Setting("rattle4"), Setting("rattle6"), Setting("multistep6"),  # of the telling ones
+          *(Setting(form.scheme, (change,)) for change in (
+              ("tangent", "kept"), ("precision", "single"), ("precision", "mixed")) for form in FORMS),
+          *(Setting(form.scheme, (*change, ("half-step", ""))) for change in ((), (("tangent", "kept"),)) for form in FORMS),
+          Setting("rattle4", (("half-step", ""),)))  # of which alone a scene whose motion nobody knows is `ok`
+TELLING = {  # axis: labels of its most telling cells, these in order
+    "loops": ("N = 10", "N = 1", "N = 100"),
+    "step": tuple(f"Δt = 1e{power} s" for power in (-2, -5, -1, -4, -3)),
+    "penalty": ("α = 1e12", "α = 1e4"),
+    "mass ratio": ("1e6", "1e3", "1e-6"),
+    "length": ("1e-6 m", "1e6 m", "100 m, usual step"),
+    "offset": ("1000 m",),
+    "spring": ("pendulum, 1e8 N/m", "loop, 1e8 N/m"),
+    "redundant": ("third rod at 1e-5 m", "rod doubled"),
+    "start": ("singular, at rest", "singular, moving", "zero gravity", "hanging at rest"),
+    "duration": ("200 s",),
+    "denormal": ("lengths 1e-160 m",)}
 
 
 @dataclass(frozen=True)
-class Cell:
+class Extreme:
     axis: str
     label: str
-    scene: str                # of `mbs`, or the name of a file that the battery writes
-    motion: Chain | None      # None: the reference at a quarter of the step
+    scene: str                # of `mbs`, or "": a file of this name
+    motion: Chain | None      # None: the reference in shorter steps
     document: dict | None = field(default=None, compare=False)
     step: float = STEP
     steps: int = STEPS
@@ -34,30 +51,40 @@ class Cell:
 
     @property
     def name(self):
+        """Of its scene: what tells its records from those of others."""
+        if self.scene:
+            return self.scene
         words = f"{self.axis} {self.label}".replace("/", " per ").replace("Δ", "d").replace("α", "alpha")
         words = unicodedata.normalize("NFKD", words)  # a raised 2 becomes 2
         return "-".join("".join(c if c.isalnum() or c in "-+." else " " for c in words).split())
 
     @property
-    def duration(self):
-        return self.step * self.steps
+    def columns(self):
+        """Of its motion: those that are kept."""
+        return self.motion.columns(POINTS) if self.motion else ("B.x", "B.y", "C.x", "C.y")
 
     @property
     def every(self):
-        """Steps between two instants."""
-        turns = self.duration / (2.0 * self.length**0.5)
-        return max(1, self.steps // max(SAMPLES, round(TURN * turns)))
+        """Steps between two instants at which it is judged."""
+        turns = self.step * self.steps / (2.0 * self.length**0.5)
+        return max(1, self.steps // max(INSTANTS, round(TURN * turns)))
 
     @property
     def loops(self):
         return self.motion.loops if self.motion else 1
 
-    def allowed(self, solutions):
-        """The class: the largest true error, in lengths, of a run that may be ok. Of a short way it is the same
-        share, as else a run that stood still would be right; what is at rest must stay within a hundredth."""
-        way = max((numpy.ptp(values) for solution in solutions for values in solution.values() if len(values)),
-                  default=0.0) / self.length
-        return CLASS * min(1.0, float(way)) if way > STILL else CLASS
+    @property
+    def place(self):
+        """In the order of how telling cells are: telling ones of all axes in turn, then the others."""
+        telling = TELLING.get(self.axis, ())
+        return telling.index(self.label) if self.label in telling else len(SIZES) + 1
+
+    @property
+    def telling(self):
+        return self.label in TELLING.get(self.axis, ())
+
+    def settings(self):
+        return FORMS + OTHERS * self.telling
 
 
 def battery():
@@ -73,12 +100,12 @@ def _short(value):
 
 
 def _chain(axis, label, chain, **more):
-    return Cell(axis, label, "", chain, chain.document(), length=chain.length, **more)
+    return Extreme(axis, label, "", chain, chain.document(), length=chain.length, **more)
 
 
 def _sizes():
     return [_chain("loops", f"N = {loops}", Chain(loops), steps=steps) if loops <= JSON_LOOPS else
-            Cell("loops", f"N = {loops}", f"four-bar:{loops}", Chain(loops), steps=steps)
+            Extreme("loops", f"N = {loops}", f"four-bar:{loops}", Chain(loops), steps=steps)
             for loops, steps in SIZES.items()]
 
 
@@ -110,16 +137,16 @@ def _lengths():
 def _springs():
     found = []
     for stiffness in (1e6, 1e8, 1e10, 1e12):
-        found += [Cell("spring", f"loop, {_short(stiffness)} N/m", "", Chain(2), scenes.sprung_loop(stiffness)),
-                  Cell("spring", f"pendulum, {_short(stiffness)} N/m", "", None,
-                       scenes.sprung_pendulum(stiffness), steps=800)]
+        found += [Extreme("spring", f"loop, {_short(stiffness)} N/m", "", Chain(2), scenes.sprung_loop(stiffness)),
+                  Extreme("spring", f"pendulum, {_short(stiffness)} N/m", "", None,
+                          scenes.sprung_pendulum(stiffness), steps=800)]
     return found
 
 
 def _redundant():
-    return [Cell("redundant", "rod given twice", "", Chain(1), scenes.twin_rod(same_points=True)),
-            Cell("redundant", "rod doubled", "", Chain(1), scenes.twin_rod(same_points=False)),
-            *(Cell("redundant", f"third rod at {_short(shift)} m", "", Chain(1), scenes.shifted_rod(shift))
+    return [Extreme("redundant", "rod given twice", "", Chain(1), scenes.twin_rod(same_points=True)),
+            Extreme("redundant", "rod doubled", "", Chain(1), scenes.twin_rod(same_points=False)),
+            *(Extreme("redundant", f"third rod at {_short(shift)} m", "", Chain(1), scenes.shifted_rod(shift))
               for shift in (1e-3, 1e-5, 1e-7, 1e-9))]
 
 
@@ -142,7 +169,7 @@ def _denormals():
     tiny, short = 1e-310, 1e-160
     return [_chain("denormal", f"masses {_short(tiny)} kg", Chain(1, rods=(tiny, tiny), couplers=(tiny,))),
             _chain("denormal", f"a rod of {_short(tiny)} kg", Chain(1, rods=(1.0, tiny))),
-            Cell("denormal", f"a force of {_short(tiny)} N", "", Chain(1), scenes.with_force(tiny)),
+            Extreme("denormal", f"a force of {_short(tiny)} N", "", Chain(1), scenes.with_force(tiny)),
             _chain("denormal", f"gravity {_short(tiny)} m/s²", Chain(1, gravity=tiny)),
             _chain("denormal", f"lengths {_short(short)} m", Chain(1, length=short, rate=short**-0.5),
                    step=STEP * short**0.5)]

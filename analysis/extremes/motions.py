@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy
 from scipy.special import ellipj, ellipk, ellipkinc
 
-from study.scenes.mechanics import GRAVITY
+GRAVITY = 9.81  # m/s^2
 
 
 @dataclass(frozen=True)
@@ -68,6 +68,11 @@ class Chain:
         sine, cosine = self.phi(numpy.asarray(times, dtype=float))
         return [{f"B{i}.{axis}": values for i, foot in enumerate(self.feet) for axis, values in (
             ("x", foot + self.length * sine), ("y", self.offset + self.length * cosine))}]
+
+    def columns(self, most):
+        """Columns of a trajectory that judge it: those of at most `most` points, spread over the chain."""
+        spread = numpy.linspace(0, self.loops, min(self.loops + 1, most)).round().astype(int)
+        return tuple(f"B{i}.{axis}" for i in spread for axis in "xy")
 
     def document(self):
         """The scene as JSON."""

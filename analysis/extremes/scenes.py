@@ -1,6 +1,5 @@
 # The scenes of the battery that are more than a chain of four-bars: springs, redundant rods, denormals.
-from study.extremes_study.motions import Chain
-from study.scenes.mechanics import GRAVITY
+from analysis.extremes.motions import GRAVITY, Chain
 
 
 def alternate(count, ratio):

@@ -1,0 +1,81 @@
+# What a run is held to: the true motion, how far the run is from it, and how far it may be.
+import numpy
+
+from analysis.core.outcomes import FINISHED, GOOD, WHOLE, of_run
+
+CLASS = 1e-2         # of a link's length, what "ok" allows: AccurateBounds of harness/src/run/judge.hpp
+STILL = 1e-9         # lengths; what moves less rests
+FINER = (4, 8)       # the reference runs at a quarter and at an eighth of the step
+
+
+def true_motion(cell, references, times):
+    """([solutions], their own error in lengths, what they are), or ([], None, why there is none). `references`:
+    {finer: Record} where nothing else knows the motion."""
+    if cell.motion:
+        solutions = cell.motion.solutions(times)
+        return solutions, rounding(cell, solutions, times), "exact"
+    for factor in FINER:
+        status, reason = of_run(references[factor]) if factor in references else ("missing", "it was not run")
+        if status not in FINISHED:
+            return [], None, f"none: the reference is {status}: {reason}"
+    fine, finest = ({column: values[:len(times)] for column, values in references[factor].series.items()}
+                    for factor in FINER)
+    solution = {column: finest[column] for column in cell.columns}
+    # The error of the finer one of two runs of second order is a third of their difference.
+    own = float(distances(fine, solution, cell.length).max()) / 3 if len(times) else 0.0
+    if not own <= CLASS / 10:
+        return [], own, f"none: the reference's own error is {own:.1e}"
+    return [solution], own, f"reference at 1/{FINER[-1]} of the step"
+
+
+def rounding(cell, solutions, times):
+    """The error of exact motions as they are evaluated in double, in lengths: an ulp of time and one of positions."""
+    if not len(times):
+        return 0.0
+    ulp = numpy.finfo(float).eps
+    moved = cell.motion.solutions(numpy.asarray(times) * (1 + ulp))
+    return max(float(distances(late, known, cell.length).max()
+                     + ulp * max(abs(values).max() for values in known.values()) / cell.length)
+               for late, known in zip(moved, solutions))
+
+
+def allowed(cell, solutions):
+    """The largest true error, in lengths, of a run that may be ok. Of a short way it is the same share, as else a run
+    that stood still would be right; what is at rest must stay within a hundredth."""
+    way = max((numpy.ptp(solution[column]) for solution in solutions for column in cell.columns
+               if len(solution[column])), default=0.0) / cell.length
+    return CLASS * min(1.0, float(way)) if way > STILL else CLASS
+
+
+def error_of(record, solutions, length):
+    """Largest distance of a point that the record keeps from where it should be, at any time, in lengths; where several
+    motions are possible, from the nearest of them. NaN where it has not all of its motion, or nothing is known."""
+    if of_run(record)[0] not in WHOLE or not solutions or not record.series.get("t"):
+        return float("nan")
+    return min(distances(record.series, solution, length).max() for solution in solutions)
+
+
+def is_silent(status, error, limit):
+    """Whether a run is reported ok or plausible though its error is beyond what that allows; one without positions is."""
+    return status in GOOD and not error <= limit
+
+
+def distances(series, solution, length):
+    """At each time of `series`, the largest distance of one of its points from `solution`, in lengths."""
+    points = [column.removesuffix(".x") for column in series if column.endswith(".x")]
+    found = [numpy.hypot(*((numpy.array(series[f"{point}.{axis}"], dtype=float) - solution[f"{point}.{axis}"]) / length
+                           for axis in "xy")) for point in points]
+    return numpy.max(found, axis=0)
+
+
+def options_of(record):
+    """{option: value} of a record's command line; "" for one without a value."""
+    found, words = {}, list(record.cell["settings"])
+    while words:
+        name = words.pop(0).removeprefix("--")
+        found[name] = words.pop(0) if words and not words[0].startswith("--") else ""
+    return found
+
+
+def scene_of(record):
+    return record.cell["scene"].rpartition("/")[2].removesuffix(".json")

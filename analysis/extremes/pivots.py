@@ -1,0 +1,38 @@
+# Stale pivots: what KLU's ways of keeping pivots lose and cost on matrices that change violently.
+import pandas
+
+from analysis.core import timing
+
+KEY = ["sequence", "form", "strategy", "pivoting"]
+PLAIN = ("refactor", "default")  # strategy and pivots that times are over
+
+
+def build(records):
+    """{"pivots": a row a sequence, strategy and choice of pivots, "claims": what the program says of its own claims}"""
+    done = [record for record in records if record.done]
+    names = " ".join(record.name for record in done)
+    rows = [row | {"process": record.cell["number"]} for record in done for row in record.output["rows"]]
+    claims = {}
+    for record in done:
+        for claim in record.output.get("claims", []):
+            claims[claim["claim"]] = claims.get(claim["claim"], True) and bool(claim["holds"])
+    return {"pivots": pandas.DataFrame([row | {"record": names} for row in _over_processes(pandas.DataFrame(rows))]),
+            "claims": pandas.DataFrame([{"claim": claim, "holds": holds, "record": names} for claim, holds in claims.items()])}
+
+
+def _over_processes(rows):
+    for (sequence, form), own in rows.groupby(["sequence", "form"], sort=False) if len(rows) else []:
+        timed = own.assign(environment="own", status="ok", samples=[(time,) for time in own.time_us_median],
+                           implementation=list(zip(own.strategy, own.pivoting)))
+        for (strategy, pivoting), each in own.groupby(["strategy", "pivoting"], sort=False):
+            found = timing.ratio(timed, (strategy, pivoting), PLAIN)
+            first = each.iloc[0]
+            yield {"sequence": sequence, "form": form, "strategy": strategy, "pivoting": pivoting,
+                   "matrices": first.matrices, "error_median": first.error_median, "error_worst": each.error_worst.max(skipna=False),
+                   "repivotings": first.repivotings, "time_us": each.time_us_median.median(), "processes": len(each),
+                   "time_ratio": found.value, "ratio_low": found.low, "ratio_high": found.high}
+
+
+def lost(records):
+    """Why there are no rows: the reasons of records that are not done."""
+    return [record.reason for record in records if not record.done]

@@ -1,0 +1,122 @@
+# Every implementation at the extremes; ways out of what goes wrong there; kept pivots; the growth of roundoff.
+from analysis.core.files import ROOT
+from analysis.extremes import battery as table, cells, judge, roundoff, ways
+from study.core.cell import Cell
+from study.core.contender import REFERENCE
+from study.core.executor import program_of
+
+SETTINGS = {"implementations": list,  # of battery and roundoff, which differ in kind; all others come after them ...
+            "everyone": bool,         # ... if these are asked for
+            "cells": int,             # of the battery, telling ones of an axis at most; 0: these and all others
+            "loops": dict,            # sizes: of the region of ways, of their times, of roundoff
+            "processes": int,         # of a time
+            "limit": float}           # s a run
+SHARES = {"battery": 0.6, "ways": 0.2, "pivots": 0.06, "roundoff": 0.14}
+DENSE_LOOPS = 200  # dense implementations run up to this size
+PREFERRED = {      # of each folder the first variant that serves a way stands for it
+    "eigen_dense": ("eigen_dense/llt",),
+    "csc_klu": ("csc_klu/refactor", "csc_klu/guarded", "csc_klu/factor"),
+    "eigen_superlu": ("eigen_superlu/simplicial_ldlt", "eigen_superlu/superlu")}
+
+
+def columns(settings, studyset):
+    return {column: share * settings["seconds"] for column, share in SHARES.items()}
+
+
+def run(lab, column):
+    {"battery": battery, "ways": way_out, "pivots": pivots, "roundoff": growth}[column](lab)
+
+
+def battery(lab):
+    """The most telling cells first, by those who differ in kind; then the other settings, cells, implementations."""
+    few = lab.settings["cells"]
+    chosen = sorted((cell for cell in cells.battery() if not few or cell.place < few), key=lambda cell: cell.place)
+    kinds, others = _who(lab)
+    rest = [cell for cell in chosen if not cell.telling]
+    telling = [cell for cell in chosen if cell.telling]
+    asked = [(cell, setting, one) for who in (kinds, others) for some, settings in (
+        (telling, cells.FORMS), (rest, cells.FORMS), (telling, cells.OTHERS)) for cell in some
+        for setting in settings for one in who if lab.registry.serves(one.variant, *setting.needs)]
+    scenes = {cell.name: cell.scene or lab.scene(cell.name, cell.document) for cell in chosen}
+    lab.run([_reference(lab, cell, scenes[cell.name], factor) for cell in chosen if cell.motion is None
+             for factor in judge.FINER])
+    todo = []
+    for cell, setting, one in asked:
+        wanted = _run(lab, cell, scenes[cell.name], setting, one)
+        if one.variant in lab.registry.dense and cell.loops > DENSE_LOOPS:
+            lab.skip(wanted, "excluded", f"dense implementations run up to {DENSE_LOOPS} loops")
+        else:
+            todo.append(wanted)
+    lab.run(todo, drop=True)
+
+
+def _who(lab):
+    """(those who differ in kind, the others if they are asked for) of whom takes part."""
+    named = lab.settings["implementations"]
+    kinds = [one for one in lab.contenders if one.variant in named] or lab.contenders
+    return kinds, [one for one in lab.contenders if one not in kinds] if lab.settings["everyone"] else []
+
+
+def _run(lab, cell, scene, setting, one):
+    words = setting.words([("step", f"{cell.step:g}"), ("duration", f"{cell.step * cell.steps:g}"), ("penalty", cell.penalty)])
+    return Cell("simulate", scene, (one,), words, setting.file_name, seconds=lab.settings["limit"], keep=cell.columns,
+                every=cell.every)
+
+
+def _reference(lab, cell, scene, factor):
+    return Cell("simulate", scene, (REFERENCE,), ("--step", f"{cell.step / factor:g}", "--duration", f"{cell.step * cell.steps:g}"),
+                table.REFERENCE, program="mbs_reference", seconds=10 * lab.settings["limit"], keep=cell.columns,
+                every=cell.every * factor)
+
+
+def way_out(lab):
+    sizes, limit = lab.settings["loops"], lab.settings["limit"]
+    served = []
+    for title, way in ways.WAYS.items():
+        for folder, names in PREFERRED.items():
+            present = [one for name in names for one in [lab.contender(name)] if one]
+            one = next((one for one in present if lab.registry.serves(one.variant, *way.needs)), None)
+            if one:
+                served.append((way, one))
+            elif present:
+                lab.skip(Cell("simulate", "", (present[0],), way.words(), way.file_name), "unsupported",
+                         f"no variant serves {', '.join(sorted(way.needs))}")
+    places = ways.places(sizes["ways"])
+    scenes = {place.name: lab.scene(place.name, place.chain.document()) for place in places}
+    times = [Cell("simulate", f"four-bar:{loops}", (one,),
+                  ("--step", ways.STEP, "--duration", ways.DURATION, "--repeats", 3, *way.words()),
+                  f"cost-{way.file_name}", number=number, timed=True, seconds=limit)
+             for number in range(1, lab.settings["processes"] + 1) for loops in sizes["times"] for way, one in served]
+    lab.run(times, drop=True)
+    lab.run([Cell("simulate", scenes[place.name], (one,),
+                  ("--step", f"{place.step:g}", "--duration", f"{place.step * place.steps:g}", *way.words()), way.file_name,
+                  seconds=limit, keep=place.chain.columns(ways.POINTS), every=place.every)
+             for place in places for way, one in served], drop=True)
+
+
+def pivots(lab):
+    program = program_of("stale_pivots")
+    takes_part = any(one.variant.startswith("csc_klu/") for one in lab.contenders)
+    for number in range(1, lab.settings["processes"] + 1):
+        cell = Cell("", "", (), ("--json",), "pivots", number=number, program="stale_pivots", timed=True, seconds=600)
+        if not takes_part:
+            lab.skip(cell, "excluded", "csc_klu takes no part")
+        elif not (ROOT / program).exists():
+            lab.skip(cell, "unavailable", f"{program} is missing: study/setup builds it")
+        else:
+            lab.run([cell], drop=True)
+
+
+def growth(lab):
+    kinds, others = _who(lab)
+    limit = 5 * lab.settings["limit"]
+    asked = [(loops, form) for loops in lab.settings["loops"]["roundoff"] for form in roundoff.FORMS]
+    lab.run([_growth(loops, form, REFERENCE, limit, "mbs_reference") for loops, form in asked])
+    lab.run([_growth(loops, form, one, limit) for who in (kinds, others) for loops, form in asked for one in who
+             if lab.registry.serves(one.variant, form)], drop=True)
+
+
+def _growth(loops, form, one, limit, program="mbs"):
+    words = ("--step", roundoff.STEP, "--duration", roundoff.DURATION, "--scheme", form)
+    return Cell("simulate", f"four-bar:{loops}", (one,), words, form, program=program, seconds=limit,
+                keep=roundoff.Chain(loops).columns(roundoff.POINTS), every=roundoff.EVERY)
