@@ -18,6 +18,11 @@ def missed(record):
     return (record.output.get("step_us") or {}).get("deadline_misses")
 
 
+def observed(record):
+    """Seconds that the steps of a run took together."""
+    return 1e-6 * record.output["step_us"]["mean"] * record.output["steps"]
+
+
 def lost(null):
     """Deadlines that a null process lost: 0 if there was none, or if it did not work."""
     return null.output["lost"] if null is not None and null.done else 0

@@ -2,12 +2,12 @@
 # for the largest N-four-bar that keeps it.
 from dataclasses import dataclass
 
-from analysis.realtime.verdict import judge, needs_null
+from analysis.realtime.verdict import judge, needs_null, observed
 from study.core.cell import Cell
 from study.core.contender import Contender
 from study.core.setting import Setting
 
-SETTINGS = {"implementations": list,  # names; none for all
+SETTINGS = {"implementations": list,  # names, in the order of their worth; none for all
             "schemes": list,
             "steps": list,            # s, the deadlines too
             "loops": list,            # sizes whose distributions are shown
@@ -45,8 +45,8 @@ def run(lab, column):
 def cases(lab):
     """What is worth most comes first."""
     settings = lab.settings
-    chosen = [one for one in lab.contenders
-              if not settings["implementations"] or one.variant in settings["implementations"]]
+    named = [lab.contender(name) for name in settings["implementations"]] or lab.contenders
+    chosen = [one for one in named if one]
     return [Case(one, scheme, step) for scheme in settings["schemes"] for step in settings["steps"] for one in chosen
             if lab.registry.serves(one.variant, *Setting(scheme).needs)]
 
@@ -60,7 +60,7 @@ def distributions(lab):
 
 def beside(lab, step, seconds, name):
     """The record of a null process; `name`: what it belongs to."""
-    return lab.one(Cell("", settings=("--deadline-us", f"{1e6 * step:g}", "--seconds", f"{seconds:g}", "--beside", name),
+    return lab.one(Cell("", settings=("--deadline-us", f"{1e6 * step:g}", "--seconds", f"{seconds:.3g}", "--beside", name),
                         role="null", program=NULL, timed=True, seconds=PATIENCE * seconds + SET_UP))
 
 
@@ -87,7 +87,8 @@ class Probe:
         return second and ("unsure" if second.kept else "failed")
 
     def null(self, place):
-        return beside(self.lab, self.case.step, self.lab.settings["pilot"], self.runs[place].name)
+        """Beside the run of a place, for as long as its steps took."""
+        return beside(self.lab, self.case.step, observed(self.runs[place]), self.runs[place].name)
 
     def _verdict(self, place, number):
         cell = self.case.cell("search", self.grid[place], self.lab.settings["pilot"], number)

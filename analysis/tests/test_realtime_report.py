@@ -1,0 +1,103 @@
+# Verdicts, tables, figures and sentences of real time on synthetic records.
+from types import SimpleNamespace
+
+import matplotlib.pyplot as plt
+import pytest
+
+from analysis.core.records import Record
+from analysis.core.registry import Registry
+from analysis.core.schema import conform, of_part
+from analysis.realtime import figures, page, sentences, tables
+from analysis.realtime.verdict import judge, needs_null
+
+REGISTRY = Registry({"implementations": [
+    {"folder": "lib", "available": True, "library": "Some", "variants": [{"name": "lib/a"}]},
+    {"folder": "own", "available": True, "library": "none", "variants": [{"name": "own/a"}]}]})
+VIEW = SimpleNamespace(registry=REGISTRY, context={"machine": "A machine"}, settings={
+    "duration": 5.0, "pilot": 1.3, "steps": [1e-3]})
+
+
+def run(loops, missed, number=1, who="lib/a", status="ok", role="search", ended="done", step="0.001"):
+    times = {"mean": 20.0, "median": 10.0, "p99": 50.0, "p999": 80.0, "max": 90.0, "deadline_misses": missed}
+    cell = {"scene": f"four-bar:{loops}", "contenders": [who], "role": role, "number": number,
+            "settings": ["--scheme", "penalty", "--step", step, "--duration", "1.3", "--deadline-us", "1000"]}
+    output = {"status": status, "status_reason": "because", "steps": 1300, "step_us": times, "judge_us": 0.1}
+    return Record(f"largest/search/{who}-{loops}-{number}-{role}.json", cell, ended, "the budget" if ended != "done" else "",
+                  0.1, [], {}, output if ended == "done" else {})
+
+
+def null(beside, lost, status="done"):
+    cell = {"role": "null", "settings": ["--deadline-us", "1000", "--seconds", "1.3", "--beside", beside]}
+    output = {"lost": lost, "readings": 10, "largest_us": 7.0} if status == "done" else {}
+    return Record(f"largest/null/{beside}", cell, status, "", 1.3, [], {}, output)
+
+
+def made(*records):
+    """Tables as the schema has them."""
+    found, schema = tables.build(list(records), VIEW), of_part("realtime")
+    assert set(found) == set(schema)
+    return {name: conform(frame, schema[name], name) for name, frame in found.items()}
+
+
+@pytest.mark.parametrize("missed, lost, kept, hopeless", [
+    (0, None, True, False), (3, 3, True, False), (3, 2, False, False), (13, 0, False, False), (14, 0, False, True),
+    (1, None, False, False)])
+def test_a_run_may_miss_what_the_null_process_lost(missed, lost, kept, hopeless):
+    record = run(8, missed)
+    verdict = judge(record, None if lost is None else null(record.name, lost))
+    assert (verdict.kept, verdict.hopeless) == (kept, hopeless) and bool(verdict.reason) != kept
+    assert needs_null(record) == (missed > 0)
+
+
+def test_a_run_that_is_not_whole_is_not_kept_and_a_broken_null_process_excuses_nothing():
+    lost = run(8, 0, status="diverged")
+    assert judge(lost, None).hopeless and judge(lost, None).reason == "diverged: because" and not needs_null(lost)
+    assert not judge(run(8, 0, ended="timeout"), None).kept
+    assert not judge(run(8, 1), null("x", 5, status="crashed")).kept
+
+
+def test_the_largest_is_a_size_all_of_whose_runs_were_kept():
+    runs = [run(8, 0), run(16, 5), run(16, 0, number=2), run(32, 0), run(64, 400), run(45, 2)]
+    found = made(*runs, null(runs[1].name, 1), null(runs[3].name, 0), null(runs[5].name, 1))
+    [row] = found["largest"].to_dict("records")
+    assert (row["largest"], row["next"], row["missed"], row["null_missed"]) == (32, 45, 0, 0) and row["complete"]
+    assert (row["next_missed"], row["next_null_missed"]) == (2, 1)
+    assert row["next_reason"] == "2 of 1300 steps missed, 1 by the null process"
+    assert row["record"] == runs[3].name
+    assert figures.answer(SimpleNamespace(**row)) == "32: 0 (0); 45: 2 (1)"
+    assert list(found["tried"].kept) == [True, False, True, True, False, False]
+    assert found["machine"].lost.sum() == 2
+
+
+def test_what_the_budget_ends_or_nothing_ends_is_said():
+    dropped = run(32, 0, ended="dropped")
+    [row] = made(run(8, 0), dropped)["largest"].to_dict("records")
+    assert row["largest"] == 8 and not row["complete"] and row["next_reason"] == "the budget"
+    assert figures.answer(SimpleNamespace(**row)) == "8: 0 (–) or more, dropped"
+    [row] = made(run(8, 0))["largest"].to_dict("records")
+    assert row["complete"] and row["next_reason"] == tables.END and figures.answer(SimpleNamespace(**row)) == "8: 0 (–) or more"
+    [row] = made(run(1, 900, status="not-converged"))["largest"].to_dict("records")
+    assert row["largest"] == 0 and row["next_reason"] == "not-converged: because"
+
+
+def test_figures_page_and_answers():
+    found = made(run(10, 2, role="steps"), run(10, 0, role="steps", who="own/a"), run(40, 0, role="steps", ended="timeout"),
+                 null("distributions", 1), run(8, 0), run(16, 90), run(64, 0, who="own/a"))
+    drawn = figures.draw(found, VIEW)
+    assert set(drawn) == {"steps", "largest"} and "A machine" in drawn["largest"]._suptitle.get_text()
+    for figure in drawn.values():
+        plt.close(figure)
+    known = page.context(found, VIEW)
+    assert known["machine"] == [(1e-3, 1, 1.3, 1, 7.0)] and known["judging"]["share"] == pytest.approx(0.005)
+    texts = [one["text"] for one in sentences.answers(found, VIEW)]
+    assert texts[0] == ("Steps of 1 ms: of libraries lib/a keeps up with N = 8 (0 of 1300 steps missed; N = 16 failed); "
+                        "of own code own/a keeps up with N = 64 (0 of 1300 steps missed).")
+    assert texts[1] == "1 of 2 runs of 5 s missed no deadline at all."
+
+
+def test_without_records_all_says_so():
+    found = made()
+    assert sentences.answers(found, VIEW)[0]["text"].startswith("Not measured")
+    assert all(len(figures.draw(found, VIEW)[name].axes) == 1 for name in ("steps", "largest"))
+    plt.close("all")
+    assert page.context(found, VIEW)["judging"] is None
