@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-# Stands in for `mbs` in the pipeline's tests: same command lines and output, invented numbers, and
-# the misbehaviour that its implementation names say. FAKE_MACHINE changes the machine fingerprint.
+# Stands in for `mbs` in tests: same command lines and output, invented numbers, and the misbehaviour that its
+# implementation names say. FAKE_MACHINE and FAKE_COMMIT change the fingerprint, FAKE_DIRTY makes the tree dirty,
+# FAKE_NEW is one more variant and how many times good_sparse/only's time it takes: "new_one/only=0.5".
 import json
 import math
 import os
@@ -16,13 +17,17 @@ BAD = ["bad/crash", "bad/hang", "bad/memory", "bad/large", "bad/wrong", "bad/slo
 
 
 def variants():
-    return list(GOOD) + (BAD if os.environ.get("FAKE_BAD") else [])
+    return list(GOOD) + (BAD if os.environ.get("FAKE_BAD") else []) + newcomers()
+
+
+def newcomers():
+    return [os.environ["FAKE_NEW"].partition("=")[0]] if "FAKE_NEW" in os.environ else []
 
 
 def context():
     return {"date": "2024-01-01T00:00:00+00:00", "num_cpus": 2, "mbs_version": "0.1.0",
-            "commit": os.environ.get("FAKE_COMMIT", "abc1234"), "dirty": "false",
-            "compiler": "fake 1.0", "flags": "-O3", "build_type": "Release",
+            "commit": os.environ.get("FAKE_COMMIT", "abc1234"), "dirty": os.environ.get("FAKE_DIRTY", "false"),
+            "compiler": os.environ.get("FAKE_COMPILER", "fake 1.0"), "flags": "-O3", "build_type": "Release",
             "blas": option("--blas", "system"),
             "blas_loaded": f"/usr/lib/lib{option('--blas', 'fake')}.so", "libraries": "Fake 1.0",
             "cpu_model": "Fake CPU",
@@ -44,6 +49,7 @@ def options(name):
 
 def misbehave(name):
     if name == "bad/crash":
+        print(f"mbs bench: ended by SIGSEGV in {name}/{sys.argv[2]}", file=sys.stderr, flush=True)
         os.kill(os.getpid(), signal.SIGSEGV)
     if name == "bad/hang":
         time.sleep(1000)
@@ -60,48 +66,64 @@ def step_us(name, n, fill):
         return 0.01
     if name == "bad/slow":
         return 1e4 * n
+    if name in newcomers():
+        return float(os.environ["FAKE_NEW"].partition("=")[2]) * step_us("good_sparse/only", n, fill)
     sparse = 0.3 * n + 3e-4 * (fill * n * n) ** 1.4
     dense = 2 + 0.05 * n + 1e-5 * n**3
     return sparse if "sparse" in name else dense * (1.05 if name.endswith("second") else 1)
 
 
 def bench(scene):
+    """All implementations take turns in one process; what disturbs one turn disturbs all of it."""
     if "--operations" in sys.argv:
         return operations(scene)
-    name = option("--implementation")
-    misbehave(name)
+    names = options("--implementation")
+    for name in names:
+        misbehave(name)
     n = 2 * int(re.match(r"four-bar:(\d+)", scene).group(1)) + 2
     asked = re.search(r"fill=([\d.]+)", scene)
     fill = float(asked.group(1)) if asked else (6 * n - 8) / n**2
-    steps, rng = int(option("--steps", "100")), random.Random()
-    repetitions, rows = int(option("--benchmark_repetitions", "1")), []
-    if name == "bad/crawl":
+    steps, rng, rows = int(option("--steps", "100")), random.Random(), []
+    repetitions, layout = int(option("--benchmark_repetitions", "3")), {name: rng.uniform(0.98, 1.02) for name in names}
+    if "bad/crawl" in names:
         time.sleep(0.1 * steps * (repetitions + 1))
+    least = min(step_us(name, n, fill) for name in names)
     for repetition in range(repetitions):
-        one = step_us(name, n, fill) * rng.uniform(0.97, 1.08)
-        row = {"name": f"{name}/{scene}", "run_name": f"{name}/{scene}", "run_type": "iteration",
-               "repetitions": 3, "repetition_index": repetition, "iterations": 5,
-               "real_time": one * steps, "cpu_time": one * steps, "time_unit": "us",
-               "steps": steps, "passes": 2 * steps + (name == "bad/passes"), "steps_at_limit": 1,
-               "step_us": one, "setup_us": 50.0, "variables": n, "constraints": n - 1,
-               "fill_percent": 100 * fill, "penalty": 1e10, "step": 1.25e-3, "tolerance": 1e-9,
-               "max_passes": 20, "start": 0.1, "position_error": 1e-6,
-               "constraint_violation": 1e-12, "energy_drift": 1e-7}
+        disturbed = rng.uniform(0.97, 1.3)
+        rows += [row_of(name, scene, n, fill, steps, repetition,
+                        step_us(name, n, fill) * layout[name] * disturbed * rng.uniform(0.99, 1.01))
+                 for name in names]
+    slower = float(option("--slower-than", "inf"))
+    for row in rows:
         if asked:
             row["fill_seed"] = 1
-        if "--phases" in sys.argv:
-            row |= {"phase_evaluation": .2, "phase_assembly": .2, "phase_factorization": .3,
-                    "phase_solve": .1, "phase_projection": .1, "phase_other": .1}
-        if name == "bad/nan":
-            row |= {"error_occurred": True, "error_message": "diverged: NaN at step 100"}
-        rows.append(row)
-    rows.append({"name": f"{name}/{scene}_median", "run_type": "aggregate", "real_time": 1.0})
+        name = row["name"].rsplit("/", 1)[0]
+        if step_us(name, n, fill) > slower * least:
+            row |= {"error_occurred": True, "error_message": f"slower: more than {slower:g} times the fastest"}
+    rows.append({"name": f"{names[0]}/{scene}_median", "run_type": "aggregate", "real_time": 1.0})
     text = json.dumps({"context": context(), "benchmarks": rows})
     if option("--benchmark_out"):
         open(option("--benchmark_out"), "w").write(text)
     if option("--benchmark_format") == "json":
         print(text)
     sys.exit(any(row.get("error_occurred", False) for row in rows))
+
+
+def row_of(name, scene, n, fill, steps, repetition, one):
+    row = {"name": f"{name}/{scene}", "run_name": f"{name}/{scene}", "run_type": "iteration",
+           "repetitions": 3, "repetition_index": repetition, "iterations": 5,
+           "real_time": one * steps, "cpu_time": one * steps, "time_unit": "us",
+           "steps": steps, "passes": 2 * steps + (name == "bad/passes"), "steps_at_limit": 1,
+           "step_us": one, "setup_us": 50.0, "variables": n, "constraints": n - 1,
+           "fill_percent": 100 * fill, "penalty": 1e10, "step": 1.25e-3, "tolerance": 1e-9,
+           "max_passes": 20, "start": 0.1, "position_error": 1e-6,
+           "constraint_violation": 1e-12, "energy_drift": 1e-7}
+    if "--phases" in sys.argv:
+        row |= {"phase_evaluation": .2, "phase_assembly": .2, "phase_factorization": .3,
+                "phase_solve": .1, "phase_projection": .1, "phase_other": .1}
+    if name == "bad/nan":
+        row |= {"error_occurred": True, "error_message": "diverged: NaN at step 100"}
+    return row
 
 
 def operations(scene):

@@ -1,15 +1,15 @@
 # study/against on two copies of the fake `mbs`: samples of another program are never reused.
-import json
 import tempfile
 
 import pandas
 import pytest
 
-from study.pipeline import against
-from study.pipeline.errors import StudyError
+from analysis.core.errors import StudyError
+from study.core import executor, studyset
 from study.tests.conftest import FAKE, TEMPORARY
+from study.tools import against
 
-CHOICE = ["HEAD~1", "--only", "good_sparse", "--scenes", "four-bar:4", "--rounds", "2"]
+CHOICE = ["HEAD~1", "--only", "good_sparse", "--scenes", "four-bar:4", "--rounds", "1", "--wait"]
 
 
 @pytest.fixture
@@ -23,7 +23,11 @@ def programs(tmp_path, monkeypatch):
     monkeypatch.setenv("MBS_PROGRAM", str(paths["new"]))
     monkeypatch.setattr(tempfile, "tempdir", TEMPORARY.name)
     monkeypatch.setattr(against, "_resolve", lambda name: "0123456789abcdef")
-    monkeypatch.setattr(against, "_build", lambda revision: paths["old"])
+    monkeypatch.setattr(against, "_build", lambda revision: "against/old")
+    program_of = executor.program_of
+    for module in (executor, studyset, against):
+        monkeypatch.setattr(module, "program_of", lambda name="mbs", build="": str(paths["old"]) if build
+                            else program_of(name, build))
     return paths
 
 
@@ -39,33 +43,43 @@ def stamps(results):
 def test_a_second_run_continues_the_first(programs, tmp_path):
     results = tmp_path / "results"
     table = compare(results)
-    assert table.reason.isna().all() and table.ratio.between(0.8, 1.25).all()
+    assert table.reason.isna().all() and table.ratio.between(0.8, 1.25).all() and list(table.pairs) == [2]
     before = stamps(results)
-    assert len(before) == 2 * 2
-    compare(results, "--rounds", "3")
+    assert len(before) == 4 and {path.parent.name for path in before} == {"old", "new"}
+    compare(results, "--rounds", "2")
     after = stamps(results)
-    assert len(after) == 3 * 2 and before.items() <= after.items()
+    assert len(after) == 8 and before.items() <= after.items()
 
 
-@pytest.mark.parametrize("tree", ["old", "new"])
-def test_samples_of_a_program_built_anew_are_refused(programs, tmp_path, tree):
+def test_a_program_that_is_twice_as_fast_is_found_out(programs, tmp_path):
+    programs["old"].write_text(FAKE.read_text().replace('"real_time": one * steps', '"real_time": 2 * one * steps'))
+    table = compare(tmp_path / "results", "--only", "good_sparse", "good_dense", "--rounds", "3")
+    assert len(table) == 3 and table.ratio.between(0.4, 0.6).all()
+    assert (table.low < table.ratio).all() and (table.ratio < table.high).all() and (table.high < 0.7).all()
+
+
+@pytest.mark.parametrize("tree, key", [("old", "old"), ("new", "programs")])
+def test_samples_of_a_program_built_anew_are_refused(programs, tmp_path, tree, key):
     compare(tmp_path / "results")
     programs[tree].write_text(FAKE.read_text() + "# edited and built again\n")
-    with pytest.raises(StudyError, match=r"holds results of something else \(programs\)"):
+    with pytest.raises(StudyError, match=rf"holds results of something else \({key}\)"):
         compare(tmp_path / "results")
 
 
-def test_failures_of_a_program_built_anew_are_refused(programs, tmp_path):
+def test_who_ends_a_process_of_all_has_a_reason_and_the_others_a_ratio(programs, tmp_path):
     programs["new"].write_text(FAKE.read_text().replace(
-        "    misbehave(name)", "    if name != 'null/null':\n        sys.exit(1)"))
-    assert "exit status 1" in compare(tmp_path / "results").reason[0]
-    programs["new"].write_text(FAKE.read_text())
-    with pytest.raises(StudyError, match="something else"):
-        compare(tmp_path / "results")
+        "def misbehave(name):", "def misbehave(name):\n    if name == 'good_dense/second':\n        sys.exit(7)"))
+    table = compare(tmp_path / "results", "--only", "good_dense").set_index("implementation")
+    assert table.reason["good_dense/second"].startswith("new: crashed: exit status 7")
+    assert table.ratio["good_dense/first"] > 0
 
 
-@pytest.mark.parametrize("more, what", [(["--only", "good_dense"], "variants"),
-                                        (["--scenes", "four-bar:10"], "scenes")])
+def test_a_variant_that_the_revision_lacks_is_said(programs, tmp_path):
+    programs["old"].write_text(FAKE.read_text().replace('"good_sparse/only": 1', '"other/only": 1'))
+    assert list(compare(tmp_path / "results").reason) == ["is not in 0123456789"]
+
+
+@pytest.mark.parametrize("more, what", [(["--only", "good_dense"], "only"), (["--scenes", "four-bar:10"], "scenes")])
 def test_another_selection_is_refused(programs, tmp_path, more, what):
     compare(tmp_path / "results")
     with pytest.raises(StudyError, match=rf"something else \({what}\)"):
@@ -75,21 +89,13 @@ def test_another_selection_is_refused(programs, tmp_path, more, what):
 def test_another_machine_is_refused(programs, tmp_path, monkeypatch):
     compare(tmp_path / "results")
     monkeypatch.setenv("FAKE_MACHINE", "m2")
-    with pytest.raises(StudyError, match="machine 'm1', now 'm2'"):
+    with pytest.raises(StudyError, match="machine is 'm2', the set's is 'm1'"):
         compare(tmp_path / "results")
 
 
-@pytest.mark.parametrize("old, new", [('"step_us": one', '"us_per_step": one'),
-                                      ('"benchmarks": rows', '"results": rows'),
-                                      ('"benchmarks": rows', '"benchmarks": []')])
-def test_an_old_program_with_other_keys_is_one_clear_error(programs, tmp_path, old, new):
-    programs["old"].write_text(FAKE.read_text().replace(old, new))
-    with pytest.raises(StudyError, match=r"old-good_sparse.only@four-bar4.json has no time of a step"):
+def test_an_old_program_that_cannot_be_read_is_one_clear_error(programs, tmp_path):
+    programs["old"].write_text(FAKE.read_text().replace('"steps": steps', '"number_of_steps": steps'))
+    with pytest.raises(StudyError, match="lacks 'steps': its program is of a revision that"):
         compare(tmp_path / "results")
-
-
-def test_what_is_stored_says_which_programs_it_is_of(programs, tmp_path):
-    compare(tmp_path / "results")
-    record = json.loads((tmp_path / "results" / "run.json").read_text())
-    assert set(record["programs"]) == {"old", "new"} and set(record["contexts"]) == {"new"}
-    assert record["variants"] == ["good_sparse/only"] and record["scenes"] == {"four-bar:4": ""}
+    programs["old"].write_text(FAKE.read_text().replace('"benchmarks": rows', '"results": rows'))
+    assert "gave no row" in compare(tmp_path / "other").reason[0]

@@ -1,0 +1,173 @@
+# study/against REVISION: times this tree and another revision of it, whose program is built beside.
+#
+# Two programs cannot share a process. Fresh processes alternate, old new new old, so that what drifts falls on both
+# alike; inside each all implementations take turns. A ratio is that of two neighbours, its interval one over pairs.
+import json
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, digest, write
+from study.core import child, locks, profile as profiles
+from study.core.cell import Cell
+from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
+from study.core.executor import program_of
+from study.core.main import need_modules, set_up, writable
+from study.core.options import Parser, rounds
+from study.core.studyset import context_of, listed, select
+
+SECONDS = 120.0  # of a process
+# Google's option makes the programs of older revisions take turns too; later ones do so anyway.
+WORDS = ("--benchmark_repetitions=20", "--benchmark_min_time=0.005", "--benchmark_enable_random_interleaving=true")
+ORDER = (("old", 1), ("new", 1), ("new", 2), ("old", 2))  # of a round
+RATIOS = {
+    "implementation": ("text", "", "variant"), "scene": ("text", "", "scene"),
+    "old_us": ("number", "µs", "time of a step of the revision, median over processes"),
+    "new_us": ("number", "µs", "time of a step of this tree, median over processes"),
+    "ratio": ("number", "", "of this tree over the revision"),
+    "low": ("number", "", "lower end of the 95 % interval over pairs of processes"),
+    "high": ("number", "", "upper end of it"), "pairs": ("number", "", "pairs of processes"),
+    "reason": ("text", "", "why there is no ratio"), "record": ("text", "", "the first record of each program")}
+
+
+def against(arguments):
+    parser = Parser(prog="study/against", description="Builds another revision beside this tree and times both in "
+                    "alternating processes.")
+    parser.add_argument("revision", help="of git, for instance HEAD~1")
+    parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
+                        help="only these implementations (folder or folder/variant)")
+    parser.add_argument("--scenes", nargs="+", metavar="SCENE", default=[
+        "four-bar:10", "four-bar:40", "four-bar:79", "four-bar:499"], help="four-bar:10 ... 499")
+    parser.add_argument("--rounds", type=rounds, default=4, help="of two processes of each program (4)")
+    parser.add_argument("--results", metavar="DIR", help="(results/local/against-REVISION)")
+    parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
+    options = parser.parse_args(arguments)
+    need_modules("pandas", "yaml", "scipy")
+    revision = _resolve(options.revision)[:10]
+    folder = Path(options.results).absolute() if options.results else ROOT / "results" / "local" / f"against-{revision}"
+    writable(folder)
+    with locks.only_one(folder), locks.only_one_study(options.wait):
+        if "MBS_PROGRAM" not in os.environ:
+            set_up(folder / "run.log")
+        build = _build(revision)
+        table = _measure(folder, options, revision, build)
+    write(folder / "ratios.csv", lambda partial: table.to_csv(partial, index=False))
+    _tell(table, revision)
+    print(f"table: {folder / 'ratios.csv'}")
+    return 0
+
+
+def _resolve(name):
+    found = subprocess.run(["git", "rev-parse", "--verify", "--quiet", f"{name}^{{commit}}"],
+                           cwd=ROOT, capture_output=True, text=True)
+    if found.returncode != 0:
+        raise StudyError(f"'{name}' is no revision of this repository")
+    return found.stdout.strip()
+
+
+def _build(revision):
+    """Builds `mbs` of `revision` in a work tree of its own; the name of that build (executor.program_of)."""
+    build = f"against/{revision}/build"
+    tree = (ROOT / program_of(build=build)).parent.parent
+    for command in [] if (tree / "build" / "mbs").exists() else [
+            *([] if tree.exists() else [["git", "worktree", "prune"],
+                                        ["git", "worktree", "add", "--detach", str(tree), revision]]),
+            ["cmake", "-S", str(tree), "-B", str(tree / "build"), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"],
+            ["cmake", "--build", str(tree / "build"), "--target", "mbs_program"]]:
+        print(f"{revision}: {' '.join(command[:2])} …", flush=True)
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+        if done.returncode != 0:
+            lines = (done.stdout + done.stderr).strip().splitlines()[-15:]
+            print("\n".join(lines), file=sys.stderr)
+            raise StudyError(f"{revision} could not be built, see above")
+    return build
+
+
+def _measure(folder, options, revision, build):
+    """The table of ratios."""
+    from study.tools.shelf import ToolLab, open_shelf
+    known, pairs = listed(), profiles.load("quick", []).blas
+    contenders = on_usual_pairs(known, pairs, select(known, options.only))
+    context = context_of(Contender(CONTROL.name, CONTROL.variant, usable(known, pairs["all"])))
+    lab = ToolLab(open_shelf(folder, "against", context, options.only, scenes=options.scenes,
+                             old=digest(ROOT / program_of(build=build))[:16]), "against", "runs")
+    there = _variants_of(build)
+    rows = [{"implementation": one.name, "scene": scene, "reason": f"is not in {revision}"}
+            for one in contenders if one.variant not in there for scene in options.scenes]
+    groups = {}
+    for one in contenders:
+        if one.variant in there:
+            groups.setdefault(one.environment, []).append(one)
+    for scene in options.scenes:
+        for group in groups.values():
+            rows += _ratios(lab, scene, group, options.rounds, build, revision)
+    lab.progress.end()
+    return _table(rows)
+
+
+def _variants_of(build):
+    """Names of the variants that the program of the other revision has."""
+    ended = child.run([program_of(build=build), "list", "--json"], 60, 4096)
+    try:
+        return {variant["name"] for entry in json.loads(ended.stdout)["implementations"] for variant in entry["variants"]}
+    except (ValueError, KeyError, TypeError) as error:
+        raise StudyError(f"{program_of(build=build)} list --json says nothing that this tree can read") from error
+
+
+def _ratios(lab, scene, group, count, build, revision):
+    """Rows of a scene's contenders of one environment. Where a process of all of them ends badly, each alone."""
+    found = {"old": [], "new": []}
+    for number in range(1, count + 1):
+        for tree, place in ORDER:
+            who = group if tree == "new" else [replace(one, name=f"{one.variant}+{revision}", build=build) for one in group]
+            record = lab.one(Cell("bench", scene, tuple(who), WORDS, tree, 2 * (number - 1) + place, timed=True,
+                                  seconds=SECONDS))
+            found[tree].append(record)
+            if not record.done:
+                if len(group) > 1:
+                    return [row for one in group for row in _ratios(lab, scene, [one], count, build, revision)]
+                return [{"implementation": group[0].name, "scene": scene, "record": record.name,
+                         "reason": f"{tree}: {record.status}: {record.reason}"}]
+    return [_row(one.name, scene, found) for one in group]
+
+
+def _row(name, scene, found):
+    import pandas
+    from analysis.core import timing
+    trees = {}
+    for tree, records in found.items():
+        try:
+            rows = timing.processes(records)
+        except (KeyError, TypeError) as error:
+            raise StudyError(f"raw/against/{records[0].name}: lacks {error}: its program is of a revision that this "
+                             "tree's study/against cannot read") from error
+        trees[tree] = rows[rows.implementation.str.partition("+")[0] == name]
+    row = {"implementation": name, "scene": scene, "record": " ".join(one[0].name for one in found.values())}
+    both = pandas.concat(one.assign(implementation=tree) for tree, one in trees.items())
+    wrong = both[both.status != "ok"]
+    if len(wrong):
+        return row | {"reason": f"{wrong.implementation.iloc[0]}: {wrong.status.iloc[0]}: {wrong.reason.iloc[0]}"}
+    if both.steps.nunique() > 1 or both.start.nunique() > 1:
+        return row | {"reason": "the two programs time different stretches"}
+    # Samples of two processes do not belong together as those of one turn do: their medians are compared.
+    pairs = both.assign(environment="pair", samples=[(middle,) for middle in both.step_us])
+    ratio = timing.ratio(pairs, "new", "old")
+    middle = both.groupby("implementation").step_us.median()
+    return row | {"old_us": middle["old"], "new_us": middle["new"], "ratio": ratio.value, "low": ratio.low,
+                  "high": ratio.high, "pairs": len(found["old"])}
+
+
+def _table(rows):
+    import pandas
+    from analysis.core.schema import conform
+    return conform(pandas.DataFrame(rows, columns=list(RATIOS)), RATIOS, "ratios.csv")
+
+
+def _tell(table, revision):
+    print(f"\ntime of a step, this tree / {revision} (95 % interval over pairs of processes; below 1: faster now)")
+    for row in table.itertuples():
+        print(f"{row.implementation:28} {row.scene:14} " + (row.reason[:80] if row.reason else (
+            f"{row.old_us:10.3g} -> {row.new_us:10.3g} us  {row.ratio:.3f} ({row.low:.3f} to {row.high:.3f})")))
