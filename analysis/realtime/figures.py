@@ -10,7 +10,7 @@ LEFT = 0.7  # of the axis of sizes
 
 def draw(tables, view):
     return {"steps": distributions(tables["steps"], tables["machine"]),
-            "largest": sizes(tables["largest"], view.context["machine"])}
+            "largest": sizes(tables["largest"], view.context["cpu_model"])}
 
 
 def distributions(table, machine):

@@ -13,7 +13,7 @@ from analysis.realtime.verdict import judge, needs_null
 REGISTRY = Registry({"implementations": [
     {"folder": "lib", "available": True, "library": "Some", "variants": [{"name": "lib/a"}]},
     {"folder": "own", "available": True, "library": "none", "variants": [{"name": "own/a"}]}]})
-VIEW = SimpleNamespace(registry=REGISTRY, context={"machine": "A machine"}, settings={
+VIEW = SimpleNamespace(registry=REGISTRY, context={"cpu_model": "A machine"}, settings={
     "duration": 5.0, "pilot": 1.3, "steps": [1e-3]})
 
 
@@ -90,8 +90,8 @@ def test_figures_page_and_answers():
     known = page.context(found, VIEW)
     assert known["machine"] == [(1e-3, 1, 1.3, 1, 7.0)] and known["judging"]["share"] == pytest.approx(0.005)
     texts = [one["text"] for one in sentences.answers(found, VIEW)]
-    assert texts[0] == ("Steps of 1 ms: of libraries lib/a keeps up with N = 8 (0 of 1300 steps missed; N = 16 failed); "
-                        "of own code own/a keeps up with N = 64 (0 of 1300 steps missed).")
+    assert texts[0] == ("Steps of 1 ms: of libraries lib/a keeps up with N = 8 (0 of 1300 steps missed, – lost by the null process; N = 16 failed); "
+                        "of own code own/a keeps up with N = 64 (0 of 1300 steps missed, – lost by the null process).")
     assert texts[1] == "1 of 2 runs of 5 s missed no deadline at all."
 
 
