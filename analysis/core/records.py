@@ -102,7 +102,7 @@ def pack(folder, part, target):
     base = Path(folder) / "raw" / part
     target.parent.mkdir(parents=True, exist_ok=True)
     with tarfile.open(target, "w:xz", preset=9) as tar:
-        for path in sorted(base.rglob("*.json")):
+        for path in sorted(path for path in base.rglob("*.json") if not path.name.startswith(".")):
             data = path.read_bytes()
             entry = tarfile.TarInfo(path.relative_to(base).as_posix())
             entry.size = len(data)

@@ -1,0 +1,159 @@
+# study/store [DIR] [NAME]: a finished set as results/NAME: an archive of records a part, its tables and answers.
+#
+# Pages and figures are left out, since study/figures draws them from these; pictures that a text shows are kept.
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, digest, read_json
+from analysis.core.parts import parts
+from study.core import locks
+from study.core.main import columns_of, need_modules
+from study.core.options import Parser
+from study.core.studyset import StudySet
+
+RESULTS = ROOT / "results"
+MOST = 3  # sets
+OF_ALL = ("set.json", "registry.json", "profile.yaml", "contexts")
+SHOWN = re.compile(r"results/[\w.+-]+/(\w+/figures/[\w.+-]+\.png)")
+COMMON = {"r", "tm", "cpu", "processor", "family", "model", "stepping", "core", "intel", "amd"}  # words of processors
+
+
+def store(arguments):
+    parser = Parser(prog="study/store", description="Stores a finished set of a clean tree in results/NAME, to be committed.")
+    parser.add_argument("set", nargs="?", metavar="DIR", help="its directory (the newest in results/local)")
+    parser.add_argument("name", nargs="?", metavar="NAME", help="(PROFILE-PROCESSOR)")
+    options = parser.parse_args(arguments)
+    need_modules()
+    folder = Path(options.set).absolute() if options.set else newest_local()
+    if not (folder / "set.json").exists():
+        raise StudyError(f"{folder} holds no set (no set.json)")
+    studyset = StudySet(folder)
+    with locks.only_one(RESULTS), locks.only_one(folder):
+        need_clean(studyset)
+        need_whole(studyset)
+        name = options.name or f"{studyset.facts['profile']}-{short(studyset.facts['context']['cpu_model'])}"
+        _need_place(name)
+        pictures = _build(studyset, name)
+    _tell(folder, name, pictures)
+    return 0
+
+
+def newest_local():
+    found = {path.parent: StudySet(path.parent).facts for path in (RESULTS / "local").glob("*/set.json")}
+    found = {folder: facts["date"] for folder, facts in found.items() if facts["parts"]}  # tools keep theirs there too
+    if not found:
+        raise StudyError("results/local holds no set: name one, or make one with study/run")
+    return max(found, key=found.get)
+
+
+def short(processor):
+    """"epyc-25-17" of "AMD EPYC (family 25, model 17, stepping 1)"."""
+    words = [word for word in re.findall(r"[a-z0-9]+", processor.lower().partition("@")[0]) if word not in COMMON]
+    return "-".join(words[:3]) or "machine"
+
+
+def need_clean(studyset):
+    """StudyError unless all that was run was built from a commit of this repository."""
+    for path in (studyset.folder / "set.json", *sorted((studyset.folder / "contexts").glob("*.json"))):
+        context = read_json(path)
+        context = context["context"] if path.name == "set.json" else context
+        if str(context.get("dirty")).lower() != "false":
+            raise StudyError(f"{path}: it was measured from a dirty tree (dirty is {context.get('dirty')}): commit, "
+                             "build and measure again")
+        if subprocess.run(["git", "cat-file", "-e", f"{context.get('commit')}^{{commit}}"], cwd=ROOT,
+                          capture_output=True).returncode != 0:
+            raise StudyError(f"{path}: it is of {context.get('commit')}, which is no commit of this repository")
+
+
+def need_whole(studyset):
+    """StudyError naming what is not finished, or not as it was measured."""
+    from analysis.core import records, schema
+    missing = [part for part in parts() if part not in studyset.facts["parts"]]
+    if missing:
+        raise StudyError(f"{studyset.folder} lacks {', '.join(missing)}: a stored set has all parts")
+    for part, columns in columns_of(studyset.profile, studyset.facts["parts"], studyset).items():
+        known = {}
+        for column in columns:
+            stamp = studyset.stamp(part, column)
+            if not stamp.exists():
+                raise StudyError(f"{studyset.folder} is not finished: {part}/{column} has not ended; run study/run again")
+            known |= read_json(stamp)
+        found = records.files_of(studyset.folder, part)
+        for name, path in found.items():
+            if name not in known:
+                raise StudyError(f"{path} belongs to no column that has ended: remove it, and run study/run again")
+        for name, expected in known.items():
+            if name not in found or digest(found[name]) != expected:
+                raise StudyError(f"{studyset.folder / 'raw' / part / name} is "
+                                 f"{'not the one that was measured' if name in found else 'missing'}: run study/run again")
+        schema.need_unchanged(studyset.folder, part)
+        tables = studyset.folder / part / schema.DIGESTS
+        if not tables.exists() or read_json(tables)["records"] != schema.digest_of(records.read_part(studyset.folder, part)):
+            raise StudyError(f"{studyset.folder / part}: its tables are not those of its records: run study/figures "
+                             f"{studyset.folder}")
+
+
+def _need_place(name):
+    if not re.fullmatch(r"[A-Za-z0-9][\w.+-]*", name) or name == "local":
+        raise StudyError(f"'{name}' is no name of a set: letters, digits, dots and dashes")
+    stored = sorted(path.parent.name for path in RESULTS.glob("*/set.json"))
+    if (RESULTS / name).exists():
+        raise StudyError(f"results/{name} is there already: remove it, or choose another NAME")
+    if len(stored) >= MOST:
+        raise StudyError(f"results/ holds {MOST} sets already, which is the most: remove one of {', '.join(stored)}")
+
+
+def _build(studyset, name):
+    """Writes all beside its place, then moves it there; the pictures that were kept."""
+    for path in RESULTS.glob(".storing-*"):  # of a process that was killed
+        shutil.rmtree(path)
+    building = RESULTS / f".storing-{name}"
+    try:
+        pictures = _fill(studyset, building)
+        os.rename(building, RESULTS / name)
+    except OSError as error:
+        raise StudyError(f"cannot store results/{name}: {error.strerror}") from error
+    finally:
+        shutil.rmtree(building, ignore_errors=True)
+    return pictures
+
+
+def _fill(studyset, building):
+    from analysis.core import fragments, records, schema
+    building.mkdir(parents=True)
+    for name in OF_ALL:
+        source = studyset.folder / name
+        (shutil.copytree if source.is_dir() else shutil.copyfile)(source, building / name)
+    for part in studyset.facts["parts"]:
+        (building / part).mkdir()
+        for path in sorted(path for path in (studyset.folder / part).iterdir() if path.suffix in (".csv", ".json")):
+            shutil.copyfile(path, building / part / path.name)
+        records.pack(studyset.folder, part, records.archive_of(building, part))
+        if schema.digest_of(records.read_part(building, part)) != read_json(building / part / schema.DIGESTS)["records"]:
+            raise StudyError(f"{studyset.folder / 'raw' / part} changed while it was stored")
+    pictures = sorted({tail for text in fragments.texts() for tail in SHOWN.findall(text.read_text(encoding="utf-8"))
+                       if (studyset.folder / tail).exists()})
+    for tail in pictures:
+        (building / tail).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(studyset.folder / tail, building / tail)
+    return pictures
+
+
+def _tell(folder, name, pictures):
+    from analysis.core import fragments
+    files = [path for path in (RESULTS / name).rglob("*") if path.is_file()]
+    print(f"results/{name}: {len(files)} files, {sum(path.stat().st_size for path in files) / 2**20:.1f} MB")
+    if (folder / "added").exists():
+        print("what study/add measured stays where it is: it is of another tree")
+    try:
+        for path in fragments.refresh():
+            print(f"filled anew: {path.relative_to(ROOT)}")
+    except StudyError as error:
+        print(f"texts are not filled anew: {error}")
+    print(f"to commit it: git add results/{name}")
+    if pictures:  # others that study/figures draws are ignored
+        print("              git add -f " + " ".join(f"results/{name}/{tail}" for tail in pictures))
