@@ -82,9 +82,10 @@ def _phases(lab, timed):
 def _operations(lab, scene):
     """`mbs` checks their results itself, so that a step too slow to be timed excludes nobody."""
     asked = lab.settings["operations"]
-    chosen = tuple(one for one in lab.contenders if lab.registry.variants[one.variant].get("operations"))
-    if scene.variables in asked["columns"] and chosen:
-        lab.run([Cell("bench", scene.name, chosen, ("--operations", "--benchmark_repetitions=3", "--benchmark_min_time=0.01"),
+    chosen = [one for one in lab.contenders if lab.registry.variants[one.variant].get("operations")]
+    for environment in dict.fromkeys(one.environment for one in chosen) if scene.variables in asked["columns"] else ():
+        group = tuple(one for one in chosen if one.environment == environment)
+        lab.run([Cell("bench", scene.name, group, ("--operations", "--benchmark_repetitions=3", "--benchmark_min_time=0.01"),
                       "operations", number, timed=True, seconds=lab.settings["limits"]["time"])
                  for number in range(1, asked["processes"] + 1)], drop=True)
 

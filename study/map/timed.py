@@ -8,7 +8,7 @@ from study.core.contender import CONTROL, Contender
 from study.core.timing import measure
 from study.map.scene import Scene
 
-LEAST_SAMPLES, MOST_SAMPLES = 2, 40
+LEAST_SAMPLES, MOST_SAMPLES = 1, 40
 BUSY = 1.5     # passes a step of a stretch, which crosses the singular position, over those of a pilot, about
 TURN = 0.005   # s, the least that a sample takes
 

@@ -1,0 +1,101 @@
+# Comparisons within a scene that figures and claims share, and what can be read off a series of them.
+from dataclasses import dataclass
+
+import numpy
+
+from analysis.core.statistics import phase_shares
+from analysis.map.tidy import PHASES
+
+
+@dataclass(frozen=True)
+class Versus:
+    """Time of `slow` over that of `fast`, with its interval, and where it was taken."""
+    value: float
+    low: float
+    high: float
+    slow: str
+    fast: str
+    size: float
+    fill: float  # percent
+    record: str
+
+    @property
+    def where(self):
+        return f"n = {self.size:g}, {self.slow} ÷ {self.fast}"
+
+
+def versus(results, scene, slow, fast):
+    """Versus of two contenders; None if they cannot be compared."""
+    found = None if None in (slow, fast) or slow == fast else results.ratio(scene, slow, fast)
+    if found is None:
+        return None
+    rows = results.rows(scene)
+    record = next(iter(rows[(rows.implementation == slow) & (rows.status == "ok")].record), "")
+    return Versus(found.value, found.low, found.high, slow, fast, float(rows.variables.iloc[0]),
+                  float(rows.fill_percent.iloc[0]), record)
+
+
+def best(results, scene, slow, fast):
+    """Versus of the fastest of the names `slow` and the fastest of the names `fast`."""
+    return versus(results, scene, results.fastest(scene, slow), results.fastest(scene, fast))
+
+
+def over_sizes(results, slow, fast, low=0, high=float("inf")):
+    """[Versus] of the best of two groups at natural fill, by size."""
+    found = [best(results, results.natural(size), slow, fast) for size in results.sizes if low <= size <= high]
+    return [one for one in found if one]
+
+
+def operations(results, operation):
+    """Rows of an operation of Table 2 that was timed; `step_us` is the time of a call here."""
+    tidy = results.tidy
+    rows = tidy[(tidy.kind == "operations") & (tidy.status == "ok") & (tidy.operation == operation)]
+    return rows.assign(step_us=rows.operation_us, samples=[tuple(map(float, text.split())) for text in rows.samples_us])
+
+
+def profiled(results, name=None, size=None):
+    """Rows of the profiled processes, of one contender and size if they are given."""
+    tidy = results.tidy
+    rows = tidy[(tidy.kind == "phases") & (tidy.status == "ok") & tidy.implementation.isin(list(results.variants))]
+    rows = rows if name is None else rows[rows.implementation == name]
+    return rows if size is None else rows[rows.variables == size]
+
+
+def group_shares(rows, groups):
+    """{group: share} of one contender's profiled rows."""
+    shares = phase_shares(rows, PHASES)
+    return {group: sum(shares[phase] for phase in phases) for group, phases in groups.items()}
+
+
+def share_interval(rows, phases):
+    """(share, low, high) of `phases` together: mean over the profiled processes with Student's interval."""
+    from scipy import stats
+    shares = (rows[[f"phase_{phase}" for phase in phases]].sum(axis=1)
+              / rows[[f"phase_{phase}" for phase in PHASES]].sum(axis=1))
+    middle = float(shares.mean())
+    if len(shares) < 2:
+        return middle, 0.0, 1.0
+    half = stats.t.ppf(0.975, len(shares) - 1) * float(shares.std(ddof=1)) / len(shares) ** 0.5
+    return middle, middle - half, middle + half
+
+
+def step_us(results, name, size):
+    """Median time of a step at natural fill; NaN if it was not timed."""
+    return results.medians(results.natural(size)).get(name, numpy.nan)
+
+
+def crossing(places, values):
+    """Where `values` (ratios) first fall below 1, log values interpolated over `places`; -inf if they are below from
+    the start, inf if nowhere."""
+    logs = numpy.log(values)
+    if logs[0] < 0:
+        return -numpy.inf
+    for left, right, before, after in zip(places, places[1:], logs, logs[1:]):
+        if after < 0:
+            return left + (right - left) * before / (before - after)
+    return numpy.inf
+
+
+def crossing_interval(places, ratios):
+    """(crossing, low, high) of a series of ratios: between low and high their intervals, interpolated, include 1."""
+    return tuple(crossing(places, [getattr(ratio, bound) for ratio in ratios]) for bound in ("value", "low", "high"))
