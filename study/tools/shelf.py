@@ -35,16 +35,16 @@ def open_shelf(folder, tool, context, only, **question):
 class ToolLab(Lab):
     """A lab that shows what it does on the terminal. `quiet` shows nothing."""
 
-    def __init__(self, studyset, tool, column, expected=0, quiet=False):
-        super().__init__(studyset, tool, column)
-        self.progress = _Shown(tool, expected, quiet)
+    def __init__(self, studyset, tool, column, seconds=float("inf"), quiet=False):
+        super().__init__(studyset, tool, column, seconds)
+        self.progress = _Shown(tool, quiet)
 
 
 class _Shown:
     """Of Progress what a lab calls."""
 
-    def __init__(self, title, expected, quiet):
-        self.title, self.expected, self.known, self.cells, self.text = title, expected, 0, 0, ""
+    def __init__(self, title, quiet):
+        self.title, self.known, self.cells, self.text = title, 0, 0, ""
         self.display, self.quiet = Display(), quiet
 
     def expect(self, cells):
@@ -57,7 +57,7 @@ class _Shown:
     def tell(self, text):
         self.text = text
         if not self.quiet:
-            total = max(self.expected, self.known, self.cells)
+            total = max(self.known, self.cells)
             self.display.show(self.title, f"{self.cells} of {total} cells{'; ' * bool(text)}{text}")
 
     def end(self):

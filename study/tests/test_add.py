@@ -1,0 +1,151 @@
+# study/add on a small set that was made by hand and the fake `mbs`: who changes hands, what is refused, what is kept.
+import tempfile
+
+import pandas
+import pytest
+
+from analysis.core import records, schema
+from analysis.core.errors import StudyError
+from analysis.core.files import digest, read_json, write_json
+from study.core.contender import CONTROL, Contender
+from study.core.studyset import context_of
+from study.tests.conftest import FAKE, ROOT, TEMPORARY
+from study.tools import add
+
+pytestmark = pytest.mark.slow
+NEW = "new_one/only"
+SCENES = {"four-bar:4": 10, "four-bar:10": 22}
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A set whose map has two scenes, led by good_dense/first before good_sparse/only."""
+    monkeypatch.setattr(tempfile, "tempdir", TEMPORARY.name)
+    monkeypatch.setenv("MBS_PROGRAM", str(FAKE))
+    monkeypatch.setattr(add, "PASSES", (2, 3))
+    monkeypatch.setattr(add, "set_up", lambda log: pytest.fail("nothing is built with MBS_PROGRAM"))
+    folder = tmp_path / "set"
+    for pair in ("openblas", "system"):
+        context = context_of(Contender(CONTROL.name, CONTROL.variant, pair))
+        write_json(folder / "contexts" / f"own-{pair}.json", context)
+    write_json(folder / "set.json", {"profile": "smoke", "only": [], "parts": ["map"], "programs": {}, "context": context,
+                                     "date": "2026-01-01 10:00"})
+    (folder / "profile.yaml").write_text((ROOT / "study" / "profiles" / "smoke.yaml").read_text())
+    cells = [{"scene": scene, "layer": layer, "variables": size, "winner": "good_dense/first", "second": "good_sparse/only"}
+             for scene, size in SCENES.items() for layer in ("libraries", "all")]
+    scenes = [{"scene": scene, "variables": size, "steps": 100, "start": 0.1} for scene, size in SCENES.items()]
+    tidy = [{"kind": "timing", "scene": scene, "implementation": name, "step_us": 10.0}
+            for scene in SCENES for name in ("good_dense/first", "good_sparse/only")]
+    found = {name: pandas.DataFrame() for name in schema.of_part("map")}
+    schema.write_tables(folder, "map", found | {"cells": pandas.DataFrame(cells), "scenes": pandas.DataFrame(scenes),
+                                               "tidy": pandas.DataFrame(tidy)}, [])
+    return folder
+
+
+def measure(folder, monkeypatch, times=None, name=NEW):
+    if times:
+        monkeypatch.setenv("FAKE_NEW", f"{NEW}={times}")
+    add.add([name, "--to", str(folder), "--wait"])
+    return pandas.read_csv(folder / "added" / f"{name.replace('/', '.')}.csv", keep_default_na=False)
+
+
+def test_a_faster_newcomer_takes_the_cells(folder, monkeypatch, capsys):
+    monkeypatch.setenv("FAKE_DIRTY", "true")
+    monkeypatch.setenv("FAKE_COMMIT", "fedcba9")
+    table = measure(folder, monkeypatch, 0.3)
+    assert len(table) == 4 and set(table.hands) == {"changes"} and set(table.status) == {"ok"}
+    assert ((table.low < table.ratio) & (table.ratio < table.high) & (table.high < 1)).all()
+    assert set(table.before) == {"good_dense/first"} and set(table.processes) == {3}
+    assert set(zip(table.commit, table.dirty.astype(str))) == {("fedcba9", "True")}
+    assert "4 cells change hands, 0 are open, 0 stay" in capsys.readouterr().out
+
+
+def test_all_take_turns_in_the_same_processes_and_records_have_digests(folder, monkeypatch):
+    measure(folder, monkeypatch, 0.3)
+    base = folder / "raw" / "added" / "new_one.only"
+    names = read_json(folder / "added" / "new_one.only.json")
+    assert names["table"] == digest(folder / "added" / "new_one.only.csv")
+    found = {name: records.read(folder / "raw" / "added" / name, name) for name in names["records"]}
+    assert {name: digest(folder / "raw" / "added" / name) for name in found} == names["records"]
+    assert len(list(base.rglob("*.json"))) == len(found)
+    timed = [one for one in found.values() if one.role == "time"]
+    assert len(timed) == 6 and all(one.cell["contenders"] == [NEW, "good_dense/first", "good_sparse/only"] for one in timed)
+    assert {one.role for one in found.values()} == {"time", "gate"}
+
+
+def test_a_slower_newcomer_changes_nothing(folder, monkeypatch):
+    assert set(measure(folder, monkeypatch, 30).hands) == {"stays"}
+
+
+def test_a_leader_that_became_slower_loses_its_cells(folder, monkeypatch, tmp_path):
+    slow = tmp_path / "mbs.py"
+    slow.write_text(FAKE.read_text().replace("    dense = 2 +", "    dense = 200 +"))
+    slow.chmod(0o755)
+    monkeypatch.setenv("MBS_PROGRAM", str(slow))
+    table = measure(folder, monkeypatch, name="good_dense/first")
+    assert set(table.hands) == {"changes"} and set(table.rival) == {"good_sparse/only"} and (table.low > 1).all()
+
+
+def test_asked_again_nothing_is_measured_and_of_another_program_everything(folder, monkeypatch, tmp_path):
+    def stamps():
+        return {path: path.stat().st_mtime_ns for path in (folder / "raw").rglob("*.json")}
+    before, first = measure(folder, monkeypatch, 0.5), stamps()
+    assert measure(folder, monkeypatch, 0.5).equals(before) and stamps() == first
+    edited = tmp_path / "mbs.py"
+    edited.write_text(FAKE.read_text() + "# edited\n")
+    edited.chmod(0o755)
+    monkeypatch.setenv("MBS_PROGRAM", str(edited))
+    measure(folder, monkeypatch, 0.5)
+    assert not set(stamps().values()) & set(first.values())
+
+
+def test_who_fails_the_gate_is_not_timed(folder, monkeypatch):
+    monkeypatch.setenv("FAKE_BAD", "1")
+    table = measure(folder, monkeypatch, name="bad/wrong")
+    assert set(table.status) == {"disagrees"} and "q differs by 0.4 m" in table.reason[0] and set(table.hands) == {"stays"}
+
+
+@pytest.mark.parametrize("name, status", [("bad/crash", "crashed"), ("bad/passes", "disagrees"), ("bad/nan", "diverged")])
+def test_who_fails_while_timed_has_a_reason_and_the_others_their_times(folder, monkeypatch, name, status):
+    monkeypatch.setenv("FAKE_BAD", "1")
+    table = measure(folder, monkeypatch, name=name)
+    assert set(table.status) == {status} and (table.reason != "").all()
+
+
+@pytest.mark.parametrize("variable, value, words", [
+    ("FAKE_MACHINE", "m2", "its machine is 'm1', here it is 'm2'"),
+    ("FAKE_COMPILER", "fake 2.0", "its compiler is 'fake 1.0', here it is 'fake 2.0'")])
+def test_another_machine_or_compiler_is_refused(folder, monkeypatch, variable, value, words):
+    monkeypatch.setenv(variable, value)
+    with pytest.raises(StudyError, match=words):
+        measure(folder, monkeypatch, 0.5)
+    assert not (folder / "added").exists()
+
+
+def test_another_version_of_a_library_is_refused_and_a_further_library_is_not(folder, monkeypatch):
+    for path in (folder / "contexts").iterdir():
+        write_json(path, read_json(path) | {"libraries": "Fake 1.0; KLU 1.2"})
+    with pytest.raises(StudyError, match="it has KLU 1.2, here there is none of it"):
+        measure(folder, monkeypatch, 0.5)
+    assert add.versions({"libraries": "A 1; B 2"}) - add.versions({"libraries": "B 2; C 1; A 1"}) == set()
+    assert add.versions({"libraries": '{"A": "1"}'}) == {"A 1"}
+
+
+def test_a_changed_table_is_named(folder, monkeypatch):
+    path = folder / "map" / "cells.csv"
+    path.write_text(path.read_text().replace("good_sparse", "good_dense"))
+    with pytest.raises(StudyError, match="cells.csv is not as it was written"):
+        measure(folder, monkeypatch, 0.5)
+
+
+def test_unknown_names_and_sets(folder, monkeypatch, tmp_path):
+    with pytest.raises(StudyError, match="unknown implementation 'nobody'"):
+        measure(folder, monkeypatch, name="nobody")
+    with pytest.raises(StudyError, match="holds no set"):
+        add.add([NEW, "--to", str(tmp_path / "nowhere")])
+
+
+def test_it_keeps_to_a_fifth_of_the_maps_time(folder, monkeypatch):
+    monkeypatch.setattr(add, "budget_of", lambda _: 0.0)
+    table = measure(folder, monkeypatch, 0.5)
+    assert set(table.status) == {"dropped"} and "budget" in table.reason[0]

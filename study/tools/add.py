@@ -1,0 +1,268 @@
+# study/add NAME: times a new or changed implementation against those who lead the cells of a set's map.
+#
+# The newcomer, the leader and the runner-up of the libraries and the leader of all take turns in fresh processes: what
+# the set has of the others is never paired with new samples. Records: SET/raw/added/NAME/, the result: SET/added/NAME.csv.
+import datetime
+import json
+import os
+import shutil
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, digest, read_json, write, write_json
+from study.core import locks, profile as profiles
+from study.core.cell import Cell
+from study.core.contender import on_usual_pairs
+from study.core.executor import program_of
+from study.core.main import need_modules, set_up, writable
+from study.core.options import Parser
+from study.core.progress import duration
+from study.core.studyset import StudySet, context_of, listed, select
+from study.core.timing import measure
+
+SHARE = 0.2     # of the time that the set's map had
+PASSES = (3, 5)  # processes of all scenes before there are more of any
+MOST_SAMPLES = 40
+PATIENT = 8     # times the slowest rival's stretch: whose first takes longer is left out
+SAME = ("machine", "compiler", "flags", "build_type")  # of two contexts
+CELLS = {
+    "scene": ("text", "", "of the set's map"), "variables": ("number", "", "n"),
+    "layer": ("text", "", "libraries, or all: own code too"), "implementation": ("text", "", "the newcomer"),
+    "before": ("text", "", "who led the cell in the set"), "rival": ("text", "", "the fastest of the others, timed anew"),
+    "step_us": ("number", "µs", "of the newcomer, median over processes"),
+    "rival_us": ("number", "µs", "of the rival, median over processes"),
+    "ratio": ("number", "", "time of the newcomer over the rival's"), "low": ("number", "", "lower end of its 95 % interval"),
+    "high": ("number", "", "upper end"), "processes": ("number", "", "in which both were timed"),
+    "hands": ("text", "", "changes, stays or open (the interval includes 1)"),
+    "status": ("text", "", "of the newcomer: ok, or why it was not timed"), "reason": ("text", "", "in words"),
+    "commit": ("text", "", "of the newcomer's tree"), "dirty": ("text", "", "whether that had changes beside"),
+    "record": ("text", "", "first record of the scene, in raw/added")}
+
+
+def add(arguments):
+    parser = Parser(prog="study/add", description="Measures a new or changed implementation into a set of the same machine "
+                    "and libraries: the newcomer beside the leaders of each cell of its map, in fresh common processes.")
+    parser.add_argument("name", metavar="NAME", help="folder or folder/variant")
+    parser.add_argument("--to", metavar="SET", help="its directory (the newest in results/, or else in results/local)")
+    parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
+    options = parser.parse_args(arguments)
+    need_modules()
+    folder = Path(options.to).absolute() if options.to else newest()
+    if not (folder / "set.json").exists():
+        raise StudyError(f"{folder} holds no set (no set.json)")
+    writable(folder)
+    with locks.only_one(folder), locks.only_one_study(options.wait):
+        if "MBS_PROGRAM" not in os.environ:
+            set_up(folder / "run.log")
+        table = measured(folder, options.name)
+    tell(table, folder, options.name)
+    return 0
+
+
+def newest():
+    for base in (ROOT / "results", ROOT / "results" / "local"):
+        found = {path.parent: StudySet(path.parent).facts for path in base.glob("*/set.json")}
+        found = {folder: facts["date"] for folder, facts in found.items() if "map" in facts["parts"]}
+        if found:
+            return max(found, key=found.get)
+    raise StudyError("there is no set with a map in results/ or results/local: make one with study/run")
+
+
+@dataclass(frozen=True)
+class _Present(StudySet):
+    """A set's folder with the present program, whatever the set's is."""
+    present: dict  # {environment: context}
+
+    def context(self, one):
+        return self.present[one.environment]
+
+    @property
+    def facts(self):
+        return {"context": next(iter(self.present.values()))}
+
+
+def measured(folder, name):
+    """The table of one newcomer, or several variants of one, which is written."""
+    from analysis.core import schema
+    from study.tools.shelf import ToolLab
+    known = listed()
+    newcomers = select(known, [name])
+    cells = schema.read_table(folder, "map", "cells")
+    cells = cells[cells.winner != ""]
+    steps = schema.read_table(folder, "map", "scenes").set_index("scene")
+    blas = profiles.read(folder / "profile.yaml", StudySet(folder).facts["profile"], []).blas
+    rivals = {*cells.winner, *cells[cells.layer == "libraries"].second} & set(known.variants)
+    contenders = {one.name: one for one in on_usual_pairs(known, blas, [*newcomers, *sorted(rivals - set(newcomers))])}
+    present = contexts(folder, contenders.values())
+    column = name.replace("/", ".")
+    lab = ToolLab(_Present(folder, present), "added", column, seconds=SHARE * budget_of(folder))
+    _begin(folder, column, lab)
+    scenes = list(dict.fromkeys(cells.scene))
+    chosen = {scene: _rivals(cells[cells.scene == scene], newcomers, contenders) for scene in scenes}
+    verdicts = {scene: _gate(lab, scene, newcomers, contenders) for scene in scenes}
+    records = {}
+    for count in PASSES:
+        for scene in scenes:
+            fit = [contenders[one] for one in newcomers if verdicts[scene][one][0] == "ok"]
+            if fit and chosen[scene]:
+                times = _times(folder, scene)
+                records[scene] = measure(lab, scene, [*fit, *(contenders[one] for one in chosen[scene])], processes=count,
+                                         drop=True, **_size(lab, times, chosen[scene], steps.steps[scene], len(scenes)))
+    lab.progress.end()
+    context = present[contenders[newcomers[0]].environment]
+    rows = [row | {"commit": context["commit"], "dirty": context["dirty"]} for scene in scenes
+            for row in _rows(cells[cells.scene == scene], newcomers, known, verdicts[scene], records.get(scene, []),
+                             steps.loc[scene])]
+    return _finish(folder, column, lab, rows)
+
+
+def budget_of(folder):
+    """Seconds that the set's map had."""
+    from analysis.core.view import View
+    return View(folder, "map").settings["seconds"]
+
+
+def contexts(folder, contenders):
+    """{environment: what its program says now}; StudyError naming what differs from the set."""
+    known, found = StudySet(folder), {}
+    for one in contenders:
+        if one.environment in found:
+            continue
+        now = found[one.environment] = context_of(one)
+        kept = folder / "contexts" / f"{one.environment.replace('|', '-')}.json"
+        then = read_json(kept) if kept.exists() else known.facts["context"]
+        for key in (*SAME, *(("blas_loaded",) if kept.exists() else ())):
+            if str(now.get(key)) != str(then.get(key)):
+                raise StudyError(f"{folder} is of another machine or build: its {key} is '{then.get(key)}', here it is "
+                                 f"'{now.get(key)}'; times of both cannot stand side by side")
+        lost = versions(then) - versions(now)
+        if lost:
+            raise StudyError(f"{folder} is of other libraries: it has {', '.join(sorted(lost))}, here there is "
+                             f"{', '.join(sorted(versions(now) - versions(then))) or 'none of it'}")
+    return found
+
+
+def versions(context):
+    """The libraries with their versions, as a set of texts."""
+    text = context.get("libraries", "")
+    if text.startswith("{"):
+        return {f"{name} {version}" for name, version in json.loads(text).items()}
+    return {one.strip() for one in text.split(";")} - {""}
+
+
+def _begin(folder, column, lab):
+    """Goes on with the records of this very program, or removes those of an earlier one."""
+    path, program = folder / "added" / f"{column}.json", digest(ROOT / program_of())
+    if not path.exists() or read_json(path).get("program") != program:
+        shutil.rmtree(lab.base / column, ignore_errors=True)
+    write_json(path, {"program": program})
+    shutil.rmtree(lab.set.scratch, ignore_errors=True)
+    lab.set.scratch.mkdir(parents=True)
+    for one in (lab.base / column).rglob(".partial-*"):  # of a process that was killed
+        one.unlink()
+
+
+def _rivals(cells, newcomers, contenders):
+    """Names: the leader and the runner-up of the libraries, and the leader of all; those that are still there."""
+    libraries = cells[cells.layer == "libraries"]
+    names = dict.fromkeys([*libraries.winner, *libraries.second, *cells[cells.layer == "all"].winner])
+    return [name for name in names if name in contenders and name not in newcomers]
+
+
+def _gate(lab, scene, newcomers, contenders):
+    """{newcomer: (status, reason)}"""
+    found = {}
+    for name in newcomers:
+        record = lab.run([Cell("check", scene, (contenders[name],), ("--time-limit", 50), "gate")], drop=True)[0]
+        row = next((row for row in record.output.get("rows", []) if row["scene"] == scene), None)
+        found[name] = (record.status, record.reason) if not row else ("ok", "") if row["verdict"] == "agrees" else (
+            row["verdict"], row["reason"])
+    return found
+
+
+def _times(folder, scene):
+    """{implementation: µs a step} that the set has; for the number of samples only."""
+    from analysis.core import schema
+    tidy = schema.read_table(folder, "map", "tidy")
+    tidy = tidy[(tidy.kind == "timing") & (tidy.scene == scene)]
+    return tidy.groupby("implementation").step_us.median().dropna().to_dict()
+
+
+def _size(lab, times, rivals, steps, scenes):
+    """How many samples fill a process's share of the budget, and when one has waited too long for a stretch."""
+    stretches = [1e-6 * steps * times[name] for name in rivals if name in times] or [1.0]
+    turn = sum(stretches) + max(stretches)  # the newcomer is taken for no slower than the slowest
+    samples = min(max(round(0.7 * lab.budget / (scenes * PASSES[-1]) / turn), 1), MOST_SAMPLES)
+    patience = max(PATIENT * max(stretches), 0.05)
+    return {"repetitions": samples, "settings": ("--patience", f"{patience:.3g}"),
+            "seconds": 30 + 3 * samples * turn + 5 * patience}
+
+
+def _rows(cells, newcomers, known, verdicts, records, asked):
+    """A row for each layer of a scene and newcomer that has a place in it."""
+    from analysis.core import timing
+    from analysis.map.timed import differing
+    rows = timing.processes(records)
+    wrong = differing(rows) if len(rows) else {}
+    other = "" if not len(rows) or not len(good := rows[rows.status == "ok"]) or set(
+        zip(good.steps, good.start)) == {(asked.steps, asked.start)} else "the program times another stretch than the set's"
+    for cell in cells.itertuples():
+        for name in newcomers:
+            if cell.layer == "libraries" and name in known.own:
+                continue
+            row = {"scene": cell.scene, "variables": cell.variables, "layer": cell.layer, "implementation": name,
+                   "before": cell.winner, "hands": "stays", "record": records[0].name if records else ""}
+            mine = rows[rows.implementation == name] if len(rows) else rows
+            lost = mine[(mine.status != "ok") & ((mine.status != "dropped") | ~(mine.status == "ok").any())] if len(mine) else mine
+            status, reason = verdicts[name]
+            if status == "ok" and (name in wrong or other):
+                status, reason = "disagrees", wrong.get(name, other)
+            elif status == "ok" and len(lost):
+                status, reason = lost.status.iloc[0], lost.reason.iloc[0]
+            row |= {"status": status, "reason": reason}
+            if status != "ok":
+                yield row
+                continue
+            others = [one for one in rows.implementation.unique() if one not in newcomers and "+" not in one
+                      and (cell.layer == "all" or one not in known.own) and one not in wrong]
+            yield row | _compared(timing, rows, name, timing.rank(rows, others), cell.winner)
+
+
+def _compared(timing, rows, name, ranking, before):
+    """What a newcomer's row says of it beside the fastest of the others."""
+    if ranking is None:
+        return {"hands": "open", "reason": "none of those who led the cell could be timed"}
+    ratio = timing.ratio(rows, name, ranking.winner)
+    times = rows[rows.status == "ok"].groupby("implementation").step_us.median()
+    hands = "open" if not (ratio.high < 1 or ratio.low > 1) else (
+        "changes" if (ratio.high < 1) != (before == name) else "stays")
+    return {"rival": ranking.winner, "ratio": ratio.value, "low": ratio.low, "high": ratio.high, "hands": hands,
+            "step_us": times[name], "rival_us": times[ranking.winner],
+            "processes": len(timing.log_ratios(rows, name, ranking.winner))}
+
+
+def _finish(folder, column, lab, rows):
+    import pandas
+    from analysis.core import schema
+    table = schema.conform(pandas.DataFrame(rows, columns=list(CELLS)), CELLS, f"added/{column}.csv")
+    path = folder / "added" / f"{column}.csv"
+    write(path, lambda partial: table.to_csv(partial, index=False))
+    write_json(path.with_suffix(".json"), read_json(path.with_suffix(".json")) | {
+        "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M"), "context": lab.set.facts["context"],
+        "table": digest(path), "records": {name: digest(lab.base / name) for name in sorted(lab.names)}})
+    shutil.rmtree(lab.set.scratch, ignore_errors=True)
+    lab.progress.tell(duration(lab.spent))
+    return table
+
+
+def tell(table, folder, name):
+    print(f"\ntime of {name} over that of the fastest other one, timed anew (95 % interval)")
+    for row in table.itertuples():
+        print(f"{row.scene:24} {row.layer:10} " + (f"{row.status}: {row.reason[:70]}" if row.status != "ok" or not row.rival else (
+            f"{row.implementation} ÷ {row.rival}: {row.ratio:.3f} ({row.low:.3f} to {row.high:.3f})"
+            + ("" if row.hands == "stays" else f": {row.hands}{' hands' if row.hands == 'changes' else ''}"))))
+    counts = Counter(table.hands)
+    print(f"{counts['changes']} cells change hands, {counts['open']} are open, {counts['stays']} stay")
+    print(f"table: {folder / 'added' / name.replace('/', '.')}.csv")
