@@ -17,7 +17,7 @@ def rows(records, registry):
     known = {cell.name: (place, cell) for place, cell in enumerate(cells.battery())}
     settings = {setting.file_name: setting.name for setting in (*cells.FORMS, *cells.OTHERS)}
     implementations = list(registry.variants)
-    references, found = {}, []
+    references, truths, found = {}, {}, []
     for record in records:
         scene = judge.scene_of(record)
         if scene not in known or record.role not in (*settings, REFERENCE):
@@ -30,13 +30,16 @@ def rows(records, registry):
             place, cell = known[judge.scene_of(record)]
             name = record.cell["contenders"][0]
             order = place, list(settings).index(record.role), implementations.index(name)
-            found.append((order, _row(record, cell, name, settings[record.role], references.get(cell.name, {}))))
+            times = record.series.get("t", [])
+            same = cell.name, len(times)  # all runs of a cell are judged at the same times
+            if same not in truths:
+                truths[same] = judge.true_motion(cell, references.get(cell.name, {}), times)
+            found.append((order, _row(record, cell, name, settings[record.role], *truths[same])))
     return [row for _, row in sorted(found, key=lambda one: one[0])]
 
 
-def _row(record, cell, name, setting, references):
+def _row(record, cell, name, setting, solutions, own, truth):
     status, reason = of_run(record)
-    solutions, own, kind = judge.true_motion(cell, references, record.series.get("t", []))
     # Its own word, where it knows the exact motion, covers instants and points that are not kept.
     reported = (record.output.get("position_error_max") or 0.0) / cell.length
     error = judge.error_of(record, solutions, cell.length)
@@ -44,7 +47,7 @@ def _row(record, cell, name, setting, references):
     limit = judge.allowed(cell, solutions)
     silent = bool(solutions) and judge.is_silent(status, error, limit + own)
     return {"axis": cell.axis, "value": cell.label, "implementation": name, "setting": setting, "status": status,
-            "reason": reason, "failed_at": record.output.get("failed_at"), "true_error": error, "truth": kind,
+            "reason": reason, "failed_at": record.output.get("failed_at"), "true_error": error, "truth": truth,
             "truth_error": own, "allowed": limit, "silent": silent, "steps": cell.steps, "step": cell.step,
             "penalty": record.output.get("penalty"), "passes_per_step": record.output.get("passes_per_step"),
             "command": shlex.join(record.command) if silent else "", "record": record.name}

@@ -13,7 +13,7 @@ TURN = 2             # ... and in a turn of about 2 s, where a run has many
 POINTS = 6           # whose places are kept, at most: all of them up to five loops
 LONGEST = 5.0        # s of simulated time where the step is what is varied
 LENGTHY = 160000     # steps of 200 s
-SIZES = {1: STEPS, 10: STEPS, 100: STEPS, 1000: 100, 10000: 24}  # loops: steps
+SIZES = {1: STEPS, 10: STEPS, 100: 1200, 1000: 100, 10000: 24}  # loops: steps; 1.25 s are past two singular positions
 JSON_LOOPS = 1000    # up to this size the scene is a file: the program knows the exact motion of `four-bar:N`
 LOOPS = 5            # where size is not what is varied
 
@@ -74,17 +74,15 @@ class Extreme:
         return self.motion.loops if self.motion else 1
 
     @property
-    def place(self):
-        """In the order of how telling cells are: telling ones of all axes in turn, then the others."""
-        telling = TELLING.get(self.axis, ())
-        return telling.index(self.label) if self.label in telling else len(SIZES) + 1
+    def work(self):
+        """What its runs cost, about: the cheap ones of equal worth come first."""
+        return self.loops * self.steps
 
     @property
-    def telling(self):
-        return self.label in TELLING.get(self.axis, ())
-
-    def settings(self):
-        return FORMS + OTHERS * self.telling
+    def place(self):
+        """Among the most telling ones of its axis; None if it is none of them."""
+        telling = TELLING.get(self.axis, ())
+        return telling.index(self.label) if self.label in telling else None
 
 
 def battery():

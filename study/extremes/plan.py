@@ -5,13 +5,13 @@ from study.core.cell import Cell
 from study.core.contender import REFERENCE
 from study.core.executor import program_of
 
-SETTINGS = {"implementations": list,  # of battery and roundoff, which differ in kind; all others come after them ...
-            "everyone": bool,         # ... if these are asked for
+SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms and roundoff, for other settings ...
+            "everyone": bool,         # ... and whether all others come after them
             "cells": int,             # of the battery, telling ones of an axis at most; 0: these and all others
             "loops": dict,            # sizes: of the region of ways, of their times, of roundoff
             "processes": int,         # of a time
             "limit": float}           # s a run
-SHARES = {"battery": 0.6, "ways": 0.2, "pivots": 0.06, "roundoff": 0.14}
+SHARES = {"battery": 0.6, "ways": 0.24, "pivots": 0.06, "roundoff": 0.1}
 DENSE_LOOPS = 200  # dense implementations run up to this size
 PREFERRED = {      # of each folder the first variant that serves a way stands for it
     "eigen_dense": ("eigen_dense/llt",),
@@ -28,39 +28,41 @@ def run(lab, column):
 
 
 def battery(lab):
-    """The most telling cells first, by those who differ in kind; then the other settings, cells, implementations."""
-    few = lab.settings["cells"]
-    chosen = sorted((cell for cell in cells.battery() if not few or cell.place < few), key=lambda cell: cell.place)
-    kinds, others = _who(lab)
-    rest = [cell for cell in chosen if not cell.telling]
-    telling = [cell for cell in chosen if cell.telling]
-    asked = [(cell, setting, one) for who in (kinds, others) for some, settings in (
-        (telling, cells.FORMS), (rest, cells.FORMS), (telling, cells.OTHERS)) for cell in some
-        for setting in settings for one in who if lab.registry.serves(one.variant, *setting.needs)]
-    scenes = {cell.name: cell.scene or lab.scene(cell.name, cell.document) for cell in chosen}
-    lab.run([_reference(lab, cell, scenes[cell.name], factor) for cell in chosen if cell.motion is None
+    """The most telling cells first, by those who differ in kind; then the other settings and cells, then the other
+    implementations; of equal worth the cheap ones first."""
+    few = lab.settings["cells"] or len(cells.TELLING)
+    chosen = sorted(cells.battery(), key=lambda cell: cell.work)
+    telling = [cell for cell in chosen if cell.place is not None and cell.place < few]
+    rest = [cell for cell in chosen if cell.place is None and not lab.settings["cells"]]
+    scenes = {cell.name: cell.scene or lab.scene(cell.name, cell.document) for cell in telling + rest}
+    lab.run([_reference(lab, cell, scenes[cell.name], factor) for cell in telling + rest if cell.motion is None
              for factor in judge.FINER])
     todo = []
-    for cell, setting, one in asked:
-        wanted = _run(lab, cell, scenes[cell.name], setting, one)
-        if one.variant in lab.registry.dense and cell.loops > DENSE_LOOPS:
-            lab.skip(wanted, "excluded", f"dense implementations run up to {DENSE_LOOPS} loops")
-        else:
-            todo.append(wanted)
+    for rank in (0, 1):
+        forms, others = (_who(lab, kind)[rank] for kind in ("forms", "others"))
+        for some, settings, who in ((telling, cells.FORMS, forms), (rest, cells.FORMS, forms), (telling, cells.OTHERS, others)):
+            for cell, setting, one in ((cell, setting, one) for cell in some for setting in settings for one in who):
+                if lab.registry.serves(one.variant, *setting.needs):
+                    todo += _run(lab, cell, scenes[cell.name], setting, one)
     lab.run(todo, drop=True)
 
 
-def _who(lab):
+def _who(lab, kind):
     """(those who differ in kind, the others if they are asked for) of whom takes part."""
-    named = lab.settings["implementations"]
+    named = lab.settings["implementations"][kind]
     kinds = [one for one in lab.contenders if one.variant in named] or lab.contenders
     return kinds, [one for one in lab.contenders if one not in kinds] if lab.settings["everyone"] else []
 
 
 def _run(lab, cell, scene, setting, one):
+    """[its Cell], or [] where it is left out."""
     words = setting.words([("step", f"{cell.step:g}"), ("duration", f"{cell.step * cell.steps:g}"), ("penalty", cell.penalty)])
-    return Cell("simulate", scene, (one,), words, setting.file_name, seconds=lab.settings["limit"], keep=cell.columns,
-                every=cell.every)
+    wanted = Cell("simulate", scene, (one,), words, setting.file_name, seconds=lab.settings["limit"], keep=cell.columns,
+                  every=cell.every)
+    if one.variant not in lab.registry.dense or cell.loops <= DENSE_LOOPS:
+        return [wanted]
+    lab.skip(wanted, "excluded", f"dense implementations run up to {DENSE_LOOPS} loops")
+    return []
 
 
 def _reference(lab, cell, scene, factor):
@@ -108,7 +110,7 @@ def pivots(lab):
 
 
 def growth(lab):
-    kinds, others = _who(lab)
+    kinds, others = _who(lab, "forms")
     limit = 5 * lab.settings["limit"]
     asked = [(loops, form) for loops in lab.settings["loops"]["roundoff"] for form in roundoff.FORMS]
     lab.run([_growth(loops, form, REFERENCE, limit, "mbs_reference") for loops, form in asked])
