@@ -36,9 +36,10 @@ def build(records, view):
     for problem in listed.values():
         found["problems"] += problem_rows(problem, runs.get(problem.name, {}))
         found["convergence"] += convergence_rows(problem, runs.get(problem.name, {}))
-    order = {problem.name: place for place, problem in enumerate(listed.values())}
-    found["gate"].sort(key=lambda row: order[row["problem"]])
-    found["modelling"], found["outputs"] = modelling_rows(records, view), output_rows(records)
+    found["modelling"], found["outputs"] = modelling_rows(records), output_rows(records)
+    order = {name: place for place, name in enumerate([*(problem.name for problem in listed.values()), *view.registry.variants])}
+    for rows in found.values():  # as the lists have problems and implementations; steps and cases stay as they are
+        rows.sort(key=lambda row: [order.get(row.get(key), 0) for key in ("problem", "implementation")])
     return {name: pandas.DataFrame(rows) for name, rows in found.items()}
 
 
@@ -127,7 +128,7 @@ def _loops(record):
     return int(record.cell["scene"].rpartition("/")[2].partition("-")[0])
 
 
-def modelling_rows(records, view):
+def modelling_rows(records):
     """One row for each implementation, size and case: error of the whole run, time of a step, and its ratio to the
     case that it is compared with, round by round."""
     by_role = {}
@@ -139,18 +140,16 @@ def modelling_rows(records, view):
                            for case in CASES])
     timed["loops"] = [int(scene.rpartition("/")[2].partition("-")[0]) for scene in timed.scene]
     result, cases = [], {case.name: case for case in CASES}
-    for (name, loops, case), record in sorted(motions.items(), key=lambda one: one[0][:2]):
+    for (name, loops, case), record in sorted(motions.items(), key=lambda one: one[0][1]):
         status, reason = of_run(record)
         rows = timed[(timed.implementation == name) & (timed.loops == loops)]
         mine, base = rows[rows.case == case], cases[case].base
-        wrong = mine[~mine.status.isin(["ok", "dropped"])]
-        if status in GOOD and len(wrong):
-            status, reason = wrong.status.iloc[0], wrong.reason.iloc[0]
-        good = mine[mine.status == "ok"]
+        good, wrong = mine[mine.status == "ok"], mine[mine.status != "ok"]
         by_case = rows.assign(implementation=rows.case)  # cases are compared as contenders are elsewhere
         cost = timing.ratio(by_case, case, base) if case != base else timing.Ratio(1.0, 1.0, 1.0)
         row = {"implementation": name, "loops": loops, "case": case, "piece": cases[case].piece, "base": base,
                "status": status, "reason": reason, "rounds": len(good), "step_us": median(good.step_us),
+               "not_timed": "; ".join(f"{one.status}: {one.reason}" for one in wrong[:1].itertuples()),
                "record": " ".join([record.name, *good.record[:1]])} | {
             key: record.output.get(key) for key in (*FIGURES, "tangent_nonzeros")}
         if len(good):

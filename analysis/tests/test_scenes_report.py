@@ -1,51 +1,161 @@
-# The report of study/scenes on small tables: whom it compares and what it says of the references.
-import json
+# Tables, figures and sentences of the standard problems and of modelling on synthetic records.
+from types import SimpleNamespace
 
-import pandas
+import matplotlib.pyplot as plt
+import numpy
+import pytest
 
-from analysis.scenes.report import render
+from analysis.core.errors import StudyError
+from analysis.core.records import Record
+from analysis.core.registry import Registry
+from analysis.core.schema import conform, of_part
+from analysis.scenes import figures, page, sentences, tables
+from study.scenes import problems, references
 
-COMPARED = ["one/a", "two/b"]
-OWN, SELF = "own equations, integrated", "self-convergence of two implementations"
-
-
-def tables(published):
-    problems = [{"problem": name, "title": f"Problem {name}", "scene": "s", "implementation": one,
-                 "step": step, "duration": 1.0, "reference": reference, "status": "ok",
-                 "precision": "high", "error_rms": 1e-4, "error_max": 2e-4, "conserved": False,
-                 "energy_drift_max": 1e-5, "passes_per_step": 2.0, "step_us": 3.0,
-                 "variables": 4, "constraints": 3}
-                for name, reference in (("P", OWN), ("Q", SELF))
-                for one in [*COMPARED, "three/c"] for step in (1e-3, 5e-4)]
-    convergence = [{"problem": name, "implementation": one, "component": "E.x", "time": 1.0,
-                    "finest": 0.5, "order": 2.0, "order_meaningful": True,
-                    "extrapolated": 0.50000012, "published": value, "difference": 0.50000012 - value}
-                   for name, value in (("P", float("nan")), ("Q", published)) for one in COMPARED]
-    return {"problems": pandas.DataFrame(problems), "convergence": pandas.DataFrame(convergence),
-            "gate": pandas.DataFrame(), "modelling": pandas.DataFrame()}
+NAMES = ("one/a", "two/b", "three/c")
+REGISTRY = Registry({"implementations": [{"folder": name.split("/")[0], "available": True, "library": "L", "variants": [
+    {"name": name}]} for name in NAMES]})
+VIEW = SimpleNamespace(registry=REGISTRY, settings={"rounds": 2})
+LISTED = {problem.name: problem for problem in problems.read_list()[1]}
 
 
-def page(folder, published=0.5):
-    (folder / "figures").mkdir()
-    (folder / "figures" / "modelling.svg").write_text("<svg/>")
-    (folder / "run.json").write_text(json.dumps(
-        {"contexts": {"own": {"machine": "m", "compiler": "c", "commit": "0"}}}))
-    return render(folder, tables(published), COMPARED)
+def run(name, who, step, off=0.0, role="compared", status="ok", ended="done"):
+    """A run of a standard problem that is `off` its reference, or ends so far from the published values."""
+    problem, times = LISTED[name], numpy.linspace(0, LISTED[name].duration, 5)
+    if problem.published:
+        series = {column: [0.0, value + off] for column, value in references.PUBLISHED[problem.published]().items()}
+        times = times[[0, -1]]
+    else:
+        series = {column: list(values + off) for column, values in references.KNOWN[problem.known](times).items()}
+    output = {"status": status, "status_reason": "because", "variables": 2, "energy_drift_max": 1e-7, "passes_per_step": 2.0}
+    cell = {"scene": problem.scene, "contenders": [who], "role": role, "settings": ["--step", f"{step:g}"]}
+    return Record(f"problems/{role}/{who}-{name}-{step:g}.json", cell, ended, "it died" if ended != "done" else "", 1.0, [], {},
+                  output if ended == "done" else {}, {"t": list(times)} | series if ended == "done" else {})
 
 
-def test_the_table_of_problems_shows_the_two_that_are_compared(tmp_path):
-    table = page(tmp_path).split("<h2>Standard problems</h2>")[1].split("</tbody>")[0]
-    assert "one/a and two/b" in table and "three/c" not in table
-    assert table.count('<td class="s">one/a</td>') == table.count('<td class="s">two/b</td>') == 2
+def verdict(name, who, said, ended="done"):
+    rows = {"rows": [{"verdict": said, "reason": "why"}]} if ended == "done" else {}
+    return Record(f"problems/gate/{who}-{name}.json", {"scene": LISTED[name].scene, "contenders": [who], "role": "gate"}, ended,
+                  "it died", 1.0, [], {}, rows)
 
 
-def test_every_problem_says_what_its_reference_is(tmp_path):
-    text = page(tmp_path)
-    assert f"<td>{OWN}</td>" in text and f"<td>{SELF}</td>" in text
+def modelled(case, number, *times, motion="plausible", off=1e-3):
+    """The whole runs and the timed process of a round; a time in µs a step for each of the first implementations."""
+    from study.scenes.modelling import slug
+    scene, names = f"raw/scenes/scenes/10-{slug(case)}.json", NAMES[:len(times)]
+    at = numpy.linspace(0, 1, 4)
+    exact = references.four_bar(at, 10)
+    whole = [Record(f"modelling/motion.{slug(case)}/{name}.json",
+                    {"scene": scene, "contenders": [name], "role": f"motion.{slug(case)}", "settings": []}, "done", "", 1.0, [], {},
+                    {"status": motion, "status_reason": "lost", "variables": 22},
+                    {"t": list(at)} | {key: list(values + off) for key, values in exact.items()}) for name in names]
+    rows = {f"{name}/{scene}": {"stretch_us": [100 * time] * 3, "steps": 100} for name, time in zip(names, times)}
+    cell = {"scene": scene, "contenders": list(names), "environment": "own|system", "number": number,
+            "role": f"time.{slug(case)}", "settings": []}
+    return [*(whole if number == 1 else []), Record(f"modelling/time.{slug(case)}/{number}.json", cell, "done", "", 1.0, [], {},
+                                                    {"rows": rows})]
 
 
-def test_published_values_stand_beside_ours_with_the_difference(tmp_path):
-    without, beside = page(tmp_path).split("<summary>")[1:3]
-    assert "published" not in without
-    assert '<th class="n">published</th><th class="n">difference</th>' in beside
-    assert "0.50000000" in beside and "0.50000012" in beside and "1.2·10⁻⁷" in beside
+def made(*records):
+    """Tables as the schema has them."""
+    found, schema = tables.build(list(records), VIEW), of_part("scenes")
+    assert set(found) == set(schema)
+    return {name: conform(frame, schema[name], name) for name, frame in found.items()}
+
+
+def test_a_run_is_judged_by_the_closed_form_and_a_failed_one_keeps_its_reason():
+    found = made(run("A01", "two/b", 1e-3, off=1e-4), run("A01", "one/a", 1e-3), run("A01", "three/c", 1e-3, ended="timeout"))
+    rows = found["problems"].set_index("implementation")
+    assert list(rows.index) == list(NAMES)  # as the registry has them
+    assert rows.error_rms["one/a"] < 1e-12 and rows.precision["one/a"] == "high"
+    assert rows.error_max["two/b"] >= rows.error_rms["two/b"] > 1e-4
+    assert (rows.status["three/c"], rows.reason["three/c"], rows.precision["three/c"]) == ("timeout", "it died", "not judged")
+    assert numpy.isnan(rows.error_rms["three/c"]) and rows.reference["one/a"] == "closed form"
+
+
+def test_self_convergence_judges_by_the_other_one_and_is_named_so():
+    records = [run("A03", who, step, off=1e-4 * step**2 / 1e-12) for who in NAMES[:2] for step in LISTED["A03"].steps]
+    rows = made(*records)["problems"]
+    assert set(rows.reference) == {"self-convergence of two implementations"}
+    assert rows.error_rms.notna().all() and (rows.groupby("implementation").error_rms.apply(list).iloc[0][0]
+                                             > rows.groupby("implementation").error_rms.apply(list).iloc[0][2])
+    alone = made(*records[:3])["problems"]
+    assert set(alone.precision) == {"not judged"} and alone.error_rms.isna().all()
+    lost = made(*records[:5], run("A03", "two/b", LISTED["A03"].steps[2], ended="crashed"))["problems"]
+    assert set(lost[lost.implementation == "one/a"].precision) == {"not judged"}
+
+
+def test_order_extrapolation_and_the_distance_from_what_was_published():
+    records = [run("A03", "one/a", step, off=1e-9 + 0.5 * step**2 / 1e-6) for step in LISTED["A03"].steps]
+    rows = made(*records)["convergence"]
+    assert rows.order.between(1.99, 2.01).all() and rows.order_meaningful.all()
+    assert (rows.difference - 1e-9).abs().max() < 1e-12 and len(rows) == 8
+    assert made(*records[:2])["convergence"].empty
+
+
+def test_verdicts_stay_with_the_reason_and_the_sentence_counts_who_serves():
+    found = made(verdict("A01", "one/a", "agrees"), verdict("A01", "two/b", "disagrees"), verdict("A01", "three/c", "unsupported"),
+                 verdict("A03", "one/a", "", ended="crashed"))
+    assert list(found["gate"].verdict) == ["agrees", "disagrees", "unsupported", "crashed"]
+    assert found["gate"].reason.iloc[3] == "it died"
+    [said] = sentences.answers(found, VIEW)
+    assert said["text"].startswith("The gate: 1 of 3 pairs")
+    [(_, good, of, others), _] = page.gate(found["gate"])
+    assert (good, of) == (1, 3) and others[0] == ("disagrees", "why", ["two/b"])
+
+
+def test_a_scene_that_is_no_problem_is_named():
+    record = verdict("A01", "one/a", "agrees")
+    record.cell["scene"] = "other.json"
+    with pytest.raises(StudyError, match="other.json is no standard problem"):
+        tables.build([record], VIEW)
+
+
+def test_cases_are_compared_round_by_round():
+    found = made(*(record for number in (1, 2) for case, factor in (("plain", 1), ("springs", 3))
+                   for record in modelled(case, number, factor * number, 5.0 * number)))["modelling"]
+    rows = found.set_index(["implementation", "case"])
+    assert rows.ratio["one/a", "springs"] == pytest.approx(3) == rows.ratio_high["one/a", "springs"]  # though rounds differ twofold
+    assert rows.ratio["two/b", "springs"] == pytest.approx(1) and rows.rounds["two/b", "springs"] == 2
+    assert rows.position_error["one/a", "plain"] == pytest.approx(1e-3)
+
+
+def test_a_motion_that_is_lost_has_a_time_and_no_error():
+    records = [*modelled("plain", 1, 2.0), *modelled("no projections", 1, 1.0, motion="diverged")]
+    row = made(*records)["modelling"].iloc[1]
+    assert row.status == "diverged" and numpy.isnan(row.position_error) and row.ratio == pytest.approx(0.5)
+    assert row.ratio_high == numpy.inf  # one process has no interval
+    plain, _ = made(*records[:1], *records[2:])["modelling"].itertuples()
+    assert plain.rounds == 0 and numpy.isnan(plain.ratio) and numpy.isnan(plain.step_us)
+
+
+def test_outputs_are_compared_with_writing_nothing():
+    def written(kind, number, seconds):
+        cell = {"scene": "10-plain.json", "contenders": ["one/a"], "role": f"output.{kind}", "number": number, "settings": []}
+        return Record(f"modelling/{kind}-{number}.json", cell, "done", "", seconds, [], {}, {"status": "ok", "status_reason": ""})
+    rows = made(*(written(kind, number, factor * number) for number in (1, 2)
+                  for kind, factor in (("nothing", 1.0), ("everything-at-every-step", 1.5))))["outputs"].set_index("output")
+    assert rows.ratio["everything at every step"] == pytest.approx(1.5) and rows.seconds["nothing"] == 1.5
+    assert rows.status["a point in every 25 ms"] == "dropped"
+
+
+def test_figures_sentences_and_page_of_a_small_set_and_of_none():
+    records = [run(name, who, step, role="compared" if who != "three/c" else "everyone", status=status)
+               for name in ("A01", "double four-bar") for who in NAMES for step, status in ((1e-3, "degraded"), (5e-4, "ok"))]
+    records += [record for number in (1, 2) for case in ("plain", "springs", "no projections, before singular")
+                for record in modelled(case, number, 1.0, 2.0)]
+    for found in (made(*records), made()):
+        for figure in figures.draw(found, VIEW).values():
+            assert figure.get_size_inches()[1] < 12
+            plt.close(figure)
+        known = page.context(found, VIEW)
+        said = sentences.answers(found, VIEW)
+        assert all(one["text"].endswith(".") for one in said)
+        assert bool(known["finest"]) == ("Not measured" not in said[0]["text"])
+    assert [title for title, _, _ in page.everyone(made(*records)["problems"])] == ["Simple pendulum", "Double four-bar"]
+
+
+@pytest.mark.parametrize("value, text", [(0.5, "0.50000000"), (-1234.5, "-1234.5000"), (0.0, "0"), (numpy.nan, "–"),
+                                         (1.2e-3, "0.0012000000")])
+def test_positions_have_eight_digits(value, text):
+    assert page.digits(value) == text

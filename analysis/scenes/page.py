@@ -1,0 +1,59 @@
+# What page.html.j2 shows of the standard problems and of modelling.
+import base64
+
+import numpy
+
+from analysis.core.files import ROOT
+from analysis.core.outcomes import GOOD
+from analysis.scenes.sentences import finest
+
+SHEETS = ROOT / "harness" / "scenes" / "pictures"
+CONSERVED = 1e-3  # share of the energy's scale
+
+
+def context(tables, view):
+    problems, convergence = tables["problems"], tables["convergence"]
+    rows = finest(problems)
+    return {"compared": list(dict.fromkeys(rows.implementation)), "finest": _grouped(rows, "title"),
+            "gate": gate(tables["gate"]), "everyone": everyone(problems), "conserved_limit": CONSERVED,
+            "convergence": _grouped(convergence, "problem"), "digits": digits, "good": GOOD,
+            "published": set(convergence.problem[convergence.published.notna()]),
+            "modelling": _grouped(tables["modelling"], ["implementation", "loops"]),
+            "outputs": tables["outputs"].to_dict("records"), "settings": view.settings, "sheets": sheets()}
+
+
+def _grouped(table, key):
+    """[(key, rows)]"""
+    return [(name, group.to_dict("records")) for name, group in table.groupby(key, sort=False)]
+
+
+def gate(table):
+    """[(problem, how many agree, how many were asked, [(verdict, reason, implementations) of the others])]"""
+    return [(name, int((group.verdict == "agrees").sum()), len(group),
+             [(*what, list(others.implementation)) for what, others in
+              group[group.verdict != "agrees"].groupby(["verdict", "reason"], sort=False)])
+            for name, group in table.groupby("problem", sort=False)]
+
+
+def everyone(problems):
+    """[(title, step, rows)] of the problems that more than the two ran, at the first step."""
+    found = []
+    for title, group in problems.groupby("title", sort=False):
+        first = group[group.step == group.step.max()]
+        if (~first.compared.fillna(False).astype(bool)).any():
+            found.append((title, first.step.iloc[0], first.to_dict("records")))
+    return found
+
+
+def sheets():
+    return {path.stem.replace("_", " "): base64.b64encode(path.read_bytes()).decode() for path in sorted(SHEETS.glob("*.png"))}
+
+
+def digits(value, count=8):
+    """`value` with `count` significant digits, never in powers of ten for positions."""
+    if not numpy.isfinite(value):
+        return "–"
+    if value == 0:
+        return "0"
+    places = max(0, count - 1 - int(numpy.floor(numpy.log10(abs(value)))))
+    return f"{value:.{places}f}"
