@@ -8,6 +8,16 @@ from analysis.map.timed import layers
 FAILURES = ("disagrees", "crashed", "timeout", "out-of-memory", "unsupported", "diverged", "failed", "refused")
 
 
+def of(tables, view):
+    """The Results of these tables: figures, page and sentences share what has been computed."""
+    if not _last or _last[0] is not tables["tidy"]:
+        _last[:] = [tables["tidy"], Results(tables, view)]
+    return _last[1]
+
+
+_last = []
+
+
 class Results:
     def __init__(self, tables, view):
         self.tidy, self.verification, self.view = tables["tidy"], tables["verification"], view
@@ -33,6 +43,10 @@ class Results:
     def rows(self, scene):
         """All timing rows of a scene, whatever their status."""
         return self._scenes.get(scene, self.timing[:0])
+
+    def _paired(self, scene):
+        """What statistics need of a scene's rows: wide tables are slow to walk through."""
+        return self.rows(scene)[["implementation", "environment", "process", "status", "samples"]]
 
     def layer(self, name):
         """Names of those that are ranked in a layer and took part."""
@@ -66,7 +80,7 @@ class Results:
     def rank(self, scene, names):
         key = scene, frozenset(names)
         if key not in self._ranked:
-            self._ranked[key] = timing.rank(self.rows(scene), set(names) - {NULL})
+            self._ranked[key] = timing.rank(self._paired(scene), set(names) - {NULL})
         return self._ranked[key]
 
     def fastest(self, scene, names):
@@ -78,7 +92,7 @@ class Results:
         """Time of `slow` over that of `fast`; None if they cannot be compared."""
         key = scene, slow, fast
         if key not in self._ratios:
-            self._ratios[key] = timing.ratio(self.rows(scene), slow, fast)
+            self._ratios[key] = timing.ratio(self._paired(scene), slow, fast)
         found = self._ratios[key]
         return None if found.value != found.value else found
 

@@ -1,0 +1,57 @@
+# Figure 2: dense implementations on every BLAS + LAPACK pair against the starting dense version.
+import matplotlib.pyplot as plt
+
+from analysis.core.style import GREY, legend, missing, number_axis
+from analysis.map import paper
+from analysis.map.compare import versus
+from analysis.map.marks import footnote
+
+DODGE = 0.6
+
+
+def series(results):
+    """{name: {size: Versus of the starting dense version to it}} of the optimised dense ones on all pairs."""
+    found = {}
+    for name in paper.dense(results, pairs=True):
+        for size in results.sizes:
+            one = versus(results, results.natural(size), paper.STARTING["dense"], name)
+            if one:
+                found.setdefault(name, {})[size] = one
+    return found
+
+
+def draw(results, look):
+    found = series(results)
+    sizes = sorted({size for mine in found.values() for size in mine})
+    figure, axes = plt.subplots(figsize=(max(6.5, 1.2 * len(sizes) + 1), 5.2))
+    axes.set_title(f"Figure 2: dense versions on pairs of BLAS and LAPACK, {results.view.context.get('cpu_model', '')}")
+    if not found:
+        missing(axes, f"{paper.STARTING['dense']} and another dense version were not both timed")
+        return figure
+    for name, mine in found.items():
+        shift = DODGE * ((list(found).index(name) + 0.5) / len(found) - 0.5)
+        places = [sizes.index(size) + shift for size in mine]
+        style = look.line(name) | {"linestyle": "none", "markersize": 6.5}
+        axes.plot(places, [one.value for one in mine.values()], label=_label(results, name), **style)
+        axes.vlines(places, [one.low for one in mine.values()], [one.high for one in mine.values()], color=style["color"],
+                    linewidth=2.5, alpha=0.5)
+    axes.axhline(1, color=GREY, linewidth=0.8)
+    axes.set(yscale="log", xlim=(-0.5, len(sizes) - 0.5), xlabel="variables n, own fill",
+             ylabel=f"times as fast as {paper.STARTING['dense']}")
+    axes.set_xticks(range(len(sizes)), [f"{size:g}" for size in sizes])
+    number_axis(axes.yaxis, "×")
+    axes.grid(True, axis="y", which="major")
+    legend(axes, order=[_label(results, name) for name in found].index)
+    tried = {results.usual(name) for name in results.tidy.implementation.unique()}
+    gone = [f"{name}: {reason}" for name, reason in results.registry.pairs.items() if reason]
+    notes = ["bars: 95 % interval over processes"]
+    notes += [f"not installed: {'; '.join(gone)}"] * bool(gone)
+    others = [name for name, reason in results.registry.pairs.items() if not reason and name not in tried]
+    notes += [f"pairs that were not part of this run: {', '.join(others)}"] * bool(others)
+    footnote(figure, notes, 0.0)
+    return figure
+
+
+def _label(results, name):
+    plain, _, pair = name.partition("+")
+    return f"{plain} on {pair}" if pair else f"{plain} on {results.usual(name)} (usual)"

@@ -1,0 +1,71 @@
+# Table 2: time per call of the three operations, not optimised and optimised, and their ratio.
+import matplotlib.pyplot as plt
+
+from analysis.core.style import GREY, missing, number_axis, size_ticks
+from analysis.map import paper
+from analysis.map.compare import operations
+from analysis.map.marks import footnote
+from analysis.map.operations import not_optimised, table
+
+
+def draw(results, look):
+    rows = table(results)
+    if all(operations(results, operation).empty for operation in paper.OPERATIONS):
+        figure, axes = plt.subplots(figsize=(8.4, 3))
+        axes.set_title("Table 2: operations without and with symbolic preprocessing")
+        missing(axes, "no operation of Table 2 was timed")
+        return figure
+    figure, panels = plt.subplots(2, 3, figsize=(10.4, 6.4), sharex=True, gridspec_kw={
+        "hspace": 0.16, "wspace": 0.27, "height_ratios": [1.25, 1]})
+    for (operation, label), (times, ratios) in zip(paper.OPERATIONS.items(), panels.T):
+        samples = operations(results, operation)
+        if samples.empty:
+            missing(times, f"{label}:\nno operations were timed")
+            missing(ratios, "")
+            continue
+        _times(times, samples, results, look)
+        times.set_title(label, fontsize=10)
+        _ratios(ratios, [row for row in rows if row["operation"] == operation], look, paper.TABLE2[operation][2])
+    panels[0, 0].set_ylabel("µs a call")
+    panels[1, 0].set_ylabel("not optimised ÷ fastest optimised")
+    figure.suptitle(f"Table 2: operations without and with symbolic preprocessing, {results.view.context.get('cpu_model', '')}",
+                    x=0.125, ha="left", fontsize=11, y=0.965)
+    handles = {label: handle for axes in panels[0] for handle, label in zip(*axes.get_legend_handles_labels())}
+    if handles:
+        figure.legend(handles.values(), handles.keys(), loc="upper center", ncol=4, fontsize=8.5, bbox_to_anchor=(0.5, 0.06))
+    footnote(figure, ["above: medians; below: ratio to the fastest optimised of the size that stores as much (both halves of "
+                      "symmetric matrices); bars: its 95 % interval over processes"], -0.06)
+    return figure
+
+
+def _times(axes, samples, results, look):
+    slow = not_optimised(results)
+    for name in results.variants:
+        middle = samples[samples.implementation == name].groupby("variables").step_us.median()
+        if len(middle):
+            role = " (not optimised)" if name in slow else ""
+            axes.plot(middle.index, middle, label=f"{name}{role}", **look.line(name))
+    axes.set_yscale("log")
+    _ticks(axes, sorted(samples.variables.unique()))
+    axes.set_xlabel("")
+
+
+def _ratios(axes, rows, look, quoted):
+    for slow in dict.fromkeys(row["slow"] for row in rows):
+        mine = [row for row in rows if row["slow"] == slow]
+        sizes = [row["variables"] for row in mine]
+        axes.plot(sizes, [row["ratio"].value for row in mine], **look.line(slow))
+        axes.vlines(sizes, [row["ratio"].low for row in mine], [row["ratio"].high for row in mine], color=look.colour(slow),
+                    linewidth=3, alpha=0.35)
+    axes.axhline(quoted, color="black", linewidth=1, linestyle=(0, (6, 3)))
+    axes.annotate(f"paper: {quoted}", (0.02, quoted), xycoords=("axes fraction", "data"), xytext=(0, 3),
+                  textcoords="offset points", fontsize=8.5)
+    axes.axhline(1, color=GREY, linewidth=0.8)
+    axes.set_yscale("log")
+    _ticks(axes, sorted({row["variables"] for row in rows}))
+
+
+def _ticks(axes, sizes):
+    number_axis(axes.yaxis)
+    size_ticks(axes, sizes)
+    axes.grid(True, which="major")

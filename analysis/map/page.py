@@ -1,0 +1,30 @@
+# What the page of the map says besides its figures.
+from collections import Counter
+
+from analysis.core.text import interval
+from analysis.map import losses, paper, summary
+from analysis.map.operations import table as table2
+from analysis.map.results import of
+
+
+def context(tables, view):
+    results = of(tables, view)
+    libraries = results.layer("libraries")
+    scenes, ledger = tables["scenes"], tables["claims"].to_dict("records")
+    return {"by_size": {layer: [summary.outcome(group) for group in summary.by_size(results, results.layer(layer))]
+                        for layer in ("libraries", "all")},
+            "own": [name for name in results.layer("all") if name not in libraries],
+            "settled": {layer: summary.settled(tables["cells"], layer) for layer in ("libraries", "all")},
+            "dense_from": summary.dense_from(results), "prices": summary.prices(results, libraries),
+            "times": losses.step_times(results), "overhead": losses.overhead(results), "centred": losses.LAST_CENTRED,
+            "ledger": ledger, "verdict_counts": Counter(row["verdict"] for row in ledger), "title": paper.TITLE,
+            "table2": [row | {"interval": interval(row["ratio"])} for row in table2(results)], "operations": paper.OPERATIONS,
+            "pairs": [pair | {"used": _used(results, pair["name"])} for pair in view.registry.listed.get("blas", [])],
+            "verdicts": losses.verdicts(results), "checks": losses.checks(results), "losses": losses.losses(results),
+            "not_reached": list(scenes[scenes.reason != ""].scene), "entries": view.registry.entries,
+            "processes": results.timing[results.timing.status == "ok"].record.nunique()}
+
+
+def _used(results, pair):
+    rows = results.timing
+    return sorted(rows[(rows.blas == pair) & (rows.status == "ok") & ~rows.implementation.str.startswith("null/")].implementation.unique())

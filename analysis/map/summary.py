@@ -1,0 +1,69 @@
+# What a reader should choose: the fastest library by size, dense or sparse by fill, the price of one choice.
+from analysis.map import paper
+from analysis.map.cells import map_cells
+from analysis.map.compare import best
+from analysis.map.regret import regrets
+
+
+def by_size(results, names):
+    """Neighbouring sizes with the same outcome at their own fill: [{"first", "last", "names", "kind", "low", "high"}];
+    kind: "decided" (one name), "equivalent" or "open"; low, high: of the second behind the winner."""
+    groups = []
+    for cell in map_cells(results, names):
+        if cell.fill_asked is not None or cell.ranking is None:
+            continue
+        kind = "decided" if cell.decided else "equivalent" if cell.settled else "open"
+        margin = cell.ranking.margin.value if cell.ranking.second else float("nan")
+        if groups and groups[-1]["names"] == sorted(cell.winners) and groups[-1]["kind"] == kind:
+            groups[-1] |= {"last": cell.variables, "margins": [*groups[-1]["margins"], margin]}
+        else:
+            groups.append({"first": cell.variables, "last": cell.variables, "names": sorted(cell.winners), "kind": kind,
+                           "winner": cell.ranking.winner, "margins": [margin], "scene": cell.scene})
+    return [group | {"low": min(group["margins"]), "high": max(group["margins"])} for group in groups]
+
+
+def outcome(group):
+    """One of `by_size` in words: (size, who)."""
+    sizes = f"n = {group['first']:g}" + (f" to {group['last']:g}" if group["last"] != group["first"] else "")
+    names = group["names"]
+    if group["kind"] == "decided":
+        low, high = group["low"], group["high"]
+        ahead = "" if low != low else f", {low:.2f}" + (f" to {high:.2f}" if high > low else "") + " times ahead of the second"
+        return sizes, f"{names[0]}{ahead}"
+    listed = ", ".join(names[:-1]) + f" or {names[-1]}" if len(names) > 1 else names[0]
+    return sizes, f"{listed}, as fast as each other" if group["kind"] == "equivalent" else f"{listed}: not decided"
+
+
+def dense_from(results):
+    """Sizes with filled scenes: [{"variables", "from", "last_sparse", "between"}]; fills in %: "from" is the first of those
+    at and above which the best dense library is faster than the best sparse one (None: at none), "last_sparse" the last
+    fill with another outcome (None: at none), "between" the first and last fill at which dense is faster if it is not up
+    to the last one (or None)."""
+    rows, cells = [], map_cells(results, [*paper.dense(results), *paper.sparse(results)])
+    for size in sorted({cell.variables for cell in cells if cell.fill_asked is not None}):
+        found = [(cell.fill_percent, best(results, cell.scene, paper.dense(results), paper.sparse(results)))
+                 for cell in cells if cell.variables == size and cell.ranking]
+        faster = [bool(ratio and ratio.high < 1) for _, ratio in found]
+        start = len(found) - next((place for place, one in enumerate(reversed(faster)) if not one), len(found))
+        ahead = [fill for (fill, _), one in zip(found, faster) if one]
+        rows.append({"variables": size, "from": found[start][0] if start < len(found) else None,
+                     "last_sparse": found[start - 1][0] if start else None,
+                     "between": (ahead[0], ahead[-1]) if ahead and start == len(found) else None})
+    return rows
+
+
+def prices(results, names):
+    """The price of always using one: [{"implementation", "mean", "worst", "where", "cells", "of", "rough", "failed"}]."""
+    cells = map_cells(results, names)
+    count = sum(bool(cell.ranking) for cell in cells)
+    return [{"implementation": one.name, "mean": one.mean, "worst": one.worst, "where": one.where, "cells": len(one.ratios),
+             "rough": len(one.rough), "failed": len(one.failed), "of": count}
+            for one in regrets(results, cells, names) if one.ratios]
+
+
+def settled(table, layer):
+    """{"cells", "decided", "equivalent", "open"}: how many cells of a layer were timed, and how they ended."""
+    rows = table[(table.layer == layer) & (table.winner != "")]
+    decided, settled = rows.decided.fillna(False).astype(bool), rows.settled.fillna(False).astype(bool)
+    return {"cells": len(rows), "decided": int(decided.sum()), "equivalent": int((settled & ~decided).sum()),
+            "open": int((~settled & ~decided).sum())}
