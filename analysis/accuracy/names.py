@@ -1,20 +1,6 @@
-# How implementations, settings and steps are written and coloured in the figures of this package.
-from types import SimpleNamespace
-
-import matplotlib.pyplot as plt
-import pandas
-
-from analysis.style import Look
-
-FAMILIES = {  # first word of a setting: the colours of its kind
-    "penalty": plt.get_cmap("Blues"), "saddle": plt.get_cmap("Greens"),
-    "rattle": plt.get_cmap("Oranges"), "multistep6": plt.get_cmap("Reds"), "precision": plt.get_cmap("Purples"),
-    "tangent": plt.get_cmap("Greys")}
-
-
-def look(registry):
-    """Colours and markers of implementations, by their place in the registry."""
-    return Look(SimpleNamespace(registry=registry, tidy=pandas.DataFrame({"blas": [], "build": []})))
+# How settings and steps are written and marked in the figures of this package.
+DASHES = {"penalty": "-", "saddle": (0, (5, 1.5)), "rattle": (0, (1, 1)), "multistep6": (0, (3, 1, 1, 1, 1, 1)),
+          "precision": (0, (6, 1.5, 1, 1.5)), "tangent": (0, (2, 1))}
 
 
 def family(setting):

@@ -1,21 +1,19 @@
 # Ratios of two settings' times, with intervals, over size: forms (saddle-point) and precisions (mixed, single).
 import matplotlib.pyplot as plt
 
-from analysis.style import legend, number_axis, size_ticks
+from analysis.accuracy.pairs import same_class
+from analysis.core.style import number_axis, size_ticks
 
-GAIN = 1.2  # the speed-up that is asked of lower precision
 
-
-def draw(table, look, title, goal=None):
+def draw(rows, look, title, goal=None):
     """The time of the second setting over the first one's; hollow where the error class is another."""
-    kinds = list(dict.fromkeys(zip(table["first"], table["second"])))
-    figure, panels = plt.subplots(1, len(kinds), figsize=(4.2 * len(kinds) + 2.6, 4.2), sharey=True,
+    kinds = list(dict.fromkeys(zip(rows["first"], rows["second"])))
+    figure, panels = plt.subplots(1, len(kinds), figsize=(3.4 * len(kinds) + 2.8, 4.2), sharey=True,
                                   squeeze=False, constrained_layout=True)
     for axes, (first, second) in zip(panels[0], kinds):
-        rows = table[(table["first"] == first) & (table["second"] == second) & table.ratio.notna()]
-        for name, mine in rows.groupby("implementation", sort=False):
-            _series(axes, mine.assign(ratio=1 / mine.ratio, low=1 / mine.high, high=1 / mine.low),
-                    look.line(name), name)
+        mine = rows[(rows["first"] == first) & (rows["second"] == second)]
+        for name, one in mine.groupby("implementation", sort=False):
+            _series(axes, one.sort_values("variables"), look.line(name), name)
         axes.axhline(1, color="black", linewidth=0.8)
         if goal:
             axes.axhline(1 / goal, color="black", linewidth=0.8, linestyle=(0, (4, 2)))
@@ -27,7 +25,10 @@ def draw(table, look, title, goal=None):
         axes.set_title(f"{second} / {first}")
     number_axis(panels[0][0].yaxis)
     panels[0][0].set_ylabel("ratio of times of a step")
-    legend(panels[0][-1])
+    handles = {}
+    for axes in panels[0]:
+        handles |= dict(zip(*axes.get_legend_handles_labels()[::-1]))
+    panels[0][-1].legend(handles.values(), handles.keys(), loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
     figure.suptitle(title, x=0.01, ha="left", fontsize=12)
     return figure
 
@@ -39,14 +40,3 @@ def _series(axes, rows, line, label):
     for chosen, face in ((rows[same], line["color"]), (rows[~same], "white")):
         axes.plot(chosen.variables, chosen.ratio, linestyle="none", marker=line["marker"],
                   color=line["color"], markerfacecolor=face, markersize=6.5)
-
-
-def gains(table, goal=GAIN):
-    """Rows in which the second setting is at least `goal` times faster with the same error class, by the lower
-    end of the interval."""
-    return table[same_class(table) & (table.low >= goal)]
-
-
-def same_class(table):
-    """Whether both errors are known and in the same class."""
-    return (table.first_class == table.second_class) & table.first_class.notna()

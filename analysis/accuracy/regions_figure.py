@@ -1,68 +1,61 @@
-# The region map for each required error: who meets it in the least time, over size and fill.
+# Who meets a required error in the least time, over size and fill: a panel for libraries, one for all.
 import matplotlib.pyplot as plt
 from matplotlib.patches import Patch, Rectangle
 
 from analysis.accuracy import names
-from analysis.maps_drawing import DECIDED, UNDECIDED
+from analysis.accuracy.winners import LAYERS, NOBODY
+from analysis.accuracy.work_figure import TITLES
+from analysis.core.text import number
 
-NOBODY = {"facecolor": "white", "edgecolor": "#bbbbbb", "hatch": "...", "linewidth": 0}
-SHORT = {"every-step": "every\nstep", "saddle every-step": "saddle\nevery step"}
+STRONG, WEAK = 0.95, 0.45  # a winner that is decided or has its equals named; one that is open
+NONE = {"facecolor": "white", "edgecolor": "#bbbbbb", "hatch": "...", "linewidth": 0}
 
 
 def draw(winners, look):
-    """The figure of winners.csv: a panel for each required error."""
-    errors = sorted(winners.required.unique(), reverse=True)
-    sizes = sorted(winners.variables.unique())
-    levels = sorted(winners.fill_asked.dropna().unique())
-    columns = min(3, len(errors))
-    figure, panels = plt.subplots(-(-len(errors) // columns), columns, squeeze=False,
-                                  figsize=(1.5 + columns * (1.1 + 0.78 * len(sizes)),
-                                           -(-len(errors) // columns) * (1.2 + 0.85 * (len(levels) + 1))),
-                                  constrained_layout=True)
-    for axes, error in zip(panels.flat, errors):
-        _panel(axes, winners[winners.required == error], sizes, levels, look)
-        axes.set_title(f"error at most {error:g} m")
-    for axes in panels[:, 0]:
-        axes.set_ylabel("fill of the tangent")
-    rest = panels.flat[len(errors):]
-    for axes in rest:
-        axes.set_axis_off()
-    place = {"loc": "center left", "bbox_to_anchor": (0.0, 0.5)} if len(rest) else {
-        "loc": "upper center", "bbox_to_anchor": (0.5, -0.25)}
-    (rest[0] if len(rest) else panels.flat[-1]).legend(handles=_legend(winners, look), fontsize=9, **place)
+    errors = sorted(winners.required.unique())
+    scenes = winners.drop_duplicates("scene").sort_values(["variables", "fill_asked"], na_position="first")
+    figure, panels = plt.subplots(len(LAYERS), 1, squeeze=False, constrained_layout=True,
+                                  figsize=(2.6 + 1.02 * max(len(scenes), 5), len(LAYERS) * (1.3 + 0.52 * len(errors))))
+    for axes, layer in zip(panels.flat, LAYERS):
+        rows = winners[winners.layer == layer]
+        for row in rows.itertuples():
+            _cell(axes, row, list(scenes.scene).index(row.scene), errors.index(row.required), look)
+        axes.set(xlim=(0, len(scenes)), ylim=(0, len(errors)))
+        axes.set_xticks([place + 0.5 for place in range(len(scenes))], [
+            f"n = {one.variables:.0f}\n" + ("own fill" if one.fill_asked != one.fill_asked else f"fill {one.fill_asked:.0%}")
+            for one in scenes.itertuples()])
+        axes.set_yticks([place + 0.5 for place in range(len(errors))], [f"{number(error)} m" for error in errors])
+        axes.set_ylabel("error at most")
+        axes.tick_params(length=0)
+        axes.set_title(f"fastest of {TITLES[layer]}")
+        axes.legend(handles=_legend(rows, look), loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8.5)
     return figure
 
 
-def _panel(axes, rows, sizes, levels, look):
-    for row in rows.itertuples():
-        x = sizes.index(row.variables)
-        y = 0 if row.fill_asked != row.fill_asked else 1 + levels.index(row.fill_asked)
-        nobody = row.implementation == "nobody"
-        fill = NOBODY if nobody else {
-            "edgecolor": "white", "linewidth": 1.2, "facecolor": look.colour(row.implementation),
-            "alpha": DECIDED if row.decided else UNDECIDED}
-        axes.add_patch(Rectangle((x, y), 1, 1, **fill))
-        if not nobody and not row.decided:
-            axes.add_patch(Rectangle((x, y), 1, 1, facecolor="none", edgecolor="#555555",
-                                     linewidth=0, hatch="////"))
-        text = "nobody" if nobody else (
-            f"{SHORT.get(row.setting, row.setting.replace(' ', chr(10)))}\n{names.step(row.step)}")
-        axes.text(x + 0.5, y + 0.5, text, ha="center", va="center", fontsize=6.6, linespacing=1.15,
-                  color="#777777" if nobody else "black", zorder=6,
-                  bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "linewidth": 0,
-                        "alpha": 1.0 if nobody else 0.72})
-    axes.set(xlim=(0, len(sizes)), ylim=(0, len(levels) + 1), xlabel="variables n")
-    axes.set_xticks([place + 0.5 for place in range(len(sizes))], [f"{size:g}" for size in sizes])
-    axes.set_yticks([place + 0.5 for place in range(len(levels) + 1)],
-                    ["own", *(f"{level:.0%}" for level in levels)])
-    axes.tick_params(length=0)
+def _cell(axes, row, x, y, look):
+    if row.implementation == NOBODY:
+        axes.add_patch(Rectangle((x, y), 1, 1, **NONE))
+        text, colour = "nobody", "#777777"
+    else:
+        settled = bool(row.settled)
+        axes.add_patch(Rectangle((x, y), 1, 1, edgecolor="white", linewidth=1.2, facecolor=look.colour(row.implementation),
+                                 alpha=STRONG if settled else WEAK))
+        if not settled:
+            axes.add_patch(Rectangle((x, y), 1, 1, facecolor="none", edgecolor="#555555", linewidth=0, hatch="////"))
+        others = len(row.equivalent.split("; ")) if row.equivalent else 0
+        text = f"{row.setting}\n{names.step(row.step)}" + (f"  ≈{others}" if others else "")
+        colour = "black"
+    axes.text(x + 0.5, y + 0.5, text, ha="center", va="center", fontsize=6.8, linespacing=1.2, color=colour, zorder=6,
+              bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "linewidth": 0, "alpha": 0.78})
 
 
-def _legend(winners, look):
-    won = winners[winners.implementation != "nobody"].implementation.value_counts()
-    handles = [Patch(facecolor=look.colour(name), alpha=DECIDED, label=f"{name}: {count}")
-               for name, count in won.items()]
-    return [*handles, Patch(facecolor="#cccccc", hatch="////", edgecolor="#555555", linewidth=0,
-                            label="undecided: the interval includes 1"),
-            Patch(**NOBODY, label="nobody meets the error"),
-            Patch(facecolor="white", edgecolor="#bbbbbb", label="below the mechanism's own fill")]
+def _legend(rows, look):
+    won = rows[rows.implementation != NOBODY].implementation.value_counts()
+    handles = [Patch(facecolor=look.colour(name), alpha=STRONG, label=f"{name}: {count}") for name, count in won.items()]
+    if (rows.settled == False).any():  # noqa: E712 (a nullable flag)
+        handles.append(Patch(facecolor="#cccccc", hatch="////", edgecolor="#555555", linewidth=0, label="open"))
+    if (rows.equivalent != "").any():
+        handles.append(Patch(facecolor="none", label="≈1: one other is as fast"))
+    if (rows.implementation == NOBODY).any():
+        handles.append(Patch(**NONE, label="nobody meets the error"))
+    return handles

@@ -1,159 +1,181 @@
-# What the page says of each figure and table, computed from its rows.
-from analysis.accuracy import names
-from analysis.accuracy.front import fastest, finished, pareto
-from analysis.accuracy.pairs_figure import GAIN, gains, same_class
-from analysis.text import number
+# What the page and the front page say, computed from the tables.
+from analysis.accuracy import names, pairs
+from analysis.accuracy.winners import LAYERS, NOBODY, meeting
+from analysis.core.text import number
+
+WORDS = {"libraries": "Of the libraries", "all": "Of all, code without a library included,"}
 
 
-def _list(words):
-    words = list(dict.fromkeys(words))
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+def answers(tables, view):
+    """One to four sentences that answer the part's question."""
+    won = own_fill(tables["winners"])
+    met = won[won.implementation != NOBODY]
+    if met.empty:
+        return [{"text": "Not measured: nobody reached a required error with a time.", "anchor": ""}]
+    found = [{"text": of_layer(met[met.layer == layer], layer), "anchor": "short"}
+             for layer in LAYERS if (met.layer == layer).any()]
+    said = of_precision(tables["pairs"])[:1] + of_reuse(tables["pairs"])[:1]
+    return found + [{"text": text, "anchor": anchor} for text, anchor in zip(said, ("precision", "reuse"))]
 
 
-def of_subject(rows):
-    """Two sentences: who is on the front, and what a tenth of the error costs there."""
-    front = rows.loc[pareto(rows)]
-    if front.empty:
-        return ["No run finished."]
-    counts = front.implementation.value_counts()
-    settings = front.setting.value_counts()
-    first = (f"The front has {len(front)} runs: {counts.index[0]} makes {counts.iloc[0]} of them, and the "
-             f"settings on it are {_list(settings.index)}.")
-    best = front.loc[front.error.idxmin()]
-    default = finished(rows[rows.setting == "default"])
-    second = (f"The smallest error, {number(best.error, 2)}, is that of {best.implementation}, "
-              f"{best.setting}, at a step of {names.step(best.step)}")
-    rival = default.loc[default.error.idxmin()] if len(default) else None
-    if rival is not None and rival.error > best.error:
-        same = fastest(rows, rival.error)
-        second += (f"; the default setting gets to {number(rival.error, 2)}, for which it takes "
-                   f"{number(rival.time / same.time, 2)} times as long as {same.implementation}, "
-                   f"{same.setting}")
-    return [first, second + "."]
+def cases(tables, view):
+    """Rows of the front page's table."""
+    won = own_fill(tables["winners"])
+    rows = won[(won.layer == "libraries") & (won.implementation != NOBODY)]
+    if rows.empty:
+        return []
+    return [{"case": "Your motion may be off by an error that you name", "link": "accuracy.html#short",
+             "take": f"{most(rows.implementation)[0]} with the setting {most(rows.setting)[0]} and the longest step that meets it"}]
 
 
-def summary(winners, work, without_library):
-    """Who wins at the mechanism's own fill for each required error, and who of those with a library is fastest on
-    the curves there."""
+def own_fill(winners):
+    """Of the N-four-bar at its own fill."""
+    return winners[winners.loops.notna() & winners.fill_asked.isna()]
+
+
+def most(values):
+    """(the most frequent, how often)"""
+    counts = values.value_counts()
+    return counts.index[0], int(counts.iloc[0])
+
+
+def of_layer(rows, layer):
+    """Who is fastest most often, with what, and what a smaller error costs at the largest size."""
+    who, often = most(rows.implementation)
+    setting, with_it = most(rows.setting)
+    settled = int((rows.settled == True).sum())  # noqa: E712 (a nullable flag)
+    text = (f"{WORDS[layer]} {who} is fastest for {often} of {len(rows)} required errors and sizes of the N-four-bar, and "
+            f"{setting} is the best setting of {with_it}; {settled} are settled.")
+    largest = rows[rows.variables == rows.variables.max()].sort_values("required")
+    if len(largest) > 1:
+        fine, coarse = largest.iloc[0], largest.iloc[-1]
+        text += (f" With n = {fine.variables:.0f}, {number(fine.required)} m instead of {number(coarse.required)} m takes "
+                 f"{number(fine.time / coarse.time, 2)} times as long.")
+    return text
+
+
+def summary(winners):
+    """For each required error the fastest at own fill, by layer: {"who", "sizes"}."""
     found = []
-    if winners.empty:
-        return found
-    own = winners[winners.fill_asked.isna()]
-    curves = dict(list(work[~work.implementation.isin(without_library)].groupby("loops")))
-    for required, rows in sorted(own.groupby("required"), reverse=True):
-        first, second = {}, {}
-        for row in rows.itertuples():
-            words = ("nobody" if row.implementation == "nobody" else
-                     f"{row.implementation}, {row.setting}" + ("" if row.decided is True else " (undecided)"))
-            first.setdefault(words, []).append(f"{row.variables:.0f}")
-            best = fastest(curves[row.loops], required) if row.loops in curves else None
-            words = "nobody" if best is None else f"{best.implementation}, {best.setting}"
-            second.setdefault(words, []).append(f"{row.variables:.0f}")
-        found.append({"required": required, "winners": _sizes(first), "with_library": _sizes(second)})
+    for required, rows in sorted(own_fill(winners).groupby("required"), reverse=True):
+        row = {"required": required}
+        for layer in LAYERS:
+            groups = {}
+            for one in rows[rows.layer == layer].sort_values("variables").itertuples():
+                words = NOBODY if one.implementation == NOBODY else f"{one.implementation}, {one.setting}" + (
+                    "" if one.settled is True else " (open)")
+                groups.setdefault(words, []).append(f"{one.variables:.0f}")
+            row[layer] = [{"who": who, "sizes": ", ".join(sizes)} for who, sizes in groups.items()]
+        found.append(row)
     return found
 
 
-def _sizes(groups):
-    return [{"who": who, "sizes": ", ".join(sizes)} for who, sizes in groups.items()]
-
-
-def of_regions(tables):
-    """Two sentences on the regions, and one on the premise."""
-    winners, regions, fills = (tables[name] for name in ("winners", "regions", "fills"))
-    if winners.empty:
-        return []
-    met = winners[winners.implementation != "nobody"]
-    said = [f"Somebody meets the required error in {len(met)} of {len(winners)} cells."]
-    if len(met):
-        counts, settings = met.implementation.value_counts(), met.setting.value_counts()
-        decided = int((met.decided.astype(str) == "True").sum())
-        said[0] += (f" {counts.index[0]} is fastest in {counts.iloc[0]} of them, most often with the setting "
-                    f"{settings.index[0]} ({settings.iloc[0]}); {decided} are decided.")
-    reasons = regions.reason.dropna()
-    pruned = int(reasons.str.startswith("pruned").sum())
-    unknown = int(reasons.str.startswith("error class not known").sum())
-    said.append(f"Of {len(regions)} candidates {pruned} were pruned by their pilots, {len(reasons) - pruned - unknown} by "
-                f"a run of their own that does not have the error class, and {unknown} because a run that tells it would "
-                "take too long; each has its reason in regions.csv.")
-    if len(fills):
-        same = fills.same.astype(bool)
-        worst = fills.difference.max()
-        said.append(f"Artificial fill left the error as it was in {same.sum()} of {len(fills)} runs that check "
-                    f"it (largest difference: {number(100 * worst, 2)} % of the error).")
+def of_subject(rows):
+    """Who is on the fronts, and what the best of the default setting gives away."""
+    said = []
+    for layer in LAYERS:
+        front = rows[rows[f"front_{layer}"].astype(bool)]
+        mine = rows[rows.library.astype(bool)] if layer == "libraries" else rows
+        if front.empty:
+            said.append(f"{WORDS[layer]} nobody finished and was timed.")
+            continue
+        who, count = most(front.implementation)
+        settings = most(front.setting)
+        said.append(f"{WORDS[layer]} {who} makes {count} of the {len(front)} points of the front, most often with "
+                    f"{settings[0]} ({settings[1]}).")
+        best = front.loc[front.error.idxmin()]
+        said[-1] += (f" The smallest error there, {number(best.error, 2)}, is that of {best.implementation}, {best.setting}, "
+                     f"at a step of {names.step(best.step)}.")
+        default = meeting(mine[mine.setting == "default"], float("inf"))
+        if layer == "libraries" and len(default):
+            rival = default.loc[default.error.idxmin()]
+            same = meeting(mine, rival.error).iloc[0]
+            if same.setting != "default":
+                said[-1] += (f" The default setting gets to {number(rival.error, 2)}, for which {rival.implementation} takes "
+                             f"{number(rival.time / same.time, 2)} times as long as {same.implementation} with {same.setting}.")
     return said
 
 
-def of_forms(forms):
-    if forms.empty or "ratio" not in forms or forms.ratio.notna().sum() == 0:
+def of_regions(winners):
+    chains = winners[winners.loops.notna()]
+    said = []
+    for layer in LAYERS:
+        rows = chains[chains.layer == layer]
+        met = rows[rows.implementation != NOBODY]
+        if len(met):
+            settled, decided = ((met[flag] == True).sum() for flag in ("settled", "decided"))  # noqa: E712
+            who, often = most(met.implementation)
+            said.append(f"{WORDS[layer]} somebody meets the error in {len(met)} of {len(rows)} cells of size, fill and error; "
+                        f"{who} is fastest in {often}. {decided} are decided, and in {settled} it is known of each "
+                        "contender whether it is as fast.")
+    return said
+
+
+def of_forms(table):
+    rows = table[(table.kind == pairs.FORMS) & table.ratio.notna()]
+    if rows.empty:
         return []
-    rows = forms[forms.ratio.notna()]
-    cost = 1 / rows.ratio
-    least, most = rows.loc[cost.idxmin()], rows.loc[cost.idxmax()]
-    per_pass = (rows.second_step_us / rows.second_passes_per_step) / (
-        rows.first_step_us / rows.first_passes_per_step)
-    return [f"A step of the saddle-point form takes {_cost(least)} to {_cost(most)} times as long as one of the "
-            "penalty form.",
-            f"A pass takes {number(per_pass.min(), 2)} to {number(per_pass.max(), 2)} times as long; the "
-            "rest is the number of passes."]
+    least, largest = rows.loc[rows.ratio.idxmin()], rows.loc[rows.ratio.idxmax()]
+    said = [f"A step of the saddle-point form takes {_cost(least)} to {_cost(largest)} times as long as one of the penalty form."]
+    per_pass = ((rows.second_us / rows.second_passes) / (rows.first_us / rows.first_passes)).dropna()
+    if len(per_pass):
+        said.append(f"A pass takes {number(per_pass.min(), 2)} to {number(per_pass.max(), 2)} times as long; the rest is the "
+                    "number of passes.")
+    return said
 
 
 def _cost(row):
-    return (f"{number(1 / row.ratio, 2)} ({number(1 / row.high, 2)} to {number(1 / row.low, 2)}; "
-            f"{row.implementation}, n = {row.variables:.0f})")
+    return f"{number(row.ratio, 2)} ({number(row.low, 2)} to {number(row.high, 2)}; {row.implementation}, n = {row.variables:.0f})"
 
 
-def of_precision(precision):
-    """What factors in single precision with refined projections (mixed) gain over double, and what single gains."""
-    if precision.empty or "ratio" not in precision or precision.ratio.notna().sum() == 0:
-        return []
-    rows = precision[precision.ratio.notna()]
-    mixed = rows.second.str.split().map(lambda words: "mixed" in words)
-    return [sentence for what, kind in (("Mixed precision", rows[mixed]), ("Single precision", rows[~mixed]))
-            if len(kind) for sentence in _gain(what, kind)]
+def of_precision(table):
+    """What factors in single precision (mixed) gain over double, and what single gains."""
+    rows = table[(table.kind == pairs.PRECISION) & table.ratio.notna()]
+    mixed = rows.second.str.contains("mixed")
+    return [text for what, kind in (("Mixed precision", rows[mixed]), ("Single precision", rows[~mixed]))
+            if len(kind) for text in [_gain(what, kind)]]
 
 
 def _gain(what, rows):
-    won, same = gains(rows), rows[same_class(rows)]
+    won, same = pairs.gains(rows), rows[pairs.same_class(rows)]
     if same.empty:
-        return [f"{what}: none of {len(rows)} pairs with double is in the same error class."]
+        return f"{what}: none of {len(rows)} pairs with double is in the same error class."
+    best = same.loc[same.high.idxmin()]
+    words = (f"{number(1 / best.ratio)} ({number(1 / best.high)} to {number(1 / best.low)}) of {best.implementation}, "
+             f"{best.second}, n = {best.variables:.0f}")
     if won.empty:
-        best = same.loc[same.low.idxmax()]
-        return [f"{what} is nowhere at least {GAIN:g} times faster than double at the same error class: the best there "
-                f"is {number(best.ratio)} ({number(best.low)} to {number(best.high)}; "
-                f"{best.implementation}, {best.second}, n = {best.variables:.0f}), error "
-                f"{number(best.second_error, 2)} m against {number(best.first_error, 2)} m in double.",
-                f"{len(same)} of {len(rows)} pairs are in the same error class; the passes a step go "
-                f"from {number(same.first_passes_per_step.median(), 2)} to "
-                f"{number(same.second_passes_per_step.median(), 2)} (medians)."]
-    best = won.loc[won.low.idxmax()]
-    return [f"{what} is at least {GAIN:g} times faster than double at the same error class in {len(won)} of {len(rows)} "
-            f"pairs: {_list(f'{r.implementation}, {r.second}, n = {r.variables:.0f}' for r in won.itertuples())}.",
-            f"The best is {number(best.ratio)} ({number(best.low)} to {number(best.high)}) of "
-            f"{best.implementation}, {best.second}, n = {best.variables:.0f}."]
+        return (f"{what} is nowhere shown to be {pairs.GAIN:g} times faster than double at the same error class "
+                f"({len(same)} of {len(rows)} pairs are in the same); the best speed-up is {words}.")
+    return (f"{what} is at least {pairs.GAIN:g} times faster than double at the same error class in {len(won)} of {len(rows)} "
+            f"pairs; the best speed-up is {words}.")
 
 
-def tangent_rows(tangents):
-    """For each setting that reuses factors: medians over implementations, subject by subject."""
-    if tangents.empty:
-        return []
-    chosen = tangents[tangents.subject.str.startswith("four-bar")]
-    table = chosen.groupby(["subject", "setting"], sort=False).agg(
+def reuse_rows(table):
+    """For each setting that reuses factors: medians over implementations, size by size."""
+    rows = table[(table.kind == pairs.REUSE) & table.ratio.notna() & table.first_factorizations.notna()
+                 & table.second_factorizations.notna()]
+    rows = rows.assign(saved=1 - rows.second_factorizations / rows.first_factorizations)
+    found = rows.groupby(["variables", "first", "second"], sort=False).agg(
         implementations=("implementation", "nunique"), saved=("saved", "median"),
-        factorizations=("factorizations_per_step", "median"), passes=("passes_per_step", "median"),
-        usual_passes=("usual_passes", "median"), time_ratio=("time_ratio", "median"),
-        error=("error", "median"), usual_error=("usual_error", "median"))
-    return table.reset_index().to_dict("records")
+        factorizations=("second_factorizations", "median"), passes=("second_passes", "median"),
+        usual_passes=("first_passes", "median"), ratio=("ratio", "median"), least=("ratio", "min"),
+        error=("second_error", "median"), usual_error=("first_error", "median"))
+    return found.reset_index().to_dict("records")
 
 
-def of_tangents(tangents):
-    rows = tangent_rows(tangents)
+def of_reuse(table):
+    rows = reuse_rows(table)
     if not rows:
         return []
-    most, quickest = max(rows, key=lambda r: r["saved"]), min(rows, key=lambda r: r["time_ratio"])
-    said = [f"{most['setting']} saves the most factorizations, {number(100 * most['saved'], 3)} % of them on "
-            f"{most['subject']}; its error there is {number(most['error'], 2)} m against "
-            f"{number(most['usual_error'], 2)} m."]
-    faster = quickest["time_ratio"]
-    said.append(f"The best time is {number(faster, 2)} of that without reuse ({quickest['setting']}, "
-                f"{quickest['subject']})." if faster < 1 else "Nowhere does reuse make a step faster.")
-    return said
+    largest, quickest = max(rows, key=lambda row: row["saved"]), min(rows, key=lambda row: row["ratio"])
+    said = (f"Of the settings that reuse factors {largest['second']} saves the most factorizations, "
+            f"{number(100 * largest['saved'])} % with n = {largest['variables']:.0f}")
+    said += (f"; the quickest, {quickest['second']} with n = {quickest['variables']:.0f}, takes {number(quickest['ratio'], 2)} of "
+             "the time of a step without." if quickest["ratio"] < 1 else "; nowhere is a step faster for it.")
+    return [said]
+
+
+def rest(table, column):
+    """Counts of a column's values, as {value: count}."""
+    return {value: int(count) for value, count in table[column].value_counts().items()} if len(table) else {}
+

@@ -1,65 +1,54 @@
-# Who meets a required error in the least time in each cell of the regions: winners.csv from regions.csv.
-import numpy
+# Who meets a required error in the least time: on a scene, of the libraries and of all.
 import pandas
 
-from analysis.accuracy.front import FINISHED
-from analysis.statistics import ratio_interval
+from analysis.accuracy.points import KEY, LOOK, ROUNDS, label, rounds
+from analysis.core import timing
+from analysis.core.outcomes import FINISHED
+
+LAYERS = ("libraries", "all")
+NOBODY = "nobody"
+NEAR = 1.25  # times the fastest in a look: who is slower has no rounds, and has lost
+COLUMNS = ("error", "time", "time_low", "time_high", "processes", "record")
 
 
-def winners(regions):
-    """DataFrame, a row for each size, fill and required error, also where nobody meets it."""
+def meeting(table, required):
+    """The points that meet an error in a run of their own and have a time by themselves, the fastest first."""
+    found = table[table.status.isin(FINISHED) & (table.error <= required) & (table.error_of == table.implementation)
+                  & table.time_from.isin((LOOK, ROUNDS)) & table.time.notna()]
+    return found.sort_values("time", kind="stable")
+
+
+def winners(table, measured, errors, libraries):
+    """A row for each scene, layer and required error, also where nobody meets it."""
     rows = []
-    cells = regions.assign(fill_asked=regions.fill_asked.fillna(-1))
-    for (loops, fill), cell in cells.groupby(["loops", "fill_asked"], sort=True):
-        measured = cell.fill.dropna()
-        for required in sorted(regions.required.unique(), reverse=True):
-            found = {"required": required, "loops": loops, "variables": 2 * loops + 2,
-                     "fill_asked": None if fill < 0 else fill,
-                     "fill": measured.median() if len(measured) else (
-                         cell.natural_fill.iloc[0] if fill < 0 else fill)}
-            rows.append(found | _winner(cell[cell.required == required]))
+    for scene, points in table.groupby("scene", sort=False):
+        samples = rounds(points, measured)
+        for layer in LAYERS:
+            mine = points[points.implementation.isin(libraries)] if layer == "libraries" else points
+            rows += [{"scene": scene, "layer": layer, "required": required} | _winner(meeting(mine, required), samples)
+                     for required in errors]
     return pandas.DataFrame(rows)
 
 
-def leaders(cell):
-    """Index of the fastest that meets the error, also in its timed run, and of the fastest of another
-    implementation, not only of another variant; less where there is none. `cell`: rows of one required error.
-    Who has more rounds comes first: these were the fastest when all had as many."""
-    done = _done(cell)
-    first = done.index[:1]
-    folders = done.implementation.str.split("/").str[0]
-    others = done[folders != folders[first[0]]] if len(first) else done
-    return [*first, *others.index[:1]]
-
-
-def _done(cell):
-    done = cell[cell.status.isin(FINISHED) & (cell.measured_error <= cell.required) & cell.time.notna()]
-    most = done["rounds"] if "rounds" in done else 0
-    return done.assign(fewer=-most).sort_values(["fewer", "time"], kind="stable")
-
-
-def _winner(cell):
-    """The fastest whose timed run meets the error, too; decided if the interval of the ratio of the best of
-    another implementation to it excludes 1, over the rounds that both have."""
-    places = leaders(cell)
-    if not places:
-        return {"implementation": "nobody", "candidates": len(cell), "measured": 0}
-    done, first = _done(cell), cell.loc[places[0]]
-    found = {key: first[key] for key in ("implementation", "setting", "step", "error", "error_of",
-                                         "time", "time_low", "time_high", "duration", "rounds",
-                                         "raw_file", "command")}
-    found |= {"candidates": len(cell), "measured": len(done), "decided": True}
-    if len(places) > 1:
-        second = cell.loc[places[1]]
-        margin, low, high = ratio_interval(_samples(second), _samples(first))
-        found |= {"second": second.implementation, "second_setting": second.setting,
-                  "second_step": second.step, "margin": margin, "margin_low": low, "margin_high": high,
-                  "decided": bool(low > 1)}
-    mine = done[(done.implementation == first.implementation) & (done.setting != first.setting)]
-    found["as_fast"] = "; ".join(mine[mine.time_low <= first.time_high].setting)
-    return found
-
-
-def _samples(row):
-    """{round: samples} of the column "times"."""
-    return {number: numpy.array([float(time)]) for number, time in enumerate(str(row.times).split())}
+def _winner(found, samples):
+    """Each implementation counts with its fastest point: one of the rounds where it has one there. Ranked are those that
+    have rounds; the others were slower in a look, or the budget did not reach them."""
+    if found.empty:
+        return {"implementation": NOBODY, "candidates": 0, "decided": None, "settled": None, "equivalent": ""}
+    in_rounds = found[found.time_from == ROUNDS].drop_duplicates("implementation")
+    ranking = timing.rank(samples, [label(point) for point in in_rounds.to_dict("records")]) if len(in_rounds) else None
+    by_label = {label(point): point for point in found.to_dict("records")}
+    first = by_label[ranking.winner] if ranking else found.iloc[0].to_dict()
+    row = {key: first[key] for key in (*KEY[1:], *COLUMNS)} | {
+        "candidates": len(found), "timed": len(in_rounds), "decided": False, "settled": False, "equivalent": ""}
+    if ranking:
+        names = {one: by_label[one]["implementation"] for one in ranking.ratios}
+        waiting = found[(found.time <= NEAR * first["time"]) & ~found.implementation.isin(in_rounds.implementation)]
+        row |= {"decided": ranking.decided and waiting.empty, "settled": ranking.settled and waiting.empty,
+                "equivalent": "; ".join(names[one] for one in ranking.equivalent if one != ranking.winner)}
+        if ranking.second:
+            second, margin = by_label[ranking.second], ranking.margin
+            row |= {"second": second["implementation"], "second_setting": second["setting"],
+                    "second_step": second["step"], "margin": margin.value, "margin_low": margin.low,
+                    "margin_high": margin.high}
+    return row

@@ -1,141 +1,84 @@
-# Error against time of one subject: all implementations with the default setting, then the settings of the
-# sparse and of the dense implementation that is best with it. The Pareto front of all runs is in every panel.
+# Error against time of one subject: a panel for libraries, one for all. The front is the thick line; the series on it
+# or close to it have colours and names, the others are grey.
 import matplotlib.pyplot as plt
-import matplotlib.patheffects as effects
 import numpy
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
 from analysis.accuracy import names
-from analysis.accuracy.front import FINISHED, finished, pareto
-from analysis.style import DASHES, GREY, MARKERS, missing, number_axis
+from analysis.accuracy.winners import LAYERS, meeting
+from analysis.core.outcomes import FINISHED
+from analysis.core.pareto import near
+from analysis.core.style import GREY, MARKERS, missing, number_axis
 
-PLATE = [effects.withStroke(linewidth=2.5, foreground="white")]
-DEFAULT = "default"
+CLOSE = 1.25  # times the front's time at its error
+MOST = 8      # named series of a panel
+TITLES = {"libraries": "libraries", "all": "libraries and code without one"}
 
 
-def draw(rows, look, dense, unit, title):
-    """The figure of one subject's rows of work.csv. `dense`: {implementation: bool}."""
-    figure, panels = plt.subplots(1, 3, figsize=(16, 6.4), sharex=True, sharey=True)
-    figure.subplots_adjust(left=0.05, right=0.99, bottom=0.1, top=0.88, wspace=0.05)
-    usual = rows[rows.setting == DEFAULT]
-    _default_panel(panels[0], usual, look)
-    panels[0].set_title("every implementation, default setting")
-    for axes, kind in zip(panels[1:], (False, True)):
-        name = best(usual[usual.implementation.map(dense) == kind], rows)
-        word = "dense" if kind else "sparse"
-        if name is None:
-            missing(axes, f"no {word} implementation has a curve")
+def name(subject):
+    return "work-" + subject.replace(":", "-").replace(" ", "-").lower()
+
+
+def draw(rows, look, unit, title):
+    """The figure of one subject's points at its own fill."""
+    figure, panels = plt.subplots(1, 2, figsize=(13, 6), sharex=True, sharey=True, constrained_layout=True)
+    drawn = False
+    for axes, layer in zip(panels, LAYERS):
+        mine = rows[rows.library.astype(bool)] if layer == "libraries" else rows
+        axes.set_title(TITLES[layer])
+        if meeting(mine, numpy.inf).empty:
+            missing(axes, "nobody finished and was timed")
             continue
-        _settings_panel(axes, rows[rows.implementation == name])
-        axes.set_title(f"settings of {name} ({word})")
-    members = front_members(rows)
-    for axes in panels:
-        if axes.axison:
-            _front(axes, rows, members)
-            axes.set(xscale="log", yscale="log", xlabel="computation for a simulated second, s")
-            axes.grid(True)
-    for axis in (panels[0].xaxis, panels[0].yaxis) if members else ():
-        number_axis(axis)
-    if members and numpy.ptp(numpy.log10(panels[0].get_xlim())) > 1.5:
-        panels[0].xaxis.set_major_locator(LogLocator())  # the panels are narrow
-    panels[0].set_ylabel(f"error, {unit}")
-    figure.suptitle(title, x=0.01, ha="left", fontsize=13)
-    _key(figure, members)
+        drawn = True
+        _panel(axes, mine, mine[mine[f"front_{layer}"].astype(bool)], look)
+        axes.set(xscale="log", yscale="log", xlabel="computation for a simulated second, s")
+        axes.grid(True)
+    if drawn:
+        first = next(axes for axes in panels if axes.axison)
+        first.set_ylabel(f"error, {unit}")
+        for axis in (first.xaxis, first.yaxis):
+            number_axis(axis)
+        if numpy.ptp(numpy.log10(first.get_xlim())) > 1.5:
+            first.xaxis.set_major_locator(LogLocator())
+    figure.suptitle(title, x=0.01, ha="left", fontsize=12)
     return figure
 
 
-def best(rows, everything):
-    """The implementation whose settings are worth a panel: it ran the most of them, and among those the
-    least time with the default one (`rows`), over the steps that it shares with others."""
-    done = finished(rows)
-    if done.empty:
-        return None
-    times = done.pivot_table(index="step", columns="implementation", values="time")
-    slowness = times.div(times.min(axis=1), axis=0).median()
-    settings = finished(everything).groupby("implementation").setting.nunique()
-    return min(slowness.index, key=lambda name: (-settings[name], slowness[name]))
+def named(rows, front):
+    """[(implementation, setting)] with a colour and a name: those on the front, then those closest to it."""
+    close = meeting(rows, numpy.inf)
+    close = close.loc[[index for index in near(close, CLOSE) if index in close.index]]
+    counts = close.groupby(["implementation", "setting"]).size()
+    on_front = front.groupby(["implementation", "setting"]).size()
+    order = sorted(counts.index, key=lambda key: (-on_front.get(key, 0), -counts[key], key))
+    return order[:MOST]
 
 
-def front_members(rows):
-    """{(implementation, setting): its rows on the front, the fastest first}, the fastest member first."""
-    found = {}
-    for row in rows.loc[pareto(rows)].itertuples():
-        found.setdefault((row.implementation, row.setting), []).append(row)
-    return found
-
-
-def _default_panel(axes, rows, look):
-    for name, mine in rows.groupby("implementation", sort=False):
-        _curve(axes, mine, look.line(name) | {"linewidth": 1.1, "markersize": 4.5}, name)
-    _legend(axes, 3 if rows.implementation.nunique() > 12 else 2)
-
-
-def _settings_panel(axes, rows):
-    """Colours by kind; markers tell the settings of a kind apart."""
-    used = {}
-    for setting, mine in rows.groupby("setting", sort=False):
-        kind = names.family(setting)
-        place = used[kind] = used.get(kind, -1) + 1
-        colour = names.FAMILIES[kind](0.92 - 0.11 * place)
-        _curve(axes, mine, {"color": colour, "linewidth": 1.1, "markersize": 4.5,
-                            "marker": MARKERS[place % len(MARKERS)],
-                            "linestyle": DASHES[place % len(DASHES)]}, setting)
-    _legend(axes, 3)
-
-
-def _curve(axes, rows, line, label):
-    """A curve over the step; runs that did not finish are crosses at the upper edge, at their time."""
-    done = finished(rows).sort_values("step")
-    clipped = done.at_most.astype(bool)
-    if done.empty:
-        lost = next((reason for status, reason in (("not-run", "left out"), ("unsupported", "unsupported"))
-                     if rows.status.isin((status, "not-run")).all()), "no run finished")
-        axes.plot([], [], **line, label=f"{label}: {lost}")
-    else:
-        axes.plot(done.time, done.error, **line, label=label)
-    axes.plot(done.time[clipped], done.error[clipped], linestyle="none", marker="v", markersize=9,
-              markerfacecolor="none", markeredgecolor=line["color"])
-    # What is unsupported has made no step.
-    lost = rows[~rows.status.isin((*FINISHED, "not-run", "unsupported")) & (rows.step_us > 0)]
-    times = 1e-6 * lost.step_us / lost.step
-    axes.plot(times, numpy.full(len(lost), 0.985), "x", color=line["color"], markersize=5,
-              transform=axes.get_xaxis_transform(), clip_on=False)
-
-
-def _front(axes, rows, members):
-    line = rows.loc[pareto(rows)]
-    axes.plot(line.time, line.error, color="black", linewidth=3.2, alpha=0.28, zorder=1,
-              solid_capstyle="round", drawstyle="steps-post")
-    numbers = {(row.time, row.error): number for number, mine in enumerate(members.values(), start=1)
-               for row in mine}
-    last = None
-    for (time, error), number in sorted(numbers.items()):
-        at = numpy.log10([time, error])
-        if last is not None and numpy.abs(at - last).max() < 0.12:
-            continue  # it would cover its neighbour's number
-        last = at
-        axes.annotate(f"{number}", (time, error), xytext=(-7, -8), fontsize=8.5, zorder=9, ha="center",
-                      textcoords="offset points", fontweight="bold", path_effects=PLATE)
-
-
-def _legend(axes, columns):
-    axes.legend(fontsize=7.5, loc="upper left", bbox_to_anchor=(-0.02, -0.1), ncols=columns,
-                handlelength=2.0, labelspacing=0.3, columnspacing=0.7)
-
-
-def _key(figure, members):
-    """The members of the front, by their numbers, below the panels; and the marks."""
-    entries = []
-    for number, ((implementation, setting), mine) in enumerate(members.items(), start=1):
-        steps = " … ".join(dict.fromkeys(names.step(row.step) for row in (mine[0], mine[-1])))
-        entries.append(Line2D([], [], linestyle="none",
-                              label=f"{number}  {implementation}, {setting}: {steps}"))
-    marks = [Line2D([], [], color="black", alpha=0.28, linewidth=3.2,
-                    label="Pareto front of all runs; its members:"),
-             Line2D([], [], color=GREY, marker="x", linestyle="none",
-                    label="upper edge: did not finish (status in work.csv)"),
-             Line2D([], [], color=GREY, marker="v", markerfacecolor="none", linestyle="none",
-                    label="at most: below the reference's own error")]
-    figure.legend(handles=[*marks, *entries], loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=4,
-                  fontsize=8, handlelength=1.6, columnspacing=1.2)
+def _panel(axes, rows, front, look):
+    chosen = named(rows, front)
+    done = rows[rows.status.isin((*FINISHED, "not-judged")) & rows.time.notna() & rows.error.notna()]
+    for key, mine in done.groupby(["implementation", "setting"], sort=False):
+        mine = mine.sort_values("step")
+        if key not in chosen:
+            axes.plot(mine.time, mine.error, color="#c4c8ce", linewidth=0.7, marker=".", markersize=3, zorder=1)
+    handles = []
+    for place, key in enumerate(chosen):
+        mine = meeting(rows[(rows.implementation == key[0]) & (rows.setting == key[1])], numpy.inf).sort_values("step")
+        line = {"color": look.colour(key[0]), "linestyle": names.DASHES[names.family(key[1])], "linewidth": 1.5,
+                "marker": MARKERS[place % len(MARKERS)], "markersize": 5.5, "markeredgecolor": "white",
+                "markeredgewidth": 0.5}
+        axes.plot(mine.time, mine.error, **line, zorder=4)
+        axes.hlines(mine.error, mine.time_low, mine.time_high, color=line["color"], linewidth=1.0, zorder=3)
+        below = mine[mine.at_most.fillna(False).astype(bool)]
+        axes.plot(below.time, below.error, linestyle="none", marker="v", markersize=10, markerfacecolor="none",
+                  markeredgecolor=line["color"], zorder=4)
+        handles.append(Line2D([], [], **line, label=f"{key[0]}, {key[1]}"))
+    front = front.sort_values("time")
+    axes.plot(front.time, front.error, color="black", linewidth=4, alpha=0.22, zorder=2, drawstyle="steps-post")
+    handles += [Line2D([], [], color="black", alpha=0.22, linewidth=4, label="front"),
+                Line2D([], [], color="#c4c8ce", marker=".", linewidth=0.7, label="others")]
+    if front.at_most.fillna(False).any():
+        handles.append(Line2D([], [], color=GREY, marker="v", markerfacecolor="none", linestyle="none",
+                              label="below the reference's own error"))
+    axes.legend(handles=handles, fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, -0.11), ncols=2)

@@ -1,0 +1,74 @@
+# Two settings of one implementation side by side at one step: the form of the step, the precision of its numbers, the
+# reuse of its factors.
+import pandas
+
+from analysis.accuracy.points import KEY
+from analysis.core import timing
+from analysis.core.outcomes import FINISHED
+
+STEP = 1.25e-3  # s
+FORMS, PRECISION, REUSE = "form", "precision", "reuse"
+PAIRS = {  # of settings by name: what the second one costs or gains beside the first
+    FORMS: (("default", "saddle"),),
+    PRECISION: (("default", "mixed"), ("default", "single"), ("saddle", "saddle mixed")),
+    REUSE: (("default", "every-step"), ("default", "kept"), ("default", "kept tight"),
+            ("saddle", "saddle every-step"), ("saddle", "saddle kept"))}
+GAIN = 1.2  # the speed-up that is asked of lower precision
+
+
+def error_class(error, errors):
+    """The smallest of the required errors that `error` meets; None without one."""
+    return min((one for one in errors if error <= one), default=None)
+
+
+def table(scene, made, measured, errors):
+    """A row for each pair and implementation of a scene whose settings were both timed."""
+    mine = measured[(measured.role == "pair") & (measured.status != "dropped")]
+    found = []
+    for kind, pairs in PAIRS.items():
+        for first, second in pairs:
+            both = mine[mine.setting.isin((first, second))]
+            for name, rows in both.groupby("implementation", sort=False):
+                if rows.setting.nunique() == 2:
+                    found.append({"scene": scene, "kind": kind, "first": first, "second": second, "implementation": name}
+                                 | _row(rows, made, errors, (first, second)))
+    return pandas.DataFrame(found)
+
+
+def _row(rows, made, errors, both):
+    named = rows.assign(implementation=rows.setting, environment="")  # processes of one number follow each other
+    lost = rows[rows.status != "ok"]
+    ratio = timing.NONE if len(lost) else timing.ratio(named, both[1], both[0])
+    found = {"ratio": ratio.value, "low": ratio.low, "high": ratio.high, "processes": rows.process.nunique(),
+             "variables": rows.get("variables", pandas.Series(dtype=float)).max(),
+             "reason": f"{lost.iloc[0].setting}: {lost.iloc[0].status}: {lost.iloc[0].reason}" if len(lost) else "",
+             "record": " ".join(dict.fromkeys(rows.record))}
+    for place, setting in zip(("first", "second"), both):
+        mine = rows[(rows.setting == setting) & (rows.status == "ok")]
+        found[f"{place}_us"] = mine.step_us.median()
+        run = _run(made, rows.implementation.iloc[0], setting)
+        if run is None:
+            continue
+        found |= {f"{place}_{key}": run[key] for key in ("status", "error", "passes", "factorizations", "duration")}
+        found[f"{place}_class"] = error_class(run["error"], errors)
+        found["record"] += f" {run['record']}"
+        if run["status"] not in FINISHED and not found["reason"]:
+            found["reason"] = f"{setting}: {run['status']}: {run['reason']}"
+    return found
+
+
+def _run(made, implementation, setting):
+    """The longest run of its own, or None."""
+    chosen = made[(made.implementation == implementation) & (made.setting == setting) & ((made.step / STEP - 1).abs() < 1e-6)]
+    return None if chosen.empty else chosen.sort_values("duration").iloc[-1].to_dict()
+
+
+def same_class(rows):
+    """Whether both errors are known and in the same class."""
+    return (rows.first_class == rows.second_class) & rows.first_class.notna()
+
+
+def gains(rows, goal=GAIN):
+    """Rows in which the second setting is at least `goal` times faster with the same error class, by the whole
+    interval."""
+    return rows[same_class(rows) & (rows.high <= 1 / goal)]

@@ -1,0 +1,125 @@
+# What is simulated, and what its motion is compared with: the N-four-bar and the standard problems of study/scenes.
+#
+# Every reference has an error of its own; no error of a run is shown below it.
+#   four-bar, closed forms  rounding: by how much the solution moves with an ulp of its argument
+#   integrated              by how much a hundred times the tolerance of the integration changes it
+#   extrapolated            by how much Richardson's value changes with one step less
+from dataclasses import dataclass, field
+
+import numpy
+
+from analysis.core.errors import StudyError
+from analysis.core.outcomes import FINISHED, of_run
+from study.scenes import mechanics, metric
+from study.scenes.extrapolate import extrapolate
+from study.scenes.problems import read_list
+from study.scenes.references import CLOSED, EXTRAPOLATED, KNOWN, four_bar, kind
+
+STEPS = tuple(4e-2 / 2**halvings for halvings in range(11))  # s, from where hardly anybody keeps 1e-1 m
+AROUND = (8, 4, 2, 1, 0.5, 0.25)  # a problem's own first step times these
+JUDGED_S = 1e-2  # the error of a four-bar is evaluated once in as much; at every step that is longer than half of it
+SAMPLES = metric.SAMPLES // 8  # of a problem's motion: so that records stay small
+ULP = 2.0**-52
+
+
+@dataclass(frozen=True)
+class Subject:
+    name: str
+    title: str
+    scene: str
+    duration: float
+    steps: tuple           # s, the largest first
+    loops: int | None = None
+    entry: object = field(default=None, compare=False)  # study.scenes.problems.Problem
+
+    @property
+    def unit(self):
+        return "m" if self.loops else "relative"
+
+    @property
+    def base(self):
+        """Options that the problem itself needs."""
+        words = self.entry.settings if self.entry else ()
+        return tuple((name.lstrip("-"), value) for name, value in zip(words[::2], words[1::2]))
+
+    def every(self, step):
+        """Steps from sample to sample; 0 of a four-bar, whose error the program tells."""
+        return 0 if self.loops else round(self.duration / SAMPLES / step)
+
+    def words(self, step, duration=None):
+        """What a run of a step and duration is asked for, besides its setting. A four-bar is judged as often in a run
+        at all steps below 5 ms."""
+        judged = ("--judge-every", f"{max(1, int(JUDGED_S / step + 1e-3))}") if self.loops else ()
+        return ("--step", f"{step:g}", "--duration", f"{duration or self.duration:g}", *judged)
+
+
+def chain(loops, duration, fill=None):
+    """The N-four-bar, judged against the exact motion."""
+    name = f"four-bar:{loops}" + (f",fill={fill:g}" if fill else "")
+    return Subject(name, f"N-four-bar, N = {loops}", name, duration, STEPS, loops)
+
+
+def problem(name):
+    entry = next((one for one in read_list()[1] if one.name == name and not one.scene.startswith("four-bar:")), None)
+    if entry is None:
+        raise StudyError(f"accuracy: columns: '{name}' is no standard problem (study/scenes/problems.yaml) of its own scene")
+    return Subject(name, entry.title, entry.scene, entry.duration, tuple(entry.steps[0] * factor for factor in AROUND),
+                   entry=entry)
+
+
+def of(kind, entry, settings):
+    """The Subject of a column."""
+    return problem(entry["problem"]) if kind == "problem" else chain(entry[kind], settings["duration"])
+
+
+@dataclass(frozen=True)
+class Reference:
+    kind: str           # in words, where it comes from
+    own_error: float
+    origin: str         # of its own error
+    known: dict = None  # {column: values} at the samples of a problem
+
+
+def reference(subject, runs=()):
+    """The Reference of a subject; StudyError if there is none. `runs`: records with the subject's finest step, half and
+    a quarter of it, for what is extrapolated."""
+    if subject.loops:
+        times = numpy.linspace(0, subject.duration, 401)
+        first, second = (four_bar(at, subject.loops) for at in (times * (1 + ULP), times))
+        moved = max(float(numpy.max(numpy.abs(first[name] - second[name]))) for name in ("B0.x", "B0.y"))
+        return Reference("closed form", moved + ULP * (subject.loops + 1), "rounding")
+    times = numpy.linspace(0, subject.duration, SAMPLES + 1)
+    name, judged = subject.entry.known, subject.entry.judged
+    if name == EXTRAPOLATED:
+        known, less = _extrapolated(subject, runs)
+        word, origin = f"extrapolated runs of {runs[0].cell['contenders'][0]} (self-convergence)", "one step less"
+    else:
+        known, word = KNOWN[name](times), kind(name)
+        if name in CLOSED:
+            less, origin = CLOSED[name](times * (1 + ULP)), "rounding"
+        else:
+            with mechanics.tolerance(100 * mechanics.TOLERANCE):
+                less, origin = KNOWN[name](times), "a hundred times the tolerance"
+    known, less = ({column: values for column, values in one.items() if column.split(".")[0] in judged}
+                   for one in (known, less))
+    return Reference(word, metric.errors(less, known)[0], origin, known)
+
+
+def _extrapolated(subject, runs):
+    """({column: values}, the same with one step less)"""
+    lost = next((of_run(one) for one in runs if of_run(one)[0] not in FINISHED), None)
+    if lost or len(runs) < 3:
+        raise StudyError(": ".join(lost) if lost else "its runs were not made")
+    motions = [{column: numpy.array(values) for column, values in one.series.items() if column != "t"} for one in runs]
+    coarse, fine = ({column: extrapolate(first[column], second[column]) for column in first}
+                    for first, second in zip(motions, motions[1:]))
+    return fine, coarse
+
+
+def error(subject, known, record):
+    """The largest position error (m), or the problem's metric (root mean square, relative), of a finished run."""
+    if subject.loops:
+        return record.output["position_error_max"]
+    at = numpy.rint(numpy.array(record.series["t"]) / (subject.duration / SAMPLES)).astype(int)
+    return metric.errors({column: numpy.array(record.series[column]) for column in known.known},
+                         {column: values[at] for column, values in known.known.items()})[0]

@@ -1,0 +1,64 @@
+# The tables of accuracy from its records: a column of the part is a subject with its runs, times and winners.
+import pandas
+
+from analysis.accuracy import pairs, subjects
+from analysis.accuracy.columns import columns
+from analysis.accuracy.points import points, runs, timed
+from analysis.accuracy.winners import LAYERS, meeting, winners
+from analysis.core.errors import StudyError
+from analysis.core.pareto import pareto
+
+
+def build(records, view):
+    found = {"points": [], "winners": [], "pairs": [], "references": [], "left_out": []}
+    for column, (kind, entry) in columns(view.settings).items():
+        subject = subjects.of(kind, entry, view.settings)
+        mine = [record for record in records if record.column == column]
+        if not mine:
+            continue
+        known, row = reference_of(subject, mine)
+        found["references"].append(row)
+        for name, table in of_column(kind, subject, known, mine, view).items():
+            found[name].append(table)
+        found["left_out"] += [{"column": column, "what": record.role, "status": record.status, "reason": record.reason,
+                               "record": record.name} for record in mine if record.status in ("dropped", "refused")]
+    return {name: (pandas.concat(rows, ignore_index=True) if rows and isinstance(rows[0], pandas.DataFrame)
+                   else pandas.DataFrame(rows)) for name, rows in found.items()}
+
+
+def reference_of(subject, records):
+    """(the Reference of a subject or None, its row)"""
+    finest = sorted((record for record in records if record.role == "reference"),
+                    key=lambda record: -float(record.cell["settings"][record.cell["settings"].index("--step") + 1]))
+    row = {"subject": subject.name, "title": subject.title, "unit": subject.unit, "duration": subject.duration,
+           "record": " ".join(record.name for record in finest or records[:1])}
+    try:
+        known = subjects.reference(subject, finest)
+    except StudyError as error:
+        return None, row | {"reference": f"none: {error}"}
+    return known, row | {"reference": known.kind, "own_error": known.own_error, "own_error_from": known.origin}
+
+
+def of_column(kind, subject, known, records, view):
+    """{table: DataFrame} of one column."""
+    made, measured, errors = runs(records, subject, known), timed(records), view.settings["errors"]
+    named = {"subject": subject.name, "loops": subject.loops}
+    if kind == "pairs":
+        table = pairs.table(subject.scene, made, measured, errors)
+        return {"pairs": table.assign(**named)} if len(table) else {}
+    table = points(made, measured)
+    libraries = view.registry.libraries
+    for layer in LAYERS:
+        table[f"front_{layer}"] = False
+    for scene, rows in table.groupby("scene", sort=False):
+        for layer in LAYERS:
+            timed_ones = meeting(rows, float("inf"))
+            chosen = timed_ones[timed_ones.implementation.isin(libraries)] if layer == "libraries" else timed_ones
+            table.loc[pareto(chosen), f"front_{layer}"] = True
+    won = winners(table, measured, errors, libraries)
+    fills = {scene: rows.fill.dropna().median() for scene, rows in table.groupby("scene")}
+    for one in (table, won):
+        one["fill_asked"] = [float(scene.partition("fill=")[2] or "nan") for scene in one.scene]
+    won["fill"] = won.scene.map(fills)
+    won["variables"] = table.variables.max()
+    return {"points": table.assign(library=table.implementation.isin(libraries), **named), "winners": won.assign(**named)}

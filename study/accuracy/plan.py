@@ -1,0 +1,26 @@
+# Error against time: for each subject the curves of all settings, the times of what may be fastest; pairs of settings.
+from analysis.accuracy.columns import columns as listed
+from analysis.core.errors import StudyError
+
+SETTINGS = {"duration": float,  # s simulated of the N-four-bar
+            "longest": float,   # s of a run: one that is predicted to take longer is not made
+            "processes": list,  # of a point that may be fastest: at least, and at most where that leaves it open
+            "settings": list,   # names in study/settings.yaml; none: all
+            "errors": list,     # required, m: the most telling first
+            "columns": list}
+
+
+def columns(settings, studyset):
+    found = {name: float(entry["seconds"]) for name, (_, entry) in listed(settings).items()}
+    if sum(found.values()) > settings["seconds"]:
+        raise StudyError(f"accuracy: its columns add up to {sum(found.values()):g} s, more than {settings['seconds']:g} s")
+    return found
+
+
+def run(lab, column):
+    from study.accuracy import pairs, work  # these need modules that set-up may have installed
+    kind, entry = listed(lab.settings)[column]
+    if kind == "pairs":
+        pairs.run(lab, entry)
+    else:
+        work.run(lab, kind, entry)

@@ -1,0 +1,94 @@
+# What a column of accuracy runs: motions of a subject (untimed), and points of these in timed processes.
+from analysis.accuracy import points, subjects
+from analysis.core.errors import StudyError
+from study.core import timing
+from study.core.cell import Cell
+from study.core.setting import read_settings
+
+VALUES = 1e5      # steps of a stretch times variables, at most
+OPERATIONS = 2e9  # and times the square of a filled row: a dense step takes longer
+LEAST = 20        # steps of a stretch
+PATIENCE = 0.3    # s: whose first stretch takes longer is not timed
+BEHIND = 6        # times the fastest of a look: whoever is slower is not timed there
+SAMPLES, LOOKS = 6, 3  # of a process and contender: where times are compared, and in a look
+CAREFUL = 3  # times the time of a run, and of starting it, is its limit: predictions may be wrong
+
+
+class Runs:
+    """A subject in a column, with the records so far."""
+
+    def __init__(self, lab, kind, entry):
+        self.lab, self.subject = lab, subjects.of(kind, entry, lab.settings)
+        chosen = lab.settings["settings"]
+        self.settings = {one.name: one for one in read_settings() if not chosen or one.name in chosen}
+        unknown = set(chosen) - set(self.settings)
+        if unknown or "default" not in self.settings:
+            raise StudyError(f"accuracy: settings: unknown, or without default: {', '.join(sorted(unknown)) or chosen}")
+        own = [one for one in lab.contenders if one.variant in lab.registry.own]
+        self.layers = {name: group for name, group in (
+            ("libraries", [one for one in lab.contenders if one not in own]), ("own", own)) if group}
+        self.longest, self.records, self.known = lab.settings["longest"], [], None
+        self.chosen = {}  # {scene: {(setting, step): contenders that are timed}}
+
+    def serving(self, name, contenders):
+        return [one for one in contenders if self.lab.registry.serves(one.variant, *self.settings[name].needs)]
+
+    def refer(self, one):
+        """Makes the reference; what is extrapolated is simulated by the contender `one`."""
+        finest = self.subject.steps[-1]
+        cells = [self._cell(one, "default", finest / divisor, self.subject.scene, "reference", seconds=300)
+                 for divisor in (1, 2, 4) if self.subject.entry and self.subject.entry.known == "extrapolated"]
+        try:
+            self.known = subjects.reference(self.subject, self.lab.run(cells))
+        except StudyError:  # said in references.csv: no error is known, nobody is timed
+            self.known = None
+
+    def simulate(self, jobs):
+        """Runs of (contender, setting, step, scene, duration), on all cores, as long as the budget lasts."""
+        self.records += self.lab.run([self._cell(one, name, step, scene, f"run/{self.settings[name].file_name}", duration)
+                                      for one, name, step, scene, duration in jobs], drop=True)
+
+    def leave_out(self, one, name, step, reason):
+        """The record of a run that is not made."""
+        cell = self._cell(one, name, step, self.subject.scene, f"run/{self.settings[name].file_name}")
+        self.records.append(self.lab.skip(cell, "excluded", reason))
+
+    def _cell(self, one, name, step, scene, role, duration=None, seconds=None):
+        words = (*self.settings[name].words(self.subject.base), *self.subject.words(step, duration))
+        return Cell("simulate", scene, (one,), words, role, seconds=seconds or CAREFUL * (1 + self.longest),
+                    keep=() if self.subject.loops else ("outputs",), every=self.subject.every(step))
+
+    def time(self, role, scene, name, step, contenders, processes, dense=False):
+        """Timed processes in which the contenders of a point take turns; role: "look", "time" or "pair"."""
+        words = (*self.settings[name].words(self.subject.base), "--step", f"{step:g}", "--start", 0,
+                 "--steps", self.stretch(scene, step, dense), "--patience", PATIENCE)
+        words += ("--slower-than", BEHIND) if role != "time" else ()
+        self.records += timing.measure(
+            self.lab, scene, contenders, processes=processes, repetitions=LOOKS if role == "look" else SAMPLES,
+            settings=words, role=f"{role}/{self.settings[name].file_name}", seconds=60, drop=True)
+
+    def stretch(self, scene, step, dense=False):
+        """Steps from the start that are timed: of the whole run, but no more than take a few hundredths of a second."""
+        n = 2 * self.subject.loops + 2 if self.subject.loops else 100
+        fill = 1.0 if dense else float(scene.partition("fill=")[2] or 0)
+        most = min(VALUES / n, OPERATIONS / (n**3 * fill**2) if fill else VALUES)
+        return int(max(LEAST, min(most, round(self.subject.duration / step))))
+
+    def made(self):
+        return points.runs(_once(self.records), self.subject, self.known)
+
+    def measured(self):
+        return points.timed(_once(self.records))
+
+    def points(self):
+        return points.points(self.made(), self.measured())
+
+    def duration(self, seconds):
+        """The longest duration of a run of its own, or None; `seconds`: of computation for a simulated second. After one
+        second the first singular position has been passed, before which all are accurate."""
+        whole = self.subject.duration
+        return next((one for one in (whole, min(1.0, whole)) if one * seconds <= self.longest), None)
+
+
+def _once(records):
+    return list({record.name: record for record in records}.values())

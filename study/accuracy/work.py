@@ -1,0 +1,121 @@
+# A subject: curves of all settings; of the points on them that may be fastest at a required error, first a look at
+# everyone's time, then runs of their own, then processes in turn. On an N-four-bar the same at larger fills.
+#
+# Artificial fill is stored zeros: it leaves the motion as it is, so that the curves at the mechanism's own fill tell
+# which steps to try. Whoever is ranked has met the error in a run of its own on that very scene.
+from analysis.accuracy import subjects
+from analysis.accuracy.winners import NEAR, meeting, winners
+from analysis.core.outcomes import FINISHED
+from analysis.core.pareto import pareto
+from study.accuracy import curves
+from study.accuracy.runs import Runs
+
+TRIED = {False: 1.6, True: 3.0}  # by whether fill is artificial: settings up to this times the least time on the curves
+MOST = 5       # of these, for each required error and layer
+JUDGED = 1.5   # times the fastest in the look: they run the motion themselves
+SPARE = 0.02   # of the tangent's positions: closer to its own fill a larger one is none of its own
+
+
+def run(lab, kind, entry):
+    runs = Runs(lab, kind, entry)
+    scene = runs.subject.scene
+    speed = curves.first_look(runs, scene)
+    first = next((group[0] for group in speed.values() if group), None)
+    if first is None:
+        return
+    runs.refer(first)
+    if runs.known is None:
+        return
+    lab.tell("curves")
+    found = curves.follow(runs, speed)
+    if runs.subject.loops:
+        found = curves.between(runs, found, speed)
+    scenes = {scene: speed}
+    _measure(runs, scene, speed, found)
+    for fill in entry.get("fills", ()):
+        if fill > runs.made().fill.min() + SPARE:
+            filled = subjects.chain(runs.subject.loops, runs.subject.duration, fill).scene
+            scenes[filled] = curves.first_look(runs, filled)
+            _measure(runs, filled, scenes[filled], found)
+    least, most = lab.settings["processes"]
+    for number in range(least + 1, most + 1):
+        for one in scenes:
+            _rounds(runs, one, number, open_only=True)
+
+
+def _measure(runs, scene, speed, found):
+    """Looks, own runs and the first processes of one scene."""
+    runs.lab.tell(scene)
+    for layer, points in _wanted(runs, found, scene != runs.subject.scene).items():
+        for name, step in points:
+            contenders = runs.serving(name, speed[layer])
+            if contenders:
+                runs.time("look", scene, name, step, contenders, 1)
+    _judge(runs, scene)
+    _rounds(runs, scene, runs.lab.settings["processes"][0])
+
+
+def _wanted(runs, found, filled):
+    """{layer: [(setting, step)]} worth a look: for each required error the longest steps of the fastest settings, and at
+    own fill the front of the layer's curves."""
+    wanted = {}
+    for layer in runs.layers:
+        chosen = []
+        for error in runs.lab.settings["errors"]:
+            rows = filter(None, (curves.meeting(rows, error) for key, rows in found.items() if key[0] == layer))
+            rows = sorted(rows, key=lambda row: row["time"])[:MOST]
+            chosen += [row for row in rows if row["time"] <= TRIED[filled] * rows[0]["time"]]
+        if not filled:
+            made = runs.made()
+            mine = made[made.implementation.isin([one.name for one in runs.layers[layer]]) & (made.scene == runs.subject.scene)]
+            chosen += mine.loc[pareto(mine)].to_dict("records")
+        wanted[layer] = list(dict.fromkeys((row["setting"], row["step"]) for row in chosen))
+    return wanted
+
+
+def _judge(runs, scene):
+    """Runs of their own, where they have none, of those near the fastest in the look."""
+    table = runs.points()
+    table = table[(table.scene == scene) & table.time.notna() & table.error.notna()
+                  & table.status.isin((*FINISHED, "not-judged")) & table.time_from.isin(("look", "rounds"))]
+    names = {one.name: one for group in runs.layers.values() for one in group}
+    jobs = []
+    for error in runs.lab.settings["errors"]:
+        for group in runs.layers.values():
+            mine = table[table.implementation.isin([one.name for one in group]) & (table.error <= error)]
+            near = mine[mine.time <= JUDGED * mine.time.min()]
+            for row in near[near.status == "not-judged"].itertuples():
+                duration = runs.duration(row.time)
+                if duration:
+                    jobs.append((names[row.implementation], row.setting, row.step, scene, duration))
+    runs.simulate(dict.fromkeys(jobs))
+
+
+def _rounds(runs, scene, processes, open_only=False):
+    """Processes of the points that are near the fastest of their layer, contenders of one setting and step together; with
+    `open_only` of those alone whose winner is not settled."""
+    table = runs.points()
+    table = table[table.scene == scene]
+    if table.empty:
+        return
+    errors, names = runs.lab.settings["errors"], {one.name: one for group in runs.layers.values() for one in group}
+    if open_only:
+        won = winners(table, runs.measured(), errors, runs.lab.registry.libraries)
+        errors = [error for error in errors if (won[won.required == error].settled == False).any()]  # noqa: E712
+    points = {}
+    for error in errors:
+        for group in runs.layers.values():
+            for row in near(table[table.implementation.isin([one.name for one in group])], error).itertuples():
+                points.setdefault((row.setting, row.step), []).append(row.implementation)
+    chosen = runs.chosen.setdefault(scene, {})
+    for (name, step), contenders in points.items():
+        # The same contenders in all processes, in the order of the registry.
+        group = chosen.setdefault((name, step), [one for one in names.values() if one.name in contenders])
+        runs.time("time", scene, name, step, group, processes)
+
+
+def near(table, error):
+    """The points that meet an error in nearly the least time, and the fastest of another implementation."""
+    found = meeting(table, error)
+    others = found[found.implementation != found.implementation.iloc[0]].head(1).index if len(found) else []
+    return found[(found.time <= NEAR * found.time.min()) | found.index.isin(others)]
