@@ -34,6 +34,9 @@ def main(arguments):
     except StudyError as error:
         print(f"study/{command}: {error}", file=sys.stderr)
         return 2
+    except BrokenPipeError:  # of `study/run --list | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 128 + signal.SIGPIPE
     except KeyboardInterrupt as cause:
         print("\ninterrupted; what is finished is kept. To resume:\n  "
               + shlex.join([f"study/{command}", *rest]), file=sys.stderr)
