@@ -156,6 +156,15 @@ def rank(rows, names=None):
     first = chosen[0]
     to_first = {name: ratio(rows, name, first).value for name in chosen}
     order = sorted((name for name in chosen if not math.isnan(to_first[name])), key=to_first.get)
-    winner = order[0]
-    return Ranking(winner, {name: Ratio(1.0, 1.0, 1.0) if name == winner else ratio(rows, name, winner)
-                            for name in order})
+    winner, tried = order[0], set()
+    while True:  # they may share other processes with the winner than with the first
+        ratios = {name: Ratio(1.0, 1.0, 1.0) if name == winner else ratio(rows, name, winner) for name in order}
+        # Who shares no process with the winner is compared through the first, and nothing is claimed of it.
+        ratios = {name: Ratio(to_first[name] / to_first[winner], 0.0, math.inf) if math.isnan(one.value) else one
+                  for name, one in ratios.items()}
+        tried.add(winner)
+        faster = min((name for name in order if name not in tried and ratios[name].value < 1),
+                     key=lambda name: ratios[name].value, default=None)
+        if faster is None:
+            return Ranking(winner, dict(sorted(ratios.items(), key=lambda one: (one[0] != winner, one[1].value))))
+        winner = faster
