@@ -1,42 +1,55 @@
 # Times at equal error: each engine's fastest run that meets an error, and ours at that run's error or a smaller one.
 #
-# engines.csv and work.csv hold single runs, which choose the candidates; rounds.csv holds the times that are compared.
-import numpy
+# Runs that were not timed alone choose the candidates; the common rounds have the times that are compared.
 import pandas
 
-from analysis.accuracy.front import finished
-from analysis.statistics import median, ratio_interval
+from analysis.core import timing
+from analysis.core.pareto import finished
+from analysis.engines.runs import ENGINE, NATIVE, OURS, key
 
-LIMITS = tuple(10.0**-power for power in range(1, 13))
-PAPER = ("default", "paper")  # settings of study/settings.yaml that are the paper's scheme
-SCOPES = {"all": None, "paper": PAPER}
-NEAR = 1.3   # single times are this uncertain
-MOST = 3     # candidates of ours for one run of an engine
-ENGINE, OURS = "engine", "ours"
+LIMITS = tuple(10.0**-power for power in range(1, 14))
+PAPER = ("penalty", "penalty, penalty 1e8")  # settings that are the paper's scheme
+CHAINS, FRONTS = "compiled_ldl/chains", "compiled_ldl/fronts"
+SIDES = {"chains": "our code for chains", "fronts": "our code for any scene", "library": "the fastest library",
+         "paper": "the paper's scheme"}
+NEAR = 1.3   # untimed times are this uncertain
+MOST = 2     # candidates of a side for one run of an engine
+COLUMNS = ("subject", "engine", "limit", "side", "engine_setting", "over", "engine_value", "engine_status",
+           "engine_error", "engine_time", "implementation", "setting", "step", "error", "time", "ratio", "low", "high",
+           "reason", "record")
 
 
-def of_scope(ours, scope):
-    return ours if SCOPES[scope] is None else ours[ours.setting.isin(SCOPES[scope])]
+def of_side(ours, side, own):
+    """Rows of ours that belong to a side. `own`: names of the variants that stand on no library."""
+    if side == "paper":
+        return ours[ours.setting.isin(PAPER)]
+    if side == "library":
+        return ours[~ours.name.isin(own)]
+    return ours[ours.name == {"chains": CHAINS, "fronts": FRONTS}[side]]
 
 
-def candidates(engines, ours):
-    """(index of engines' rows, index of ours) of one subject that may be the fastest at some error."""
+def candidates(engines, ours, own):
+    """Rows, of one subject, that may be the fastest of theirs at some error, and those of ours that may be at these."""
     theirs, mine = _candidates(engines), set()
-    for error in engines.loc[theirs].error:
-        for scope in SCOPES:
-            done = finished(of_scope(ours, scope))
+    for error in engines.error[theirs]:
+        for side in SIDES:
+            done = finished(of_side(ours, side, own))
             mine |= set(_near(done[done.error <= error]))
-    return theirs, sorted(mine)
+    return engines.loc[theirs], ours.loc[sorted(mine)]
 
 
-def errors_of(engines):
-    """Of the runs of one subject that may be an engine's fastest at some error, the largest first."""
-    return sorted(set(engines.loc[_candidates(engines)].error), reverse=True)
+def least_error(engines):
+    """The smallest error of a candidate of theirs: ours needs no smaller one. 0 without any."""
+    found = _candidates(engines)
+    return engines.error[found].min() if found else 0.0
 
 
 def _candidates(engines):
-    found = set()
-    for _, rows in finished(engines).groupby("engine"):
+    found, done = set(), finished(engines)
+    for name, rows in done.groupby("name"):
+        if name.endswith(NATIVE):  # runs of those that were chosen already
+            found |= set(rows.index)
+            continue
         for limit in LIMITS:
             found |= set(_near(rows[rows.error <= limit]))
     return sorted(found)
@@ -50,44 +63,54 @@ def _near(rows):
     return list(rows.index[:MOST])
 
 
-def table(engines, ours, rounds):
-    """DataFrame, a row for each subject, engine, error that it reaches, and scope of ours. `ratio`: the engine's time
-    over ours; empty where ours does not reach the error."""
-    samples = _samples(rounds)
+def table(engines, ours, rounds, own):
+    """A row for each subject, engine, error that it reaches, and side of ours. `ratio`: the engine's time over ours;
+    empty, with the reason, where ours does not reach the error."""
     rows = []
     for subject, theirs in engines.groupby("subject", sort=False):
-        mine = _timed(ours[ours.subject == subject], OURS, samples)
-        for engine, of_engine in _timed(theirs, ENGINE, samples).groupby("engine", sort=False):
+        timed = samples(rounds[rounds.subject == subject])
+        mine = ours[ours.subject == subject]
+        sides = {side: (every, _timed(every, OURS, timed))
+                 for side in SIDES for every in [of_side(mine, side, own)]}
+        for name, of_engine in _timed(theirs, ENGINE, timed).groupby("name", sort=False):
             for limit, best in _reached(of_engine):
-                for scope in SCOPES:
-                    rows.append(_row(subject, engine, limit, best, scope,
-                                     _fastest(of_scope(mine, scope), best.error), samples))
-    return pandas.DataFrame(rows, columns=COLUMNS)
+                for side, (every, compared) in sides.items():
+                    rows.append(_row(subject, name, limit, best, side, _fastest(compared, best.error), every, timed))
+    return pandas.DataFrame(rows, columns=list(COLUMNS))
 
 
-def _samples(rounds):
-    """{key of a run: {round: array of its time}}"""
-    found = {}
-    for row in rounds.itertuples():
-        if numpy.isfinite(row.time):
-            found.setdefault((row.subject, row.side, row.name, row.setting, f"{row.value:g}"), {})[
-                row.round] = numpy.array([row.time])
-    return found
+def native(engines, rounds):
+    """A row for each run of an engine that was timed both ways: Debian's build over that with our flags."""
+    found = []
+    for subject, theirs in engines.groupby("subject", sort=False):
+        timed = samples(rounds[rounds.subject == subject])
+        done = _timed(theirs, ENGINE, timed)
+        for row in done[done.name.str.endswith(NATIVE)].to_dict("records"):
+            generic = row | {"name": row["name"].removesuffix(NATIVE)}
+            ratio = timing.ratio(timed, key(generic), row["key"])
+            if ratio.value == ratio.value:
+                found.append({"subject": subject, "engine": generic["name"], "setting": row["setting"], "over": row["over"],
+                              "value": row["value"], "native_time": row["time"], "ratio": ratio.value, "low": ratio.low,
+                              "high": ratio.high, "record": row["record"]})
+    return pandas.DataFrame(found)
 
 
-def key(side, row):
-    """Of a row of engines.csv or work.csv, what identifies its run in rounds.csv."""
-    name, value = (row.engine, row.value) if side == ENGINE else (row.implementation, row.step)
-    return row.subject, side, name, row.setting, f"{value:g}"
+def samples(rounds):
+    """Rows as analysis/core/timing.py has them, a process a round."""
+    done = finished(rounds.assign(error=0.0))
+    return pandas.DataFrame({"implementation": [key(row) for row in done.to_dict("records")], "environment": "",
+                             "process": done["round"].to_list(), "status": "ok", "step_us": done.time.to_list(),
+                             "samples": [(time,) for time in done.time]})
 
 
-def _timed(rows, side, samples):
+def _timed(rows, side, timed):
     """Finished rows that were timed in the rounds, with the median of these times."""
     done = finished(rows)
-    keys = [key(side, row) for row in done.itertuples()]
+    medians = timed.groupby("implementation").step_us.median()
+    keys = [key(row | {"side": side}) for row in done.to_dict("records")]
     done = done.assign(key=pandas.Series(keys, index=done.index, dtype=object))
-    done = done[[one in samples for one in keys]]
-    return done.assign(time=[median(numpy.concatenate(list(samples[one].values()))) for one in done.key])
+    done = done[done.key.isin(medians.index)]
+    return done.assign(time=done.key.map(medians).astype(float))
 
 
 def _reached(rows):
@@ -98,7 +121,7 @@ def _reached(rows):
         best = _fastest(rows, limit)
         if best is None:
             return
-        if last is None or best.key != last:
+        if best.key != last:
             yield min(one for one in LIMITS if best.error <= one), best
         last = best.key
 
@@ -108,19 +131,26 @@ def _fastest(rows, error):
     return None if meeting.empty else meeting.loc[meeting.time.idxmin()]
 
 
-COLUMNS = ("subject", "engine", "limit", "scope", "engine_setting", "over", "engine_value", "engine_status",
-           "engine_error", "engine_time", "implementation", "setting", "step", "error", "time", "ratio", "low",
-           "high", "engine_raw_file", "engine_command", "raw_file", "command")
-
-
-def _row(subject, engine, limit, best, scope, mine, samples):
-    found = {"subject": subject, "engine": engine, "limit": limit, "scope": scope,
-             "engine_setting": best.setting, "over": best.over, "engine_value": best.value,
-             "engine_status": best.status, "engine_error": best.error, "engine_time": best.time,
-             "engine_raw_file": best.raw_file, "engine_command": best.command}
+def _row(subject, engine, limit, best, side, mine, every, timed):
+    found = {"subject": subject, "engine": engine, "limit": limit, "side": side, "engine_setting": best.setting,
+             "over": best.over, "engine_value": best.value, "engine_status": best.status, "engine_error": best.error,
+             "engine_time": best.time, "record": best.record, "reason": ""}
     if mine is None:
-        return found
-    ratio, low, high = ratio_interval(samples[best.key], samples[mine.key])
-    return found | {"ratio": ratio, "low": low, "high": high} | {
-        column: mine[column] for column in ("implementation", "setting", "step", "error", "time", "raw_file",
-                                            "command")}
+        return found | {"reason": unreached(every, best.error)}
+    ratio = timing.ratio(timed, best.key, mine.key)
+    return found | {"implementation": mine["name"], "setting": mine.setting, "step": mine.value, "error": mine.error,
+                    "time": mine.time, "ratio": ratio.value, "low": ratio.low, "high": ratio.high,
+                    "record": f"{best.record} {mine.record}"}
+
+
+def unreached(rows, error):
+    """Why no run of a side meets `error`."""
+    if rows.empty:
+        return "none of it takes part"
+    done = finished(rows)
+    if done.empty:
+        counts = rows.status.value_counts()
+        return "lost: " + ", ".join(f"{count} {status}" for status, count in counts.items())
+    if (done.error <= error).any():
+        return "not timed in the rounds"
+    return f"its smallest error is {done.error.min():.2g} m"

@@ -1,0 +1,97 @@
+# Error against time for a simulated second: each engine's Pareto front beside ours, a panel a subject.
+import matplotlib.pyplot as plt
+import numpy
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from analysis.core.outcomes import FINISHED
+from analysis.core.pareto import finished, pareto
+from analysis.core.style import GREY, MARKERS, missing
+from analysis.engines.equal_error import SIDES, of_side
+from analysis.engines.runs import NATIVE
+from analysis.engines.subjects import Subject
+
+COLOURS = {"simbody": "#0072B2", "mujoco": "#D55E00", "ode": "#009E73", "bullet": "#CC79A7"}
+NAMES = {"simbody": "Simbody", "mujoco": "MuJoCo", "ode": "Open Dynamics Engine", "bullet": "Bullet"}
+LINES = {"chains": {"color": "black", "linewidth": 2.2}, "fronts": {"color": "black", "linewidth": 1.4, "linestyle": (0, (4, 1.5))},
+         "library": {"color": "#5B3A9E", "linewidth": 1.8}, "paper": {"color": "#8A8A00", "linewidth": 1.4, "linestyle": (0, (1, 1))}}
+NOT_MADE = ("unavailable", "not-reached", "dropped")
+
+
+def draw(tables, view):
+    subjects = [Subject(name) for name in dict.fromkeys(tables["ours"].subject)]
+    found = {}
+    for name, chosen in (("singular", [one for one in subjects if not one.regular]),
+                         ("regular", [one for one in subjects if one.regular])):
+        found[name] = panels(tables, chosen, view.registry.own)
+    return found
+
+
+def panels(tables, subjects, own):
+    """The figure of some subjects."""
+    if not subjects:
+        figure, axes = plt.subplots(figsize=(6, 1.2))
+        missing(axes, "Not measured.")
+        return figure
+    engines, ours = tables["engines"], tables["ours"].rename(columns={"implementation": "name"})
+    columns = min(3, len(subjects))
+    lines = -(-len(subjects) // columns)
+    figure, grid = plt.subplots(lines, columns, figsize=(5.2 * columns + 0.8, 4.1 * lines + 0.9), squeeze=False,
+                                sharex=True, sharey=True, constrained_layout=True)
+    for axes in grid.flat[len(subjects):]:
+        axes.set_axis_off()
+    for place, (axes, subject) in enumerate(zip(grid.flat, subjects)):
+        _panel(axes, engines[engines.subject == subject.name], ours[ours.subject == subject.name], own)
+        axes.set_title(subject.title)
+        axes.set(xscale="log", yscale="log")
+        axes.grid(True)
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(LogLocator(numticks=15))
+            axis.set_minor_formatter(NullFormatter())
+        if place + columns >= len(subjects):
+            axes.tick_params(labelbottom=True)
+            axes.set_xlabel("computation for a simulated second, s")
+    for axes in grid[:, 0]:
+        axes.set_ylabel("largest position error, m")
+    figure.legend(handles=_key([one for one in dict.fromkeys(engines.engine)]), loc="upper center",
+                  bbox_to_anchor=(0.5, 0.0), ncols=min(4, columns + 1), fontsize=9, handlelength=2.4)
+    figure.suptitle("Error against time: engines and ours", x=0.01, ha="left", fontsize=12)
+    return figure
+
+
+def _panel(axes, engines, ours, own):
+    for place, (engine, rows) in enumerate(engines[~engines.engine.str.endswith(NATIVE)].groupby("engine", sort=False)):
+        colour, marker = look(engine, place)
+        done = finished(rows)
+        axes.plot(done.time, done.error, linestyle="none", marker=marker, markersize=3, color=colour, alpha=0.3,
+                  markeredgewidth=0)
+        front = rows.loc[pareto(rows)]
+        axes.plot(front.time, front.error, color=colour, marker=marker, markersize=5.5, linewidth=1.6,
+                  markeredgecolor="white", markeredgewidth=0.6)
+        lost = rows[~rows.status.isin((*FINISHED, *NOT_MADE)) & (rows.time > 0)]
+        # A share of the height each, so that engines do not cover each other's crosses.
+        axes.plot(lost.time, numpy.full(len(lost), 0.985 - 0.025 * place), "x", color=colour, markersize=4,
+                  transform=axes.get_xaxis_transform(), clip_on=False)
+    for side, line in LINES.items():
+        rows = of_side(ours, side, own)
+        front = rows.loc[pareto(rows)]
+        axes.plot(front.time, front.error, **line)
+
+
+def look(engine, place):
+    return COLOURS.get(engine, GREY), MARKERS[place % len(MARKERS)]
+
+
+def title(engine):
+    """ "Open Dynamics Engine, with our flags" """
+    return NAMES.get(engine.removesuffix(NATIVE), engine) + (", with our flags" if engine.endswith(NATIVE) else "")
+
+
+def _key(engines):
+    entries = [Line2D([], [], label=f"ours: {SIDES[side]}", **line) for side, line in LINES.items()]
+    for place, engine in enumerate(sorted(one for one in engines if not one.endswith(NATIVE))):
+        colour, marker = look(engine, place)
+        entries.append(Line2D([], [], color=colour, marker=marker, label=f"{title(engine)}: Pareto front"))
+    return [*entries, Line2D([], [], color=GREY, marker="o", markersize=3, alpha=0.4, linestyle="none",
+                             label="other runs of an engine"),
+            Line2D([], [], color=GREY, marker="x", linestyle="none", label="upper edge: lost the motion")]

@@ -1,0 +1,26 @@
+# Curves of theirs and ours, the common rounds, and what follows at equal error, from the records.
+import pandas
+
+from analysis.engines import equal_error
+from analysis.engines.runs import ENGINE, OURS, ROUND, row
+
+COLUMNS = ("subject", "side", "name", "setting", "over", "value", "status", "reason", "error", "time", "round", "repeats",
+           "seconds", "record")
+
+
+def build(records, view):
+    found = {role: frame([row(one) for one in records if one.role == role]) for role in (ENGINE, OURS, ROUND)}
+    engines, ours, rounds = (one.sort_values(["subject", "name", "setting", "over", "value", "round"], kind="stable",
+                                             ascending=[True, True, True, True, False, True]) for one in found.values())
+    compared = equal_error.table(engines, ours, rounds, view.registry.own)
+    beside = equal_error.native(engines, rounds)
+    return {"engines": engines.drop(columns=["side", "round", "seconds"]).rename(columns={"name": "engine"}),
+            "ours": ours.drop(columns=["side", "round", "seconds", "over"]).rename(
+                columns={"name": "implementation", "value": "step"}),
+            "rounds": rounds[list(COLUMNS)].drop(columns=["error", "seconds"]), "equal_error": compared, "native": beside}
+
+
+def frame(rows):
+    """Rows of runs as a table, which has its columns even if there is no row."""
+    found = pandas.DataFrame(rows, columns=None if rows else list(COLUMNS))
+    return found.assign(**{name: pandas.to_numeric(found[name]).astype(float) for name in ("error", "time", "value")})

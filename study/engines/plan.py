@@ -1,0 +1,128 @@
+# The N-four-bar and a double pendulum in the engines that people use, beside ours: curves of error against time, then
+# common rounds of what may be the fastest at some error.
+import json
+import random
+from dataclasses import dataclass, replace
+
+from analysis.core.files import ROOT
+from analysis.engines.equal_error import candidates, least_error
+from analysis.engines.runs import ENGINE, OURS, ROUND, row
+from analysis.engines.subjects import JUDGED_S, Subject
+from analysis.engines.tables import frame
+from study.core.cell import Cell
+from study.core.setting import read_settings
+from study.engines.curves import Curve, follow
+from study.engines.settings import read_list
+
+SETTINGS = {"subjects": list,      # names: analysis/engines/subjects.py
+            "engine_settings": int,  # of each engine, the first of settings.yaml
+            "implementations": list,  # ours
+            "settings": list,      # ours: names of study/settings.yaml
+            "octave": int,         # steps of ours from one to half of it
+            "time_limit": float,   # s: a run that is predicted to take longer is not made
+            "rounds": int}
+STEPS = 8e-2, 1e-5   # s, the longest and the shortest of ours
+CURVES = 0.6         # of a column's budget; the rest is for the rounds
+SHORT = 0.02         # s of steps: a shorter run says more of the machine's interruptions than of itself
+REPEATS = 5          # of such a run in one process; the least time of each of its pieces counts
+SEED = 20080101
+PAPER = ("default", "paper")  # of ours: the paper's scheme, which is to be followed however far from others it is
+PROGRAMS = "study/engines"                              # in a build
+NATIVE_PROGRAM = "../build-engines/study/engines/engine_ode"  # as seen from the build; study/engines/native makes it
+SET_UP = "study/setup --engines"
+
+
+def columns(settings, studyset):
+    return {name: settings["seconds"] / len(settings["subjects"]) for name in settings["subjects"]}
+
+
+def run(lab, column):
+    subject, missing = Subject(column), unavailable()
+    for engine in read_list():
+        if missing[engine]:
+            lab.skip(Cell("", program=f"{PROGRAMS}/engine_{engine}", role=ENGINE), "unavailable", missing[engine])
+    if all(missing.values()):
+        return  # nothing to be beside
+    bench = Bench(lab, subject)
+    engines = bench.engines([engine for engine in read_list() if not missing[engine]])
+    ours = bench.ours(least_error(engines))
+    bench.rounds(engines, ours)
+
+
+def unavailable():
+    """{engine: why its program cannot be run, or ""}"""
+    path = ROOT / "build" / PROGRAMS / "engines.json"
+    if not path.exists():
+        return {engine: f"its program is not built: {SET_UP}" for engine in read_list()}
+    found = json.loads(path.read_text())
+    return {engine: found.get(engine, f"its program is not built: {SET_UP}") for engine in read_list()}
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Runs of one subject."""
+    lab: object
+    subject: Subject
+
+    def engines(self, names):
+        """Their curves, all settings at once; then, of ODE, the candidates in the build with our flags."""
+        listed, limit = read_list(), self.lab.settings["time_limit"]
+        curves = [Curve(engine, [(value, self.engine_cell(f"{PROGRAMS}/engine_{engine}", setting.words(value)))
+                                 for value in setting.values], {"step": 2.0, "accuracy": 2.5}[setting.over])
+                  for place in range(self.lab.settings["engine_settings"]) for engine in names
+                  for setting in listed[engine][place:place + 1]]
+        found = frame(follow(self.lab, curves, limit, 0.0, CURVES))
+        if "ode" not in names:
+            return found
+        if not (ROOT / "build" / NATIVE_PROGRAM).exists():
+            self.lab.skip(Cell("", program=NATIVE_PROGRAM, role=ENGINE), "unavailable",
+                          "not built with our flags: study/engines/native")
+            return found
+        chosen, _ = candidates(found[found.name == "ode"], frame([]), ())
+        cells = [replace(cell, program=NATIVE_PROGRAM) for cell in chosen.get("cell", ())]
+        return frame([*found.to_dict("records"), *(
+            row(record) | {"cell": cell} for cell, record in zip(cells, self.lab.run(cells)))])
+
+    def engine_cell(self, program, settings):
+        model = ("--loops", self.subject.loops) if self.subject.loops else ("--pendulum",)
+        return Cell("", program=program, role=ENGINE, seconds=1.0 + 3 * self.lab.settings["time_limit"],
+                    settings=(*model, "--duration", f"{self.subject.duration:g}", *settings, "--json"))
+
+    def ours(self, least):
+        """Our curves, down to the `least` error that is asked for."""
+        wanted = {one.name: one for one in read_settings() if one.name in self.lab.settings["settings"]}
+        curves = [Curve(f"{variant} {name in PAPER}", [(step, self.our_cell(one, wanted[name], step)) for step in self.steps()],
+                        2 ** (1 / self.lab.settings["octave"]))
+                  for name in self.lab.settings["settings"] for variant in self.lab.settings["implementations"]
+                  for one in [self.lab.contender(variant)] if one and self.lab.registry.serves(variant, *wanted[name].needs)]
+        return frame(follow(self.lab, curves, self.lab.settings["time_limit"], least, CURVES))
+
+    def steps(self):
+        """A fixed ladder."""
+        octave, step, found = self.lab.settings["octave"], STEPS[0], []
+        while step > 0.99 * STEPS[1]:
+            found.append(float(f"{step:.6g}"))
+            step = STEPS[0] / 2 ** (len(found) / octave)
+        return found
+
+    def our_cell(self, one, setting, step):
+        judged = ("--judge-every", max(1, int(JUDGED_S / step + 1e-3))) if self.subject.loops else ()
+        cell = Cell("simulate", self.subject.scene, (one,), (
+            *setting.words(), "--step", f"{step:g}", "--duration", f"{self.subject.duration:g}", *judged), OURS,
+            seconds=1.0 + 3 * self.lab.settings["time_limit"])
+        return cell if judged else replace(cell, keep=("outputs",), every=max(1, round(JUDGED_S / step)))
+
+    def rounds(self, engines, ours):
+        """What may be the fastest at some error, theirs and ours in turn, in an order that is new in every round."""
+        theirs, mine = candidates(engines, ours, self.lab.registry.own)
+        cells = [self._alone(one) for one in [*theirs.to_dict("records"), *mine.to_dict("records")]]
+        for number in range(1, self.lab.settings["rounds"] + 1):
+            order = random.Random(f"{SEED}:{self.subject.name}:{number}").sample(cells, len(cells))
+            self.lab.tell(f"round {number} of {self.lab.settings['rounds']}")
+            self.lab.run([replace(cell, number=number) for cell in order], drop=True)
+
+    def _alone(self, one):
+        """The timed cell of a row; a short run is repeated in its process, theirs as ours."""
+        cell = one["cell"]
+        often = ("--repeats", REPEATS) if one["time"] * self.subject.duration <= SHORT else ()
+        return replace(cell, settings=(*cell.settings, *often), role=ROUND, timed=True, keep=(), every=0)
