@@ -32,7 +32,7 @@ def conform(frame, columns, what):
     frame = frame.reindex(columns=list(columns))
     for name, (kind, _, _) in columns.items():
         if kind == "number":
-            numbers = pandas.to_numeric(frame[name], errors="coerce").astype(float)
+            numbers = pandas.Series([_number(value) for value in frame[name]], frame.index, float)
             wrong = frame.index[numbers.isna() & frame[name].notna() & (frame[name] != "")]
             if len(wrong):
                 raise StudyError(f"{what}: line {frame.index.get_loc(wrong[0]) + 2}: {name} is no number: "
@@ -43,6 +43,14 @@ def conform(frame, columns, what):
         else:
             frame[name] = frame[name].fillna("").astype(str)
     return frame.reset_index(drop=True)
+
+
+def _number(value):
+    """As Python reads it: pandas.to_numeric is off by an ulp for a third of all texts."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return float("nan")
 
 
 def write_tables(folder, part, tables, records):
