@@ -148,4 +148,4 @@ def test_unknown_names_and_sets(folder, monkeypatch, tmp_path):
 def test_it_keeps_to_a_fifth_of_the_maps_time(folder, monkeypatch):
     monkeypatch.setattr(add, "budget_of", lambda _: 0.0)
     table = measure(folder, monkeypatch, 0.5)
-    assert set(table.status) == {"dropped"} and "budget" in table.reason[0]
+    assert set(table.status) == {"dropped"} and "budget" in table.reason[0] and set(table.hands) == {"open"}

@@ -15,7 +15,7 @@ from analysis.core.files import ROOT, digest, read_json, write, write_json
 from study.core import locks, profile as profiles
 from study.core.cell import Cell
 from study.core.contender import on_usual_pairs
-from study.core.executor import program_of
+from study.core.executor import fingerprint, program_of
 from study.core.main import need_modules, set_up, writable
 from study.core.options import Parser
 from study.core.progress import duration
@@ -24,7 +24,7 @@ from study.core.timing import measure
 
 SHARE = 0.2     # of the time that the set's map had
 PASSES = (3, 5)  # processes of all scenes before there are more of any
-MOST_SAMPLES = 40
+MOST_SAMPLES, TURN = 40, 0.005  # of a process; s, the least that a turn takes
 PATIENT = 8     # times the slowest rival's stretch: whose first takes longer is left out
 SAME = ("machine", "compiler", "flags", "build_type")  # of two contexts
 CELLS = {
@@ -134,9 +134,10 @@ def contexts(folder, contenders):
         kept = folder / "contexts" / f"{one.environment.replace('|', '-')}.json"
         then = read_json(kept) if kept.exists() else known.facts["context"]
         for key in (*SAME, *(("blas_loaded",) if kept.exists() else ())):
-            if str(now.get(key)) != str(then.get(key)):
-                raise StudyError(f"{folder} is of another machine or build: its {key} is '{then.get(key)}', here it is "
-                                 f"'{now.get(key)}'; times of both cannot stand side by side")
+            was, one_is = (fingerprint(context)[key] for context in (then, now))
+            if was != one_is:
+                raise StudyError(f"{folder} is of another machine or build: its {key} is '{was}', here it is "
+                                 f"'{one_is}'; times of both cannot stand side by side")
         lost = versions(then) - versions(now)
         if lost:
             raise StudyError(f"{folder} is of other libraries: it has {', '.join(sorted(lost))}, here there is "
@@ -193,11 +194,11 @@ def _times(folder, scene):
 def _size(lab, times, rivals, steps, scenes):
     """How many samples fill a process's share of the budget, and when one has waited too long for a stretch."""
     stretches = [1e-6 * steps * times[name] for name in rivals if name in times] or [1.0]
-    turn = sum(stretches) + max(stretches)  # the newcomer is taken for no slower than the slowest
-    samples = min(max(round(0.7 * lab.budget / (scenes * PASSES[-1]) / turn), 1), MOST_SAMPLES)
+    turns = sum(max(one, TURN) for one in (*stretches, max(stretches)))  # the newcomer taken for as slow as the slowest
+    samples = min(max(round(0.6 * lab.budget / (scenes * PASSES[-1]) / turns), 1), MOST_SAMPLES)
     patience = max(PATIENT * max(stretches), 0.05)
     return {"repetitions": samples, "settings": ("--patience", f"{patience:.3g}"),
-            "seconds": 30 + 3 * samples * turn + 5 * patience}
+            "seconds": 30 + 3 * samples * turns + 5 * patience}
 
 
 def _rows(cells, newcomers, known, verdicts, records, asked):
@@ -223,7 +224,7 @@ def _rows(cells, newcomers, known, verdicts, records, asked):
                 status, reason = lost.status.iloc[0], lost.reason.iloc[0]
             row |= {"status": status, "reason": reason}
             if status != "ok":
-                yield row
+                yield row | {"hands": "open" if status == "dropped" else "stays"}
                 continue
             others = [one for one in rows.implementation.unique() if one not in newcomers and "+" not in one
                       and (cell.layer == "all" or one not in known.own) and one not in wrong]
