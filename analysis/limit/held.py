@@ -1,0 +1,107 @@
+# What an implementation without a library is held to: bounds, and the worst that was measured for each.
+#
+# An implementation is a folder; of its variants the fastest counts, size by size and scene by scene. A ratio is held or not
+# held where its whole interval says so, else open; an exponent and a set-up, which have none, by their value.
+import numpy
+
+AHEAD_SIZES, NEAR_SIZES = (22, 50, 82, 160, 1000, 4000), (22, 82, 1000)  # n
+AHEAD, AHEAD_PLANAR, AHEAD_SPATIAL = 3.0, 2.0, 1.5
+NEAR_LIMIT, BEHIND_FILLED, GAIN, EXPONENT, SET_UP_S = 1.5, 1.1, 4.0, 1.05, 0.5
+GROWTH_FROM, GROWTH_TO = 100, 20000  # n
+HELD, NOT_HELD, OPEN, NOT_MEASURED = "held", "not held", "open", "not measured"
+LEAST, MOST = "≥", "≤"
+
+
+def wanted(kind, dimension):
+    """The least that a lead may be in a scene; not a number where nothing is held to anything."""
+    return {"fill": 1 / BEHIND_FILLED, "problem": AHEAD_PLANAR if dimension == 2 else AHEAD_SPATIAL}.get(kind, numpy.nan)
+
+
+def must_hold(folder, registry, tables):
+    """Rows of held.csv."""
+    steps, leads, batches = (_of(tables[name], folder) for name in ("steps", "leads", "batches"))
+    ahead = leads[leads.status == "ok"] if len(leads) else leads
+    found = [
+        _worst("times faster than the fastest library, N-four-bar", LEAST, AHEAD,
+               _fastest(_in(ahead, "kind", ["four-bar"], "variables", AHEAD_SIZES), "scene", "lead", False), "lead", len(AHEAD_SIZES)),
+        _worst("times the limit code's step", MOST, NEAR_LIMIT,
+               _fastest(_in(steps, "form", ["penalty"], "variables", NEAR_SIZES), "loops", "multiple", True), "multiple",
+               len(NEAR_SIZES)),
+        *(_worst(f"times faster than the fastest library, {where} standard problems", LEAST, bound,
+                 _fastest(_in(ahead, "kind", ["problem"], "dimension", [dimension]), "scene", "lead", False), "lead",
+                 _count(leads, "problem", dimension))
+          for where, dimension, bound in (("planar", 2, AHEAD_PLANAR), ("spatial", 3, AHEAD_SPATIAL))),
+        _worst("times faster than the fastest library, n = 100, filled", LEAST, round(1 / BEHIND_FILLED, 3),
+               _fastest(_in(ahead, "kind", ["fill"]), "scene", "lead", False), "lead", _count(leads, "fill", 2))]
+    for form in ("penalty", "saddle-point"):
+        found += _growth(_in(steps, "form", [form]), form)
+    for sets in sorted(set(batches.sets)) if len(batches) else []:
+        rows = batches[(batches.sets == sets) & (batches.status != "unsupported")]
+        found.append(_worst(f"throughput of batches ÷ that of their lanes alone, {sets:.0f} sets of parameters", LEAST, GAIN,
+                            _fastest(rows, "scene", "step_us", True), "gain", rows.scene.nunique()))
+    return [{"folder": folder} | row for row in found]
+
+
+def _of(rows, folder):
+    return rows[rows.implementation.str.startswith(f"{folder}/")] if len(rows) else rows
+
+
+def _in(rows, key, values, other=None, among=()):
+    if rows.empty:
+        return rows
+    chosen = rows[rows[key].isin(values)]
+    return chosen[chosen[other].isin(among)] if other else chosen
+
+
+def _count(leads, kind, dimension):
+    return _in(leads, "kind", [kind], "dimension", [dimension]).scene.nunique() if len(leads) else 0
+
+
+def _fastest(rows, key, column, least):
+    """The row of the variant with the least (or most) of a column, by `key`."""
+    if rows.empty or column not in rows:
+        return rows[:0]
+    rows = rows[rows[column].notna() & (rows.status == "ok")]
+    return rows.sort_values(column, ascending=least).drop_duplicates(key)
+
+
+def _worst(what, sign, bound, rows, column, cases):
+    """`cases`: how many there are to be; fewer are said, none is not measured."""
+    row = {"what": what, "sign": sign, "bound": bound, "cases": cases, "measured": len(rows), "verdict": NOT_MEASURED, "record": ""}
+    if rows.empty:
+        return row
+    worst = rows.loc[rows[column].idxmin() if sign == LEAST else rows[column].idxmax()]
+    ends = ("low", "high") if column != "multiple" else ("multiple_low", "multiple_high")
+    low, high = (worst.get(end, numpy.nan) for end in ends)
+    where = worst.scene if "scene" in worst.index else f"n = {worst.variables:.0f}"
+    return row | {"worst": worst[column], "low": low, "high": high, "record": worst.record, "variant": worst.implementation,
+                  "where": where.removeprefix("harness/scenes/").removesuffix(".json"),
+                  "verdict": _verdict(sign, bound, worst[column], low, high)}
+
+
+def _verdict(sign, bound, value, low, high):
+    low, high = (value, value) if numpy.isnan(low) or numpy.isnan(high) else (low, high)
+    if sign == LEAST:
+        return HELD if low >= bound else NOT_HELD if high < bound else OPEN
+    return HELD if high <= bound else NOT_HELD if low > bound else OPEN
+
+
+def _growth(steps, form):
+    """Exponents of the fastest variant at each size from GROWTH_FROM on; and the largest one's set-up."""
+    rows = _fastest(steps[steps.variables >= GROWTH_FROM] if len(steps) and "variables" in steps else steps[:0],
+                    "loops", "step_us", True)
+    rows = rows.sort_values("variables") if len(rows) else rows
+    whole = len(rows) > 1 and rows.variables.iloc[-1] >= GROWTH_TO
+    what = {"a step's time": "step_us", "a pass's time": "pass_us", "memory": "memory_bytes"}
+    for name, column in what.items():
+        row = {"what": f"exponent of {name} over n, {form} form", "sign": MOST, "bound": EXPONENT, "cases": len(rows),
+               "measured": len(rows) if whole else 0, "verdict": NOT_MEASURED, "record": ""}
+        if whole and rows[column].notna().all():
+            exponent = float(numpy.polyfit(numpy.log(rows.variables.astype(float)), numpy.log(rows[column].astype(float)), 1)[0])
+            row |= {"worst": exponent, "where": f"n = {rows.variables.iloc[0]:.0f} to {rows.variables.iloc[-1]:.0f}",
+                    "variant": rows.implementation.iloc[-1], "record": rows.record.iloc[-1],
+                    "verdict": _verdict(MOST, EXPONENT, exponent, numpy.nan, numpy.nan)}
+        yield row
+    if form == "penalty":
+        last = rows[rows.variables >= GROWTH_TO] if len(rows) else rows
+        yield _worst("set-up, s", MOST, SET_UP_S, last.assign(setup=last.setup_us / 1e6) if len(last) else last, "setup", 1)

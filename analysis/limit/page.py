@@ -1,0 +1,52 @@
+# What page.html.j2 shows of the limit.
+from analysis.limit.held import LEAST, NOT_MEASURED
+from analysis.limit.tables import KINDS, LIMIT, PHASES
+
+
+def context(tables, view):
+    steps = tables["steps"]
+    wide = {"penalty": steps[steps.form == "penalty"], "saddle-point": steps[steps.form == "saddle-point"]}
+    return {"LIMIT": LIMIT, "phases": PHASES, "LEAST": LEAST, "NOT_MEASURED": NOT_MEASURED, "settings": view.settings,
+            "held": _grouped(tables["held"], "folder"), "bounds": tables["bounds"].sort_values("loops").to_dict("records"),
+            "sizes": _grouped(_timed(wide["penalty"]).sort_values(["loops", "step_us"]), "variables"),
+            "growth": _grouped(_own(wide, view), "form"), "scenes": by_scene(tables["scenes"]),
+            "leads": tables["leads"][tables["leads"].status == "ok"].to_dict("records"),
+            "batches": tables["batches"][tables["batches"].status != "unsupported"].to_dict("records"),
+            "alone": sorted(set(tables["batches"].implementation[tables["batches"].status == "unsupported"])), "lost": lost(tables)}
+
+
+def _grouped(table, key):
+    """[(key, rows)]"""
+    return [(name, group.to_dict("records")) for name, group in table.groupby(key, sort=False)]
+
+
+def _timed(rows):
+    return rows[(rows.status == "ok") & rows.step_us.notna()]
+
+
+def _own(wide, view):
+    """Own code from 100 variables on, in the form whose passes do not depend on the size first."""
+    import pandas
+    rows = _timed(pandas.concat([wide["saddle-point"], wide["penalty"]]))
+    return rows[rows.implementation.isin(view.registry.own) & (rows.variables >= 100)]
+
+
+def by_scene(scenes):
+    """[(scene, kind, n, dimension, rows)], the fastest first."""
+    rows = _timed(scenes).sort_values("step_us")
+    order = {kind: place for place, kind in enumerate(KINDS)}
+    found = [(name.removeprefix("harness/scenes/").removesuffix(".json"), group.kind.iloc[0], group.variables.iloc[0],
+              group.dimension.iloc[0], group.to_dict("records")) for name, group in rows.groupby("scene", sort=False)]
+    return sorted(found, key=lambda one: (order[one[1]], one[3], one[2]))
+
+
+def lost(tables):
+    """[(implementation, status, reason, where)] of what was not timed or is not believed."""
+    found = {}
+    for name in ("steps", "scenes", "batches"):
+        for row in tables[name].to_dict("records"):
+            if row["status"] != "ok" and not (name == "batches" and row["status"] == "unsupported"):
+                where = row.get("scene") or f"four-bar:{row['loops']:.0f}" + (", saddle-point" if row["form"] != "penalty" else "")
+                found.setdefault((row["implementation"], row["status"], row["reason"].partition(" (first look")[0]), []).append(
+                    where.removeprefix("harness/scenes/").removesuffix(".json"))
+    return [(*what, where) for what, where in found.items()]

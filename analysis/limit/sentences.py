@@ -1,0 +1,54 @@
+# The answer to "How far is each step from the fastest that is possible?", from the tables.
+from analysis.core.text import number
+from analysis.limit.figures import everyone
+from analysis.limit.held import HELD, NOT_HELD, NOT_MEASURED
+from analysis.limit.tables import KINDS, LIMIT
+
+
+def answers(tables, view):
+    found = [*_multiples(everyone(tables["steps"]), view), *_leads(tables["leads"]), *_gains(tables["batches"]),
+             *_held(tables["held"])]
+    return found or [{"text": "Not measured: no implementation that could be timed took part.", "anchor": ""}]
+
+
+def _multiples(rows, view):
+    """The fastest library and the fastest of our own, from the smallest to the largest size that both were timed at."""
+    sides = {"the fastest library": rows[rows.implementation.isin(view.registry.libraries)],
+             "the fastest code of our own": rows[rows.implementation.isin(view.registry.own)]}
+    said = []
+    for who, mine in sides.items():
+        best = mine.sort_values("multiple").drop_duplicates("loops").multiple
+        if len(best):
+            said.append(f"{who} takes {number(best.min(), 2)} to {number(best.max(), 2)} times as long")
+    timed = rows[rows.implementation != LIMIT].variables
+    return [{"text": f"Beside code written for the N-four-bar alone, n = {timed.min():.0f} to {timed.max():.0f}: {'; '.join(said)}.",
+             "anchor": "sizes"}] if said else []
+
+
+def _leads(leads):
+    rows = leads[(leads.status == "ok") & leads.kind.isin(KINDS)]
+    found = []
+    for name, mine in rows.groupby("implementation", sort=False):
+        faster, slower = (mine.low > 1).sum(), (mine.high < 1).sum()
+        found.append(f"{name} is shown to be faster than the fastest library in {faster} of {len(mine)} scenes and slower in "
+                     f"{slower} (least {number(mine.lead.min())}, most {number(mine.lead.max())} times)")
+    return [{"text": f"Scene by scene, {'; '.join(found)}.", "anchor": "ahead"}] if found else []
+
+
+def _gains(batches):
+    rows = batches[batches.status == "ok"]
+    said = [f"{number(mine.gain.min())} to {number(mine.gain.max())} with {sets:.0f} sets (single processes {number(mine.least.min())} to "
+            f"{number(mine.most.max())})" for sets, mine in rows.groupby("sets")]
+    return [{"text": f"Simulations side by side gain, over those alone: {'; '.join(said)}.", "anchor": "batches"}] if said else []
+
+
+def _held(held):
+    asked = held[held.verdict != NOT_MEASURED]
+    if asked.empty:
+        return []
+    broken = asked[asked.verdict == NOT_HELD]
+    text = f"Code without a library: {(asked.verdict == HELD).sum()} of the {len(asked)} bounds that were measured are held"
+    if len(broken):
+        text += "; not held: " + "; ".join(f"{row.what} ({number(row.worst)} at {row.where}, bound {row.sign} {number(row.bound)})"
+                                           for row in broken.itertuples())
+    return [{"text": f"{text}.", "anchor": "held"}]

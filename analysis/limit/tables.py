@@ -1,0 +1,154 @@
+# Rows of bounds, steps, growth, scenes, leads, batches, and of what own code is held to.
+import pandas
+
+from analysis.core import timing
+from analysis.core.statistics import median
+from analysis.limit.held import must_hold
+
+LIMIT = "limit/limit"
+PHASES = ("evaluation", "assembly", "factorization", "solve", "projection", "other")
+KINDS = ("problem", "fill", "example")  # of scenes; roles of their records too
+FORMS = {"size": "penalty", "growth": "saddle-point"}  # roles of the N-four-bar's records
+
+
+def build(records, view):
+    registry = view.registry
+    by_role = {}
+    for record in records:
+        by_role.setdefault(record.role.removesuffix("-left-out").removesuffix("-alone"), []).append(record)
+    order = {name: place for place, name in enumerate([LIMIT, *registry.variants])}
+    about = {record.cell["scene"]: record.output for record in by_role.get("about", []) if record.done}
+    found = {"bounds": [row | {"record": record.name} for record in by_role.get("bounds", []) if record.done
+                        for row in record.output["rows"]],
+             "steps": [], "scenes": [], "leads": [], "batches": _batches(by_role.get("batch", []))}
+    for role in (*FORMS, *KINDS):
+        said = _verdicts(by_role.get(f"{role}-gate", []))
+        for scene, rows in _by_scene(by_role.get(role, [])):
+            cells = {name: _cell(group, said.get((scene, name))) for name, group in rows.groupby("implementation")}
+            names = sorted(cells, key=lambda name: order.get(name, len(order)))
+            known = {"scene": scene, "kind": role if role in KINDS else "four-bar"}
+            if role in FORMS:
+                loops = int(scene.partition(":")[2])
+                known |= {"dimension": 2, "variables": 2 * loops + 2}
+                found["steps"] += [{"form": FORMS[role], "loops": loops, "variables": 2 * loops + 2} | cells[name]
+                                   | _ratio("multiple", rows, name, LIMIT, cells[name]) for name in names]
+            else:
+                known |= {key: about.get(scene, {}).get(key) for key in ("dimension", "variables")}
+                rival = _rival(rows, cells, registry)
+                found["scenes"] += [known | cells[name] | _ratio("to_rival", rows, name, rival, cells[name]) for name in names]
+            if role != "growth":
+                found["leads"] += [known | one for one in _leads(rows, cells, registry)]
+    tables = {name: pandas.DataFrame(rows) for name, rows in found.items()}
+    tables["held"] = pandas.DataFrame([row for folder in own_folders(registry) for row in must_hold(folder, registry, tables)])
+    return tables
+
+
+def own_folders(registry):
+    return list(dict.fromkeys(name.partition("/")[0] for name in registry.variants if name in registry.own))
+
+
+def _by_scene(records):
+    """(scene, rows of its processes), four-bars by size."""
+    rows = timing.processes(records)
+    return sorted(rows.groupby("scene"), key=lambda one: (len(one[0]), one[0])) if len(rows) else []
+
+
+def _verdicts(records):
+    """{(scene, implementation): (verdict, reason)} of the gate."""
+    found = {}
+    for record in records:
+        row = record.output["rows"][0] if record.done else {"verdict": record.status, "reason": record.reason}
+        found[record.cell["scene"], record.cell["contenders"][0]] = row["verdict"], row["reason"]
+    return found
+
+
+def _cell(rows, verdict):
+    """What is known of a contender in a scene. Who failed in one process has failed. Without a verdict it was not asked."""
+    good, lost = rows[rows.status == "ok"], rows[rows.status.isin(set(rows.status) - {"ok", "dropped"})]
+    first = lost.iloc[0] if len(lost) else rows.iloc[0]
+    row = {"implementation": rows.implementation.iloc[0], "status": "ok", "reason": "", "verdict": "", "record": first.record}
+    if len(lost) or good.empty:
+        return row | {"status": first.status, "reason": first.reason}
+    if verdict:
+        row["verdict"] = verdict[0]
+        if verdict[0] not in ("agrees", "dropped"):
+            row |= {"status": "disagrees" if verdict[0] == "disagrees" else verdict[0], "reason": verdict[1]}
+    step, passes = median(good.step_us), good.passes.iloc[0] / good.steps.iloc[0]
+    row |= {"processes": len(good), "step_us": step, "low_us": good.step_us.min(),
+            "high_us": good.step_us.max(), "passes": passes, "pass_us": step / passes, "setup_us": median(good.setup_us),
+            "memory_bytes": median(good.memory_bytes), "position_error": good.get("position_error", pandas.Series([None])).iloc[0]}
+    if "phase_other" in good and good.phase_other.notna().all():
+        shares = {phase: median(good[f"phase_{phase}"]) for phase in PHASES}
+        row |= {f"{phase}_us": step * share / sum(shares.values()) for phase, share in shares.items()}
+    return row
+
+
+def _ratio(what, rows, name, other, cell):
+    """{what: time of `name` over that of `other`, with its interval}, where both were timed."""
+    if cell["status"] != "ok" or other is None or name == other:
+        return {what: 1.0} if name == other and cell["status"] == "ok" else {}
+    found = timing.ratio(rows, name, other)
+    return {what: found.value, f"{what}_low": found.low, f"{what}_high": found.high}
+
+
+def _agreed(cells, names):
+    return [name for name in names if name in cells and cells[name]["status"] == "ok" and cells[name]["verdict"] == "agrees"]
+
+
+def _rival(rows, cells, registry):
+    """The fastest library of a scene, of those that the gate agrees with; None if there is none."""
+    found = timing.rank(rows, _agreed(cells, registry.libraries))
+    return found.winner if found else None
+
+
+def _leads(rows, cells, registry):
+    """A row for each variant of our own: how many times faster than the fastest library it is; or why that is not known."""
+    rival = _rival(rows, cells, registry)
+    for name in (name for name in registry.variants if name in registry.own and name in cells):
+        cell = cells[name]
+        row = {"implementation": name, "rival": rival, "status": cell["status"],
+               "reason": cell["reason"], "record": cell["record"]}
+        if not _agreed(cells, [name]):
+            why = {"status": "dropped", "reason": "the gate was not asked, as the budget was spent"}
+            yield row | (why if cell["status"] == "ok" else {})
+        elif rival is None:
+            yield row | {"status": "dropped", "reason": "no library was timed that the gate agrees with"}
+        else:
+            found = timing.ratio(rows, rival, name)
+            yield row | {"lead": found.value, "low": found.low, "high": found.high}
+
+
+def _batches(records):
+    """A row for each scene, number of sets and implementation."""
+    rows = pandas.DataFrame([row for record in records for row in _batch(record)])
+    if rows.empty:
+        return []
+    found = []
+    for (scene, sets, name), group in rows.groupby(["scene", "sets", "implementation"], sort=False):
+        good, lost = group[group.status == "ok"], group[~group.status.isin(["ok", "dropped"])]
+        first = lost.iloc[0] if len(lost) else group.iloc[0]
+        row = {"scene": scene, "sets": sets, "implementation": name, "status": first.status, "reason": first.reason,
+               "record": first.record}
+        if len(good) and lost.empty:
+            sides = pandas.concat([good.assign(implementation=side, samples=[(time,) for time in good[f"{side}_us"]])
+                                   for side in ("alone", "step")])
+            gain = timing.ratio(sides, "alone", "step")
+            row |= {"status": "ok", "reason": "", "processes": len(good), "variables": good.variables.iloc[0],
+                    "lanes": good.lanes.iloc[0], "step_us": median(good.step_us), "alone_us": median(good.alone_us),
+                    "gain": gain.value, "low": gain.low, "high": gain.high, "least": good.gain.min(), "most": good.gain.max()}
+        found.append(row)
+    return found
+
+
+def _batch(record):
+    cell, words = record.cell, record.cell["settings"]
+    for name in cell["contenders"]:
+        row = {"scene": cell["scene"], "sets": int(words[words.index("--sets") + 1]), "implementation": name, "environment": "",
+               "process": cell["number"], "status": record.status, "reason": record.reason, "record": record.name}
+        found = record.output.get("rows", {}).get(f"{name}/{cell['scene']}/batch", {})
+        if record.done and (found.get("error_occurred") or not found):
+            status, _, reason = found.get("error_message", "crashed: mbs bench gave no row of it").partition(": ")
+            row |= {"status": status, "reason": reason}
+        elif record.done:
+            row |= {"status": "ok"} | {key: found[key] for key in ("variables", "lanes", "step_us", "alone_us", "gain")}
+        yield row

@@ -1,0 +1,125 @@
+# Steps beside the limit code and its bounds; own code beside libraries, scene by scene; growth; batches.
+from collections import Counter
+from dataclasses import dataclass, replace
+
+from analysis.core.files import ROOT
+from analysis.core.timing import processes as rows_of
+from study.core.cell import Cell
+from study.core.setting import Setting
+from study.core.timing import measure
+from study.scenes.problems import read_list
+
+SETTINGS = {"loops": list,     # sizes of the N-four-bar for everyone
+            "large": list,     # sizes for the limit code and code of our own alone, in both forms
+            "problems": list,  # standard problems, by name ...
+            "examples": list,  # ... examples, by file ...
+            "fills": list,     # ... and fills of the four-bar of 100 variables, on which own code meets libraries
+            "batches": list,   # sizes of the N-four-bar for batches
+            "sets": list,      # of parameters in a batch
+            "processes": int,  # of a scene
+            "samples": int}    # of a process and contender
+SHARES = {"sizes": 0.25, "growth": 0.15, "scenes": 0.45, "batches": 0.15}  # of the budget
+LIMIT = "limit/limit"
+SLOWER, PATIENCE_S = 15, 0.5  # times the fastest; of the first stretch: whoever is slower is not timed
+NEAR = 1.5  # times the fastest library: who is near may be the rival of a lead, and is asked by the gate
+CHECK_S = 60
+BATCH_S = 0.02  # a process of batches lasts about ten times that
+
+
+def columns(settings, studyset):
+    return {name: share * settings["seconds"] for name, share in SHARES.items()}
+
+
+def run(lab, column):
+    {"sizes": sizes, "growth": growth, "scenes": scenes, "batches": batches}[column](lab)
+
+
+def sizes(lab):
+    """Who is not timed at one size is not tried at a larger one."""
+    known, lost = lab.settings["loops"], {}
+    if known:
+        lab.one(Cell("limit", "", (), tuple(sorted(known)), "bounds", timed=True, seconds=300))
+    for loops in sorted({*known, *lab.settings["large"]}):
+        here = [*limit_code(lab), *(lab.contenders if loops in known else own(lab))]
+        scene = f"four-bar:{loops}"
+        for one in here:
+            if one.name in lost:
+                lab.skip(Cell("bench", scene, (one,), role="size-left-out"), "excluded", lost[one.name])
+        rows = timed(lab, scene, [one for one in here if one.name not in lost], "size", ("--phases",))
+        lost |= {row.implementation: f"not timed at N = {loops}: {row.status}" for row in rows.itertuples()
+                 if row.status not in ("ok", "dropped")}
+        if loops in known:
+            ask_gate(lab, scene, rows, here, "size-gate")
+
+
+def growth(lab):
+    """In the saddle-point form, which takes the same passes at all sizes."""
+    setting = Setting("saddle-point")
+    here = [one for one in own(lab) if lab.registry.serves(one.variant, *setting.needs)]
+    for loops in sorted(lab.settings["large"]):
+        timed(lab, f"four-bar:{loops}", here, "growth", setting.words())
+
+
+@dataclass(frozen=True)
+class Scene:
+    name: str      # as the program takes it
+    kind: str      # problem, example or fill
+    settings: tuple = ()
+
+
+def listed(settings):
+    """What own code and libraries meet on, most worth first: problems at their own steps, the others at the program's."""
+    problems = [Scene(one.scene, "problem", ("--step", f"{one.steps[0]:g}", *one.settings))
+                for one in read_list()[1] if one.name in settings["problems"]]
+    files = {path.stem: path.relative_to(ROOT).as_posix() for path in (ROOT / "harness/scenes/examples").glob("*.json")}
+    return [*problems, *(Scene(f"four-bar:49,fill={fill:g}", "fill") for fill in settings["fills"]),
+            *(Scene(files[name], "example") for name in settings["examples"])]
+
+
+def scenes(lab):
+    usual = environment(lab)
+    here = [one for one in lab.contenders if one.environment == usual]
+    for scene in listed(lab.settings):
+        lab.one(Cell("describe", scene.name, role="about"))
+        rows = timed(lab, scene.name, here, scene.kind, ("--slower-than", SLOWER, *scene.settings))
+        ask_gate(lab, scene.name, rows, here, f"{scene.kind}-gate", scene.settings)
+
+
+def batches(lab):
+    """Processes take turns over all cells: what disturbs the machine for some seconds is not all of a cell."""
+    here = tuple(one for one in lab.contenders if one.environment == environment(lab))
+    for number in range(1, lab.settings["processes"] + 1):
+        lab.run([Cell("bench", f"four-bar:{loops}", here, ("--batch", "--sets", sets, f"--benchmark_min_time={BATCH_S}"),
+                      "batch", number, timed=True)
+                 for loops in lab.settings["batches"] for sets in lab.settings["sets"] if here], drop=True)
+
+
+def timed(lab, scene, contenders, role, settings=()):
+    """The rows of a scene's processes."""
+    return rows_of(measure(lab, scene, contenders, processes=lab.settings["processes"], repetitions=lab.settings["samples"],
+                           settings=("--patience", PATIENCE_S, *settings), role=role, drop=True))
+
+
+def ask_gate(lab, scene, rows, contenders, role, settings=()):
+    """Verdicts on those that a lead or a multiple may stand on: own code, and what comes near the fastest library."""
+    times = rows[rows.status == "ok"].groupby("implementation").step_us.median()
+    mine = {LIMIT, *lab.registry.own}
+    best = min((time for name, time in times.items() if name not in mine), default=0.0)
+    lab.run([Cell("check", scene, (one,), (*settings, "--time-limit", CHECK_S), role, seconds=2 * CHECK_S)
+             for one in contenders if one.name in times and (one.name in mine or times[one.name] <= NEAR * best)], drop=True)
+
+
+def own(lab):
+    return [one for one in lab.contenders if one.variant in lab.registry.own]
+
+
+def environment(lab):
+    """That of most contenders: they share processes."""
+    found = Counter(one.environment for one in lab.contenders).most_common(1)
+    return found[0][0] if found else ""
+
+
+def limit_code(lab):
+    """The code written for the N-four-bar alone, in the processes of most others."""
+    usual = next((one for one in lab.contenders if one.environment == environment(lab)), None)
+    return [replace(usual, name=LIMIT, variant=LIMIT)] if usual else []
