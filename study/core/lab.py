@@ -91,7 +91,7 @@ class Lab:
         if drop and self.left <= 0:
             return self.skip(cell, "dropped", f"the budget of {self.budget:.0f} s was spent")
         context = self.set.context(cell.contenders[0]) if cell.contenders else self.set.facts["context"]
-        data = executor.run(cell, context if cell.program == "mbs" else None, self.set.scratch)
+        data = executor.run(cell, context if cell.program == "mbs" and cell.contenders else None, self.set.scratch)
         if not data["context"]:
             data["context"] = context
         records.write(self._path(cell), data)
