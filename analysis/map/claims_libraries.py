@@ -1,10 +1,12 @@
 # Claims about BLAS, LAPACK and compilers: F2, C3, C5.
 from analysis.core.text import interval, number
+from analysis.core.timing import rank
 from analysis.map import paper
-from analysis.map.compare import best, over_sizes, step_us
+from analysis.map.compare import Versus, best, over_sizes, step_us
 from analysis.map.explain import phase_times
 from analysis.map.ledger import at_least, at_most, compared, of, tested, untested
 
+ANCHOR = "csc_klu/refactor"  # it calls no BLAS; processes on two pairs are compared through it (study/core/timing.py)
 FIGURE_SIZES = 160    # variables; Figures 2 and 4 end here
 COVERED = 82          # variables that a run has to reach to speak of them
 SMALLEST = 22         # variables; the paper's small problem, where comparing compilers begins
@@ -60,7 +62,7 @@ def tuned_blas(results):
 
 
 def _tuned(results, name):
-    found = over_sizes(results, [name], [f"{name}+reference"]) if results.usual(name) != "reference" else []
+    found = over_sizes(results, [name], [f"{name}+reference"]) if name != ANCHOR and results.usual(name) != "reference" else []
     if not found or found[-1].size < COVERED:
         return None
     gains = [[100 * (1 - value) for value in (one.value, one.high, one.low)] for one in found]
@@ -89,11 +91,8 @@ def compilers(results):
 
 
 def _compilers(results, name):
-    rows = results.alternatives(name, builds=True)
-    found = []
-    for size, cell in rows[rows.variables >= SMALLEST].groupby("variables"):
-        spread = _spread(results, size, cell) if cell.implementation.nunique() > 1 else None
-        found += [spread] if spread else []
+    found = [_spread(results, size, cell) for size, cell in results.builds(name).groupby("variables") if size >= SMALLEST]
+    found = [one for one in found if one]
     if not found:
         return None
     share, builds, spread, medians = max(found, key=lambda one: one[0][0])
@@ -108,18 +107,17 @@ def _compilers(results, name):
 def _spread(results, size, cell):
     """((share, low, high) in %, Versus of builds, Versus of implementations, {build: µs}) of one size."""
     scene = results.natural(size)
-    builds = results.rank(scene, cell.implementation.unique())
-    today = results.rank(scene, [*paper.sparse(results), *paper.dense(results)])
-    if not builds or not today or len(today.ratios) < 2:
+    builds, today = rank(cell), results.rank(scene, [*paper.sparse(results), *paper.dense(results)])
+    if not builds or not builds.second or not today or not today.second:
         return None
-    apart = best(results, scene, [list(builds.ratios)[-1]], [builds.winner])
+    slow, apart = list(builds.ratios.items())[-1]
     spread = best(results, scene, [list(today.ratios)[len(today.ratios) // 2]], [today.winner])
-    if not apart or not spread or spread.value <= 1:
+    if not spread or spread.value <= 1:
         return None
-    names = cell.groupby("implementation").build.first()
-    times = results.medians(scene)
-    medians = {names[name] or own_build(results): times[name] for name in builds.ratios}
-    return [max(0.0, 100 * (value - 1) / (spread.value - 1)) for value in of(apart)], apart, spread, medians
+    times = cell.groupby("implementation").step_us.median()
+    medians = {name.partition("+")[2] or own_build(results): times[name] for name in builds.ratios}
+    share = [max(0.0, 100 * (value - 1) / (spread.value - 1)) for value in of(apart)]
+    return share, Versus(*of(apart), slow, builds.winner, size, 0.0, cell.record.iloc[0]), spread, medians
 
 
 def own_build(results):

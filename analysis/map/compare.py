@@ -87,7 +87,8 @@ def step_us(results, name, size):
 def crossing(places, values):
     """Where `values` (ratios) first fall below 1, log values interpolated over `places`; -inf if they are below from
     the start, inf if nowhere."""
-    logs = numpy.log(values)
+    with numpy.errstate(divide="ignore"):  # of a single process an interval reaches from 0 to infinity
+        logs = numpy.log(values)
     if logs[0] < 0:
         return -numpy.inf
     for left, right, before, after in zip(places, places[1:], logs, logs[1:]):

@@ -85,7 +85,7 @@ def crossings(results, cells):
 def _line(axes, found, sizes):
     for size, (fill, low, high) in found.items():
         place = sizes.index(size)
-        axes.fill_between([place - 0.5, place + 0.5], low, high, color=LINE, alpha=0.25, linewidth=0, zorder=3)
+        axes.fill_between([place - 0.5, place + 0.5], low, high, color=LINE, alpha=0.12, linewidth=0, zorder=3)
         axes.plot([place - 0.5, place + 0.5], [fill, fill], color=LINE, linewidth=1.6, zorder=4,
                   path_effects=[effects.withStroke(linewidth=3, foreground="white")])
 

@@ -67,11 +67,16 @@ class Results:
         """Sizes that were timed at their own fill."""
         return sorted(self.samples(natural_only=True).variables.unique())
 
-    def alternatives(self, variant, builds=False):
-        """Rows of `variant` at natural fill on its pairs, or with `builds` in its builds, that have a time."""
+    def alternatives(self, variant):
+        """Rows of `variant` at natural fill on all pairs that it was timed on."""
         rows = self.timing
-        mine = (rows.status == "ok") & (rows.folder + "/" + rows.variant == variant) & rows.fill_asked.isna()
-        return rows[mine & (rows.blas.eq(self.usual(variant)) if builds else rows.build.eq(""))]
+        return rows[(rows.status == "ok") & (rows.folder + "/" + rows.variant == variant) & rows.fill_asked.isna()]
+
+    def builds(self, variant):
+        """Rows of `variant` in several builds. Their processes alternate: those of one number belong together."""
+        rows = self.tidy[(self.tidy.kind == "builds") & (self.tidy.status == "ok")]
+        rows = rows[rows.folder + "/" + rows.variant == variant]
+        return rows.assign(environment="", samples=[(one,) for one in rows.step_us])
 
     def usual(self, variant):
         """The pair that a variant is ranked on."""

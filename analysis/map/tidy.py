@@ -21,7 +21,8 @@ def tidy(records):
     rows += [_common(row | {"process": None}, "timing") for row in [*lost, *_rejected(records)]]
     rows += [_common(row | {"process": None}, "timing")
              for row in processes([one for one in records if one.role in SKIPPED]).to_dict("records")]
-    rows += [_common(row, "phases") for row in processes([one for one in records if one.role == "phases"]).to_dict("records")]
+    rows += [_common(row, kind) for kind in ("builds", "phases")
+             for row in processes([one for one in records if one.role == kind]).to_dict("records")]
     rows += [row for one in records if one.role == "operations" for row in _operations(one)]
     timed = {(row["scene"], row["implementation"]) for row in rows if row["status"] == "ok" and row["kind"] == "timing"}
     rows = [row for row in rows if row["status"] != "timeout" or row["process"] or

@@ -24,7 +24,7 @@ class TimedScene:
     def time(self, count):
         """Processes 1 … `count` of all."""
         while self.costs:
-            self.records = self._measure([*self._control(), *self.costs], count, "time")
+            self.records = self.processes([*self._control(), *self.costs], count, "time")
             wrong = differing(timed_rows(self.records))
             if not wrong:
                 return
@@ -38,7 +38,7 @@ class TimedScene:
                       for name in (ranking.winner, *ranking.open)}
         chosen = [one for one in self.costs if one.name in open_names]
         if len(chosen) > 1 and count:
-            self.records += self._measure(chosen, count, "again")
+            self.records += self.processes(chosen, count, "again")
 
     @property
     def rankings(self):
@@ -53,8 +53,8 @@ class TimedScene:
         pairs = [one.blas for one in self.costs if not one.build]
         return [Contender(CONTROL.name, CONTROL.variant, max(pairs, key=pairs.count))] if pairs else []
 
-    def _measure(self, contenders, count, role):
-        """The pilots decide how many samples fill a process, never what a sample is."""
+    def processes(self, contenders, count, role):
+        """Their records. The pilots decide how many samples fill a process, never what a sample is."""
         lab, limit = self.lab, self.lab.settings["limits"]["time"]
         sample = max(TURN * len(contenders),
                      1e-6 * BUSY * self.scene.steps * sum(self.costs.get(one, 0.0) for one in contenders))
