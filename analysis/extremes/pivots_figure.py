@@ -15,22 +15,23 @@ def draw(table):
                                            figsize=(11, 0.48 * len(sequences) + 1.8))
     for place, (form, sequence) in enumerate(sequences):
         rows = table[(table.form == form) & (table.sequence == sequence)]
-        plain = rows[(rows.strategy == "refactor") & (rows.pivoting == "default")].time_us_median
         for row in rows.itertuples():
             marker, shift = STRATEGIES[row.strategy]
             look = _look(marker, row.pivoting)
             errors.plot(row.error_worst, place + shift, **look)
-            if len(plain):
-                times.plot(row.time_us_median / plain.iloc[0], place + shift, **look)
+            if row.ratio_high < float("inf"):
+                times.plot((row.ratio_low, row.ratio_high), (place + shift,) * 2, color=look["color"], linewidth=1, zorder=1)
+            times.plot(row.time_ratio, place + shift, **look)
         if place % 2:
             for axes in (errors, times):
                 axes.axhspan(place - 0.5, place + 0.5, color="#f4f5f7", zorder=0)
+    figure.suptitle("Pivots that are kept: what they lose, and what choosing them anew costs", x=0.01, ha="left")
     errors.set_yticks(range(len(sequences)), [f"{sequence} ({form})" for form, sequence in sequences], fontsize=8.5)
     errors.set_ylim(len(sequences) - 0.5, -0.5)
     errors.set_xscale("log")
     errors.axvline(ROUNDING, color="black", linewidth=0.8, linestyle=":")
     errors.set_xlabel("worst backward error of a solve (dotted: rounding, 2⁻⁵³)")
-    times.set_xlabel("time of factorization and solve, over\nrefactor with default pivots")
+    times.set_xlabel("time of factorization and solve, over\nrefactor with default pivots (95 % intervals)")
     times.axvline(1, color="black", linewidth=0.8)
     figure.legend(handles=[*(Line2D([], [], marker=marker, linestyle="none", color="#555555", label=name)
                              for name, (marker, _) in STRATEGIES.items()),

@@ -5,5 +5,5 @@ from analysis.extremes import battery, pivots, roundoff, ways
 def build(records, view):
     of = {column: [record for record in records if record.column == column]
           for column in ("battery", "ways", "pivots", "roundoff")}
-    return {"battery": battery.table(of["battery"], view.registry), **ways.build(of["ways"], view.settings),
+    return {"battery": battery.table(of["battery"], view.registry), **ways.build(of["ways"], view.settings, view.registry),
             **pivots.build(of["pivots"]), **roundoff.build(of["roundoff"], view.registry)}

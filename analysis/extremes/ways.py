@@ -57,25 +57,24 @@ def places(sizes):
     return [*steps, *masses, *lengths]
 
 
-def build(records, settings):
+def build(records, settings, registry):
     """{"ways": outcomes over the region, "ways_cost": time of a step over that of PLAIN}"""
     titles = {setting.file_name: title for title, setting in WAYS.items()}
     known = {place.name: place for place in places(settings["loops"]["ways"])}
     regions, times = [], []
     for record in records:
-        role = record.role.removeprefix("cost-")
-        if role not in titles:
-            raise StudyError(f"{record.name}: its role is no way out: the set is of another state of them")
+        role, scene = record.role.removeprefix("cost-"), judge.scene_of(record)
+        if role not in titles or scene not in ("", *known) and record.role == role:
+            raise StudyError(f"{record.name}: its cell is none of the ways out: the set is of another state of them")
         name = record.cell["contenders"][0]
         own = {"way": titles[role], "folder": name.split("/")[0], "implementation": name}
-        if record.role.startswith("cost-"):
-            times.append(own | _time(record))
+        order = list(WAYS).index(titles[role]), list(registry.variants).index(name)
+        if record.role != role:
+            times.append((order, own | _time(record)))
         else:
-            regions.append(own | _outcome(record, known.get(judge.scene_of(record))))
-    order = {"key": lambda values: values.map(list(WAYS).index) if values.name == "way" else values, "kind": "stable"}
-    return {"ways": pandas.DataFrame(regions).sort_values("way", **order) if regions else pandas.DataFrame(),
-            "ways_cost": pandas.DataFrame(_costs(pandas.DataFrame(times))).sort_values("way", **order)
-            if times else pandas.DataFrame()}
+            regions.append(((*order, list(known).index(scene) if scene else 0), own | _outcome(record, known.get(scene))))
+    regions, times = (pandas.DataFrame([row for _, row in sorted(found, key=lambda one: one[0])]) for found in (regions, times))
+    return {"ways": regions, "ways_cost": pandas.DataFrame(_costs(times) if len(times) else [])}
 
 
 def _outcome(record, place):
@@ -101,15 +100,15 @@ def _time(record):
 
 
 def _costs(times):
-    for (folder, loops), rows in times.groupby(["folder", "loops"], sort=False):
-        for way, own in rows.groupby("way", sort=False):
-            found = timing.ratio(rows.assign(implementation=rows.way), way, PLAIN)
-            lost = own[own.status != "ok"]
-            first = (lost if len(lost) else own).iloc[0]
-            yield {"way": way, "folder": folder, "implementation": own.implementation.iloc[0], "loops": loops,
-                   "processes": len(own) - len(lost), "ratio": found.value, "low": found.low, "high": found.high,
-                   "passes_per_step": own.passes_per_step.median(), "status": first.ended, "reason": first.reason,
-                   "record": " ".join(own.record)}
+    for (way, folder, loops), own in times.groupby(["way", "folder", "loops"], sort=False):
+        rows = times[(times.folder == folder) & (times.loops == loops)]
+        found = timing.ratio(rows.assign(implementation=rows.way), way, PLAIN)
+        lost = own[own.status != "ok"]
+        first = (lost if len(lost) else own).iloc[0]
+        yield {"way": way, "folder": folder, "implementation": own.implementation.iloc[0], "loops": loops,
+               "processes": len(own) - len(lost), "ratio": found.value, "low": found.low, "high": found.high,
+               "passes_per_step": own.passes_per_step.median(), "status": first.ended, "reason": first.reason,
+               "record": " ".join(own.record)}
 
 
 def folders(ways):
@@ -124,4 +123,11 @@ def not_served(rows):
 def share(rows):
     """(cells that are safe, cells) of rows of one way and folder."""
     region = rows[(rows.axis != "") & (rows.status != "dropped")]
-    return int((region.safe == True).sum()), len(region)  # noqa: E712
+    return int(region.safe.sum()), len(region)
+
+
+def factor(row):
+    """A row of ways_cost.csv as text: "×1.52 (1.30–1.77)", or how it ended."""
+    if row.ratio != row.ratio:
+        return row.status
+    return f"×{row.ratio:.2f}" + (f" ({row.low:.2f}–{row.high:.2f})" if row.low < row.high < float("inf") else "")

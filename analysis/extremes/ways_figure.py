@@ -1,16 +1,16 @@
-# Ways out: for each way and implementation the region, cell by cell, and what its steps cost.
+# Ways out: for each way and folder the region, cell by cell, and what its steps cost.
 from textwrap import fill
 
 import matplotlib.pyplot as plt
 from matplotlib.patches import Patch, Rectangle
 
-from analysis.extremes.battery_figure import SILENT
-from analysis.extremes.numbers import NOT_SERVED, costs, folders, not_served, share
+from analysis.extremes.battery_figure import LOOKS, SILENT
+from analysis.extremes.ways import NOT_SERVED, factor, folders, not_served, share
 
-COLOURS = {"safe": "#009E73", "silent": SILENT, "degraded": "#F2C14E", "lost": "#c4c4c4",
-           "unsupported": "#ffffff"}
+COLOURS = {"safe": "#009E73", "silent": SILENT, "degraded": LOOKS["degraded"][0], "lost": "#c4c4c4",
+           "not run": "#ffffff"}
 WORDS = {"safe": "safe: ok or plausible, and right", "silent": "silently wrong", "lost": "did not get through",
-         "unsupported": "not served or refused"}
+         "not run": "not served, refused or left out"}
 GAP, BLOCK = 2.0, 4.4  # between groups of columns; height of a way
 
 
@@ -18,15 +18,15 @@ def draw(ways, cost):
     """The figure of ways.csv and ways_cost.csv."""
     names, own = list(dict.fromkeys(ways.way)), folders(ways)
     figure, panels = plt.subplots(1, len(own), squeeze=False, sharey=True, constrained_layout=True,
-                                  figsize=(4.6 * len(own) + 1.4, 0.78 * len(names) + 1.6))
-    used = set()
+                                  figsize=(4.6 * len(own) + 1.4, 0.78 * len(names) + 1.9))
+    used, groups = set(), _groups(ways)
     for axes, folder in zip(panels.flat, own):
-        rows = ways[ways.implementation.str.split("/").str[0] == folder]
-        groups = _groups(ways)
+        rows = ways[ways.folder == folder]
         for place, way in enumerate(names):
             used |= _region(axes, rows[rows.way == way], groups, BLOCK * place)
-            _remark(axes, rows[rows.way == way], cost, folder, way, groups, BLOCK * place)
+            _remark(axes, rows[rows.way == way], cost[(cost.folder == folder) & (cost.way == way)], groups, BLOCK * place)
         _frame(axes, folder, names, groups)
+    figure.suptitle("Where each way out is safe, and the time of a step over that of α auto", x=0.01, ha="left", fontsize=13)
     figure.legend(handles=[Patch(facecolor=colour, edgecolor="#999999", label=WORDS.get(name, name))
                            for name, colour in COLOURS.items() if name in used],
                   loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=5, fontsize=9)
@@ -36,9 +36,8 @@ def draw(ways, cost):
 def _groups(ways):
     """[(axis, values, sizes, left edge)]: the blocks of cells side by side."""
     found, left = [], 0.0
-    known = ways[ways.axis.notna()]
-    for axis in dict.fromkeys(known.axis):
-        rows = known[known.axis == axis]
+    for axis in dict.fromkeys(ways.axis[ways.axis != ""]):
+        rows = ways[ways.axis == axis]
         values, sizes = sorted(rows.value.unique()), sorted(rows.loops.unique())
         found.append((axis, values, sizes, left))
         left += len(values) + GAP
@@ -48,42 +47,37 @@ def _groups(ways):
 def _what(row):
     if row.safe or row.silent:
         return "safe" if row.safe else "silent"
-    if row.status in NOT_SERVED:
-        return "unsupported"
+    if row.status in (*NOT_SERVED, "dropped"):
+        return "not run"
     return "degraded" if row.status == "degraded" else "lost"
 
 
 def _region(axes, rows, groups, top):
     used = set()
-    if not_served(rows):
-        return used
     for axis, values, sizes, left in groups:
         high = 3 / len(sizes)
         for row in rows[rows.axis == axis].itertuples():
             what = _what(row)
             used.add(what)
             axes.add_patch(Rectangle((left + values.index(row.value), top + high * sizes.index(row.loops)), 1, high,
-                                     facecolor=COLOURS[what], edgecolor="#aaaaaa" if what == "unsupported"
-                                     else "white", linewidth=0.6))
+                                     facecolor=COLOURS[what], linewidth=0.6,
+                                     edgecolor="#aaaaaa" if what == "not run" else "white"))
     return used
 
 
-def _remark(axes, rows, cost, folder, way, groups, top):
-    good, total = share(rows)
-    right = groups[-1][3] + len(groups[-1][1]) + 0.5
+def _remark(axes, rows, cost, groups, top):
     if not_served(rows):
-        axes.text(groups[0][3], top + 1.5, fill(not_served(rows), 48), va="center", fontsize=8.5, color="#666666")
+        axes.text(groups[0][3] if groups else 0, top + 1.5, fill(not_served(rows), 48), va="center", fontsize=8.5, color="#666666")
         return
-    times = {loops: ratio for loops, ratio, *_ in costs(cost, folder, way)}
-    axes.text(right, top + 1.5, "\n".join([f"{good} of {total} safe", *(
-        f"N = {loops:g}: ×{times[loops]:.2f}" if loops in times else f"N = {loops:g}: lost"
-        for loops in sorted(cost.loops.unique()))]), va="center", fontsize=8)
+    right = groups[-1][3] + len(groups[-1][1]) + 0.5
+    times = [f"N = {one.loops:g}: {factor(one)}" for one in cost.itertuples()]
+    axes.text(right, top + 1.5, "\n".join(["{} of {} safe".format(*share(rows)), *times]), va="center", fontsize=7.5)
 
 
 def _frame(axes, folder, names, groups):
     bottom = BLOCK * len(names) - (BLOCK - 3)
     axes.set_title(folder)
-    axes.set_xlim(-0.3, groups[-1][3] + len(groups[-1][1]) + 5)
+    axes.set_xlim(-0.3, (groups[-1][3] + len(groups[-1][1]) if groups else 10) + 10)
     axes.set_ylim(bottom + 0.1, -0.4)
     axes.set_yticks([BLOCK * place + 1.5 for place in range(len(names))], names)
     ticks = [(left + 0.5 + i * (len(values) - 1), f"{1e3 * value:g} ms" if axis == "step" else f"{value:.0e}")
