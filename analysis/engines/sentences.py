@@ -33,7 +33,7 @@ def of_side(table, side):
                  f"({interval(worst)}; {title(worst.engine)}, {Subject(worst.subject).title}, "
                  f"{number(worst.engine_error, 2)} m)")
     if len(timed) < len(rows):
-        text += f"; {len(rows) - len(timed)} errors it does not reach"
+        text += f"; it does not reach {len(rows) - len(timed)} of these errors"
     return text + "."
 
 

@@ -21,8 +21,8 @@ SETTINGS = {"subjects": list,      # names: analysis/engines/subjects.py
             "octave": int,         # steps of ours from one to half of it
             "time_limit": float,   # s: a run that is predicted to take longer is not made
             "rounds": int}
-STEPS = 8e-2, 1e-5   # s, the longest and the shortest of ours
-CURVES = 0.6         # of a column's budget; the rest is for the rounds
+STEPS = 2e-2, 1e-5   # s, the longest and the shortest of ours
+CURVES = 0.3, 0.6    # of a column's budget, by when their curves and ours end; the rest is for the rounds
 SHORT = 0.02         # s of steps: a shorter run says more of the machine's interruptions than of itself
 REPEATS = 5          # of such a run in one process; the least time of each of its pieces counts
 SEED = 20080101
@@ -71,7 +71,7 @@ class Bench:
                                  for value in setting.values], {"step": 2.0, "accuracy": 2.5}[setting.over])
                   for place in range(self.lab.settings["engine_settings"]) for engine in names
                   for setting in listed[engine][place:place + 1]]
-        found = frame(follow(self.lab, curves, limit, 0.0, CURVES))
+        found = frame(follow(self.lab, curves, limit, 0.0, CURVES[0]))
         if "ode" not in names:
             return found
         if not (ROOT / "build" / NATIVE_PROGRAM).exists():
@@ -95,7 +95,7 @@ class Bench:
                         2 ** (1 / self.lab.settings["octave"]))
                   for name in self.lab.settings["settings"] for variant in self.lab.settings["implementations"]
                   for one in [self.lab.contender(variant)] if one and self.lab.registry.serves(variant, *wanted[name].needs)]
-        return frame(follow(self.lab, curves, self.lab.settings["time_limit"], least, CURVES))
+        return frame(follow(self.lab, curves, self.lab.settings["time_limit"], least, CURVES[1]))
 
     def steps(self):
         """A fixed ladder."""
