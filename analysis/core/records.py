@@ -87,7 +87,7 @@ def read_part(folder, part):
     """All records of a part, by name; of a stored set from its archive."""
     archive = archive_of(folder, part)
     if not archive.exists():
-        return [read(path, name) for name, path in files_of(folder, part).items()]
+        return [read(path, name) for name, path in sorted(files_of(folder, part).items())]  # as an archive sorts them
     try:
         with tarfile.open(archive) as tar:
             return [from_text(tar.extractfile(one).read().decode(), one.name, f"{archive}: {one.name}")
