@@ -14,10 +14,21 @@ def read_json(path):
     """The JSON in `path`; StudyError naming the file and the position if it is damaged."""
     try:
         return json.loads(Path(path).read_bytes())
-    except ValueError as error:  # of JSON and of UTF-8
+    except (ValueError, RecursionError) as error:  # of JSON and of UTF-8
         raise StudyError(f"{path} is damaged ({error})") from error
     except OSError as error:
         raise StudyError(f"cannot read {path}: {error.strerror}") from error
+
+
+def read_object(path, **kinds):
+    """The JSON object in `path`; StudyError naming the file unless it has these keys with values of these types."""
+    found = read_json(path)
+    if not isinstance(found, dict):
+        raise StudyError(f"{path} is damaged (it is no object)")
+    for name, kind in kinds.items():
+        if not isinstance(found.get(name), kind):
+            raise StudyError(f"{path} is damaged ({name} is {'of another type' if name in found else 'missing'})")
+    return found
 
 
 def write_json(path, data):

@@ -14,6 +14,8 @@ from analysis.core.errors import StudyError
 from analysis.core.files import digest, write_text
 
 RUN_ENDED = "done"  # status of a cell whose program ended as it should
+KINDS = {"cell": dict, "status": str, "reason": str, "seconds": (int, float), "command": list, "context": dict}
+MORE = {"output": dict, "series": dict}  # which a record may have
 FORM = re.compile(r'\{"sha256": "([0-9a-f]{64})",\n"record": (\{.*\})\}\n', re.S)
 
 
@@ -56,7 +58,12 @@ def from_text(text, name, where):
     if not found or digest(found[2]) != found[1]:
         raise StudyError(f"{where} is {'changed' if found else 'truncated or no record'}: "
                          "remove it to have it measured again, or restore it")
-    return Record(name, **json.loads(found[2]))
+    data = json.loads(found[2])
+    wrong = {*set(KINDS) - set(data), *set(data) - set(KINDS) - set(MORE),
+             *(key for key, kind in (KINDS | MORE).items() if key in data and not isinstance(data[key], kind))}
+    if wrong:
+        raise StudyError(f"{where} is no record ({', '.join(sorted(wrong))}): remove it to have it measured again")
+    return Record(name, **data)
 
 
 def write(path, data):

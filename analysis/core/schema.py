@@ -6,7 +6,7 @@ import pandas
 import yaml
 
 from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, digest, read_json, write, write_json
+from analysis.core.files import ROOT, digest, read_object, write, write_json
 
 TYPES = ("text", "number", "flag")
 DIGESTS = "tables.json"  # of a part: those of its records and tables
@@ -60,6 +60,7 @@ def write_tables(folder, part, tables, records):
     if set(tables) != set(schema):
         raise StudyError(f"analysis/{part}/tables.py makes {sorted(tables)}, its schema has {sorted(schema)}")
     found, base = {}, Path(folder) / part
+    (base / DIGESTS).unlink(missing_ok=True)  # so that whoever is interrupted here is not told of changed tables
     for name, columns in schema.items():
         frame = tables[name]
         found[name] = conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(columns)), columns,
@@ -88,7 +89,7 @@ def read_table(folder, part, name):
 def need_unchanged(folder, part):
     """StudyError naming the first table of a part that is not what was written there."""
     kept = Path(folder) / part / DIGESTS
-    for name, known in (read_json(kept)["tables"] if kept.exists() else {}).items():
+    for name, known in (read_object(kept, tables=dict)["tables"] if kept.exists() else {}).items():
         path = kept.with_name(f"{name}.csv")
         if not path.exists() or digest(path) != known:
             raise StudyError(f"{path} is {'not as it was written' if path.exists() else 'missing'}: restore it, or "

@@ -7,7 +7,7 @@ import jinja2
 import matplotlib.pyplot as plt
 
 from analysis.core import records, schema
-from analysis.core.files import ROOT, read_json, write_json, write_text
+from analysis.core.files import ROOT, read_object, write_json, write_text
 from analysis.core.parts import parts
 from analysis.core.style import save
 from analysis.core.text import number
@@ -45,7 +45,7 @@ def write_index(folder):
 
 def answers_of(folder):
     """{part: what its sentences.py says: "answers" and "cases" (your case, take this, link)}; None of one not done."""
-    return {part: read_json(folder / part / "answers.json") if (folder / part / "answers.json").exists() else None
+    return {part: read_object(folder / part / "answers.json", answers=list, cases=list) if (folder / part / "answers.json").exists() else None
             for part in parts()}
 
 

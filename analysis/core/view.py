@@ -5,8 +5,18 @@ from pathlib import Path
 
 import yaml
 
-from analysis.core.files import read_json
+from analysis.core.errors import StudyError
+from analysis.core.files import read_object
 from analysis.core.registry import Registry
+
+
+def facts_of(folder):
+    """set.json: profile, selection, parts, date, context of the usual environment, digests of the programs."""
+    return read_object(folder / "set.json", profile=str, only=list, parts=list, programs=dict, context=dict, date=str)
+
+
+def registry_of(folder):
+    return Registry(read_object(folder / "registry.json", implementations=list))
 
 
 @dataclass(frozen=True)
@@ -16,18 +26,20 @@ class View:
 
     @cached_property
     def facts(self):
-        """set.json: profile, only, parts, context (machine, commit, compiler …), date."""
-        return read_json(self.folder / "set.json")
+        return facts_of(self.folder)
 
     @cached_property
     def registry(self):
-        return Registry(read_json(self.folder / "registry.json"))
+        return registry_of(self.folder)
 
     @cached_property
     def settings(self):
         """The profile's of this part."""
-        profile = yaml.safe_load((self.folder / "profile.yaml").read_text(encoding="utf-8"))
-        return profile["parts"][self.part]
+        path = self.folder / "profile.yaml"
+        try:
+            return yaml.safe_load(path.read_text(encoding="utf-8"))["parts"][self.part]
+        except (OSError, UnicodeDecodeError, yaml.YAMLError, KeyError, TypeError) as error:
+            raise StudyError(f"{path} is damaged: {' '.join(str(error).split())[:200]}") from error
 
     @property
     def context(self):

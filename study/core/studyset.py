@@ -7,8 +7,9 @@ from pathlib import Path
 
 from analysis.core import records
 from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, digest, read_json, write_json
+from analysis.core.files import ROOT, digest, read_object, write_json, write_text
 from analysis.core.registry import Registry
+from analysis.core.view import facts_of, registry_of
 from study.core import executor, profile as profiles
 from study.core.cell import Cell
 from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
@@ -21,16 +22,11 @@ class StudySet:
 
     @cached_property
     def facts(self):
-        """set.json: profile, selection, parts, date, context of the usual environment, digests of the programs."""
-        found = read_json(self.folder / "set.json")
-        missing = {"profile", "only", "parts", "programs", "context", "date"} - set(found)
-        if missing:
-            raise StudyError(f"{self.folder / 'set.json'} is no record of a study: it lacks {', '.join(sorted(missing))}")
-        return found
+        return facts_of(self.folder)
 
     @cached_property
     def registry(self):
-        return Registry(read_json(self.folder / "registry.json"))
+        return registry_of(self.folder)
 
     @cached_property
     def profile(self):
@@ -46,7 +42,7 @@ class StudySet:
         path = self.folder / "contexts" / f"{one.environment.replace('|', '-')}.json"
         if not path.exists():
             write_json(path, context_of(one))
-        return read_json(path)
+        return read_object(path)
 
     def stamp(self, part, column):
         return self.folder / ".done" / part / column
@@ -110,7 +106,7 @@ def start(folder, profile, only, chosen):
     for path in folder.rglob(".partial-*"):  # of a process that was killed
         path.unlink()
     write_json(folder / "registry.json", registry.listed)
-    kept.write_text(text)
+    write_text(kept, text)
     write_json(folder / "set.json", record)
     return StudySet(folder)
 
@@ -145,11 +141,26 @@ def reopen(studyset, columns):
     for part, names in columns.items():
         for column in names:
             stamp = studyset.stamp(part, column)
-            for name, kept in (read_json(stamp) if stamp.exists() else {}).items():
-                path = studyset.folder / "raw" / part / name
-                if not path.exists():
-                    stamp.unlink(missing_ok=True)
-                elif digest(path) != kept:
-                    records.read(path, name)  # says what is wrong with it
-                    raise StudyError(f"{path} is not the one that was measured: restore it, or remove it to have "
-                                     "it measured again")
+            if stamp.exists() and _missing(studyset, stamp):
+                stamp.unlink()
+
+
+def need_records(studyset):
+    """StudyError naming a record of a finished column that is missing or was changed."""
+    for stamp in sorted((studyset.folder / ".done").glob("*/*")):
+        missing = _missing(studyset, stamp)
+        if missing:
+            raise StudyError(f"{missing[0]} is missing: study/run measures it again")
+
+
+def _missing(studyset, stamp):
+    """Paths of a column's records that are not there; StudyError naming one that was changed."""
+    found = []
+    for name, kept in read_object(stamp).items():
+        path = studyset.folder / "raw" / stamp.parent.name / name
+        if not path.exists():
+            found.append(path)
+        elif digest(path) != kept:
+            records.read(path, name)  # says what is wrong with it
+            raise StudyError(f"{path} is not the one that was measured: restore it, or remove it to have it measured again")
+    return found
