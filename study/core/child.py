@@ -60,7 +60,7 @@ def run(command, seconds, memory_mb):
         begin = time.monotonic()
         child = subprocess.Popen(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out,
                                  stderr=err, start_new_session=True,
-                                 preexec_fn=lambda: _limit(memory_mb))
+                                 preexec_fn=lambda parent=os.getpid(): _limit(memory_mb, parent))
         try:
             code = child.wait(timeout=seconds)
         except subprocess.TimeoutExpired:
@@ -75,8 +75,15 @@ def run(command, seconds, memory_mb):
     return Ended(*_judge(code, stderr, seconds, memory_mb), code, stdout, stderr, took)
 
 
-def _limit(memory_mb):
-    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG: never outlive the study
+def die_with(parent):
+    """In a child that process `parent` has just started: it is killed when that ends."""
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+    if os.getppid() != parent:  # which has ended meanwhile
+        os._exit(1)
+
+
+def _limit(memory_mb, parent):
+    die_with(parent)  # never outlive the study
     resource.setrlimit(resource.RLIMIT_AS, (memory_mb * 2**20,) * 2)
     resource.setrlimit(resource.RLIMIT_FSIZE, (OUTPUT_LIMIT,) * 2)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

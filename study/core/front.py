@@ -1,7 +1,7 @@
 # Runs Snakemake in the background and shows the part, the cells done of all and the time left.
-import ctypes
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -9,6 +9,7 @@ import time
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, write_json
+from study.core import child
 from study.core.job import FRONT
 from study.core.progress import Reader, duration
 
@@ -44,7 +45,7 @@ def run_workflow(studyset, columns, stored=False):
     with open(studyset.log, "a", encoding="utf-8") as log:
         follower = _Follower(studyset, columns, display)
         process = subprocess.Popen(_command(studyset, stored), stdout=log, stderr=subprocess.STDOUT, cwd=studyset.folder,
-                                   start_new_session=True, preexec_fn=_die_with_parent,
+                                   start_new_session=True, preexec_fn=lambda parent=os.getpid(): child.die_with(parent),
                                    env=os.environ | {FRONT: str(os.getpid())})
         try:
             while process.poll() is None:
@@ -54,6 +55,8 @@ def run_workflow(studyset, columns, stored=False):
         finally:
             _stop(process)
             display.end()
+    if process.returncode != 0 and shutil.disk_usage(studyset.folder).free < 2**20:
+        raise StudyError(f"no space is left for {studyset.folder}; what is finished is kept: make room and run it again")
     if process.returncode != 0:
         raise StudyError(f"{follower.error or follower.last_words()} (log: {studyset.log})")
 
@@ -63,10 +66,6 @@ def _command(studyset, stored):
             "--directory", str(studyset.folder), "--cores", "all", "--scheduler", "greedy",
             "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor", *(["--forceall"] if stored else []),
             "--config", f"root={ROOT}", f"stored={int(stored)}", f"columns={studyset.folder / '.columns.json'}"]
-
-
-def _die_with_parent():
-    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
 
 
 class _Follower:

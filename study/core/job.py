@@ -4,6 +4,7 @@ import select
 import signal
 import sys
 import threading
+import traceback
 from pathlib import Path
 
 from analysis.core.errors import StudyError
@@ -25,9 +26,14 @@ def main(arguments):
         return 0
     except StudyError as error:
         print(f"error: {error}", file=sys.stderr)
-        return 1
+    except OSError as error:
+        print(f"error: {error.filename or folder}: {error.strerror}", file=sys.stderr)
     except KeyboardInterrupt:
         return 130
+    except Exception as error:  # a fault of the study, or records that are not what they were; the log has it all
+        traceback.print_exc()
+        print(f"error: {' '.join(rest)}: {type(error).__name__}: {' '.join(str(error).split())[:300]}", file=sys.stderr)
+    return 1
 
 
 def run(studyset, part, column):

@@ -16,7 +16,7 @@ from study.core import child, locks, profile as profiles
 from study.core.front import Display, run_workflow
 from study.core.options import Parser
 from study.core.progress import duration
-from study.core.studyset import StudySet, listed, reopen, select, start
+from study.core.studyset import StudySet, listed, need_records, reopen, select, start
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
            "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
@@ -37,6 +37,9 @@ def main(arguments):
     except BrokenPipeError:  # of `study/run --list | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 128 + signal.SIGPIPE
+    except OSError as error:
+        print(f"study/{command}: {error.filename or 'the system'}: {error.strerror}", file=sys.stderr)
+        return 2
     except KeyboardInterrupt as cause:
         print("\ninterrupted; what is finished is kept. To resume:\n  "
               + shlex.join([f"study/{command}", *rest]), file=sys.stderr)
@@ -75,11 +78,19 @@ def run(arguments):
         studyset = start(folder, profile, options.only, chosen)
         columns = columns_of(profile, studyset.facts["parts"], studyset)
         reopen(studyset, columns)
+        need_tables(studyset)
         print(f"{len(studyset.contenders)} implementations, {len(columns)} parts: at most "
               f"{duration(sum(sum(names.values()) for names in columns.values()))}; the site grows in {folder}/index.html")
         run_workflow(studyset, columns)
     print(f"site: {folder / 'index.html'}")
     return 0
+
+
+def need_tables(studyset):
+    """StudyError naming a table that was changed."""
+    from analysis.core.schema import need_unchanged
+    for part in studyset.facts["parts"]:
+        need_unchanged(studyset.folder, part)
 
 
 def columns_of(profile, chosen, studyset=None):
@@ -98,6 +109,7 @@ def figures(arguments):
     writable(folder)
     studyset = StudySet(folder)
     with locks.only_one(folder):
+        need_records(studyset)
         run_workflow(studyset, {part: [] for part in parts() if part in studyset.facts["parts"]}, stored=True)
     print(f"site: {folder / 'index.html'}")
     return 0
