@@ -35,7 +35,7 @@ def count(layout, one, loops, seconds):
 def _run(one, loops, steps, seconds, log):
     bench = replace(one, build=BUILD).call(
         "bench", f"four-bar:{loops}", "--implementation", one.variant, "--start", "0", "--steps",
-        str(steps), "--benchmark_min_time=1e-9")
+        str(steps), "--benchmark_min_time=0", "--benchmark_repetitions=1")
     command = ["valgrind", "--tool=callgrind", "--trace-children=yes",  # it executes itself again
                "--callgrind-out-file=/dev/null",
                f"--log-file={log}", *bench]

@@ -67,7 +67,8 @@ def bench(layout, one, scene, name, seconds, *options):
     interrupted is run again; the calmest of its TRIES counts."""
     raw = _kept(layout, f"{name}.json",
                 one.call("bench", scene, "--implementation", one.variant, *options,
-                         "--benchmark_min_time=0.02", "--benchmark_format=json"), seconds, _unrest)
+                         "--benchmark_min_time=0.02", "--benchmark_repetitions=1",
+                         "--benchmark_format=json"), seconds, _unrest)
     if "failure" in raw:
         return {}, raw["failure"]
     row = raw["found"]["benchmarks"][0]

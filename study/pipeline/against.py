@@ -118,7 +118,8 @@ def _sample(raw, path, variant, scene):
     if raw.exists():
         return read_json(raw)
     ended = child.run([str(path), "bench", scene, "--implementation", variant,
-                       "--benchmark_min_time=0.02", "--benchmark_format=json"], SECONDS, MEMORY_MB)
+                       "--benchmark_min_time=0.02", "--benchmark_repetitions=1",
+                       "--benchmark_format=json"], SECONDS, MEMORY_MB)
     try:
         record = json.loads(ended.stdout)
     except ValueError:
