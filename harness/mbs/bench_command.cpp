@@ -1,4 +1,4 @@
-// mbs bench: Google Benchmark over variants and scenes; its flags are taken along with ours.
+// mbs bench: variants over scenes, with the flags and reports of Google Benchmark.
 #include "mbs/bench_command.hpp"
 
 #include <benchmark/benchmark.h>
@@ -6,35 +6,24 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include "bench/batch_rows.hpp"
 #include "bench/bench_plan.hpp"
-#include "bench/bench_rows.hpp"
 #include "bench/operation_rows.hpp"
 #include "bench/reporters.hpp"
+#include "bench/scene_timing.hpp"
 #include "environment/environment.hpp"
+#include "mbs/bench_flags.hpp"
+#include "mbs/bench_output.hpp"
 #include "mbs/commands.hpp"
 #include "mbs/file_names.hpp"
+#include "mbs/step_bench.hpp"
 #include "usage_error.hpp"
-
-// The library exports all of its flags, but has no header and no accessor for these.
-namespace benchmark {
-extern std::string FLAGS_benchmark_out;
-extern std::string FLAGS_benchmark_out_format;
-extern bool FLAGS_benchmark_list_tests;
-extern double FLAGS_benchmark_min_time;
-extern int32_t FLAGS_benchmark_repetitions;
-}  // namespace benchmark
 
 namespace mbs {
 namespace {
-
-namespace fs = std::filesystem;
 
 void add_options(CLI::App& app, BenchRequest& request, StepOptions& step) {
   app.add_option("scenes", request.scenes, "scenes (default: four-bar:10 four-bar:40)");
@@ -43,9 +32,15 @@ void add_options(CLI::App& app, BenchRequest& request, StepOptions& step) {
                  "that does nothing)");
   step.add_to(app);
   app.add_option("--steps", request.steps,
-                 "steps of the stretch (default: 800, or fewer to be centred)");
+                 "steps of the stretch (default: 800, fewer above 400 variables or to be centred)");
   app.add_option("--start", request.start,
                  "start of the stretch, s (default: centred on the first singular position)");
+  app.add_option("--slower-than", request.slower_than,
+                 "leave out whoever takes more than F times as long as the fastest (default: time "
+                 "all)");
+  app.add_option("--patience", request.patience,
+                 "leave out whose first stretch takes longer than S seconds (default: wait)");
+  app.add_option("--seed", request.seed, "of the order of turns (default: 1)");
   app.add_flag("--phases", request.phases, "also give the share of time of each phase");
   app.add_flag("--operations", request.operations,
                "instead of steps, time Jacobian evaluation, rank-k update and matrix addition of "
@@ -66,83 +61,45 @@ bool asks_for_help(int argc, char** argv) {
 }
 
 void print_help(const CLI::App& app) {
-  fmt::print("{}\nAnd Google Benchmark's flags, over the names folder/variant/scene:\n",
-             app.help());
+  fmt::print(
+      "{}\nAnd Google Benchmark's flags, over the names folder/variant/scene. Of steps,\n"
+      "--benchmark_repetitions is the number of samples of each contender (default: {} to {}, by "
+      "what fits\ninto {:g} s a scene), --benchmark_min_time the length of a turn (default: {:g} "
+      "s; "
+      "0: whole stretches).\nThose for aggregates, random interleaving and warm-up are for "
+      "--operations and --batch.\n",
+      app.help(), kLeastSamples, kMostSamples, kSceneTime, kSlice);
   std::fflush(stdout);
   benchmark::PrintDefaultHelp();
 }
 
-/// Takes Google Benchmark's flags out of argv and refuses values that it would not survive.
-void take_benchmark_flags(int& argc, char** argv) {
-  benchmark::Initialize(&argc, argv, [] {
-    // Help never comes here; for a wrong value the library prints its usage and exits with status
-    // 0.
-    throw UsageError(
-        "--benchmark_format and --benchmark_out_format are one of console, json, csv; "
-        "--benchmark_time_unit is one of ns, us, ms, s");
-  });
-  if (benchmark::FLAGS_benchmark_out_format != "json") {
-    throw UsageError(fmt::format("--benchmark_out_format={}: results are written as json only",
-                                 benchmark::FLAGS_benchmark_out_format));
-  }
-  if (!(benchmark::FLAGS_benchmark_min_time >= 0.0 && benchmark::FLAGS_benchmark_min_time < 1e6)) {
-    throw UsageError(fmt::format("--benchmark_min_time={}: it must be 0 to 1e6 s",
-                                 benchmark::FLAGS_benchmark_min_time));
-  }
-  if (benchmark::FLAGS_benchmark_repetitions < 1 ||
-      benchmark::FLAGS_benchmark_repetitions > 10000) {
-    throw UsageError(fmt::format("--benchmark_repetitions={}: it must be 1 to 10000",
-                                 benchmark::FLAGS_benchmark_repetitions));
-  }
-}
-
-/// Makes Google Benchmark write to "<out>.partial", to be renamed when it is complete, so that an
-/// interrupted run leaves older results alone. Returns the name to rename to, or "" if there is no
-/// file or it is a device. Throws UsageError if nothing can be written there.
-std::string redirect_output() {
-  std::string& out = benchmark::FLAGS_benchmark_out;
-  if (out.empty()) return "";
-  const std::string given = out;
-  std::error_code error;
-  const bool direct = fs::exists(given, error) && !fs::is_regular_file(given, error);
-  if (!direct) out += ".partial";
-  // Opening it fails the same way in the library, which then leaves by exit().
-  if (!std::ofstream(out, std::ios::app)) {
-    throw UsageError(
-        fmt::format("--benchmark_out={}: cannot be written ({})", given, std::strerror(errno)));
-  }
-  return direct ? "" : given;
-}
-
-int run_cells(const std::vector<PlannedCell>& cells, const BenchRequest& request) {
-  for (const std::string& scene : request.scenes) {
-    require_not_scene("--benchmark_out", benchmark::FLAGS_benchmark_out, scene);
-  }
-  const std::string rename_to = redirect_output();
-  const std::string out = benchmark::FLAGS_benchmark_out;
-  BenchRows rows;
+/// Operations and batches, each row on its own.
+int run_benchmarks(const std::vector<PlannedCell>& cells, const BenchRequest& request,
+                   const BenchOutput& output) {
+  redirect_benchmark_out(output.path());
   OperationRows operations;
   BatchRows batches;
-  if (request.operations) {
-    operations.add(cells);
-  } else if (request.batch) {
-    batches.add(cells, request.sets.value_or(kSets));
-  } else {
-    rows.add(cells, request.phases);
-  }
-  for (const auto& [key, value] : environment_record()) benchmark::AddCustomContext(key, value);
+  if (request.operations) operations.add(cells);
+  if (request.batch) batches.add(cells, request.sets.value_or(kSets));
   const auto display =
-      request.batch ? make_display_reporter(kBatchCounters) : make_display_reporter(kStepCounters);
+      request.batch ? make_display_reporter(kBatchCounters) : make_display_reporter({});
   JsonReporter file;
-  benchmark::RunSpecifiedBenchmarks(display.get(), out.empty() ? nullptr : &file, ".");
+  benchmark::RunSpecifiedBenchmarks(display.get(), output.path().empty() ? nullptr : &file, ".");
   benchmark::ClearRegisteredBenchmarks();
   benchmark::Shutdown();
-  std::error_code error;
-  if (!rename_to.empty() && file.complete()) fs::rename(out, rename_to, error);
-  if (!out.empty() && (!file.complete() || error)) {
-    throw UsageError(fmt::format("--benchmark_out: {} could not be written to its end", out));
+  output.finish(file.complete());
+  return operations.failed() || batches.failed() ? 1 : 0;
+}
+
+int run_cells(const std::vector<PlannedCell>& cells, const BenchRequest& request,
+              const BenchFlags& flags) {
+  for (const std::string& scene : request.scenes) {
+    require_not_scene("--benchmark_out", flags.out, scene);
   }
-  return rows.failed() || operations.failed() || batches.failed() ? 1 : 0;
+  const BenchOutput output(flags.out);
+  for (const auto& [key, value] : environment_record()) benchmark::AddCustomContext(key, value);
+  if (request.operations || request.batch) return run_benchmarks(cells, request, output);
+  return time_steps(cells, request, flags, output);
 }
 
 }  // namespace
@@ -158,19 +115,19 @@ int bench_command(int argc, char** argv) {
     print_help(app);
     return 0;
   }
-  take_benchmark_flags(argc, argv);
+  const BenchFlags flags = take_benchmark_flags(argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     throw UsageError(fmt::format("{} (mbs bench --help)", error.what()));
   }
   const BenchPlan plan = plan_bench(request);
-  const std::vector<PlannedCell> cells = filter_cells(plan.cells, benchmark::GetBenchmarkFilter());
-  if (benchmark::FLAGS_benchmark_list_tests) {
+  const std::vector<PlannedCell> cells = filter_cells(plan.cells, flags.filter);
+  if (flags.list_tests) {
     for (const PlannedCell& cell : cells) fmt::print("{}\n", cell.name);
     return 0;
   }
-  return run_cells(cells, request);
+  return run_cells(cells, request, flags);
 }
 
 }  // namespace mbs

@@ -1,7 +1,9 @@
 // `mbs bench` from the outside: its JSON, its rows for failures, its errors.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -16,12 +18,13 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* kShort = " --steps 20 --benchmark_min_time=0 ";
+constexpr const char* kShort = " --steps 20 --benchmark_min_time=0 --benchmark_repetitions=1 ";
 
 /// Runs `mbs bench` into a file and returns its JSON.
 json bench(const std::string& arguments) {
   const std::string out = test::temporary_path("bench.json");
-  const auto run = test::run_mbs("bench " + arguments + kShort + "'--benchmark_out=" + out + "'");
+  const auto run =
+      test::run_mbs(std::string("bench") + kShort + arguments + " '--benchmark_out=" + out + "'");
   EXPECT_EQ(run.status, 0) << run.errors;
   EXPECT_FALSE(fs::exists(out + ".partial"));
   const std::string text = test::file_text(out);
@@ -74,8 +77,9 @@ TEST(BenchProgram, HasTheRecordInItsContext) {
     EXPECT_TRUE(context.at(key).is_string()) << key;
   }
   EXPECT_EQ(context["round"], "3");
-  EXPECT_TRUE(context["command"].get<std::string>().starts_with("mbs bench four-bar:1 "))
-      << context;
+  const std::string command = context["command"];
+  EXPECT_TRUE(command.starts_with("mbs bench ")) << command;
+  EXPECT_NE(command.find(" four-bar:1 --implementation null"), std::string::npos) << command;
 }
 
 TEST(BenchProgram, PrintsNoFigureThatIsNotThere) {
@@ -84,7 +88,7 @@ TEST(BenchProgram, PrintsNoFigureThatIsNotThere) {
       "/harness/scenes/double_pendulum.json'";
   const auto run = test::run_mbs(scenes);
   EXPECT_EQ(run.status, 0) << run.errors;
-  EXPECT_NE(run.output.find("step_us="), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("step, µs"), std::string::npos) << run.output;
   EXPECT_EQ(run.output.find("nan"), std::string::npos) << run.output;
 }
 
@@ -108,8 +112,9 @@ TEST(BenchProgram, KeepsTheRowOfACellThatFails) {
   const std::string only = " --implementation " + name + " null --start 0 --steps 700";
   // A penalty that constrains nothing: the rods fly apart, but the control runs.
   const std::string out = test::temporary_path("bench.json");
-  const auto run = test::run_mbs("bench four-bar:4 four-bar:1" + only +
-                                 " --penalty 1e-3 --benchmark_min_time=0 --benchmark_out=" + out);
+  const auto run = test::run_mbs(
+      "bench four-bar:4 four-bar:1" + only +
+      " --penalty 1e-3 --benchmark_min_time=0 --benchmark_repetitions=1 --benchmark_out=" + out);
   EXPECT_EQ(run.status, 1) << run.errors;
   const json result = json::parse(test::file_text(out));
   fs::remove(out);
@@ -130,8 +135,80 @@ TEST(BenchProgram, PrintsRowsThatFailInEveryFormat) {
         "--benchmark_filter='eigen_dense/.*four-bar:4|null/null/four-bar:1' --benchmark_format=" +
         std::string(format));
     EXPECT_EQ(run.status, 1) << format << ": " << run.errors;
-    EXPECT_NE(run.output.find("null/null/four-bar:1"), std::string::npos) << run.output;
+    const bool table = format == std::string("console");  // where the scene is the heading
+    EXPECT_NE(run.output.find(table ? "null/null" : "null/null/four-bar:1"), std::string::npos)
+        << run.output;
+    EXPECT_NE(run.output.find("diverged: "), std::string::npos) << run.output;
   }
+}
+
+TEST(BenchProgram, PrintsATableForEachScene) {
+  const auto run = test::run_mbs(
+      std::string("bench four-bar:1 four-bar:2 --phases --seed 4 --implementation eigen_dense") +
+      kShort + "--benchmark_repetitions=7");
+  EXPECT_EQ(run.status, 0) << run.errors;
+  EXPECT_EQ(run.errors, "") << "progress is for terminals";
+  for (const char* text : {"four-bar:1: 4 variables", "four-bar:2: 6 variables",
+                           "7 samples of each", "factorization", " 1 ", "95 %"}) {
+    EXPECT_NE(run.output.find(text), std::string::npos) << text << " in\n" << run.output;
+  }
+}
+
+TEST(BenchProgram, RecordsHowTurnsWereTaken) {
+  const json result = bench(
+      "four-bar:1 --implementation null --seed 9223372036854775807 --benchmark_repetitions=3 "
+      "--benchmark_min_time=0.0001");
+  EXPECT_EQ(result["context"]["seed"], "9223372036854775807");
+  EXPECT_EQ(result["context"]["slice_seconds"], "0.0001");
+  ASSERT_EQ(result["benchmarks"].size(), 3U);
+  for (int j = 0; j < 3; ++j) {
+    const json& row = result["benchmarks"][static_cast<std::size_t>(j)];
+    EXPECT_EQ(row["repetition_index"], j);
+    EXPECT_EQ(row["repetitions"], 3);
+    EXPECT_EQ(row["run_type"], "iteration");
+    EXPECT_GT(row["iterations"], 1) << "twenty empty steps are shorter than a turn";
+    EXPECT_GE(row["cpu_time"], 0.0);
+  }
+}
+
+TEST(BenchProgram, LeavesTheSlowOut) {
+  const std::string out = test::temporary_path("bench.json");
+  const auto run = test::run_program(
+      MBS_CONTROLS, "bench four-bar:2 --implementation control/reference --patience 1e-9" +
+                        std::string(kShort) + "--benchmark_out=" + out);
+  EXPECT_EQ(run.status, 0) << run.errors;
+  const json row = json::parse(test::file_text(out)).at("benchmarks").at(0);
+  fs::remove(out);
+  EXPECT_EQ(row["error_occurred"], true);
+  EXPECT_TRUE(row["error_message"].get<std::string>().starts_with("slower: did not finish")) << row;
+}
+
+/// What the program says on stderr when a control ends it, and how it ends.
+void expect_ending(const std::string& control, const std::string& signal, int status,
+                   const std::string& environment = "") {
+  const auto run = test::run_program(
+      MBS_CONTROLS,
+      "bench four-bar:2 --implementation control/reference --implementation control/" + control +
+          kShort,
+      environment);
+  EXPECT_EQ(run.status, status) << control;
+  EXPECT_EQ(
+      run.errors.find("mbs bench: ended by " + signal + " in control/" + control + "/four-bar:2\n"),
+      0U)
+      << run.errors;
+}
+
+TEST(BenchProgram, SaysWhoEndedIt) {
+  if (MBS_SANITIZE) GTEST_SKIP() << "the sanitizers report these themselves";
+  // The shell gives 128 and the signal.
+  expect_ending("crashes", "SIGSEGV", 128 + SIGSEGV);
+  expect_ending("aborts", "SIGABRT", 128 + SIGABRT);
+  expect_ending("divides_by_zero", "SIGFPE", 128 + SIGFPE);
+  expect_ending("overflows_stack", "SIGSEGV", 128 + SIGSEGV);
+}
+
+TEST(BenchProgram, SaysWhoWasRunningWhenItWasStopped) {
+  expect_ending("hangs", "SIGTERM", 124, "timeout 2");
 }
 
 TEST(BenchProgram, TimesBatchesBesideTheirLanesAlone) {
@@ -157,8 +234,9 @@ TEST(BenchProgram, HelpShowsBothKindsOfOptions) {
   for (const char* flag : {"--help", "-h", "four-bar:2 --help"}) {
     const auto run = test::run_mbs(std::string("bench ") + flag);
     EXPECT_EQ(run.status, 0);
-    for (const char* option : {"--implementation", "--penalty", "--phases", "--start",
-                               "--benchmark_filter", "--benchmark_out"}) {
+    for (const char* option :
+         {"--implementation", "--penalty", "--phases", "--start", "--slower-than", "--patience",
+          "--seed", "--benchmark_filter", "--benchmark_out"}) {
       EXPECT_NE(run.output.find(option), std::string::npos) << option;
     }
   }
@@ -185,7 +263,8 @@ void expect_refusal(const std::string& arguments, const std::string& word) {
 
 TEST(BenchProgram, WhatIsUnsupportedIsARowAndNoFailure) {
   const auto run = test::run_mbs(
-      "bench four-bar:1 --steps 5 --benchmark_min_time=0 --scheme saddle-point "
+      "bench four-bar:1 --steps 5 --benchmark_min_time=0 --benchmark_repetitions=1 "
+      "--scheme saddle-point "
       "--benchmark_format=json");
   EXPECT_EQ(run.status, 0) << run.errors;
   int unsupported = 0;
@@ -215,6 +294,15 @@ TEST(BenchProgram, RefusesBadInput) {
   expect_refusal("four-bar:1 --benchmark_out=/no/such/folder/x.json", "/no/such/folder/x.json");
   expect_refusal("four-bar:1 --benchmark_out=/proc/version", "cannot be written");
   expect_refusal("four-bar:1 --benchmark_out=/usr", "cannot be written");
+  expect_refusal("four-bar:1 --benchmark_out=-", "--benchmark_out=-");
+  expect_refusal("four-bar:1 --slower-than 0.9", "--slower-than");
+  expect_refusal("four-bar:1 --slower-than nan", "--slower-than");
+  expect_refusal("four-bar:1 --patience 0", "--patience");
+  expect_refusal("four-bar:1 --patience -1", "--patience");
+  expect_refusal("four-bar:1 --seed -1", "--seed");
+  expect_refusal("four-bar:1 --seed 1.5", "--seed");
+  expect_refusal("four-bar:1 --batch --seed 1", "--seed");
+  expect_refusal("four-bar:1 --operations --patience 1", "--patience");
   expect_refusal("no-such-scene.json", "no-such-scene.json");
   expect_refusal("four-bar:1 --implementation no_such", "no_such");
   expect_refusal("four-bar:1 --step 0", "--step");
@@ -235,6 +323,23 @@ TEST(BenchProgram, LeavesOlderResultsAloneWhenRefusing) {
   expect_refusal("four-bar:1 --benchmark_filter=zzz --benchmark_out=" + out, "selects none");
   EXPECT_EQ(test::file_text(out), "precious");
   fs::remove(out);
+}
+
+TEST(BenchProgram, DoesNotWaitForAPipe) {
+  const std::string pipe = test::temporary_path("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  expect_refusal("four-bar:1 --benchmark_out=" + pipe, "neither a file nor");
+  fs::remove(pipe);
+}
+
+TEST(BenchProgram, WritesToWhatIsOpenAlready) {
+  const std::string command = "bench four-bar:1 --implementation null --benchmark_out=/dev/stdout";
+  for (const char* end : {"", " | grep benchmarks"}) {
+    const auto run =
+        test::run_program("sh", "-c \"'" MBS_PROGRAM "' " + command + kShort + end + "\"");
+    EXPECT_EQ(run.status, 0) << run.errors;
+    EXPECT_NE(run.output.find("benchmarks"), std::string::npos) << run.output;
+  }
 }
 
 TEST(BenchProgram, SaysSoWhenTheDiskIsFull) {

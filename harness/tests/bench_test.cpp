@@ -1,83 +1,24 @@
 // The parts of `mbs bench`: what is planned, what is timed, and how failures are told.
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <new>
 #include <numeric>
-#include <thread>
 
 #include "bench/bench_plan.hpp"
 #include "bench/measurement.hpp"
 #include "bench/null_variant.hpp"
 #include "bench/reporters.hpp"
 #include "exact/four_bar_exact.hpp"
+#include "support/scripted_simulation.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
 namespace {
 
-using std::chrono::microseconds;
-using std::chrono::milliseconds;
-using std::chrono::steady_clock;
-
-void wait(microseconds time) {
-  const auto end = steady_clock::now() + time;
-  while (steady_clock::now() < end) {
-  }
-}
-
-/// Does what a test tells it to, and counts.
-class Scripted final : public Simulation {
- public:
-  enum class Script { still, slow_setup, not_finite, refuses, at_limit, phases, hoards };
-
-  Scripted(const Model& model, Script script) : Simulation(model, StepSettings{}), script_(script) {
-    if (script_ == Script::slow_setup) wait(milliseconds(4));
-    if (script_ == Script::hoards) hoard_.resize(1'000'000);
-  }
-
-  static inline long steps = 0;   ///< of all objects since a test cleared it
-  static inline long starts = 0;  ///< set_state() calls likewise
-
- protected:
-  void do_set_state(const State& state) override {
-    ++starts;
-    state_ = state;
-    done_ = 0;
-    if (script_ == Script::slow_setup) wait(milliseconds(4));
-  }
-  StepOutcome do_step() override {
-    ++steps;
-    ++done_;
-    if (script_ == Script::not_finite && done_ == 3) {
-      state_.v[0] = std::numeric_limits<double>::quiet_NaN();
-    }
-    if (script_ == Script::refuses && done_ == 4) return {StepStatus::factorization_failed, 1};
-    if (script_ == Script::at_limit && done_ % 2 == 0) return {StepStatus::pass_limit, 20};
-    if (script_ == Script::phases) {
-      phases_.enter(Phase::solve);
-      wait(microseconds(300));
-      phases_.enter(Phase::projection);
-      wait(microseconds(100));
-      phases_.enter(Phase::other);
-    }
-    return {StepStatus::converged, 2};
-  }
-  void do_get_state(State& state) const override { state = state_; }
-
- private:
-  Script script_;
-  State state_;
-  std::vector<double> hoard_;
-  long done_ = 0;
-};
-
-template <Scripted::Script script>
-std::unique_ptr<Simulation> create_scripted(const Model& model, const StepSettings&) {
-  return std::make_unique<Scripted>(model, script);
-}
+using test::create_scripted;
+using test::Scripted;
 
 /// A cell on a four-bar over ten steps that are so short that standing still is no divergence.
 class MeasurementTest : public ::testing::Test {
@@ -89,21 +30,12 @@ class MeasurementTest : public ::testing::Test {
   }
   std::string failure(decltype(Variant::create) create) {
     Measurement cell = measurement(create);
-    std::string first, second;
     try {
       cell.prepare();
-    } catch (const CellFailure& failure) {
-      first = failure.what();
+    } catch (...) {
+      return failure_text();
     }
-    const long steps = Scripted::steps;
-    try {
-      cell.prepare();
-    } catch (const CellFailure& failure) {
-      second = failure.what();
-    }
-    EXPECT_EQ(first, second);
-    EXPECT_EQ(Scripted::steps, steps) << "a failed cell must not be tried again";
-    return first;
+    return "";
   }
 
   const Scene scene_ = load_scene("four-bar:2");
@@ -178,14 +110,16 @@ TEST_F(MeasurementTest, SaysWhatTheSimulationHolds) {
   EXPECT_LE(cell.figures().memory_bytes, 8.1e6);
 }
 
-TEST_F(MeasurementTest, ComesBackAfterRelease) {
-  Measurement cell = measurement(create_scripted<Script::still>);
+TEST_F(MeasurementTest, GoesOnInPieces) {
+  Measurement cell = measurement(create_scripted<Script::at_limit>);
   cell.prepare();
-  const double setup = cell.figures().setup_us;
-  cell.release();
-  cell.prepare();
-  EXPECT_EQ(Scripted::steps, 20) << "warmed up again";
-  EXPECT_EQ(cell.figures().setup_us, setup) << "but measured once";
+  cell.start();
+  Spent spent;
+  for (const int steps : {3, 6, 1}) spent += cell.advance(steps);
+  EXPECT_EQ(Scripted::starts, 7) << "one start for all pieces";
+  EXPECT_EQ(cell.figures().steps_at_limit, 5);
+  EXPECT_EQ(cell.figures().passes, 5 * 2 + 5 * 20);
+  EXPECT_GT(spent.seconds, 0.0);
 }
 
 TEST_F(MeasurementTest, NamesEveryKindOfFailure) {
@@ -201,6 +135,12 @@ TEST_F(MeasurementTest, NamesEveryKindOfFailure) {
               throw std::runtime_error("something else");
             }),
             "error: something else");
+  EXPECT_EQ(failure([](const Model&, const StepSettings&) -> std::unique_ptr<Simulation> {
+              throw std::runtime_error("two\nlines");
+            }),
+            "error: two\\x0Alines");
+  EXPECT_EQ(failure(create_scripted<Script::throws_number>),
+            "error: it threw what is no std::exception");
   EXPECT_EQ(failure(create_scripted<Script::refuses>),
             "factorization-failed: the tangent of step 4 of 10 was refused");
   EXPECT_TRUE(
@@ -268,6 +208,21 @@ TEST(BenchPlan, KeepsAwayFromAPositionThatCannotBeCrossed) {
   EXPECT_NEAR(stretch.start + stretch.steps * 1.25e-3, singular - kClearance, 1e-12);
 }
 
+TEST(BenchPlan, TakesFewerStepsOfLargeScenes) {
+  const auto steps = [](const std::string& scene) {
+    return default_steps(load_scene(scene), 1.25e-3);
+  };
+  EXPECT_EQ(steps("four-bar:199"), 800);
+  EXPECT_EQ(steps("four-bar:249"), 640);
+  EXPECT_EQ(steps("four-bar:299"), 530) << "320 000 / 600";
+  EXPECT_LT(steps("four-bar:499"), 320) << "up to the singular position";
+  EXPECT_EQ(steps("four-bar:3999"), 40);
+  EXPECT_EQ(most_steps(1), 800);
+  EXPECT_EQ(most_steps(401), 800);
+  EXPECT_EQ(most_steps(4000), 80);
+  EXPECT_EQ(most_steps(1'000'000), 40);
+}
+
 TEST(BenchPlan, LongStretchesStartAtZero) {
   BenchRequest one = request();
   one.scenes = {"four-bar:10"};
@@ -301,6 +256,11 @@ TEST(BenchPlan, RefusesWhatMakesNoSense) {
   refused([](BenchRequest& r) { r.start = std::numeric_limits<double>::infinity(); });
   refused([](BenchRequest& r) { r.scenes = {"four-bar:2", "four-bar:2"}; });
   refused([](BenchRequest& r) { r.scenes = {"five-bar:2"}; });
+  refused([](BenchRequest& r) { r.seed = -1; });
+  refused([](BenchRequest& r) { r.slower_than = 0.5; });
+  refused([](BenchRequest& r) { r.slower_than = std::numeric_limits<double>::quiet_NaN(); });
+  refused([](BenchRequest& r) { r.patience = 0.0; });
+  refused([](BenchRequest& r) { r.patience = std::numeric_limits<double>::infinity(); });
   refused([](BenchRequest& r) { r.implementations = {"null", "no_such"}; });
 }
 

@@ -225,7 +225,7 @@ TEST(ControlsProgram, BenchKeepsTheRowOfTheOneThatFails) {
   const auto run = test::run_program(
       MBS_CONTROLS,
       "bench four-bar:2 --implementation control/nan_after_100 --implementation control/reference "
-      "--steps 120 --benchmark_min_time=0 --benchmark_out='" +
+      "--steps 120 --benchmark_min_time=0 --benchmark_repetitions=1 --benchmark_out='" +
           file + "'");
   EXPECT_EQ(run.status, 1) << run.errors;
   const auto rows = nlohmann::json::parse(test::file_text(file)).at("benchmarks");

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <regex>
+#include <utility>
 
 #include "bench/null_variant.hpp"
 #include "exact/four_bar_exact.hpp"
@@ -16,7 +17,6 @@
 namespace mbs {
 namespace {
 
-constexpr int kDefaultSteps = 800;
 constexpr const char* kControl = "null/null";
 
 void check(const BenchRequest& request) {
@@ -36,6 +36,29 @@ void check(const BenchRequest& request) {
   if (request.start && !(*request.start >= 0.0 && *request.start <= kLatestStart)) {
     throw UsageError(
         fmt::format("--start is {:g} s: it must be 0 to {:g} s", *request.start, kLatestStart));
+  }
+}
+
+void check_timing(const BenchRequest& request) {
+  if (request.operations || request.batch) {
+    for (const auto& [name, given] : {std::pair("--seed", request.seed.has_value()),
+                                      std::pair("--slower-than", request.slower_than.has_value()),
+                                      std::pair("--patience", request.patience.has_value())}) {
+      if (given)
+        throw UsageError(fmt::format("{} goes with neither --batch nor --operations", name));
+    }
+  }
+  if (request.seed && *request.seed < 0) {
+    throw UsageError(fmt::format("--seed is {}: it must be at least 0", *request.seed));
+  }
+  constexpr double kMost = 1e9;
+  if (request.slower_than && !(*request.slower_than >= 1.0 && *request.slower_than <= kMost)) {
+    throw UsageError(fmt::format("--slower-than is {:g}: it must be 1 to {:g} times the fastest",
+                                 *request.slower_than, kMost));
+  }
+  if (request.patience && !(*request.patience > 0.0 && *request.patience <= kMost)) {
+    throw UsageError(fmt::format("--patience is {:g} s: it must be above 0, at most {:g} s",
+                                 *request.patience, kMost));
   }
 }
 
@@ -62,16 +85,18 @@ std::vector<NamedVariant> choose_variants(std::vector<std::string> names, bool& 
 }  // namespace
 
 int default_steps(const Scene& scene, double step) {
-  if (!scene.four_bar_loops) return kDefaultSteps;
+  const int most = most_steps(scene.model.variables());
+  if (!scene.four_bar_loops) return most;
   const double singular = FourBarExact(*scene.four_bar_loops).first_singular_time();
   const bool crosses = *scene.four_bar_loops <= kMostLoopsToCross;
   const double room =
       crosses ? 2 * std::floor(singular / step) : std::floor((singular - kClearance) / step);
-  return static_cast<int>(std::clamp<double>(room, crosses ? 2 : 1, kDefaultSteps));
+  return static_cast<int>(std::clamp<double>(room, crosses ? 2 : 1, most));
 }
 
 BenchPlan plan_bench(const BenchRequest& request) {
   check(request);
+  check_timing(request);
   bool control = false;
   const std::vector<NamedVariant> variants = choose_variants(request.implementations, control);
   std::vector<std::string> names = request.scenes;

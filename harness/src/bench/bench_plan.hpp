@@ -1,6 +1,7 @@
 // The cells that `mbs bench` times: scenes with their settings and stretches, times variants.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <optional>
@@ -26,6 +27,9 @@ struct BenchRequest {
   bool operations = false;  ///< the operations of Table 2 instead of steps
   bool batch = false;       ///< many lanes at once, and alone, instead of single simulations
   std::optional<int> sets;  ///< of parameters, with batch; kSets if not given
+  // Not with operations or batch; scene_timing.hpp says what they mean.
+  std::optional<std::int64_t> seed;  ///< at least 0
+  std::optional<double> slower_than, patience;
 };
 
 /// A scene with what is common to all of its cells.
@@ -51,8 +55,8 @@ struct BenchPlan {
 /// Loads the scenes and chooses what was left open. Throws UsageError.
 BenchPlan plan_bench(const BenchRequest& request);
 
-/// Number of steps of a stretch if the user does not say: 800, on the N-four-bar cut to what fits
-/// between t = 0 and where make_stretch() has it end. `step` in s.
+/// Number of steps of a stretch if the user does not say: most_steps(), on the N-four-bar cut to
+/// what fits between t = 0 and where make_stretch() has it end. `step` in s.
 int default_steps(const Scene& scene, double step);
 
 /// The cells whose name the regular expression finds, as Google Benchmark filters: extended POSIX

@@ -1,16 +1,11 @@
-// Runs a cell under Google Benchmark and fills the row's counters.
+// Fills counters.
 #include "bench/bench_rows.hpp"
 
-#include <array>
+#include <algorithm>
 #include <limits>
-#include <string_view>
 
 namespace mbs {
 namespace {
-
-constexpr std::array<const char*, kPhaseCount> kPhaseCounters{
-    "phase_evaluation", "phase_assembly",   "phase_factorization",
-    "phase_solve",      "phase_projection", "phase_other"};
 
 void count_settings(const PlannedScene& planned, benchmark::UserCounters& counters) {
   const Model& model = planned.scene.model;
@@ -43,41 +38,38 @@ void count_figures(const CellFigures& figures, benchmark::UserCounters& counters
 
 }  // namespace
 
-void BenchRows::add(const std::vector<PlannedCell>& cells, bool phases) {
-  for (const PlannedCell& cell : cells) {
-    const PlannedScene& planned = *cell.scene;
-    rows_.push_back({cell, Measurement({planned.scene, *cell.variant, planned.stretch,
-                                        planned.settings, cell.control, phases})});
-    Row& row = rows_.back();
-    benchmark::RegisterBenchmark(cell.name.c_str(),
-                                 [this, &row](benchmark::State& state) { run(row, state); })
-        ->UseManualTime()
-        ->Unit(benchmark::kMicrosecond);
+std::vector<benchmark::BenchmarkReporter::Run> rows_of(const SceneResult& scene,
+                                                       const ContenderResult& contender,
+                                                       int family) {
+  benchmark::BenchmarkReporter::Run common;
+  common.run_name.function_name = contender.cell->name;
+  common.family_index = family;
+  common.per_family_instance_index = 0;
+  common.repetition_index = 0;
+  common.repetitions = std::max(1, scene.samples);
+  common.time_unit = benchmark::kMicrosecond;
+  common.statistics = nullptr;
+  if (!contender.timed()) {
+    common.error_occurred = true;
+    common.error_message = contender.failure;
+    common.iterations = 0;
+    if (contender.look_seconds) common.counters["step_us"] = 1e6 * *contender.look_seconds;
+    return {common};
   }
-}
-
-void BenchRows::run(Row& row, benchmark::State& state) {
-  if (live_ != nullptr && live_ != &row) live_->measurement.release();
-  live_ = &row;
-  try {
-    row.measurement.prepare();
-    double seconds = 0.0;
-    for (auto iteration : state) {
-      (void)iteration;
-      const double stretch = row.measurement.time_stretch();
-      state.SetIterationTime(stretch);
-      seconds += stretch;
-    }
-    row.measurement.require_finite();
-    const double steps = static_cast<double>(row.cell.scene->stretch.steps);
-    count_settings(*row.cell.scene, state.counters);
-    count_figures(row.measurement.figures(), state.counters);
-    state.counters["step_us"] = 1e6 * seconds / (static_cast<double>(state.iterations()) * steps);
-  } catch (const CellFailure& failure) {
-    // What an implementation does not offer is an answer, as in the gate.
-    if (!std::string_view(failure.what()).starts_with("unsupported")) failed_ = true;
-    state.SkipWithError(failure.what());
+  count_settings(*scene.scene, common.counters);
+  count_figures(contender.figures, common.counters);
+  const double steps = scene.scene->stretch.steps;
+  std::vector<benchmark::BenchmarkReporter::Run> rows;
+  for (const Sample& sample : contender.samples) {
+    rows.push_back(common);
+    rows.back().repetition_index = static_cast<int64_t>(rows.size()) - 1;
+    rows.back().iterations = sample.stretches;
+    rows.back().real_accumulated_time = sample.spent.seconds;
+    rows.back().cpu_accumulated_time = sample.spent.cpu_seconds;
+    rows.back().counters["step_us"] =
+        1e6 * sample.spent.seconds / static_cast<double>(sample.stretches) / steps;
   }
+  return rows;
 }
 
 }  // namespace mbs

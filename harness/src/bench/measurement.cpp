@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <malloc.h>
+#include <time.h>
 
 #include <algorithm>
 #include <chrono>
@@ -10,6 +11,8 @@
 #include <new>
 #include <vector>
 
+#include "bench/paired_ratio.hpp"
+#include "printable.hpp"
 #include "run/judge.hpp"
 #include "run/setting_names.hpp"
 
@@ -20,6 +23,26 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// Of all threads, so that none works for nothing.
+double processor_seconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// What reading the clocks costs of the processor time between two readings, s.
+double reading_cost() {
+  constexpr int kTries = 200;
+  double least = 1.0;
+  for (int i = 0; i < kTries; ++i) {
+    const double cpu = processor_seconds();
+    const auto begin = Clock::now();
+    const double seconds = seconds_since(begin);
+    least = std::min(least, processor_seconds() - cpu - seconds);
+  }
+  return std::max(0.0, least);
 }
 
 struct Tally {
@@ -50,78 +73,90 @@ double allocated_bytes() {
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 std::string failure_text() {
+  constexpr std::size_t kLongest = 500;
   try {
     throw;
   } catch (const CellFailure& failure) {
     return failure.what();
   } catch (const Unsupported& reason) {
-    return fmt::format("unsupported: {}", reason.what());
+    return fmt::format("unsupported: {}", printable(reason.what(), kLongest));
   } catch (const std::bad_alloc&) {
     return "out-of-memory: an allocation failed";
   } catch (const std::exception& error) {
-    return fmt::format("error: {}", error.what());
+    return fmt::format("error: {}", printable(error.what(), kLongest));
+  } catch (...) {
+    return "error: it threw what is no std::exception";
   }
 }
 
-void Measurement::prepare() {
-  if (failure_) throw CellFailure(*failure_);
-  if (simulation_) return;
-  try {
-    try_to_prepare();
-  } catch (const std::exception&) {
-    failure_ = failure_text();
-  }
-  if (!failure_) return;
-  release();
-  throw CellFailure(*failure_);
+Spent& Spent::operator+=(const Spent& more) {
+  seconds += more.seconds;
+  cpu_seconds += more.cpu_seconds;
+  return *this;
 }
 
-void Measurement::try_to_prepare() {
-  constexpr int kSetupSamples = 5;
+void Measurement::set_up() {
+  constexpr int kSamples = 5;
+  constexpr double kEnough = 1.0;  // s; large scenes are not set up again and again
   const double before = allocated_bytes();
-  set_up(prepared_before_ ? 1 : kSetupSamples);
-  time_stretch();
-  if (!prepared_before_) figures_.memory_bytes = allocated_bytes() - before;
-  if (prepared_before_) return;
-  if (!task_.control) judge_end();
-  if (task_.phases) profile();
-  prepared_before_ = true;
-}
-
-void Measurement::set_up(int samples) {
   std::vector<double> times;
-  for (int i = 0; i < samples; ++i) {
+  const auto first = Clock::now();
+  while (times.size() < kSamples && (times.empty() || seconds_since(first) < kEnough)) {
     simulation_.reset();
     const auto begin = Clock::now();
     simulation_ = create_simulation(task_.variant, task_.scene.model, task_.settings);
     simulation_->set_state(task_.stretch.initial);
     times.push_back(1e6 * seconds_since(begin));
   }
-  if (!prepared_before_) figures_.setup_us = median(times);
+  figures_.setup_us = median(times);
+  figures_.memory_bytes = allocated_bytes() - before;
+}
+
+void Measurement::start() {
+  simulation_->set_state(task_.stretch.initial);
+  done_ = 0;
+  figures_.passes = figures_.steps_at_limit = 0;
+}
+
+Spent Measurement::advance(int steps) {
+  const double before = accepted_ ? 0.0 : allocated_bytes();
+  static const double reading = reading_cost();
+  const double cpu = processor_seconds();
+  const auto begin = Clock::now();
+  const Tally tally = run_steps(*simulation_, steps);
+  const double seconds = seconds_since(begin);
+  constexpr double kLeast = 1e-9;  // s: nothing takes no time
+  const Spent spent{seconds, std::max(kLeast, processor_seconds() - cpu - reading)};
+  if (!accepted_) figures_.memory_bytes += allocated_bytes() - before;
+  if (tally.failed_step > 0) {
+    throw CellFailure(fmt::format("factorization-failed: the tangent of step {} of {} was refused",
+                                  done_ + tally.failed_step, task_.stretch.steps));
+  }
+  done_ += steps;
+  figures_.passes += tally.passes;
+  figures_.steps_at_limit += tally.steps_at_limit;
+  return spent;
+}
+
+void Measurement::accept() {
+  accepted_ = true;
+  if (!task_.control) judge_end();
+  if (task_.phases) profile();
+}
+
+void Measurement::prepare() {
+  set_up();
+  start();
+  advance(task_.stretch.steps);
+  accept();
 }
 
 double Measurement::time_stretch() {
-  simulation_->set_state(task_.stretch.initial);
-  const auto begin = Clock::now();
-  const Tally tally = run_steps(*simulation_, task_.stretch.steps);
-  const double seconds = seconds_since(begin);
-  if (tally.failed_step > 0) {
-    failure_ = fmt::format("factorization-failed: the tangent of step {} of {} was refused",
-                           tally.failed_step, task_.stretch.steps);
-    throw CellFailure(*failure_);
-  }
-  figures_.passes = tally.passes;
-  figures_.steps_at_limit = tally.steps_at_limit;
-  return seconds;
+  start();
+  return advance(task_.stretch.steps).seconds;
 }
 
 void Measurement::judge_end() {
@@ -139,7 +174,7 @@ void Measurement::judge_end() {
   figures_.energy_drift = judge.energy_drift_max();
 }
 
-void Measurement::require_finite() {
+void Measurement::require_finite(const char* when) {
   State state;
   simulation_->get_state(state);
   const auto finite = [](double x) { return std::isfinite(x); };
@@ -148,8 +183,7 @@ void Measurement::require_finite() {
       std::ranges::all_of(state.a, finite) && std::ranges::all_of(state.lambda, finite)) {
     return;
   }
-  failure_ = "diverged: the state is not finite after a timed stretch";
-  throw CellFailure(*failure_);
+  throw CellFailure(fmt::format("diverged: the state is not finite {}", when));
 }
 
 void Measurement::profile() {

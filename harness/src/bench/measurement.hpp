@@ -20,7 +20,7 @@ class CellFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The std::exception in flight in the words of a CellFailure; only within a catch block.
+/// What is being caught, in the words of a CellFailure on one line; only within a catch block.
 std::string failure_text();
 
 /// What to measure. The references must outlive the Measurement.
@@ -35,7 +35,7 @@ struct MeasurementTask {
 
 /// Everything about a cell but the times of its stretches.
 struct CellFigures {
-  double setup_us = 0.0;      ///< median of five: the factory and the first set_state()
+  double setup_us = 0.0;      ///< median of up to five: the factory and the first set_state()
   double memory_bytes = 0.0;  ///< what the simulation holds after its first stretch
   long passes = 0;            ///< of the latest stretch
   long steps_at_limit = 0;
@@ -44,37 +44,49 @@ struct CellFigures {
   std::optional<std::array<double, kPhaseCount>> phases;     ///< shares of the time, sum 1
 };
 
-/// Lifecycle: prepare(), then any number of time_stretch(); release() frees the simulation and
-/// prepare() brings it back.
+/// Time of some steps, s.
+struct Spent {
+  double seconds = 0.0;      ///< by the clock
+  double cpu_seconds = 0.0;  ///< of the processor, without what reading the clocks costs
+  Spent& operator+=(const Spent& more);
+};
+
+/// Lifecycle: set_up(), one stretch that warms up, accept(); then any number of stretches. A
+/// stretch is start() and as many calls of advance() as one likes. Whoever has thrown is not to be
+/// called again.
 class Measurement {
  public:
   explicit Measurement(const MeasurementTask& task) : task_(task) {}
 
-  /// Sets the simulation up and runs one stretch that warms it up and is judged. The first call
-  /// also measures the set-up and the phases. Throws CellFailure, the same one each time.
+  /// Creates the simulation at the start of the stretch and times that. Throws what the variant
+  /// throws.
+  void set_up();
+  /// Back to the start.
+  void start();
+  /// The next steps of the stretch, timed. Throws CellFailure if a tangent cannot be factorized.
+  Spent advance(int steps);
+  /// At the end of the first stretch: judges the state and profiles another stretch, if asked for.
+  /// Throws CellFailure.
+  void accept();
+  /// Throws CellFailure unless the state is finite; `when` ends its text.
+  void require_finite(const char* when = "after a timed stretch");
+
+  /// The whole of set-up and warm-up.
   void prepare();
-  void release() { simulation_.reset(); }
-
-  /// Runs one stretch from the start state; returns the time of its steps alone, in seconds.
-  /// Throws CellFailure if a tangent cannot be factorized.
+  /// One stretch; returns its seconds by the clock.
   double time_stretch();
-  /// After timed stretches: throws CellFailure unless the state is finite.
-  void require_finite();
 
-  /// Filled by prepare() and time_stretch().
   [[nodiscard]] const CellFigures& figures() const { return figures_; }
 
  private:
-  void try_to_prepare();
-  void set_up(int samples);
   void judge_end();
   void profile();
 
   MeasurementTask task_;
   std::unique_ptr<Simulation> simulation_;
   CellFigures figures_;
-  std::optional<std::string> failure_;
-  bool prepared_before_ = false;
+  int done_ = 0;  ///< steps since start()
+  bool accepted_ = false;
 };
 
 }  // namespace mbs

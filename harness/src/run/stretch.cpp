@@ -13,6 +13,13 @@
 
 namespace mbs {
 
+int most_steps(int variables) {
+  constexpr int kMost = 800, kLeast = 40, kFull = 400;
+  if (variables <= kFull) return kMost;
+  const double steps = static_cast<double>(kMost) * kFull / variables;
+  return std::max(kLeast, 10 * static_cast<int>(std::lround(steps / 10)));
+}
+
 Stretch make_stretch(const Scene& scene, double step, int steps, std::optional<double> start,
                      Scheme scheme) {
   if (!scene.four_bar_loops) {

@@ -23,6 +23,11 @@ inline constexpr int kMostLoopsToCross = 300;
 /// Above it, a stretch ends this long before the singular position, s.
 inline constexpr double kClearance = 0.4;
 
+/// Steps of a stretch to be timed, of a scene with so many variables: 800, beyond 400 variables
+/// 320 000 of them in all, rounded to tens, at least 40. A rule of the scene alone, so that every
+/// machine is asked the same.
+int most_steps(int variables);
+
 /// The stretch of `steps` steps of `step` s. On the N-four-bar it starts on the exact motion with
 /// consistent a and lambda, and is centred on the first singular position, or for N above
 /// kMostLoopsToCross, and for a `scheme` that does not pass these, ends kClearance before it, with

@@ -1,0 +1,115 @@
+// Hands each scene to the reporters as soon as it is timed.
+#include "mbs/step_bench.hpp"
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <memory>
+
+#include "bench/bench_rows.hpp"
+#include "bench/reporters.hpp"
+#include "bench/scene_table.hpp"
+#include "bench/scene_timing.hpp"
+#include "bench/suspect.hpp"
+#include "environment/environment.hpp"
+
+namespace mbs {
+namespace {
+
+/// A line of what is being done, on a terminal; "" clears it.
+void show_progress(const std::string& what) {
+  constexpr int kWidth = 78;
+  if (::isatty(STDERR_FILENO) == 0) return;
+  fmt::print(stderr, "\r{:{}.{}}\r{:.{}}", "", kWidth, kWidth, what, kWidth);
+  std::fflush(stderr);
+}
+
+/// What was timed where, in a line.
+std::string origin() {
+  std::map<std::string, std::string> record;
+  for (const auto& [key, value] : environment_record()) record[key] = value;
+  return fmt::format("{} build by {} on {}, BLAS {}", record["build_type"], record["compiler"],
+                     record["cpu_model"], record["blas"]);
+}
+
+/// Where the rows of scenes go, while the run goes on.
+class StepReport {
+ public:
+  StepReport(const BenchFlags& flags, const std::string& path) : path_(path) {
+    if (flags.format != "console") display_ = make_display_reporter(kStepCounters);
+    if (!display_) fmt::print("{}\n\n", origin());
+    if (!path.empty()) stream_.open(path, std::ios::trunc);
+    file_.SetOutputStream(&stream_);
+    const benchmark::BenchmarkReporter::Context context;
+    if (display_) display_->ReportContext(context);
+    if (!path.empty()) file_.ReportContext(context);
+  }
+
+  void add(const SceneResult& scene) {
+    for (const ContenderResult& contender : scene.contenders) {
+      const auto rows = rows_of(scene, contender, families_++);
+      if (display_) display_->ReportRuns(rows);
+      if (!path_.empty()) file_.ReportRuns(rows);
+      failed_ = failed_ || contender.failed();
+    }
+    if (!display_) fmt::print("{}", scene_table(scene));
+    std::fflush(stdout);
+  }
+
+  /// Whether the file is complete.
+  bool finish() {
+    if (!display_) fmt::print("{}", table_footer());
+    if (display_) display_->Finalize();
+    if (!path_.empty()) file_.Finalize();
+    return path_.empty() || file_.complete();
+  }
+
+  [[nodiscard]] bool failed() const { return failed_; }
+
+ private:
+  std::string path_;
+  std::unique_ptr<benchmark::BenchmarkReporter> display_;  ///< none for the tables
+  std::ofstream stream_;
+  JsonReporter file_;
+  int families_ = 0;
+  bool failed_ = false;
+};
+
+TimingWishes wishes_of(const BenchRequest& request, const BenchFlags& flags) {
+  TimingWishes wishes;
+  wishes.slice = flags.min_time.value_or(wishes.slice);
+  wishes.samples = flags.repetitions.value_or(0);
+  if (request.seed) wishes.seed = static_cast<std::uint64_t>(*request.seed);
+  wishes.slower_than = request.slower_than;
+  wishes.patience = request.patience;
+  wishes.phases = request.phases;
+  return wishes;
+}
+
+}  // namespace
+
+int time_steps(const std::vector<PlannedCell>& cells, const BenchRequest& request,
+               const BenchFlags& flags, const BenchOutput& output) {
+  const TimingWishes wishes = wishes_of(request, flags);
+  benchmark::AddCustomContext("seed", std::to_string(wishes.seed));
+  benchmark::AddCustomContext("slice_seconds", fmt::format("{:g}", wishes.slice));
+  StepReport report(flags, output.path());
+  const SuspectWatch suspects;
+  for (auto begin = cells.begin(); begin != cells.end();) {
+    const auto end = std::find_if(
+        begin, cells.end(), [&](const PlannedCell& cell) { return cell.scene != begin->scene; });
+    const SceneResult scene = time_scene({begin, end}, wishes, show_progress);
+    show_progress("");
+    report.add(scene);
+    begin = end;
+  }
+  output.finish(report.finish());
+  return report.failed() ? 1 : 0;
+}
+
+}  // namespace mbs

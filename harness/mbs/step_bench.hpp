@@ -1,0 +1,18 @@
+// `mbs bench` without --operations and --batch.
+#pragma once
+
+#include <vector>
+
+#include "bench/bench_plan.hpp"
+#include "mbs/bench_flags.hpp"
+#include "mbs/bench_output.hpp"
+
+namespace mbs {
+
+/// Times the cells, scene by scene, and reports as the flags say: tables, or rows of JSON or CSV,
+/// on standard output; rows of JSON in the output file. Returns 1 if a contender failed. Throws
+/// UsageError if the file cannot be written to its end.
+int time_steps(const std::vector<PlannedCell>& cells, const BenchRequest& request,
+               const BenchFlags& flags, const BenchOutput& output);
+
+}  // namespace mbs
