@@ -3,9 +3,11 @@
 
 #include <vector>
 
-#include "storage.hpp"
+#include "csc_klu/storage.hpp"
 
-namespace mbs::csc_klu::stale_pivots {
+namespace mbs::stale_pivots {
+
+using namespace csc_klu;  // whose storage and solvers are measured
 
 inline constexpr int kLoops = 40;
 inline constexpr int kConstraints = 2 * kLoops + 1;
@@ -37,4 +39,4 @@ struct Matrix {
 /// The matrix of Eq. (12) with these scales of the multipliers.
 [[nodiscard]] Matrix saddle_matrix(const Instant& instant, const std::vector<double>& scales);
 
-}  // namespace mbs::csc_klu::stale_pivots
+}  // namespace mbs::stale_pivots

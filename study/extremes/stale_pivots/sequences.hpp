@@ -4,10 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "lu_factors.hpp"
-#include "storage.hpp"
+#include "csc_klu/lu_factors.hpp"
+#include "csc_klu/storage.hpp"
 
-namespace mbs::csc_klu::stale_pivots {
+namespace mbs::stale_pivots {
+
+using namespace csc_klu;  // whose storage and solvers are measured
 
 struct Sequence {
   Sequence(const char* its_name, const char* its_form) : name(its_name), form(its_form) {}
@@ -29,4 +31,4 @@ struct Sequence {
 /// something else.
 [[nodiscard]] std::vector<Sequence> all_sequences();
 
-}  // namespace mbs::csc_klu::stale_pivots
+}  // namespace mbs::stale_pivots

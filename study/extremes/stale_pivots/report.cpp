@@ -1,9 +1,9 @@
 // What the program prints: a readable table, or JSON.
-#include "stale_pivots/report.hpp"
+#include "report.hpp"
 
 #include <cstdio>
 
-namespace mbs::csc_klu::stale_pivots {
+namespace mbs::stale_pivots {
 
 void print_table(const std::vector<Row>& rows, const std::vector<Claim>& claims) {
   std::printf("%-25s %-13s %-9s %-9s %8s %8s %10s %8s\n", "sequence", "form", "strategy", "pivots",
@@ -43,4 +43,4 @@ void print_json(const std::vector<Row>& rows, const std::vector<Claim>& claims) 
   std::printf("]}\n");
 }
 
-}  // namespace mbs::csc_klu::stale_pivots
+}  // namespace mbs::stale_pivots

@@ -1,5 +1,5 @@
 // Backward errors, re-pivotings and times of every strategy on a sequence of matrices.
-#include "stale_pivots/measure.hpp"
+#include "measure.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -8,9 +8,9 @@
 #include <span>
 #include <type_traits>
 
-#include "solver.hpp"
+#include "csc_klu/solver.hpp"
 
-namespace mbs::csc_klu::stale_pivots {
+namespace mbs::stale_pivots {
 namespace {
 
 /// A solver of any kind, with its rule.
@@ -138,4 +138,4 @@ std::vector<Row> measure(const Sequence& sequence, int rounds) {
   return rows;
 }
 
-}  // namespace mbs::csc_klu::stale_pivots
+}  // namespace mbs::stale_pivots

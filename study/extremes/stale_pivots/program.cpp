@@ -4,17 +4,17 @@
 #include <string_view>
 #include <vector>
 
-#include "stale_pivots/claims.hpp"
-#include "stale_pivots/measure.hpp"
-#include "stale_pivots/report.hpp"
-#include "stale_pivots/sequences.hpp"
+#include "claims.hpp"
+#include "measure.hpp"
+#include "report.hpp"
+#include "sequences.hpp"
 
 int main(int argc, char** argv) {
-  using namespace mbs::csc_klu::stale_pivots;
+  using namespace mbs::stale_pivots;
   constexpr int kRounds = 5;
   const bool as_json = argc == 2 && std::string_view(argv[1]) == "--json";
   if (argc > 1 && !as_json) {
-    std::fputs("usage: csc_klu_stale_pivots [--json]\n", stderr);
+    std::fputs("usage: stale_pivots [--json]\n", stderr);
     return 2;
   }
   std::vector<Row> rows;

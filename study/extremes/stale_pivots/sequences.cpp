@@ -1,13 +1,13 @@
 // The sequences of matrices that the strategies are compared on, each on one pattern.
-#include "stale_pivots/sequences.hpp"
+#include "sequences.hpp"
 
 #include <cmath>
 #include <functional>
 #include <utility>
 
-#include "stale_pivots/mechanism.hpp"
+#include "mechanism.hpp"
 
-namespace mbs::csc_klu::stale_pivots {
+namespace mbs::stale_pivots {
 namespace {
 
 constexpr int kMatrices = 91;
@@ -124,4 +124,4 @@ std::vector<Sequence> all_sequences() {
   return all;
 }
 
-}  // namespace mbs::csc_klu::stale_pivots
+}  // namespace mbs::stale_pivots

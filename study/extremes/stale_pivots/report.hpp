@@ -3,14 +3,14 @@
 
 #include <vector>
 
-#include "stale_pivots/claims.hpp"
-#include "stale_pivots/measure.hpp"
+#include "claims.hpp"
+#include "measure.hpp"
 
-namespace mbs::csc_klu::stale_pivots {
+namespace mbs::stale_pivots {
 
 /// One line a row, then one a claim.
 void print_table(const std::vector<Row>& rows, const std::vector<Claim>& claims);
 /// One document {"rows": [...], "claims": [...]}; rows have the members of Row.
 void print_json(const std::vector<Row>& rows, const std::vector<Claim>& claims);
 
-}  // namespace mbs::csc_klu::stale_pivots
+}  // namespace mbs::stale_pivots

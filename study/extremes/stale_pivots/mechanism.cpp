@@ -1,16 +1,16 @@
 // The N-four-bar mechanism with what may change violently: masses, contacts, multipliers.
-#include "stale_pivots/mechanism.hpp"
+#include "mechanism.hpp"
 
 #include <cmath>
 #include <span>
 #include <utility>
 
-#include "equations.hpp"
-#include "geometric_stiffness.hpp"
-#include "saddle_matrix.hpp"
-#include "tangent.hpp"
+#include "csc_klu/equations.hpp"
+#include "csc_klu/geometric_stiffness.hpp"
+#include "csc_klu/saddle_matrix.hpp"
+#include "csc_klu/tangent.hpp"
 
-namespace mbs::csc_klu::stale_pivots {
+namespace mbs::stale_pivots {
 namespace {
 
 constexpr int kVariables = 2 * kLoops + 2;
@@ -98,4 +98,4 @@ Matrix saddle_matrix(const Instant& instant, const std::vector<double>& scales) 
   return {pattern.pattern, pattern.order, copy(matrix.values())};
 }
 
-}  // namespace mbs::csc_klu::stale_pivots
+}  // namespace mbs::stale_pivots

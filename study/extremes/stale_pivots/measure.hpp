@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "stale_pivots/sequences.hpp"
+#include "sequences.hpp"
 
-namespace mbs::csc_klu::stale_pivots {
+namespace mbs::stale_pivots {
 
 /// One strategy on one sequence. Pivots are those of the first matrix until the strategy changes
 /// them: "refactor" never does, "guarded" when a solution is too wrong, "factor" always.
@@ -25,4 +25,4 @@ struct Row {
 /// `rounds` times, from new solvers, for the times.
 [[nodiscard]] std::vector<Row> measure(const Sequence& sequence, int rounds);
 
-}  // namespace mbs::csc_klu::stale_pivots
+}  // namespace mbs::stale_pivots

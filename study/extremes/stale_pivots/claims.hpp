@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "stale_pivots/measure.hpp"
+#include "measure.hpp"
 
-namespace mbs::csc_klu::stale_pivots {
+namespace mbs::stale_pivots {
 
 struct Claim {
   std::string text;
@@ -16,4 +16,4 @@ struct Claim {
 /// All of them; times are not judged. `rows` are those of all_sequences().
 [[nodiscard]] std::vector<Claim> judge(const std::vector<Row>& rows);
 
-}  // namespace mbs::csc_klu::stale_pivots
+}  // namespace mbs::stale_pivots

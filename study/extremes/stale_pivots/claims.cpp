@@ -1,12 +1,12 @@
 // What README.md claims of stale pivots, checked against what was measured.
-#include "stale_pivots/claims.hpp"
+#include "claims.hpp"
 
 #include <functional>
 #include <initializer_list>
 #include <stdexcept>
 #include <string_view>
 
-namespace mbs::csc_klu::stale_pivots {
+namespace mbs::stale_pivots {
 namespace {
 
 constexpr double kExact = 1e-14;  ///< 20 times and more what good pivots give
@@ -139,4 +139,4 @@ std::vector<Claim> judge(const std::vector<Row>& rows) {
   return judge.claims;
 }
 
-}  // namespace mbs::csc_klu::stale_pivots
+}  // namespace mbs::stale_pivots
