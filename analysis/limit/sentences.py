@@ -30,8 +30,8 @@ def _leads(leads):
     found = []
     for name, mine in rows.groupby("implementation", sort=False):
         faster, slower = (mine.low > 1).sum(), (mine.high < 1).sum()
-        found.append(f"{name} is shown to be faster than the fastest library in {faster} of {len(mine)} scenes and slower in "
-                     f"{slower} (least {number(mine.lead.min())}, most {number(mine.lead.max())} times)")
+        found.append(f"{name} is shown to be faster than the fastest library in {faster} of {len(mine)} scenes that it "
+                     f"serves and slower in {slower} (least {number(mine.lead.min())}, most {number(mine.lead.max())} times)")
     return [{"text": f"Scene by scene, {'; '.join(found)}.", "anchor": "ahead"}] if found else []
 
 

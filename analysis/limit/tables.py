@@ -25,7 +25,7 @@ def build(records, view):
         said = _verdicts(by_role.get(f"{role}-gate", []))
         for scene, rows in _by_scene(by_role.get(role, [])):
             cells = {name: _cell(group, said.get((scene, name))) for name, group in rows.groupby("implementation")}
-            names = sorted(cells, key=lambda name: order.get(name, len(order)))
+            names = sorted((name for name in cells if name in order), key=order.get)  # without anchors of other pairs
             known = {"scene": scene, "kind": role if role in KINDS else "four-bar"}
             if role in FORMS:
                 loops = int(scene.partition(":")[2])
@@ -36,7 +36,7 @@ def build(records, view):
                 known |= {key: about.get(scene, {}).get(key) for key in ("dimension", "variables")}
                 rival = _rival(rows, cells, registry)
                 found["scenes"] += [known | cells[name] | _ratio("to_rival", rows, name, rival, cells[name]) for name in names]
-            if role != "growth":
+            if set(registry.libraries) & set(cells):
                 found["leads"] += [known | one for one in _leads(rows, cells, registry)]
     tables = {name: pandas.DataFrame(rows) for name, rows in found.items()}
     tables["held"] = pandas.DataFrame([row for folder in own_folders(registry) for row in must_hold(folder, registry, tables)])
@@ -63,16 +63,17 @@ def _verdicts(records):
 
 
 def _cell(rows, verdict):
-    """What is known of a contender in a scene. Who failed in one process has failed. Without a verdict it was not asked."""
-    good, lost = rows[rows.status == "ok"], rows[rows.status.isin(set(rows.status) - {"ok", "dropped"})]
-    first = lost.iloc[0] if len(lost) else rows.iloc[0]
+    """What is known of a contender in a scene. Who failed in one process has failed; a disturbed process may make one
+    look slow. Without a verdict the gate was not asked."""
+    good, lost = rows[rows.status == "ok"], rows[~rows.status.isin(["ok", "dropped", "slower"])]
+    first = lost.iloc[0] if len(lost) else good.iloc[0] if len(good) else rows.iloc[0]
     row = {"implementation": rows.implementation.iloc[0], "status": "ok", "reason": "", "verdict": "", "record": first.record}
     if len(lost) or good.empty:
         return row | {"status": first.status, "reason": first.reason}
     if verdict:
         row["verdict"] = verdict[0]
         if verdict[0] not in ("agrees", "dropped"):
-            row |= {"status": "disagrees" if verdict[0] == "disagrees" else verdict[0], "reason": verdict[1]}
+            row |= {"status": verdict[0], "reason": verdict[1]}
     step, passes = median(good.step_us), good.passes.iloc[0] / good.steps.iloc[0]
     row |= {"processes": len(good), "step_us": step, "low_us": good.step_us.min(),
             "high_us": good.step_us.max(), "passes": passes, "pass_us": step / passes, "setup_us": median(good.setup_us),

@@ -1,209 +1,227 @@
-# The limit's page and figures from made-up tables.
-import json
+# Tables, what must hold, figures and sentences of the limit on synthetic records.
+from types import SimpleNamespace
 
 import matplotlib.pyplot as plt
+import numpy
 import pandas
 import pytest
 
-from analysis.limit.figure import LIMIT, by_phase, leaders, over_size, timed
-from analysis.limit.must_hold import leads, must_hold
-from analysis.limit.report import by_size, write
-from analysis.loader import PHASES, TableError
+from analysis.core.records import Record
+from analysis.core.registry import Registry
+from analysis.core.schema import conform, of_part
+from analysis.limit import figures, held, page, sentences, tables
+from analysis.limit.tables import LIMIT, PHASES
 
-REGISTRY = [{"folder": folder, "variants": [{"name": f"{folder}/{name}"} for name in names]}
-            for folder, names in (("one", ("a", "b")), ("two", ("c",)))]
-
-
-def row(name, loops, step_us, status="ok", reason=""):
-    shares = dict.fromkeys(PHASES, 0.1) | {"factorization": 0.5}
-    return {"implementation": name, "loops": loops, "variables": 2 * loops + 2, "status": status,
-            "reason": reason, "step_us": step_us, "low_us": step_us, "high_us": step_us,
-            "rounds": 1, "passes": 2.0} | {
-        f"{phase}_us": share * step_us for phase, share in shares.items()}
-
-
-def steps():
-    nothing = float("nan")
-    return pandas.DataFrame([
-        row(LIMIT, 10, 0.25), row("one/a", 10, 3.0), row("one/b", 10, 2.0), row("two/c", 10, 5.0),
-        row(LIMIT, 40, 1.0), row("one/a", 40, 8.0), row("one/b", 40, nothing, "failed", "too slow"),
-        row("two/c", 40, 12.0), row("two/c", 499, 99.0)])
-
-
-def bounds():
-    return pandas.DataFrame([
-        {"loops": n, "variables": 2 * n + 2, "passes": 2.0, "flops": 4e3, "divisions": 30,
-         "bytes_loaded": 7e3, "bytes_stored": 4e3, "level": "L1", "arithmetic_ns": 70.0,
-         "latency_ns": 189.0, "memory_ns": 57.0, "bound_ns": 189.0, "measured_ns": 250.0,
-         "ratio": 1.32} for n in (40, 10)])
-
-
-def test_multiples_are_of_the_limit_code_of_the_same_size():
-    found = timed(steps()).set_index(["implementation", "loops"]).multiple
-    assert found["one/a", 10] == 12 and found["one/a", 40] == 8 and found[LIMIT, 40] == 1
-    assert ("two/c", 499) not in found.index  # the limit code has no time there
-    assert ("one/b", 40) not in found.index
-
-
-def test_a_folder_is_led_by_the_fastest_of_those_timed_everywhere():
-    assert leaders(steps()) == ["one/a", "two/c"]
-    assert set(leaders(steps(), ["one"])) == {"one/a", "one/b", "two/c"}
-
-
-def test_phases_are_times_and_multiples():
-    sizes = dict(by_size(steps()))
-    assert [r["implementation"] for r in sizes[22]] == [LIMIT, "one/b", "one/a", "two/c"]
-    factorization = sizes[22][1]["phases"][PHASES.index("factorization")]
-    assert factorization == pytest.approx((1000.0, 4.0))
-    assert sizes[22][0]["phases"] == []
-
-
-def test_figures_show_bounds_limit_and_leaders():
-    figure = over_size(bounds(), steps(), REGISTRY)
-    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
-    assert "two/c" in labels and "one/b" not in labels
-    assert sum(label.startswith("bound") for label in labels) == 3
-    split = by_phase(steps())
-    assert [axes.get_title(loc="left")[:6] for axes in split.axes] == ["n = 22", "n = 82"]
-    plt.close("all")
-
-
-def test_the_page_has_every_variant_and_what_was_lost(tmp_path):
-    steps().to_csv(tmp_path / "steps.csv", index=False)
-    bounds().to_csv(tmp_path / "bounds.csv", index=False)
-    (tmp_path / "implementations.json").write_text(json.dumps({"implementations": REGISTRY}))
-    (tmp_path / "run.json").write_text(json.dumps({"contexts": {"own": {"compiler": "c", "commit": "0"}}}))
-    write(tmp_path)
-    text = (tmp_path / "limit.html").read_text()
-    assert "one/b, four-bar:40: too slow" in text and "<td>two/c</td>" in text
-    assert (tmp_path / "figures" / "over_size.png").exists()
-
-
-def test_instructions_are_a_column_where_they_were_counted(tmp_path):
-    table = steps()
-    (tmp_path / "implementations.json").write_text(json.dumps({"implementations": REGISTRY}))
-    (tmp_path / "run.json").write_text(json.dumps({"contexts": {"own": {"compiler": "c", "commit": "0"}}}))
-    bounds().to_csv(tmp_path / "bounds.csv", index=False)
-    for counted in (False, True):
-        if counted:
-            table["instructions"] = [2769.0] + [float("nan")] * (len(table) - 1)
-        table.to_csv(tmp_path / "steps.csv", index=False)
-        write(tmp_path)
-        text = (tmp_path / "limit.html").read_text()
-        assert ("instructions</th>" in text) == counted
-        assert ('<td class="n">2769</td>' in text) == counted
-
-
-def test_tables_without_the_limit_code_are_refused(tmp_path):
-    table = steps()
-    table[table.implementation != LIMIT].to_csv(tmp_path / "steps.csv", index=False)
-    bounds().to_csv(tmp_path / "bounds.csv", index=False)
-    with pytest.raises(TableError, match="no size has a time of limit/limit"):
-        write(tmp_path)
-
-
-OWN = [*REGISTRY, {"folder": "own", "library": "none", "variants": [{"name": "own/x"}]}]
-
-
+REGISTRY = Registry({"implementations": [
+    {"folder": "one", "available": True, "library": "L", "variants": [{"name": "one/a"}, {"name": "one/b"}]},
+    {"folder": "two", "available": True, "library": "M", "variants": [{"name": "two/c"}]},
+    {"folder": "own", "available": True, "library": "none", "variants": [{"name": "own/x"}, {"name": "own/y"}]}]})
+VIEW = SimpleNamespace(registry=REGISTRY, settings={"processes": 2})
 A, B, C = (f"harness/scenes/problems/{name}.json" for name in "abc")
 
 
-def scenes():
-    def one(scene, name, step_us, status="ok", dimension=2, filled=False):
-        return {"scene": scene, "implementation": name, "step_us": step_us, "status": status,
-                "reason": "", "variables": 6, "dimension": dimension, "filled": filled}
-    return pandas.DataFrame([
-        one(A, "own/x", 1.0), one(A, "one/a", 3.0), one(A, "two/c", 2.5),
-        one(B, "own/x", 1.0), one(B, "one/a", 1.9), one(B, "two/c", 9.0, "slower"),
-        one(C, "own/x", 1.0, dimension=3), one(C, "one/a", 0.5, "failed", dimension=3),
-        one(C, "two/c", 1.6, dimension=3),
-        one("harness/scenes/examples/e.json", "own/x", 1.0), one("harness/scenes/examples/e.json", "one/a", 1.2),
-        one("f", "own/x", 1.0, filled=True), one("f", "one/a", 0.95, filled=True)])
+def bench(role, scene, number=1, status="done", **times):
+    """A process; of each contender ("one_a") µs a step, or why it has none."""
+    names = [name.replace("_", "/") for name in times]
+    found = {}
+    for name, time in zip(names, times.values()):
+        known = {"stretch_us": [40 * time] * 3, "steps": 40, "passes": 80, "variables": 6, "setup_us": 7.0, "memory_bytes": 9e3,
+                 "position_error": 1e-6} if isinstance(time, float) else {"error_occurred": True, "error_message": time}
+        shares = {phase: 0.0 for phase in PHASES} | {"other": 1.0} if name in (LIMIT, "own/y") else dict.fromkeys(PHASES, 0.1) | {"solve": 0.5}
+        found[f"{name}/{scene}"] = known | ({f"phase_{phase}": share for phase, share in shares.items()} if role == "size" else {})
+    cell = {"scene": scene, "contenders": names, "environment": "own|openblas", "number": number, "role": role, "settings": []}
+    return Record(f"{role}/{number}-{scene.rpartition('/')[2]}-{len(names)}.json", cell, status, "the budget" if status != "done" else "",
+                  1.0, [], {}, {"rows": found} if status == "done" else {})
 
 
-def held(**tables):
-    return {one.what: one for one in must_hold("own", OWN, **tables)}
+def gate(role, scene, **verdicts):
+    return [Record(f"{role}-gate/{name}.json", {"scene": scene, "contenders": [name.replace("_", "/")], "role": f"{role}-gate"},
+                   "done", "", 1.0, [], {}, {"rows": [{"verdict": verdict, "reason": "why"}]}) for name, verdict in verdicts.items()]
 
 
-def test_a_lead_is_over_the_fastest_with_a_library_that_agreed():
-    found = leads(scenes(), "own", ["own/x"], "scene")
-    assert found[A] == 2.5 and found[B] == 1.9 and found[C] == 1.6
+def about(scene, dimension=2):
+    return Record(f"about/{scene}", {"scene": scene, "role": "about", "contenders": []}, "done", "", 0.1, [], {},
+                  {"dimension": dimension, "variables": 6})
 
 
-def test_the_worst_scene_of_a_kind_counts():
-    found = held(scenes=scenes())
-    planar = found["times faster than the fastest with a library, planar standard problems"]
-    assert not planar.holds and planar.worst == "1.9 (problems/b, x)"
-    assert found["times faster than the fastest with a library, spatial standard problems"].holds
-    filled = found["times the step of the fastest with a library, n = 100, filled"]
-    assert filled.holds and filled.worst == "1.05 (f, x)"
+def batch(scene, sets, number=1, **gains):
+    found = {f"{name.replace('_', '/')}/{scene}/batch": {"variables": 22, "lanes": 8, "step_us": 2.0, "alone_us": 2.0 * gain, "gain": gain}
+             if isinstance(gain, float) else {"error_occurred": True, "error_message": gain} for name, gain in gains.items()}
+    cell = {"scene": scene, "contenders": [name.replace("_", "/") for name in gains], "number": number, "role": "batch",
+            "settings": ["--batch", "--sets", sets]}
+    return Record(f"batch/{scene}-{sets}-{number}.json", cell, "done", "", 1.0, [], {}, {"rows": found})
 
 
-def sized(power, last=9999):
-    rows = [row(name, loops, factor * (2 * loops + 2) ** power) | {
-        "setup_us": 10.0 * loops, "memory_bytes": 100.0 * loops + 100}
-        for loops in (10, 24, 40, 49, 79, 499, 1999, last)
-        for name, factor in ((LIMIT, 1.0), ("own/x", 1.4), ("one/a", 5.0))]
-    return pandas.DataFrame(rows)
+def made(*records):
+    """Tables as the schema has them."""
+    found, schema = tables.build([one for group in records for one in (group if isinstance(group, list) else [group])],
+                                 VIEW), of_part("limit")
+    assert set(found) == set(schema)
+    return {name: conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(schema[name])), schema[name], name)
+            for name, frame in found.items()}
+
+
+def agree(role, scene, *names):
+    return gate(role, scene, **{name: "agrees" for name in names})
+
+
+def sizes(*loops, power=1.0, setup=10.0):
+    """Two processes a size: the limit code's time grows with this power of n; ours is 1.4, a library's 5 times as long."""
+    records = []
+    for size in loops:
+        n = 2.0 * size + 2
+        for number in (1, 2):
+            record = bench("size", f"four-bar:{size}", number, limit_limit=1e-2 * n**power, own_x=1.4e-2 * n**power, one_a=5e-2 * n**power)
+            for row in record.output["rows"].values():
+                row |= {"setup_us": setup * size, "memory_bytes": 100 * n}
+            records.append(record)
+        records += agree("size", f"four-bar:{size}", "limit_limit", "own_x", "one_a")
+    return records
+
+
+def said(found):
+    return found["held"].set_index("what")
+
+
+def test_multiples_are_of_the_limit_code_within_the_same_process():
+    found = made(bench("size", "four-bar:10", 1, limit_limit=0.25, one_a=3.0), bench("size", "four-bar:10", 2, limit_limit=0.5, one_a=6.0))
+    row = found["steps"].set_index("implementation").loc["one/a"]
+    assert row.multiple == pytest.approx(12) == row.multiple_low and row.step_us == 4.5 and (row.low_us, row.high_us) == (3.0, 6.0)
+    assert row.solve_us == pytest.approx(2.25) and sum(row[f"{phase}_us"] for phase in PHASES) == pytest.approx(row.step_us)
+    assert row.passes == 2 and row.pass_us == pytest.approx(2.25) and row.processes == 2
+
+
+def test_who_failed_in_one_process_has_failed_and_who_was_slow_in_one_has_not():
+    found = made(bench("size", "four-bar:10", 1, limit_limit=1.0, one_a=3.0, one_b=2.0),
+                 bench("size", "four-bar:10", 2, limit_limit=1.0, one_a="diverged: at step 3", one_b="slower: than a second"),
+                 bench("size-left-out", "four-bar:10", 1, "crashed", two_c=1.0))
+    rows = found["steps"].set_index("implementation")
+    assert (rows.status["one/a"], rows.reason["one/a"]) == ("diverged", "at step 3") and numpy.isnan(rows.step_us["one/a"])
+    assert rows.status["one/b"] == "ok" and rows.processes["one/b"] == 1 and rows.status["two/c"] == "crashed"
+    assert {(name, status) for name, status, _, _ in page.lost(found)} == {("one/a", "diverged"), ("two/c", "crashed")}
+
+
+def test_a_lead_is_over_the_fastest_library_that_the_gate_agrees_with():
+    found = made(about(A), bench("problem", A, 1, own_x=1.0, own_y=0.5, one_a=3.0, one_b=1.1, two_c=9.0),
+                 bench("problem", A, 2, own_x=2.0, own_y=1.0, one_a=6.0, one_b=2.2, two_c=9.0),
+                 agree("problem", A, "own_x", "own_y", "one_a"), gate("problem", A, one_b="disagrees"))
+    rows = found["leads"].set_index("implementation")
+    assert rows.lead["own/x"] == pytest.approx(3) and rows.lead["own/y"] == pytest.approx(6) and set(rows.rival) == {"one/a"}
+    scenes = found["scenes"].set_index("implementation")
+    assert (scenes.status["one/b"], scenes.reason["one/b"]) == ("disagrees", "why") and scenes.verdict["two/c"] == ""
+    assert scenes.to_rival["own/x"] == pytest.approx(1 / 3) and numpy.isnan(scenes.to_rival["one/b"])
+
+
+def test_without_a_verdict_or_a_rival_there_is_no_lead_and_the_reason_is_said():
+    found = made(about(A), bench("problem", A, 1, own_x=1.0, one_a=3.0, own_y="unsupported: no chain"), agree("problem", A, "one_a"))
+    rows = found["leads"].set_index("implementation")
+    assert (rows.status["own/x"], rows.status["own/y"]) == ("dropped", "unsupported") and "budget" in rows.reason["own/x"]
+    assert rows.lead.isna().all()
+    assert "no library" in made(about(A), bench("problem", A, own_x=1.0, one_a=3.0), agree("problem", A, "own_x"))["leads"].reason[0]
+
+
+def test_the_worst_scene_of_a_kind_counts_by_its_whole_interval():
+    def scene(name, *times, dimension=2, kind="problem"):
+        return [about(name, dimension), *(bench(kind, name, number, own_x=1.0, one_a=time) for number, time in enumerate(times, start=1)),
+                *agree(kind, name, "own_x", "one_a")]
+    found = said(made(scene(A, 2.5, 2.6), scene(B, 1.9, 1.91), scene(C, 1.3, 1.9, dimension=3), scene("four-bar:49,fill=0.5", 0.95, 0.95,
+                                                                                                 kind="fill")))
+    planar = found.loc["times faster than the fastest library, planar standard problems"]
+    assert (planar.verdict, planar["where"], planar.measured, planar.cases) == ("not held", "problems/b", 2, 2)
+    spatial = found.loc["times faster than the fastest library, spatial standard problems"]
+    assert spatial.verdict == "open" and spatial.low < 1.5 < spatial.high
+    assert found.verdict["times faster than the fastest library, n = 100, filled"] == "held"
+    assert found.verdict["times the limit code's step"] == "not measured"
+
+
+def test_of_the_variants_of_a_folder_the_fastest_counts_scene_by_scene():
+    records = [about(A), *(bench("problem", A, number, own_x=1.0, own_y=0.5, one_a=1.5) for number in (1, 2)),
+               *agree("problem", A, "own_x", "one_a", "own_y")]
+    row = said(made(records)).loc["times faster than the fastest library, planar standard problems"]
+    assert row.worst == pytest.approx(3) and row.variant == "own/y" and row.verdict == "held"
+    records[-1].output["rows"][0]["verdict"] = "disagrees"
+    row = said(made(records)).loc["times faster than the fastest library, planar standard problems"]
+    assert row.worst == pytest.approx(1.5) and row.variant == "own/x" and row.verdict == "not held"
 
 
 def test_sizes_and_growth():
-    found = held(steps=sized(1.0))
-    assert found["times faster than the fastest with a library, N-four-bar"].holds
-    assert found["times the limit code's step"].holds
-    assert all(found[f"exponent of {what} over n, penalty form"].worst == "1"
-               for what in ("a step's time", "a pass's time", "memory"))
-    assert found["set-up, s"].worst == "0.1 (n = 20000, x)" and found["set-up, s"].holds
-    assert not held(steps=sized(1.1))["exponent of a step's time over n, penalty form"].holds
+    found = said(made(sizes(10, 40, 499, 9999)))
+    assert found.verdict["times faster than the fastest library, N-four-bar"] == "held"
+    ahead = found.loc["times faster than the fastest library, N-four-bar"]
+    assert (ahead.measured, ahead.cases) == (3, 6) and found.verdict["times the limit code's step"] == "held"
+    for what in ("a step's time", "a pass's time", "memory"):
+        assert found.worst[f"exponent of {what} over n, penalty form"] == pytest.approx(1)
+    assert found.worst["set-up, s"] == pytest.approx(0.09999) and found.verdict["set-up, s"] == "held"
+    steep = said(made(sizes(49, 499, 9999, power=1.1, setup=100.0)))
+    assert steep.verdict["exponent of a step's time over n, penalty form"] == "not held" == steep.verdict["set-up, s"]
+    short = said(made(sizes(49, 499)))
+    assert short.verdict["exponent of memory over n, penalty form"] == "not measured" == short.verdict["set-up, s"]
 
 
-def test_growth_in_the_saddle_point_form():
-    what = "exponent of a step's time over n, saddle-point form"
-    rows = sized(1.0)
-    assert held(growth=rows)[what].holds and not held(growth=sized(1.1))[what].holds
-    assert held(growth=rows[rows.variables < 10000])[what].worst == ""
-    assert held(growth=rows[:0])[what].worst == ""
+def test_growth_in_the_saddle_point_form_is_apart():
+    records = [bench("growth", f"four-bar:{size}", number, own_x=1e-2 * (2 * size + 2)) for size in (49, 9999) for number in (1, 2)]
+    found = made(records)
+    assert set(found["steps"].form) == {"saddle-point"} and found["leads"].empty
+    held_ = said(found)
+    assert held_.verdict["exponent of a step's time over n, saddle-point form"] == "held"
+    assert held_.verdict["exponent of a step's time over n, penalty form"] == "not measured"
 
 
-def test_what_was_not_measured_does_not_hold():
-    found = held(steps=sized(1.0, last=499).drop_duplicates())
-    for what in ("exponent of memory over n, penalty form", "set-up, s"):
-        assert found[what].worst == "" and not found[what].holds
-    few = sized(1.0)
-    few = few[few.loops != 24]
-    lead = held(steps=few)["times faster than the fastest with a library, N-four-bar"]
-    assert lead.worst == "" and not lead.holds
-
-
-def test_batches_gain():
-    def gains(*values):
-        return pandas.DataFrame([{"scene": f"s{k}", "sets": 64, "implementation": "own/x", "status": "ok", "step_us": 2.0, "alone_us": 2.0 * gain, "gain": gain}
-                                 for k, gain in enumerate(values)])
+def test_batches_have_gains_with_intervals_for_each_number_of_sets():
+    found = made(batch("four-bar:10", 8, 1, own_x=4.0, one_a="unsupported: alone"), batch("four-bar:10", 8, 2, own_x=4.41),
+                 batch("four-bar:10", 64, 1, own_x=5.0), batch("four-bar:10", 64, 2, own_x=5.0), batch("four-bar:40", 64, 1, own_x="failed: x"))
+    rows = found["batches"].set_index(["implementation", "sets", "scene"])
+    row = rows.loc["own/x", 8, "four-bar:10"]
+    assert row.gain == pytest.approx(4.2) and row.low < 4 < 4.41 < row.high and (row.least, row.most) == (4.0, 4.41)
+    held_ = said(found)
     what = "throughput of batches ÷ that of their lanes alone, {} sets of parameters"
-    assert held(batches=gains(5.0, 4.0))[what.format(64)].holds
-    assert held(batches=gains(5.0, 3.9))[what.format(64)].worst == "3.9 (s1, x)"
-    found = held(batches=pandas.concat([gains(5.0, 4.0), gains(5.0, 3.9).assign(sets=8)]))
-    assert found[what.format(64)].holds and not found[what.format(8)].holds
-    for lost in ({"status": "failed"}, {"gain": float("nan")}):
-        part = gains(5.0, 4.0)
-        part.loc[1, list(lost)] = list(lost.values())
-        found = held(batches=part)[what.format(64)]
-        assert found.worst == "" and not found.holds
+    assert held_.verdict[what.format(8)] == "open" and held_.verdict[what.format(64)] == "held"
+    assert (held_.measured[what.format(64)], held_.cases[what.format(64)]) == (1, 2)
+    assert page.context(found, VIEW)["alone"] == ["one/a"]
 
 
-def test_the_fastest_variant_of_a_folder_counts_scene_by_scene():
-    table = pandas.concat([scenes(), pandas.DataFrame([
-        {"scene": scene, "implementation": "own/y", "step_us": 0.5, "status": status, "reason": "", "variables": 6,
-         "dimension": 2, "filled": False} for scene, status in ((A, "ok"), (B, "failed"))])])
-    found = leads(table, "own", ["own/x", "own/y"], "scene")
-    assert found[A] == 5.0 and found[B] == 1.9
+def test_a_folder_is_led_by_the_fastest_of_those_timed_everywhere():
+    rows = figures.everyone(made(*(bench("size", f"four-bar:{size}", number, limit_limit=1.0, one_a=3.0,
+                                         one_b=2.0 if size == 10 else "slower: much", two_c=5.0, own_x=1.5, own_y=1.2)
+                                   for size in (10, 40) for number in (1, 2)))["steps"])
+    assert figures.leaders(rows) == ["own/y", "one/a", "two/c"]
+    assert figures.leaders(rows, {"own"}) == ["own/y", "own/x", "one/a", "two/c"]
 
 
-def test_scenes_and_batches_need_no_sizes(tmp_path):
-    scenes().to_csv(tmp_path / "scenes.csv", index=False)
-    (tmp_path / "implementations.json").write_text(json.dumps({"implementations": OWN}))
-    (tmp_path / "run.json").write_text(json.dumps({"contexts": {"own": {"compiler": "c", "commit": "0"}}}))
-    write(tmp_path)
-    text = (tmp_path / "limit.html").read_text()
-    assert "What own is held to" in text and "1.9 (problems/b, x)" in text and "not measured" not in text
-    assert (tmp_path / "figures" / "ahead.png").exists()
+def test_phases_that_do_not_exist_are_said_in_words():
+    rows = figures.everyone(made(*(bench("size", "four-bar:10", number, limit_limit=1.0, one_a=3.0, own_y=1.2) for number in (1, 2)))["steps"])
+    figure = figures.by_phase(rows, {"own"})
+    assert [text.get_text() for text in figure.axes[0].texts].count("all in the same sweeps") == 1
+    assert len(figure.axes[0].patches) == len(PHASES)  # of one/a
+    plt.close(figure)
+
+
+def test_variants_are_series_of_their_own():
+    found = made(about(A), *(bench("problem", A, number, own_x=1.0, own_y=0.5, one_a=3.0) for number in (1, 2)),
+                 agree("problem", A, "own_x", "own_y", "one_a"))
+    figure = figures.draw(found, VIEW)["ahead"]
+    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert labels == ["own/x", "own/y", "at least"]
+    plt.close("all")
+
+
+def test_figures_sentences_and_page_of_a_small_set_and_of_none():
+    bounds = Record("sizes/bounds/all.json", {"role": "bounds", "scene": ""}, "done", "", 1.0, [], {}, {"rows": [
+        {"loops": 10, "variables": 22, "arithmetic_ns": 70.0, "latency_ns": 189.0, "memory_ns": 57.0, "bound_ns": 189.0,
+         "measured_ns": 250.0, "ratio": 1.32}]})
+    small = made(bounds, sizes(10, 40, 9999), about(A), *(bench("problem", A, number, own_x=1.0, one_a=3.0) for number in (1, 2)),
+                 agree("problem", A, "own_x", "one_a"), batch("four-bar:10", 8, 1, own_x=4.0), batch("four-bar:10", 8, 2, own_x=4.2))
+    for found in (small, made()):
+        for figure in figures.draw(found, VIEW).values():
+            assert figure.get_size_inches()[1] < 12
+            plt.close(figure)
+        page.context(found, VIEW)
+        assert all(one["text"].endswith(".") for one in sentences.answers(found, VIEW))
+    texts = [one["text"] for one in sentences.answers(small, VIEW)]
+    assert "the fastest library takes 5 to 5 times" in texts[0] and "own/x is shown to be faster" in texts[1]
+    assert sentences.answers(made(), VIEW)[0]["text"].startswith("Not measured")
+    assert [key for key, _ in page.context(small, VIEW)["sizes"]] == [22, 82, 20000]
+
+
+def test_examples_are_held_to_nothing():
+    assert numpy.isnan(held.wanted("example", 2)) and held.wanted("problem", 3) < held.wanted("problem", 2)

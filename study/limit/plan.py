@@ -20,7 +20,7 @@ SETTINGS = {"loops": list,     # sizes of the N-four-bar for everyone
             "samples": int}    # of a process and contender
 SHARES = {"sizes": 0.25, "growth": 0.15, "scenes": 0.45, "batches": 0.15}  # of the budget
 LIMIT = "limit/limit"
-SLOWER, PATIENCE_S = 15, 0.5  # times the fastest; of the first stretch: whoever is slower is not timed
+SLOWER, PATIENCE_S = 15, 1.0  # times the fastest; of the first stretch: whoever is slower is not timed
 NEAR = 1.5  # times the fastest library: who is near may be the rival of a lead, and is asked by the gate
 CHECK_S = 60
 BATCH_S = 0.02  # a process of batches lasts about ten times that
@@ -46,8 +46,9 @@ def sizes(lab):
             if one.name in lost:
                 lab.skip(Cell("bench", scene, (one,), role="size-left-out"), "excluded", lost[one.name])
         rows = timed(lab, scene, [one for one in here if one.name not in lost], "size", ("--phases",))
+        timed_once = set(rows.implementation[rows.status == "ok"])
         lost |= {row.implementation: f"not timed at N = {loops}: {row.status}" for row in rows.itertuples()
-                 if row.status not in ("ok", "dropped")}
+                 if row.implementation not in timed_once and row.status != "dropped"}
         if loops in known:
             ask_gate(lab, scene, rows, here, "size-gate")
 

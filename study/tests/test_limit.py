@@ -1,162 +1,137 @@
-# study/limit: what is counted and refused, and a tiny run on the real program.
-import json
-import tempfile
+# The limit: what is asked for, of whom, and who is left out; a tiny run on the real program.
+from types import SimpleNamespace
 
 import pandas
 import pytest
 
-from study.limit_study import instructions, lead, main, measure
-from study.limit_study.main import limit
-from study.pipeline.contenders import Contender, own
-from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, write_json
-from study.tests.conftest import ROOT
+from analysis.core.registry import Registry
+from study.core.contender import Contender
+from study.limit import plan
+from study.tests.conftest import ROOT, study
 
-ONE = Contender("one/a", "one/a")
-
-
-def bench_row(step_us):
-    return {"step_us": step_us, "passes": 80, "steps": 40, "setup_us": 7.0, "memory_bytes": 9e3} | {
-        f"phase_{phase}": 0.5 if phase == "solve" else 0.1 for phase in measure.PHASES}
+REGISTRY = Registry({"implementations": [
+    {"folder": "one", "available": True, "library": "L", "variants": [{"name": "one/a"}, {"name": "one/b"}]},
+    {"folder": "own", "available": True, "library": "none", "variants": [{"name": "own/x", "settings": ["saddle-point"]},
+                                                                         {"name": "own/y", "settings": []}]}]})
+SETTINGS = {"loops": [10, 40], "large": [49], "problems": ["A01"], "examples": ["coupler"], "fills": [0.5], "batches": [10],
+            "sets": [8, 64], "processes": 2, "samples": 3}
 
 
-def test_figures_are_medians_and_phases_add_up():
-    found = measure._figures([bench_row(time) for time in (3.0, 1.0, 2.0)])
-    assert (found["step_us"], found["low_us"], found["high_us"]) == (2.0, 1.0, 3.0)
-    assert found["passes"] == 2.0 and found["rounds"] == 3
-    assert sum(found[f"{phase}_us"] for phase in measure.PHASES) == pytest.approx(2.0)
-    assert found["solve_us"] == pytest.approx(1.0)
-    assert (found["setup_us"], found["memory_bytes"]) == (7.0, 9e3)
+class Asked:
+    """A lab that runs nothing and keeps what it is asked for."""
+
+    def __init__(self, names=("one/a", "one/b", "own/x", "own/y"), **changes):
+        self.contenders = [Contender(name, name, "openblas") for name in names]
+        self.settings, self.registry, self.cells, self.skipped = SETTINGS | changes, REGISTRY, [], []
+
+    def run(self, cells, drop=False):
+        self.cells += cells
+
+    def one(self, cell):
+        self.cells.append(cell)
+
+    def skip(self, cell, status, reason):
+        self.skipped.append((cell.scene, cell.contenders[0].name, status, reason))
 
 
-def test_what_the_gate_rejects_is_not_timed(tmp_path):
-    write_json(tmp_path / "raw" / "n22" / "one.a-gate.json",
-               {"rows": [{"verdict": "disagrees", "reason": "lock-step"}]})
-    rows = measure.size(Layout(tmp_path), [ONE], 10, 1, 1.0, lambda text: None)
-    assert rows == [{"implementation": "one/a", "loops": 10, "variables": 22, "scene": "four-bar:10",
-                     "status": "disagrees", "reason": "disagrees: lock-step"}]
+def rows(**times):
+    """Of a process; a time in µs a step, or a status."""
+    return pandas.DataFrame([{"implementation": name.replace("_", "/"), "status": "ok" if isinstance(time, float) else time,
+                              "step_us": time if isinstance(time, float) else float("nan")} for name, time in times.items()],
+                        columns=["implementation", "status", "step_us"])
 
 
-def test_a_cell_that_fails_keeps_its_row_with_the_reason(tmp_path):
-    folder = tmp_path / "raw" / "n22"
-    write_json(folder / "one.a-gate.json", {"rows": [{"verdict": "agrees", "reason": ""}]})
-    write_json(folder / "one.a-1.json", {"found": {"benchmarks": [bench_row(1.0)]}})
-    write_json(folder / "one.a-2.json", {"failure": "did not end within 1 s"})
-    row, = measure.size(Layout(tmp_path), [ONE], 10, 3, 1.0, lambda text: None)
-    assert (row["status"], row["reason"]) == ("failed", "did not end within 1 s")
-    assert "step_us" not in row
+@pytest.fixture
+def measured(monkeypatch):
+    """What `measure` was asked for; `said` gives its rows."""
+    found = SimpleNamespace(asked=[], said=lambda scene, names: rows(**{name.replace("/", "_"): 1.0 for name in names}))
+
+    def measure(lab, scene, contenders, *, role, settings, **more):
+        names = [one.name for one in contenders]
+        found.asked.append((role, scene, names, settings))
+        return found.said(scene, names)
+    monkeypatch.setattr(plan, "measure", measure)
+    monkeypatch.setattr(plan, "rows_of", lambda table: table)
+    return found
 
 
-def test_what_was_interrupted_is_run_again_and_the_calmest_counts(tmp_path, monkeypatch):
-    from types import SimpleNamespace
-    made = iter([2.0, 1.3, 1.5, 1.05])
-
-    def run(*_):
-        found = {"benchmarks": [bench_row(1.0) | {"real_time": 10 * next(made), "cpu_time": 10.0}]}
-        return SimpleNamespace(status="exited", code=0, stdout=json.dumps(found))
-    monkeypatch.setattr(measure.child, "run", run)
-    assert measure.bench(Layout(tmp_path), ONE, "s", "n22/a", 1.0)[0]["real_time"] == 13.0
-    assert measure.bench(Layout(tmp_path), ONE, "s", "n22/b", 1.0)[0]["real_time"] == 10.5
-    assert measure.bench(Layout(tmp_path), ONE, "s", "n22/a", 1.0)[0]["real_time"] == 13.0  # stored
-
-
-def test_of_batches_both_halves_count_as_wall_time():
-    def unrest(cpu_time):
-        row = {"real_time": 80.0, "cpu_time": cpu_time, "sets": 8, "steps": 10, "step_us": 1.0, "alone_us": 4.0}
-        return measure._unrest({"found": {"benchmarks": [row]}})
-    assert unrest(400.0) == 1.0 and unrest(200.0) == 2.0
+def test_who_is_not_timed_at_one_size_is_not_tried_at_a_larger_one(measured):
+    measured.said = lambda scene, names: rows(**{name.replace("/", "_"): "slower" if name == "one/b" else 1.0 for name in names})
+    lab = Asked()
+    plan.run(lab, "sizes")
+    assert [(scene, names) for _, scene, names, _ in measured.asked] == [
+        ("four-bar:10", ["limit/limit", "one/a", "one/b", "own/x", "own/y"]),
+        ("four-bar:40", ["limit/limit", "one/a", "own/x", "own/y"]), ("four-bar:49", ["limit/limit", "own/x", "own/y"])]
+    assert lab.skipped == [("four-bar:40", "one/b", "excluded", "not timed at N = 10: slower")]
+    assert [(cell.kind, cell.settings) for cell in lab.cells if cell.role == "bounds"] == [("limit", (10, 40))]
+    assert {cell.scene for cell in lab.cells if cell.kind == "check"} == {"four-bar:10", "four-bar:40"}
 
 
-def test_a_wrong_name_is_said_before_set_up(monkeypatch):
-    monkeypatch.delenv("MBS_PROGRAM", raising=False)
-    monkeypatch.setattr("study.pipeline.carrier.set_up", lambda layout: pytest.fail("set-up has begun"))
-    with pytest.raises(StudyError, match="--only: unknown implementation 'nope'; known folders: armadillo_dense, "):
-        limit(["--only", "nope"])
+def test_a_size_that_the_budget_dropped_excludes_nobody(measured):
+    measured.said = lambda scene, names: rows(**{name.replace("/", "_"): "dropped" for name in names})
+    lab = Asked()
+    plan.run(lab, "sizes")
+    assert lab.skipped == [] and not [cell for cell in lab.cells if cell.kind == "check"]
 
 
-def test_collected_instructions():
-    assert instructions.collected("==7== \n==7== Collected : 110760\n") == 110760
-    for log in ("", "==7== Collected : 0\n"):
-        with pytest.raises(ValueError, match="not collected"):
-            instructions.collected(log)
+def test_growth_is_of_own_code_that_serves_the_form(measured):
+    plan.run(Asked(), "growth")
+    [(role, scene, names, settings)] = measured.asked
+    assert (role, scene, names) == ("growth", "four-bar:49", ["own/x"])
+    assert settings[-2:] == ("--scheme", "saddle-point")
 
 
-def test_instructions_of_a_step_are_what_more_steps_take_more(tmp_path):
-    path = tmp_path / "raw" / "n22" / "one.a-instructions.json"
-    write_json(path, {"runs": [{"instructions": 1_000_000}, {"instructions": 1_240_000}]})
-    assert instructions.count(Layout(tmp_path), ONE, 10, 1.0) == 3000.0
-    write_json(path, {"runs": [{"instructions": 1_000_000}, {"failure": "crashed"}]})
-    assert instructions.count(Layout(tmp_path), ONE, 10, 1.0) is None
+def test_scenes_have_their_own_step_and_the_gate_asks_those_that_count(measured):
+    measured.said = lambda scene, names: rows(one_a=2.0, one_b=3.1, own_x=9.0, own_y="unsupported")
+    lab = Asked()
+    plan.run(lab, "scenes")
+    assert [(role, scene.rpartition("/")[2]) for role, scene, _, _ in measured.asked] == [
+        ("problem", "a01_pendulum.json"), ("fill", "four-bar:49,fill=0.5"), ("example", "coupler.json")]
+    problem, fill, _ = (settings for _, _, _, settings in measured.asked)
+    assert problem[problem.index("--step") + 1] == "0.001" and "--step" not in fill
+    gates = [(cell.scene, cell.contenders[0].name) for cell in lab.cells if cell.kind == "check"]
+    assert [name for scene, name in gates if "fill" in scene] == ["one/a", "own/x"]  # one/b is too far behind to be a rival
+    [check] = [cell for cell in lab.cells if cell.kind == "check" and "pendulum" in cell.scene and cell.contenders[0].name == "own/x"]
+    assert check.settings[:2] == ("--step", "0.001") and check.role == "problem-gate"
 
 
-@pytest.mark.parametrize("words", [["--loops", "0"], ["--rounds", "0"], ["--time-limit", "0"]])
-def test_what_is_refused(words):
-    with pytest.raises(StudyError, match=rf"argument {words[0]}: {words[1]} is not a"):
-        limit(words)
+def test_processes_of_batches_take_turns_over_all_cells():
+    lab = Asked(batches=[10, 40])
+    plan.run(lab, "batches")
+    assert [cell.number for cell in lab.cells] == [1] * 4 + [2] * 4
+    assert [cell.settings[2] for cell in lab.cells[:4]] == [8, 64, 8, 64] and all(cell.timed for cell in lab.cells)
+    assert len({cell.settled().file_name() for cell in lab.cells}) == 8
+    assert not Asked(names=()).cells
 
 
-def test_own_code_is_what_has_no_library():
-    entries = [{"available": True, "library": library, "variants": [{"name": f"{library}/x"}]}
-               for library in ("none", "KLU")]
-    assert own({"implementations": [*entries, {"available": False}]}) == {"none/x"}
+def test_nothing_is_asked_where_nobody_takes_part(measured):
+    lab = Asked(names=())
+    for column in plan.SHARES:
+        plan.run(lab, column)
+    assert not [cell for cell in lab.cells if cell.contenders]
 
 
-def test_scenes_are_all_that_users_are_given():
-    found = lead.scenes()
-    assert "harness/scenes/problems/a04_bricard.json" in found
-    assert "harness/scenes/examples/coupler.json" in found and "four-bar:49,fill=0.5" in found
-    assert all((ROOT / scene).is_file() for scene in found if scene.endswith(".json"))
+def test_the_columns_share_the_budget():
+    assert sum(plan.columns({"seconds": 100.0}, None).values()) == pytest.approx(100)
 
 
-def test_who_is_far_behind_at_first_is_not_timed_further(tmp_path, monkeypatch):
-    """Own code is timed whatever a first run says; the fastest with a library sets the measure. Who does not
-    serve the scene has no row."""
-    names = {"own/x": 9.0, "own/chain": None, "one/fast": 2.0, "one/near": 2.9, "one/slow": 3.1}
-    timed = []
-    monkeypatch.setattr(measure, "bench", lambda layout, one, *_:
-                        (bench_row(names[one.name]), "") if names[one.name] else ({}, "unsupported: no chain"))
-    monkeypatch.setattr(lead, "_about", lambda scene: {"scene": scene, "dimension": 2})
-    monkeypatch.setattr(measure, "cell", lambda layout, near, *_: timed.extend(near) or [])
-    rows = lead.rows(Layout(tmp_path), [Contender(name, name) for name in names], {"own/x"},
-                     "a.json", 1, 1.0, lambda text: None)
-    assert [one.name for one in timed] == ["own/x", "one/fast", "one/near"]
-    assert [(row["implementation"], row["status"], row["dimension"]) for row in rows] == [
-        ("one/slow", "slower", 2)]
+@pytest.mark.parametrize("profile", ["smoke", "quick", "full"])
+def test_what_a_profile_names_exists(profile):
+    import yaml
+    settings = yaml.safe_load((ROOT / "study/profiles" / f"{profile}.yaml").read_text())["parts"]["limit"]
+    found = plan.listed(settings)
+    assert len(found) == sum(len(settings[key]) for key in ("problems", "examples", "fills"))
+    assert all((ROOT / scene.name).is_file() for scene in found if scene.name.endswith(".json"))
 
 
-def test_who_failed_at_one_size_is_not_tried_at_a_larger_one(monkeypatch):
-    from types import SimpleNamespace
-    seen = []
-
-    def size(layout, here, loops, *_):
-        seen.append((loops, [one.name for one in here]))
-        return [{"implementation": one.name, "status": "failed" if one is ONE else "ok"} for one in here]
-    monkeypatch.setattr(measure, "size", size)
-    options = SimpleNamespace(loops=[1, 2], rounds=1, time_limit=1.0, instructions=False)
-    main._sizes(None, options, [ONE], set(), lambda text: None)
-    assert seen == [(1, ["limit/limit", "one/a"]), (2, ["limit/limit"])]
-
-
-def test_a_tiny_study_on_the_real_program(tmp_path, monkeypatch):
-    if not (ROOT / "build" / "mbs").exists():
-        pytest.skip("build/mbs is not built")
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setenv("MBS_PROGRAM", str(ROOT / "build" / "mbs"))
-    monkeypatch.setattr(lead, "LARGE", (3,))
-    monkeypatch.setattr(lead, "scenes", lambda: ["harness/scenes/double_pendulum.json"])
-    words = ["--only", "csc_klu/refactor", "compiled_ldl/chains", "--loops", "1", "2", "--rounds", "1", "--results",
-             str(tmp_path)]
-    limit(words)
-    steps, bounds = (pandas.read_csv(tmp_path / f"{name}.csv") for name in ("steps", "bounds"))
-    assert list(steps.implementation) == ["limit/limit", "csc_klu/refactor", "compiled_ldl/chains"] * 2
-    assert (steps.status == "ok").all() and (bounds.bound_ns > 0).all()
-    growth = pandas.read_csv(tmp_path / "growth.csv")
-    assert list(growth.implementation) == ["compiled_ldl/chains"] and (growth.status == "ok").all()
-    scenes, batches = (pandas.read_csv(tmp_path / f"{name}.csv") for name in ("scenes", "batches"))
-    assert set(scenes.status) <= {"ok", "slower"} and set(scenes.dimension) == {2}
-    assert list(batches.implementation) == ["compiled_ldl/chains"] * 4 and (batches.gain > 0).all()
-    assert list(batches.sets) == [64, 8] * 2
-    page = (tmp_path / "limit.html").read_text()
-    assert "csc_klu/refactor" in page and (tmp_path / "figures" / "by_phase.png").exists()
-    limit([*words, "--stored"])
-    assert (tmp_path / "limit.html").read_text() == page
+@pytest.mark.slow
+def test_a_tiny_study_on_the_real_program(tmp_path):
+    done = study("run", "--profile", "smoke", "--part", "limit", "--only", "csc_klu/refactor", "compiled_ldl/chains", "--results",
+                 tmp_path / "set")
+    assert done.returncode == 0, done.stderr
+    steps, held, batches = (pandas.read_csv(tmp_path / "set/limit" / f"{name}.csv") for name in ("steps", "held", "batches"))
+    first = steps[(steps.form == "penalty") & (steps.loops == 1)]
+    assert list(first.implementation) == ["limit/limit", "csc_klu/refactor", "compiled_ldl/chains"]
+    assert first.multiple.iloc[0] == 1 and set(held.folder) == {"compiled_ldl"}
+    assert list(batches.status) in (["unsupported", "ok"], ["ok", "unsupported"], ["dropped", "dropped"])
+    assert "What compiled_ldl is held to" in (tmp_path / "set/limit.html").read_text()
