@@ -13,15 +13,16 @@ PAIRS = {  # of settings by name: what the second one costs or gains beside the 
     PRECISION: (("default", "mixed"), ("default", "single"), ("saddle", "saddle mixed")),
     REUSE: (("default", "every-step"), ("default", "kept"), ("default", "kept tight"),
             ("saddle", "saddle every-step"), ("saddle", "saddle kept"))}
+CLASSES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6)  # m
 GAIN = 1.2  # the speed-up that is asked of lower precision
 
 
-def error_class(error, errors):
-    """The smallest of the required errors that `error` meets; None without one."""
-    return min((one for one in errors if error <= one), default=None)
+def error_class(error):
+    """The smallest of CLASSES that `error` meets; None without one."""
+    return min((one for one in CLASSES if error <= one), default=None)
 
 
-def table(scene, made, measured, errors):
+def table(scene, made, measured):
     """A row for each pair and implementation of a scene whose settings were both timed."""
     mine = measured[(measured.role == "pair") & (measured.status != "dropped")]
     found = []
@@ -31,17 +32,17 @@ def table(scene, made, measured, errors):
             for name, rows in both.groupby("implementation", sort=False):
                 if rows.setting.nunique() == 2:
                     found.append({"scene": scene, "kind": kind, "first": first, "second": second, "implementation": name}
-                                 | _row(rows, made, errors, (first, second)))
+                                 | _row(rows, made, (first, second)))
     return pandas.DataFrame(found)
 
 
-def _row(rows, made, errors, both):
+def _row(rows, made, both):
     named = rows.assign(implementation=rows.setting, environment="")  # processes of one number follow each other
     lost = rows[rows.status != "ok"]
-    ratio = timing.NONE if len(lost) else timing.ratio(named, both[1], both[0])
+    ratio = timing.ratio(named, both[1], both[0])
     found = {"ratio": ratio.value, "low": ratio.low, "high": ratio.high, "processes": rows.process.nunique(),
              "variables": rows.get("variables", pandas.Series(dtype=float)).max(),
-             "reason": f"{lost.iloc[0].setting}: {lost.iloc[0].status}: {lost.iloc[0].reason}" if len(lost) else "",
+             "reason": f"{lost.iloc[0].setting}: {lost.iloc[0].status}: {lost.iloc[0].reason}" if len(lost) and not ratio.value > 0 else "",
              "record": " ".join(dict.fromkeys(rows.record))}
     for place, setting in zip(("first", "second"), both):
         mine = rows[(rows.setting == setting) & (rows.status == "ok")]
@@ -50,7 +51,7 @@ def _row(rows, made, errors, both):
         if run is None:
             continue
         found |= {f"{place}_{key}": run[key] for key in ("status", "error", "passes", "factorizations", "duration")}
-        found[f"{place}_class"] = error_class(run["error"], errors)
+        found[f"{place}_class"] = error_class(run["error"])
         found["record"] += f" {run['record']}"
         if run["status"] not in FINISHED and not found["reason"]:
             found["reason"] = f"{setting}: {run['status']}: {run['reason']}"

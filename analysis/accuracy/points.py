@@ -11,6 +11,7 @@ from analysis.accuracy import subjects
 
 KEY = ["scene", "implementation", "setting", "step"]
 LOOK, ROUNDS, RUN = "look", "rounds", "run"  # where a time is from: one process, several, an untimed run
+NOT_JUDGED = "not-judged"                    # the status of a point without a run of its own
 ROLES = {"look": LOOK, "time": ROUNDS}       # of timed cells, before the slash
 
 
@@ -52,33 +53,33 @@ def timed(records):
     """A row for each contender of each process of timed cells ("look/SETTING", "time/SETTING", "pair/SETTING")."""
     chosen = {record.name: record for record in records if record.role.partition("/")[0] in (*ROLES, "pair")}
     found = timing.processes(chosen.values())
-    found["implementation"] = found.implementation.str.partition("+")[0]  # of another pair: the anchor
+    found["implementation"] = [name.partition("+")[0] for name in found.implementation]  # of another pair: the anchor
     for name, value in (("setting", setting_of), ("step", lambda record: option(record, "--step")),
                         ("role", lambda record: record.role.partition("/")[0])):
         found[name] = [value(chosen[one]) for one in found.record]
-    if "passes" not in found:
-        found[["passes", "steps"]] = numpy.nan
+    for name in ("passes", "steps"):  # of which nobody has one
+        found[name] = found.get(name, numpy.nan)
     return found.drop_duplicates([*KEY, "role", "process"])
 
 
 def points(made, measured):
     """A row for each point that has a run or a time. `made`, `measured`: what `runs` and `timed` give."""
-    own = made.sort_values("duration", kind="stable").drop_duplicates(KEY, keep="last").set_index(KEY)
-    counted = measured[measured.role.isin(ROLES) & (measured.status != "dropped")]
-    times = dict(list(counted.groupby(KEY, sort=False)))
-    others = own[own.error.notna()].reset_index().drop_duplicates(["setting", "step"]).set_index(["setting", "step"])
-    rows = []
-    for key in dict.fromkeys([*own.index, *times]):
+    own = {_key(row): row for row in made.sort_values("duration", kind="stable").to_dict("records")}
+    others = {}  # by setting and step: a run whose error is known
+    for (_, _, *point), row in own.items():
+        if row["error"] == row["error"]:
+            others.setdefault(tuple(point), row)
+    times, rows = _processes(measured, ROLES), []
+    for key in dict.fromkeys([*own, *times]):
         row = dict(zip(KEY, key))
-        if key in own.index:
-            row |= own.loc[key].drop(["seconds", "steps"]).to_dict() | {"error_of": key[1], "time_from": RUN}
-        elif key[2:] in others.index:
-            source = others.loc[key[2:]]
-            row |= {"status": "not-judged", "reason": "no run of its own", "error": source.error,
-                    "error_of": source.implementation, "passes": source.passes, "at_most": source.at_most,
-                    "variables": source.variables, "record": source.record}
+        if key in own:
+            row |= own[key] | {"error_of": key[1], "time_from": RUN}
+        elif key[2:] in others:
+            source = others[key[2:]]
+            row |= {name: source[name] for name in ("error", "at_most", "passes", "variables", "record")} | {
+                "status": NOT_JUDGED, "reason": "no run of its own", "error_of": source["implementation"]}
         else:
-            row |= {"status": "not-judged", "reason": "nobody's run tells its error"}
+            row |= {"status": NOT_JUDGED, "reason": "nobody's run tells its error"}
         if key in times:
             row |= _time(times[key], row)
         rows.append(row)
@@ -88,43 +89,49 @@ def points(made, measured):
     return found.astype({"at_most": "boolean"})
 
 
+def _key(row):
+    return tuple(row[name] for name in KEY)
+
+
+def _processes(measured, roles):
+    """{key: its rows, without what the budget left out}"""
+    found = {}
+    for row in measured.to_dict("records"):
+        if row["role"] in roles and row["status"] != "dropped":
+            found.setdefault(_key(row), []).append(row)
+    return found
+
+
 def _time(rows, row):
     """Median over processes, with the least and the largest; of a look, where there are no rounds."""
-    kind = "time" if (rows.role == "time").any() else "look"
-    mine = rows[rows.role == kind]
-    lost = mine[mine.status != "ok"]
-    records = " ".join(dict.fromkeys([*filter(None, [row.get("record")]), *mine.record]))
-    if len(lost):
-        first = lost.iloc[0]
-        status = {"status": first.status, "reason": first.reason} if row["status"] in (*FINISHED, "not-judged") else {}
+    kind = "time" if any(one["role"] == "time" for one in rows) else "look"
+    mine = [one for one in rows if one["role"] == kind]
+    lost = next((one for one in mine if one["status"] != "ok"), None)
+    records = " ".join(dict.fromkeys([*filter(None, [row.get("record")]), *(one["record"] for one in mine)]))
+    if lost:
+        status = {key: lost[key] for key in ("status", "reason")} if row["status"] in (*FINISHED, NOT_JUDGED) else {}
         return status | {"time": numpy.nan, "time_from": ROLES[kind], "record": records}
-    seconds = [float(numpy.median(one)) for one in _seconds(mine, row)]
-    return {"step_us": float(mine.step_us.median()), "time": float(numpy.median(seconds)), "time_low": min(seconds),
-            "time_high": max(seconds), "time_from": ROLES[kind], "processes": len(mine), "record": records,
-            "variables": mine.variables.iloc[0] if "variables" in mine else row.get("variables")}
+    seconds = [float(numpy.median(_seconds(one, row))) for one in mine]
+    return {"step_us": float(numpy.median([one["step_us"] for one in mine])), "time": float(numpy.median(seconds)),
+            "time_low": min(seconds), "time_high": max(seconds), "time_from": ROLES[kind], "processes": len(mine),
+            "record": records, "variables": mine[0].get("variables", row.get("variables"))}
 
 
-def _seconds(rows, row):
-    """Samples of each process as s of computation for a simulated second."""
-    for one in rows.itertuples():
-        in_stretch = one.passes / one.steps
-        more = row["passes"] / in_stretch if row.get("passes", 0) > 0 and in_stretch > 0 else 1.0
-        yield 1e-6 / row["step"] * more * numpy.array(one.samples)
+def _seconds(process, row):
+    """Samples of a process as s of computation for a simulated second."""
+    in_stretch = process["passes"] / process["steps"]
+    more = row["passes"] / in_stretch if row.get("passes", 0) > 0 and in_stretch > 0 else 1.0
+    return 1e-6 / row["step"] * more * numpy.array(process["samples"])
 
 
 def rounds(table, measured):
     """The rows of a scene's points in rounds as analysis.core.timing ranks them: "implementation" is a label of the
     point. Processes of one number follow each other on the machine, and count as one process."""
-    rows = []
-    mine = measured[(measured.role == "time") & (measured.status != "dropped")].set_index(KEY).sort_index()
+    times, rows = _processes(measured, ("time",)), []
     for point in table[table.time_from == ROUNDS].to_dict("records"):
-        key = tuple(point[name] for name in KEY)
-        chosen = mine.loc[[key]]
-        good = chosen[chosen.status == "ok"]
-        rows += [{"implementation": label(point), "environment": "", "process": number, "status": "ok",
-                  "samples": tuple(values)} for number, values in zip(good.process, _seconds(good, point))]
-        rows += [{"implementation": label(point), "environment": "", "process": one.process, "status": one.status}
-                 for one in chosen[chosen.status != "ok"].itertuples()]
+        for one in times[_key(point)]:
+            row = {"implementation": label(point), "environment": "", "process": one["process"], "status": one["status"]}
+            rows.append(row | {"samples": tuple(_seconds(one, point))} if one["status"] == "ok" else row)
     return pandas.DataFrame(rows, columns=["implementation", "environment", "process", "status", "samples"])
 
 

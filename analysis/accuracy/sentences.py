@@ -14,8 +14,8 @@ def answers(tables, view):
         return [{"text": "Not measured: nobody reached a required error with a time.", "anchor": ""}]
     found = [{"text": of_layer(met[met.layer == layer], layer), "anchor": "short"}
              for layer in LAYERS if (met.layer == layer).any()]
-    said = of_precision(tables["pairs"])[:1] + of_reuse(tables["pairs"])[:1]
-    return found + [{"text": text, "anchor": anchor} for text, anchor in zip(said, ("precision", "reuse"))]
+    return found + [{"text": text, "anchor": anchor} for anchor, of in (("precision", of_precision), ("reuse", of_reuse))
+                    for text in of(tables["pairs"])[:1]]
 
 
 def cases(tables, view):
@@ -63,7 +63,7 @@ def summary(winners):
             groups = {}
             for one in rows[rows.layer == layer].sort_values("variables").itertuples():
                 words = NOBODY if one.implementation == NOBODY else f"{one.implementation}, {one.setting}" + (
-                    "" if one.settled is True else " (open)")
+                    "" if one.settled else " (open)")
                 groups.setdefault(words, []).append(f"{one.variables:.0f}")
             row[layer] = [{"who": who, "sizes": ", ".join(sizes)} for who, sizes in groups.items()]
         found.append(row)

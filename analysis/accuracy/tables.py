@@ -41,12 +41,14 @@ def reference_of(subject, records):
 
 def of_column(kind, subject, known, records, view):
     """{table: DataFrame} of one column."""
-    made, measured, errors = runs(records, subject, known), timed(records), view.settings["errors"]
+    made, measured = runs(records, subject, known), timed(records)
     named = {"subject": subject.name, "loops": subject.loops}
     if kind == "pairs":
-        table = pairs.table(subject.scene, made, measured, errors)
+        table = pairs.table(subject.scene, made, measured)
         return {"pairs": table.assign(**named)} if len(table) else {}
     table = points(made, measured)
+    if table.empty:
+        return {}
     libraries = view.registry.libraries
     for layer in LAYERS:
         table[f"front_{layer}"] = False
@@ -55,7 +57,7 @@ def of_column(kind, subject, known, records, view):
             timed_ones = meeting(rows, float("inf"))
             chosen = timed_ones[timed_ones.implementation.isin(libraries)] if layer == "libraries" else timed_ones
             table.loc[pareto(chosen), f"front_{layer}"] = True
-    won = winners(table, measured, errors, libraries)
+    won = winners(table, measured, view.settings["errors"], libraries)
     fills = {scene: rows.fill.dropna().median() for scene, rows in table.groupby("scene")}
     for one in (table, won):
         one["fill_asked"] = [float(scene.partition("fill=")[2] or "nan") for scene in one.scene]

@@ -6,6 +6,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
 from analysis.accuracy import names
+from analysis.accuracy.points import NOT_JUDGED
 from analysis.accuracy.winners import LAYERS, meeting
 from analysis.core.outcomes import FINISHED
 from analysis.core.pareto import near
@@ -57,7 +58,7 @@ def named(rows, front):
 
 def _panel(axes, rows, front, look):
     chosen = named(rows, front)
-    done = rows[rows.status.isin((*FINISHED, "not-judged")) & rows.time.notna() & rows.error.notna()]
+    done = rows[rows.status.isin((*FINISHED, NOT_JUDGED)) & rows.time.notna() & rows.error.notna()]
     for key, mine in done.groupby(["implementation", "setting"], sort=False):
         mine = mine.sort_values("step")
         if key not in chosen:

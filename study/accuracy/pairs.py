@@ -3,52 +3,59 @@
 from analysis.accuracy.pairs import PAIRS, STEP
 from study.accuracy.runs import Runs
 
+BEHIND = 10.0  # times the fastest of its kind with the default setting: who is slower is not timed in pairs
 
 def run(lab, entry):
     runs = Runs(lab, "pairs", entry)
     runs.refer(None)
-    groups = _groups(runs)
-    scene = runs.subject.scene
+    groups, scene = _groups(runs), runs.subject.scene
     for number in range(1, lab.settings["processes"][1] + 1):
-        for name, contenders in groups.items():
-            for mine in _kinds(runs, contenders):
+        for name, kinds in groups.items():
+            for dense, contenders in kinds:
                 lab.tell(f"{scene}: {name}, process {number}")
-                runs.time("pair", scene, name, STEP, mine, number, mine[0].variant in lab.registry.dense)
+                runs.time("pair", scene, name, STEP, contenders, number, dense)
         if number == 1:
             runs.simulate(_own(runs, groups))
 
 
 def _groups(runs):
-    """{setting: contenders that serve it and another one of a pair with it}"""
-    found = {}
-    contenders = [one for group in runs.layers.values() for one in group]
-    for pairs in PAIRS.values():
-        for both in pairs:
-            if set(both) <= set(runs.settings):
-                serving = runs.serving(both[0], runs.serving(both[1], contenders))
-                for name in both:
-                    found[name] = found.get(name, []) + [one for one in serving if one not in found.get(name, [])]
+    """{setting: [(dense, contenders)]}: who serves it and another one of a pair with it, and is not too slow for that.
+    Timed together are dense ones, whose stretch is shorter, other libraries, code without one."""
+    dense, found = runs.lab.registry.dense, {}
+    for group in runs.layers.values():
+        for kind in (False, True):
+            contenders = _quick(runs, [one for one in group if (one.variant in dense) == kind], kind)
+            for name, mine in _serving(runs, contenders).items():
+                found.setdefault(name, []).append((kind, mine))
     return found
 
 
-def _kinds(runs, contenders):
-    """Those who are timed together: dense ones, whose stretch is shorter, other libraries, code without one."""
-    dense, own = runs.lab.registry.dense, runs.lab.registry.own
-    kinds = {}
-    for one in contenders:
-        kinds.setdefault((one.variant in dense, one.variant in own), []).append(one)
-    return kinds.values()
+def _quick(runs, contenders, dense):
+    """Those that are not far behind in a look at the default setting."""
+    if not contenders:
+        return []
+    runs.look(runs.subject.scene, "default", STEP, contenders, dense)
+    rows = runs.measured()
+    times = rows[(rows.status == "ok") & rows.implementation.isin([one.name for one in contenders])]
+    near = set(times[times.step_us <= BEHIND * times.step_us.min()].implementation)
+    return [one for one in contenders if one.name in near]
+
+
+def _serving(runs, contenders):
+    """{setting: those that serve it and another one of a pair with it}"""
+    found = {}
+    for both in (both for pairs in PAIRS.values() for both in pairs if set(both) <= set(runs.settings)):
+        serving = runs.serving(both[0], runs.serving(both[1], contenders))
+        for name in both if serving else ():
+            found[name] = [one for one in contenders if one in serving or one in found.get(name, [])]
+    return found
 
 
 def _own(runs, groups):
-    """Runs of everyone who was timed, as long as they are not too long."""
-    timed = runs.measured()
-    times = timed[timed.status == "ok"].drop_duplicates(["implementation", "setting"]).set_index(["implementation", "setting"])
-    jobs = []
-    for name, contenders in groups.items():
-        for one in contenders:
-            if (one.name, name) in times.index:
-                duration = runs.duration(1e-6 * times.step_us[one.name, name] / STEP)
-                if duration:
-                    jobs.append((one, name, STEP, runs.subject.scene, duration))
-    return jobs
+    """Runs of everyone who was timed; of one implementation all over the same duration."""
+    rows = runs.measured()
+    rows = rows[(rows.status == "ok") & (rows.role == "pair")]
+    slowest = rows.groupby("implementation").step_us.max()
+    return [(one, name, STEP, runs.subject.scene, duration) for name, kinds in groups.items() for _, contenders in kinds
+            for one in contenders if one.name in slowest.index
+            for duration in [runs.duration(1e-6 * slowest[one.name] / STEP)] if duration]

@@ -6,11 +6,12 @@ from study.core.cell import Cell
 from study.core.setting import read_settings
 
 VALUES = 1e5      # steps of a stretch times variables, at most
-OPERATIONS = 2e9  # and times the square of a filled row: a dense step takes longer
+OPERATIONS = 3e8  # and times the square of a filled row: a dense step takes longer
 LEAST = 20        # steps of a stretch
-PATIENCE = 0.3    # s: whose first stretch takes longer is not timed
-BEHIND = 6        # times the fastest of a look: whoever is slower is not timed there
-SAMPLES, LOOKS = 6, 3  # of a process and contender: where times are compared, and in a look
+SAMPLES = 6       # of a process and contender
+LOOK = 4          # share of the stretch and ...
+LOOKS = 3         # ... samples of a look
+PATIENCE = 0.5    # s: whose first stretch takes longer is not looked at
 CAREFUL = 3  # times the time of a run, and of starting it, is its limit: predictions may be wrong
 
 
@@ -58,14 +59,19 @@ class Runs:
         return Cell("simulate", scene, (one,), words, role, seconds=seconds or CAREFUL * (1 + self.longest),
                     keep=() if self.subject.loops else ("outputs",), every=self.subject.every(step))
 
+    def look(self, scene, name, step, contenders, dense=False):
+        """A short timed process in which the contenders of a point take turns."""
+        steps = max(LEAST, self.stretch(scene, step, dense) // LOOK)
+        self._time("look", scene, name, step, contenders, 1, LOOKS, ("--steps", steps, "--patience", PATIENCE))
+
     def time(self, role, scene, name, step, contenders, processes, dense=False):
-        """Timed processes in which the contenders of a point take turns; role: "look", "time" or "pair"."""
-        words = (*self.settings[name].words(self.subject.base), "--step", f"{step:g}", "--start", 0,
-                 "--steps", self.stretch(scene, step, dense), "--patience", PATIENCE)
-        words += ("--slower-than", BEHIND) if role != "time" else ()
-        self.records += timing.measure(
-            self.lab, scene, contenders, processes=processes, repetitions=LOOKS if role == "look" else SAMPLES,
-            settings=words, role=f"{role}/{self.settings[name].file_name}", seconds=60, drop=True)
+        """Timed processes in which the contenders of a point take turns; role: "time" or "pair"."""
+        self._time(role, scene, name, step, contenders, processes, SAMPLES, ("--steps", self.stretch(scene, step, dense)))
+
+    def _time(self, role, scene, name, step, contenders, processes, samples, more):
+        words = (*self.settings[name].words(self.subject.base), "--step", f"{step:g}", "--start", 0, *more)
+        self.records += timing.measure(self.lab, scene, contenders, processes=processes, repetitions=samples, settings=words,
+                                       role=f"{role}/{self.settings[name].file_name}", seconds=60, drop=True)
 
     def stretch(self, scene, step, dense=False):
         """Steps from the start that are timed: of the whole run, but no more than take a few hundredths of a second."""

@@ -4,6 +4,7 @@
 # Artificial fill is stored zeros: it leaves the motion as it is, so that the curves at the mechanism's own fill tell
 # which steps to try. Whoever is ranked has met the error in a run of its own on that very scene.
 from analysis.accuracy import subjects
+from analysis.accuracy.points import NOT_JUDGED
 from analysis.accuracy.winners import NEAR, meeting, winners
 from analysis.core.outcomes import FINISHED
 from analysis.core.pareto import pareto
@@ -50,7 +51,7 @@ def _measure(runs, scene, speed, found):
         for name, step in points:
             contenders = runs.serving(name, speed[layer])
             if contenders:
-                runs.time("look", scene, name, step, contenders, 1)
+                runs.look(scene, name, step, contenders)
     _judge(runs, scene)
     _rounds(runs, scene, runs.lab.settings["processes"][0])
 
@@ -77,14 +78,14 @@ def _judge(runs, scene):
     """Runs of their own, where they have none, of those near the fastest in the look."""
     table = runs.points()
     table = table[(table.scene == scene) & table.time.notna() & table.error.notna()
-                  & table.status.isin((*FINISHED, "not-judged")) & table.time_from.isin(("look", "rounds"))]
+                  & table.status.isin((*FINISHED, NOT_JUDGED)) & table.time_from.isin(("look", "rounds"))]
     names = {one.name: one for group in runs.layers.values() for one in group}
     jobs = []
     for error in runs.lab.settings["errors"]:
         for group in runs.layers.values():
             mine = table[table.implementation.isin([one.name for one in group]) & (table.error <= error)]
             near = mine[mine.time <= JUDGED * mine.time.min()]
-            for row in near[near.status == "not-judged"].itertuples():
+            for row in near[near.status == NOT_JUDGED].itertuples():
                 duration = runs.duration(row.time)
                 if duration:
                     jobs.append((names[row.implementation], row.setting, row.step, scene, duration))
