@@ -5,6 +5,7 @@
 # stands there, so that a changed or truncated file is named and never believed.
 import io
 import json
+import lzma
 import re
 import tarfile
 from dataclasses import dataclass, field
@@ -96,11 +97,13 @@ def read_part(folder, part):
     if not archive.exists():
         return [read(path, name) for name, path in sorted(files_of(folder, part).items())]  # as an archive sorts them
     try:
-        with tarfile.open(archive) as tar:
+        with lzma.open(archive) as file:  # all of it, as tarfile would not miss the end of a file that was cut
+            whole = io.BytesIO(file.read())
+        with tarfile.open(fileobj=whole) as tar:
             return [from_text(tar.extractfile(one).read().decode(), one.name, f"{archive}: {one.name}")
                     for one in sorted(tar, key=lambda one: one.name)
                     if one.name.endswith(".json") and not one.name.startswith("scenes/")]
-    except (OSError, EOFError, tarfile.TarError, UnicodeDecodeError) as error:
+    except (OSError, EOFError, lzma.LZMAError, tarfile.TarError, UnicodeDecodeError) as error:
         raise StudyError(f"{archive} is damaged ({error}): restore it") from error
 
 
