@@ -24,7 +24,7 @@ class TimedScene:
     def time(self, count):
         """Processes 1 … `count` of all."""
         while self.costs:
-            self.records = self.processes([*self._control(), *self.costs], count, "time")
+            self.records = self.processes([*self.costs, *self._control()], count, "time")
             wrong = differing(timed_rows(self.records))
             if not wrong:
                 return
@@ -50,7 +50,7 @@ class TimedScene:
         """The harness's own, which does nothing: at natural fill, on the pair of most."""
         if self.scene.fill is not None:
             return []
-        pairs = [one.blas for one in self.costs if not one.build]
+        pairs = [one.blas for one in self.costs if one.ranked]
         return [Contender(CONTROL.name, CONTROL.variant, max(pairs, key=pairs.count))] if pairs else []
 
     def processes(self, contenders, count, role):

@@ -1,0 +1,176 @@
+# Cells, sums and figures of the map on made-up times.
+import json
+
+import matplotlib.pyplot as plt
+import pandas
+import pytest
+
+from analysis.core import records, schema
+from analysis.core.files import write_json
+from analysis.core.records import Record
+from analysis.core.style import Look
+from analysis.map import figures, losses, regret, sentences, summary, tables, tidy
+from analysis.map.cells import map_cells, table
+from analysis.map.grid import bounds
+from analysis.map.maps import crossings
+from analysis.map.timed import AFTER, differing, timed_rows
+from analysis.tests.map_tables import cell, failed, registry, results, scene, view
+
+A, B, C, OWN = "eigen_dense/llt", "csc_klu/refactor", "csc_cholmod/simplicial", "ours/best"
+
+
+def some(rows, **more):
+    return results(rows, dense=[A], sparse=[B, C, OWN], own=[OWN], **more)
+
+
+def bench(contenders, role="time", number=1, status="done", where="four-bar:4", passes=None, environment="own|openblas"):
+    """A record of a timed process."""
+    rows = {f"{name}/{where}": {"stretch_us": [100.0, 110.0], "steps": 10, "fill_percent": 52.0, "variables": 10,
+                                "constraints": 9, "start": 0.1, "passes": (passes or {}).get(name, 20)} for name in contenders}
+    return Record(f"n0010/{role}/{'-'.join(contenders).replace('/', '.')}-{number}.json",
+                  {"scene": where, "contenders": list(contenders), "environment": environment, "role": role, "number": number,
+                   "settings": []}, status, "" if status == "done" else "it died", 1.0, [], {}, {"rows": rows} if status == "done" else {})
+
+
+def test_the_smallest_group_of_a_scene_counts_and_further_processes_have_numbers_of_their_own():
+    rows = timed_rows([bench([A, B, C]), bench([A, B], number=1), bench([A, B], number=2),
+                       bench([C], role="time-left-out", status="disagrees"), bench([A, B], role="again"),
+                       bench([A], role="pilot")])
+    good = rows[rows.status == "ok"]
+    assert set(good.implementation) == {A, B} and sorted(good.process.unique()) == [1, 2, AFTER + 1]
+    assert list(rows[rows.implementation == C].status) == ["disagrees"]
+
+
+@pytest.mark.parametrize("passes, wrong", [
+    ({A: 20, B: 20, C: 21}, {C}), ({A: 20, B: 21}, {A, B}), ({A: 20, B: 20}, set()),
+    ({A: 20, f"{A}+one": 21, f"{A}+two": 21, f"{A}+three": 21}, {f"{A}+one", f"{A}+two", f"{A}+three"}),
+    ({A: 20, "null/null": 1}, set())])
+def test_passes_of_most_stand_and_alternatives_do_not_vote(passes, wrong):
+    rows = pandas.DataFrame([{"implementation": name, "status": "ok", "passes": count} for name, count in passes.items()])
+    assert set(differing(rows)) == wrong
+
+
+def test_a_cell_is_decided_equal_or_open():
+    rows = cell(A, 10, 2.0, 2.1, 1.9, 2.0) + cell(B, 10, 1.0, 1.01, 1.0, 0.99)
+    rows += cell(A, 22, 1.0, 1.01, 1.0, 1.0) + cell(B, 22, 1.0, 1.0, 1.0, 1.01)
+    rows += cell(A, 50, 1.0, 1.4, 0.9, 1.2) + cell(B, 50, 1.1, 1.1, 1.1, 1.1)
+    rows += cell(A, 82, 1.0)
+    found = map_cells(some(rows), [A, B])
+    assert [(one.decided, one.settled) for one in found] == [(True, True), (False, True), (False, False), (True, True)]
+    assert found[0].winners == (B,) and set(found[1].winners) == set(found[2].winners) == {A, B}
+    assert found[3].winners == (A,) and found[3].ranking.second is None
+
+
+def test_left_alone_one_wins_over_the_excluded_but_not_over_the_failed():
+    decided = {status: map_cells(some(cell(A, 10, 1.0, 1.0) + failed(B, 10, status)), [A, B])[0].decided
+               for status in ("excluded", "crashed", "disagrees")}
+    assert decided == {"excluded": True, "crashed": False, "disagrees": False}
+
+
+def test_libraries_and_all_are_two_layers():
+    rows = table(some(cell(A, 10, 2.0, 2.0) + cell(OWN, 10, 1.0, 1.0) + failed(B, 10, "excluded")))
+    assert dict(zip(rows.layer, rows.winner)) == {"libraries": A, "all": OWN}
+    assert set(rows.excluded) == {B} and set(rows.second.fillna("")) == {"", A}
+
+
+def test_edges_lie_between_fills_and_nothing_is_claimed_beyond():
+    assert bounds([], 5.0) == []
+    assert bounds([20.0, 40.0], 10.0) == [15.0, 30.0, 50.0]
+    assert bounds([100.0], 50.0) == [75.0, 100.0]
+    assert bounds([20.0, 40.0], None) == [20.0, 30.0, 50.0]
+
+
+def test_dense_overtakes_where_the_ratio_passes_one():
+    rows = []
+    for fill, dense in ((None, 4.0), (0.25, 2.0), (0.75, 0.5)):
+        rows += cell(A, 10, dense, dense, fill=fill) + cell(B, 10, 1.0, 1.0, fill=fill)
+    found = some(rows)
+    [(size, (fill, low, high))] = crossings(found, map_cells(found, [A, B])).items()
+    assert size == 10 and fill == pytest.approx(50) and low <= fill <= high
+    [row] = summary.dense_from(found)
+    assert row["from"] == 75 and row["last_sparse"] == 25 and row["between"] is None
+
+
+def test_the_price_counts_pilots_and_puts_those_that_fail_last():
+    rows = cell(A, 10, 1.0, 1.0, pilot_us=1.0) + cell(B, 10, 2.0, 2.0, pilot_us=2.0) + failed(C, 10, "crashed")
+    rows += cell(A, 22, 1.0, 1.0, pilot_us=1.0) + failed(B, 22, "excluded", pilot=8.0) + cell(C, 22, 1.5, 1.5)
+    found = some(rows)
+    ordered = regret.regrets(found, map_cells(found, [A, B, C]), [A, B, C])
+    assert [one.name for one in ordered] == [A, B, C]
+    assert ordered[1].ratios == {scene(10): pytest.approx(2), scene(22): pytest.approx(8)}
+    assert ordered[1].mean == pytest.approx(4) and ordered[1].rough == {scene(22)} and ordered[2].failed == {scene(10)}
+
+
+def test_neighbouring_sizes_with_one_outcome_are_one_line():
+    rows = []
+    for size, first in ((10, 2.0), (22, 3.0), (50, 0.5)):
+        rows += cell(A, size, first, first, first) + cell(B, size, 1.0, 1.0, 1.0)
+    groups = summary.by_size(some(rows), [A, B])
+    assert [summary.outcome(group) for group in groups] == [
+        ("n = 10 to 22", f"{B}, 2.00 to 3.00 times ahead of the second"), ("n = 50", f"{A}, 2.00 times ahead of the second")]
+
+
+def test_exclusions_of_one_are_one_line_of_what_was_not_timed():
+    rows = losses.losses(some(cell(A, 10, 1.0) + failed(B, 10, "excluded", "7 times") + failed(B, 22, "excluded", "9 times")
+                              + failed(C, 10, "crashed", "SIGSEGV")))
+    assert [(row["implementation"], row["status"], len(row["scenes"])) for row in rows] == [(C, "crashed", 1), (B, "excluded", 2)]
+
+
+@pytest.mark.parametrize("rows", [[], cell(A, 10, 1.0), failed(A, 10, "crashed"),
+                                  cell(A, 10, 1.0, 1.1) + cell(B, 10, 2.0, 2.1) + cell(A, 10, 3.0, fill=0.5)
+                                  + failed(C, 10, "excluded", pilot=9.0)])
+def test_every_figure_can_be_drawn(rows):
+    found = some(rows)
+    drawn = figures.draw({"tidy": found.tidy, "verification": found.verification}, found.view)
+    assert set(drawn) >= {"f4_sparse_solvers", "f5_fill", "f6_map", "f7_map", "map_all", "regret", "t1_phases", "t2_operations"}
+    for figure in drawn.values():
+        assert figure.get_size_inches()[1] < 16  # two screens
+        plt.close(figure)
+
+
+def test_no_winner_is_drawn_in_grey():
+    names = [f"f{place}/x" for place in range(10)]
+    look = Look(registry(sparse=names))
+    assert all(max(rgb) - min(rgb) > 25 for rgb in ([int(look.colour(name)[at:at + 2], 16) for at in (1, 3, 5)] for name in names))
+
+
+def test_records_become_tables_and_a_page(tmp_path):
+    from analysis.core import site
+    gate = Record("n0010/gate/all.json", {"scene": "four-bar:4", "contenders": [A, B, C], "environment": "own|openblas", "role": "gate",
+                                          "number": 0}, "done", "", 1.0, [], {}, {"rows": [
+        {"scene": "four-bar:4", "implementation": name, "verdict": verdict, "reason": reason,
+         "checks": [{"name": "lock-step", "value": 0.1, "tolerance": 1.0, "passed": verdict == "agrees", "detail": ""}]}
+        for name, verdict, reason in ((A, "agrees", ""), (B, "agrees", ""), (C, "disagrees", "off by 1"))]})
+    found = [gate, *(bench([A, B], number=number) for number in (1, 2, 3)), *(bench([name], "pilot") for name in (A, B, C, OWN)),
+             bench([OWN], "excluded", status="excluded")]
+    for one in found:
+        data = {key: getattr(one, key) for key in ("cell", "status", "reason", "seconds", "command", "context", "output")}
+        records.write(tmp_path / "raw" / "map" / one.name, data)
+    known = registry([A], [B, C, OWN], [OWN])
+    write_json(tmp_path / "registry.json", known.listed)
+    (tmp_path / "profile.yaml").write_text(json.dumps({"parts": {"map": {"columns": [{"variables": 10, "fills": ["natural"]}]}}}))
+    context = dict.fromkeys(("machine", "commit", "compiler", "flags", "cpu_model", "kernel"), "x") | {"num_cpus": 2, "libraries": "L 1", "dirty": "false"}
+    write_json(tmp_path / "set.json", {"profile": "smoke", "only": [], "parts": ["map"], "context": context, "date": "today",
+                                       "programs": {}})
+    site.write_part(tmp_path, "map")
+    rows = schema.read_table(tmp_path, "map", "tidy")
+    assert dict(rows[rows.process.isna()].groupby("implementation").status.first()) == {C: "disagrees", OWN: "excluded"}
+    assert (rows[rows.status == "ok"].step_us == 10.5).all() and set(rows.fill_percent) == {52.0}
+    cells = schema.read_table(tmp_path, "map", "cells")
+    assert set(cells.failed) == {C} and set(cells.excluded) == {"", OWN}
+    assert cells.settled.all() and set(cells.equivalent) == {f"{A} {B}"}
+    page = (tmp_path / "map.html").read_text()
+    assert "off by 1" in page and "as fast as each other" in page and "NaN" not in page and ">nan" not in page
+
+
+def test_without_times_the_answer_says_so():
+    found = some([])
+    empty = {"tidy": found.tidy, "verification": found.verification, "claims": pandas.DataFrame({"verdict": []})}
+    [answer] = sentences.answers(empty, found.view)
+    assert "Nothing was timed" in answer["text"]
+
+
+def test_a_scene_is_read_off_its_name():
+    assert tidy.scene_of("four-bar:24,fill=0.35") == {"scene": "four-bar:24,fill=0.35", "variables": 50, "fill_asked": 0.35}
+    assert tidy.scene_of("four-bar:4")["fill_asked"] is None
+    assert set(tables.build([], view(registry()))) == set(schema.of_part("map"))
