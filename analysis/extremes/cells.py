@@ -4,6 +4,7 @@ import unicodedata
 from dataclasses import dataclass, field
 
 from analysis.extremes import scenes
+from analysis.extremes.mechanisms import DragLink, LightEnd
 from analysis.extremes.motions import Chain, Flat
 from study.core.setting import Setting
 
@@ -28,10 +29,12 @@ TELLING = {  # axis: labels of its most telling cells, these in order
     "step": tuple(f"Δt = 1e{power} s" for power in (-2, -5, -1, -4, -3)),
     "penalty": ("α = 1e12", "α = 1e4"),
     "mass ratio": ("1e6", "1e3", "1e-6"),
+    "light end": ("1e-6 kg",),
     "length": ("1e-6 m", "1e6 m", "100 m, usual step"),
     "offset": ("1000 m",),
     "spring": ("pendulum, 1e8 N/m", "loop, 1e8 N/m"),
     "redundant": ("third rod at 1e-5 m", "rod doubled"),
+    "nearly singular": ("by 3e-5 m",),
     "start": ("singular, at rest", "singular, moving", "zero gravity", "hanging at rest"),
     "duration": ("200 s",),
     "denormal": ("lengths 1e-160 m",)}
@@ -42,7 +45,7 @@ class Extreme:
     axis: str
     label: str
     scene: str                # of `mbs`, or "": a file of this name
-    motion: Chain | None      # None: the reference in shorter steps
+    motion: Chain | DragLink | LightEnd | None  # None: the reference in shorter steps
     document: dict | None = field(default=None, compare=False)
     step: float = STEP
     steps: int = STEPS
@@ -87,8 +90,8 @@ class Extreme:
 
 def battery():
     """All cells, in the order of the picture."""
-    return [*_sizes(), *_steps(), *_penalties(), *_masses(), *_lengths(), *_springs(), *_redundant(),
-            *_starts(), *_long(), *_denormals()]
+    return [*_sizes(), *_steps(), *_penalties(), *_masses(), *_ends(), *_lengths(), *_springs(), *_redundant(),
+            *_gaps(), *_starts(), *_long(), *_denormals()]
 
 
 def _short(value):
@@ -99,6 +102,10 @@ def _short(value):
 
 def _chain(axis, label, chain, **more):
     return Extreme(axis, label, "", chain, chain.document(), length=chain.length, **more)
+
+
+def _other(axis, label, motion, steps=STEPS):
+    return Extreme(axis, label, "", motion, motion.document(), steps=steps)
 
 
 def _sizes():
@@ -119,6 +126,14 @@ def _penalties():
 def _masses():
     return [_chain("mass ratio", f"1e{power}", scenes.unlike_masses(LOOPS, 10.0**power))
             for power in (-9, -6, -3, 3, 6, 9)]
+
+
+def _ends():
+    return [_other("light end", f"{_short(mass)} kg", LightEnd(mass), steps=4 * STEPS) for mass in (1e-3, 1e-6, 1e-9)]
+
+
+def _gaps():
+    return [_other("nearly singular", f"by {_short(gap)} m", DragLink(gap)) for gap in (3e-3, 3e-4, 3e-5)]
 
 
 def _lengths():

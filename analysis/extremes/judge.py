@@ -13,7 +13,7 @@ def true_motion(cell, references, times):
     {finer: Record} where nothing else knows the motion."""
     if cell.motion:
         solutions = cell.motion.solutions(times)
-        return solutions, rounding(cell, solutions, times), "exact"
+        return solutions, rounding(cell, solutions, times), cell.motion.truth
     for factor in FINER:
         status, reason = of_run(references[factor]) if factor in references else ("missing", "it was not run")
         if status not in FINISHED:
@@ -29,14 +29,15 @@ def true_motion(cell, references, times):
 
 
 def rounding(cell, solutions, times):
-    """The error of exact motions as they are evaluated in double, in lengths: an ulp of time and one of positions."""
+    """The error of known motions as they are evaluated in double, in lengths: an ulp of time, one of positions, and
+    what their integration leaves."""
     if not len(times):
         return 0.0
     ulp = numpy.finfo(float).eps
     moved = cell.motion.solutions(numpy.asarray(times) * (1 + ulp))
-    return max(float(distances(late, known, cell.length).max()
-                     + ulp * max(abs(values).max() for values in known.values()) / cell.length)
-               for late, known in zip(moved, solutions))
+    return cell.motion.accuracy / cell.length + max(
+        float(distances(late, known, cell.length).max() + ulp * max(abs(values).max() for values in known.values()) / cell.length)
+        for late, known in zip(moved, solutions))
 
 
 def allowed(cell, solutions):

@@ -27,6 +27,8 @@ class Chain:
     angle: float = 0.0          # rad, at t = 0
     rate: float = 1.0           # rad/s, at t = 0, not negative
 
+    truth, accuracy = "exact", 0.0  # what `solutions` are; their error beside rounding, m
+
     @property
     def masses(self):
         """(of the rods, of the couplers), kg"""

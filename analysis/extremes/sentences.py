@@ -2,7 +2,7 @@
 from analysis.core.text import number
 from analysis.extremes import battery, ways
 from analysis.extremes.cells import FORMS
-from analysis.extremes.page import nobody, overhead, right
+from analysis.extremes.page import nobody, overhead, right, silent
 
 
 def answers(tables, view):
@@ -14,9 +14,10 @@ def _battery(table):
     runs = battery.ran(table)
     if runs.empty:
         return
-    silent = int(runs.silent.sum())
+    count, places = int(runs.silent.sum()), "; ".join(f"{one['axis']} {one['value']}" for one in silent(runs))
     yield {"anchor": "battery", "text": f"{right(runs).sum()} of {len(runs)} runs at the extremes are ok or plausible, and right; "
-           f"{silent or 'none'} {'are' if silent > 1 else 'is'} silently wrong; the others say themselves that they failed or are off."}
+           f"{count or 'none'} {'are' if count > 1 else 'is'} silently wrong{f' ({places})' if places else ''}; "
+           "the others say themselves that they failed or are off."}
     forms = runs[runs.setting.isin([form.name for form in FORMS])]
     lost = {}
     for axis, value, _ in nobody(forms):

@@ -7,6 +7,7 @@ import pandas
 from analysis.core import timing
 from analysis.core.errors import StudyError
 from analysis.core.outcomes import FINISHED, GOOD, of_run
+from analysis.core.statistics import median
 from analysis.extremes import judge, scenes
 from analysis.extremes.motions import Chain
 from study.core.setting import Setting
@@ -107,7 +108,7 @@ def _costs(times):
         first = (lost if len(lost) else own).iloc[0]
         yield {"way": way, "folder": folder, "implementation": own.implementation.iloc[0], "loops": loops,
                "processes": len(own) - len(lost), "ratio": found.value, "low": found.low, "high": found.high,
-               "passes_per_step": own.passes_per_step.median(), "status": first.ended, "reason": first.reason,
+               "passes_per_step": median(own.passes_per_step), "status": first.ended, "reason": first.reason,
                "record": " ".join(own.record)}
 
 
