@@ -37,7 +37,8 @@ def panels(tables, subjects, own):
     columns = min(3, len(subjects))
     lines = -(-len(subjects) // columns)
     figure, grid = plt.subplots(lines, columns, figsize=(5.2 * columns + 0.8, 4.1 * lines + 0.9), squeeze=False,
-                                sharex=True, sharey=True, constrained_layout=True)
+                                sharex=True, sharey=True)
+    figure.subplots_adjust(left=0.12 / columns + 0.02, right=0.98, wspace=0.06, hspace=0.2)
     for axes in grid.flat[len(subjects):]:
         axes.set_axis_off()
     for place, (axes, subject) in enumerate(zip(grid.flat, subjects)):
@@ -53,9 +54,9 @@ def panels(tables, subjects, own):
             axes.set_xlabel("computation for a simulated second, s")
     for axes in grid[:, 0]:
         axes.set_ylabel("largest position error, m")
-    figure.legend(handles=_key([one for one in dict.fromkeys(engines.engine)]), loc="upper center",
-                  bbox_to_anchor=(0.5, 0.0), ncols=min(4, columns + 1), fontsize=9, handlelength=2.4)
-    figure.suptitle("Error against time: engines and ours", x=0.01, ha="left", fontsize=12)
+    figure.legend(handles=_key(engines.engine.unique()), loc="upper center", bbox_to_anchor=(0.5, 0.1 - 0.1 / lines),
+                  ncols=min(4, columns + 1), fontsize=9, handlelength=2.4)
+    figure.suptitle("Error against time: engines and ours", x=0.01, y=0.97 + 0.01 * lines, ha="left", fontsize=12)
     return figure
 
 

@@ -14,7 +14,8 @@ SETTING_UP = "study/setup --engines"
 def context(tables, view):
     engines, table = tables["engines"], tables["equal_error"]
     names = list(dict.fromkeys(engines.engine[engines.status != "unavailable"]))
-    return {"says": sentences.of_engines(engines), "measured": not table.empty, "setting_up": SETTING_UP,
+    answers = [one["text"] for one in sentences.answers(tables, view)] if len(table) else []
+    return {"answers": answers, "says": sentences.of_engines(engines), "measured": not table.empty, "setting_up": SETTING_UP,
             "sides": {side: what for side, what in SIDES.items() if (table.side == side).any()},
             "engines": {name: title(name) for name in names}, "duration": DURATION_S, "subjects": titles(engines),
             "summaries": {side: summary(table[table.side == side], names) for side in SIDES},

@@ -30,6 +30,11 @@ class Subject:
         return 0 if self.name == PENDULUM else int(self.name.split("-")[2])
 
     @property
+    def place(self):
+        """In tables and figures."""
+        return self.name == PENDULUM, self.regular, self.loops
+
+    @property
     def regular(self):
         """Whether the motion passes no singular position."""
         return self.name == PENDULUM or self.name.endswith("-regular")

@@ -3,6 +3,7 @@ import pandas
 
 from analysis.engines import equal_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
+from analysis.engines.subjects import Subject
 
 COLUMNS = ("subject", "side", "name", "setting", "over", "value", "status", "reason", "error", "time", "round", "repeats",
            "seconds", "record")
@@ -10,14 +11,19 @@ COLUMNS = ("subject", "side", "name", "setting", "over", "value", "status", "rea
 
 def build(records, view):
     found = {role: frame([row(one) for one in records if one.role == role]) for role in (ENGINE, OURS, ROUND)}
-    engines, ours, rounds = (one.sort_values(["subject", "name", "setting", "over", "value", "round"], kind="stable",
-                                             ascending=[True, True, True, True, False, True]) for one in found.values())
+    engines, ours, rounds = map(_sorted, found.values())
     compared = equal_error.table(engines, ours, rounds, view.registry.own)
     beside = equal_error.native(engines, rounds)
     return {"engines": engines.drop(columns=["side", "round", "seconds"]).rename(columns={"name": "engine"}),
             "ours": ours.drop(columns=["side", "round", "seconds", "over"]).rename(
                 columns={"name": "implementation", "value": "step"}),
             "rounds": rounds[list(COLUMNS)].drop(columns=["error", "seconds"]), "equal_error": compared, "native": beside}
+
+
+def _sorted(table):
+    places = {name: place for place, name in enumerate(sorted(table.subject.unique(), key=lambda one: Subject(one).place))}
+    return table.sort_values(["subject", "name", "setting", "over", "value", "round"], kind="stable", key=lambda column:
+                             column.map(places) if column.name == "subject" else -column if column.name == "value" else column)
 
 
 def frame(rows):

@@ -1,146 +1,184 @@
-# Times at equal error, figure and page of study/run --engines on small tables of every outcome.
+# Rows, times at equal error, figures and page of the engines on synthetic records.
+from types import SimpleNamespace
+
 import matplotlib.pyplot as plt
-import pandas
+import numpy
 import pytest
 
-from analysis.engines import figure, report, sentences
-from analysis.engines.equal_error import candidates, table
+from analysis.core.records import Record
+from analysis.core.registry import Registry
+from analysis.core.schema import conform, of_part
+from analysis.engines import equal_error, figures, page, sentences, tables
+from analysis.engines.runs import row
+from analysis.engines.subjects import FLOOR, PENDULUM_S, Subject, positions
 
-LONG, SHORT = "four-bar:2", "four-bar:2 regular"
-
-
-def theirs(engine, setting, value, time, error, status="ok", subject=LONG, **more):
-    done = status in ("ok", "degraded")
-    return {"subject": subject, "loops": 2, "engine": engine, "setting": setting, "over": "step",
-            "value": value, "status": status, "status_reason": "" if done else "because", "rounds": 1, "time": time,
-            "error": error if done else None, "version": "1.0", "first_complaint": None, "raw_file": f"raw/{engine}",
-            "command": f"engine_{engine}"} | more
-
-
-def ours(setting, step, time, error, subject=LONG, status="ok"):
-    return {"subject": subject, "loops": 2, "implementation": "one/a", "setting": setting, "step": step,
-            "status": status, "status_reason": "", "rounds": 1, "time": time, "error": error, "raw_file": "raw/one",
-            "command": "mbs"}
+LONG, SHORT = "four-bar-2", "four-bar-2-regular"
+VIEW = SimpleNamespace(registry=Registry({"implementations": [
+    {"folder": "lib", "available": True, "library": "Some", "variants": [{"name": "lib/a"}]},
+    {"folder": "compiled_ldl", "available": True, "library": "none",
+     "variants": [{"name": equal_error.CHAINS}, {"name": equal_error.FRONTS}]}]}))
 
 
-ENGINES = pandas.DataFrame([
-    theirs("ode", "step", 1e-2, 1.0, 5e-2), theirs("ode", "step", 5e-3, 2.0, 6e-3),
-    theirs("ode", "step", 2.5e-3, 9.0, 4e-6), theirs("ode", "quick", 1e-2, 0.1, None, "wrong-branch"),
-    theirs("bullet", "bodies", 1e-2, 3.0, 2e-4, first_complaint="LCP failed"),
-    theirs("simbody", None, None, None, None, "unavailable", rounds=0, status_reason="libsimbody-dev is not there"),
-    theirs("ode", "step", 1e-2, 1.0, 5e-3, subject=SHORT)])
-OURS = pandas.DataFrame([
-    ours("default", 1e-2, 0.1, 2e-2), ours("default", 5e-3, 0.2, 1e-4), ours("kept", 1e-2, 0.05, 3e-2),
-    ours("kept", 5e-3, 0.15, 5e-3), ours("loose", 5e-3, 0.12, 8e-3),
-    ours("default", 1e-2, 0.001, 9.0, status="diverged"),
-    ours("default", 1e-2, 0.5, 4e-3, subject=SHORT)])
+def theirs(engine, step, time, error, status="ok", subject=LONG, role="engine", number=0, options=(), native=False, **more):
+    cell = {"program": f"{'../build-engines/' if native else ''}study/engines/engine_{engine}", "role": role, "number": number,
+            "settings": ["--loops", "2", "--duration", "5", "--setting", *options, f"step={step:g}", "--json"]}
+    output = {"status": status, "status_reason": "" if status == "ok" else "because", "position_error_max": error,
+              "time": time, "repeats": 1, "version": "1.0", "complaints": 0, "first_complaint": ""} | more
+    return Record(f"{subject}/{role}/{engine}-{step}-{status}-{number}-{native}", cell, "done", "", 0.1, [], {}, output)
 
 
-def rounds(engines=ENGINES, mine=OURS, factor=1.0):
-    """Two rounds of every finished run, at `factor` times and 1.1 `factor` times its single time."""
-    rows = []
-    for number, slower in ((1, 1.0), (2, 1.1)):
-        for side, done in (("engine", engines), ("ours", mine)):
-            for row in done[done.status == "ok"].itertuples():
-                name, value = (row.engine, row.value) if side == "engine" else (row.implementation, row.step)
-                rows.append({"subject": row.subject, "round": number, "side": side, "name": name,
-                             "setting": row.setting, "value": value, "time": factor * slower * row.time})
-    return pandas.DataFrame(rows)
+def mine(name, step, time, error, status="ok", subject=LONG, role="ours", number=0, words=("--scheme", "rattle")):
+    cell = {"program": "mbs", "role": role, "number": number, "contenders": [name],
+            "settings": [*words, "--step", f"{step:g}", "--duration", "5", "--judge-every", "1"]}
+    output = {"status": status, "status_reason": "because", "position_error_max": error, "steps": 100, "duration": 5.0,
+              "step_us": {"mean": 5e4 * time}, "least_us": None, "repeats": 1}
+    return Record(f"{subject}/{role}/{name}-{step}-{number}-{words}", cell, "done", "", 0.1, [], {}, output)
 
 
-def row(found, engine, limit, scope="all", subject=LONG):
-    [one] = found[(found.subject == subject) & (found.engine == engine) & (found.limit == limit)
-                  & (found.scope == scope)].to_dict("records")
-    return one
+def rounds(runs, factor=1.0):
+    """Two rounds of runs, at `factor` and 1.1 `factor` times their untimed time."""
+    return [make(*arguments[:2], factor * slower * arguments[2], *arguments[3:], role="round", number=number, **more)
+            for number, slower in ((1, 1.0), (2, 1.1)) for make, arguments, more in runs]
 
 
-def test_ours_is_the_fastest_at_the_engine_s_own_error_or_a_smaller_one():
-    found = table(ENGINES, OURS, rounds())
-    loose = row(found, "ode", 1e-1)
-    assert (loose["engine_value"], loose["setting"], loose["step"]) == (1e-2, "kept", 1e-2)
-    assert loose["ratio"] == pytest.approx(1.0 / 0.05) and loose["low"] <= loose["ratio"] <= loose["high"]
-    assert row(found, "ode", 1e-2)["setting"] == "kept"  # its 5e-3 is as good as the engine's 6e-3, 8e-3 is not
-    assert row(found, "bullet", 1e-3)["setting"] == "default"  # 5e-3 is not as good as its 2e-4
-    assert row(found, "ode", 1e-1, "paper")["setting"] == "default"
-    assert row(found, "ode", 1e-1, "paper")["ratio"] == pytest.approx(1.0 / 0.1)
+PAPER = {"words": ("--scheme", "penalty", "--penalty", "1e8")}
+RUNS = [(theirs, ("ode", 1e-2, 1.0, 5e-2), {}), (theirs, ("ode", 5e-3, 2.0, 6e-3), {}), (theirs, ("ode", 1e-3, 9.0, 4e-6), {}),
+        (theirs, ("bullet", 1e-2, 3.0, 2e-4), {"first_complaint": "LCP failed", "options": ("model=bodies",)}),
+        (theirs, ("ode", 1e-2, 1.0, 5e-3), {"subject": SHORT}),
+        (theirs, ("ode", 1e-2, 0.5, 5e-2), {"native": True}),
+        (mine, (equal_error.CHAINS, 1e-2, 0.1, 2e-2), {}), (mine, (equal_error.CHAINS, 5e-3, 0.2, 1e-4), {}),
+        (mine, (equal_error.FRONTS, 5e-3, 0.4, 1e-4), {}), (mine, ("lib/a", 1e-2, 2.0, 3e-2), {}),
+        (mine, ("lib/a", 5e-3, 3.0, 8e-3), PAPER), (mine, (equal_error.CHAINS, 1e-2, 0.5, 4e-3), {"subject": SHORT})]
+LOST = [theirs("ode", 2e-2, 0.1, 0.3, "wrong-branch"), mine("lib/a", 1e-2, 0.001, 9.0, "diverged", subject=SHORT)]
+ABSENT = Record(f"{LONG}/engine/x", {"program": "study/engines/engine_simbody", "role": "engine", "number": 0, "settings": []},
+                "unavailable", "libsimbody-dev is not installed (study/setup --engines)", 0.0, [], {})
 
 
-def test_errors_that_ours_does_not_reach_and_engines_that_reach_none():
-    found = table(ENGINES, OURS, rounds())
-    unreached = row(found, "ode", 1e-5)
-    assert pandas.isna(unreached["ratio"]) and unreached["engine_error"] == 4e-6
-    assert "simbody" not in set(found.engine) and "quick" not in set(found.engine_setting)
-    # A run that is the fastest for several errors is one row, at the smallest.
-    assert list(found[(found.engine == "bullet") & (found.scope == "all")].limit) == [1e-3]
+def made(*records):
+    """Tables as the schema has them."""
+    found, schema = tables.build(list(records), VIEW), of_part("engines")
+    assert set(found) == set(schema)
+    return {name: conform(frame, schema[name], name) for name, frame in found.items()}
 
 
-def test_the_times_that_count_are_those_of_the_rounds():
-    found = table(ENGINES, OURS, rounds(factor=3.0))
-    assert row(found, "ode", 1e-1)["engine_time"] == pytest.approx(3.15)
-    only = rounds()
-    only = only[(only.side == "engine") | (only.setting == "default")]
-    assert row(table(ENGINES, OURS, only), "ode", 1e-1)["setting"] == "default"  # kept was not timed there
-    lost = rounds()
-    lost.loc[lost.setting == "kept", "time"] = None
-    assert row(table(ENGINES, OURS, lost), "ode", 1e-1)["setting"] == "default"
-    lost = rounds()
-    lost.loc[(lost.setting == "kept") & (lost["round"] == 2), "time"] = None
-    assert row(table(ENGINES, OURS, lost), "ode", 1e-1)["time"] == pytest.approx(0.05)  # of the round it has
+@pytest.fixture(scope="module")
+def found():
+    return made(*(make(*arguments, **more) for make, arguments, more in RUNS), *LOST, ABSENT, *rounds(RUNS, 2.0))
 
 
-def test_candidates_are_what_may_be_the_fastest_of_either_scope():
-    long = ENGINES[ENGINES.subject == LONG]
-    mine = OURS[OURS.subject == LONG]
-    engines_index, ours_index = candidates(long, mine)
-    assert list(long.loc[engines_index].value) == [1e-2, 5e-3, 2.5e-3, 1e-2]
-    assert sorted(zip(mine.loc[ours_index].setting, mine.loc[ours_index].step)) == [
-        ("default", 5e-3), ("default", 1e-2), ("kept", 5e-3), ("kept", 1e-2)]
-    assert mine.loc[ours_index].status.eq('ok').all()  # one that diverged is faster
+def one(found, engine, limit, side, subject=LONG):
+    table = found["equal_error"]
+    [row] = table[(table.subject == subject) & (table.engine == engine) & (table.limit == limit)
+                  & (table.side == side)].to_dict("records")
+    return row
 
 
-def test_sentences_give_the_worst_ratio_and_what_was_lost():
-    found = table(ENGINES, OURS, rounds())
-    said = sentences.of_ratios(found, {LONG: False, SHORT: True})
-    assert said[0].startswith("Past singular positions ours takes at least 10 times less time in 3 of 4")
-    assert "1 of its errors ours does not reach" in said[0]
-    assert "in 0 of 1" in said[1] and "smallest ratio is 2 " in said[1] and "ode" not in said[1]
-    lines = sentences.of_engines(ENGINES)
-    assert any(line.startswith("Open Dynamics Engine 1.0: 5 runs; 4·10⁻⁶ m") and "not finished: 1 wrong-branch." in line
-               for line in lines)
-    assert "Simbody: left out, libsimbody-dev is not there." in lines
-    cells = {(one["engine"], one["setting"]): one["cells"][0] for one in sentences.reached(ENGINES, [LONG])}
-    assert cells["Open Dynamics Engine", "quick"]["text"] == "1 wrong-branch"
-    assert "because" in cells["Open Dynamics Engine", "quick"]["why"]
-    assert cells["Open Dynamics Engine", "step"]["error"] == 4e-6
+def test_rows_say_who_ran_what():
+    ode = row(theirs("ode", 5e-3, 2.0, 6e-3, options=("erp=0.8", "method=quickstep")))
+    assert (ode["name"], ode["setting"], ode["over"], ode["value"]) == ("ode", "erp 0.8, method quickstep", "step", 5e-3)
+    assert row(theirs("ode", 5e-3, 2.0, 1e-20))["error"] == FLOOR
+    assert row(theirs("ode", 5e-3, 2.0, 1.0, native=True))["name"] == "ode+native"
+    ours = row(mine("lib/a", 5e-3, 3.0, 8e-3, words=("--penalty", "1e8", "--scheme", "penalty", "--geometric-stiffness")))
+    assert ours["setting"] == "penalty, penalty 1e8, geometric-stiffness" and ours["time"] == pytest.approx(3.0)
+    assert (ours["side"], ours["subject"], ours["value"]) == ("ours", LONG, 5e-3)
+    assert numpy.isnan(row(LOST[0])["error"]) and row(LOST[0])["status"] == "wrong-branch"
+    assert row(mine("lib/a", 1, 1, float("nan")))["status"] == "diverged"  # whatever the run says of itself
 
 
-def test_the_figure_has_fronts_and_the_runs_that_were_lost():
-    drawn = figure.draw(ENGINES, OURS, {LONG: "long", SHORT: "short"})
-    axes = drawn.axes[0]
-    crosses = [line for line in axes.get_lines() if line.get_marker() == "x" and len(line.get_xdata())]
-    assert [list(line.get_xdata()) for line in crosses] == [[0.1]]
-    black = [list(line.get_ydata()) for line in axes.get_lines() if line.get_color() == "black"]
-    assert black == [[3e-2, 2e-2, 8e-3, 5e-3, 1e-4], [2e-2, 1e-4]]  # all; the paper's scheme alone
-    assert "Simbody: Pareto front" in {text.get_text() for text in drawn.legends[0].get_texts()}
-    plt.close(drawn)
+def test_ours_is_the_fastest_of_a_side_at_the_engine_s_own_error_or_a_smaller_one(found):
+    row = one(found, "ode", 1e-1, "chains")
+    assert (row["engine_value"], row["implementation"], row["step"]) == (1e-2, equal_error.CHAINS, 1e-2)
+    assert row["ratio"] == pytest.approx(10) and row["low"] == pytest.approx(10)  # the same rounds: no spread
+    assert row["engine_time"] == pytest.approx(2.1)  # times of the rounds, not of the curves
+    assert one(found, "ode", 1e-1, "library")["ratio"] == pytest.approx(0.5)
+    assert one(found, "ode", 1e-1, "paper")["setting"] == "penalty, penalty 1e8"
+    assert one(found, "bullet", 1e-3, "fronts")["ratio"] == pytest.approx(7.5)
 
 
-def test_the_page_shows_ratios_failures_and_what_is_missing():
-    references = pandas.DataFrame([
-        {"subject": name, "title": title, "reference": "closed form", "own_error": 3e-15,
-         "own_error_from": "rounding"} for name, title in ((LONG, "long"), (SHORT, "short"))])
-    tables = {"engines": ENGINES, "work": OURS, "references": references, "equal_error": table(
-        ENGINES, OURS, rounds()), "gate": pandas.DataFrame([{"takes_part": False}, {"takes_part": True}])}
-    context = {"compiler": "c", "commit": "0", "cpu_model": "a machine"}
-    page = report.render(tables, {"contexts": {"own": context}, "inputs": {"duration": 5.0}}, {"regular": "AAAA"})
-    for text in ("does not reach it", "1 wrong-branch", "LCP failed", "libsimbody-dev is not there", "AAAA",
-                 "2 checks, 1 refused", "reaches none", 'class="bad">2<'):
-        assert text in page, text
-    first = report._wide(tables["equal_error"])[0]
-    assert (first["setting"], first["paper"]["setting"]) == ("kept", "default")
-    assert report.panels(references) == {"singular": {LONG: "long"}, "regular": {SHORT: "short"}}
+def test_what_ours_does_not_reach_keeps_its_row_and_its_reason(found):
+    assert one(found, "ode", 1e-5, "chains")["reason"] == "its smallest error is 0.0001 m"
+    assert numpy.isnan(one(found, "ode", 1e-5, "chains")["ratio"])
+    assert one(found, "ode", 1e-2, "library", SHORT)["reason"] == "lost: 1 diverged"
+    assert one(found, "ode", 1e-2, "paper", SHORT)["reason"] == "none of it takes part"
+    assert one(found, "ode", 1e-2, "library")["reason"] == "its smallest error is 0.008 m"
 
 
-def test_a_table_that_is_missing_is_said(tmp_path):
-    with pytest.raises(report.TableError, match="engines.csv: cannot be read"):
-        report.load(tmp_path)
+def test_the_build_with_our_flags_is_an_engine_of_its_own_and_compared_with_the_package(found):
+    [row] = found["native"].to_dict("records")
+    assert row["ratio"] == pytest.approx(2.0) and row["engine"] == "ode" and row["native_time"] == pytest.approx(1.05)
+    assert one(found, "ode+native", 1e-1, "chains")["ratio"] == pytest.approx(5.0)
+    assert "2 times as long" in sentences.of_native(found["native"])
+
+
+def test_candidates_are_the_fastest_of_each_side():
+    engines = tables.frame([row(make(*arguments, **more)) for make, arguments, more in RUNS[:4]])
+    ours = tables.frame([row(make(*arguments, **more)) for make, arguments, more in RUNS[6:11]])
+    theirs_found, ours_found = equal_error.candidates(engines, ours, VIEW.registry.own)
+    assert len(theirs_found) == 4 and list(ours_found.index) == [0, 1, 2, 3, 4]
+    assert equal_error.least_error(engines) == 4e-6 and equal_error.least_error(engines[:0]) == 0.0
+    again, _ = equal_error.candidates(engines[engines.name == "ode"], tables.frame([]), ())
+    assert set(again.name) == {"ode"}
+
+
+def test_figures_page_and_answers(found):
+    drawn = figures.draw(found, VIEW)
+    assert set(drawn) == {"singular", "regular"}
+    plt.close("all")
+    known = page.context(found, VIEW)
+    assert known["measured"] and known["subjects"] == {LONG: "N = 2", SHORT: "N = 2, first 0.6 s"}
+    assert known["summaries"]["library"][LONG]["ode"] == pytest.approx((0.5, 0.5, 3, 2))
+    assert [(row["side"], row["engine"], round(row["ratio"], 3)) for row in known["behind"]][:2] == [
+        ("paper", "ode+native", 0.167), ("library", "ode+native", 0.25)]
+    assert ("chains", LONG, "its smallest error is 0.0001 m", [4e-6]) in known["unreached"]
+    assert known["complaints"] == [("Bullet", 1, "LCP failed")]
+    assert any("Simbody: left out, libsimbody-dev is not installed" in text for text in known["says"])
+    assert known["reached"][0][:3] == ("bullet", "model bodies", "step")
+    texts = [one["text"] for one in sentences.answers(found, VIEW)]
+    assert texts[0].startswith("Our code for chains: faster than the engine in 4 of 5 comparisons at equal error")
+    assert "it does not reach 1 of these errors" in texts[0]
+
+
+def test_without_engines_the_page_says_what_is_missing():
+    found = made(ABSENT)
+    assert [one["text"] for one in sentences.answers(found, VIEW)] == [
+        "Not measured: libsimbody-dev is not installed (study/setup --engines)."]
+    known = page.context(found, VIEW)
+    assert not known["measured"] and known["setting_up"] == "study/setup --engines"
+    assert set(figures.draw(found, VIEW)) == {"singular", "regular"}
+    plt.close("all")
+
+
+def test_the_motion_of_the_double_pendulum():
+    times = numpy.linspace(0, PENDULUM_S, 401)
+    first, second = positions(times)
+    assert numpy.allclose([first[:, 0], second[:, 0]], [[1, 0], [2.5, 0]])
+    assert numpy.allclose(numpy.hypot(*first), 1) and numpy.allclose(numpy.hypot(*(second - first)), 1.5)
+    velocities = [numpy.gradient(one, times, axis=1, edge_order=2) for one in (first, second)]
+    energy = 0.0  # of thin rods: m/6 (va va + va vb + vb vb) between ends a and b, and m g y of the middle
+    for mass, (a, va), (b, vb) in ((1.0, (0 * first, 0 * first), (first, velocities[0])),
+                                   (1.5, (first, velocities[0]), (second, velocities[1]))):
+        energy += mass / 6 * (va * va + va * vb + vb * vb).sum(0) + mass * 9.81 * (a[1] + b[1]) / 2
+    assert numpy.ptp(energy[2:-2]) < 5e-3 * 20  # differences of positions give the velocities
+    assert numpy.hypot(*(positions(times) - positions(times, 2e-3)).swapaxes(0, 1)).max() < FLOOR
+    subject = Subject("double-pendulum")
+    series = {"t": list(times)} | {f"{point}.{axis}": list(places[place]) for point, places in (
+        ("B", first), ("C", second)) for place, axis in enumerate("xy")}
+    record = SimpleNamespace(series=series)
+    assert subject.our_error(record) == 0
+    series["C.y"] = list(second[1] + 1e-3)
+    assert subject.our_error(record) == pytest.approx(1e-3)
+    series["C.y"][3] = None
+    assert numpy.isnan(subject.our_error(record))  # never smaller for what is missing
+    points = numpy.moveaxis(numpy.array([first, second]), 2, 0).reshape(401, 4)
+    output = {"outputs": {"t": times.tolist(), "points": (points + [0, 0, 0, 1e-4]).tolist()}}
+    assert subject.engine_error(output) == pytest.approx(1e-4)
+    end, after = positions(numpy.array([PENDULUM_S, 75 * 0.0266667])).transpose(2, 0, 1)
+    assert numpy.hypot(*(after - end).T).max() < 1e-4  # a rounded step ends 2.5e-6 s later
+
+
+@pytest.mark.parametrize("name, loops, regular, duration, title", [
+    ("four-bar-10", 10, False, 5.0, "N = 10"), ("four-bar-40-regular", 40, True, 0.6, "N = 40, first 0.6 s"),
+    ("double-pendulum", 0, True, 2.0, "double pendulum")])
+def test_subjects_are_known_by_their_column(name, loops, regular, duration, title):
+    subject = Subject(name)
+    assert (subject.loops, subject.regular, subject.duration, subject.title) == (loops, regular, duration, title)

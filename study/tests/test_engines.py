@@ -1,212 +1,215 @@
-# study/run --engines: what is run, lost, left out and compared, on fake programs; every setting on the real ones.
+# The part beside the engines: which cells it asks for, on a lab that invents records; every setting on the real programs.
 import json
-import shutil
 import subprocess
-import tempfile
+from types import SimpleNamespace
 
-import numpy
-import pandas
 import pytest
 
-from study.accuracy_study import subjects as ours
-from study.engines import curves, programs, rounds, settings, subjects
-from study.engines.main import engines
-from study.pipeline.errors import StudyError
-from study.pipeline.layout import Layout, ROOT, read_json
-from study.tests.conftest import FAKE, study
+from analysis.core.errors import StudyError
+from analysis.core.records import Record
+from analysis.engines.runs import ENGINE, OURS, ROUND, row
+from study.core.contender import Contender
+from study.engines import curves, plan, settings
+from study.engines.settings import EngineSetting, read_list
+from study.tests.conftest import ROOT
 
-STEPS = (1e-2, 5e-3, 2.5e-3)
-LIST = """
-values: {step: [1e-2, 5e-3, 2.5e-3]}
-engines:
-  able: [{name: usual, over: step}, {name: loses it, over: step, options: {does: lose}}]
-  broken: [{name: crashes, over: step, options: {does: crash}}]
-  absent: [{name: usual, over: step}]
-"""
-CHOICE = ("--loops", "30", "--only", "good_sparse/only")
+VALUES = (1e-2, 5e-3, 2.5e-3)
+LISTED = {"able": [EngineSetting("able", "step", VALUES), EngineSetting("able", "step", VALUES, (("does", "lose"),))],
+          "broken": [EngineSetting("broken", "step", VALUES)], "absent": [EngineSetting("absent", "step", VALUES)]}
+SETTINGS = {"seconds": 100.0, "subjects": ["four-bar-2"], "engine_settings": 2, "implementations": ["one/a", "not/here"],
+            "settings": ["default", "rattle"], "octave": 1, "time_limit": 10.0, "rounds": 3}
 
 
-def stand_in(folder, patch):
-    """Programs `able` and `broken` in place of the engines'; `absent` is not installed."""
-    (folder / "engines").mkdir()
-    for engine in ("able", "broken"):
-        shutil.copy(ROOT / "study/tests/fake_engine.py", folder / "engines" / f"engine_{engine}")
-    (folder / "engines" / "engines.json").write_text(json.dumps(
-        {"able": "", "broken": "", "absent": "libabsent-dev is not installed"}))
-    (folder / "settings.yaml").write_text(LIST)
-    patch.setattr(programs, "FOLDER", folder / "engines")
-    listed = settings.read_list(folder / "settings.yaml")
-    patch.setattr(settings, "read_list", lambda: listed)
-    patch.setenv("MBS_PROGRAM", str(FAKE))
-    patch.setattr(tempfile, "tempdir", str(folder))
-    patch.setattr(ours, "STEPS", STEPS)
-    patch.setattr(rounds, "ROUNDS", 2)
-    chains = subjects.all_of
-    patch.setattr(subjects, "all_of", lambda *choice: chains(*choice)[:-1])  # the fake mbs knows chains only
+class Lab:
+    """Invents the record of each cell: errors go with the square of the step, times with its inverse."""
 
+    def __init__(self, column="four-bar-2", budget=100.0, **changes):
+        self.settings, self.budget, self.left = SETTINGS | changes, budget, budget
+        self.registry = SimpleNamespace(own=frozenset(), serves=lambda name, *needs: "rattle" not in needs)
+        self.column, self.asked, self.skipped = column, [], []
 
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory):
-    """A whole run on the fake programs, which tests copy."""
-    folder = tmp_path_factory.mktemp("engines")
-    with pytest.MonkeyPatch.context() as patch:
-        stand_in(folder, patch)
-        engines([*CHOICE, "--results", str(folder / "results")])
-    return folder / "results"
+    def contender(self, name):
+        return Contender(name, name) if name == "one/a" else None
+
+    def tell(self, text):
+        pass
+
+    def run(self, cells, drop=False):
+        self.asked += cells
+        return [self.record(cell.settled()) for cell in cells]
+
+    def one(self, cell):
+        return self.run([cell])[0]
+
+    def skip(self, cell, status, reason):
+        self.skipped.append((cell.settled(), status, reason))
+        return Record(f"{self.column}/{cell.role}/x", cell.settled().document(), status, reason, 0.0, [], {})
+
+    def record(self, cell):
+        words = dict(word.split("=", 1) for word in cell.settings if "=" in word)
+        step = float(words.get("step") or cell.settings[cell.settings.index("--step") + 1])
+        lost = words.get("does") == "lose" and step > 4e-3
+        output = {"status": "wrong-branch" if lost else "ok", "status_reason": "rods differ" if lost else "",
+                  "position_error_max": 1e2 * step**2, "time": 1e-5 / step, "repeats": 1, "steps": 1, "duration": 1.0,
+                  "step_us": {"mean": 1.0 / step}}
+        status = "crashed" if "broken" in cell.program else "done"
+        return Record(f"{self.column}/{cell.role}/{len(self.asked)}", cell.document(), status, "SIGABRT" * (status != "done"),
+                      0.1, [], {}, output if status == "done" else {})
+
+    def of(self, role):
+        return [cell for cell in self.asked if cell.role == role]
 
 
 @pytest.fixture
-def fakes(tmp_path, monkeypatch):
-    stand_in(tmp_path, monkeypatch)
+def fakes(monkeypatch):
+    monkeypatch.setattr(plan, "read_list", lambda: LISTED)
+    monkeypatch.setattr(plan, "unavailable", lambda: {"able": "", "broken": "", "absent": "libabsent-dev is not installed"})
 
 
-@pytest.fixture
-def run(whole, fakes, tmp_path):
-    shutil.copytree(whole, tmp_path / "results")
-    return lambda *more: engines([*CHOICE, "--results", str(tmp_path / "results"), *more])
+def test_curves_of_theirs_and_ours_then_common_rounds_in_new_orders(fakes):
+    lab = Lab()
+    plan.run(lab, "four-bar-2")
+    assert [(cell.program, status, reason) for cell, status, reason in lab.skipped if status == "unavailable"] == [
+        ("study/engines/engine_absent", "unavailable", "libabsent-dev is not installed")]
+    theirs = [cell.program for cell in lab.of(ENGINE)]
+    assert theirs.count("study/engines/engine_able") == 6 and theirs.count("study/engines/engine_broken") == 3
+    assert lab.of(ENGINE)[0].settings == ("--loops", 2, "--duration", "5", "--setting", "step=0.01", "--json")
+    ours = lab.of(OURS)
+    assert {cell.contenders[0].variant for cell in ours} == {"one/a"} and not any(cell.timed for cell in ours)
+    assert {"--judge-every"} <= set(ours[0].settings) and "rattle" not in {word for cell in ours for word in cell.settings}
+    rounds = lab.of(ROUND)
+    assert {cell.number for cell in rounds} == {1, 2, 3} and all(cell.timed and not cell.every for cell in rounds)
+    orders = [tuple((cell.program, cell.settings) for cell in rounds if cell.number == number) for number in (1, 2, 3)]
+    assert {frozenset(one) for one in orders} == {frozenset(orders[0])} and len(set(orders)) > 1
+    assert {cell.program for cell in rounds} == {"mbs", "study/engines/engine_able"}
+    assert all(cell.settings[-2:] == ("--repeats", plan.REPEATS) for cell in rounds)  # all are short here
+    again = Lab()
+    plan.run(again, "four-bar-2")
+    assert again.asked == lab.asked  # a study that is resumed comes to the same point
 
 
-def table(folder, name):
-    return pandas.read_csv(folder / "results" / f"{name}.csv")
+def test_without_any_engine_nothing_is_run(monkeypatch):
+    monkeypatch.setattr(plan, "unavailable", lambda: dict.fromkeys(read_list(), "libx is not installed"))
+    lab = Lab()
+    plan.run(lab, "four-bar-2")
+    assert not lab.asked and {status for _, status, _ in lab.skipped} == {"unavailable"} and len(lab.skipped) == 4
 
 
-def test_every_outcome_is_a_row_and_both_sides_are_timed_in_the_same_rounds(run, tmp_path):
-    rows = table(tmp_path, "engines")
-    assert set(rows.subject) == {"four-bar:30", "four-bar:30 regular"}
-    rows = rows[rows.subject == "four-bar:30"].set_index(["engine", "setting"]).sort_index()
-    assert list(rows.loc[("able", "usual")].status) == ["ok"] * 3
-    assert numpy.allclose(rows.loc[("able", "usual")].error, [1e-2, 2.5e-3, 6.25e-4])
-    assert list(rows.loc[("able", "loses it")].status) == ["wrong-branch", "wrong-branch", "ok"]
-    assert set(rows.loc[("broken", "crashes")].status) == {"crashed"}
-    assert rows.loc["absent"].status_reason.tolist() == ["libabsent-dev is not installed"]
-    rounds = table(tmp_path, "rounds")
-    assert set(rounds.side) == {"engine", "ours"} and set(rounds["round"]) == {1, 2}
-    orders = {tuple(one.sort_values("order").raw_file.str.replace(r"-\d+\.json", "", regex=True))
-              for _, one in rounds[rounds.subject == "four-bar:30"].groupby("round")}
-    assert len(orders) > 1  # shuffled anew
-    page = (tmp_path / "results" / "engines.html").read_text()
-    for text in ("left out, libabsent-dev is not installed", "the matrix is singular", "2 wrong-branch", "rods differ"):
-        assert text in page, text
-    for row in table(tmp_path, "engines").dropna(subset="raw_file").itertuples():
-        record = read_json(tmp_path / "results" / row.raw_file)
-        assert row.command.split()[1:] == record["command"][1:]
+@pytest.mark.parametrize("built", [True, False])
+def test_the_build_with_our_flags_runs_what_was_chosen_of_the_packaged_one(monkeypatch, tmp_path, built):
+    monkeypatch.setattr(plan, "read_list", lambda: {"ode": [EngineSetting("ode", "step", VALUES)]})
+    monkeypatch.setattr(plan, "unavailable", lambda: {"ode": ""})
+    monkeypatch.setattr(plan, "ROOT", tmp_path)
+    (tmp_path / "build").mkdir()
+    if built:
+        native = tmp_path / "build" / plan.NATIVE_PROGRAM
+        (tmp_path / "build-engines/study/engines").mkdir(parents=True)
+        native.touch()
+    lab = Lab()
+    plan.run(lab, "four-bar-2")
+    said = [(status, reason) for cell, status, reason in lab.skipped if cell.program == plan.NATIVE_PROGRAM]
+    assert said == ([] if built else [("unavailable", "not built with our flags: study/engines/native")])
+    for role in (ENGINE, ROUND):
+        ours, packaged = ({cell.settings for cell in lab.of(role) if cell.program == program}
+                          for program in (plan.NATIVE_PROGRAM, "study/engines/engine_ode"))
+        assert bool(ours) == built and ours <= packaged and (not built or role == ENGINE or ours == packaged)
 
 
-def test_what_is_stored_is_never_run_again(run, tmp_path):
-    results = tmp_path / "results"
-    before = {path: path.stat().st_mtime_ns for path in results.rglob("raw/**/*.json")}
-    content = (results / "equal_error.csv").read_bytes()
-    gone = [next(path for path in before if kind in path.parts) for kind in ("engines", "rounds")]
-    for path in gone:
-        path.unlink()
-    run()
-    changed = {path for path, time in before.items() if path.stat().st_mtime_ns != time}
-    assert changed == set(gone) and (results / "equal_error.csv").read_bytes() == content
-    with pytest.raises(StudyError, match=r"holds results of something else \(inputs: duration \S+, now 2.0\)"):
-        run("--duration", "2")
-    shutil.rmtree(results / "raw")
-    run("--stored")
+def test_the_double_pendulum_is_sampled_for_its_error(fakes, monkeypatch):
+    lab, asked = Lab("double-pendulum"), []
+    bench = plan.Bench(lab, plan.Subject("double-pendulum"))
+    monkeypatch.setattr(plan, "follow", lambda lab, curves, *rest: asked.extend(curves) or [])
+    bench.ours(0.0)
+    cell = dict(asked[0].cells)[2.5e-3]
+    assert (cell.scene, cell.keep, cell.every) == ("study/engines/double_pendulum.json", ("outputs",), 4)
+    assert bench.engine_cell("x", ()).settings == ("--pendulum", "--duration", "2", "--json")
 
 
-def bench(tmp_path, limit=10.0):
-    return programs.Bench(Layout(tmp_path / "results"), limit)
+def test_the_ladder_of_our_steps_is_fixed():
+    steps = plan.Bench(Lab(octave=2), plan.Subject("four-bar-2")).steps()
+    assert steps[0] == plan.STEPS[0] and steps[2] == plan.STEPS[0] / 2 and steps[-1] >= plan.STEPS[1]
+    assert steps == sorted(steps, reverse=True) and len(steps) == 22
 
 
-def one_curve(tmp_path, limit=10.0, **options):
-    setting = settings.Setting("able", "it", "step", STEPS, tuple(options.items()))
-    return curves.measure(bench(tmp_path, limit), ours.chain(2, 1.0), {"able": [setting]}, {}, lambda text: None)
+def one_curve(lab, limit=10.0, least=0.0, share=1.0, **options):
+    bench = plan.Bench(lab, plan.Subject("four-bar-2"))
+    setting = EngineSetting("able", "step", VALUES, tuple(options.items()))
+    cells = [(value, bench.engine_cell("study/engines/engine_able", setting.words(value))) for value in VALUES]
+    return curves.follow(lab, [curves.Curve("able", cells, 2.0)], limit, least, share)
 
 
-def test_a_curve_ends_where_it_would_take_too_long(fakes, tmp_path):
-    rows = one_curve(tmp_path, does="slow")
-    assert [row["status"] for row in rows] == ["ok", "not-run", "not-run"]
-    assert rows[1]["status_reason"].startswith("predicted to take")
+def test_curves_end_with_a_row_that_says_why():
+    rows = one_curve(Lab(), limit=0.005)
+    assert [one["status"] for one in rows] == ["ok", "not-reached"] and rows[1]["reason"].startswith("predicted to take")
+    assert [one["value"] for one in rows] == [1e-2, 5e-3]
+    rows = one_curve(Lab(), least=3e-3)
+    assert [one["status"] for one in rows] == ["ok", "ok", "not-reached"] and "the least that is asked for" in rows[2]["reason"]
+    lab = Lab()
+    lab.left = 30.0
+    rows = one_curve(lab, share=0.6)
+    assert [one["status"] for one in rows] == ["dropped"] and "60 s" in rows[0]["reason"]
 
 
-def test_a_program_that_hangs_is_ended(fakes, tmp_path):
-    rows = one_curve(tmp_path, limit=0.3, does="hang")
-    assert [row["status"] for row in rows] == ["timeout", "not-run", "not-run"]
+def point(error, time, status="ok"):
+    return {"error": error, "time": time, "status": status}
 
 
-def test_the_motion_of_the_double_pendulum():
-    times = numpy.linspace(0, subjects.PENDULUM_S, 401)
-    first, second = subjects.positions(times)
-    assert numpy.allclose([first[:, 0], second[:, 0]], [[1, 0], [2.5, 0]])
-    assert numpy.allclose(numpy.hypot(*first), 1) and numpy.allclose(numpy.hypot(*(second - first)), 1.5)
-    velocities = [numpy.gradient(one, times, axis=1, edge_order=2) for one in (first, second)]
-    energy = 0.0  # of thin rods: m/6 (va va + va vb + vb vb) between ends a and b, and m g y of the middle
-    for mass, (a, va), (b, vb) in ((1.0, (0 * first, 0 * first), (first, velocities[0])),
-                                   (1.5, (first, velocities[0]), (second, velocities[1]))):
-        energy += mass / 6 * (va * va + va * vb + vb * vb).sum(0) + mass * 9.81 * (a[1] + b[1]) / 2
-    assert numpy.ptp(energy[2:-2]) < 5e-3 * 20  # differences of positions give the velocities
-    subject = subjects.pendulum()
-    assert subject.own_error < 1e-12 and subject.every(2.5e-3) == 4 and subject.judging(1e-3) == []
-    record = {"outputs": {"t": times} | {f"{point}.{axis}": places[place] for point, places in (
-        ("B", first), ("C", second)) for place, axis in enumerate("xy")}}
-    assert subject.error(record) == 0
-    record["outputs"]["C.y"] = second[1] + 1e-3
-    assert subject.error(record) == pytest.approx(1e-3)
-    end, after = subjects.positions(numpy.array([subjects.PENDULUM_S, 75 * 0.0266667])).transpose(2, 0, 1)
-    assert numpy.hypot(*(after - end).T).max() < 1e-4  # a rounded step ends 2.5e-6 s later
-    points = numpy.moveaxis(numpy.array([first, second]), 2, 0).reshape(401, 4)
-    summary = {"outputs": {"t": times.tolist(), "points": (points + [0, 0, 0, 1e-4]).tolist()}}
-    assert subjects.error(subject, {"summary": summary}) == pytest.approx(1e-4)
+def test_finer_values_of_no_use():
+    assert curves.of_no_use([point(1, 1), point(1, 2), point(2, 4)], [], 0.0).startswith("finer values")
+    behind = [point(1, 10), point(0.1, 20), point(0.01, 40)]
+    assert "40.0 times the front" in curves.of_no_use(behind, [point(0.01, 1), *behind], 0.0)
+    assert curves.of_no_use([point(1, 10), point(0.1, 20), point(0.01, 1.5)], behind, 0.0) == ""
+    assert curves.of_no_use([point(1, 1), point(1, 2, "diverged"), point(1, 3)], [], 0.0) == ""
 
 
 def test_settings_are_read_and_refused(tmp_path):
-    listed = settings.read_list()
+    listed = read_list()
     assert list(listed) == ["simbody", "mujoco", "ode", "bullet"] and all(len(one) > 5 for one in listed.values())
-    assert listed["ode"][1].words(2.5e-3) == ["--setting", "erp=0.8", "step=0.0025"]
-    for text, what in (("[{name: a, over: iterations}]", "must have a name and over"),
-                       ("[{name: a, over: step, option: {}}]", "no more"),
-                       ("[{name: a, over: step}, {name: 'a,', over: step}]", "names must differ")):
+    assert all(one[0].options == () for one in listed.values())  # an engine's own values are always there
+    assert listed["ode"][1].words(2.5e-3) == ("--setting", "erp=1", "cfm=1e-14", "step=0.0025")
+    for text, what in (("[{over: iterations}]", "must have over"), ("[{over: step, option: {}}]", "no more"),
+                       ("[{over: step}, {over: step}]", "settings must differ")):
         (tmp_path / "s.yaml").write_text(f"values: {{step: [1e-2]}}\nengines: {{able: {text}}}")
         with pytest.raises(StudyError, match=what):
-            settings.read_list(tmp_path / "s.yaml")
+            read_list(tmp_path / "s.yaml")
     (tmp_path / "s.yaml").write_text("values: {step: [1e-3, 1e-2]}\nengines: {}")
     with pytest.raises(StudyError, match="the coarsest must be the first"):
-        settings.read_list(tmp_path / "s.yaml")
+        read_list(tmp_path / "s.yaml")
 
 
 def test_programs_that_are_not_built_are_said_so(tmp_path, monkeypatch):
-    monkeypatch.setattr(programs, "FOLDER", tmp_path)
-    with pytest.raises(StudyError, match="study/setup --engines"):
-        programs.built()
-    (tmp_path / "engines.json").write_text('{"ode": ""}')
-    assert programs.built()["ode"].endswith("engine_ode is not built")
+    monkeypatch.setattr(plan, "ROOT", tmp_path)
+    assert set(plan.unavailable().values()) == {"its program is not built: study/setup --engines"}
+    (tmp_path / "build/study/engines").mkdir(parents=True)
+    (tmp_path / "build/study/engines/engines.json").write_text('{"ode": "", "bullet": "libbullet-dev is not installed"}')
+    found = plan.unavailable()
+    assert found["ode"] == "" and found["bullet"] == "libbullet-dev is not installed" and "not built" in found["mujoco"]
 
 
-@pytest.mark.parametrize("arguments, what", [
-    (["--loops", "0"], "0 is not a number of loops"), (["--time-limit", "-1"], "-1 is not a positive number"),
-    (["--stored"], "holds no results"), (["--only", "nobody"], "unknown implementation 'nobody'")])
-def test_what_is_wrong_is_said_in_a_line(tmp_path, arguments, what):
-    done = study("run", "--engines", "--results", tmp_path, *arguments)
-    assert done.returncode == 2 and what in done.stderr and "Traceback" not in done.stderr
+def program(engine):
+    return ROOT / "build" / plan.PROGRAMS / f"engine_{engine}"
 
 
-def test_an_engine_that_does_not_exist(tmp_path):
-    done = study("run", "--dry-run", "--results", tmp_path, "--engines", "havok")
-    assert done.returncode == 2 and "unknown engine 'havok'; known: simbody, mujoco, ode, bullet" in done.stderr
+REAL = [one for found in read_list().values() for one in found if program(one.engine).exists()]
 
 
-REAL = [one for found in settings.read_list().values() for one in found if programs.program(one.engine).exists()]
+@pytest.mark.parametrize("engine", sorted({one.engine for one in REAL}))
+def test_every_setting_means_something_to_its_program(engine):
+    for setting in settings.read_list()[engine]:
+        done = subprocess.run([program(engine), "--loops", "1", "--duration", "0.05", *setting.words(setting.values[2]),
+                               "--json"], capture_output=True, text=True)
+        output = json.loads(done.stdout)
+        assert output["engine"] == engine and output["status"] in ("ok", "degraded", "diverged"), output
+        cell = plan.Cell("", program=f"{plan.PROGRAMS}/engine_{engine}", role=ENGINE,
+                         settings=setting.words(setting.values[2])).settled()
+        found = row(Record("four-bar-1/engine/x", cell.document(), "done", "", 0.1, [], {}, output))
+        assert found["value"] == setting.values[2] and found["time"] > 0
 
 
-@pytest.mark.parametrize("setting", REAL, ids=[f"{one.engine}-{one.file_name}" for one in REAL])
-def test_every_setting_means_something_to_its_program(setting):
-    done = subprocess.run([programs.program(setting.engine), "--loops", "1", "--duration", "0.05",
-                           *setting.words(setting.values[2]), "--json"], capture_output=True, text=True)
-    summary = json.loads(done.stdout)
-    assert summary["engine"] == setting.engine and summary["status"] in (
-        "ok", "degraded", "diverged"), summary
-
-
-@pytest.mark.parametrize("setting", {one.engine: one for one in REAL}.values(),
-                         ids=list({one.engine: one for one in REAL}))
-def test_programs_refuse_bad_input(setting):
-    program = programs.program(setting.engine)
+@pytest.mark.parametrize("engine", sorted({one.engine for one in REAL}))
+def test_programs_refuse_bad_input(engine):
     for words, what in ((["--loops", "0"], "--loops"), (["--loops", "1", "--setting", "stp=1"], "stp means nothing"),
                         (["--loops", "1", "--setting", "step=fast"], "must be a number"),
                         (["--loops", "1", "--pendulum"], "excludes"), ([], "--loops or --pendulum")):
-        done = subprocess.run([program, *words], capture_output=True, text=True)
+        done = subprocess.run([program(engine), *words], capture_output=True, text=True)
         assert done.returncode == 2 and what in done.stderr and done.stderr.count("\n") == 1
