@@ -36,6 +36,8 @@ TEST(PlanTurns, RepeatsAStretchThatIsShorterThanASlice) {
   EXPECT_EQ(turns.count(), 1);
   EXPECT_EQ(turns.chunk, 800);
   EXPECT_EQ(turns.repeats, (std::vector<long>{50, 5, 1}));
+  // Of next to nothing, no more than the clocks can be read.
+  EXPECT_EQ(plan_turns(8, std::vector<double>{0.0}, 1e-9, 0.005).repeats.front(), 5000);
 }
 
 TEST(PlanTurns, NeverCutsBelowOneStepOrOverflows) {
