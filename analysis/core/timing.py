@@ -3,6 +3,9 @@
 # In a process all contenders of a scene take turns, so that what disturbs the machine disturbs all of them: the
 # ratio of two is the median over samples of their quotient there. Processes differ by the layout of memory. The
 # ratio is the mean of its logarithm over processes, with Student's interval [Kalibera and Jones 2013].
+#
+# Times are those of the processor: a turn takes a few milliseconds, and whoever is interrupted in one would lose by
+# the clock what others did meanwhile. `clock_us` beside them tells how much that was.
 import math
 from dataclasses import dataclass
 
@@ -12,13 +15,13 @@ import pandas
 CONFIDENCE = 0.95
 EQUIVALENT = 1.05  # who is shown to take at most so many times the fastest's time is as fast
 COLUMNS = ("scene", "implementation", "environment", "process", "status", "reason", "step_us", "low_us", "high_us",
-           "samples", "record")
+           "clock_us", "samples", "record")
 
 
 def processes(records):
     """One row for each contender of each process of timed cells (records of `study.core.timing.measure`):
     scene, implementation, environment, process (its number), status, reason, step_us (median over samples, with
-    the least and the largest), samples (µs a step), record, and every counter of `mbs bench` by its name."""
+    the least and the largest), samples (µs a step), clock_us (the median by the clock), record, and every counter of `mbs bench` by its name."""
     rows = [row for record in records for row in _rows(record)]
     return pandas.DataFrame(rows, columns=None if rows else list(COLUMNS))
 
@@ -39,11 +42,12 @@ def _rows(record):
             known = kind if kind in ("unsupported", "out-of-memory", "slower", "diverged") else "failed"
             yield row | {"status": known, "reason": reason or message}
         else:
-            samples = [one / found["steps"] for one in found["stretch_us"]]
+            samples = [one / found["steps"] for one in found["cpu_us"]]
             counters = {key: value for key, value in found.items()
-                        if isinstance(value, (int, float)) and key not in ("step_us", "cpu_time", "iterations")}
+                        if isinstance(value, (int, float)) and key not in ("step_us", "iterations")}
             yield counters | row | {"status": "ok", "reason": "", "step_us": float(numpy.median(samples)),
-                                    "low_us": min(samples), "high_us": max(samples), "samples": tuple(samples)}
+                                    "low_us": min(samples), "high_us": max(samples), "samples": tuple(samples),
+                                    "clock_us": float(numpy.median(found["stretch_us"])) / found["steps"]}
 
 
 @dataclass(frozen=True)

@@ -77,7 +77,7 @@ def _operations(record):
         if row.get("error_occurred"):
             yield _common(common | {"status": "failed", "reason": row.get("error_message", "")}, "operations")
         else:
-            times = row["stretch_us"]
+            times = row["cpu_us"]
             yield _common(common | {"samples": tuple(times)}, "operations") | {
                 "operation": name.rsplit("/", 1)[-1], "operation_us": float(pandas.Series(times).median())}
 

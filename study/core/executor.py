@@ -66,17 +66,18 @@ def run(cell, context, scratch=None):
 
 
 def compact(output):
-    """Rows of Google Benchmark by name: what is the same in all samples once, what differs as a list; and
-    "stretch_us", always a list."""
+    """Rows of Google Benchmark by name: what is the same in all samples once, what differs as a list; and, always lists,
+    "stretch_us" by the clock and "cpu_us" of the processor, the same where nothing else ran."""
     if "benchmarks" not in output:
         return output
     groups = {}
     for row in output["benchmarks"]:
         if row.get("run_type", "iteration") == "iteration":
             groups.setdefault(row["name"], []).append(row)
-    return {"rows": {name: {"stretch_us": [row.get("real_time") for row in rows]} | {
+    return {"rows": {name: {"stretch_us": [row.get("real_time") for row in rows],
+                            "cpu_us": [row.get("cpu_time") for row in rows]} | {
         key: rows[0][key] if all(row.get(key) == rows[0][key] for row in rows) else [row.get(key) for row in rows]
-        for key in rows[0] if key not in ("name", "run_name", "run_type", "real_time", "threads", "repetitions",
+        for key in rows[0] if key not in ("name", "run_name", "run_type", "real_time", "cpu_time", "threads", "repetitions",
                                           "family_index", "per_family_instance_index", "repetition_index")}
         for name, rows in groups.items()}}
 

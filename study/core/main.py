@@ -110,6 +110,7 @@ def figures(arguments):
     studyset = StudySet(folder)
     with locks.only_one(folder):
         need_records(studyset)
+        _ = studyset.registry  # StudyError if it is damaged
         run_workflow(studyset, {part: [] for part in parts() if part in studyset.facts["parts"]}, stored=True)
     print(f"site: {folder / 'index.html'}")
     return 0

@@ -49,11 +49,11 @@ def _pilots(lab, scene, contenders):
     steps = max(2, min(16, WORK // scene.variables))
     limit = lab.settings["limits"]["pilot"]
     cells = [Cell("bench", scene.name, (one,), ("--steps", steps, "--start", 0, f"--benchmark_repetitions={RUNS}",
-                                                "--benchmark_min_time=1e-6"), "pilot", seconds=limit) for one in contenders]
+                                                "--benchmark_min_time=0"), "pilot", seconds=limit) for one in contenders]
     for record in lab.run(cells):
         rows = [row for row in record.output.get("rows", {}).values() if not row.get("error_occurred")]
         if rows:
-            yield Pilot(record, min(rows[0]["stretch_us"]) / steps, rows[0]["fill_percent"])
+            yield Pilot(record, min(rows[0]["cpu_us"]) / steps, rows[0]["fill_percent"])
         else:  # a warm-up and RUNS stretches were not done within the limit
             late = record.status == "timeout"
             yield Pilot(record, 1e6 * limit / (steps * (RUNS + 1)) if late else math.inf)
