@@ -32,7 +32,7 @@ def fit(lab, scene, contenders):
     """({contender: µs a step of its pilot} of those to be timed, the scene's fill in %); each other one gets a record
     that says why not."""
     pilots = dict(zip(contenders, _pilots(lab, scene, contenders)))
-    verdicts, rule = {}, _Rule(lab, scene, pilots)
+    verdicts, rule = {}, Rule(lab, scene, pilots)
     while todo := [one for one in rule.chosen(verdicts) if one not in verdicts]:
         verdicts |= _gate(lab, scene, todo)
     best = rule.best(verdicts)
@@ -60,7 +60,7 @@ def _pilots(lab, scene, contenders):
 
 
 @dataclass(frozen=True)
-class _Rule:
+class Rule:
     lab: object
     scene: object
     pilots: dict

@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from study.pipeline import child
+from study.core import child
 
 
 def shell(text, seconds=10, memory_mb=512):

@@ -1,6 +1,7 @@
 # The map's plan on a fake program that misbehaves on demand: who is timed, who is left out and why; study/compare.
 import shutil
 import tempfile
+from types import SimpleNamespace
 
 import pandas
 import pytest
@@ -8,12 +9,15 @@ import yaml
 
 from analysis.core import records, schema
 from analysis.core.errors import StudyError
+from analysis.core.registry import Registry
 from analysis.core.files import write_json
 from analysis.core.view import View
 from analysis.map import tables
 from study.core import profile as profiles, studyset
+from study.core.contender import Contender
 from study.core.lab import Lab
-from study.map import plan
+from study.map import plan, verify
+from study.map.scene import Scene
 from study.tests.conftest import FAKE, TEMPORARY
 from study.tools import compare
 
@@ -146,3 +150,32 @@ def test_compare_counts_what_is_said_and_what_is_alike(tmp_path, capsys):
     assert "3 said in both, 2 of them alike (67 % alike)" in text and "\n  3: x" in text
     with pytest.raises(StudyError, match="holds no set"):
         compare.compare([str(tmp_path), str(second)])
+
+
+KNOWN = Registry({"implementations": [{"folder": name.split("/")[0], "available": True, "library": library, "variants": [
+    {"name": name, "dense": dense, "unsymmetric": False}]} for name, library, dense in (
+        ("own/x", "none", False), ("a/x", "L", False), ("b/x", "L", True), ("c/x", "L", True), ("d/x", "L", True))]})
+
+
+def rule(fill, **pilots):
+    """The rule of exclusion for contenders by folder; `pilots`: µs a step."""
+    lab = SimpleNamespace(settings=SETTINGS, registry=KNOWN)
+    found = {Contender(f"{name}/x", f"{name}/x"): verify.Pilot(None, time) for name, time in pilots.items()}
+    return verify.Rule(lab, Scene(10, fill), found)
+
+
+def chosen(found, verdicts=None):
+    return "".join(one.name[0] for one in found.chosen({one: False for one in found.pilots if one.name[0] in (verdicts or "")}))
+
+
+def test_neither_own_code_nor_who_is_rejected_excludes_anybody():
+    natural = rule(None, own=1.0, a=500.0, b=2000.0)
+    assert natural.best({}) == 500.0 and chosen(natural) == "oab"
+    assert chosen(rule(None, a=1.0, b=2000.0)) == "a" and chosen(rule(None, a=1.0, b=2000.0), verdicts="a") == "ab"
+    assert rule(None, own=1.0).best({}) == 1.0 and chosen(rule(None, a=float("inf"))) == ""
+
+
+def test_the_two_fastest_of_a_family_stay_in_filled_scenes():
+    assert chosen(rule(0.5, a=1.0, b=120.0, c=100.0, d=110.0)) == "acd"  # slower than 50 times, within 250
+    assert chosen(rule(None, a=1.0, b=120.0, c=100.0, d=110.0)) == "abcd"
+    assert chosen(rule(0.5, a=1.0, b=300.0)) == "a"

@@ -1,1 +1,0 @@
-# What runs between the profile and the tidy tables; ../README.md says how the parts talk.
