@@ -16,11 +16,12 @@ SETTINGS = {"loops": list,     # sizes of the N-four-bar for everyone
             "fills": list,     # ... and fills of the four-bar of 100 variables, on which own code meets libraries
             "batches": list,   # sizes of the N-four-bar for batches
             "sets": list,      # of parameters in a batch
+            "patience": float, # s of the first stretch of a size: whoever is slower is not timed
             "processes": int,  # of a scene
             "samples": int}    # of a process and contender
 SHARES = {"sizes": 0.25, "growth": 0.15, "scenes": 0.45, "batches": 0.15}  # of the budget
 LIMIT = "limit/limit"
-SLOWER, PATIENCE_S = 15, 1.0  # times the fastest; of the first stretch: whoever is slower is not timed
+SLOWER, PATIENCE_S = 15, 1.0  # in scenes: times the fastest; s of the first stretch: whoever is slower is not timed
 NEAR = 1.5  # times the fastest library: who is near may be the rival of a lead, and is asked by the gate
 CHECK_S = 60
 BATCH_S = 0.02  # a process of batches lasts about ten times that
@@ -45,7 +46,8 @@ def sizes(lab):
         for one in here:
             if one.name in lost:
                 lab.skip(Cell("bench", scene, (one,), role="size-left-out"), "excluded", lost[one.name])
-        rows = timed(lab, scene, [one for one in here if one.name not in lost], "size", ("--phases",))
+        rows = timed(lab, scene, [one for one in here if one.name not in lost], "size", ("--phases",),
+                     lab.settings["patience"])
         timed_once = set(rows.implementation[rows.status == "ok"])
         lost |= {row.implementation: f"not timed at N = {loops}: {row.status}" for row in rows.itertuples()
                  if row.implementation not in timed_once and row.status != "dropped"}
@@ -95,10 +97,10 @@ def batches(lab):
                  for loops in lab.settings["batches"] for sets in lab.settings["sets"] if here], drop=True)
 
 
-def timed(lab, scene, contenders, role, settings=()):
+def timed(lab, scene, contenders, role, settings=(), patience=PATIENCE_S):
     """The rows of a scene's processes."""
     return rows_of(measure(lab, scene, contenders, processes=lab.settings["processes"], repetitions=lab.settings["samples"],
-                           settings=("--patience", PATIENCE_S, *settings), role=role, drop=True))
+                           settings=("--patience", patience, *settings), role=role, drop=True))
 
 
 def ask_gate(lab, scene, rows, contenders, role, settings=()):

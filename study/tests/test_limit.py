@@ -14,7 +14,7 @@ REGISTRY = Registry({"implementations": [
     {"folder": "own", "available": True, "library": "none", "variants": [{"name": "own/x", "settings": ["saddle-point"]},
                                                                          {"name": "own/y", "settings": []}]}]})
 SETTINGS = {"loops": [10, 40], "large": [49], "problems": ["A01"], "examples": ["coupler"], "fills": [0.5], "batches": [10],
-            "sets": [8, 64], "processes": 2, "samples": 3}
+            "sets": [8, 64], "patience": 0.1, "processes": 2, "samples": 3}
 
 
 class Asked:
