@@ -1,6 +1,9 @@
 # How settings and steps are written and marked in the figures of this package.
-DASHES = {"penalty": "-", "saddle": (0, (5, 1.5)), "rattle": (0, (1, 1)), "multistep6": (0, (3, 1, 1, 1, 1, 1)),
-          "precision": (0, (6, 1.5, 1, 1.5)), "tangent": (0, (2, 1))}
+import matplotlib.pyplot as plt
+
+SHADES = {kind: plt.get_cmap(name) for kind, name in (
+    ("penalty", "Blues"), ("saddle", "Greens"), ("rattle", "Oranges"), ("multistep6", "Reds"), ("precision", "Purples"),
+    ("tangent", "Greys"))}
 
 
 def family(setting):
@@ -13,6 +16,16 @@ def family(setting):
     if words[0] in ("saddle", "multistep6"):
         return words[0]
     return "tangent" if words[0] in ("every-step", "kept") else "penalty"
+
+
+def colours(settings):
+    """{setting: its colour}: those of its kind, the darkest first."""
+    found, used = {}, {}
+    for setting in dict.fromkeys(settings):
+        kind = family(setting)
+        found[setting] = SHADES[kind](0.9 - 0.2 * (used.setdefault(kind, 0) % 4))
+        used[kind] += 1
+    return found
 
 
 def step(seconds):

@@ -63,4 +63,5 @@ def of_column(kind, subject, known, records, view):
         one["fill_asked"] = [float(scene.partition("fill=")[2] or "nan") for scene in one.scene]
     won["fill"] = won.scene.map(fills)
     won["variables"] = table.variables.max()
+    won = won.sort_values(["fill_asked", "layer", "required"], ascending=[True, False, False], na_position="first")
     return {"points": table.assign(library=table.implementation.isin(libraries), **named), "winners": won.assign(**named)}

@@ -1,5 +1,5 @@
 # Error against time of one subject: a panel for libraries, one for all. The front is the thick line; the series on it
-# or close to it have colours and names, the others are grey.
+# or close to it have names, colours by setting and markers by implementation, the others are grey.
 import matplotlib.pyplot as plt
 import numpy
 from matplotlib.lines import Line2D
@@ -10,7 +10,7 @@ from analysis.accuracy.points import NOT_JUDGED
 from analysis.accuracy.winners import LAYERS, meeting
 from analysis.core.outcomes import FINISHED
 from analysis.core.pareto import near
-from analysis.core.style import GREY, MARKERS, missing, number_axis
+from analysis.core.style import GREY, missing, number_axis
 
 CLOSE = 1.25  # times the front's time at its error
 MOST = 8      # named series of a panel
@@ -63,12 +63,11 @@ def _panel(axes, rows, front, look):
         mine = mine.sort_values("step")
         if key not in chosen:
             axes.plot(mine.time, mine.error, color="#c4c8ce", linewidth=0.7, marker=".", markersize=3, zorder=1)
-    handles = []
-    for place, key in enumerate(chosen):
+    handles, colours = [], names.colours(key[1] for key in chosen)
+    for key in chosen:
         mine = meeting(rows[(rows.implementation == key[0]) & (rows.setting == key[1])], numpy.inf).sort_values("step")
-        line = {"color": look.colour(key[0]), "linestyle": names.DASHES[names.family(key[1])], "linewidth": 1.5,
-                "marker": MARKERS[place % len(MARKERS)], "markersize": 5.5, "markeredgecolor": "white",
-                "markeredgewidth": 0.5}
+        line = {"color": colours[key[1]], "linewidth": 1.5, "linestyle": look.dash(key[0]), "marker": look.marker(key[0]),
+                "markersize": 8 if look.marker(key[0]) in "*PX" else 6, "markeredgecolor": "white", "markeredgewidth": 0.5}
         axes.plot(mine.time, mine.error, **line, zorder=4)
         axes.hlines(mine.error, mine.time_low, mine.time_high, color=line["color"], linewidth=1.0, zorder=3)
         below = mine[mine.at_most.fillna(False).astype(bool)]

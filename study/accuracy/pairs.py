@@ -7,7 +7,7 @@ BEHIND = 10.0  # times the fastest of its kind with the default setting: who is 
 
 def run(lab, entry):
     runs = Runs(lab, "pairs", entry)
-    runs.refer(None)
+    runs.refer()
     groups, scene = _groups(runs), runs.subject.scene
     for number in range(1, lab.settings["processes"][1] + 1):
         for name, kinds in groups.items():

@@ -34,8 +34,9 @@ class Runs:
     def serving(self, name, contenders):
         return [one for one in contenders if self.lab.registry.serves(one.variant, *self.settings[name].needs)]
 
-    def refer(self, one):
-        """Makes the reference; what is extrapolated is simulated by the contender `one`."""
+    def refer(self):
+        """Makes the reference; what is extrapolated is simulated by one contender, the same in every study."""
+        one = self.lab.contender(timing.ANCHOR) or next(iter(self.lab.contenders), None)
         finest = self.subject.steps[-1]
         cells = [self._cell(one, "default", finest / divisor, self.subject.scene, "reference", seconds=300)
                  for divisor in (1, 2, 4) if self.subject.entry and self.subject.entry.known == "extrapolated"]

@@ -13,7 +13,8 @@ from study.accuracy.runs import Runs
 
 TRIED = {False: 1.6, True: 3.0}  # by whether fill is artificial: settings up to this times the least time on the curves
 MOST = 5       # of these, for each required error and layer
-JUDGED = 1.5   # times the fastest in the look: they run the motion themselves
+JUDGED = 1.5   # times the fastest in the look: they run the motion themselves, and so do
+OTHERS = 2     # other implementations than the fastest
 SPARE = 0.02   # of the tangent's positions: closer to its own fill a larger one is none of its own
 
 
@@ -21,11 +22,8 @@ def run(lab, kind, entry):
     runs = Runs(lab, kind, entry)
     scene = runs.subject.scene
     speed = curves.first_look(runs, scene)
-    first = next((group[0] for group in speed.values() if group), None)
-    if first is None:
-        return
-    runs.refer(first)
-    if runs.known is None:
+    runs.refer()
+    if runs.known is None or not any(speed.values()):
         return
     lab.tell("curves")
     found = curves.follow(runs, speed)
@@ -83,9 +81,9 @@ def _judge(runs, scene):
     jobs = []
     for error in runs.lab.settings["errors"]:
         for group in runs.layers.values():
-            mine = table[table.implementation.isin([one.name for one in group]) & (table.error <= error)]
-            near = mine[mine.time <= JUDGED * mine.time.min()]
-            for row in near[near.status == NOT_JUDGED].itertuples():
+            mine = table[table.implementation.isin([one.name for one in group]) & (table.error <= error)].sort_values("time")
+            chosen = mine[(mine.time <= JUDGED * mine.time.min()) | mine.index.isin(_others(mine, OTHERS))]
+            for row in chosen[chosen.status == NOT_JUDGED].itertuples():
                 duration = runs.duration(row.time)
                 if duration:
                     jobs.append((names[row.implementation], row.setting, row.step, scene, duration))
@@ -118,5 +116,9 @@ def _rounds(runs, scene, processes, open_only=False):
 def near(table, error):
     """The points that meet an error in nearly the least time, and the fastest of another implementation."""
     found = meeting(table, error)
-    others = found[found.implementation != found.implementation.iloc[0]].head(1).index if len(found) else []
-    return found[(found.time <= NEAR * found.time.min()) | found.index.isin(others)]
+    return found[(found.time <= NEAR * found.time.min()) | found.index.isin(_others(found, 1))]
+
+
+def _others(rows, count):
+    """Index of the fastest points of `count` implementations beside the fastest one's."""
+    return rows.drop_duplicates("implementation").index[1:count + 1]

@@ -78,12 +78,13 @@ class Lab:
             name = f"{one.variant}/{cell.scene}"
             slow = min(SPEED[each.variant] for each in cell.contenders) * float(words.get("--slower-than", 1e9))
             if SPEED[one.variant] > slow:
-                rows[name] = {"error_occurred": True, "error_message": "slower: at least 6 times the fastest", "stretch_us": [0]}
+                rows[name] = {"error_occurred": True, "error_message": "slower: at least 6 times the fastest",
+                              "stretch_us": [0], "cpu_us": [0]}
                 continue
             steps = int(words["--steps"])
             noise = 1 + 1e-3 * (int(words["--seed"]) % 3)
             rows[name] = {"steps": steps, "passes": 2 * steps, "variables": variables(cell), "step_us": 1.0,
-                          "stretch_us": [2 * SPEED[one.variant] * steps * noise] * 3}
+                          } | dict.fromkeys(("stretch_us", "cpu_us"), [2 * SPEED[one.variant] * steps * noise] * 3)
         return {"rows": rows}
 
 
