@@ -25,7 +25,7 @@ def bench(role, scene, number=1, status="done", **times):
     names = [name.replace("_", "/") for name in times]
     found = {}
     for name, time in zip(names, times.values()):
-        known = {"stretch_us": [40 * time] * 3, "steps": 40, "passes": 80, "variables": 6, "setup_us": 7.0, "memory_bytes": 9e3,
+        known = {"stretch_us": [40 * time] * 3, "cpu_us": [40 * time] * 3, "steps": 40, "passes": 80, "variables": 6, "setup_us": 7.0, "memory_bytes": 9e3,
                  "position_error": 1e-6} if isinstance(time, float) else {"error_occurred": True, "error_message": time}
         shares = {phase: 0.0 for phase in PHASES} | {"other": 1.0} if name in (LIMIT, "own/y") else dict.fromkeys(PHASES, 0.1) | {"solve": 0.5}
         found[f"{name}/{scene}"] = known | ({f"phase_{phase}": share for phase, share in shares.items()} if role == "size" else {})

@@ -25,7 +25,7 @@ def some(rows, **more):
 
 def bench(contenders, role="time", number=1, status="done", where="four-bar:4", passes=None, environment="own|openblas"):
     """A record of a timed process."""
-    rows = {f"{name}/{where}": {"stretch_us": [100.0, 110.0], "steps": 10, "fill_percent": 52.0, "variables": 10,
+    rows = {f"{name}/{where}": {"stretch_us": [100.0, 110.0], "cpu_us": [100.0, 110.0], "steps": 10, "fill_percent": 52.0, "variables": 10,
                                 "constraints": 9, "start": 0.1, "passes": (passes or {}).get(name, 20)} for name in contenders}
     return Record(f"n0010/{role}/{'-'.join(contenders).replace('/', '.')}-{number}.json",
                   {"scene": where, "contenders": list(contenders), "environment": environment, "role": role, "number": number,

@@ -49,7 +49,7 @@ def modelled(case, number, *times, motion="plausible", off=1e-3):
                     {"scene": scene, "contenders": [name], "role": f"motion.{slug(case)}", "settings": []}, "done", "", 1.0, [], {},
                     {"status": motion, "status_reason": "lost", "variables": 22},
                     {"t": list(at)} | {key: list(values + off) for key, values in exact.items()}) for name in names]
-    rows = {f"{name}/{scene}": {"stretch_us": [100 * time] * 3, "steps": 100} for name, time in zip(names, times)}
+    rows = {f"{name}/{scene}": {"stretch_us": [100 * time] * 3, "cpu_us": [100 * time] * 3, "steps": 100} for name, time in zip(names, times)}
     cell = {"scene": scene, "contenders": list(names), "environment": "own|system", "number": number,
             "role": f"time.{slug(case)}", "settings": []}
     return [*(whole if number == 1 else []), Record(f"modelling/time.{slug(case)}/{number}.json", cell, "done", "", 1.0, [], {},
