@@ -50,7 +50,7 @@ def draw(table, what):
         axes = figure.add_axes(((wide * number + LEFT) / across, (below + high - HIGH * tall) / up,
                                 WIDE * len(columns) / across, HIGH * tall / up))
         used |= {_square(axes, x, y, worst([found[cell] for found in rows]))
-                 for x, (_, _, rows) in enumerate(columns) for cell, y in block.items()}
+                 for x, (_, _, rows) in enumerate(columns) for cell, y in block.items() if cell in rows[0]}
         _frame(axes, [letters[names] for _, names, _ in columns], settings, block)
     figure.text(0.1 / across, 1 - 0.1 / up, f"{what}: {title(table)}", fontsize=13, va="top", color=SILENT if table.silent.any() else "black")
     figure.text(0.1 / across, (0.16 * len(key) + 0.1) / up, "\n".join(key), fontsize=8, va="top", linespacing=1.4)

@@ -1,5 +1,5 @@
 # The figures of the part: the battery, ways out, kept pivots, roundoff.
-from analysis.extremes import battery_figure, pivots_figure, roundoff_figure, ways_figure
+from analysis.extremes import battery_figure, pivots, pivots_figure, roundoff_figure, ways_figure
 from analysis.extremes.roundoff import FORMS
 
 
@@ -7,7 +7,7 @@ def draw(tables, view):
     found = battery_figure.figures(tables["battery"]) if len(tables["battery"]) else {}
     if len(tables["ways"]):
         found["ways"] = ways_figure.draw(tables["ways"], tables["ways_cost"])
-    if len(tables["pivots"]):
-        found["pivots"] = pivots_figure.draw(tables["pivots"])
+    if len(pivots.timed(tables["pivots"])):
+        found["pivots"] = pivots_figure.draw(pivots.timed(tables["pivots"]))
     return found | {f"roundoff-{form}": roundoff_figure.draw(tables["growth"], view.registry, form)
                     for form in FORMS if (tables["growth"].scheme == form).any()}

@@ -3,7 +3,7 @@ import numpy
 
 from analysis.core.outcomes import GOOD
 from analysis.core.text import number
-from analysis.extremes import battery, roundoff, ways
+from analysis.extremes import battery, pivots, roundoff, ways
 
 SHORT = 1.0  # s of a motion of size or step: the first two singular positions are near 0.7 and 1.2 s
 
@@ -87,8 +87,9 @@ def _ways(table, cost):
 
 
 def _pivots(table, claims):
+    lost, table = [f"{row.status}: {row.reason}" for row in table[table.status != "ok"].itertuples()], pivots.timed(table)
     if table.empty:
-        return None
+        return {"lost": lost, "said": []}
     found = []
     for strategy, rows in table.groupby("strategy", sort=False):
         worst = rows.loc[rows.error_worst.idxmax()]
@@ -96,12 +97,12 @@ def _pivots(table, claims):
                      f"{worst.pivoting} pivots).")
     found += [f"With default pivots a factorization and solve of {strategy} takes {rows.median():.2f} times that of refactor "
               f"(median over the sequences; {rows.min():.2f} to {rows.max():.2f})." for strategy, rows in overhead(table).items()]
-    return {"said": found, "claims": claims.to_dict("records"), "matrices": int(table.matrices.max())}
+    return {"lost": lost, "said": found, "claims": claims.to_dict("records"), "matrices": int(table.matrices.max())}
 
 
-def overhead(pivots):
+def overhead(table):
     """{strategy: times over refactor, of each sequence} with default pivots."""
-    default = pivots[pivots.pivoting == "default"].dropna(subset=["time_ratio"])
+    default = table[table.pivoting == "default"].dropna(subset=["time_ratio"])
     return {strategy: rows.time_ratio for strategy, rows in default.groupby("strategy", sort=False) if strategy != "refactor"}
 
 

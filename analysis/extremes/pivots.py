@@ -8,7 +8,8 @@ PLAIN = ("refactor", "default")  # strategy and pivots that times are over
 
 
 def build(records):
-    """{"pivots": a row a sequence, strategy and choice of pivots, "claims": what the program says of its own claims}"""
+    """{"pivots": a row a sequence, strategy and choice of pivots, and a row a process that gave none; "claims": what the
+    program says of its own claims}"""
     done = [record for record in records if record.done]
     names = " ".join(record.name for record in done)
     rows = [row | {"process": record.cell["number"]} for record in done for row in record.output["rows"]]
@@ -16,7 +17,9 @@ def build(records):
     for record in done:
         for claim in record.output.get("claims", []):
             claims[claim["claim"]] = claims.get(claim["claim"], True) and bool(claim["holds"])
-    return {"pivots": pandas.DataFrame([row | {"record": names} for row in _over_processes(pandas.DataFrame(rows))]),
+    lost = [{"status": record.status, "reason": record.reason, "record": record.name} for record in records if not record.done]
+    found = [row | {"status": "ok", "record": names} for row in _over_processes(pandas.DataFrame(rows))]
+    return {"pivots": pandas.DataFrame(found + lost),
             "claims": pandas.DataFrame([{"claim": claim, "holds": holds, "record": names} for claim, holds in claims.items()])}
 
 
@@ -33,6 +36,6 @@ def _over_processes(rows):
                    "time_ratio": found.value, "ratio_low": found.low, "ratio_high": found.high}
 
 
-def lost(records):
-    """Why there are no rows: the reasons of records that are not done."""
-    return [record.reason for record in records if not record.done]
+def timed(table):
+    """The rows of pivots.csv that are of a sequence."""
+    return table[table.status == "ok"]

@@ -72,7 +72,7 @@ def growth(times, found, singular):
     by as many decades as FLOOR is low."""
     later = times >= singular[2] - singular[0]  # two of them a turn
     times, found = times[later], found[later]
-    if len(times) < 2:
+    if len(times) < 2 or not numpy.isfinite(found).all():
         return (float("nan"),) * 3
     logs = numpy.maximum.accumulate(numpy.log10(numpy.maximum(found, FLOOR)))  # oscillation is no growth
     near = numpy.array([bool((abs(singular - middle) <= NEAR).any()) for middle in (times[1:] + times[:-1]) / 2])

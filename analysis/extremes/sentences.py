@@ -1,6 +1,6 @@
 # The answers to "What happens at the extremes, and what helps there?", from the tables.
 from analysis.core.text import number
-from analysis.extremes import battery, ways
+from analysis.extremes import battery, pivots, ways
 from analysis.extremes.cells import FORMS
 from analysis.extremes.page import nobody, overhead, right, silent
 
@@ -42,6 +42,7 @@ def _ways(table, cost):
 
 
 def _pivots(table):
+    table = pivots.timed(table)
     if table.empty or "guarded" not in overhead(table):
         return
     worst = table.groupby("strategy").error_worst.max()

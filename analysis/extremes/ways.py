@@ -118,6 +118,8 @@ def folders(ways):
 
 def not_served(rows):
     """Why none of the rows of a way and folder was run; "" if one was."""
+    if rows.empty:
+        return "not asked"
     return rows.reason.iloc[0] if rows.status.isin(NOT_SERVED).all() else ""
 
 

@@ -1,0 +1,336 @@
+# Extremes: judging, tables, figures, page and answers on synthetic records and small tables of every outcome.
+from types import SimpleNamespace
+
+import matplotlib.pyplot as plt
+import numpy
+import pandas
+import pytest
+
+from analysis.core import site
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT
+from analysis.core.records import Record
+from analysis.core.registry import Registry
+from analysis.core.schema import conform, of_part
+from analysis.extremes import (battery, battery_figure, cells, figures, judge, page, pivots, roundoff, sentences,
+                               tables, ways)
+from analysis.extremes.motions import Chain, Flat
+
+STATUSES = ("ok", "degraded", "diverged", "wrong-branch", "not-converged", "timeout", "crashed", "refused", "excluded", "dropped")
+NAMES = ("a/v", "b/v", "csc_klu/v")
+REGISTRY = Registry({"implementations": [{"folder": name.split("/")[0], "available": True, "variants": [
+    {"name": name, "dense": name == "a/v"}]} for name in NAMES]})
+VIEW = SimpleNamespace(registry=REGISTRY, settings={"loops": {"ways": [2], "times": [10], "roundoff": [1]}})
+TIMES = numpy.linspace(0, 3, 31)
+CELL = next(cell for cell in cells.battery() if cell.label == "N = 1")
+SPRUNG = next(cell for cell in cells.battery() if cell.motion is None)
+
+
+def record(name, cell, output=None, series=None, ended="done", reason="", **more):
+    cell = {"contenders": ["a/v"], "role": "penalty", "number": 0, "program": "mbs", "settings": []} | cell
+    return Record(name, cell, ended, reason, 0.1, ["build/mbs", "simulate", "a scene.json"], {},
+                  {"status": "ok", "status_reason": ""} | (output or {}), series or {}, **more)
+
+
+def run(status="ok", error=0.0, who="a/v", role="penalty", of=CELL, **more):
+    """A run of the battery that is off by `error` along both axes."""
+    series = {column: list(values + error) for column, values in of.motion.solutions(TIMES)[0].items()} if of.motion else {}
+    return record(f"battery/{role}/{who}@{of.name}", {"scene": f"raw/scenes/{of.name}.json", "contenders": [who], "role": role},
+                  {"status": status} | more, {"t": list(TIMES)} | series)
+
+
+def conformed(found):
+    schema = of_part("extremes")
+    assert set(found) == set(schema)
+    return {name: conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(schema[name])), schema[name], name)
+            for name, frame in found.items()}
+
+
+def made(*records):
+    return conformed(tables.build(list(records), VIEW))
+
+
+def test_what_is_ok_beyond_its_class_is_silently_wrong():
+    table = made(run("ok"), run("ok", 0.02, who="b/v"), run("degraded", 0.02, role="rattle"), run("diverged", 0.5, role="rattle4"),
+                 run("ok", float("nan"), role="saddle-point"), run("plausible", 1e-3, "b/v", "saddle-point", position_error_max=0.02),
+                 record("battery/dropped", {"scene": CELL.name, "role": "rattle6"}, ended="dropped", reason="budget"))["battery"]
+    found = {(row.implementation, row.setting): row for row in table.itertuples()}
+    assert [key for key, row in found.items() if row.silent] == [("b/v", "penalty"), ("a/v", "saddle-point"), ("b/v", "saddle-point")]
+    assert found["b/v", "penalty"].true_error == pytest.approx(0.02 * 2**0.5)
+    assert found["b/v", "penalty"].command == "build/mbs simulate 'a scene.json'" and found["a/v", "penalty"].command == ""
+    assert found["b/v", "saddle-point"].true_error == 0.02  # what it reports itself, between two instants
+    assert numpy.isnan(found["a/v", "rattle4"].true_error) and found["a/v", "rattle6"].status == "dropped"
+
+
+def test_records_of_another_battery_are_named():
+    other = record("battery/penalty/x", {"scene": "raw/scenes/no-such-cell.json"})
+    with pytest.raises(StudyError, match="battery/penalty/x: its cell is none of the battery"):
+        made(other)
+    with pytest.raises(StudyError, match="none of the ways out"):
+        made(record("ways/rattle/x", {"scene": "x", "role": "rattle"}))
+
+
+def test_a_run_is_held_to_the_nearest_of_its_motions_and_to_no_bad_reference():
+    flat, ulp = Flat(1, angle=numpy.pi / 2, rate=0.0), 2.0**-52
+    for chain, least in ((flat, ulp), (Chain(1, rate=0.0), ulp), (Chain(1), 8 * ulp), (Chain(1, offset=1e6), 1e6 * ulp)):
+        own = judge.true_motion(cells.Extreme("x", "x", "", chain), {}, TIMES)[1]  # of closed forms, as they are evaluated
+        assert least <= own < 30 * least
+    assert judge.true_motion(cells.Extreme("x", "x", "", flat), {}, [])[1] == 0
+    second = {"t": list(TIMES)} | {key: list(values) for key, values in flat.solutions(TIMES)[1].items()}
+    other = record("x", {}, series=second)
+    assert judge.error_of(other, flat.solutions(TIMES), 1.0) == 0
+    assert judge.error_of(other, flat.solutions(TIMES)[:1], 1.0) > 0.1
+
+    def sprung(shift, status="ok"):
+        return record("r", {}, {"status": status}, {"t": [0.0], "B.x": [shift], "B.y": [0.0], "C.x": [0.0], "C.y": [0.0]})
+    solutions, own, _ = judge.true_motion(SPRUNG, {4: sprung(3e-4), 8: sprung(0.0)}, [0.0])
+    assert own == pytest.approx(1e-4) and len(solutions) == 1
+    for references, why in (({4: sprung(0.3), 8: sprung(0.0)}, "own error is 1.0e-01"), ({4: sprung(0)}, "missing"),
+                            ({4: sprung(0), 8: sprung(0, "diverged")}, "diverged")):
+        found, _, text = judge.true_motion(SPRUNG, references, [0.0])
+        assert found == [] and why in text
+
+
+def test_references_are_found_by_their_step():
+    motion = {"t": [0.0], **{column: [0.0] for column in SPRUNG.columns}}
+    finer = [record(f"battery/reference/{factor}", {"scene": f"{SPRUNG.name}.json", "role": "reference", "contenders": ["reference/reference"],
+                    "settings": ["--step", f"{SPRUNG.step / factor:g}"]}, series=motion) for factor in judge.FINER]
+    mine = record("battery/penalty/1", {"scene": f"{SPRUNG.name}.json"}, series=motion)
+    [row] = made(*finer, mine)["battery"].itertuples()
+    assert row.truth == "reference at 1/8 of the step" and row.true_error == 0
+    [row] = made(mine)["battery"].itertuples()
+    assert row.truth.startswith("none") and not row.silent and battery.kind(row) == "unjudged"
+
+
+def small():
+    """battery.csv with every outcome, of two implementations that end alike."""
+    return pandas.DataFrame([
+        {"axis": axis, "value": status, "implementation": name, "setting": setting, "status": status, "reason": "why",
+         "true_error": 1e-5 if status in ("ok", "degraded") else float("nan"), "truth": "exact", "silent": False,
+         "truth_error": 2e-16, "steps": 24.0 if status == "ok" else 2000.0, "step": 1e-3, "command": "",
+         "record": f"{axis} {status} {name} {setting}"}
+        for axis in ("loops", "step") for status in STATUSES for setting in ("penalty", "saddle-point") for name in ("a/v", "b/v")])
+
+
+def texts(figure):
+    return [text.get_text() for text in figure.texts] + [text.get_text() for axes in figure.axes for text in axes.texts]
+
+
+def test_implementations_that_end_alike_are_one_column():
+    table = small()
+    assert {setting: [names for names, _ in found] for setting, found in battery.groups(table).items()} == {
+        "penalty": [("a/v", "b/v")], "saddle-point": [("a/v", "b/v")]}
+    mine = (table.implementation == "b/v") & (table.setting == "penalty") & (table.value == "ok")
+    table.loc[mine, "true_error"] = 9e-5  # not a decade more
+    assert len(battery.groups(table)["penalty"]) == 1
+    assert "−5" in texts(battery_figure.draw(table, "x"))  # of the larger error
+    table.loc[mine, "true_error"] = 1.1e-4
+    assert [names for names, _ in battery.groups(table)["penalty"]] == [("a/v",), ("b/v",)]
+    told = texts(battery_figure.draw(table, "x"))
+    assert any("A  a/v\nB  b/v\nC  a/v, b/v" in text for text in told)
+    table.loc[mine, "silent"] = True
+    assert len(battery.groups(table)["penalty"]) == 2
+    plt.close("all")
+
+
+def test_who_is_alike_with_one_member_must_be_so_with_all():
+    rows = pandas.DataFrame([{"axis": "x", "value": "1", "setting": "penalty", "implementation": name, "status": "ok", "silent": False,
+                              "true_error": error, "truth_error": 1e-16} for name, error in (("a", 1e-5), ("b", 8e-5), ("c", 7e-4))])
+    assert [names for names, _ in battery.groups(rows)["penalty"]] == [("a", "b"), ("c",)]
+
+
+def test_the_matrix_names_every_outcome_and_counts_what_is_silently_wrong():
+    table = small()
+    figure = battery_figure.draw(table, "Forms")
+    named = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert {"ok or plausible", *STATUSES[1:8], "left out: budget"} <= named and "Forms: no silent wrong in 56 runs" in texts(figure)
+    table.loc[0, "silent"], table.loc[9, "status"], table.loc[1, "true_error"] = True, "strange", 0.0
+    figure = battery_figure.draw(table, "Forms")
+    named = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert {"silently wrong: ok or plausible beyond its class", "other failure"} <= named
+    assert battery_figure.title(table) == "1 silent wrong in 56 runs"
+    plt.close("all")
+
+
+def test_no_error_is_shown_below_that_of_the_truth():
+    table = small()[lambda rows: rows.implementation == "a/v"].reset_index(drop=True)
+    table.loc[[0, 1], "true_error"] = [0.0, 2.1e-16]
+    table.loc[1, ["status", "value"]] = "degraded", "ok"
+    table.loc[1, "axis"] = "other"
+    shown = texts(battery_figure.draw(table, "x"))
+    assert shown.count("≤−16") == 1 and shown.count("−16") == 1
+    plt.close("all")
+
+
+def test_what_was_left_out_and_what_is_short_is_told():
+    table = small()
+    table["reason"] = table.reason.mask(table.status == "excluded", "dense implementations run up to 200 loops")
+    table = table[(table.status != "excluded") | (table.axis == "loops") & (table.implementation == "a/v")]
+    assert page.left_out(table) == [
+        "Left out in loops excluded: a/v (dense implementations run up to 200 loops).",
+        "8 runs were left out, as the budget was spent: the cheap ones of the most telling cells came first.",
+        "Motions last 2 s in most cells. Those of extreme size and step that are shorter than 1 s may miss what happens "
+        "later: ok: 24 steps of 0.001 s, 0.024 s; ok: 24 steps of 0.001 s, 0.024 s."]
+    assert page.left_out(table[table.status == "degraded"]) == []
+
+
+def test_cells_in_which_nobody_is_right_or_not_all_end_alike_are_found():
+    table = small()
+    found = page._battery(table)
+    assert (found["right"], found["total"], len(found["nobody"]), found["unlike"]) == (8, 56, 14, [])
+    table.loc[(table.value == "diverged") & (table.implementation == "a/v"), "status"] = "ok"
+    found = page._battery(table)
+    assert len(found["nobody"]) == 12 and found["unlike"][0]["outcomes"] == {"ok": ["a/v"], "diverged": ["b/v"]}
+    assert ("penalty", 6, 28) == found["counts"][0][:3]
+
+
+def way(role, time=None, number=0, who="csc_klu/v", scene="ways-step-0.0008-2", status="ok", **more):
+    if time is not None:
+        return record(f"ways/cost-{role}/{who}-{number}", {"scene": "four-bar:10", "role": f"cost-{role}", "contenders": [who], "number": number},
+                      {"status": status, "least_us": {"mean": time}, "passes_per_step": 2.0})
+    motion = Chain(2).solutions(TIMES)[0]
+    return record(f"ways/{role}/{who}@{scene}", {"scene": f"{scene}.json", "role": role, "contenders": [who]}, {"status": status},
+                  {"t": list(TIMES)} | {key: list(values) for key, values in motion.items()}, **more)
+
+
+def test_costs_are_ratios_within_a_turn():
+    turns = [way(role, time, number) for role, times in (("penalty", (1.0, 2.0, 9.0)), ("saddle-point", (2.0, 5.0, 18.0)))
+             for number, time in enumerate(times, start=1)]
+    cost = made(*turns)["ways_cost"].set_index("way")
+    assert cost.ratio["saddle-point"] == pytest.approx((2 * 2.5 * 2) ** (1 / 3)) and cost.processes["saddle-point"] == 3
+    assert 1.4 < cost.low["saddle-point"] < 2.15 < cost.high["saddle-point"] < 3 and cost.ratio["α auto"] == 1
+    lost = made(*turns[1:], way("penalty", 1.0, 1, status="diverged"))["ways_cost"].set_index("way")
+    assert lost.processes["α auto"] == 2 and lost.status["α auto"] == "diverged" and lost.processes["saddle-point"] == 3
+    assert numpy.isnan(made(*turns[3:])["ways_cost"].ratio[0])
+    rows = {row.way: row for row in made(*turns)["ways_cost"].itertuples()}
+    assert ways.factor(rows["α auto"]) == "×1.00" and ways.factor(rows["saddle-point"]).startswith("×2.15 (1.")
+
+
+def test_safe_is_ok_or_plausible_and_right():
+    found = made(way("penalty"), way("saddle-point", status="degraded"), way("saddle-point", who="b/v", status="plausible"),
+                 record("ways/penalty-precision.mixed/x", {"scene": "", "role": "penalty-precision.mixed", "contenders": ["b/v"]},
+                        ended="unsupported", reason="no variant serves mixed"),
+                 way("penalty", who="b/v", scene="ways-mass-ratio-1000-10"))["ways"]
+    rows = {(row.way, row.folder): row for row in found.itertuples()}
+    assert rows["α auto", "csc_klu"].safe and not rows["saddle-point", "csc_klu"].safe and rows["saddle-point", "b"].safe
+    assert rows["α auto", "b"].silent and rows["α auto", "b"].command  # it is Chain(2) that moved, not ten loops
+    mixed = found[found.way == "mixed precision"]
+    assert ways.not_served(mixed) == "no variant serves mixed" and ways.share(mixed) == (0, 0)
+    assert list(dict.fromkeys(found.way)) == ["α auto", "saddle-point", "mixed precision"]
+
+
+def stale(number, times):
+    rows = [{"sequence": "upright", "form": "penalty", "strategy": strategy, "matrices": 91, "pivoting": pivoting, "error_median": 1e-16,
+             "error_worst": worst, "repivotings": 0, "time_us_median": time} for strategy, worst, time in zip(
+                 ("refactor", "guarded", "factor"), (1e-7, 1e-15, 1e-16), times) for pivoting in ("diagonal", "default", "largest")]
+    return record(f"pivots/{number}", {"number": number, "role": "pivots", "program": "stale_pivots", "contenders": []},
+                  {"rows": rows, "claims": [{"claim": "it is safe", "holds": number == 1}]})
+
+
+def test_the_guard_is_compared_with_kept_pivots_over_processes():
+    found = made(stale(1, (2.0, 2.4, 6.0)), stale(2, (4.0, 4.8, 12.0)))
+    table = found["pivots"].set_index(["strategy", "pivoting"])
+    assert table.time_ratio["guarded", "default"] == pytest.approx(1.2) and table.processes["factor", "largest"] == 2
+    assert list(found["claims"].holds) == [False] and found["pivots"].record[0] == "pivots/1 pivots/2"
+    said = "\n".join(page._pivots(found["pivots"], found["claims"])["said"])
+    assert "guarded takes 1.20 times" in said and "factor takes 3.00 times" in said and "10⁻⁷" in said
+    missing = record("pivots/x", {"role": "pivots"}, ended="unavailable", reason="it is missing")
+    both, alone = made(stale(1, (2.0, 2.4, 6.0)), missing)["pivots"], made(missing)
+    assert len(both) == 10 and list(both.status[9:]) == ["unavailable"] and len(pivots.timed(both)) == 9
+    assert "A process gave nothing: unavailable: it is missing" in render(alone)[1]
+
+
+def line(jump):
+    """(times, a difference that grows tenfold in a second, or by four decades at 2 s)"""
+    t = numpy.linspace(0, 4, 401)
+    return t, 1e-12 * (10.0**(4 * (t > 2)) if jump else 10**t)
+
+
+TURNS = numpy.array([0.2, 0.6, 1.2, 2.0])  # singular positions; a turn takes 1 s
+
+
+def test_growth_tells_jumps_from_what_grows_between_after_the_first_turn():
+    near, far, time = roundoff.growth(*line(jump=True), TURNS)
+    assert near == pytest.approx(4) and far == pytest.approx(0, abs=1e-9) and time == pytest.approx(0.13, abs=0.01)
+    near, far, _ = roundoff.growth(*line(jump=False), TURNS)
+    assert near + far == pytest.approx(3, abs=0.02) and near == pytest.approx(0.4, abs=0.03)
+    times, found = line(jump=False)
+    assert numpy.isnan(roundoff.growth(times[times < 0.9], found[times < 0.9], TURNS)).all()
+    assert numpy.isnan(roundoff.growth(times, numpy.where(times > 3, numpy.nan, found), TURNS)[0])  # what is lost is not hidden
+
+
+def test_what_is_said_of_growth():
+    one = {"near": 4.0, "far": 0.1, "near_time": 0.1, "medians": [1e-12, 1e-10, 1.6e-9], "with_speed": 0.99}
+    assert "in jumps" in page.jumps([one])[0] and "between 2.0 and 2.0" in page.jumps([one])[1] and "late" in page.jumps([one])[2]
+    assert "singular positions are no jumps" in page.jumps([one | {"near": 0.4, "far": 3.6}])[0]
+    assert "it grows 3.0 times as fast there" in page.jumps([one | {"near": 1.0, "far": 3.0}])[0]
+    assert page.jumps([one | {"near": float("nan")}]) == ["No growth was seen."]
+
+
+def test_a_lag_is_told_from_other_differences():
+    t = numpy.linspace(1e-3, 4, 401)
+    speed = 2 + numpy.cos(t)
+    assert roundoff.with_speed(t, 1e-12 * t**2 * speed, speed) == pytest.approx(1, abs=1e-6)
+    assert roundoff.with_speed(t, 1e-12 * t**2 / speed, speed) == pytest.approx(-1, abs=1e-6)
+    assert numpy.isnan(roundoff.with_speed(t[:2], t[:2], speed[:2]))
+
+
+def rounded(error, who="a/v", program="mbs", count=401):
+    times = numpy.linspace(0, 20, 401)[:count]
+    series = {column: list(values + error * times**2) for column, values in Chain(1).solutions(times)[0].items()}
+    return record(f"roundoff/penalty/{who}", {"scene": "four-bar:1", "role": "penalty", "contenders": [who], "program": program},
+                  series={"t": list(times)} | series)
+
+
+def test_roundoff_is_the_difference_from_the_reference_as_long_as_both_have_steps():
+    reference = rounded(0.0, "reference/reference", "mbs_reference")
+    found = made(reference, rounded(1e-12), rounded(1e-12, "b/v", count=150))
+    a, b = found["roundoff"].itertuples()
+    assert a.at_20_s == pytest.approx(4e-10 * 2**0.5, rel=1e-3) and a.at_1_s == pytest.approx(1e-12 * 2**0.5, rel=1e-2)
+    assert b.at_5_s > 0 and numpy.isnan(b.at_20_s)
+    assert len(found["growth"]) == 100 + 37
+    [alone] = made(rounded(1e-12))["roundoff"].itertuples()
+    assert "there is no reference" in alone.reason and numpy.isnan(alone.at_20_s)
+
+
+def render(found):
+    drawn = figures.draw(found, VIEW)
+    for figure in drawn.values():
+        plt.close(figure)
+    template = site._template(ROOT / "analysis" / "extremes" / "page.html.j2")
+    return set(drawn), template.render(**page.context(found, VIEW), figures=dict.fromkeys(drawn, "AA"), schema={}, part="extremes", parts={},
+                                       question="?", facts=FACTS, context=dict.fromkeys(("cpu_model", "num_cpus", "commit", "compiler",
+                                                                                        "flags", "libraries", "kernel", "machine", "dirty"), "c"))
+
+
+FACTS = {"date": "today", "profile": "smoke", "only": [], "parts": ["extremes"]}
+
+
+def test_page_figures_and_answers_of_all_columns():
+    found = made(run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), way("penalty"), way("saddle-point", status="degraded"),
+                 *(way("penalty", 1.0, number) for number in (1, 2)), way("saddle-point", who="b/v", scene="ways-mass-ratio-1-10", status="diverged"),
+                 stale(1, (2.0, 2.4, 6.0)), rounded(0.0, "reference/reference", "mbs_reference"), rounded(1e-12))
+    drawn, text = render(found)
+    assert drawn == {"battery", "battery-settings", "ways", "pivots", "roundoff-penalty"}
+    assert "1 run is “ok” or “plausible” though" in text and "build/mbs simulate &#39;a scene.json&#39;" in text
+    assert "N = 10: ×1.00" in text and "holds" in text and "Not measured" not in text
+    said = [one["text"] for one in sentences.answers(found, VIEW)]
+    assert said[0].startswith("2 of 3 runs at the extremes are ok or plausible, and right; 1 is silently wrong (loops N = 1)")
+    assert any("“α auto” is safe in most cells: 1 of 1" in text for text in said) and any("1.2 times the time" in text for text in said)
+    assert {one["anchor"] for one in sentences.answers(found, VIEW)} <= {"battery", "nobody", "ways", "pivots"}
+    assert all(f'id="{one["anchor"]}"' in text for one in sentences.answers(found, VIEW))
+    assert sentences.cases(found, VIEW) == []
+
+
+def test_a_page_of_nothing_says_so():
+    found = made()
+    drawn, text = render(found)
+    assert drawn == set() and text.count("Not measured") == 4
+    assert [one["anchor"] for one in sentences.answers(found, VIEW)] == [""] and sentences.cases(found, VIEW) == []
+
+
+def test_what_bears_unlike_masses_is_a_case_of_the_front_page():
+    table = pandas.DataFrame([{"way": title, "folder": folder, "axis": "mass ratio", "value": ratio, "safe": title == "equations scaled" or ratio < 1e9}
+                              for title in ways.WAYS for folder in ("a", "b") for ratio in (1e3, 1e9)])
+    [case] = sentences.cases({"ways": table}, VIEW)
+    assert case["take"].startswith("equations scaled,") and "10⁹" in case["case"]

@@ -1,0 +1,279 @@
+# Extremes: what is known of motions and cells, what the plan asks for in which order, a few cells on the real program.
+import json
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy
+import pytest
+from scipy.integrate import solve_ivp
+
+from analysis.core import records
+from analysis.core.registry import Registry
+from analysis.core.schema import conform, of_part
+from analysis.core.view import View
+from analysis.extremes import cells, judge, scenes, tables, ways
+from analysis.extremes.mechanisms import DragLink, LightEnd
+from analysis.extremes.motions import GRAVITY, Chain, Flat, singular_times
+from study.core import profile as profiles
+from study.core.contender import Contender
+from study.core.lab import Lab
+from study.core.studyset import StudySet, start
+from study.extremes import plan
+from study.scenes.references import four_bar
+from study.tests.conftest import PROGRAM
+
+TIMES = numpy.linspace(0, 3, 31)
+CHAINS = [Chain(3, angle=numpy.pi / 2, rate=0.0), Chain(3, angle=numpy.pi / 2, rate=3.0), Chain(1, angle=3.0, rate=0.5),
+          Chain(3, angle=numpy.pi / 2, rate=9.0), Chain(1, gravity=0.0), Chain(2, length=0.1, rods=(1, 1e3, 1))]
+
+
+@pytest.mark.parametrize("chain", CHAINS)
+def test_motions_solve_their_equation_of_motion(chain):
+    angles, rates = solve_ivp(lambda _, y: [y[1], chain.k * numpy.sin(y[0])], (0, 3), [chain.angle, chain.rate],
+                              t_eval=TIMES, rtol=1e-10, atol=1e-12, method="DOP853").y
+    sine, cosine = chain.phi(TIMES)
+    assert chain.speed(TIMES)**2 == pytest.approx(rates**2, rel=1e-6, abs=1e-6)
+    assert abs(sine - numpy.sin(angles)).max() < 1e-7 and abs(cosine - numpy.cos(angles)).max() < 1e-7
+
+
+def test_motions_are_those_of_the_four_bar_and_scale_with_length():
+    known = four_bar(TIMES, 5)
+    [small] = Chain(5, length=1e-2, rate=10.0).solutions(TIMES / 10)
+    for axis in "xy":
+        assert abs(Chain(5).solutions(TIMES)[0][f"B0.{axis}"] - known[f"B0.{axis}"]).max() < 1e-12
+        assert abs(small[f"B0.{axis}"] / 1e-2 - known[f"B0.{axis}"]).max() < 1e-12
+    assert Chain(1, rods=(3.0, 3.0), couplers=(3.0,)).k == pytest.approx(Chain(1).k)
+    times = singular_times(Chain(2), 20)
+    assert len(times) == 20 and abs(Chain(2).phi(times)[1]).max() < 1e-9
+    assert [len(Flat(1, angle=numpy.pi / 2, rate=0.0).solutions(TIMES)), len(Chain(1).solutions(TIMES))] == [2, 1]
+
+
+@pytest.mark.parametrize("gap", [3e-5, 1e-2])
+def test_a_drag_link_stays_in_its_assembly(gap):
+    motion, times = DragLink(gap), numpy.linspace(0, 2 * numpy.pi, 200001)
+    [found] = motion.solutions(times)
+    rocker = numpy.array([found["B1.x"] - (1 - gap), found["B1.y"]])
+    coupler = numpy.array([found["B1.x"] - found["B0.x"], found["B1.y"] - found["B0.y"]])
+    assert numpy.hypot(*rocker) == pytest.approx(1) and numpy.hypot(*coupler) == pytest.approx(1)
+    side = rocker[0] * coupler[1] - rocker[1] * coupler[0]  # which of its two assemblies it is
+    assert (numpy.sign(side) == numpy.sign(side[0])).all()
+
+
+def test_a_light_end_keeps_its_energy_and_follows_the_heavy_rod():
+    times = numpy.linspace(0, 3, 3001)
+    [found] = LightEnd(0.5).solutions(times)
+    a, b = numpy.arctan2(found["B.x"], -found["B.y"]), numpy.arctan2(found["C.x"] - found["B.x"], found["B.y"] - found["C.y"])
+    da, db = (numpy.gradient(numpy.unwrap(angle), times) for angle in (a, b))
+    energy = ((1 / 3 + 0.5) * da**2 + 0.5 * numpy.cos(a - b) * da * db + 0.5 / 3 * db**2) / 2 - GRAVITY * (
+        numpy.cos(a) + 0.25 * numpy.cos(b))
+    assert energy[5:-5] == pytest.approx(energy[0], abs=1e-3)
+    [light] = LightEnd(1e-9).solutions(times)
+    alone = solve_ivp(lambda _, y: [y[1], -1.5 * GRAVITY * numpy.sin(y[0])], (0, 3), [1.0, 0.0], t_eval=times, rtol=1e-10,
+                      atol=1e-10).y[0]
+    assert light["B.x"] == pytest.approx(numpy.sin(alone), abs=1e-6)
+
+
+def test_cells_have_names_of_their_own_and_what_is_known():
+    found = cells.battery()
+    assert len({cell.name for cell in found}) == len(found) > 50
+    assert {cell.axis for cell in found if cell.motion is None} == {"spring"}
+    assert [cell.label for cell in found if cell.scene] == ["N = 10000"]  # whose motion the program knows
+    assert all(cell.scene or json.dumps(cell.document, allow_nan=False) for cell in found)
+    assert all(cell.scene or cell.name.isascii() and "/" not in cell.name for cell in found)
+    assert all(float(f"{cell.step:g}") == pytest.approx(cell.step, rel=1e-12) for cell in found)
+    telling = {(axis, label) for axis, labels in cells.TELLING.items() for label in labels}
+    assert telling < {(cell.axis, cell.label) for cell in found}
+    assert {cell.axis for cell in found} == set(cells.TELLING)
+
+
+def test_what_is_kept_judges_every_loop_and_every_turn():
+    for cell in cells.battery():
+        instants = cell.steps // cell.every
+        assert instants >= min(cell.steps, cells.INSTANTS)
+        if cell.motion and cell.loops <= 5:
+            assert set(cell.columns) == set(cell.motion.solutions([0.0])[0])
+        assert len(cell.columns) * instants < 4000  # numbers of a record
+    assert Chain(1000).columns(6)[::2] == ("B0.x", "B200.x", "B400.x", "B600.x", "B800.x", "B1000.x")
+
+
+def test_standing_still_is_right_only_where_nothing_moves():
+    for cell in cells.battery():
+        times = numpy.linspace(0, cell.step * cell.steps, 9)
+        for solution in cell.motion.solutions(times)[:1] if cell.motion and cell.loops <= 1000 else ():
+            still = {column: numpy.full(9, solution[column][0]) for column in cell.columns}
+            error = judge.distances(still, solution, cell.length).max()
+            assert (error > judge.allowed(cell, [solution])) == (error > judge.STILL), cell.name
+
+
+VARIANTS = {"eigen_dense/llt": ["saddle-point", "rattle", "single"], "csc_klu/refactor": ["saddle-point"],
+            "csc_klu/guarded": ["saddle-point", "geometric-stiffness"], "some/one": []}
+REGISTRY = Registry({"implementations": [{"folder": name.split("/")[0], "available": True, "library": "x", "variants": [
+    {"name": name, "settings": settings, "dense": name.startswith("eigen")}]} for name, settings in VARIANTS.items()]})
+
+
+class Asked:
+    """A lab that only notes what it is asked for."""
+
+    def __init__(self, names=tuple(VARIANTS), **settings):
+        self.registry, self.contenders = REGISTRY, [Contender(name, name) for name in names]
+        self.settings = {"implementations": {"forms": ["csc_klu/refactor"], "others": ["eigen_dense/llt"]}, "everyone": True,
+                         "cells": 0, "loops": {"ways": [2], "times": [10], "roundoff": [1, 2]}, "processes": 2,
+                         "limit": 5.0} | settings
+        self.runs, self.skipped = [], []
+
+    def contender(self, name):
+        return next((one for one in self.contenders if one.name == name), None)
+
+    def scene(self, name, document):
+        return f"raw/scenes/{name}.json"
+
+    def run(self, asked, drop=False):
+        self.runs.append(asked)
+
+    def skip(self, cell, status, reason):
+        self.skipped.append((cell, status, reason))
+
+    def found(self):
+        return [cell.settled() for some in self.runs for cell in some]
+
+
+def who(found):
+    return [cell.contenders[0].variant for cell in found]
+
+
+def test_the_battery_asks_for_what_is_most_telling_first():
+    lab = Asked()
+    plan.run(lab, "battery")
+    references, runs = lab.runs
+    assert {cell.program for cell in references} == {"mbs_reference"} and len(references) == 2 * 4
+    assert len({cell.settled() for cell in runs}) == len(runs)
+    telling = {cell.name for cell in cells.battery() if cell.place is not None}
+    asked = [(cell.scene.removeprefix("raw/scenes/").removesuffix(".json") in telling, cell.role in ("penalty", "saddle-point"),
+              cell.contenders[0].variant) for cell in runs]
+    ranks = [[(True, True), (False, True), (True, False)].index(one[:2]) + 3 * (
+        one[2] != ("csc_klu/refactor" if one[1] else "eigen_dense/llt")) for one in asked]
+    assert ranks == sorted(ranks) and set(ranks) == set(range(6))
+    served = {name: {"penalty", *settings} for name, settings in VARIANTS.items()}
+    assert all("saddle-point" not in cell.role or "saddle-point" in served[name] for cell, name in zip(runs, who(runs)))
+    assert {name for cell, name in zip(runs, who(runs)) if cell.role == "rattle"} == {"eigen_dense/llt"}
+    assert {(status, cell.contenders[0].variant) for cell, status, _ in lab.skipped} == {("excluded", "eigen_dense/llt")}
+    assert {"N-1000", "four-bar:10000"} <= {cell.scene.removeprefix("raw/scenes/loops-").removesuffix(".json")
+                                           for cell, _, _ in lab.skipped}
+
+
+def test_a_small_battery_has_one_cell_an_axis_and_nobody_else():
+    lab = Asked(cells=1, everyone=False)
+    plan.run(lab, "battery")
+    scenes_asked = {cell.scene for cell in lab.runs[1]}
+    assert len(scenes_asked) == len(cells.TELLING) and set(who(lab.runs[1])) == {"csc_klu/refactor", "eigen_dense/llt"}
+    alone = Asked(names=["some/one"], cells=1, everyone=False)
+    plan.run(alone, "battery")
+    assert set(who(alone.runs[1])) == {"some/one"}  # who is chosen with --only runs though no profile names it
+
+
+def test_the_reference_is_kept_at_the_same_instants():
+    lab = Asked()
+    plan.run(lab, "battery")
+    pendulum = next(cell for cell in cells.battery() if cell.motion is None)
+    for cell in lab.runs[0]:
+        step = float(judge.options_of(SimpleNamespace(cell=cell.settled().document()))["step"])
+        assert step * cell.every == pytest.approx(pendulum.step * pendulum.every)
+
+
+def test_ways_take_the_first_variant_that_serves_them_and_turns_come_first():
+    lab = Asked()
+    plan.run(lab, "ways")
+    times, regions = lab.runs
+    assert all(cell.timed for cell in times) and not any(cell.timed for cell in regions)
+    assert [cell.number for cell in times] == sorted(cell.number for cell in times) and {cell.number for cell in times} == {1, 2}
+    by_way = {cell.role: name for cell, name in zip(regions, who(regions)) if name.startswith("csc_klu")}
+    assert by_way["penalty"] == "csc_klu/refactor" and by_way["penalty-geometric-stiffness"] == "csc_klu/guarded"
+    assert ("penalty-precision.mixed", "unsupported", "no variant serves mixed") in [
+        (cell.role, status, reason) for cell, status, reason in lab.skipped]
+    assert len({cell.settled() for cell in times + regions}) == len(times + regions)
+    assert any("--scale-equations" in cell.settled().settings for cell in times)
+
+
+def test_pivots_need_their_program_and_klu(monkeypatch):
+    monkeypatch.setattr(plan, "program_of", lambda name: "build/no_such_program")
+    for names, status in ((["csc_klu/refactor"], "unavailable"), (["some/one"], "excluded")):
+        lab = Asked(names=names)
+        plan.run(lab, "pivots")
+        assert [one[1] for one in lab.skipped] == 2 * [status] and not lab.runs
+    monkeypatch.setattr(plan, "program_of", lambda name: "study/run")  # which is there
+    lab = Asked()
+    plan.run(lab, "pivots")
+    assert [cell.number for cell in lab.found()] == [1, 2] and all(cell.timed for cell in lab.found())
+
+
+def test_roundoff_asks_for_a_reference_of_each_form_and_size():
+    lab = Asked()
+    plan.run(lab, "roundoff")
+    references, runs = lab.runs
+    assert {(cell.scene, cell.role) for cell in references} == {(cell.scene, cell.role) for cell in runs}
+    assert [replace(cell, contenders=(), program="mbs") for cell in references][0] == replace(runs[0], contenders=())
+
+
+@pytest.mark.parametrize("name", profiles.names())
+def test_columns_keep_the_budget(name):
+    settings = profiles.load(name, ["extremes"]).parts["extremes"]
+    assert set(plan.columns(settings, None)) == {"battery", "ways", "pivots", "roundoff"}
+    assert sum(plan.columns(settings, None).values()) <= settings["seconds"] * (1 + 1e-12)
+
+
+@pytest.fixture
+def studyset(tmp_path, monkeypatch):
+    monkeypatch.setenv("MBS_PROGRAM", str(PROGRAM))
+    return start(tmp_path, profiles.load("smoke", ["extremes"]), ["csc_klu/refactor"], ["extremes"])
+
+
+def made(studyset):
+    """The tables as the schema has them."""
+    found = tables.build(records.read_part(studyset.folder, "extremes"), View(studyset.folder, "extremes"))
+    schema = of_part("extremes")
+    return {name: conform(frame if len(frame.columns) else frame.reindex(columns=list(schema[name])), schema[name], name)
+            for name, frame in found.items()}
+
+
+def test_the_battery_on_the_real_program_is_resumed(studyset, monkeypatch):
+    far = Chain(2, length=1e4, rate=1e-2)
+    some = [cells.Extreme("loops", "one", "four-bar:1", Chain(1), steps=80),
+            cells.Extreme("length", "1e4 m", "", far, far.document(), step=0.125, steps=80, length=1e4),
+            cells.Extreme("redundant", "rod given twice", "", Chain(1), scenes.twin_rod(same_points=True), steps=80),
+            cells.Extreme("step", "too long", "", Chain(1), Chain(1).document(), step=0.5, steps=80),
+            cells.Extreme("nearly singular", "by 3e-5 m", "", DragLink(3e-5), DragLink(3e-5).document())]
+    monkeypatch.setattr(cells, "battery", lambda: some)
+    monkeypatch.setitem(studyset.profile.parts["extremes"], "cells", 0)
+    monkeypatch.setattr(cells, "OTHERS", ())
+    plan.run(Lab(studyset, "extremes", "battery"), "battery")
+    table = made(studyset)["battery"]
+    assert list(table.setting) == 5 * ["penalty", "saddle-point"]
+    assert list(table.status[:6]) == 2 * ["ok"] + 2 * ["plausible"] + 2 * ["refused"] and (table.true_error[:4] < 1e-4).all()
+    assert (table.status[6:8] == "diverged").all() and table.failed_at[6:8].notna().all() and table.true_error[6:8].isna().all()
+    assert "allowed is one rod" in table.reason[4] and not table.silent[:8].any()
+    assert list(table.silent[8:]) == list(table.status[8:].isin(["ok", "plausible"]) & (table.true_error[8:] > 0.01))
+    files = [studyset.folder / "raw" / "extremes" / name for name in table.record]
+    before = [path.stat().st_mtime_ns for path in files[1:]]
+    files[0].unlink()
+    lab = Lab(StudySet(studyset.folder), "extremes", "battery")
+    monkeypatch.setitem(lab.settings, "cells", 0)
+    plan.run(lab, "battery")
+    assert made(studyset)["battery"].drop(columns="record").equals(table.drop(columns="record"))
+    assert files[0].exists() and before == [path.stat().st_mtime_ns for path in files[1:]]
+
+
+def test_ways_on_the_real_program(studyset, monkeypatch):
+    monkeypatch.setattr(ways, "WAYS", {title: ways.WAYS[title] for title in ("α = 1e8", ways.PLAIN, "exact tangent", "saddle-point")})
+    monkeypatch.setattr(ways, "STEPS", (5e-3,))
+    monkeypatch.setattr(ways, "DURATION", 0.1)
+    monkeypatch.setitem(studyset.profile.parts["extremes"], "loops", {"ways": [2], "times": [10], "roundoff": []})
+    lab = Lab(studyset, "extremes", "ways")
+    plan.run(lab, "ways")
+    view = SimpleNamespace(registry=studyset.registry, settings=lab.settings)
+    found = ways.build(records.read_part(studyset.folder, "extremes"), view.settings, view.registry)
+    table, cost = found["ways"], found["ways_cost"]
+    assert list(dict.fromkeys(table.way)) == ["α = 1e8", "α auto", "exact tangent", "saddle-point"]
+    assert list(table[table.way == "exact tangent"].status) == ["unsupported"]
+    assert table[table.axis == "step"].safe.astype(bool).all()
+    assert list(cost.way) == ["α = 1e8", "α auto", "saddle-point"] and (cost.processes == 2).all() and (cost.ratio > 0).all()
+    assert cost.ratio[1] == 1 and (cost.low < cost.ratio)[[0, 2]].all()
