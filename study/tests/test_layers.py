@@ -1,0 +1,88 @@
+# The common layer imports nothing from above it, and no modules import each other in a circle.
+import ast
+import subprocess
+
+from analysis.core.files import ROOT
+from analysis.core.parts import parts
+
+BUILDS_UPON = {("accuracy", "scenes"),  # standard problems with their references
+               ("limit", "scenes")}     # the same scenes
+PATHS = [path for path in subprocess.run(["git", "ls-files", "study/*.py", "analysis/*.py"], cwd=ROOT, capture_output=True,
+                                         text=True, check=True).stdout.split("\n")[:-1] if (ROOT / path).exists()]
+
+
+def module(path):
+    return path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+
+
+MODULES = {module(path): path for path in PATHS}
+
+
+def imports(name):
+    """Modules of ours that a module imports, those inside of functions too."""
+    found = set()
+    for node in ast.walk(ast.parse((ROOT / MODULES[name]).read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {one.name for one in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{name}: imports are absolute"
+            found |= {f"{node.module}.{one.name}" if f"{node.module}.{one.name}" in MODULES else node.module
+                      for one in node.names}
+    return {one for one in found if one.partition(".")[0] in ("study", "analysis")}
+
+
+GRAPH = {name: imports(name) for name in MODULES}
+
+
+def layer(name):
+    """"study.core", "analysis.map", …"""
+    return ".".join(name.split(".")[:2])
+
+
+def part(name):
+    return name.split(".")[1] if "." in name else ""
+
+
+def wrong(pairs):
+    return sorted(f"{name} imports {one}" for name, one in pairs)
+
+
+def edges():
+    return [(name, one) for name, found in GRAPH.items() for one in found if layer(name) != layer(one)]
+
+
+def test_there_is_something_to_look_at():
+    assert {"study.core.lab", "analysis.core.records", "study.tools.store"} <= set(GRAPH)
+    assert "study.core.executor" in GRAPH["study.core.lab"]
+
+
+def test_what_is_imported_is_there():
+    assert wrong((name, one) for name, found in GRAPH.items() for one in found
+                 if one not in MODULES and one not in ("study", "analysis", "study.tools")) == []
+
+
+def test_the_common_layer_imports_nothing_from_above():
+    allowed = {"analysis.core": set(), "study.core": {"analysis.core"}}
+    assert wrong((name, one) for name, one in edges() if layer(name) in allowed and layer(one) not in allowed[layer(name)]) == []
+
+
+def test_parts_import_their_twin_and_only_those_that_they_build_upon():
+    between = [(name, one) for name, one in edges() if {part(name), part(one)} <= set(parts())]
+    assert wrong((name, one) for name, one in between if part(name) != part(one)
+                 and (part(name), part(one)) not in BUILDS_UPON) == []
+    for first in parts():  # and of a part and its twin only one imports the other
+        assert not {("study." + first, "analysis." + first), ("analysis." + first, "study." + first)} <= {
+            (layer(name), layer(one)) for name, one in between}, first
+
+
+def test_nothing_imports_tools_or_tests():
+    assert wrong((name, one) for name, one in edges() if layer(one) == "study.tools" and layer(name) != "study.tests") == []
+    assert wrong((name, one) for name, one in edges() if layer(one).endswith(".tests") and not layer(name).endswith(".tests")) == []
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    left = {name: {one for one in found if one in GRAPH and one != name} for name, found in GRAPH.items()}
+    while free := [name for name, found in left.items() if not found & set(left)]:
+        for name in free:
+            del left[name]
+    assert {name: sorted(found & set(left)) for name, found in left.items()} == {}
