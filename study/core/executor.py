@@ -113,7 +113,7 @@ def _failure(ended):
         refused = ended.code == USAGE
         reason = ended.reason.partition(": ")[2] or ended.reason
         return {"status": "refused" if refused else "crashed", "reason": reason if refused else ended.reason}
-    culprit = CULPRIT.search(ended.reason + ended.stderr)
+    culprit = CULPRIT.search(f"{ended.reason}\n{ended.stderr}")
     return {"status": ended.status, "reason": ended.reason, "output": {"culprit": culprit[1]} if culprit else {}}
 
 

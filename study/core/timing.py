@@ -55,7 +55,7 @@ def _culprits(lab, cell, record):
     """[(contender, status, reason)] of those who ended a process: the one that it named, or else each that ends one
     when it is alone there; all, where none does."""
     named = record.output.get("culprit", "")
-    chosen = [one for one in cell.contenders if named.startswith(one.variant)]
+    chosen = [one for one in cell.contenders if named == f"{one.variant}/{cell.scene}"]
     if chosen or len(cell.contenders) == 1:
         return [(one, record.status, record.reason) for one in chosen or cell.contenders]
     alone = [(one, lab.one(replace(cell, contenders=(one,), role=f"{cell.role}-alone"))) for one in cell.contenders]
