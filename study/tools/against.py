@@ -152,10 +152,11 @@ def _row(name, scene, found):
         return row | {"reason": f"{wrong.implementation.iloc[0]}: {wrong.status.iloc[0]}: {wrong.reason.iloc[0]}"}
     if both.steps.nunique() > 1 or both.start.nunique() > 1:
         return row | {"reason": "the two programs time different stretches"}
-    # Samples of two processes do not belong together as those of one turn do: their medians are compared.
-    pairs = both.assign(environment="pair", samples=[(middle,) for middle in both.step_us])
+    # Samples of two processes do not belong together as those of one turn do: their medians are compared; by the clock,
+    # since what the processor's time covers is not alike in all revisions.
+    pairs = both.assign(environment="pair", samples=[(middle,) for middle in both.clock_us])
     ratio = timing.ratio(pairs, "new", "old")
-    middle = both.groupby("implementation").step_us.median()
+    middle = both.groupby("implementation").clock_us.median()
     return row | {"old_us": middle["old"], "new_us": middle["new"], "ratio": ratio.value, "low": ratio.low,
                   "high": ratio.high, "pairs": len(found["old"])}
 

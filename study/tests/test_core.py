@@ -1,0 +1,479 @@
+# The common layer: cells and their identity, records and their digests, the lab, schemas, sets, locks, profiles.
+import json
+import math
+import shutil
+import tempfile
+import threading
+import time
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy
+import pandas
+import pytest
+
+from analysis.core import records, schema
+from analysis.core.errors import StudyError
+from analysis.core.files import digest, read_object, write_json, write_text
+from analysis.core.parts import parts
+from analysis.core.registry import Registry
+from analysis.core.text import number
+from analysis.core.view import View, facts_of
+from study.core import executor, locks, profile, studyset
+from study.core.cell import Cell
+from study.core.contender import Contender, on_usual_pairs
+from study.core.lab import Lab, cores
+from study.core.options import Parser, positive
+from study.core.progress import Reader, duration
+from study.tests.conftest import TEMPORARY
+
+ONE, TWO = Contender("one/a", "one/a"), Contender("two/b", "two/b", "openblas")
+CELL = Cell("simulate", "four-bar:3", (ONE,), ("--step", 0.001), "map")
+FIELDS = {"cell": CELL.settled().document(), "status": "done", "reason": "", "seconds": 0.5, "command": ["mbs"],
+          "context": {"machine": "m1"}, "output": {"µ": [1, 2.5, None]}}
+
+
+# Cells
+
+OTHER = {"kind": "check", "scene": "four-bar:4", "contenders": (TWO,), "settings": ("--step", 0.002), "role": "other",
+         "number": 1, "program": "mbs_reference", "timed": True, "seconds": 61.0, "memory_mb": 1, "keep": ("A.x",), "every": 2}
+
+
+def test_all_that_a_cell_is_makes_another_name():
+    names = {replace(CELL, **{key: value}).settled().file_name() for key, value in OTHER.items()}
+    assert len(names) == len(OTHER) and CELL.settled().file_name() not in names
+    assert set(OTHER) == {one.name for one in fields(Cell)} - {"inputs"}
+
+
+def test_equal_cells_have_one_name_whatever_words_are_made_of():
+    assert replace(CELL, settings=("--step", "0.001")).settled() == CELL.settled()
+    assert CELL.settled().file_name() == replace(CELL, settings=["--step", "0.001"]).settled().file_name()
+    assert CELL.settled().file_name().startswith("map/one.a@four-bar-3-")
+
+
+def test_an_edited_scene_is_another_cell(tmp_path):
+    path = tmp_path / "scene.json"
+    path.write_text("{}")
+    before = replace(CELL, scene=str(path)).settled()
+    path.write_text("{ }")
+    assert replace(CELL, scene=str(path)).settled().file_name() != before.file_name()
+
+
+@pytest.mark.parametrize("scene", ["a/../../b c\n'\".json", "x" * 500, "ß\x00|<>*?", ""])
+def test_names_of_files_are_safe(scene):
+    name = replace(CELL, scene=scene).settled().file_name().removeprefix("map/")
+    assert "/" not in name and len(name) < 120 and name.isprintable() and not set(name) & set("|<>*?\"' :")
+
+
+# The executor
+
+def test_command_lines():
+    words = executor.command_of(Cell("bench", "four-bar:3", (TWO,), ("--steps", 4)))
+    assert words[1:] == ["bench", "four-bar:3", "--implementation", "two/b", "--steps", "4", "--benchmark_out_format=json",
+                         "--benchmark_out=FILE", "--blas", "openblas"]
+    words = executor.command_of(replace(CELL, every=5, keep=("outputs",)))
+    assert words[-5:] == ["--json", "--output", "MOTION", "--every", "5"]
+
+
+def test_the_stand_in_is_that_of_this_tree_only(monkeypatch):
+    monkeypatch.setenv("MBS_PROGRAM", "/other/mbs")
+    assert executor.program_of() == executor.program_of(build="clang-O2") == "/other/mbs"
+    assert executor.program_of("mbs_reference") == "build/mbs_reference"
+    assert executor.program_of(build="against/abc/build") == "build-against/abc/build/mbs"
+
+
+def test_rows_of_a_benchmark_are_kept_once():
+    rows = [{"name": "a/b/s", "run_type": "iteration", "real_time": time, "cpu_time": 1.0, "steps": 8, "passes": passes, "threads": 1}
+            for time, passes in ((2.0, 3), (3.0, 4))] + [{"name": "a/b/s_median", "run_type": "aggregate", "real_time": 9}]
+    [found] = executor.compact({"benchmarks": rows})["rows"].items()
+    assert found == ("a/b/s", {"stretch_us": [2.0, 3.0], "cpu_us": [1.0, 1.0], "steps": 8, "passes": [3, 4]})
+
+
+@pytest.fixture
+def mbs(tmp_path, monkeypatch):
+    """Makes a script stand in for `mbs`; it counts its runs."""
+    def make(text):
+        path = tmp_path / "mbs"
+        path.write_text(f"#!/bin/bash\necho run >> {tmp_path}/runs\n{text}\n")
+        path.chmod(0o755)
+        monkeypatch.setenv("MBS_PROGRAM", str(path))
+        monkeypatch.setattr(tempfile, "tempdir", TEMPORARY.name)
+        return lambda: len((tmp_path / "runs").read_text().split()) if (tmp_path / "runs").exists() else 0
+    return make
+
+
+@pytest.mark.parametrize("text, status, reason", [
+    ("echo 'mbs: --step is 0 s' >&2; exit 2", "refused", "mbs: --step is 0 s"),
+    ("echo 'mbs: odd' >&2; exit 7", "crashed", "exit status 7: mbs: odd"),
+    ("kill -SEGV $$", "crashed", "SIGSEGV"), ("echo nothing", "crashed", "its output is no JSON"),
+    ("echo '[1]'", "crashed", "no JSON object"), ("echo '{\"a\": NaN}'", "crashed", "NaN is no number"),
+    ("sleep 9", "timeout", "did not end within 0.5 s"), ("echo std::bad_alloc >&2; exit 1", "out-of-memory", "4096 MB"),
+    ("echo '{\"a\": 1}'; exit 1", "done", "")])
+def test_every_way_to_end_has_a_status_and_a_reason(mbs, text, status, reason):
+    mbs(text)
+    found = executor.run(replace(CELL, seconds=0.5).settled(), {"machine": "m1"})
+    assert found["status"] == status and reason in found["reason"]
+    assert found["output"] == ({"a": 1} if status == "done" else {}) and found["context"] == {"machine": "m1"}
+
+
+def test_who_ended_a_process_of_several_is_known(mbs):
+    mbs("echo 'mbs bench: ended by SIGSEGV in one/a/four-bar:3' >&2; kill -SEGV $$")
+    assert executor.run(CELL.settled(), None)["output"] == {"culprit": "one/a/four-bar:3"}
+
+
+def test_the_motion_is_kept_by_columns(mbs):
+    mbs('while [[ $1 != --trajectory ]]; do shift; done; printf "t,A.x,A.y\\n0,1,2\\n1,inf,4\\n" > $2; echo "{}"')
+    found = executor.run(replace(CELL, every=1, keep=("A.x",)).settled(), {})
+    assert found["series"] == {"t": [0, 1], "A.x": [1, None]}
+
+
+def test_results_of_another_build_are_never_merged():
+    known = dict.fromkeys(executor.FINGERPRINT, "x") | {"blas_loaded": "a;b"}
+    executor.need_same(known, known | {"blas_loaded": "b;a", "date": "later"}, "set")
+    for key in executor.FINGERPRINT:
+        with pytest.raises(StudyError, match=rf"another machine or build \({key} is"):
+            executor.need_same(known, known | {key: "y"}, "set")
+
+
+# Records
+
+def test_a_record_is_read_as_it_was_written(tmp_path):
+    records.write(tmp_path / "one.json", FIELDS)
+    found = records.read(tmp_path / "one.json", "c/map/one.json")
+    assert (found.name, found.column, found.role, found.done, found.series) == ("c/map/one.json", "c", "map", True, {})
+    assert found.output == FIELDS["output"]
+
+
+def test_every_changed_byte_of_a_record_is_noticed():
+    text = records.to_text(FIELDS)
+    for place in range(len(text)):
+        changed = text[:place] + ("x" if text[place] != "x" else "y") + text[place + 1:]
+        for damaged in (changed, text[:place], text + text[place]):
+            with pytest.raises(StudyError, match="HERE is (changed|truncated or no record)"):
+                records.from_text(damaged, "one", "HERE")
+
+
+@pytest.mark.parametrize("key, value", [
+    ("cell", []), ("status", 3), ("reason", None), ("seconds", "1"), ("command", "mbs"), ("context", 1), ("output", [1]),
+    ("series", "x"), ("unknown", 1), *((key, ...) for key in records.KINDS)])
+def test_a_record_of_another_shape_is_none_whatever_its_digest(key, value):
+    data = FIELDS | {key: value}
+    if value is ...:
+        del data[key]
+    with pytest.raises(StudyError, match=rf"HERE is no record \({key}\)"):
+        records.from_text(records.to_text(data), "one", "HERE")
+
+
+def test_not_a_number_is_never_written():
+    with pytest.raises(ValueError):
+        records.to_text(FIELDS | {"seconds": math.nan})
+
+
+@pytest.fixture
+def loose(tmp_path):
+    """A set's folder with records, a scene and a partial file."""
+    for number in range(5):
+        records.write(tmp_path / "raw" / "part" / "c" / "map" / f"{number}.json", FIELDS | {"seconds": number / 3})
+    write_json(tmp_path / "raw" / "part" / "scenes" / "x.json", {"points": []})
+    (tmp_path / "raw" / "part" / "c" / ".partial-1-x.json").write_text("half")
+    return tmp_path
+
+
+def test_an_archive_holds_the_same_records_and_scenes(loose):
+    before = records.read_part(loose, "part")
+    archive = records.archive_of(loose, "part")
+    records.pack(loose, "part", archive)
+    assert [one.name for one in before] == [f"c/map/{number}.json" for number in range(5)]
+    assert records.read_part(loose, "part") == before
+    again = loose / "again.tar.xz"
+    shutil.copytree(loose / "raw" / "part", loose / "other" / "raw" / "part")  # other times
+    records.pack(loose / "other", "part", again)
+    assert again.read_bytes() == archive.read_bytes()
+    import tarfile
+    with tarfile.open(archive) as tar:
+        assert [name for name in tar.getnames() if "scenes" in name or "partial" in name] == ["scenes/x.json"]
+
+
+def test_an_archive_that_was_cut_or_changed_anywhere_is_damaged(loose):
+    archive = records.archive_of(loose, "part")
+    records.pack(loose, "part", archive)
+    whole = archive.read_bytes()
+    for place in range(0, len(whole), 7):
+        for damaged in (whole[:place], whole[:place] + bytes([whole[place] ^ 255]) + whole[place + 1:]):
+            archive.write_bytes(damaged)
+            with pytest.raises(StudyError, match="part.tar.xz"):
+                records.read_part(loose, "part")
+
+
+# The lab
+
+class Set:
+    """What a lab needs of a set."""
+    facts = {"context": {"machine": "m1"}}
+    registry = contenders = None
+
+    def __init__(self, folder):
+        self.folder, self.progress, self.scratch = folder, folder / ".progress", folder
+        self.profile = type("Profile", (), {"parts": {"part": {"key": 3}}})
+
+    def context(self, _):
+        return self.facts["context"]
+
+
+def cells(count, **more):
+    return [replace(CELL, number=number, **more) for number in range(count)]
+
+
+def test_what_has_a_record_is_never_run_again(mbs, tmp_path):
+    runs = mbs('echo "{}"')
+    first = Lab(Set(tmp_path), "part", "column")
+    found = first.run(cells(6) + cells(2))
+    assert runs() == 6 and [one.cell["number"] for one in found] == [0, 1, 2, 3, 4, 5, 0, 1]
+    path = tmp_path / "raw" / "part" / found[3].name
+    before = {one: one.stat().st_mtime_ns for one in (tmp_path / "raw").rglob("*.json")}
+    path.unlink()
+    second = Lab(Set(tmp_path), "part", "column")
+    again = second.run(cells(6))
+    assert runs() == 7 and sorted(second.names) == sorted(first.names) == sorted(set(first.names))
+    assert [one.stat().st_mtime_ns for one in before if one != path] == [at for one, at in before.items() if one != path]
+    assert [one.output for one in again] == [{}] * 6 and second.settings == {"key": 3}
+
+
+def test_a_changed_record_stops_it(mbs, tmp_path):
+    mbs('echo "{}"')
+    [record] = Lab(Set(tmp_path), "part", "column").run(cells(1))
+    path = tmp_path / "raw" / "part" / record.name
+    path.write_text(path.read_text().replace('"seconds":', '"seconds":1'))
+    with pytest.raises(StudyError, match=f"{path.name} is changed"):
+        Lab(Set(tmp_path), "part", "column").run(cells(1))
+
+
+def test_what_the_budget_has_no_room_for_has_a_record_that_says_so(mbs, tmp_path):
+    runs = mbs('sleep 0.2; echo "{}"')
+    lab = Lab(Set(tmp_path), "part", "column", 0.5)
+    found = lab.run(cells(6, timed=True), drop=True)
+    statuses = [one.status for one in found]
+    done = statuses.count("done")
+    assert statuses == ["done"] * done + ["dropped"] * (6 - done) and 1 <= done <= 3 and runs() == done
+    assert "the budget of" in found[-1].reason and lab.left <= 0 and len(lab.names) == 6
+    again = Lab(Set(tmp_path), "part", "column", 0.5)
+    assert [one.status for one in again.run(cells(6, timed=True), drop=True)] == statuses and runs() == done
+    assert again.left == pytest.approx(lab.left)
+
+
+def test_untimed_cells_share_the_cores_and_timed_ones_have_the_machine(mbs, tmp_path):
+    mbs(f'echo begin >> {tmp_path}/log; sleep 0.1; echo end >> {tmp_path}/log; echo "{{}}"')
+    Lab(Set(tmp_path), "part", "timed").run(cells(3, timed=True))
+    assert (tmp_path / "log").read_text().split() == ["begin", "end"] * 3
+    lab = Lab(Set(tmp_path), "part", "others")
+    records_of = lab.run(cells(4))
+    assert lab.spent == pytest.approx(sum(one.seconds for one in records_of) / cores())
+
+
+def test_a_skipped_cell_has_a_reason_and_stays(tmp_path):
+    lab = Lab(Set(tmp_path), "part", "column")
+    assert lab.skip(CELL, "excluded", "too slow").reason == "too slow"
+    assert lab.skip(CELL, "excluded", "another one").reason == "too slow" and lab.names == ["column/" + CELL.settled().file_name()]
+
+
+def test_progress_is_told_and_read_in_lines(tmp_path):
+    reader = Reader(tmp_path / ".progress")
+    lab = Lab(Set(tmp_path), "part", "column")
+    lab.progress.expect(3)
+    lab.tell("words")
+    with open(tmp_path / ".progress", "a") as file:
+        file.write('{"part": "p"')
+    assert [event.get("text") for event in reader.events()] == [None, "words"]
+    with open(tmp_path / ".progress", "a") as file:
+        file.write(', "column": "c", "done": 1}\n')
+    assert reader.events() == [{"part": "p", "column": "c", "done": 1}]
+    assert [duration(one) for one in (5, 80, 7300)] == ["5 s", "1 min 20 s", "2 h 1 min"]
+
+
+# Schemas and tables
+
+COLUMNS = {"name": ("text", "", "who"), "x": ("number", "m", "where"), "good": ("flag", "", "whether")}
+
+
+def test_tables_come_back_to_the_last_bit(tmp_path, monkeypatch):
+    monkeypatch.setattr(schema, "of_part", lambda part: {"one": COLUMNS | {"record": ("text", "", "")}})
+    values = numpy.random.default_rng(1).random(500) * 10.0 ** numpy.arange(-250, 250)
+    frame = pandas.DataFrame({"x": [*values, math.inf, math.nan], "name": "a,b\n\"c\"", "record": "r"})
+    written = schema.write_tables(tmp_path, "part", {"one": frame}, [])["one"]
+    found = schema.read_table(tmp_path, "part", "one")
+    assert list(found.columns) == ["name", "x", "good", "record"]
+    assert (found.x[:501] == [*values, math.inf]).all() and math.isnan(found.x[501]) and found.good.isna().all()
+    assert found.name.equals(written.name)
+
+
+@pytest.mark.parametrize("frame, words", [
+    ({"x": ["1", "two"]}, "line 3: x is no number: 'two'"), ({"y": [1]}, "its schema does not know: y")])
+def test_what_is_not_of_the_schema_is_refused(frame, words):
+    with pytest.raises(StudyError, match=words):
+        schema.conform(pandas.DataFrame(frame), COLUMNS, "one.csv")
+
+
+def test_flags_and_texts():
+    found = schema.conform(pandas.DataFrame({"good": [True, "False", numpy.bool_(True), None], "name": [1, None, "a", "b"]}),
+                           COLUMNS, "one.csv")
+    assert found.good.tolist()[:3] == [True, False, True] and found.good.isna().tolist() == [False] * 3 + [True]
+    assert found.name.tolist()[1:] == ["", "a", "b"] and found.x.isna().all()
+
+
+@pytest.mark.parametrize("part", list(parts()))
+def test_schemas_of_all_parts_are_whole(part):
+    for table, columns in schema.of_part(part).items():
+        assert all(meaning for _, _, meaning in columns.values()), table
+        assert all(name.isidentifier() for name in columns), table
+
+
+def test_a_schema_without_records_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(schema, "ROOT", tmp_path)
+    for columns in ("x: [number, m, where]", "record: [words, '', '']", "record: [text, '']"):
+        write_text(tmp_path / "analysis" / "part" / "schema.yaml", f"one:\n  {columns}\n")
+        with pytest.raises(StudyError, match="one: "):
+            schema.of_part("part")
+
+
+# Sets, profiles, files
+
+FACTS = {"profile": "quick", "only": [], "parts": ["map"], "programs": {}, "context": {"machine": "m1"}, "date": "today"}
+
+
+@pytest.mark.parametrize("key", FACTS)
+def test_a_set_of_another_shape_is_named(tmp_path, key):
+    for changed in ({name: value for name, value in FACTS.items() if name != key}, FACTS | {key: 3}):
+        write_json(tmp_path / "set.json", changed)
+        with pytest.raises(StudyError, match=rf"set.json is damaged \({key} is"):
+            facts_of(tmp_path)
+
+
+@pytest.mark.parametrize("content", [b"", b"[]", b"3", b"\xff\xfe", b"[" * 100000, b'{"a": '])
+def test_what_is_no_object_is_named(tmp_path, content):
+    (tmp_path / "one.json").write_bytes(content)
+    with pytest.raises(StudyError, match="one.json is damaged"):
+        read_object(tmp_path / "one.json")
+
+
+@pytest.mark.parametrize("text", ["", "3", "parts: 3", "parts: {map: }", "\0", "a: [", "parts: {other: {}}"])
+def test_a_damaged_profile_of_a_set_is_named(tmp_path, text):
+    (tmp_path / "profile.yaml").write_text(text)
+    if text != "parts: {map: }":
+        with pytest.raises(StudyError, match="profile.yaml is damaged"):
+            View(tmp_path, "map").settings
+    with pytest.raises(StudyError, match="profile.yaml"):
+        profile.read(tmp_path / "profile.yaml", "one")
+
+
+@pytest.mark.parametrize("name", profile.names())
+def test_profiles_fit_their_plans_and_keep_to_their_budgets(name):
+    found = profile.load(name)
+    for part, settings in found.parts.items():
+        columns = profile.plan_of(part).columns(settings, None)
+        assert columns and sum(columns.values()) <= settings["seconds"] * 1.0001, part
+        assert all(column.replace("-", "").replace("_", "").isalnum() for column in columns), part
+
+
+@pytest.mark.parametrize("change, words", [
+    (lambda data: data.pop("title"), "missing or unknown: title"), (lambda data: data.update(parts=None), "parts needs settings"),
+    (lambda data: data.update(blas=[]), "must name a pair for all"), (lambda data: data.update(more=1), "unknown: more"),
+    (lambda data: data["parts"].update(stability=[]), "stability needs settings"),
+    (lambda data: data["parts"]["stability"].update(seconds="10"), "seconds must be of type float"),
+    (lambda data: data["parts"]["stability"].update(seconds=float("inf")), "must be a number of at least 0"),
+    (lambda data: data["parts"]["stability"].pop("loops"), "missing or unknown: loops")])
+def test_a_wrong_profile_is_one_line(tmp_path, change, words):
+    import yaml
+    data = yaml.safe_load((profile.FOLDER / "smoke.yaml").read_text())
+    change(data)
+    (tmp_path / "one.yaml").write_text(yaml.safe_dump(data))
+    with pytest.raises(StudyError, match=words):
+        profile.read(tmp_path / "one.yaml", "one", ["stability"])
+
+
+def test_a_column_is_opened_again_only_where_a_record_is_missing(tmp_path):
+    known = studyset.StudySet(tmp_path)
+    for column in ("a", "b"):
+        records.write(tmp_path / "raw" / "part" / column / "one.json", FIELDS)
+        studyset.finish(known, "part", column, [f"{column}/one.json"])
+    (tmp_path / "part.html").write_text("page")
+    studyset.reopen(known, {"part": ["a", "b"]})
+    assert known.stamp("part", "a").exists() and (tmp_path / "part.html").exists()
+    (tmp_path / "raw" / "part" / "b" / "one.json").unlink()
+    with pytest.raises(StudyError, match="one.json is missing"):
+        studyset.need_records(known)
+    studyset.reopen(known, {"part": ["a", "b"]})
+    assert known.stamp("part", "a").exists() and not known.stamp("part", "b").exists()
+    assert not (tmp_path / "part.html").exists()  # or nothing would be run
+    records.write(tmp_path / "raw" / "part" / "a" / "one.json", FIELDS | {"seconds": 9.0})
+    for check in (studyset.need_records, lambda one: studyset.reopen(one, {"part": ["a"]})):
+        with pytest.raises(StudyError, match="is not the one that was measured"):
+            check(known)
+
+
+REGISTRY = Registry({"implementations": [
+    {"folder": "one", "available": True, "library": "Lib", "variants": [{"name": "one/a"}, {"name": "one/b", "dense": True}]},
+    {"folder": "own", "available": True, "library": "none", "variants": [{"name": "own/c", "settings": ["kept"]}]},
+    {"folder": "gone", "available": False, "reason": "not installed", "variants": []}],
+    "blas": [{"name": "openblas", "available": True}, {"name": "atlas", "available": False, "reason": "missing"}]})
+
+
+def test_selections():
+    assert studyset.select(REGISTRY, []) == ["one/a", "one/b", "own/c"]
+    assert studyset.select(REGISTRY, ["own", "one/b"]) == ["one/b", "own/c"]
+    for only, words in (["gone", "unavailable: not installed"], ["nobody", "unknown implementation"], ["one/x", "unknown"]):
+        with pytest.raises(StudyError, match=words):
+            studyset.select(REGISTRY, [only])
+    assert REGISTRY.own == {"own/c"} and REGISTRY.libraries == ["one/a", "one/b"] and REGISTRY.dense == {"one/b"}
+    assert REGISTRY.serves("own/c", "kept", "penalty") and not REGISTRY.serves("one/a", "kept")
+    pairs = {"all": "openblas", "own": "atlas"}
+    assert [one.blas for one in on_usual_pairs(REGISTRY, pairs, ["one/a", "own/c"])] == ["openblas", "system"]
+
+
+def test_files_are_seen_whole_or_not_at_all(tmp_path):
+    path = tmp_path / "one.json"
+    write_json(path, {"a": 1})
+    with pytest.raises(TypeError):
+        write_json(path, {"a": object()})
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(StudyError, match="cannot write .*folder"):
+        write_text(tmp_path / "folder", "text")
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["folder", "one.json"] and read_object(path) == {"a": 1}
+    assert digest(path) == digest(path.read_text()) == digest(path.read_bytes())
+    with pytest.raises(StudyError, match="cannot read .*nothing"):
+        digest(Path(tmp_path / "nothing"))
+
+
+def test_locks_are_held_once_and_waited_for(tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(locks, "POLL", 0.02)
+    with locks.only_one_study():
+        with pytest.raises(StudyError, match="queue with --wait"), locks.only_one_study():
+            pass
+        told, order = [], []
+
+        def queue():
+            with locks.only_one_study(wait=True, tell=told.append):
+                order.append("second")
+        thread = threading.Thread(target=queue)
+        thread.start()
+        time.sleep(0.2)
+        order.append("first")
+    thread.join(timeout=10)
+    assert order == ["first", "second"] and told == ["waiting until another study is done"]
+
+
+def test_numbers_and_bad_options_are_plain():
+    assert [number(one) for one in (None, math.nan, 1234567.0, 1.2345e-5, 3.14159)] == [
+        "–", "–", "1.23·10⁶", "1.23·10⁻⁵", "3.14"]
+    with pytest.raises(StudyError, match=r"unrecognized arguments: --fast \(see study/x --help\)"):
+        Parser(prog="study/x").parse_args(["--fast"])
+    assert positive("1e-3") == 1e-3
+    for text in ("0", "-1", "nan", "inf"):
+        with pytest.raises(Exception, match="positive number"):
+            positive(text)
+
+
+def test_a_record_in_json_is_what_others_can_read(tmp_path):
+    records.write(tmp_path / "one.json", FIELDS)
+    data = json.loads((tmp_path / "one.json").read_text())
+    assert set(data) == {"sha256", "record"} and data["record"] == json.loads(json.dumps(FIELDS))
