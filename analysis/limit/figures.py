@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy
 from matplotlib.ticker import NullLocator
 
-from analysis.core.style import GREY, Look, legend, missing, number_axis, size_ticks
+from analysis.core.style import ALTERNATIVES, GREY, MARKERS, Look, legend, missing, number_axis, size_ticks
 from analysis.core.text import number
 from analysis.limit.held import wanted
 from analysis.limit.tables import KINDS, LIMIT, PHASES
@@ -19,7 +19,7 @@ def draw(tables, view):
     own = {name.partition("/")[0] for name in view.registry.own}
     rows = everyone(tables["steps"])
     return {"over_size": over_size(tables["bounds"], rows, Look(view.registry), own), "by_phase": by_phase(rows, own),
-            "ahead": ahead(tables["leads"], Look(view.registry))}
+            "ahead": ahead(tables["leads"])}
 
 
 def everyone(steps):
@@ -114,7 +114,7 @@ def by_phase(rows, own=()):
     return figure
 
 
-def ahead(leads, look):
+def ahead(leads):
     """A line a scene: how many times faster than the fastest library each variant is, with its interval; a mark where
     it is to be at least."""
     rows = leads[leads.kind.isin(KINDS)]
@@ -126,19 +126,20 @@ def ahead(leads, look):
         missing(axes, "no scene was timed with code of our own and a library beside it")
         return figure
     for number_of, name in enumerate(names):
-        shift, style, label = (number_of - (len(names) - 1) / 2) * 0.36, look.line(name), name
+        shift, label = (number_of - (len(names) - 1) / 2) * 0.36, name
+        colour, marker = ALTERNATIVES[number_of % len(ALTERNATIVES)], MARKERS[number_of]
         for place, scene in enumerate(about.scene):
             for row in rows[(rows.scene == scene) & (rows.implementation == name)].itertuples():
                 if row.status == "ok":
                     if row.high < numpy.inf:
-                        axes.plot([row.low, row.high], [place + shift] * 2, color=style["color"], linewidth=1.6, alpha=0.6)
-                    axes.plot(row.lead, place + shift, style["marker"], color=style["color"], markersize=5.5, label=label)
+                        axes.plot([row.low, row.high], [place + shift] * 2, color=colour, linewidth=1.6, alpha=0.6)
+                    axes.plot(row.lead, place + shift, marker, color=colour, markersize=5.5, linestyle="none", label=label)
                     axes.annotate(f"{number(row.lead)}×", (max(row.lead, row.high if row.high < numpy.inf else 0), place + shift),
-                                  (5, 0), textcoords="offset points", va="center", fontsize=7, color=style["color"])
+                                  (5, 0), textcoords="offset points", va="center", fontsize=7, color=colour)
                     label = None
                 elif row.status != "unsupported":
                     axes.annotate(f"{name.partition('/')[2]}: {row.status}", (1, place + shift), (5, 0), va="center", fontsize=7,
-                                  textcoords="offset points", color=style["color"])
+                                  textcoords="offset points", color=colour)
     axes.plot([wanted(row.kind, row.dimension) for row in about.itertuples()], range(len(about)), linestyle="none", marker="|",
               markersize=15, markeredgewidth=2, color="black", label="at least")
     axes.axvline(1, color=GREY, linewidth=1)

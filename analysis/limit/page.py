@@ -32,8 +32,8 @@ def _own(wide, view):
 
 
 def by_scene(scenes):
-    """[(scene, kind, n, dimension, rows)], the fastest first."""
-    rows = _timed(scenes).sort_values("step_us")
+    """[(scene, kind, n, dimension, rows)], the fastest first; also those that only a first look was taken at."""
+    rows = scenes[scenes.status.isin(["ok", "slower"]) & scenes.step_us.notna()].sort_values("step_us")
     order = {kind: place for place, kind in enumerate(KINDS)}
     found = [(name.removeprefix("harness/scenes/").removesuffix(".json"), group.kind.iloc[0], group.variables.iloc[0],
               group.dimension.iloc[0], group.to_dict("records")) for name, group in rows.groupby("scene", sort=False)]
@@ -45,7 +45,7 @@ def lost(tables):
     found = {}
     for name in ("steps", "scenes", "batches"):
         for row in tables[name].to_dict("records"):
-            if row["status"] != "ok" and not (name == "batches" and row["status"] == "unsupported"):
+            if row["status"] not in ("ok", {"scenes": "slower", "batches": "unsupported"}.get(name)):
                 where = row.get("scene") or f"four-bar:{row['loops']:.0f}" + (", saddle-point" if row["form"] != "penalty" else "")
                 found.setdefault((row["implementation"], row["status"], row["reason"].partition(" (first look")[0]), []).append(
                     where.removeprefix("harness/scenes/").removesuffix(".json"))

@@ -21,23 +21,25 @@ def build(records, view):
     found = {"bounds": [row | {"record": record.name} for record in by_role.get("bounds", []) if record.done
                         for row in record.output["rows"]],
              "steps": [], "scenes": [], "leads": [], "batches": _batches(by_role.get("batch", []))}
-    for role in (*FORMS, *KINDS):
+    for role in FORMS:
         said = _verdicts(by_role.get(f"{role}-gate", []))
         for scene, rows in _by_scene(by_role.get(role, [])):
-            cells = {name: _cell(group, said.get((scene, name))) for name, group in rows.groupby("implementation")}
-            names = sorted((name for name in cells if name in order), key=order.get)  # without anchors of other pairs
-            known = {"scene": scene, "kind": role if role in KINDS else "four-bar"}
-            if role in FORMS:
-                loops = int(scene.partition(":")[2])
-                known |= {"dimension": 2, "variables": 2 * loops + 2}
-                found["steps"] += [{"form": FORMS[role], "loops": loops, "variables": 2 * loops + 2} | cells[name]
-                                   | _ratio("multiple", rows, name, LIMIT, cells[name]) for name in names]
-            else:
-                known |= {key: about.get(scene, {}).get(key) for key in ("dimension", "variables")}
-                rival = _rival(rows, cells, registry)
-                found["scenes"] += [known | cells[name] | _ratio("to_rival", rows, name, rival, cells[name]) for name in names]
+            cells, loops = _cells(rows, scene, said), int(scene.partition(":")[2])
+            found["steps"] += [{"form": FORMS[role], "loops": loops, "variables": 2 * loops + 2} | cells[name]
+                               | _ratio("multiple", rows, name, LIMIT, cells[name]) for name in _ordered(cells, order)]
             if set(registry.libraries) & set(cells):
+                known = {"scene": scene, "kind": "four-bar", "dimension": 2, "variables": 2 * loops + 2}
                 found["leads"] += [known | one for one in _leads(rows, cells, registry)]
+    for kind in KINDS:
+        said, timed = _verdicts(by_role.get(f"{kind}-gate", [])), dict(_by_scene(by_role.get(kind, [])))
+        for scene, look in _by_scene(by_role.get(f"{kind}-look", [])):
+            known = {"scene": scene, "kind": kind} | {key: about.get(scene, {}).get(key) for key in ("dimension", "variables")}
+            rows = timed.get(scene, look[:0])
+            cells = {name: _looked(one) for name, one in _cells(look, scene, said).items()} | _cells(rows, scene, said)
+            rival = _rival(rows, cells, registry)
+            found["scenes"] += [known | cells[name] | _ratio("to_rival", rows, name, rival, cells[name])
+                                for name in _ordered(cells, order)]
+            found["leads"] += [known | one for one in _leads(rows, cells, registry)]
     tables = {name: pandas.DataFrame(rows) for name, rows in found.items()}
     tables["held"] = pandas.DataFrame([row for folder in own_folders(registry) for row in must_hold(folder, registry, tables)])
     return tables
@@ -60,6 +62,25 @@ def _verdicts(records):
         row = record.output["rows"][0] if record.done else {"verdict": record.status, "reason": record.reason}
         found[record.cell["scene"], record.cell["contenders"][0]] = row["verdict"], row["reason"]
     return found
+
+
+def _cells(rows, scene, verdicts):
+    return {name: _cell(group, verdicts.get((scene, name))) for name, group in rows.groupby("implementation")}
+
+
+def _ordered(cells, order):
+    """Without anchors of other pairs."""
+    return sorted((name for name in cells if name in order), key=order.get)
+
+
+def _looked(cell):
+    """What a first look says of who was not timed further."""
+    if cell["status"] != "ok":
+        return cell
+    cell = {key: cell[key] for key in ("implementation", "record", "verdict", "step_us", "passes", "pass_us")}
+    if cell["verdict"]:
+        return cell | {"status": "dropped", "reason": "the budget was spent"}
+    return cell | {"status": "slower", "reason": "in a first look far slower than the fastest library"}
 
 
 def _cell(rows, verdict):
@@ -98,7 +119,7 @@ def _agreed(cells, names):
 
 def _rival(rows, cells, registry):
     """The fastest library of a scene, of those that the gate agrees with; None if there is none."""
-    found = timing.rank(rows, _agreed(cells, registry.libraries))
+    found = timing.rank(rows[rows.status == "ok"], _agreed(cells, registry.libraries))
     return found.winner if found else None
 
 

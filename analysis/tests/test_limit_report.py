@@ -61,6 +61,11 @@ def made(*records):
             for name, frame in found.items()}
 
 
+def look(scene, kind="problem", **times):
+    """The first look at a scene, and what is known of it."""
+    return [about(scene), bench(f"{kind}-look", scene, **times)]
+
+
 def agree(role, scene, *names):
     return gate(role, scene, **{name: "agrees" for name in names})
 
@@ -102,30 +107,34 @@ def test_who_failed_in_one_process_has_failed_and_who_was_slow_in_one_has_not():
 
 
 def test_a_lead_is_over_the_fastest_library_that_the_gate_agrees_with():
-    found = made(about(A), bench("problem", A, 1, own_x=1.0, own_y=0.5, one_a=3.0, one_b=1.1, two_c=9.0),
-                 bench("problem", A, 2, own_x=2.0, own_y=1.0, one_a=6.0, one_b=2.2, two_c=9.0),
+    found = made(look(A, own_x=1.0, own_y=0.5, one_a=3.0, one_b=1.1, two_c=9.0),
+                 *(bench("problem", A, number, own_x=1.0 * number, own_y=0.5 * number, one_a=3.0 * number) for number in (1, 2)),
                  agree("problem", A, "own_x", "own_y", "one_a"), gate("problem", A, one_b="disagrees"))
     rows = found["leads"].set_index("implementation")
     assert rows.lead["own/x"] == pytest.approx(3) and rows.lead["own/y"] == pytest.approx(6) and set(rows.rival) == {"one/a"}
     scenes = found["scenes"].set_index("implementation")
-    assert (scenes.status["one/b"], scenes.reason["one/b"]) == ("disagrees", "why") and scenes.verdict["two/c"] == ""
-    assert scenes.to_rival["own/x"] == pytest.approx(1 / 3) and numpy.isnan(scenes.to_rival["one/b"])
+    assert (scenes.status["one/b"], scenes.reason["one/b"]) == ("disagrees", "why")
+    assert (scenes.status["two/c"], scenes.step_us["two/c"]) == ("slower", 9.0) and scenes.verdict["two/c"] == ""
+    assert scenes.to_rival["own/x"] == pytest.approx(1 / 3) and numpy.isnan(scenes.to_rival["two/c"])
+    assert scenes.variables["own/x"] == 6 and scenes.dimension["own/x"] == 2
 
 
 def test_without_a_verdict_or_a_rival_there_is_no_lead_and_the_reason_is_said():
-    found = made(about(A), bench("problem", A, 1, own_x=1.0, one_a=3.0, own_y="unsupported: no chain"), agree("problem", A, "one_a"))
-    rows = found["leads"].set_index("implementation")
-    assert (rows.status["own/x"], rows.status["own/y"]) == ("dropped", "unsupported") and "budget" in rows.reason["own/x"]
-    assert rows.lead.isna().all()
-    assert "no library" in made(about(A), bench("problem", A, own_x=1.0, one_a=3.0), agree("problem", A, "own_x"))["leads"].reason[0]
+    first = look(A, own_x=1.0, one_a=3.0, own_y="unsupported: no chain")
+    rows = made(first, agree("problem", A, "one_a"), bench("problem", A, one_a=3.0))["leads"].set_index("implementation")
+    assert (rows.status["own/x"], rows.status["own/y"]) == ("slower", "unsupported") and rows.lead.isna().all()
+    alone = made(first, agree("problem", A, "own_x"), bench("problem", A, own_x=1.0))["leads"]
+    assert alone.status[0] == "dropped" and "no library" in alone.reason[0]
+    spent = made(first, agree("problem", A, "own_x", "one_a"), bench("problem", A, status="dropped", own_x=1.0, one_a=3.0))["leads"]
+    assert (spent.status[0], spent.reason[0]) == ("dropped", "the budget")
 
 
 def test_the_worst_scene_of_a_kind_counts_by_its_whole_interval():
     def scene(name, *times, dimension=2, kind="problem"):
-        return [about(name, dimension), *(bench(kind, name, number, own_x=1.0, one_a=time) for number, time in enumerate(times, start=1)),
-                *agree(kind, name, "own_x", "one_a")]
-    found = said(made(scene(A, 2.5, 2.6), scene(B, 1.9, 1.91), scene(C, 1.3, 1.9, dimension=3), scene("four-bar:49,fill=0.5", 0.95, 0.95,
-                                                                                                 kind="fill")))
+        return [about(name, dimension), bench(f"{kind}-look", name, own_x=1.0, one_a=times[0]), *agree(kind, name, "own_x", "one_a"),
+                *(bench(kind, name, number, own_x=1.0, one_a=time) for number, time in enumerate(times, start=1))]
+    found = said(made(scene(A, 2.5, 2.6), scene(B, 1.9, 1.91), scene(C, 1.3, 1.9, dimension=3),
+                      scene("four-bar:49,fill=0.5", 0.95, 0.95, kind="fill")))
     planar = found.loc["times faster than the fastest library, planar standard problems"]
     assert (planar.verdict, planar["where"], planar.measured, planar.cases) == ("not held", "problems/b", 2, 2)
     spatial = found.loc["times faster than the fastest library, spatial standard problems"]
@@ -135,12 +144,13 @@ def test_the_worst_scene_of_a_kind_counts_by_its_whole_interval():
 
 
 def test_of_the_variants_of_a_folder_the_fastest_counts_scene_by_scene():
-    records = [about(A), *(bench("problem", A, number, own_x=1.0, own_y=0.5, one_a=1.5) for number in (1, 2)),
-               *agree("problem", A, "own_x", "one_a", "own_y")]
-    row = said(made(records)).loc["times faster than the fastest library, planar standard problems"]
+    what = "times faster than the fastest library, planar standard problems"
+    records = [look(A, own_x=1.0, own_y=0.5, one_a=1.5), *(bench("problem", A, number, own_x=1.0, own_y=0.5, one_a=1.5)
+                                                           for number in (1, 2)), *agree("problem", A, "own_x", "one_a", "own_y")]
+    row = said(made(*records)).loc[what]
     assert row.worst == pytest.approx(3) and row.variant == "own/y" and row.verdict == "held"
     records[-1].output["rows"][0]["verdict"] = "disagrees"
-    row = said(made(records)).loc["times faster than the fastest library, planar standard problems"]
+    row = said(made(*records)).loc[what]
     assert row.worst == pytest.approx(1.5) and row.variant == "own/x" and row.verdict == "not held"
 
 
@@ -197,7 +207,7 @@ def test_phases_that_do_not_exist_are_said_in_words():
 
 
 def test_variants_are_series_of_their_own():
-    found = made(about(A), *(bench("problem", A, number, own_x=1.0, own_y=0.5, one_a=3.0) for number in (1, 2)),
+    found = made(look(A, own_x=1.0, own_y=0.5, one_a=3.0), *(bench("problem", A, number, own_x=1.0, own_y=0.5, one_a=3.0) for number in (1, 2)),
                  agree("problem", A, "own_x", "own_y", "one_a"))
     figure = figures.draw(found, VIEW)["ahead"]
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
@@ -209,7 +219,7 @@ def test_figures_sentences_and_page_of_a_small_set_and_of_none():
     bounds = Record("sizes/bounds/all.json", {"role": "bounds", "scene": ""}, "done", "", 1.0, [], {}, {"rows": [
         {"loops": 10, "variables": 22, "arithmetic_ns": 70.0, "latency_ns": 189.0, "memory_ns": 57.0, "bound_ns": 189.0,
          "measured_ns": 250.0, "ratio": 1.32}]})
-    small = made(bounds, sizes(10, 40, 9999), about(A), *(bench("problem", A, number, own_x=1.0, one_a=3.0) for number in (1, 2)),
+    small = made(bounds, sizes(10, 40, 9999), look(A, own_x=1.0, one_a=3.0), *(bench("problem", A, number, own_x=1.0, one_a=3.0) for number in (1, 2)),
                  agree("problem", A, "own_x", "one_a"), batch("four-bar:10", 8, 1, own_x=4.0), batch("four-bar:10", 8, 2, own_x=4.2))
     for found in (small, made()):
         for figure in figures.draw(found, VIEW).values():

@@ -21,8 +21,9 @@ SETTINGS = {"loops": list,     # sizes of the N-four-bar for everyone
             "samples": int}    # of a process and contender
 SHARES = {"sizes": 0.25, "growth": 0.15, "scenes": 0.45, "batches": 0.15}  # of the budget
 LIMIT = "limit/limit"
-SLOWER, PATIENCE_S = 15, 1.0  # in scenes: times the fastest; s of the first stretch: whoever is slower is not timed
-NEAR = 1.5  # times the fastest library: who is near may be the rival of a lead, and is asked by the gate
+NEAR = 2.0  # times the fastest library: who is near may be the rival of a lead; the others are not timed in scenes
+LOOK = ("--steps", 80, "--patience", 1.0)  # first, of everyone
+FIRST = ("--start", 0, "--steps", 40)
 CHECK_S = 60
 BATCH_S = 0.02  # a process of batches lasts about ten times that
 
@@ -46,8 +47,8 @@ def sizes(lab):
         for one in here:
             if one.name in lost:
                 lab.skip(Cell("bench", scene, (one,), role="size-left-out"), "excluded", lost[one.name])
-        rows = timed(lab, scene, [one for one in here if one.name not in lost], "size", ("--phases",),
-                     lab.settings["patience"])
+        rows = timed(lab, scene, [one for one in here if one.name not in lost], "size",
+                     ("--phases", "--patience", lab.settings["patience"]))
         timed_once = set(rows.implementation[rows.status == "ok"])
         lost |= {row.implementation: f"not timed at N = {loops}: {row.status}" for row in rows.itertuples()
                  if row.implementation not in timed_once and row.status != "dropped"}
@@ -56,11 +57,11 @@ def sizes(lab):
 
 
 def growth(lab):
-    """In the saddle-point form, which takes the same passes at all sizes."""
+    """In the saddle-point form, over the first steps: the same passes at all sizes."""
     setting = Setting("saddle-point")
     here = [one for one in own(lab) if lab.registry.serves(one.variant, *setting.needs)]
     for loops in sorted(lab.settings["large"]):
-        timed(lab, f"four-bar:{loops}", here, "growth", setting.words())
+        timed(lab, f"four-bar:{loops}", here, "growth", (*setting.words(), *FIRST))
 
 
 @dataclass(frozen=True)
@@ -80,12 +81,14 @@ def listed(settings):
 
 
 def scenes(lab):
-    usual = environment(lab)
-    here = [one for one in lab.contenders if one.environment == usual]
-    for scene in listed(lab.settings):
+    """First a look at everyone; then those on whom a lead may stand, as far as the gate agrees with them."""
+    here = [one for one in lab.contenders if one.environment == environment(lab)]
+    for scene in listed(lab.settings) if here else []:
         lab.one(Cell("describe", scene.name, role="about"))
-        rows = timed(lab, scene.name, here, scene.kind, ("--slower-than", SLOWER, *scene.settings))
-        ask_gate(lab, scene.name, rows, here, f"{scene.kind}-gate", scene.settings)
+        look = rows_of(measure(lab, scene.name, here, processes=1, repetitions=3, settings=(*LOOK, *scene.settings),
+                               role=f"{scene.kind}-look", drop=True))
+        timed(lab, scene.name, ask_gate(lab, scene.name, look, here, f"{scene.kind}-gate", scene.settings), scene.kind,
+              scene.settings)
 
 
 def batches(lab):
@@ -97,19 +100,22 @@ def batches(lab):
                  for loops in lab.settings["batches"] for sets in lab.settings["sets"] if here], drop=True)
 
 
-def timed(lab, scene, contenders, role, settings=(), patience=PATIENCE_S):
+def timed(lab, scene, contenders, role, settings=()):
     """The rows of a scene's processes."""
     return rows_of(measure(lab, scene, contenders, processes=lab.settings["processes"], repetitions=lab.settings["samples"],
-                           settings=("--patience", patience, *settings), role=role, drop=True))
+                           settings=settings, role=role, drop=True))
 
 
 def ask_gate(lab, scene, rows, contenders, role, settings=()):
-    """Verdicts on those that a lead or a multiple may stand on: own code, and what comes near the fastest library."""
+    """Those on whom a lead or a multiple may stand, own code and what is near the fastest library, as far as the gate
+    agrees with them."""
     times = rows[rows.status == "ok"].groupby("implementation").step_us.median()
     mine = {LIMIT, *lab.registry.own}
     best = min((time for name, time in times.items() if name not in mine), default=0.0)
-    lab.run([Cell("check", scene, (one,), (*settings, "--time-limit", CHECK_S), role, seconds=2 * CHECK_S)
-             for one in contenders if one.name in times and (one.name in mine or times[one.name] <= NEAR * best)], drop=True)
+    asked = [one for one in contenders if one.name in times and (one.name in mine or times[one.name] <= NEAR * best)]
+    found = lab.run([Cell("check", scene, (one,), (*settings, "--time-limit", CHECK_S), role, seconds=2 * CHECK_S)
+                     for one in asked], drop=True)
+    return [one for one, record in zip(asked, found) if record.done and record.output["rows"][0]["verdict"] == "agrees"]
 
 
 def own(lab):

@@ -18,7 +18,8 @@ SETTINGS = {"loops": [10, 40], "large": [49], "problems": ["A01"], "examples": [
 
 
 class Asked:
-    """A lab that runs nothing and keeps what it is asked for."""
+    """A lab that runs nothing and keeps what it is asked for; the gate agrees with all but `wrong`."""
+    wrong = ()
 
     def __init__(self, names=("one/a", "one/b", "own/x", "own/y"), **changes):
         self.contenders = [Contender(name, name, "openblas") for name in names]
@@ -26,6 +27,8 @@ class Asked:
 
     def run(self, cells, drop=False):
         self.cells += cells
+        return [SimpleNamespace(done=True, output={"rows": [{"verdict": "disagrees" if cell.contenders[0].name in self.wrong else "agrees"}]})
+                for cell in cells if cell.kind == "check"]
 
     def one(self, cell):
         self.cells.append(cell)
@@ -78,21 +81,25 @@ def test_growth_is_of_own_code_that_serves_the_form(measured):
     plan.run(Asked(), "growth")
     [(role, scene, names, settings)] = measured.asked
     assert (role, scene, names) == ("growth", "four-bar:49", ["own/x"])
-    assert settings[-2:] == ("--scheme", "saddle-point")
+    assert settings[:2] == ("--scheme", "saddle-point") and settings[2:] == plan.FIRST
 
 
-def test_scenes_have_their_own_step_and_the_gate_asks_those_that_count(measured):
-    measured.said = lambda scene, names: rows(one_a=2.0, one_b=3.1, own_x=9.0, own_y="unsupported")
+def test_after_a_look_at_everyone_those_are_timed_that_are_near_and_agree(measured):
+    """A look is a few steps; who does not serve the scene, is far behind or disagrees is not timed further."""
+    measured.said = lambda scene, names: rows(one_a=2.0, one_b=4.1, own_x=9.0, own_y="unsupported")
     lab = Asked()
     plan.run(lab, "scenes")
-    assert [(role, scene.rpartition("/")[2]) for role, scene, _, _ in measured.asked] == [
-        ("problem", "a01_pendulum.json"), ("fill", "four-bar:49,fill=0.5"), ("example", "coupler.json")]
-    problem, fill, _ = (settings for _, _, _, settings in measured.asked)
+    assert [(role, scene.rpartition("/")[2]) for role, scene, _, _ in measured.asked[::2]] == [
+        ("problem-look", "a01_pendulum.json"), ("fill-look", "four-bar:49,fill=0.5"), ("example-look", "coupler.json")]
+    (_, _, looked, look), (role, _, names, problem), _, (_, _, _, fill), *_ = measured.asked
+    assert len(looked) == 4 and role == "problem" and names == ["one/a", "own/x"]
+    assert "--steps" in look and "--steps" not in problem
     assert problem[problem.index("--step") + 1] == "0.001" and "--step" not in fill
-    gates = [(cell.scene, cell.contenders[0].name) for cell in lab.cells if cell.kind == "check"]
-    assert [name for scene, name in gates if "fill" in scene] == ["one/a", "own/x"]  # one/b is too far behind to be a rival
-    [check] = [cell for cell in lab.cells if cell.kind == "check" and "pendulum" in cell.scene and cell.contenders[0].name == "own/x"]
-    assert check.settings[:2] == ("--step", "0.001") and check.role == "problem-gate"
+    gates = [cell for cell in lab.cells if cell.kind == "check" and "pendulum" in cell.scene]
+    assert [cell.contenders[0].name for cell in gates] == names and gates[0].settings[:2] == ("--step", "0.001")
+    lab.wrong, measured.asked[:] = ("one/a",), []
+    plan.run(lab, "scenes")
+    assert measured.asked[1][2] == ["own/x"]
 
 
 def test_processes_of_batches_take_turns_over_all_cells():
