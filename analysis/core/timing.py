@@ -23,7 +23,8 @@ def processes(records):
     scene, implementation, environment, process (its number), status, reason, step_us (median over samples, with
     the least and the largest), samples (µs a step), clock_us (the median by the clock), record, and every counter of `mbs bench` by its name."""
     rows = [row for record in records for row in _rows(record)]
-    return pandas.DataFrame(rows, columns=None if rows else list(COLUMNS))
+    found = pandas.DataFrame(rows)
+    return found.reindex(columns=[*COLUMNS, *(name for name in found if name not in COLUMNS)])
 
 
 def _rows(record):
