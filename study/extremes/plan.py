@@ -35,8 +35,8 @@ def battery(lab):
     telling = [cell for cell in chosen if cell.place is not None and cell.place < few]
     rest = [cell for cell in chosen if cell.place is None and not lab.settings["cells"]]
     scenes = {cell.name: cell.scene or lab.scene(cell.name, cell.document) for cell in telling + rest}
-    lab.run([_reference(lab, cell, scenes[cell.name], factor) for cell in telling + rest if cell.motion is None
-             for factor in judge.FINER])
+    _run_built(lab, [_reference(lab, cell, scenes[cell.name], factor) for cell in telling + rest if cell.motion is None
+                     for factor in judge.FINER])
     todo = []
     for rank in (0, 1):
         forms, others = (_who(lab, kind)[rank] for kind in ("forms", "others"))
@@ -71,6 +71,14 @@ def _reference(lab, cell, scene, factor):
                 every=cell.every * factor)
 
 
+def _run_built(lab, asked, drop=False):
+    """Runs cells of another program than `mbs`, if it is there."""
+    missing = [cell for cell in asked if not (ROOT / program_of(cell.program)).exists()]
+    for cell in missing:
+        lab.skip(cell, "unavailable", f"{program_of(cell.program)} is missing: study/setup builds it")
+    lab.run([cell for cell in asked if cell not in missing], drop)
+
+
 def way_out(lab):
     sizes, limit = lab.settings["loops"], lab.settings["limit"]
     served = []
@@ -97,23 +105,19 @@ def way_out(lab):
 
 
 def pivots(lab):
-    program = program_of("stale_pivots")
-    takes_part = any(one.variant.startswith("csc_klu/") for one in lab.contenders)
-    for number in range(1, lab.settings["processes"] + 1):
-        cell = Cell("", "", (), ("--json",), "pivots", number=number, program="stale_pivots", timed=True, seconds=600)
-        if not takes_part:
-            lab.skip(cell, "excluded", "csc_klu takes no part")
-        elif not (ROOT / program).exists():
-            lab.skip(cell, "unavailable", f"{program} is missing: study/setup builds it")
-        else:
-            lab.run([cell], drop=True)
+    asked = [Cell("", "", (), ("--json",), "pivots", number=number, program="stale_pivots", timed=True, seconds=600)
+             for number in range(1, lab.settings["processes"] + 1)]
+    if any(one.variant.startswith("csc_klu/") for one in lab.contenders):
+        return _run_built(lab, asked, drop=True)
+    for cell in asked:
+        lab.skip(cell, "excluded", "csc_klu takes no part")
 
 
 def growth(lab):
     kinds, others = _who(lab, "forms")
     limit = 5 * lab.settings["limit"]
     asked = [(loops, form) for loops in lab.settings["loops"]["roundoff"] for form in roundoff.FORMS]
-    lab.run([_growth(loops, form, REFERENCE, limit, "mbs_reference") for loops, form in asked])
+    _run_built(lab, [_growth(loops, form, REFERENCE, limit, "mbs_reference") for loops, form in asked])
     lab.run([_growth(loops, form, one, limit) for who in (kinds, others) for loops, form in asked for one in who
              if lab.registry.serves(one.variant, form)], drop=True)
 

@@ -111,6 +111,11 @@ REGISTRY = Registry({"implementations": [{"folder": name.split("/")[0], "availab
     {"name": name, "settings": settings, "dense": name.startswith("eigen")}]} for name, settings in VARIANTS.items()]})
 
 
+@pytest.fixture(autouse=True)
+def other_programs(monkeypatch):
+    monkeypatch.setattr(plan, "program_of", lambda name: "study/run")  # which is there
+
+
 class Asked:
     """A lab that only notes what it is asked for."""
 
@@ -199,8 +204,8 @@ def test_pivots_need_their_program_and_klu(monkeypatch):
     for names, status in ((["csc_klu/refactor"], "unavailable"), (["some/one"], "excluded")):
         lab = Asked(names=names)
         plan.run(lab, "pivots")
-        assert [one[1] for one in lab.skipped] == 2 * [status] and not lab.runs
-    monkeypatch.setattr(plan, "program_of", lambda name: "study/run")  # which is there
+        assert [one[1] for one in lab.skipped] == 2 * [status] and not lab.found()
+    monkeypatch.setattr(plan, "program_of", lambda name: "study/run")
     lab = Asked()
     plan.run(lab, "pivots")
     assert [cell.number for cell in lab.found()] == [1, 2] and all(cell.timed for cell in lab.found())
