@@ -443,6 +443,23 @@ def test_files_are_seen_whole_or_not_at_all(tmp_path):
         digest(Path(tmp_path / "nothing"))
 
 
+def test_threads_that_write_one_file_at_once_do_not_disturb_each_other(tmp_path):
+    wrong = []
+
+    def often(number):
+        try:
+            for _ in range(100):
+                write_json(tmp_path / "one.json", {"number": number})
+        except StudyError as error:
+            wrong.append(error)
+    threads = [threading.Thread(target=often, args=(number,)) for number in range(4)]
+    for one in threads:
+        one.start()
+    for one in threads:
+        one.join()
+    assert wrong == [] and set(read_object(tmp_path / "one.json")) == {"number"}
+
+
 def test_locks_are_held_once_and_waited_for(tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setattr(locks, "POLL", 0.02)
