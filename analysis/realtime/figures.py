@@ -83,7 +83,7 @@ def sizes(table, machine):
         for row in table[table.step == step].itertuples():
             _search(axes, row, names.index(row.implementation), len(shown) > 1)
         axes.set_xscale("log")
-        axes.set_xlim(LEFT, 60 * max(table.largest.max(), table.next.max() if table.next.notna().any() else 1, 1))
+        axes.set_xlim(LEFT, 60 * max(1, *table.largest.dropna(), *table.next.dropna()))
         axes.set_title(f"step and deadline {1e3 * step:g} ms")
         axes.set_xlabel("N of the four-bar (n = 2N + 2 variables)")
         axes.set_yticks(range(len(names)), names)
@@ -101,6 +101,9 @@ def sizes(table, machine):
 def _search(axes, row, place, several):
     colour, marker, shift = FORMS[row.scheme]
     y = place + (shift if several else 0)
+    if row.largest != row.largest:
+        axes.text(0.02, y, "dropped", transform=axes.get_yaxis_transform(), color=colour, va="center", fontsize=7)
+        return
     start, end = max(row.largest, LEFT), row.next if row.next == row.next else max(row.largest, LEFT)
     axes.plot([start, end], [y, y], color=colour, linewidth=1.4, alpha=0.6)
     axes.plot(start, y, marker, color=colour, markersize=5.5, markerfacecolor=colour if row.complete else "white")
@@ -118,7 +121,7 @@ def answer(row):
         text += f"; {row.next:.0f}: " + (f"{_count(row.next_missed)} ({_count(row.next_null_missed)})"
                                          if row.next_missed == row.next_missed else row.next_reason.split(":")[0])
     if not row.complete or row.next != row.next:
-        text += " or more" + (", dropped" if not row.complete else "")
+        text += "; or more" + (", as the budget was spent" if not row.complete else "")
     return text
 
 

@@ -1,14 +1,14 @@
 # What the page says besides its figures: who is late, what judging costs.
 from analysis.core.outcomes import FINISHED
-from analysis.realtime.figures import answer
 from analysis.realtime.verdict import HOPELESS
 
 
 def context(tables, view):
     steps, largest, machine = tables["steps"], tables["largest"], tables["machine"]
+    searched = largest[largest.largest.notna()]
     return {"settings": view.settings, "steps": steps.to_dict("records"), "finished": FINISHED, "hopeless": HOPELESS,
-            "largest": [row | {"answer": answer(one)} for row, one in zip(largest.to_dict("records"), largest.itertuples())],
-            "dropped": int((steps.status == "dropped").sum()), "incomplete": int((largest.complete == False).sum()),  # noqa: E712
+            "largest": searched.to_dict("records"), "not_searched": len(largest) - len(searched),
+            "dropped": int((steps.status == "dropped").sum()), "incomplete": int((~searched.complete.astype(bool)).sum()),
             "tried": len(tables["tried"]), "machine": losses(machine), "judging": judging(steps)}
 
 

@@ -4,17 +4,31 @@ from analysis.core.text import number
 
 def answers(tables, view):
     largest, own = tables["largest"], view.registry.own
+    searched = largest[(largest.scheme == "penalty") & largest.largest.notna()]
     found = []
-    for step, rows in largest[largest.scheme == "penalty"].groupby("step", sort=False):
+    for step in view.settings["steps"]:
+        rows = searched[searched.step == step]
         layers = {"libraries": rows[~rows.implementation.isin(own)], "own code": rows[rows.implementation.isin(own)]}
         said = [_best(name, one) for name, one in layers.items() if len(one)]
-        found.append({"anchor": "largest", "text": f"Steps of {number(1e3 * step)} ms: {'; '.join(said)}."})
-    observed = tables["steps"][tables["steps"].missed.notna()]
-    if len(observed):
-        clean = int((observed.missed == 0).sum())
-        found.append({"anchor": "steps", "text": f"{clean} of {len(observed)} runs of {number(view.settings['duration'])} s "
-                                                 "missed no deadline at all."})
-    return found or [{"text": "Not measured: no implementation of this part took part.", "anchor": ""}]
+        if said:
+            found.append({"anchor": "largest", "text": f"Steps of {number(1e3 * step)} ms: {'; '.join(said)}."})
+    return [*found, *_clean(tables["steps"], view), *_machine(tables["machine"])] or [
+        {"text": "Not measured: no implementation of this part took part.", "anchor": ""}]
+
+
+def _clean(steps, view):
+    """How many runs missed nothing."""
+    observed = steps[steps.missed.notna()]
+    text = (f"{(observed.missed == 0).sum()} of {len(observed)} runs of {number(view.settings['duration'])} s missed no "
+            "deadline at all.")
+    return [{"anchor": "steps", "text": text}] if len(observed) else []
+
+
+def _machine(machine):
+    """What the null processes lost: how far this machine allows real time."""
+    said = [f"{number(rows.lost.sum(), 5)} deadlines of {number(1e3 * step)} ms in {number(rows.seconds.sum())} s"
+            for step, rows in machine[machine.status == "done"].groupby("step")]
+    return [{"anchor": "machine", "text": f"The machine itself lost {' and '.join(said)}."}] if said else []
 
 
 def _best(layer, rows):

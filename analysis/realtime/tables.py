@@ -48,7 +48,7 @@ def _largest(tried):
     for key, runs in tried.groupby(["scheme", "step", "implementation"], sort=False) if len(tried) else ():
         made = runs[runs.status != "dropped"]
         every = made.groupby("loops").kept.all() if len(made) else pandas.Series(dtype=bool)
-        good = int(every.index[every].max()) if every.any() else 0
+        good = None if made.empty else int(every.index[every].max()) if every.any() else 0
         above = [int(loops) for loops in every.index[~every] if loops > good]
         row = dict(zip(("scheme", "step", "implementation"), key)) | {
             "largest": good, "complete": len(made) == len(runs),

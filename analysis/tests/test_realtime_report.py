@@ -73,9 +73,11 @@ def test_what_the_budget_ends_or_nothing_ends_is_said():
     dropped = run(32, 0, ended="dropped")
     [row] = made(run(8, 0), dropped)["largest"].to_dict("records")
     assert row["largest"] == 8 and not row["complete"] and row["next_reason"] == "the budget"
-    assert figures.answer(SimpleNamespace(**row)) == "8: 0 (–) or more, dropped"
+    assert figures.answer(SimpleNamespace(**row)) == "8: 0 (–); or more, as the budget was spent"
     [row] = made(run(8, 0))["largest"].to_dict("records")
-    assert row["complete"] and row["next_reason"] == tables.END and figures.answer(SimpleNamespace(**row)) == "8: 0 (–) or more"
+    assert row["complete"] and row["next_reason"] == tables.END and figures.answer(SimpleNamespace(**row)) == "8: 0 (–); or more"
+    [row] = made(run(8, 0, ended="dropped"))["largest"].to_dict("records")
+    assert row["largest"] != row["largest"] and not row["complete"]
     [row] = made(run(1, 900, status="not-converged"))["largest"].to_dict("records")
     assert row["largest"] == 0 and row["next_reason"] == "not-converged: because"
 
@@ -92,7 +94,7 @@ def test_figures_page_and_answers():
     texts = [one["text"] for one in sentences.answers(found, VIEW)]
     assert texts[0] == ("Steps of 1 ms: of libraries lib/a keeps up with N = 8 (0 of 1300 steps missed, – lost by the null process; N = 16 failed); "
                         "of own code own/a keeps up with N = 64 (0 of 1300 steps missed, – lost by the null process).")
-    assert texts[1] == "1 of 2 runs of 5 s missed no deadline at all."
+    assert texts[1:] == ["1 of 2 runs of 5 s missed no deadline at all.", "The machine itself lost 1 deadlines of 1 ms in 1.3 s."]
 
 
 def test_without_records_all_says_so():

@@ -7,7 +7,8 @@ from study.core.cell import Cell
 from study.core.contender import Contender
 from study.core.setting import Setting
 
-SETTINGS = {"implementations": list,  # names, in the order of their worth; none for all
+SETTINGS = {"implementations": list,  # names, what is worth most first
+            "others": bool,           # whether all others follow
             "schemes": list,
             "steps": list,            # s, the deadlines too
             "loops": list,            # sizes whose distributions are shown
@@ -45,8 +46,8 @@ def run(lab, column):
 def cases(lab):
     """What is worth most comes first."""
     settings = lab.settings
-    named = [lab.contender(name) for name in settings["implementations"]] or lab.contenders
-    chosen = [one for one in named if one]
+    chosen = [one for one in map(lab.contender, settings["implementations"]) if one]
+    chosen += [one for one in lab.contenders if settings["others"] and one not in chosen]
     return [Case(one, scheme, step) for scheme in settings["schemes"] for step in settings["steps"] for one in chosen
             if lab.registry.serves(one.variant, *Setting(scheme).needs)]
 
