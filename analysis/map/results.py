@@ -1,8 +1,8 @@
 # What figures, claims and pages ask the tables of a set: who was timed, ratios and rankings of a scene.
 from functools import cached_property
 
-from analysis.core import timing
 from analysis.core.registry import NULL
+from analysis.map import timed
 from analysis.map.timed import layers
 
 FAILURES = ("disagrees", "crashed", "timeout", "out-of-memory", "unsupported", "diverged", "failed", "refused")
@@ -85,7 +85,7 @@ class Results:
     def rank(self, scene, names):
         key = scene, frozenset(names)
         if key not in self._ranked:
-            self._ranked[key] = timing.rank(self._paired(scene), set(names) - {NULL})
+            self._ranked[key] = timed.rank(self._paired(scene), set(names) - {NULL})
         return self._ranked[key]
 
     def fastest(self, scene, names):
@@ -97,7 +97,7 @@ class Results:
         """Time of `slow` over that of `fast`; None if they cannot be compared."""
         key = scene, slow, fast
         if key not in self._ratios:
-            self._ratios[key] = timing.ratio(self._paired(scene), slow, fast)
+            self._ratios[key] = timed.ratio(self._paired(scene), slow, fast)
         found = self._ratios[key]
         return None if found.value != found.value else found
 

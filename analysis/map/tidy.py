@@ -48,7 +48,7 @@ def _common(row, kind):
     timed = {"samples": len(samples), "samples_us": " ".join(f"{one:.6g}" for one in samples)} if isinstance(samples, tuple) else {}
     return {"kind": kind, "folder": folder, "variant": variant, "build": "" if build == "own" else build, "blas": blas} | {
         key: row.get(key) for key in ("implementation", "environment", "status", "reason", "process", "step_us", "low_us",
-                                      "high_us", "record", *COUNTERS)} | scene_of(row["scene"]) | timed
+                                      "high_us", "clock_us", "record", *COUNTERS)} | scene_of(row["scene"]) | timed
 
 
 def _rejected(records):

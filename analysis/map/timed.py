@@ -1,13 +1,17 @@
-# Which processes of a timed scene count, and whose stretch took another number of passes.
+# Which processes of a timed scene count, who is fastest there, and whose stretch took another number of passes.
+#
+# A scene has a few processes of all ("time"), and then more of those who lead ("again"), with more samples. Leaders are
+# compared by the latter alone: they are the better ones, and nobody was chosen by them.
 import math
 from collections import Counter
 from dataclasses import replace
 
+from analysis.core import timing
 from analysis.core.registry import NULL
-from analysis.core.timing import processes
 
-ROLES = ("time", "time-left-out", "again")
-AFTER = 100  # added to the numbers of the processes of role "again"
+ROLES = ("time", "time-left-out", "again", "again-left-out")
+AFTER = 100   # added to the numbers of the processes of role "again"
+LEADING = 1.3  # whoever is not shown to be slower than the fastest, or takes at most so many times its time, leads
 
 
 def layers(registry):
@@ -23,8 +27,35 @@ def timed_rows(records):
     for one in chosen:
         key = _group(one)
         least[key] = min(len(one.cell["contenders"]), least.get(key, math.inf))
-    return processes([_numbered(one) for one in chosen
-                      if one.role == "time-left-out" or len(one.cell["contenders"]) == least[_group(one)]])
+    return timing.processes([_numbered(one) for one in chosen
+                             if one.role.endswith("left-out") or len(one.cell["contenders"]) == least[_group(one)]])
+
+
+def rank(rows, names):
+    """timing.Ranking of one scene's rows among `names`."""
+    found, again = timing.rank(rows, names), _again(rows)
+    if found is None or len(set(found.ratios) & set(again[again.status == "ok"].implementation)) < 2:
+        return found
+    first = timing.rank(again, set(found.ratios))
+    others = {name: timing.ratio(rows, name, first.winner) for name in found.ratios if name not in first.ratios}
+    return timing.Ranking(first.winner, first.ratios | others)
+
+
+def ratio(rows, slow, fast):
+    """timing.Ratio of two contenders of a scene."""
+    again = _again(rows)
+    both = [set(again[(again.implementation == name) & (again.status == "ok")].process) for name in (slow, fast)]
+    return timing.ratio(again if len(both[0] & both[1]) > 1 else rows, slow, fast)
+
+
+def leaders(rankings):
+    """Names of those who lead in one of several Rankings, where they are more than one."""
+    found = [[name for name, one in ranking.ratios.items() if one.low <= 1 or one.value <= LEADING] for ranking in rankings if ranking]
+    return {name for names in found if len(names) > 1 for name in names}
+
+
+def _again(rows):
+    return rows[rows.process > AFTER]
 
 
 def _group(record):
@@ -32,7 +63,7 @@ def _group(record):
 
 
 def _numbered(record):
-    if record.role != "again":
+    if not record.role.startswith("again"):
         return record
     return replace(record, cell=record.cell | {"number": AFTER + record.cell["number"]})
 

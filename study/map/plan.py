@@ -13,7 +13,7 @@ from study.map.verify import alternatives, fit
 
 SETTINGS = {"processes": int,      # of a timed scene
             "process": float,      # s of samples in each, about
-            "again": int,          # further processes of those who may be the fastest, where that is open
+            "again": int,          # further processes of those who lead
             "between": int,        # fills to be put half-way where the winner changes, a column
             "slower": dict,        # natural, filled: whoever is so many times slower than the fastest library is not timed
             "limits": dict,        # s: pilot, check, time
@@ -21,7 +21,6 @@ SETTINGS = {"processes": int,      # of a timed scene
             "phases": dict,        # columns, processes: shares of a step by phase
             "operations": dict,    # columns, processes: Table 2's operations one by one
             "columns": list}       # variables, seconds, fills (natural, then shares of n^2), perhaps its own slower
-FIRST = 3       # processes of every scene that come before the others: of three there is an interval
 CLOSEST = 0.04  # fills nearer than this have none put between them, share
 
 
@@ -53,16 +52,15 @@ def run(lab, column):
             lab.skip(Cell("bench", scene.name, role="not-reached"), "not-reached", f"the mechanism's own fill is {own_fill:.3g} %")
         else:
             timed.append(TimedScene(lab, scene, *fit(lab, scene, lab.contenders)))
-    for count in (min(FIRST, lab.settings["processes"]), lab.settings["processes"]):
-        for one in timed:
-            one.time(count)
+    for one in timed:
+        one.time(lab.settings["processes"])
+    for one in timed:
+        one.again(lab.settings["again"])
     _phases(lab, timed[0])
     _operations(lab, natural)
     _builds(lab, natural, costs)
     for _ in range(lab.settings["between"]):
         _add_between(lab, timed)
-    for one in timed:
-        one.again(lab.settings["again"])
 
 
 def _unavailable(lab, scene):
@@ -111,8 +109,10 @@ def _add_between(lab, timed):
     if gaps and lab.left > 0:
         _, low, high = max(gaps, key=lambda gap: gap[0])
         scene = Scene(low.scene.variables, round((low.fill + high.fill) / 200, 2))
-        timed.insert(timed.index(high), TimedScene(lab, scene, *fit(lab, scene, lab.contenders)))
-        timed[timed.index(high) - 1].time(lab.settings["processes"])
+        found = TimedScene(lab, scene, *fit(lab, scene, lab.contenders))
+        found.time(lab.settings["processes"])
+        found.again(lab.settings["again"])
+        timed.insert(timed.index(high), found)
 
 
 def _other_winner(low, high):

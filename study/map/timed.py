@@ -1,8 +1,8 @@
-# A scene that is timed: its processes, without those whose stretch takes another number of passes; more where it is open.
+# A scene that is timed: a few processes of all, without those whose stretch takes another number of passes, and then
+# more of those who lead.
 from dataclasses import dataclass, field
 
-from analysis.core.timing import rank
-from analysis.map.timed import differing, layers, timed_rows
+from analysis.map.timed import differing, layers, leaders, rank, timed_rows
 from study.core.cell import Cell
 from study.core.contender import CONTROL, Contender
 from study.core.timing import measure
@@ -33,10 +33,9 @@ class TimedScene:
                 self.lab.skip(Cell("bench", self.scene.name, (one,), role="time-left-out"), "disagrees", wrong[one.name])
 
     def again(self, count):
-        """Further processes of those who may be the fastest, of the libraries or of all, where that is open."""
-        open_names = {name for ranking in self.rankings.values() if ranking and not ranking.settled
-                      for name in (ranking.winner, *ranking.open)}
-        chosen = [one for one in self.costs if one.name in open_names]
+        """Processes 1 … `count` of those who lead, among the libraries or among all."""
+        names = leaders(self.rankings.values())
+        chosen = [one for one in self.costs if one.name in names]
         if len(chosen) > 1 and count:
             self.records += self.processes(chosen, count, "again")
 

@@ -61,6 +61,7 @@ def statuses(tidy, scene):
     return {name: set(mine.status) for name, mine in rows.groupby("implementation")}
 
 
+@pytest.mark.slow
 def test_bad_ones_are_left_out_with_their_reason_and_the_others_are_ranked(run, monkeypatch):
     monkeypatch.setenv("FAKE_BAD", "1")
     lab = run(limits={"pilot": 1, "check": 10, "time": 10})
@@ -97,6 +98,7 @@ def test_a_fill_is_put_between_where_another_leads(run):
         assert "four-bar:4,fill=0.76" in winners.index
 
 
+@pytest.mark.slow
 def test_what_has_a_record_is_not_run_again_and_gives_the_same_plan(run):
     first = run()
     files = {path: path.stat().st_mtime_ns for path in first.base.rglob("*.json")}
