@@ -83,8 +83,9 @@ def read(path, name):
 def files_of(folder, part):
     """{name: path} of the records of a part that lie loose in a set's folder."""
     base = Path(folder) / "raw" / part
-    return {path.relative_to(base).as_posix(): path for path in sorted(base.rglob("*.json"))
-            if path.parent != base / "scenes" and not path.name.startswith(".")}
+    found = {path.relative_to(base).as_posix(): path for path in base.rglob("*.json")
+             if path.parent != base / "scenes" and not path.name.startswith(".")}
+    return dict(sorted(found.items()))  # by the same order as those of an archive
 
 
 def archive_of(folder, part):

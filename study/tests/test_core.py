@@ -194,6 +194,14 @@ def test_an_archive_holds_the_same_records_and_scenes(loose):
         assert [name for name in tar.getnames() if "scenes" in name or "partial" in name] == ["scenes/x.json"]
 
 
+def test_records_come_in_one_order_loose_or_packed(tmp_path):
+    for name in ("a/x", "a-b/x", "a/X", "a.b/x", "a/y-1", "a/y"):
+        records.write(tmp_path / "raw" / "part" / f"{name}.json", FIELDS)
+    before = records.read_part(tmp_path, "part")
+    records.pack(tmp_path, "part", records.archive_of(tmp_path, "part"))
+    assert records.read_part(tmp_path, "part") == before and len(before) == 6
+
+
 def test_an_archive_that_was_cut_or_changed_anywhere_is_damaged(loose):
     archive = records.archive_of(loose, "part")
     records.pack(loose, "part", archive)

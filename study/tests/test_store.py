@@ -158,6 +158,17 @@ def test_the_newest_local_set_is_the_default_and_tools_have_none(folder):
     assert store.newest_local() == local / "new"
 
 
+def test_archives_and_tables_are_tracked_and_what_is_drawn_again_is_not():
+    def ignored(*names):
+        paths = [f"results/one-set/{name}" for name in names]
+        done = subprocess.run(["git", "check-ignore", "--no-index", *paths], cwd=ROOT, capture_output=True, text=True)
+        return len(done.stdout.split())
+    assert ignored("set.json", "contexts/own-openblas.json", "raw/map.tar.xz", "map/cells.csv", "map/answers.json",
+                   "added/new.csv") == 0
+    assert ignored("raw/map/c/x.json", "raw/added/new/x.json", "map.html", "map/figures/x.svg", "run.log", ".lock",
+                   ".done/map/c", ".snakemake/x") == 8
+
+
 @pytest.mark.parametrize("text, name", [("AMD EPYC (family 25, model 17, stepping 1)", "epyc-25-17"),
                                         ("Intel(R) Core(TM) i7-8650U CPU @ 1.90GHz", "i7-8650u"), ("", "machine")])
 def test_machines_have_short_names(text, name):
