@@ -64,7 +64,3 @@ def _row(results, cell, layer):
                   "high": margin.high, "equivalent": " ".join(ranking.equivalent), "open": " ".join(ranking.open),
                   "processes": len(mine), "record": " ".join(mine.record)}
 
-
-def from_table(table, layer):
-    """{scene: row} of one layer of the table `cells`."""
-    return {row.scene: row for row in table[table.layer == layer].itertuples()}

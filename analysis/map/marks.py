@@ -16,7 +16,7 @@ def lost(rows):
 def draw_lost(axes, cells, line, x="variables", scale=None):
     """`line(name)`: keywords of the series; `scale(row)`: what a time is divided by (None: not drawn)."""
     crosses = []
-    for row in cells.itertuples():
+    for row in cells[cells[x].notna()].itertuples():
         divisor = 1.0 if scale is None else scale(row)
         if row.status not in ("excluded", "slower") or not row.pilot_us > 0:
             crosses.append(row)
