@@ -64,13 +64,13 @@ def between(runs, curves, speed):
 
 def _curves(runs, curves, active):
     """{(layer, setting): rows in the order of steps}"""
-    made = runs.made()
-    names = {one.name: layer for layer, group in runs.layers.items() for one in group}
-    probes = {key: rows[0]["implementation"] for key, rows in curves.items() if rows} | {
+    made = {}
+    for row in runs.made().sort_values("step", ascending=False, kind="stable").to_dict("records"):
+        if row["status"] not in ("dropped", "excluded"):
+            made.setdefault((row["implementation"], row["setting"]), []).append(row)
+    names = {key: rows[0]["implementation"] for key, rows in curves.items() if rows} | {
         key: one.name for key, one in active.items()}
-    made = made[~made.status.isin(("dropped", "excluded"))].assign(layer=made.implementation.map(names))
-    return {key: made[(made.layer == key[0]) & (made.setting == key[1]) & (made.implementation == probes.get(key))]
-            .sort_values("step", ascending=False).to_dict("records") for key in curves}
+    return {key: made.get((names.get(key), key[1]), []) for key in curves}
 
 
 def meeting(rows, error):

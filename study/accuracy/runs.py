@@ -5,12 +5,11 @@ from study.core import timing
 from study.core.cell import Cell
 from study.core.setting import read_settings
 
-VALUES = 1e5      # steps of a stretch times variables, at most
-OPERATIONS = 3e8  # and times the square of a filled row: a dense step takes longer
+VALUES = 5e4      # steps of a stretch times variables, at most
+OPERATIONS = 2e8  # and times the square of a filled row: a dense step takes longer
 LEAST = 20        # steps of a stretch
-SAMPLES = 6       # of a process and contender
-LOOK = 4          # share of the stretch and ...
-LOOKS = 3         # ... samples of a look
+SAMPLES = {"look": 3, "time": 6, "pair": 3}  # of a process and contender
+LOOK = 4          # share of the stretch in a look
 PATIENCE = 0.5    # s: whose first stretch takes longer is not looked at
 CAREFUL = 3  # times the time of a run, and of starting it, is its limit: predictions may be wrong
 
@@ -63,15 +62,15 @@ class Runs:
     def look(self, scene, name, step, contenders, dense=False):
         """A short timed process in which the contenders of a point take turns."""
         steps = max(LEAST, self.stretch(scene, step, dense) // LOOK)
-        self._time("look", scene, name, step, contenders, 1, LOOKS, ("--steps", steps, "--patience", PATIENCE))
+        self._time("look", scene, name, step, contenders, 1, ("--steps", steps, "--patience", PATIENCE))
 
     def time(self, role, scene, name, step, contenders, processes, dense=False):
         """Timed processes in which the contenders of a point take turns; role: "time" or "pair"."""
-        self._time(role, scene, name, step, contenders, processes, SAMPLES, ("--steps", self.stretch(scene, step, dense)))
+        self._time(role, scene, name, step, contenders, processes, ("--steps", self.stretch(scene, step, dense)))
 
-    def _time(self, role, scene, name, step, contenders, processes, samples, more):
+    def _time(self, role, scene, name, step, contenders, processes, more):
         words = (*self.settings[name].words(self.subject.base), "--step", f"{step:g}", "--start", 0, *more)
-        self.records += timing.measure(self.lab, scene, contenders, processes=processes, repetitions=samples, settings=words,
+        self.records += timing.measure(self.lab, scene, contenders, processes=processes, repetitions=SAMPLES[role], settings=words,
                                        role=f"{role}/{self.settings[name].file_name}", seconds=60, drop=True)
 
     def stretch(self, scene, step, dense=False):
