@@ -19,11 +19,11 @@ SETTINGS = {"loops": list,     # sizes of the N-four-bar for everyone
             "patience": float, # s of the first stretch of a size: whoever is slower is not timed
             "processes": int,  # of a scene
             "samples": int}    # of a process and contender
-SHARES = {"sizes": 0.25, "growth": 0.15, "scenes": 0.45, "batches": 0.15}  # of the budget
+SHARES = {"sizes": 0.33, "growth": 0.1, "scenes": 0.47, "batches": 0.1}  # of the budget
 LIMIT = "limit/limit"
 NEAR = 2.0  # times the fastest library: who is near may be the rival of a lead; the others are not timed in scenes
-LOOK = ("--steps", 80, "--patience", 1.0)  # first, of everyone
-FIRST = ("--start", 0, "--steps", 40)
+LOOK = ("--steps", 40, "--patience", 1.0)  # first, of everyone
+FIRST = ("--start", 0, "--steps", 40)  # the same passes at all sizes
 CHECK_S = 60
 BATCH_S = 0.02  # a process of batches lasts about ten times that
 
@@ -85,7 +85,7 @@ def scenes(lab):
     here = [one for one in lab.contenders if one.environment == environment(lab)]
     for scene in listed(lab.settings) if here else []:
         lab.one(Cell("describe", scene.name, role="about"))
-        look = rows_of(measure(lab, scene.name, here, processes=1, repetitions=3, settings=(*LOOK, *scene.settings),
+        look = rows_of(measure(lab, scene.name, here, processes=1, repetitions=1, settings=(*LOOK, *scene.settings),
                                role=f"{scene.kind}-look", drop=True))
         timed(lab, scene.name, ask_gate(lab, scene.name, look, here, f"{scene.kind}-gate", scene.settings), scene.kind,
               scene.settings)
