@@ -2,6 +2,8 @@
 from collections import Counter
 
 from analysis.map import summary
+from analysis.map.cells import map_cells
+from analysis.map.regret import regrets
 from analysis.map.results import of
 
 
@@ -24,4 +26,26 @@ def answers(tables, view):
     verdicts = Counter(tables["claims"].verdict)
     found.append({"text": "Of the paper's claims " + ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items()) + ".",
                   "anchor": "claims"})
+    return found
+
+
+FULL = 50  # %, of a tangent that counts as filled
+
+
+def cases(tables, view):
+    """Rows of the front page: the library of least mean loss where the tangent is sparse and where it is filled."""
+    results = of(tables, view)
+    libraries = results.layer("libraries")
+    cells = [cell for cell in map_cells(results, libraries) if cell.ranking]
+    found = []
+    for words, mine in (("Your tangent is sparse, as the four-bar's", [cell for cell in cells if cell.fill_asked is None]),
+                        (f"Your tangent is filled to {FULL} % or more", [cell for cell in cells if cell.fill_asked
+                                                                        and cell.fill_percent >= FULL])):
+        whole = [one for one in regrets(results, mine, libraries) if not one.failed and len(one.ratios) == len(mine) and mine]
+        if whole:
+            sizes = sorted({cell.variables for cell in mine})
+            span = f"{sizes[0]:g} to {sizes[-1]:g} variables" if len(sizes) > 1 else f"{sizes[0]:g} variables"
+            found.append({"case": f"{words} ({span})", "link": "map.html#regret",
+                          "take": f"{whole[0].name}: {whole[0].mean:.2f} times the fastest library on average, "
+                                  f"{whole[0].worst:.2f} at worst"})
     return found
