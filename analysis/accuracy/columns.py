@@ -1,4 +1,4 @@
-# The columns of accuracy, as a profile lists them: sizes of the N-four-bar, standard problems, sizes for pairs of settings.
+# The columns of accuracy as a profile lists them: sizes of the N-four-bar, standard problems, sizes for pairs of settings.
 from analysis.core.errors import StudyError
 
 KEYS = {"loops": {"seconds", "fills"}, "problem": {"seconds"}, "pairs": {"seconds"}}  # beside the kind itself

@@ -40,10 +40,10 @@ def _row(rows, made, both):
     named = rows.assign(implementation=rows.setting, environment="")  # processes of one number follow each other
     lost = rows[rows.status != "ok"]
     ratio = timing.ratio(named, both[1], both[0])
+    why = "" if lost.empty or ratio.value > 0 else f"{lost.iloc[0].setting}: {lost.iloc[0].status}: {lost.iloc[0].reason}"
     found = {"ratio": ratio.value, "low": ratio.low, "high": ratio.high, "processes": rows.process.nunique(),
              "variables": rows.get("variables", pandas.Series(dtype=float)).max(),
-             "reason": f"{lost.iloc[0].setting}: {lost.iloc[0].status}: {lost.iloc[0].reason}" if len(lost) and not ratio.value > 0 else "",
-             "record": " ".join(dict.fromkeys(rows.record))}
+             "reason": why, "record": " ".join(dict.fromkeys(rows.record))}
     for place, setting in zip(("first", "second"), both):
         mine = rows[(rows.setting == setting) & (rows.status == "ok")]
         found[f"{place}_us"] = mine.step_us.median()
@@ -60,7 +60,8 @@ def _row(rows, made, both):
 
 def _run(made, implementation, setting):
     """The longest run of its own, or None."""
-    chosen = made[(made.implementation == implementation) & (made.setting == setting) & ((made.step / STEP - 1).abs() < 1e-6)]
+    chosen = made[(made.implementation == implementation) & (made.setting == setting)]
+    chosen = chosen[(chosen.step / STEP - 1).abs() < 1e-6]
     return None if chosen.empty else chosen.sort_values("duration").iloc[-1].to_dict()
 
 

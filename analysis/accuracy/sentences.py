@@ -24,8 +24,9 @@ def cases(tables, view):
     rows = won[(won.layer == "libraries") & (won.implementation != NOBODY)]
     if rows.empty:
         return []
-    return [{"case": "Your motion may be off by an error that you name", "link": "accuracy.html#short",
-             "take": f"{most(rows.implementation)[0]} with the setting {most(rows.setting)[0]} and the longest step that meets it"}]
+    who, setting = most(rows.implementation)[0], most(rows.setting)[0]
+    return [{"case": "You know the error that your motion may have", "link": "accuracy.html#short",
+             "take": f"{who} with the setting {setting} and the longest step that meets it (study/advise finds it)"}]
 
 
 def own_fill(winners):
@@ -116,7 +117,8 @@ def of_forms(table):
     if rows.empty:
         return []
     least, largest = rows.loc[rows.ratio.idxmin()], rows.loc[rows.ratio.idxmax()]
-    said = [f"A step of the saddle-point form takes {_cost(least)} to {_cost(largest)} times as long as one of the penalty form."]
+    said = [f"A step of the saddle-point form takes {_cost(least)} to {_cost(largest)} times as long as one of the penalty "
+            "form."]
     per_pass = ((rows.second_us / rows.second_passes) / (rows.first_us / rows.first_passes)).dropna()
     if len(per_pass):
         said.append(f"A pass takes {number(per_pass.min(), 2)} to {number(per_pass.max(), 2)} times as long; the rest is the "
@@ -125,7 +127,8 @@ def of_forms(table):
 
 
 def _cost(row):
-    return f"{number(row.ratio, 2)} ({number(row.low, 2)} to {number(row.high, 2)}; {row.implementation}, n = {row.variables:.0f})"
+    return (f"{number(row.ratio, 2)} ({number(row.low, 2)} to {number(row.high, 2)}; {row.implementation}, "
+            f"n = {row.variables:.0f})")
 
 
 def of_precision(table):

@@ -62,7 +62,7 @@ def chain(loops, duration, fill=None):
 def problem(name):
     entry = next((one for one in read_list()[1] if one.name == name and not one.scene.startswith("four-bar:")), None)
     if entry is None:
-        raise StudyError(f"accuracy: columns: '{name}' is no standard problem (study/scenes/problems.yaml) of its own scene")
+        raise StudyError(f"accuracy: columns: '{name}' is no standard problem of its own scene (study/scenes/problems.yaml)")
     return Subject(name, entry.title, entry.scene, entry.duration, tuple(entry.steps[0] * factor for factor in AROUND),
                    entry=entry)
 

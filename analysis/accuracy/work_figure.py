@@ -14,6 +14,7 @@ from analysis.core.style import GREY, missing, number_axis
 
 CLOSE = 1.25  # times the front's time at its error
 MOST = 8      # named series of a panel
+GAP = 2.1     # times the shorter of two steps
 TITLES = {"libraries": "libraries", "all": "libraries and code without one"}
 
 
@@ -68,7 +69,11 @@ def _panel(axes, rows, front, look):
         mine = meeting(rows[(rows.implementation == key[0]) & (rows.setting == key[1])], numpy.inf).sort_values("step")
         line = {"color": colours[key[1]], "linewidth": 1.5, "linestyle": look.dash(key[0]), "marker": look.marker(key[0]),
                 "markersize": 8 if look.marker(key[0]) in "*PX" else 6, "markeredgecolor": "white", "markeredgewidth": 0.5}
-        axes.plot(mine.time, mine.error, **line, zorder=4)
+        # What lies between two steps that were timed is not known: no line there.
+        gaps = mine.step / mine.step.shift(1) > GAP
+        pieces = [one for _, one in mine.groupby(gaps.cumsum())]
+        for piece in pieces:
+            axes.plot(piece.time, piece.error, **line, zorder=4)
         axes.hlines(mine.error, mine.time_low, mine.time_high, color=line["color"], linewidth=1.0, zorder=3)
         below = mine[mine.at_most.fillna(False).astype(bool)]
         axes.plot(below.time, below.error, linestyle="none", marker="v", markersize=10, markerfacecolor="none",

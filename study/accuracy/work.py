@@ -65,8 +65,8 @@ def _wanted(runs, found, filled):
             rows = sorted(rows, key=lambda row: row["time"])[:MOST]
             chosen += [row for row in rows if row["time"] <= TRIED[filled] * rows[0]["time"]]
         if not filled:
-            made = runs.made()
-            mine = made[made.implementation.isin([one.name for one in runs.layers[layer]]) & (made.scene == runs.subject.scene)]
+            made, names = runs.made(), [one.name for one in runs.layers[layer]]
+            mine = made[made.implementation.isin(names) & (made.scene == runs.subject.scene)]
             chosen += mine.loc[pareto(mine)].to_dict("records")
         wanted[layer] = list(dict.fromkeys((row["setting"], row["step"]) for row in chosen))
     return wanted
@@ -81,7 +81,8 @@ def _judge(runs, scene):
     jobs = []
     for error in runs.lab.settings["errors"]:
         for group in runs.layers.values():
-            mine = table[table.implementation.isin([one.name for one in group]) & (table.error <= error)].sort_values("time")
+            mine = table[table.implementation.isin([one.name for one in group])]
+            mine = mine[mine.error <= error].sort_values("time", kind="stable")
             chosen = mine[(mine.time <= JUDGED * mine.time.min()) | mine.index.isin(_others(mine, OTHERS))]
             for row in chosen[chosen.status == NOT_JUDGED].itertuples():
                 duration = runs.duration(row.time)

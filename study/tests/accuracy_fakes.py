@@ -93,8 +93,8 @@ def variables(cell):
 
 
 def options(cell):
-    words = list(map(str, cell.settings))
-    return {word: words[place + 1] if place + 1 < len(words) else "" for place, word in enumerate(words) if word.startswith("--")}
+    words = [*map(str, cell.settings), ""]
+    return {word: words[place + 1] for place, word in enumerate(words) if word.startswith("--")}
 
 
 def view(lab):

@@ -147,7 +147,7 @@ def test_wrong_columns_are_said_in_a_line(columns, what):
 def test_wrong_names_are_said_in_a_line():
     with pytest.raises(StudyError, match="'A99' is no standard problem"):
         subjects.problem("A99")
-    with pytest.raises(StudyError, match="'A02' is no standard problem .* of its own scene"):
+    with pytest.raises(StudyError, match="'A02' is no standard problem of its own scene"):
         subjects.problem("A02")  # an N-four-bar: by its loops
     with pytest.raises(StudyError, match="unknown, or without default: nothing"):
         Runs(Lab("four-bar-2", SETTINGS | {"settings": ["default", "nothing"]}), "loops", {"loops": 2})
