@@ -172,8 +172,8 @@ def test_not_a_number_is_never_written():
 @pytest.fixture
 def loose(tmp_path):
     """A set's folder with records, a scene and a partial file."""
-    for number in range(5):
-        records.write(tmp_path / "raw" / "part" / "c" / "map" / f"{number}.json", FIELDS | {"seconds": number / 3})
+    for place in range(5):
+        records.write(tmp_path / "raw" / "part" / "c" / "map" / f"{place}.json", FIELDS | {"seconds": place / 3})
     write_json(tmp_path / "raw" / "part" / "scenes" / "x.json", {"points": []})
     (tmp_path / "raw" / "part" / "c" / ".partial-1-x.json").write_text("half")
     return tmp_path
@@ -183,7 +183,7 @@ def test_an_archive_holds_the_same_records_and_scenes(loose):
     before = records.read_part(loose, "part")
     archive = records.archive_of(loose, "part")
     records.pack(loose, "part", archive)
-    assert [one.name for one in before] == [f"c/map/{number}.json" for number in range(5)]
+    assert [one.name for one in before] == [f"c/map/{place}.json" for place in range(5)]
     assert records.read_part(loose, "part") == before
     again = loose / "again.tar.xz"
     shutil.copytree(loose / "raw" / "part", loose / "other" / "raw" / "part")  # other times
