@@ -76,11 +76,11 @@ def over_size(bounds, rows, look, own=()):
 
 
 def by_phase(rows, own=()):
-    """A panel a size (at most three that most were timed at): the share of each phase in a step of each of the
+    """A panel a size (at most three that many were timed at): the share of each phase in a step of each of the
     leaders(), beside the step in multiples of the limit code."""
     rows = rows[rows.other_us.notna()]
     names = leaders(rows, own) if len(rows) else []
-    many = rows[rows.implementation.isin(names)].groupby("loops").size() > len(names) / 2
+    many = rows[rows.implementation.isin(names)].groupby("loops").size() > len(names) / 3
     sizes = sorted(many.index[many])
     shown = sizes if len(sizes) <= 3 else [sizes[round(k * (len(sizes) - 1) / 2)] for k in range(3)]
     figure, panels = plt.subplots(1, max(1, len(shown)), sharey=True, squeeze=False, constrained_layout=True,

@@ -11,7 +11,7 @@ def context(tables, view):
             "sizes": _grouped(_timed(wide["penalty"]).sort_values(["loops", "step_us"]), "variables"),
             "growth": _grouped(_own(wide, view), "form"), "scenes": by_scene(tables["scenes"]),
             "leads": tables["leads"][tables["leads"].status == "ok"].to_dict("records"),
-            "batches": tables["batches"][tables["batches"].status != "unsupported"].to_dict("records"),
+            "batches": tables["batches"][tables["batches"].status != "unsupported"].sort_values(["variables", "sets"]).to_dict("records"),
             "alone": sorted(set(tables["batches"].implementation[tables["batches"].status == "unsupported"])), "lost": lost(tables)}
 
 
@@ -41,12 +41,13 @@ def by_scene(scenes):
 
 
 def lost(tables):
-    """[(implementation, status, reason, where)] of what was not timed or is not believed."""
+    """[(status, reason, [(implementation, where)])] of what was not timed or is not believed."""
     found = {}
     for name in ("steps", "scenes", "batches"):
         for row in tables[name].to_dict("records"):
             if row["status"] not in ("ok", {"scenes": "slower", "batches": "unsupported"}.get(name)):
                 where = row.get("scene") or f"four-bar:{row['loops']:.0f}" + (", saddle-point" if row["form"] != "penalty" else "")
-                found.setdefault((row["implementation"], row["status"], row["reason"].partition(" (first look")[0]), []).append(
+                what = row["status"], row["reason"].partition(" (first ")[0]
+                found.setdefault(what, {}).setdefault(row["implementation"], []).append(
                     where.removeprefix("harness/scenes/").removesuffix(".json"))
-    return [(*what, where) for what, where in found.items()]
+    return [(*what, list(names.items())) for what, names in found.items()]

@@ -2,7 +2,7 @@
 from analysis.core.text import number
 from analysis.limit.figures import everyone
 from analysis.limit.held import HELD, NOT_HELD, NOT_MEASURED
-from analysis.limit.tables import KINDS, LIMIT
+from analysis.limit.tables import KINDS
 
 
 def answers(tables, view):
@@ -12,17 +12,16 @@ def answers(tables, view):
 
 
 def _multiples(rows, view):
-    """The fastest library and the fastest of our own, from the smallest to the largest size that both were timed at."""
+    """The fastest library and the fastest of our own, each over the sizes that it was timed at."""
     sides = {"the fastest library": rows[rows.implementation.isin(view.registry.libraries)],
              "the fastest code of our own": rows[rows.implementation.isin(view.registry.own)]}
     said = []
     for who, mine in sides.items():
-        best = mine.sort_values("multiple").drop_duplicates("loops").multiple
+        best = mine.sort_values("multiple").drop_duplicates("loops")
         if len(best):
-            said.append(f"{who} takes {number(best.min(), 2)} to {number(best.max(), 2)} times as long")
-    timed = rows[rows.implementation != LIMIT].variables
-    return [{"text": f"Beside code written for the N-four-bar alone, n = {timed.min():.0f} to {timed.max():.0f}: {'; '.join(said)}.",
-             "anchor": "sizes"}] if said else []
+            said.append(f"{who} takes {number(best.multiple.min(), 2)} to {number(best.multiple.max(), 2)} times as long "
+                        f"(n = {best.variables.min():.0f} to {best.variables.max():.0f})")
+    return [{"text": f"Beside code written for the N-four-bar alone {'; '.join(said)}.", "anchor": "sizes"}] if said else []
 
 
 def _leads(leads):

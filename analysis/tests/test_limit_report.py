@@ -103,7 +103,8 @@ def test_who_failed_in_one_process_has_failed_and_who_was_slow_in_one_has_not():
     rows = found["steps"].set_index("implementation")
     assert (rows.status["one/a"], rows.reason["one/a"]) == ("diverged", "at step 3") and numpy.isnan(rows.step_us["one/a"])
     assert rows.status["one/b"] == "ok" and rows.processes["one/b"] == 1 and rows.status["two/c"] == "crashed"
-    assert {(name, status) for name, status, _, _ in page.lost(found)} == {("one/a", "diverged"), ("two/c", "crashed")}
+    assert [(status, names) for status, _, names in page.lost(found)] == [
+        ("diverged", [("one/a", ["four-bar:10"])]), ("crashed", [("two/c", ["four-bar:10"])])]
 
 
 def test_a_lead_is_over_the_fastest_library_that_the_gate_agrees_with():

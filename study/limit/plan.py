@@ -39,16 +39,17 @@ def run(lab, column):
 def sizes(lab):
     """Who is not timed at one size is not tried at a larger one."""
     known, lost = lab.settings["loops"], {}
-    if known:
-        lab.one(Cell("limit", "", (), tuple(sorted(known)), "bounds", timed=True, seconds=300))
-    for loops in sorted({*known, *lab.settings["large"]}):
+    every = sorted({*known, *lab.settings["large"]})
+    if every:
+        lab.one(Cell("limit", "", (), tuple(every), "bounds", timed=True, seconds=300))
+    for loops in every:
         here = [*limit_code(lab), *(lab.contenders if loops in known else own(lab))]
         scene = f"four-bar:{loops}"
         for one in here:
             if one.name in lost:
                 lab.skip(Cell("bench", scene, (one,), role="size-left-out"), "excluded", lost[one.name])
-        rows = timed(lab, scene, [one for one in here if one.name not in lost], "size",
-                     ("--phases", "--patience", lab.settings["patience"]))
+        patience = ("--patience", lab.settings["patience"]) if loops in known else ()
+        rows = timed(lab, scene, [one for one in here if one.name not in lost], "size", ("--phases", *patience))
         timed_once = set(rows.implementation[rows.status == "ok"])
         lost |= {row.implementation: f"not timed at N = {loops}: {row.status}" for row in rows.itertuples()
                  if row.implementation not in timed_once and row.status != "dropped"}

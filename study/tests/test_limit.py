@@ -66,8 +66,9 @@ def test_who_is_not_timed_at_one_size_is_not_tried_at_a_larger_one(measured):
         ("four-bar:10", ["limit/limit", "one/a", "one/b", "own/x", "own/y"]),
         ("four-bar:40", ["limit/limit", "one/a", "own/x", "own/y"]), ("four-bar:49", ["limit/limit", "own/x", "own/y"])]
     assert lab.skipped == [("four-bar:40", "one/b", "excluded", "not timed at N = 10: slower")]
-    assert [(cell.kind, cell.settings) for cell in lab.cells if cell.role == "bounds"] == [("limit", (10, 40))]
+    assert [(cell.kind, cell.settings) for cell in lab.cells if cell.role == "bounds"] == [("limit", (10, 40, 49))]
     assert {cell.scene for cell in lab.cells if cell.kind == "check"} == {"four-bar:10", "four-bar:40"}
+    assert ["--patience" in settings for _, _, _, settings in measured.asked] == [True, True, False]
 
 
 def test_a_size_that_the_budget_dropped_excludes_nobody(measured):
