@@ -1,4 +1,4 @@
-# How runs end, and which of that counts as what; harness/README.md says what each outcome means.
+# How runs end, and which of that counts as what; harness/src/run/README.md says what each means.
 GOOD = ("ok", "plausible")       # nothing is known to be wrong
 FINISHED = (*GOOD, "degraded")   # has all of its motion
 WHOLE = (*FINISHED, "not-converged")  # got to the end

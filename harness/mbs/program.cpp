@@ -54,7 +54,7 @@ void add_choice(CLI::App& command, const std::string& option, Choice& value,
 
 /// What `status` of a run may be, a line each.
 std::string outcomes_text() {
-  std::string text = "Outcomes of a run (bounds: harness/README.md), exit status 0:\n";
+  std::string text = "Outcomes of a run (bounds: harness/src/run/README.md), exit status 0:\n";
   bool finished = true;
   for (const auto& [status, name, meaning] : outcomes()) {
     if (finished && !is_finished(status)) text += "exit status 1:\n";

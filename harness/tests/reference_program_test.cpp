@@ -34,7 +34,7 @@ TEST(ReferenceProgram, FollowsTheExactMotionToSecondOrder) {
     return summary.at("position_error_max").get<double>();
   };
   const double fine = error("1.25e-3");
-  EXPECT_LT(fine, 0.65 * 1.25e-3 * 1.25e-3);  // harness/README.md, "The gate"
+  EXPECT_LT(fine, 0.65 * 1.25e-3 * 1.25e-3);  // harness/src/check/README.md
   EXPECT_NEAR(error("2.5e-3") / fine, 4.0, 0.3);
 }
 

@@ -136,7 +136,7 @@ TEST(Warnings, TellOfStepsTooLongForSprings) {
   EXPECT_NEAR(shortest_period(Model(std::move(data))), 2 * std::numbers::pi, 1e-14);
 }
 
-// The window against what was measured over 5 s: harness/README.md.
+// The window against what was measured over 5 s.
 TEST(PenaltyWindow, IsWhereRunsAreGood) {
   const struct {
     int loops;
@@ -157,7 +157,7 @@ TEST(PenaltyWindow, IsWhereRunsAreGood) {
   }
 }
 
-// In single precision, against results/stability: what of beta (decades) is ok, where any is.
+// In single precision, against measured maps: what of beta (decades) is ok, where any is.
 TEST(PenaltyWindow, OfSinglePrecisionIsWhereRunsAreGood) {
   const struct {
     int loops;

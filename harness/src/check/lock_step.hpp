@@ -12,7 +12,7 @@ namespace mbs {
 /// max |x - y|; NaN if either holds one, or if the sizes differ.
 double largest_difference(const std::vector<double>& x, const std::vector<double>& y);
 
-/// Tolerances of a lock-step comparison; harness/README.md has their derivation.
+/// Tolerances of a lock-step comparison; README.md here has their derivation.
 struct LockStepTolerance {
   double q, v, a, lambda;
 };

@@ -16,8 +16,7 @@ struct Stretch {
 };
 
 /// Largest N up to which two correct implementations still agree beyond a singular position:
-/// crossing one multiplies rounding errors, the more so the larger N (harness/README.md has the
-/// figures).
+/// crossing one multiplies rounding errors, the more so the larger N.
 inline constexpr int kMostLoopsToCross = 300;
 
 /// Above it, a stretch ends this long before the singular position, s.
