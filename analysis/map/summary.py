@@ -43,6 +43,8 @@ def dense_from(results):
     for size in sorted({cell.variables for cell in cells if cell.fill_asked is not None}):
         found = [(cell.fill_percent, best(results, cell.scene, paper.dense(results), paper.sparse(results)))
                  for cell in cells if cell.variables == size and cell.ranking]
+        if not found:  # nobody was timed there
+            continue
         faster = [bool(ratio and ratio.high < 1) for _, ratio in found]
         start = len(found) - next((place for place, one in enumerate(reversed(faster)) if not one), len(found))
         ahead = [fill for (fill, _), one in zip(found, faster) if one]

@@ -91,6 +91,10 @@ def test_dense_overtakes_where_the_ratio_passes_one():
     assert row["from"] == 75 and row["last_sparse"] == 25 and row["between"] is None
 
 
+def test_a_size_at_which_nobody_was_timed_says_nothing_of_dense_and_sparse():
+    assert summary.dense_from(some(failed(A, 10, "dropped", fill=0.5) + cell(A, 22, 1.0))) == []
+
+
 def test_the_price_counts_pilots_and_puts_those_that_fail_last():
     rows = cell(A, 10, 1.0, 1.0, pilot_us=1.0) + cell(B, 10, 2.0, 2.0, pilot_us=2.0) + failed(C, 10, "crashed")
     rows += cell(A, 22, 1.0, 1.0, pilot_us=1.0) + failed(B, 22, "excluded", pilot=8.0) + cell(C, 22, 1.5, 1.5)

@@ -13,6 +13,7 @@ from study.core.cell import Cell
 from study.core.contender import Contender
 
 FAMILY = 5
+SLOW = 4  # of those who take as long as they may, that a process has time for
 RUNS = 3  # of a pilot; the fastest counts
 WORK = 3200  # variables times steps of a pilot
 
@@ -113,10 +114,10 @@ def _gate(lab, scene, contenders):
 
 
 def _check(lab, scene, group):
-    # A limit of its own for each, with room left for the reference: the program can then blame the slow one, before
-    # the limit on the whole process takes all verdicts with it.
+    # A limit of its own for each: the program can then blame a slow one, before the limit on the whole process takes all
+    # verdicts with it.
     limit = lab.settings["limits"]["check"]
-    return Cell("check", scene.name, group, ("--time-limit", f"{limit / (len(group) + 1):g}"), "gate", seconds=limit)
+    return Cell("check", scene.name, group, ("--time-limit", f"{limit / SLOW:g}"), "gate", seconds=limit)
 
 
 def alternatives(lab, scene):
