@@ -1,12 +1,20 @@
 # Turns the list of implementation folders into one static library each and a generated registry.
 
-# Declares the implementation in the current folder.
+# Declares the implementation in the current folder. PRECOMPILED are the headers of its library that most of its
+# files include.
 function(mbs_implementation)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "" "" "SOURCES;LIBRARIES;INCLUDE_DIRECTORIES")
+  cmake_parse_arguments(PARSE_ARGV 0 arg "" "" "SOURCES;LIBRARIES;INCLUDE_DIRECTORIES;PRECOMPILED")
   get_filename_component(name ${CMAKE_CURRENT_SOURCE_DIR} NAME)
   add_library(implementation_${name} STATIC ${arg_SOURCES})
   target_include_directories(implementation_${name} SYSTEM PRIVATE ${arg_INCLUDE_DIRECTORIES})
   target_link_libraries(implementation_${name} PUBLIC mbs_public PRIVATE ${arg_LIBRARIES})
+  # Reading headers is half of the time to compile. Unlike a unity build, which the preset for sanitizers makes,
+  # this leaves the compiled code as it is.
+  if(NOT CMAKE_UNITY_BUILD)
+    target_precompile_headers(implementation_${name} PRIVATE
+      <algorithm> <array> <cmath> <memory> <span> <string> <utility> <vector> <mbs/implementation.hpp>
+      ${arg_PRECOMPILED})
+  endif()
   set_property(GLOBAL APPEND PROPERTY MBS_AVAILABLE ${name})
 endfunction()
 

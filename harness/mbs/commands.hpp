@@ -45,8 +45,4 @@ NamedVariant select_variant(const std::string& name);
 /// Throws UsageError unless `step` (s) is a sensible time step.
 void require_step(double step);
 
-/// Parses the command line and runs it; the exit status: 0 done, 1 a result that is not right,
-/// 2 bad input.
-int run_program(int argc, char** argv);
-
 }  // namespace mbs

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "environment/environment.hpp"
-#include "mbs/commands.hpp"
+#include "mbs/run_program.hpp"
 #include "printable.hpp"
 
 namespace {

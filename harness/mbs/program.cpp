@@ -10,6 +10,7 @@
 #include "environment/build_info.hpp"
 #include "mbs/bench_command.hpp"
 #include "mbs/commands.hpp"
+#include "mbs/run_program.hpp"
 #include "run/run.hpp"
 #include "run/setting_names.hpp"
 #include "run/settings.hpp"

@@ -118,7 +118,8 @@ TEST_P(FourBarExactOf, FirstSingularTimeIsTheFirst) {
   for (int i = 0; i < 100; ++i) EXPECT_GT(exact.angle(singular * i / 100).cosine, 0) << i;
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, FourBarExactOf, ::testing::Values(1, 2, 10, 40, 1999));
+INSTANTIATE_TEST_SUITE_P(Sizes, FourBarExactOf, ::testing::Values(1, 2, 10, 40, 1999),
+                         ::testing::PrintToStringParamName());
 
 TEST(FourBarExact, StartsAsStated) {
   const FourBarExact exact(3);

@@ -24,6 +24,10 @@ struct Case {
   double size = 1.0;  // m
 };
 
+void PrintTo(const Case& body, std::ostream* out) {
+  *out << body.dimension << "D_" << body.points << (body.size < 1.0 ? "_small" : "");
+}
+
 class RigidBody : public testing::TestWithParam<Case> {
  protected:
   double uniform(double low, double high) {
@@ -133,7 +137,8 @@ INSTANTIATE_TEST_SUITE_P(Bodies, RigidBody,
                          testing::Values(Case{2, 0}, Case{2, 1}, Case{2, 2}, Case{2, 3}, Case{2, 6},
                                          Case{2, 4, 1e-2}, Case{3, 0}, Case{3, 1}, Case{3, 2},
                                          Case{3, 3}, Case{3, 4}, Case{3, 5}, Case{3, 9},
-                                         Case{3, 6, 1e-2}));
+                                         Case{3, 6, 1e-2}),
+                         testing::PrintToStringParamName());
 
 TEST(BodyMass, VectorsAndPointsGiveTheSameEnergy) {
   // A box turning about its centre: any basis, with vectors in it or beyond it, says the same.

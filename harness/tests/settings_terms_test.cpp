@@ -19,6 +19,8 @@ struct Setting {
   StepSettings settings;
 };
 
+void PrintTo(const Setting& setting, std::ostream* out) { *out << setting.name; }
+
 constexpr double kStep = 2.5e-4;  // short enough that no driver forces what geometry forbids
 
 std::vector<Setting> all_settings() {
@@ -69,8 +71,9 @@ TEST_P(SettingsTerms, Agree) {
     settings.penalty = automatic_penalty(scene.model, settings);
     settings.tolerance = automatic_tolerance(scene.model, settings);
     const bool suited = why_unsuited(scene.model, settings).empty();
-    ReferenceRun reference;
-    if (suited) reference = run_reference(scene, settings);
+    static const ReferenceRun none;
+    const ReferenceRun& reference =
+        suited ? test::kept_reference(setting.name, scene, settings) : none;
     const Verdict verdict = check_implementation(scene, variant, settings, reference);
     if (test::is_left_to_another(verdict, variant, scene.model, settings)) continue;
     EXPECT_EQ(verdict.verdict, suited ? "agrees" : "unsupported") << verdict.reason;
@@ -120,14 +123,15 @@ bool tells_much(const Setting& setting) {
   return false;
 }
 
+/// Setting by setting, for kept_reference().
 std::vector<Case> cases() {
   std::vector<Case> result;
-  const RegistryEntry* last = nullptr;
-  for (const NamedVariant& variant : all_variants()) {
-    if (test::kSlowReference && variant.entry == last) continue;
-    last = variant.entry;
-    for (const Setting& setting : all_settings()) {
-      if (test::kSlowReference && !tells_much(setting)) continue;
+  for (const Setting& setting : all_settings()) {
+    if (test::kSlowReference && !tells_much(setting)) continue;
+    const RegistryEntry* last = nullptr;
+    for (const NamedVariant& variant : all_variants()) {
+      if (test::kSlowReference && variant.entry == last) continue;
+      last = variant.entry;
       if (why_not_served(variant.variant->serves, setting.settings).empty()) {
         result.emplace_back(variant, setting);
       }

@@ -22,22 +22,24 @@ StepSettings settings_for(const Model& model, Projections projections) {
 
 class Terms : public ::testing::TestWithParam<NamedVariant> {};
 
-void expect_agreement(const NamedVariant& variant, Projections projections) {
+void expect_agreement(const NamedVariant& variant, const char* name, Projections projections) {
   for (const test::TermModel& term : test::term_models()) {
     if (test::kSlowReference && !term.name.starts_with("everything")) continue;
     SCOPED_TRACE(term.name);
     const Scene scene{term.name, term.model, {}, {}};
     const StepSettings settings = settings_for(scene.model, projections);
-    const ReferenceRun reference = run_reference(scene, settings);
-    const Verdict verdict = check_implementation(scene, variant, settings, reference);
+    const Verdict verdict =
+        check_implementation(scene, variant, settings, test::kept_reference(name, scene, settings));
     if (test::is_left_to_another(verdict, variant, scene.model, settings)) continue;
     EXPECT_EQ(verdict.verdict, "agrees") << verdict.reason;
   }
 }
 
-TEST_P(Terms, Agree) { expect_agreement(GetParam(), Projections::both); }
-TEST_P(Terms, AgreeWithoutProjections) { expect_agreement(GetParam(), Projections::none); }
-TEST_P(Terms, AgreeWithProjectedVelocities) { expect_agreement(GetParam(), Projections::velocity); }
+TEST_P(Terms, Agree) { expect_agreement(GetParam(), "both", Projections::both); }
+TEST_P(Terms, AgreeWithoutProjections) { expect_agreement(GetParam(), "none", Projections::none); }
+TEST_P(Terms, AgreeWithProjectedVelocities) {
+  expect_agreement(GetParam(), "velocity", Projections::velocity);
+}
 
 std::string test_name(const ::testing::TestParamInfo<NamedVariant>& info) {
   return test::gtest_name(info.param.name);

@@ -3,7 +3,17 @@
 
 #include <algorithm>
 #include <cctype>
+#include <ostream>
 #include <string>
+
+#include "registry/registry.hpp"
+
+namespace mbs {
+
+/// How GoogleTest names it.
+inline void PrintTo(const NamedVariant& variant, std::ostream* out) { *out << variant.name; }
+
+}  // namespace mbs
 
 namespace mbs::test {
 

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
 
 #include "model_math/kinematics.hpp"
@@ -285,6 +286,17 @@ std::vector<TermModel> term_models() {
     }
   }
   return models;
+}
+
+const ReferenceRun& kept_reference(const std::string& setting, const Scene& scene,
+                                   const StepSettings& settings) {
+  static std::string kept;
+  static std::map<std::string, ReferenceRun> runs;
+  if (kept != setting) runs.clear();
+  kept = setting;
+  const auto found = runs.find(scene.name);
+  if (found != runs.end()) return found->second;
+  return runs.emplace(scene.name, run_reference(scene, settings)).first->second;
 }
 
 }  // namespace mbs::test

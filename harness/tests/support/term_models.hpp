@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "check/reference_run.hpp"
 #include "mbs/model.hpp"
 
 namespace mbs::test {
@@ -27,5 +28,11 @@ inline void PrintTo(const TermModel& model, std::ostream* out) { *out << model.n
 /// Mechanisms of a few points in two and three dimensions, each with one kind of term and one with
 /// all of them; their start fulfils the constraints, velocities included.
 std::vector<TermModel> term_models();
+
+/// What the reference makes of `scene`, a model of term_models(). Runs are kept until `setting`, a
+/// name for all of `settings`, is another: they cost far more than what tests hold against them,
+/// variant by variant.
+const ReferenceRun& kept_reference(const std::string& setting, const Scene& scene,
+                                   const StepSettings& settings);
 
 }  // namespace mbs::test
