@@ -2,9 +2,9 @@
 system_python() {
   local here="$1"
   shift
-  if [[ ! -x /usr/bin/python3 ]]; then
+  if ! /usr/bin/python3 -c 'import yaml' 2> /dev/null; then
     if [[ "$1" != run || " $* " == *" --dry-run "* || " $* " == *" --list "* ]]; then
-      echo "study/$1: Debian's /usr/bin/python3 is missing: run study/setup" >&2
+      echo "study/$1: Debian's /usr/bin/python3 or its package python3-yaml is missing: run study/setup" >&2
       exit 1
     fi
     "$here/setup" --no-build

@@ -2,6 +2,8 @@
 import importlib
 from dataclasses import dataclass
 
+import yaml
+
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
 from analysis.core.parts import parts
@@ -31,7 +33,6 @@ def load(name, chosen=None):
 
 def read(path, name, chosen=None):
     """The profile in a file; StudyError if a setting is missing, unknown or of another kind."""
-    import yaml
     try:
         data = yaml.safe_load(path.read_bytes().decode())
     except (yaml.YAMLError, UnicodeDecodeError) as error:
@@ -41,11 +42,8 @@ def read(path, name, chosen=None):
     need_keys(path, "the profile", data, {"title", "blas", "dropped", "parts"})
     if not isinstance(data["blas"], dict) or "all" not in data["blas"]:
         raise StudyError(f"{path}: blas must name a pair for all")
-    if not isinstance(data["parts"], dict):
-        raise StudyError(f"{path}: parts needs settings, found {type(data['parts']).__name__}")
+    need_keys(path, "parts", data["parts"], set(parts()))
     for part in parts() if chosen is None else chosen:
-        if part not in data["parts"]:
-            raise StudyError(f"{path}: parts: missing or unknown: {part}")
         settings = data["parts"][part]
         wanted = plan_of(part).SETTINGS
         need_keys(path, part, settings, {"seconds", *wanted})
