@@ -26,7 +26,7 @@ double seconds_since(Clock::time_point begin) {
 }
 
 /// Of all threads, so that none works for nothing.
-double processor_seconds() {
+double cpu_seconds() {
   timespec now{};
   ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
@@ -37,10 +37,10 @@ double reading_cost() {
   constexpr int kTries = 200;
   double least = 1.0;
   for (int i = 0; i < kTries; ++i) {
-    const double cpu = processor_seconds();
+    const double cpu = cpu_seconds();
     const auto begin = Clock::now();
     const double seconds = seconds_since(begin);
-    least = std::min(least, processor_seconds() - cpu - seconds);
+    least = std::min(least, cpu_seconds() - cpu - seconds);
   }
   return std::max(0.0, least);
 }
@@ -124,12 +124,12 @@ void Measurement::start() {
 Spent Measurement::advance(int steps) {
   const double before = accepted_ ? 0.0 : allocated_bytes();
   static const double reading = reading_cost();
-  const double cpu = processor_seconds();
+  const double cpu = cpu_seconds();
   const auto begin = Clock::now();
   const Tally tally = run_steps(*simulation_, steps);
   const double seconds = seconds_since(begin);
   constexpr double kLeast = 1e-9;  // s: nothing takes no time
-  const Spent spent{seconds, std::max(kLeast, processor_seconds() - cpu - reading)};
+  const Spent spent{seconds, std::max(kLeast, cpu_seconds() - cpu - reading)};
   if (!accepted_) figures_.memory_bytes += allocated_bytes() - before;
   if (tally.failed_step > 0) {
     throw CellFailure(fmt::format("factorization-failed: the tangent of step {} of {} was refused",
