@@ -54,4 +54,4 @@ def _costs(modelling):
 
 def _cost(row):
     ends = f" ({number(row.ratio_low)} to {number(row.ratio_high)})" if row.rounds > 1 else ""
-    return f"{row.case}, {number(row.ratio)}{ends} times its base's step"
+    return f"{row.case} takes {number(row.ratio)}{ends} times the plain step"

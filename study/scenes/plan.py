@@ -29,9 +29,14 @@ def problems(lab):
             runs += [simulate(problem, one, step, "compared" if one.name in compared else "everyone")
                      for step in problem.steps if one.name in compared or (problem.everyone and step == problem.steps[0])]
             gates.append(gate(problem, one))
-    lab.run(runs)
-    # Worth most first: dense ones take longest where their step is of least use.
-    lab.run(sorted(gates, key=lambda cell: cell.contenders[0].variant in lab.registry.dense), drop=True)
+    sizes = {record.cell["scene"]: record.output.get("variables", 0) for record in lab.run(runs)}
+    lab.run(sorted(gates, key=lambda cell: _cost(cell, sizes, lab.registry.dense)), drop=True)
+
+
+def _cost(cell, sizes, dense):
+    """About, of a gate: what costs least goes first."""
+    size = sizes.get(cell.scene, 0)
+    return size**2 if cell.contenders[0].variant in dense else size
 
 
 def simulate(problem, one, step, role):

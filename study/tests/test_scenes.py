@@ -1,6 +1,7 @@
 # Standard problems: what they are judged by, and what is asked for; the program against equations of their own.
 import json
 import subprocess
+from types import SimpleNamespace
 
 import numpy
 import pandas
@@ -161,6 +162,7 @@ class Asked:
 
     def run(self, cells, drop=False):
         self.cells += cells
+        return [SimpleNamespace(cell={"scene": cell.scene}, output={"variables": 4}) for cell in cells]
 
     def scene(self, name, document):
         return f"{name}.json"
@@ -177,7 +179,7 @@ def test_two_run_every_step_everyone_the_first_and_all_go_through_the_gate():
     assert counts["everyone", "eigen_dense/llt", "a01_pendulum.json"] == 1
     assert ("everyone", "eigen_dense/llt", "slider_crank.json") not in counts
     gates = [cell for cell in lab.cells if cell.role == "gate"]
-    assert len(gates) == 6 and [cell.contenders[0].name for cell in gates][-2:] == ["eigen_dense/llt"] * 2  # dense ones last
+    assert len(gates) == 6 and [cell.contenders[0].name for cell in gates][-2:] == ["eigen_dense/llt"] * 2  # what costs most last
     for cell in lab.cells:
         assert cell.role == "gate" or cell.every * float(cell.settings[1]) * metric.SAMPLES == pytest.approx(float(cell.settings[3]))
 
