@@ -27,6 +27,17 @@ void limit_memory() {
 #endif
 }
 
+/// Libraries put scratch memory of megabytes on the stack: without it they would crash.
+bool has_stack() {
+  constexpr rlim_t kNeeded = 8u << 20;  // what Linux gives by default
+  rlimit limit{};
+  ::getrlimit(RLIMIT_STACK, &limit);
+  if (limit.rlim_cur >= kNeeded) return true;
+  limit.rlim_cur = kNeeded;
+  limit.rlim_max = std::max(limit.rlim_max, kNeeded);
+  return ::setrlimit(RLIMIT_STACK, &limit) == 0;  // in force at once: the stack grows when touched
+}
+
 /// The status to leave with: what was printed must have arrived.
 int finish(int status) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
@@ -44,6 +55,7 @@ int fail(const std::string& message) {
 
 int main(int argc, char** argv) {
   try {
+    if (!has_stack()) return fail("the stack's limit is below 8 MiB (ulimit -Hs), which mbs needs");
     limit_memory();
     std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is an error like any other full disk
     mbs::settle_environment(argc, argv);
