@@ -16,7 +16,7 @@ from study.scenes.problems import read_list
 from study.scenes.references import CLOSED, EXTRAPOLATED, KNOWN, four_bar, kind
 
 STEPS = tuple(4e-2 / 2**halvings for halvings in range(11))  # s, from where hardly anybody keeps 1e-1 m
-AROUND = (8, 4, 2, 1, 0.5, 0.25)  # a problem's own first step times these
+AROUND = (20, 10, 4, 2, 1, 0.5, 0.25)  # a problem's own first step times these
 JUDGED_S = 1e-2  # the error of a four-bar is evaluated once in as much; at every step that is longer than half of it
 SAMPLES = metric.SAMPLES // 8  # of a problem's motion: so that records stay small
 ULP = 2.0**-52

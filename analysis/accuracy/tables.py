@@ -21,7 +21,8 @@ def build(records, view):
         for name, table in of_column(kind, subject, known, mine, view).items():
             found[name].append(table)
         found["left_out"] += [{"column": column, "what": record.role, "status": record.status, "reason": record.reason,
-                               "record": record.name} for record in mine if record.status in ("dropped", "refused")]
+                               "record": record.name} for record in mine
+                              if record.status in ("dropped", "refused", *(("excluded",) if kind == "pairs" else ()))]
     return {name: (pandas.concat(rows, ignore_index=True) if rows and isinstance(rows[0], pandas.DataFrame)
                    else pandas.DataFrame(rows)) for name, rows in found.items()}
 

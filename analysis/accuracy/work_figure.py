@@ -14,7 +14,7 @@ from analysis.core.style import GREY, missing, number_axis
 
 CLOSE = 1.25  # times the front's time at its error
 MOST = 8      # named series of a panel
-GAP = 2.1     # times the shorter of two steps
+GAP = 2.6     # times the shorter of two steps
 TITLES = {"libraries": "libraries", "all": "libraries and code without one"}
 
 

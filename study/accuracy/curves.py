@@ -14,16 +14,7 @@ WORTH = 2.0      # required error would cost a factor of two; tried where the sh
 def first_look(runs, scene):
     """{layer: [contenders, the fastest with the default setting first]}; who is far behind, or fails, is not in it."""
     step = STEP if runs.subject.loops else runs.subject.entry.steps[0]
-    found = {}
-    for layer, contenders in runs.layers.items():
-        runs.look(scene, "default", step, contenders)
-        rows = runs.measured()
-        rows = rows[(rows.scene == scene) & (rows.setting == "default") & (rows.status == "ok")
-                    & rows.implementation.isin([one.name for one in contenders])].sort_values("step_us")
-        near = rows[rows.step_us <= BEHIND * rows.step_us.min()]
-        by_name = {one.name: one for one in contenders}
-        found[layer] = [by_name[name] for name in near.implementation.unique()]
-    return found
+    return {layer: runs.quick(scene, step, contenders, BEHIND) for layer, contenders in runs.layers.items()}
 
 
 def follow(runs, speed):

@@ -3,7 +3,9 @@
 from analysis.accuracy.pairs import PAIRS, STEP
 from study.accuracy.runs import Runs
 
+DENSE = 1000   # variables, of dense contenders at most
 BEHIND = 10.0  # times the fastest of its kind with the default setting: who is slower is not timed in pairs
+
 
 def run(lab, entry):
     runs = Runs(lab, "pairs", entry)
@@ -24,21 +26,16 @@ def _groups(runs):
     dense, found = runs.lab.registry.dense, {}
     for group in runs.layers.values():
         for kind in (False, True):
-            contenders = _quick(runs, [one for one in group if (one.variant in dense) == kind], kind)
+            mine = [one for one in group if (one.variant in dense) == kind]
+            if kind and 2 * runs.subject.loops + 2 > DENSE:
+                for one in mine:
+                    runs.leave_out(one, "default", STEP, f"a dense step of more than {DENSE} variables takes too long")
+                continue
+            quick = runs.quick(runs.subject.scene, STEP, mine, BEHIND, kind)
+            contenders = [one for one in mine if one in quick]  # in the order of the registry
             for name, mine in _serving(runs, contenders).items():
                 found.setdefault(name, []).append((kind, mine))
     return found
-
-
-def _quick(runs, contenders, dense):
-    """Those that are not far behind in a look at the default setting."""
-    if not contenders:
-        return []
-    runs.look(runs.subject.scene, "default", STEP, contenders, dense)
-    rows = runs.measured()
-    times = rows[(rows.status == "ok") & rows.implementation.isin([one.name for one in contenders])]
-    near = set(times[times.step_us <= BEHIND * times.step_us.min()].implementation)
-    return [one for one in contenders if one.name in near]
 
 
 def _serving(runs, contenders):

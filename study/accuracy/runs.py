@@ -7,10 +7,10 @@ from study.core.setting import read_settings
 
 VALUES = 5e4      # steps of a stretch times variables, at most
 OPERATIONS = 2e8  # and times the square of a filled row: a dense step takes longer
-LEAST = 20        # steps of a stretch
+LEAST = 10        # steps of a stretch
 SAMPLES = {"look": 3, "time": 6, "pair": 3}  # of a process and contender
 LOOK = 4          # share of the stretch in a look
-PATIENCE = 0.5    # s: whose first stretch takes longer is not looked at
+PATIENCE = (0.5, 20)  # s: whose first stretch takes longer is not looked at; the longer where nobody is left
 CAREFUL = 3  # times the time of a run, and of starting it, is its limit: predictions may be wrong
 
 
@@ -59,10 +59,25 @@ class Runs:
         return Cell("simulate", scene, (one,), words, role, seconds=seconds or CAREFUL * (1 + self.longest),
                     keep=() if self.subject.loops else ("outputs",), every=self.subject.every(step))
 
-    def look(self, scene, name, step, contenders, dense=False):
+    def look(self, scene, name, step, contenders, dense=False, patience=None):
         """A short timed process in which the contenders of a point take turns."""
+        more = ("--patience", patience) if patience else ()
         steps = max(LEAST, self.stretch(scene, step, dense) // LOOK)
-        self._time("look", scene, name, step, contenders, 1, ("--steps", steps, "--patience", PATIENCE))
+        self._time("look", scene, name, step, contenders, 1, ("--steps", steps, *more))
+
+    def quick(self, scene, step, contenders, behind, dense=False):
+        """Those that end a look at the default setting and are at most `behind` times slower than the fastest, in its
+        order."""
+        names = [one.name for one in contenders]
+        for patience in PATIENCE if contenders else ():
+            self.look(scene, "default", step, contenders, dense, patience)
+            rows = self.measured()
+            rows = rows[(rows.scene == scene) & (rows.role == "look") & (rows.setting == "default") & (rows.status == "ok")
+                        & rows.implementation.isin(names)].sort_values("step_us", kind="stable")
+            near = list(rows[rows.step_us <= behind * rows.step_us.min()].implementation.unique())
+            if near:
+                return [contenders[names.index(name)] for name in near]
+        return []
 
     def time(self, role, scene, name, step, contenders, processes, dense=False):
         """Timed processes in which the contenders of a point take turns; role: "time" or "pair"."""

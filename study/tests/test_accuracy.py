@@ -119,7 +119,7 @@ def test_a_stretch_is_a_matter_of_the_scene():
     assert runs.stretch("four-bar:10", 1e-2) == 500  # all of it
     assert runs.stretch("four-bar:10", 1e-4) == 2272
     large = Runs(Lab("four-bar-200"), "loops", {"loops": 200})
-    assert large.stretch("four-bar:200", 1e-3) == 124 and large.stretch("four-bar:200,fill=1", 1e-3) == 20
+    assert large.stretch("four-bar:200", 1e-3) == 124 and large.stretch("four-bar:200,fill=1", 1e-3) == 10
     assert runs.duration(0.5) == 5.0 and runs.duration(3.0) == 1.0 and runs.duration(5.0) is None
 
 
