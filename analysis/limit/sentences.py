@@ -19,8 +19,7 @@ def _multiples(rows, view):
     for who, mine in sides.items():
         best = mine.sort_values("multiple").drop_duplicates("loops")
         if len(best):
-            said.append(f"{who} takes {number(best.multiple.min(), 2)} to {number(best.multiple.max(), 2)} times as long "
-                        f"(n = {best.variables.min():.0f} to {best.variables.max():.0f})")
+            said.append(f"{who} takes {span(best.multiple, 2)} times as long (n = {span(best.variables, 5)})")
     return [{"text": f"Beside code written for the N-four-bar alone {'; '.join(said)}.", "anchor": "sizes"}] if said else []
 
 
@@ -30,14 +29,14 @@ def _leads(leads):
     for name, mine in rows.groupby("implementation", sort=False):
         faster, slower = (mine.low > 1).sum(), (mine.high < 1).sum()
         found.append(f"{name} is shown to be faster than the fastest library in {faster} of {len(mine)} scenes that it "
-                     f"serves and slower in {slower} (least {number(mine.lead.min())}, most {number(mine.lead.max())} times)")
+                     f"serves and slower in {slower} ({span(mine.lead)} times)")
     return [{"text": f"Scene by scene, {'; '.join(found)}.", "anchor": "ahead"}] if found else []
 
 
 def _gains(batches):
     rows = batches[batches.status == "ok"]
-    said = [f"{number(mine.gain.min())} to {number(mine.gain.max())} with {sets:.0f} sets (single processes {number(mine.least.min())} to "
-            f"{number(mine.most.max())})" for sets, mine in rows.groupby("sets")]
+    said = [f"{span(mine.gain)} times with {sets:.0f} sets (single processes {span([mine.least.min(), mine.most.max()])})"
+            for sets, mine in rows.groupby("sets")]
     return [{"text": f"Simulations side by side gain, over those alone: {'; '.join(said)}.", "anchor": "batches"}] if said else []
 
 
@@ -51,3 +50,8 @@ def _held(held):
         text += "; not held: " + "; ".join(f"{row.what} ({number(row.worst)} at {row.where}, bound {row.sign} {number(row.bound)})"
                                            for row in broken.itertuples())
     return [{"text": f"{text}.", "anchor": "held"}]
+
+
+def span(values, digits=3):
+    """"1.2 to 3.4", or one number."""
+    return " to ".join(dict.fromkeys(number(value, digits) for value in (min(values), max(values))))
