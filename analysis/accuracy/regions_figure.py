@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 from matplotlib.patches import Patch, Rectangle
 
 from analysis.accuracy import names
-from analysis.accuracy.winners import LAYERS, NOBODY
+from analysis.accuracy.winners import LAYERS, NOBODY, NOT_TIMED, met
 from analysis.accuracy.work_figure import TITLES
 from analysis.core.text import number
 
@@ -33,9 +33,9 @@ def draw(winners, look):
 
 
 def _cell(axes, row, x, y, look):
-    if row.implementation == NOBODY:
+    if row.implementation in (NOBODY, NOT_TIMED):
         axes.add_patch(Rectangle((x, y), 1, 1, **NONE))
-        text, colour = "nobody", "#777777"
+        text, colour = row.implementation, "#777777"
     else:
         settled = bool(row.settled)
         axes.add_patch(Rectangle((x, y), 1, 1, edgecolor="white", linewidth=1.2, facecolor=look.colour(row.implementation),
@@ -50,12 +50,13 @@ def _cell(axes, row, x, y, look):
 
 
 def _legend(rows, look):
-    won = rows[rows.implementation != NOBODY].implementation.value_counts()
+    won = met(rows).implementation.value_counts()
     handles = [Patch(facecolor=look.colour(name), alpha=STRONG, label=f"{name}: {count}") for name, count in won.items()]
     if (rows.settled == False).any():  # noqa: E712 (a nullable flag)
         handles.append(Patch(facecolor="#cccccc", hatch="////", edgecolor="#555555", linewidth=0, label="open"))
     if (rows.equivalent != "").any():
         handles.append(Patch(facecolor="none", label="≈1: one other is as fast"))
-    if (rows.implementation == NOBODY).any():
-        handles.append(Patch(**NONE, label="nobody meets the error"))
+    for kind, text in ((NOBODY, "nobody: no run meets the error"), (NOT_TIMED, "not timed: too long, or dropped")):
+        if (rows.implementation == kind).any():
+            handles.append(Patch(**NONE, label=text))
     return handles

@@ -1,6 +1,6 @@
 # What the page and the front page say, computed from the tables.
 from analysis.accuracy import names, pairs
-from analysis.accuracy.winners import LAYERS, NOBODY, meeting
+from analysis.accuracy.winners import LAYERS, meeting, met
 from analysis.core.text import number
 
 WORDS = {"libraries": "Of the libraries", "all": "Of all, code without a library included,"}
@@ -8,20 +8,19 @@ WORDS = {"libraries": "Of the libraries", "all": "Of all, code without a library
 
 def answers(tables, view):
     """One to four sentences that answer the part's question."""
-    won = own_fill(tables["winners"])
-    met = won[won.implementation != NOBODY]
-    if met.empty:
+    won = met(own_fill(tables["winners"]))
+    if won.empty:
         return [{"text": "Not measured: nobody reached a required error with a time.", "anchor": ""}]
-    found = [{"text": of_layer(met[met.layer == layer], layer), "anchor": "short"}
-             for layer in LAYERS if (met.layer == layer).any()]
+    found = [{"text": of_layer(won[won.layer == layer], layer), "anchor": "short"}
+             for layer in LAYERS if (won.layer == layer).any()]
     return found + [{"text": text, "anchor": anchor} for anchor, of in (("precision", of_precision), ("reuse", of_reuse))
                     for text in of(tables["pairs"])[:1]]
 
 
 def cases(tables, view):
     """Rows of the front page's table."""
-    won = own_fill(tables["winners"])
-    rows = won[(won.layer == "libraries") & (won.implementation != NOBODY)]
+    won = met(own_fill(tables["winners"]))
+    rows = won[won.layer == "libraries"]
     if rows.empty:
         return []
     who, setting = most(rows.implementation)[0], most(rows.setting)[0]
@@ -63,8 +62,8 @@ def summary(winners):
         for layer in LAYERS:
             groups = {}
             for one in rows[rows.layer == layer].sort_values("variables").itertuples():
-                words = NOBODY if one.implementation == NOBODY else f"{one.implementation}, {one.setting}" + (
-                    "" if one.settled else " (open)")
+                words = f"{one.implementation}, {one.setting}" + ("" if one.settled else " (open)") if one.setting else (
+                    one.implementation)
                 groups.setdefault(words, []).append(f"{one.variables:.0f}")
             row[layer] = [{"who": who, "sizes": ", ".join(sizes)} for who, sizes in groups.items()]
         found.append(row)
@@ -102,11 +101,11 @@ def of_regions(winners):
     said = []
     for layer in LAYERS:
         rows = chains[chains.layer == layer]
-        met = rows[rows.implementation != NOBODY]
-        if len(met):
-            settled, decided = ((met[flag] == True).sum() for flag in ("settled", "decided"))  # noqa: E712
-            who, often = most(met.implementation)
-            said.append(f"{WORDS[layer]} somebody meets the error in {len(met)} of {len(rows)} cells of size, fill and error; "
+        won = met(rows)
+        if len(won):
+            settled, decided = ((won[flag] == True).sum() for flag in ("settled", "decided"))  # noqa: E712
+            who, often = most(won.implementation)
+            said.append(f"{WORDS[layer]} somebody is timed who meets the error in {len(won)} of {len(rows)} cells of size, fill and error; "
                         f"{who} is fastest in {often}. {decided} are decided, and in {settled} it is known of each "
                         "contender whether it is as fast.")
     return said

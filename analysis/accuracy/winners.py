@@ -6,7 +6,8 @@ from analysis.core import timing
 from analysis.core.outcomes import FINISHED
 
 LAYERS = ("libraries", "all")
-NOBODY = "nobody"
+NOBODY = "nobody"        # meets the error
+NOT_TIMED = "not timed"  # somebody meets it, at least at the mechanism's own fill, or would if the budget had lasted
 NEAR = 1.25  # times the fastest in a look: who is slower has no rounds, and has lost
 COLUMNS = ("error", "time", "time_low", "time_high", "processes", "record")
 
@@ -24,17 +25,26 @@ def winners(table, measured, errors, libraries):
     for scene, points in table.groupby("scene", sort=False):
         samples = rounds(points, measured)
         for layer in LAYERS:
-            mine = points[points.implementation.isin(libraries)] if layer == "libraries" else points
-            rows += [{"scene": scene, "layer": layer, "required": required} | _winner(meeting(mine, required), samples)
-                     for required in errors]
+            mine = table[table.implementation.isin(libraries)] if layer == "libraries" else table
+            reached, dropped = mine[mine.status.isin(FINISHED)].error.min(), (mine.status == "dropped").any()
+            here = mine[mine.scene == scene]
+            rows += [{"scene": scene, "layer": layer, "required": required} | (
+                _winner(meeting(here, required), samples) or {
+                    "implementation": NOT_TIMED if dropped or reached <= required else NOBODY, "candidates": 0, "decided": None,
+                    "settled": None, "equivalent": ""}) for required in errors]
     return pandas.DataFrame(rows)
 
 
+def met(rows):
+    """Those of `winners` that have a winner."""
+    return rows[~rows.implementation.isin((NOBODY, NOT_TIMED))]
+
+
 def _winner(found, samples):
-    """Each implementation counts with its fastest point: one of the rounds where it has one there. Ranked are those that
+    """None if nobody was timed. Each implementation counts with its fastest point: one of the rounds where it has one there. Ranked are those that
     have rounds; the others were slower in a look, or the budget did not reach them."""
     if found.empty:
-        return {"implementation": NOBODY, "candidates": 0, "decided": None, "settled": None, "equivalent": ""}
+        return None
     in_rounds = found[found.time_from == ROUNDS].drop_duplicates("implementation")
     ranking = timing.rank(samples, [label(point) for point in in_rounds.to_dict("records")]) if len(in_rounds) else None
     by_label = {label(point): point for point in found.to_dict("records")}

@@ -127,6 +127,8 @@ def test_who_was_slower_in_a_look_has_lost_and_who_was_not_reached_leaves_it_ope
     assert best.implementation == "b/y" and not best.settled
     nobody, _ = winner(runs, ahead, required=1e-6)
     assert nobody.implementation == "nobody" and nobody.candidates == 0
+    unknown, _ = winner(runs, [])
+    assert unknown.implementation == "not timed"
 
 
 def test_libraries_are_ranked_as_if_own_code_were_not_there():

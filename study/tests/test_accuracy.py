@@ -84,7 +84,7 @@ def test_a_spent_budget_leaves_rows_and_no_ranking():
     assert len(lab.asked) <= 60 and len(found["left_out"]) > 10 and set(found["left_out"].status) == {"dropped"}
     assert not found["winners"].settled.fillna(False).any()
     lab, found = measured(budget=1)
-    assert len(lab.asked) == 1 and set(found["winners"].implementation) == {"nobody"}
+    assert len(lab.asked) == 1 and set(found["winners"].implementation) == {"not timed"}
 
 
 def test_steps_between_are_tried_where_a_halving_just_misses(whole):
