@@ -28,10 +28,11 @@ def winners(table, measured, errors, libraries):
             mine = table[table.implementation.isin(libraries)] if layer == "libraries" else table
             reached, dropped = mine[mine.status.isin(FINISHED)].error.min(), (mine.status == "dropped").any()
             here = mine[mine.scene == scene]
-            rows += [{"scene": scene, "layer": layer, "required": required} | (
-                _winner(meeting(here, required), samples) or {
-                    "implementation": NOT_TIMED if dropped or reached <= required else NOBODY, "candidates": 0, "decided": None,
-                    "settled": None, "equivalent": ""}) for required in errors]
+            for required in errors:
+                none = {"implementation": NOT_TIMED if dropped or reached <= required else NOBODY, "candidates": 0,
+                        "decided": None, "settled": None, "equivalent": ""}
+                rows.append({"scene": scene, "layer": layer, "required": required}
+                            | (_winner(meeting(here, required), samples) or none))
     return pandas.DataFrame(rows)
 
 
@@ -41,8 +42,8 @@ def met(rows):
 
 
 def _winner(found, samples):
-    """None if nobody was timed. Each implementation counts with its fastest point: one of the rounds where it has one there. Ranked are those that
-    have rounds; the others were slower in a look, or the budget did not reach them."""
+    """None if nobody was timed. Each implementation counts with its fastest point: one of the rounds where it has one
+    there. Ranked are those that have rounds; the others were slower in a look, or the budget did not reach them."""
     if found.empty:
         return None
     in_rounds = found[found.time_from == ROUNDS].drop_duplicates("implementation")
