@@ -9,8 +9,6 @@ BUILDS = {  # name: (C++ compiler, C compiler, flags)
     for family, compilers in (("gcc", ("g++", "gcc")), ("clang", ("clang++", "clang")))
     for level in ("O2", "O3")
     if (family, level) != ("gcc", "O3")}  # which is the study's own
-# What Valgrind understands; for counts of instructions, never for times.
-BUILDS["gcc-O3-no-avx512"] = ("g++", "gcc", "-O3 -DNDEBUG -mno-avx512f")
 
 
 def build(name, log, show):
