@@ -34,6 +34,7 @@ class Record:
     context: dict    # machine, build and BLAS of the run
     output: dict = field(default_factory=dict)  # what the program printed
     series: dict = field(default_factory=dict)  # {column: values} of the motion, where the cell keeps some
+    digest: str = ""  # of the file's text
 
     @property
     def column(self):
@@ -64,7 +65,7 @@ def from_text(text, name, where):
              *(key for key, kind in (KINDS | MORE).items() if key in data and not isinstance(data[key], kind))}
     if wrong:
         raise StudyError(f"{where} is no record ({', '.join(sorted(wrong))}): remove it to have it measured again")
-    return Record(name, **data)
+    return Record(name, **data, digest=found[1])
 
 
 def write(path, data):

@@ -7,6 +7,7 @@ import yaml
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_object, write, write_json
+from analysis.core.records import archive_of
 
 TYPES = ("text", "number", "flag")
 DIGESTS = "tables.json"  # of a part: those of its records and tables
@@ -72,7 +73,14 @@ def write_tables(folder, part, tables, records):
 
 
 def digest_of(records):
-    return digest("\n".join(f"{one.name} {one.status} {one.seconds} {one.reason}" for one in records))
+    return digest("\n".join(f"{one.name} {one.digest}" for one in records))
+
+
+def need_same_records(folder, part, records):
+    """StudyError if a stored set's records are not those that its tables were made of."""
+    archive, kept = archive_of(folder, part), Path(folder) / part / DIGESTS
+    if archive.exists() and kept.exists() and read_object(kept, records=str)["records"] != digest_of(records):
+        raise StudyError(f"{archive} holds other records than those of {kept}: restore both")
 
 
 def read_table(folder, part, name):

@@ -20,6 +20,7 @@ def write_part(folder, part):
     """Tables, figures and page of a part from its records; the front page again."""
     schema.need_unchanged(folder, part)
     view, found = View(folder, part), records.read_part(folder, part)
+    schema.need_same_records(folder, part, found)
     tables = schema.write_tables(folder, part, _module(part, "tables").build(found, view), found)
     figures = {name: _saved(folder, part, name, figure)
                for name, figure in _module(part, "figures").draw(tables, view).items()}

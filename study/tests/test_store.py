@@ -173,3 +173,18 @@ def test_archives_and_tables_are_tracked_and_what_is_drawn_again_is_not():
                                         ("Intel(R) Core(TM) i7-8650U CPU @ 1.90GHz", "i7-8650u"), ("", "machine")])
 def test_machines_have_short_names(text, name):
     assert store.short(text) == name
+
+
+def test_records_that_the_tables_were_not_made_of_are_named(tmp_path):
+    """Each record of the archive is whole, but it is another one."""
+    base = tmp_path / "raw" / "limit"
+    made = {"cell": {"role": "about"}, "status": "done", "reason": "", "seconds": 1.0, "command": [], "context": {}, "output": {"x": 1}}
+    records.write(base / "column" / "about" / "one.json", made)
+    write_json(tmp_path / "limit" / schema.DIGESTS, {
+        "records": schema.digest_of(records.read_part(tmp_path, "limit")), "tables": {}})
+    records.pack(tmp_path, "limit", records.archive_of(tmp_path, "limit"))
+    schema.need_same_records(tmp_path, "limit", records.read_part(tmp_path, "limit"))
+    records.write(base / "column" / "about" / "one.json", made | {"output": {"x": 2}})
+    records.pack(tmp_path, "limit", records.archive_of(tmp_path, "limit"))
+    with pytest.raises(StudyError, match="holds other records"):
+        schema.need_same_records(tmp_path, "limit", records.read_part(tmp_path, "limit"))
