@@ -424,7 +424,7 @@ TEST_F(SimulateProgram, KnowsNoOtherSubcommands) {
   expect_one_line(test::run_mbs(""), "none", "subcommand");
 }
 
-TEST(SimulateProgram, RaisesASmallLimitOfTheStack) {
+TEST_F(SimulateProgram, RaisesASmallLimitOfTheStack) {
   if (MBS_SANITIZE) GTEST_SKIP() << "sanitizers need a stack before the program begins";
   const auto run = test::run_mbs(
       "simulate four-bar:100 --implementation eigen_dense/llt --duration 0.01", "ulimit -S -s 64;");
