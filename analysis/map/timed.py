@@ -34,8 +34,9 @@ def timed_rows(records):
 def rank(rows, names):
     """timing.Ranking of one scene's rows among `names`."""
     found, again = timing.rank(rows, names), _again(rows)
-    if found is None or len(set(found.ratios) & set(again[again.status == "ok"].implementation)) < 2:
-        return found
+    lead = set(again[again.status == "ok"].implementation)
+    if found is None or found.winner not in lead or len(set(found.ratios) & lead) < 2:
+        return found  # who is fastest far ahead of all leads nobody, and has no further processes
     first = timing.rank(again, set(found.ratios))
     others = {name: timing.ratio(rows, name, first.winner) for name in found.ratios if name not in first.ratios}
     return timing.Ranking(first.winner, first.ratios | others)

@@ -13,7 +13,7 @@ from analysis.map import figures, losses, regret, sentences, summary, tables, ti
 from analysis.map.cells import map_cells, table
 from analysis.map.grid import bounds
 from analysis.map.maps import crossings
-from analysis.map.timed import AFTER, differing, timed_rows
+from analysis.map.timed import AFTER, differing, rank, timed_rows
 from analysis.tests.map_tables import cell, failed, registry, results, scene, view
 
 A, B, C, OWN = "eigen_dense/llt", "csc_klu/refactor", "csc_cholmod/simplicial", "ours/best"
@@ -39,6 +39,16 @@ def test_the_smallest_group_of_a_scene_counts_and_further_processes_have_numbers
     good = rows[rows.status == "ok"]
     assert set(good.implementation) == {A, B} and sorted(good.process.unique()) == [1, 2, AFTER + 1]
     assert list(rows[rows.implementation == C].status) == ["disagrees"]
+
+
+def test_who_is_far_ahead_wins_though_only_the_others_have_further_processes():
+    speed = {OWN: (1.0,) * 3, A: (10.0,) * 3, B: (11.0,) * 3}
+    rows = pandas.DataFrame([
+        {"implementation": name, "environment": "own", "process": number, "status": "ok", "samples": speed[name]}
+        for number, names in ((1, speed), (2, speed), (AFTER + 1, (A, B)), (AFTER + 2, (A, B))) for name in names])
+    found = rank(rows, [OWN, A, B])
+    assert found.winner == OWN and found.decided and found.equivalent == (OWN,)
+    assert rank(rows, [A, B]).winner == A
 
 
 @pytest.mark.parametrize("passes, wrong", [
