@@ -104,7 +104,7 @@ def read_part(folder, part):
         with tarfile.open(fileobj=whole) as tar:
             return [from_text(tar.extractfile(one).read().decode(), one.name, f"{archive}: {one.name}")
                     for one in sorted(tar, key=lambda one: one.name)
-                    if one.name.endswith(".json") and not one.name.startswith("scenes/")]
+                    if one.name.endswith(".json") and one.name.rpartition("/")[0] != "scenes"]  # which a column may be called, too
     except (OSError, EOFError, lzma.LZMAError, tarfile.TarError, UnicodeDecodeError) as error:
         raise StudyError(f"{archive} is damaged ({error}): restore it") from error
 

@@ -188,3 +188,13 @@ def test_records_that_the_tables_were_not_made_of_are_named(tmp_path):
     records.pack(tmp_path, "limit", records.archive_of(tmp_path, "limit"))
     with pytest.raises(StudyError, match="holds other records"):
         schema.need_same_records(tmp_path, "limit", records.read_part(tmp_path, "limit"))
+
+
+def test_a_column_may_be_called_scenes_and_scenes_are_no_records(tmp_path):
+    base = tmp_path / "raw" / "limit"
+    records.write(base / "scenes" / "about" / "one.json", {"cell": {"role": "about"}, "status": "done", "reason": "",
+                                                           "seconds": 1.0, "command": [], "context": {}})
+    write_json(base / "scenes" / "crank.json", {"points": []})
+    loose = records.read_part(tmp_path, "limit")
+    records.pack(tmp_path, "limit", records.archive_of(tmp_path, "limit"))
+    assert [one.name for one in loose] == ["scenes/about/one.json"] == [one.name for one in records.read_part(tmp_path, "limit")]
