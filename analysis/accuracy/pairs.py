@@ -2,7 +2,6 @@
 # reuse of its factors.
 import pandas
 
-from analysis.accuracy.points import KEY
 from analysis.core import timing
 from analysis.core.outcomes import FINISHED
 

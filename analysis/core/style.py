@@ -3,7 +3,6 @@ import string
 from pathlib import Path
 
 import matplotlib
-import matplotlib.pyplot as plt
 import numpy
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator

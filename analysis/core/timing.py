@@ -13,6 +13,7 @@ import numpy
 import pandas
 
 CONFIDENCE = 0.95
+PHASES = ("evaluation", "assembly", "factorization", "solve", "projection", "other")  # of a step: counters phase_…
 EQUIVALENT = 1.05  # who is shown to take at most so many times the fastest's time is as fast
 COLUMNS = ("scene", "implementation", "environment", "process", "status", "reason", "step_us", "low_us", "high_us",
            "clock_us", "samples", "record")

@@ -3,10 +3,10 @@ import pandas
 
 from analysis.core import timing
 from analysis.core.statistics import median
+from analysis.core.timing import PHASES
 from analysis.limit.held import must_hold
 
 LIMIT = "limit/limit"
-PHASES = ("evaluation", "assembly", "factorization", "solve", "projection", "other")
 KINDS = ("problem", "fill", "example")  # of scenes; roles of their records too
 FORMS = {"size": "penalty", "growth": "saddle-point"}  # roles of the N-four-bar's records
 

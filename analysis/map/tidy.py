@@ -1,10 +1,9 @@
 # The rows of the tidy table, of the scenes and of the gate, from records.
 import pandas
 
-from analysis.core.timing import processes
+from analysis.core.timing import PHASES, processes
 from analysis.map.timed import timed_rows
 
-PHASES = ("evaluation", "assembly", "factorization", "solve", "projection", "other")
 COUNTERS = ("passes", "steps", "steps_at_limit", "setup_us", "position_error", "constraint_violation", "energy_drift",
             *(f"phase_{phase}" for phase in PHASES))
 QUESTION = ("constraints", "start", "steps", "step", "passes", "penalty", "tolerance", "fill_seed")

@@ -7,7 +7,6 @@ import tempfile
 from pathlib import Path
 
 from analysis.core.errors import StudyError
-from analysis.core.files import ROOT
 from study.core import child
 
 USAGE = 2  # the exit status of a program that refuses what it is asked for

@@ -6,9 +6,10 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 
 from analysis.core import records
-from analysis.core.files import write_json
+from analysis.core.files import ROOT, write_json
 from study.core import executor, locks
 from study.core.progress import Progress
+
 
 class Lab:
     """One column of a part in a set. `seconds`: the column's budget."""
@@ -76,7 +77,7 @@ class Lab:
         path = self.base / "scenes" / f"{name}.json"
         if not path.exists():
             write_json(path, document)
-        return os.path.relpath(path, executor.ROOT) if path.is_relative_to(executor.ROOT) else str(path)
+        return os.path.relpath(path, ROOT) if path.is_relative_to(ROOT) else str(path)
 
     def tell(self, text):
         """Shown beside the cells that are done."""
