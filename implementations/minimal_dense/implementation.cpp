@@ -1,0 +1,25 @@
+// What this folder offers: one variant, which exists to be read.
+#include "mbs/implementation.hpp"
+
+#include "simulation.hpp"
+
+namespace mbs::minimal_dense {
+
+// What is not named keeps its default. The one that matters is Variant::serves: planar distances, a
+// constant mass matrix, gravity and the paper's step. The harness refuses the rest before create().
+Implementation implementation() {
+  return {.description = "an example to read: the paper's step in plain loops, own Cholesky",
+          .library = "none",
+          .version = "",
+          .licence = "",
+          .variants = {{.name = "loops",
+                        .description = "an example to read: full matrices, each product a loop",
+                        .create = [](const Model& model, const StepSettings& settings)
+                            -> std::unique_ptr<Simulation> {
+                          return std::make_unique<LoopsSimulation>(model, settings);
+                        },
+                        .dense = true}},
+          .role = Role::example};
+}
+
+}  // namespace mbs::minimal_dense

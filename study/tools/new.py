@@ -1,0 +1,61 @@
+# study/new NAME: writes implementations/NAME/, which compiles and does nothing yet, and its line in the list.
+import re
+import shutil
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, write_text
+from study.core.options import Parser
+
+SKELETON = ROOT / "study" / "tools" / "skeleton"
+LIST = ROOT / "implementations" / "CMakeLists.txt"
+NAME = re.compile(r"[a-z][a-z0-9_]*")
+LIBRARIES = {"none": ("none", "none", '"0"'),
+             "eigen": ("Eigen", "MPL-2.0", 'std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION)'),
+             "blas": ("LAPACK", "BSD-3-Clause", '"TODO: as the library reports it"')}  # (name, licence, version as C++)
+
+
+def new(arguments):
+    parser = Parser(prog="study/new", description="Writes the folder of a new implementation: it compiles, is in the list, "
+                    "and has five empty functions to fill in: constraints, Jacobian, residual, tangent, solve.")
+    parser.add_argument("name", metavar="NAME", help="its folder: lower case, digits, _")
+    parser.add_argument("--library", default="none", choices=list(LIBRARIES), help="what it links (none)")
+    options = parser.parse_args(arguments)
+    folder = ROOT / "implementations" / options.name
+    if not NAME.fullmatch(options.name):
+        raise StudyError(f"'{options.name}' is no name: a letter from a to z, then letters, digits or _")
+    if folder.exists() or options.name in listed():
+        raise StudyError(f"implementations/{options.name} exists already: take another name")
+    try:
+        write(folder, options.name, options.library)
+        add_to_list(options.name)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    print(f"""implementations/{options.name}/ is written and in the list. Next:
+  study/setup                                                # builds it
+  build/mbs check four-bar:1 --implementation {options.name}   # says where it differs from the reference
+  study/add {options.name}                                     # ranks it, once it agrees
+The equations are in paper/README.md; implementations/minimal_dense is an example to read.""")
+    return 0
+
+
+def listed():
+    return LIST.read_text(encoding="utf-8").split("mbs_registry(")[1].split(")")[0].split()
+
+
+def add_to_list(name):
+    before, after = LIST.read_text(encoding="utf-8").rsplit(")", 1)
+    write_text(LIST, f"{before.rstrip()}\n  {name}\n){after}")
+
+
+def write(folder, name, library):
+    known, licence, version = LIBRARIES[library]
+    values = {"NAME": name, "LIBRARY": known, "LICENCE": licence, "VERSION": version,
+              "INCLUDES": "#include <Eigen/Core>\n\n" if library == "eigen" else ""}
+    for path in sorted(SKELETON.iterdir()):
+        stem, _, only = path.name.partition("@")
+        if only in ("", library):
+            text = path.read_text(encoding="utf-8")
+            for key, value in values.items():
+                text = text.replace(f"@{key}@", value)
+            write_text(folder / stem, text)
