@@ -28,8 +28,8 @@ namespace {
 void add_options(CLI::App& app, BenchRequest& request, StepOptions& step) {
   app.add_option("scenes", request.scenes, "scenes (default: four-bar:10 four-bar:40)");
   app.add_option("--implementation", request.implementations,
-                 "folder or folder/variant, repeatable (default: all, and the control null/null "
-                 "that does nothing)");
+                 "folder or folder/variant, repeatable (default: all but examples, and the control "
+                 "null/null that does nothing)");
   step.add_to(app);
   app.add_option("--steps", request.steps,
                  "steps of the stretch (default: 800, fewer above 400 variables or to be centred)");

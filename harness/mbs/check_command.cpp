@@ -10,7 +10,7 @@
 #include "environment/environment.hpp"
 #include "mbs/commands.hpp"
 #include "mbs/file_names.hpp"
-#include "run/setting_names.hpp"
+#include "registry/factory.hpp"
 #include "scene/scene.hpp"
 #include "usage_error.hpp"
 

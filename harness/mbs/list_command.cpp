@@ -2,14 +2,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "bench/null_variant.hpp"
 #include "environment/blas.hpp"
 #include "limit/limit.hpp"
 #include "mbs/commands.hpp"
+#include "registry/factory.hpp"
 #include "registry/registry.hpp"
-#include "run/setting_names.hpp"
 
 namespace mbs {
 namespace {
@@ -27,6 +29,18 @@ nlohmann::json blas_json() {
   return pairs;
 }
 
+const char* role_name(Role role) {
+  switch (role) {
+    case Role::contender:
+      return "contender";
+    case Role::paper:
+      return "paper";
+    case Role::example:
+      return "example";
+  }
+  return "";
+}
+
 nlohmann::json list_json() {
   nlohmann::json implementations = nlohmann::json::array();
   for (const RegistryEntry& entry : registry()) {
@@ -38,13 +52,15 @@ nlohmann::json list_json() {
                           {"dense", variant.dense},
                           {"unsymmetric", variant.unsymmetric},
                           {"operations", variant.operations != nullptr},
-                          {"settings", served_settings(variant.serves)}});
+                          {"settings", served_settings(variant.serves)},
+                          {"terms", served_terms(variant.serves.terms)}});
     }
     implementations.push_back({{"folder", entry.folder},
                                {"description", implementation.description},
                                {"library", implementation.library},
                                {"version", implementation.version},
                                {"licence", implementation.licence},
+                               {"role", role_name(implementation.role)},
                                {"available", entry.unavailable.empty()},
                                {"reason", entry.unavailable},
                                {"variants", variants}});
@@ -53,6 +69,32 @@ nlohmann::json list_json() {
       {"implementations", implementations},
       {"reference_line", {{"name", limit::kName}, {"description", limit::variant().description}}},
       {"blas", blas_json()}};
+}
+
+/// A row a term or setting, a column a variant.
+void print_coverage() {
+  const std::vector<NamedVariant> variants = all_variants();
+  const auto print_row = [&](const std::string& what, const auto& is_served) {
+    fmt::print("{:<24}", what);
+    for (const NamedVariant& one : variants) fmt::print(" {:>2}", is_served(*one.variant) ? "x" : ".");
+    fmt::print("\n");
+  };
+  const auto has = [](const std::vector<std::string>& served, const std::string& name) {
+    return std::ranges::find(served, name) != served.end();
+  };
+  fmt::print("\nBeyond the paper's step on planar distances, constant masses and gravity\n{:<24}", "");
+  for (std::size_t i = 1; i <= variants.size(); ++i) fmt::print(" {:>2}", i);
+  fmt::print("\n");
+  for (const auto& [name, term] : term_names()) {
+    print_row(name, [term = term](const Variant& one) { return one.serves.terms.has(term); });
+  }
+  for (const std::string& name : served_settings(null_variant().serves)) {
+    print_row(name, [&](const Variant& one) { return has(served_settings(one.serves), name); });
+  }
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    fmt::print("{}{} {}", i % 3 == 0 ? "\n  " : ", ", i + 1, variants[i].name);
+  }
+  fmt::print("\n");
 }
 
 void print_list() {
@@ -69,10 +111,9 @@ void print_list() {
                                                     implementation.version, implementation.licence);
       fmt::print("{:<24} {}; {} ({})\n", entry.folder + "/" + variant.name,
                  implementation.description, variant.description, library);
-      const std::vector<std::string> served = served_settings(variant.serves);
-      if (!served.empty()) fmt::print("{:<24} also {}\n", "", fmt::join(served, ", "));
     }
   }
+  print_coverage();
   fmt::print("\nReference line, only if named:\n{:<24} {}\n", limit::kName,
              limit::variant().description);
   fmt::print("\nBLAS and LAPACK (--blas NAME):\n");

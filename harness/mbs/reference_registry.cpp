@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "reference/reference_simulation.hpp"
+#include "registry/factory.hpp"
 #include "registry/registry.hpp"
 
 namespace mbs {
@@ -20,7 +21,8 @@ Implementation reference() {
                         .description = "what the others are held against",
                         .create = create,
                         .allocates = "its matrices and vectors are made anew in every step",
-                        .serves = {.saddle_point = true,
+                        .serves = {.terms = all_terms(),
+                                   .saddle_point = true,
                                    .rattle = true,
                                    .multistep = true,
                                    .multiplier_update = true,

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "registry/factory.hpp"
 #include "registry/registry.hpp"
 #include "run/settings.hpp"
 #include "run/stretch.hpp"
@@ -97,7 +98,7 @@ long allocations_of_steps(const Variant& variant, const Scene& scene) {
   StepSettings settings;
   settings.penalty = automatic_penalty(scene.model, settings);
   const Stretch stretch = make_stretch(scene, settings.step, kSteps);
-  const auto simulation = variant.create(scene.model, settings);
+  const auto simulation = create_simulation(variant, scene.model, settings);
   simulation->set_state(stretch.initial);
   for (int i = 0; i < kWarmUp; ++i) {
     EXPECT_NE(simulation->step().status, StepStatus::factorization_failed);

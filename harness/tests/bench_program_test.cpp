@@ -36,6 +36,7 @@ TEST(BenchProgram, WritesARowForEveryVariantAndScene) {
   const json result = bench("four-bar:1 four-bar:2 --phases");
   std::set<std::string> expected{"null/null/four-bar:1", "null/null/four-bar:2"}, names;
   for (const NamedVariant& variant : all_variants()) {
+    if (variant.entry->implementation.role == Role::example) continue;
     expected.insert(variant.name + "/four-bar:1");
     expected.insert(variant.name + "/four-bar:2");
   }
@@ -186,11 +187,14 @@ TEST(BenchProgram, LeavesTheSlowOut) {
 /// What the program says on stderr when a control ends it, and how it ends.
 void expect_ending(const std::string& control, const std::string& signal, int status,
                    const std::string& environment = "") {
-  const auto run = test::run_program(
-      MBS_CONTROLS,
+  const std::string command =
       "bench four-bar:2 --implementation control/reference --implementation control/" + control +
-          kShort,
-      environment);
+      kShort;
+  auto run = test::run_program(MBS_CONTROLS, command, environment);
+  if (run.errors.empty() && !environment.empty()) {
+    // A program that the system has to read again may take seconds to start.
+    run = test::run_program(MBS_CONTROLS, command, environment + "0");
+  }
   EXPECT_EQ(run.status, status) << control;
   EXPECT_EQ(
       run.errors.find("mbs bench: ended by " + signal + " in control/" + control + "/four-bar:2\n"),

@@ -90,6 +90,10 @@ TEST(LoaderEnvironment, EffectIsJudgedByTheMappedFiles) {
   const std::string other = pair_called(all, "openblas").lapack_file;
   EXPECT_NE(why_not_in_effect(pair, all, {blas, lapack, other}).find(other + " is loaded too"),
             std::string::npos);
+  for (const char* foreign : {"/lib/openblas-pthread/libopenblasp-r0.3.21.so", "/opt/libmkl_rt.so"}) {
+    EXPECT_NE(why_not_in_effect(pair, all, {blas, lapack, foreign}).find(foreign),
+              std::string::npos);
+  }
   fs::remove_all(root);
 }
 

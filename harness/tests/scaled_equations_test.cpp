@@ -1,4 +1,5 @@
 // Constraints that weigh alike: the factors, and that the motion and the multipliers stay.
+#include "registry/factory.hpp"
 #include "run/scaled_equations.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +10,6 @@
 #include "controls/controls.hpp"
 #include "run/initial_state.hpp"
 #include "run/run.hpp"
-#include "run/setting_names.hpp"
 #include "run/settings.hpp"
 #include "support/sample_models.hpp"
 #include "support/term_models.hpp"

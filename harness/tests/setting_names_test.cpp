@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "support/term_models.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -53,33 +52,6 @@ TEST(SettingNames, CombinationsThatDoNotGoTogetherAreRefusedByName) {
               scheme != Scheme::multistep6);
   }
   EXPECT_NE(refusal({.projections = Projections::none, .projections_every = 2}), "");
-}
-
-TEST(SettingNames, WhatAVariantDoesNotServeIsSaid) {
-  const Serves nothing, everything{true, true, true, true, true, true, true, true, true};
-  for (const auto& [settings, option] : std::vector<std::pair<StepSettings, std::string>>{
-           {{.scheme = Scheme::saddle_point}, "--scheme saddle-point"},
-           {{.scheme = Scheme::rattle4}, "--scheme rattle4"},
-           {{.multipliers = MultiplierUpdate::converged}, "--multipliers converged"},
-           {{.tangent = TangentReuse::step}, "--tangent every-step"},
-           {{.projections_every = 2}, "--projections-every"},
-           {{.precision = Precision::single_precision}, "--precision single"},
-           {{.geometric_stiffness = true}, "--geometric-stiffness"},
-           {{.precision = Precision::mixed}, "--precision mixed"}}) {
-    EXPECT_EQ(why_not_served(nothing, settings), option);
-    EXPECT_EQ(why_not_served(everything, settings), "") << option;
-  }
-  EXPECT_EQ(why_not_served(nothing, {}), "");
-}
-
-TEST(SettingNames, RattleIsForScenesWithoutDriversAndDampers) {
-  int suited = 0, unsuited = 0;
-  for (const test::TermModel& term : test::term_models()) {
-    EXPECT_EQ(why_unsuited(term.model, {}), "");
-    (why_unsuited(term.model, {.scheme = Scheme::rattle}).empty() ? suited : unsuited) += 1;
-  }
-  EXPECT_GT(suited, 0);
-  EXPECT_GT(unsuited, 0);
 }
 
 }  // namespace

@@ -7,6 +7,14 @@
 #include "simulation.hpp"
 
 namespace mbs::armadillo_dense {
+namespace {
+
+constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
+                       Term::springs,     Term::torsion_springs, Term::dampers,
+                       Term::couples,     Term::drivers,         Term::mass_across_axes,
+                       Term::spatial};
+
+}  // namespace
 
 Implementation implementation() {
   return {
@@ -27,8 +35,9 @@ Implementation implementation() {
             return std::make_unique<DenseSimulation<PenaltySystem>>(model, settings);
           },
           .dense = true,
-          .serves = {.saddle_point = true},
+          .serves = {.terms = kTerms, .saddle_point = true},
       }},
+      .role = Role::paper,
   };
 }
 

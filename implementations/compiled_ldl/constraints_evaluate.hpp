@@ -82,7 +82,7 @@ void Constraints<S, D>::add_gradients(Factor factor, S* y) const {
     for (int x = 0; x < D; ++x) y[pair.a + x] += s * u[x];
   }
   k = pairs_.count();
-  const S* g = vectors_.data() + 2 * D;
+  const S* g = quads_.empty() ? nullptr : vectors_.data() + 2 * D;
   for (const Quad& quad : quads_) {
     const S s = factor(k++);
     for (int i = 0; i < quad.free; ++i) {

@@ -30,8 +30,9 @@ void Constraints<S, D>::add_projection(const S* x, const S* v, const S& f, S* y)
     if (k >= pairs_.two) continue;
     for (int i = 0; i < D; ++i) y[pair.b + i] += force[i];
   }
-  const S* g = vectors_.data() + 2 * D;
-  const S* earlier = (kPresent ? vectors_ : earlier_vectors_).data() + 2 * D;
+  const int behind = quads_.empty() ? 0 : 2 * D;  // where there are none, there are no vectors either
+  const S* g = vectors_.data() + behind;
+  const S* earlier = (kPresent ? vectors_ : earlier_vectors_).data() + behind;
   for (int k = 0; k < static_cast<int>(quads_.size()); ++k, g += kQuad, earlier += kQuad) {
     const Quad& quad = quads_[k];
     S sum = S(0.0);

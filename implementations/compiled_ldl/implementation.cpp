@@ -12,7 +12,13 @@
 namespace mbs::compiled_ldl {
 namespace {
 
-constexpr Serves kFronts = {.saddle_point = true,
+constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
+                       Term::springs,     Term::torsion_springs, Term::dampers,
+                       Term::couples,     Term::drivers,         Term::mass_across_axes,
+                       Term::spatial};
+
+constexpr Serves kFronts = {.terms = kTerms,
+                            .saddle_point = true,
                             .rattle = true,
                             .multistep = true,
                             .multiplier_update = true,
@@ -22,7 +28,7 @@ constexpr Serves kFronts = {.saddle_point = true,
                             .mixed_precision = true,
                             .geometric_stiffness = true};
 constexpr Serves kChains = {
-    .saddle_point = true, .rattle = true, .multistep = true, .projections_every = true};
+    .terms = {Term::mass_across_axes}, .saddle_point = true, .rattle = true, .multistep = true, .projections_every = true};
 
 std::unique_ptr<Simulation> create_fronts(const Model& model, const StepSettings& settings) {
   if (is_listing_due()) list_fronts(std::cerr, model, settings);
@@ -31,9 +37,10 @@ std::unique_ptr<Simulation> create_fronts(const Model& model, const StepSettings
       return create_single(model, settings);
     case Precision::mixed:
       return create_mixed(model, settings);
-    default:
-      return create_double(model, settings);
+    case Precision::double_precision:
+      break;
   }
+  return create_double(model, settings);
 }
 
 std::unique_ptr<Simulation> create_chains(const Model& model, const StepSettings& settings) {

@@ -12,6 +12,11 @@
 namespace mbs::csc_cholmod {
 namespace {
 
+constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
+                       Term::springs,     Term::torsion_springs, Term::dampers,
+                       Term::couples,     Term::drivers,         Term::mass_across_axes,
+                       Term::spatial};
+
 template <Factorization kFactorization>
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
   if (settings.scheme == Scheme::saddle_point) {
@@ -35,12 +40,14 @@ Implementation implementation() {
       .variants = {{.name = "simplicial",
                     .description = "entry by entry, LDL', without BLAS (LGPL-2.1-or-later)",
                     .create = create<Factorization::simplicial>,
-                    .serves = {.saddle_point = true},
+                    .serves = {.terms = kTerms, .saddle_point = true},
                     .operations = create_operations},
                    {.name = "supernodal",
                     .description = "blocks of columns, LL', over BLAS (GPL-2.0-or-later)",
                     .create = create<Factorization::supernodal>,
-                    .allocates = "cholmod_super_numeric allocates its workspace in every call"}},
+                    .allocates = "cholmod_super_numeric allocates its workspace in every call",
+                    .serves = {.terms = kTerms}}},
+      .role = Role::paper,
   };
 }
 

@@ -10,7 +10,13 @@ namespace mbs::csc_klu {
 
 namespace {
 
-constexpr Serves kServes = {.saddle_point = true,
+constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
+                       Term::springs,     Term::torsion_springs, Term::dampers,
+                       Term::couples,     Term::drivers,         Term::mass_across_axes,
+                       Term::spatial};
+
+constexpr Serves kServes = {.terms = kTerms,
+                            .saddle_point = true,
                             .rattle = true,
                             .multistep = true,
                             .multiplier_update = true,
@@ -48,6 +54,7 @@ Implementation implementation() {
                     .create = create_simulation<GuardedRefactorization>,
                     .unsymmetric = true,
                     .serves = with_geometric_stiffness(kServes)}},
+      .role = Role::paper,
   };
 }
 

@@ -139,7 +139,6 @@ class MultistepSimulation final : public Simulation {
 
 template <TangentSolver Solver>
 std::unique_ptr<Simulation> create_multistep(const Model& model, const StepSettings& settings) {
-  require_forces_of_positions(model);
   if (model.dimension() == 2) {
     return std::make_unique<MultistepSimulation<2, Solver>>(model, settings);
   }

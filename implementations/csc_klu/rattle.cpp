@@ -1,8 +1,6 @@
 // RATTLE of second, fourth and sixth order: stages of one saddle-point factorization each.
 #include "rattle.hpp"
 
-#include <algorithm>
-
 #include "rattle_step.hpp"
 
 namespace mbs::csc_klu {
@@ -29,20 +27,8 @@ class RattleSimulation final : public Simulation {
 
 }  // namespace
 
-void require_forces_of_positions(const Model& model) {
-  if (!model.driven_points().empty() || !model.driven_values().empty()) {
-    throw Unsupported("RATTLE is for models without drivers");
-  }
-  const auto is_damped = [](const auto& spring) { return spring.damping != 0.0; };
-  if (std::ranges::any_of(model.springs(), is_damped) ||
-      std::ranges::any_of(model.torsion_springs(), is_damped)) {
-    throw Unsupported("RATTLE is for models without dampers");
-  }
-}
-
 template <TangentSolver Solver>
 std::unique_ptr<Simulation> create_rattle(const Model& model, const StepSettings& settings) {
-  require_forces_of_positions(model);
   if (model.dimension() == 2) return std::make_unique<RattleSimulation<2, Solver>>(model, settings);
   return std::make_unique<RattleSimulation<3, Solver>>(model, settings);
 }

@@ -14,7 +14,4 @@ template <TangentSolver Solver>
 [[nodiscard]] std::unique_ptr<Simulation> create_rattle(const Model& model,
                                                         const StepSettings& settings);
 
-/// Throws Unsupported unless forces of the model depend on positions only.
-void require_forces_of_positions(const Model& model);
-
 }  // namespace mbs::csc_klu

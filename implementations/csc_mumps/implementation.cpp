@@ -5,6 +5,14 @@
 #include "solver.hpp"
 
 namespace mbs::csc_mumps {
+namespace {
+
+constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
+                       Term::springs,     Term::torsion_springs, Term::dampers,
+                       Term::couples,     Term::drivers,         Term::mass_across_axes,
+                       Term::spatial};
+
+}  // namespace
 
 Implementation implementation() {
   Implementation self;
@@ -18,7 +26,8 @@ Implementation implementation() {
            "SYM = 1: no pivoting, AMD ordering, analysis once (saddle-point form: SYM = 2)",
        .create = make_simulation,
        .allocates = "MUMPS allocates its workspaces anew in every call",
-       .serves = {.saddle_point = true}});
+       .serves = {.terms = kTerms, .saddle_point = true}});
+  self.role = Role::paper;
   return self;
 }
 

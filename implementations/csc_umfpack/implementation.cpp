@@ -13,6 +13,11 @@
 namespace mbs::csc_umfpack {
 namespace {
 
+constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
+                       Term::springs,     Term::torsion_springs, Term::dampers,
+                       Term::couples,     Term::drivers,         Term::mass_across_axes,
+                       Term::spatial};
+
 template <template <int> class System>
 std::unique_ptr<Simulation> create_with(const Model& model, const StepSettings& settings) {
   if (model.dimension() == 2) return std::make_unique<CscUmfpack<2, System>>(model, settings);
@@ -44,7 +49,7 @@ Implementation implementation() {
                                    "diagonal pivots, a numeric factorization every pass",
                     .create = create,
                     .unsymmetric = true,
-                    .serves = {.saddle_point = true}}},
+                    .serves = {.terms = kTerms, .saddle_point = true}}},
   };
 }
 

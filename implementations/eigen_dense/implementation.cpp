@@ -22,6 +22,11 @@ namespace mbs::eigen_dense {
 
 namespace {
 
+constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
+                       Term::springs,     Term::torsion_springs, Term::dampers,
+                       Term::couples,     Term::drivers,         Term::mass_across_axes,
+                       Term::spatial};
+
 /// No matrix larger than this is stored; there are three or four of them.
 constexpr double kMatrixLimit = 2.0 * 1024 * 1024 * 1024;  // bytes
 
@@ -34,18 +39,6 @@ void require_size(const Model& model, const StepSettings& settings) {
   if (sizeof(double) * columns * rows <= kMatrixLimit) return;
   throw Unsupported("a dense matrix of " + std::to_string(model.variables()) +
                     " variables would exceed 2 GiB");
-}
-
-/// RATTLE and the multistep method as they stand in paper/README.md know neither.
-void require_no_drivers_or_dampers(const Model& model) {
-  if (!model.driven_points().empty() || !model.driven_values().empty()) {
-    throw Unsupported("RATTLE and multistep6 do not serve drivers");
-  }
-  const auto damps = [](const auto& spring) { return spring.damping != 0.0; };
-  if (std::ranges::any_of(model.springs(), damps) ||
-      std::ranges::any_of(model.torsion_springs(), damps)) {
-    throw Unsupported("RATTLE and multistep6 do not serve dampers");
-  }
 }
 
 bool is_trapezoidal(Scheme scheme) {
@@ -89,7 +82,6 @@ std::unique_ptr<mbs::Simulation> create_mixed(const Model& model, const StepSett
 
 std::unique_ptr<mbs::Simulation> create(const Model& model, const StepSettings& settings) {
   require_size(model, settings);
-  if (!is_trapezoidal(settings.scheme)) require_no_drivers_or_dampers(model);
   if (settings.scheme == Scheme::multistep6) return std::make_unique<Multistep>(model, settings);
   if (is_plain(settings)) return std::make_unique<Simulation>(model, settings);
   if (settings.precision == Precision::single_precision) return create_in<float>(model, settings);
@@ -114,7 +106,8 @@ Implementation implementation() {
                            .description = "Cholesky in place on the lower triangle",
                            .create = create,
                            .dense = true,
-                           .serves = {.saddle_point = true,
+                           .serves = {.terms = kTerms,
+                                      .saddle_point = true,
                                       .rattle = true,
                                       .multistep = true,
                                       .multiplier_update = true,
@@ -123,6 +116,7 @@ Implementation implementation() {
                                       .single_precision = true,
                                       .mixed_precision = true,
                                       .geometric_stiffness = true}}};
+  description.role = Role::paper;
   return description;
 }
 

@@ -40,12 +40,20 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
     case Scheme::rattle:
     case Scheme::rattle4:
     case Scheme::rattle6:
+      return std::make_unique<RattleSimulation<Solver<double>>>(model, settings);
+    case Scheme::multistep6:
       break;
   }
-  return std::make_unique<RattleSimulation<Solver<double>>>(model, settings);
+  throw Unsupported("multistep6 is not served");
 }
 
-constexpr Serves kServes{.saddle_point = true,
+constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
+                       Term::springs,     Term::torsion_springs, Term::dampers,
+                       Term::couples,     Term::drivers,         Term::mass_across_axes,
+                       Term::spatial};
+
+constexpr Serves kServes{.terms = kTerms,
+                         .saddle_point = true,
                          .rattle = true,
                          .multiplier_update = true,
                          .tangent_reuse = true,
@@ -71,7 +79,8 @@ Implementation implementation() {
           {.name = "simplicial_ldlt",
            .description = "Eigen's up-looking LDL^T; AMD ordering, tree lowered",
            .create = create<SimplicialSolver>,
-           .serves = kServes}}};
+           .serves = kServes}},
+      .role = Role::paper};
 }
 
 }  // namespace mbs::eigen_superlu

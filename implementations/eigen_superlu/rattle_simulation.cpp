@@ -10,7 +10,7 @@ RattleSimulation<Solver>::RattleSimulation(const Model& model, const StepSetting
     : Simulation(model, settings),
       settings_(settings),
       stages_(rattle_stages(settings)),
-      mechanism_(checked_for_rattle(model), numbered_by(model, Solver::elimination_order)),
+      mechanism_(model, numbered_by(model, Solver::elimination_order)),
       equations_(model, 4.0 / (settings.penalty * settings.step * settings.step), mechanism_,
                  Stiffness::none),
       start_(model.variables()),

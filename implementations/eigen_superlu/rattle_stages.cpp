@@ -1,7 +1,6 @@
 // Stages of RATTLE and its compositions, and the models that they are for.
 #include "rattle_stages.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace mbs::eigen_superlu {
@@ -29,18 +28,6 @@ std::vector<double> rattle_stages(const StepSettings& settings) {
   std::vector<double> stages = shares_of(settings.scheme);
   for (double& stage : stages) stage *= settings.step;
   return stages;
-}
-
-const Model& checked_for_rattle(const Model& model) {
-  if (!model.driven_points().empty() || !model.driven_values().empty()) {
-    throw Unsupported("RATTLE is for models without drivers");
-  }
-  const auto damped = [](const auto& element) { return element.damping != 0.0; };
-  if (std::any_of(model.springs().begin(), model.springs().end(), damped) ||
-      std::any_of(model.torsion_springs().begin(), model.torsion_springs().end(), damped)) {
-    throw Unsupported("RATTLE is for models without dampers");
-  }
-  return model;
 }
 
 }  // namespace mbs::eigen_superlu

@@ -11,6 +11,11 @@ namespace mbs::starting_dense {
 
 namespace {
 
+constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
+                       Term::springs,     Term::torsion_springs, Term::dampers,
+                       Term::couples,     Term::drivers,         Term::mass_across_axes,
+                       Term::spatial};
+
 /// A dense matrix of more than 2 GiB is refused: four of them are kept.
 constexpr double kLargest = 2.0 * 1024 * 1024 * 1024;
 
@@ -35,7 +40,9 @@ Implementation implementation() {
                     .description = "LU with partial pivoting of DGESV, factors kept",
                     .create = create,
                     .dense = true,
-                    .unsymmetric = true}},
+                    .unsymmetric = true,
+                    .serves = {.terms = kTerms}}},
+      .role = Role::paper,
   };
 }
 

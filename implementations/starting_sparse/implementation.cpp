@@ -5,6 +5,14 @@
 #include "solver.hpp"
 
 namespace mbs::starting_sparse {
+namespace {
+
+constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
+                       Term::springs,     Term::torsion_springs, Term::dampers,
+                       Term::couples,     Term::drivers,         Term::mass_across_axes,
+                       Term::spatial};
+
+}  // namespace
 
 Implementation implementation() {
   return {
@@ -15,7 +23,9 @@ Implementation implementation() {
       .variants = {{.name = "mumps",
                     .description = "SYM = 2, AMD ordering, analysis once, no scaling",
                     .create = create,
-                    .allocates = "MUMPS allocates its workspaces anew in every call"}},
+                    .allocates = "MUMPS allocates its workspaces anew in every call",
+                    .serves = {.terms = kTerms}}},
+      .role = Role::paper,
   };
 }
 

@@ -13,6 +13,11 @@
 namespace mbs::ublas_sparse {
 namespace {
 
+constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
+                       Term::springs,     Term::torsion_springs, Term::dampers,
+                       Term::couples,     Term::drivers,         Term::mass_across_axes,
+                       Term::spatial};
+
 std::string versions() {
   const std::string boost = std::to_string(BOOST_VERSION / 100000) + "." +
                             std::to_string(BOOST_VERSION / 100 % 1000) + "." +
@@ -32,6 +37,7 @@ Variant variant(std::string name, std::string description) {
         return std::make_unique<UblasSimulation<Product>>(model, settings);
       },
       .unsymmetric = true,
+      .serves = {.terms = kTerms},
       .operations = [](const Model& model) -> std::unique_ptr<Operations> {
         return std::make_unique<UblasOperations<Product>>(model);
       },
@@ -52,6 +58,7 @@ Implementation implementation() {
               variant<AxpyProduct>("axpy_prod",
                                    "rank-k update by axpy_prod from a stored transpose"),
           },
+      .role = Role::paper,
   };
 }
 

@@ -9,13 +9,16 @@
 #include "mbs/batch.hpp"
 #include "mbs/operations.hpp"
 #include "mbs/simulation.hpp"
+#include "mbs/terms.hpp"
 
 namespace mbs {
 
-/// Which settings beyond the defaults of StepSettings a variant honours, alone and in every
-/// combination that paper/other_schemes.md, "Which settings go together", allows. The harness
-/// refuses all else by name, so that no implementation has to.
+/// Which terms a model may have for a variant, and which settings beyond the defaults of
+/// StepSettings it honours, alone and in every combination that paper/other_schemes.md, "Which
+/// settings go together", allows. The harness refuses all else by name, so that no implementation
+/// has to. The default is what the paper's maps need.
 struct Serves {
+  Terms terms = {};                  ///< beyond planar distances, constant M and gravity
   bool saddle_point = false;         ///< Scheme::saddle_point
   bool rattle = false;               ///< Scheme::rattle, rattle4 and rattle6
   bool multistep = false;            ///< Scheme::multistep6
@@ -49,6 +52,13 @@ struct Variant {
   int batch_lanes = 0;  ///< with create_batch: the number of lanes that it is best given
 };
 
+/// What an implementation is for.
+enum class Role {
+  contender,  ///< takes part in all comparisons
+  paper,      ///< as a contender, and stands for one of the paper's in claims about it
+  example,    ///< to be read: gated and listed, timed only where it is named
+};
+
 /// What the folder `implementations/<folder>/` offers. The folder defines
 ///
 ///   namespace mbs::<folder> { Implementation implementation(); }
@@ -60,6 +70,7 @@ struct Implementation {
   std::string version;      ///< as the library itself reports it, for instance "1.3.9"
   std::string licence;      ///< of the library, SPDX, for instance "LGPL-2.1-or-later"
   std::vector<Variant> variants;
+  Role role = Role::contender;
 };
 
 }  // namespace mbs

@@ -10,7 +10,7 @@
 
 #include "bench/measurement.hpp"
 #include "check/varied_lanes.hpp"
-#include "run/setting_names.hpp"
+#include "registry/factory.hpp"
 #include "sweep/lane.hpp"
 
 namespace mbs {
@@ -35,7 +35,7 @@ class BatchMeasurement {
     for (std::size_t first = 0; first < count; first += lanes) {
       const std::size_t size = std::min(lanes, count - first);
       batches_.push_back(
-          cell.variant->create_batch(models.subspan(first, size), settings.subspan(first, size)));
+          create_batch(*cell.variant, models.subspan(first, size), settings.subspan(first, size)));
     }
   }
 

@@ -79,7 +79,13 @@ std::vector<NamedVariant> choose_variants(std::vector<std::string> names, bool& 
       names, [](const std::string& name) { return name == "null" || name == kControl; });
   control = everything || removed > 0;
   if (names.empty() && !everything) return {};
-  return select_variants(names);
+  auto chosen = select_variants(names);
+  if (everything) {
+    std::erase_if(chosen, [](const NamedVariant& one) {
+      return one.entry->implementation.role == Role::example;
+    });
+  }
+  return chosen;
 }
 
 }  // namespace

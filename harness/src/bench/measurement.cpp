@@ -13,8 +13,8 @@
 
 #include "bench/paired_ratio.hpp"
 #include "printable.hpp"
+#include "registry/factory.hpp"
 #include "run/judge.hpp"
-#include "run/setting_names.hpp"
 
 namespace mbs {
 namespace {

@@ -2,6 +2,8 @@
 // call.
 #include "bench/null_variant.hpp"
 
+#include "registry/factory.hpp"
+
 namespace mbs {
 namespace {
 
@@ -27,7 +29,7 @@ const Variant& null_variant() {
       .create = [](const Model& model, const StepSettings&) -> std::unique_ptr<Simulation> {
         return std::make_unique<NullSimulation>(model);
       },
-      .serves = {true, true, true, true, true, true, true}};
+      .serves = {all_terms(), true, true, true, true, true, true, true, true, true}};
   return variant;
 }
 

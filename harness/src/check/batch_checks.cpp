@@ -12,7 +12,7 @@
 #include "check/processor_time.hpp"
 #include "check/varied_lanes.hpp"
 #include "printable.hpp"
-#include "run/setting_names.hpp"
+#include "registry/factory.hpp"
 
 namespace mbs {
 namespace {
@@ -23,7 +23,7 @@ constexpr std::size_t kSteps = 200, kRetiredAt = 10;
 
 /// A batch at its start; one lane is so fast that its numbers overflow.
 std::unique_ptr<BatchSimulation> start_batch(const Variant& variant, const VariedLanes& lanes) {
-  auto batch = variant.create_batch(lanes.pointers, lanes.settings);
+  auto batch = create_batch(variant, lanes.pointers, lanes.settings);
   for (int k = 0; k < lanes.count(); ++k) {
     State state = lanes.starts[static_cast<std::size_t>(k)];
     if (k == kSpoiled) std::ranges::fill(state.v, 1e300);

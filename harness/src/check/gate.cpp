@@ -11,7 +11,7 @@
 #include "check/lock_step.hpp"
 #include "check/processor_time.hpp"
 #include "printable.hpp"
-#include "run/setting_names.hpp"
+#include "registry/factory.hpp"
 
 namespace mbs {
 namespace {

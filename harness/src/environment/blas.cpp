@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "environment/build_info.hpp"
@@ -16,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kBlas = "libblas.so.3";
+constexpr std::array kMakers{"openblas", "atlas", "blis", "flame", "mkl", "armpl"};
 constexpr const char* kLapack = "liblapack.so.3";
 
 /// Files of a pair behind all links; those that do not exist as they are named.
@@ -130,6 +132,14 @@ std::string why_not_in_effect(const BlasPair& pair, const std::vector<BlasPair>&
       if (is_mapped(file) && std::ranges::find(mine, file) == mine.end()) {
         return file + " is loaded too";
       }
+    }
+  }
+  for (const std::string& file : mapped) {
+    const auto is_maker = [&](const char* maker) {
+      return file.find(maker) != std::string::npos && pair.name.find(maker) == std::string::npos;
+    };
+    if (std::ranges::any_of(kMakers, is_maker)) {
+      return file + " is loaded too (an implementation links it by its own name?)";
     }
   }
   return "";

@@ -36,7 +36,7 @@ void add_once(std::vector<std::string>& list, const std::string& item) {
 std::string libraries() {
   std::vector<std::string> names;
   for (const RegistryEntry& entry : registry()) {
-    if (!entry.unavailable.empty()) continue;
+    if (!entry.unavailable.empty() || entry.implementation.library == "none") continue;
     add_once(names, entry.implementation.library + " " + entry.implementation.version);
   }
   return fmt::format("{}", fmt::join(names, "; "));

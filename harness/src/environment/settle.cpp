@@ -58,7 +58,9 @@ std::vector<std::pair<std::string, std::string>> missing_variables(const BlasPai
   }
   const std::string kernels = kernels_for_openblas();
   if (!kernels.empty()) missing.emplace_back(kOpenBlasKernels, kernels);
-  if (pair == nullptr) return missing;
+  if (pair == nullptr || why_not_in_effect(*pair, blas_pairs(), loaded_blas_files()).empty()) {
+    return missing;  // the pair may be what the system takes anyway
+  }
   for (auto& change :
        loader_environment(*pair, variable("LD_LIBRARY_PATH"), variable("LD_PRELOAD"))) {
     missing.push_back(std::move(change));

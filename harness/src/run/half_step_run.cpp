@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "registry/factory.hpp"
 #include "run/scene_distance.hpp"
-#include "run/setting_names.hpp"
 
 namespace mbs {
 

@@ -3,9 +3,9 @@
 
 #include <limits>
 
+#include "registry/factory.hpp"
 #include "run/half_step_run.hpp"
 #include "run/scene_distance.hpp"
-#include "run/setting_names.hpp"
 
 namespace mbs {
 namespace {

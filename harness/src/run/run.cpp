@@ -8,11 +8,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "registry/factory.hpp"
 #include "run/driver_end.hpp"
 #include "run/initial_state.hpp"
 #include "run/judged_run.hpp"
 #include "run/scaled_equations.hpp"
-#include "run/setting_names.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "run/setting_names.hpp"
+#include "registry/factory.hpp"
 #include "run/settings.hpp"
 
 namespace mbs {

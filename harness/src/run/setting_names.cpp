@@ -53,27 +53,9 @@ const std::vector<std::pair<std::string, Precision>>& choices<Precision>() {
   return all;
 }
 
-namespace {
-
-/// RATTLE or what starts with it: no trapezoidal rule.
 bool is_explicit(Scheme scheme) {
   return scheme != Scheme::penalty && scheme != Scheme::saddle_point;
 }
-
-bool is_scheme_served(const Serves& serves, Scheme scheme) {
-  switch (scheme) {
-    case Scheme::penalty:
-      return true;
-    case Scheme::saddle_point:
-      return serves.saddle_point;
-    case Scheme::multistep6:
-      return serves.multistep;
-    default:
-      return serves.rattle;
-  }
-}
-
-}  // namespace
 
 void require_combination(const StepSettings& s) {
   if (s.projections_every < 1) {
@@ -138,61 +120,6 @@ std::string other_settings(const StepSettings& s) {
   add("precision", s.precision, usual.precision);
   if (s.geometric_stiffness) options.emplace_back("--geometric-stiffness");
   return fmt::format("{}", fmt::join(options, " "));
-}
-
-std::string why_not_served(const Serves& serves, const StepSettings& s) {
-  if (!is_scheme_served(serves, s.scheme)) return "--scheme " + name_of(s.scheme);
-  if (s.multipliers != MultiplierUpdate::every_pass && !serves.multiplier_update) {
-    return "--multipliers " + name_of(s.multipliers);
-  }
-  if (s.tangent != TangentReuse::none && !serves.tangent_reuse) {
-    return "--tangent " + name_of(s.tangent);
-  }
-  if (s.projections_every != 1 && !serves.projections_every) return "--projections-every";
-  if (s.geometric_stiffness && !serves.geometric_stiffness) return "--geometric-stiffness";
-  const bool precision = s.precision == Precision::double_precision   ? true
-                         : s.precision == Precision::single_precision ? serves.single_precision
-                                                                      : serves.mixed_precision;
-  return precision ? "" : "--precision " + name_of(s.precision);
-}
-
-std::string why_unsuited(const Model& model, const StepSettings& settings) {
-  if (!is_explicit(settings.scheme)) return "";
-  const std::string only = "--scheme " + name_of(settings.scheme) + " is for scenes without ";
-  if (!model.driven_points().empty() || !model.driven_values().empty()) return only + "drivers";
-  const auto damped = [](const auto& springs) {
-    return std::ranges::any_of(springs, [](const auto& s) { return s.damping > 0.0; });
-  };
-  if (damped(model.springs()) || damped(model.torsion_springs())) return only + "dampers";
-  return "";
-}
-
-std::unique_ptr<Simulation> create_simulation(const Variant& variant, const Model& model,
-                                              const StepSettings& settings) {
-  const std::string unsuited = why_unsuited(model, settings);
-  if (!unsuited.empty()) throw Unsupported(unsuited);
-  const std::string missing = why_not_served(variant.serves, settings);
-  if (!missing.empty()) {
-    throw Unsupported("it does not offer " + missing + " (mbs list tells who does)");
-  }
-  return variant.create(model, settings);
-}
-
-std::vector<std::string> served_settings(const Serves& serves) {
-  std::vector<std::string> result;
-  const auto add = [&result](bool served, const char* name) {
-    if (served) result.emplace_back(name);
-  };
-  add(serves.saddle_point, "saddle-point");
-  add(serves.rattle, "rattle");
-  add(serves.multistep, "multistep");
-  add(serves.multiplier_update, "multipliers");
-  add(serves.tangent_reuse, "tangent");
-  add(serves.projections_every, "projections-every");
-  add(serves.single_precision, "single");
-  add(serves.mixed_precision, "mixed");
-  add(serves.geometric_stiffness, "geometric-stiffness");
-  return result;
 }
 
 }  // namespace mbs

@@ -1,13 +1,12 @@
-// The choices among StepSettings by name, which of them go together, and who serves them.
+// The choices among StepSettings by name, and which of them go together.
 #pragma once
 
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "registry/registry.hpp"
+#include "mbs/simulation.hpp"
 
 namespace mbs {
 
@@ -31,6 +30,9 @@ std::string name_of(Choice choice) {
   return "unknown";
 }
 
+/// RATTLE or what starts with it: no trapezoidal rule.
+bool is_explicit(Scheme scheme);
+
 /// Throws UsageError unless `settings` go together: paper/other_schemes.md, "Which settings go
 /// together".
 void require_combination(const StepSettings& settings);
@@ -41,18 +43,5 @@ std::string other_settings(const StepSettings& settings);
 
 /// Every setting under the name of its option, with _ for -.
 nlohmann::json settings_json(const StepSettings& settings);
-
-/// Which setting a variant that serves `serves` does not offer, for people; empty if none.
-std::string why_not_served(const Serves& serves, const StepSettings& settings);
-
-/// Why no implementation can simulate `model` with `settings`; empty if nothing forbids it.
-std::string why_unsuited(const Model& model, const StepSettings& settings);
-
-/// variant.create(), or Unsupported with why_unsuited() or why_not_served().
-std::unique_ptr<Simulation> create_simulation(const Variant& variant, const Model& model,
-                                              const StepSettings& settings);
-
-/// The settings beyond the defaults that a variant serves, for people; empty if none.
-std::vector<std::string> served_settings(const Serves& serves);
 
 }  // namespace mbs

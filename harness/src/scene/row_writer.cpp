@@ -41,7 +41,7 @@ const DrivenPoint* RowWriter::driven(int point) {
 RowWriter::Row RowWriter::linear(const std::string& name, const std::vector<Part>& parts,
                                  const TimeFunction& value) {
   LinearConstraint constraint{{}, 0.0, name};
-  Terms known{{1.0, value}};
+  Summands known{{1.0, value}};
   double fixed = 0.0;
   for (const Part& part : parts) {
     if (part.coefficient == 0.0) continue;

@@ -131,7 +131,7 @@ class CosineKind final : public TimeFunction::Kind {
 
 class CombinationKind final : public TimeFunction::Kind {
  public:
-  CombinationKind(Terms terms, double constant) : terms_(std::move(terms)), constant_(constant) {}
+  CombinationKind(Summands terms, double constant) : terms_(std::move(terms)), constant_(constant) {}
 
   [[nodiscard]] Sample at(double t) const override {
     Sample sum{constant_, 0.0, 0.0};
@@ -150,7 +150,7 @@ class CombinationKind final : public TimeFunction::Kind {
   }
 
  private:
-  Terms terms_;
+  Summands terms_;
   double constant_;
 };
 
@@ -176,8 +176,8 @@ TimeFunction cosine_of(TimeFunction angle, double amplitude, double phase) {
   return make<CosineKind>(std::move(angle), amplitude, phase);
 }
 
-TimeFunction combination(const Terms& terms, double constant) {
-  Terms moving;
+TimeFunction combination(const Summands& terms, double constant) {
+  Summands moving;
   for (const auto& [factor, function] : terms) {
     if (function.is_constant()) {
       constant += factor * function.at(0.0).value;

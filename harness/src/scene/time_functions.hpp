@@ -29,8 +29,8 @@ TimeFunction square_of(TimeFunction f);
 TimeFunction cosine_of(TimeFunction angle, double amplitude, double phase = 0.0);
 
 /// constant + sum of factor * function; a constant again if all of them are.
-using Terms = std::vector<std::pair<double, TimeFunction>>;
-TimeFunction combination(const Terms& terms, double constant = 0.0);
+using Summands = std::vector<std::pair<double, TimeFunction>>;
+TimeFunction combination(const Summands& terms, double constant = 0.0);
 
 /// Row at which a table has a corner or is too coarse: two rules.
 ///

@@ -6,9 +6,9 @@
 #include <new>
 #include <optional>
 
+#include "registry/factory.hpp"
 #include "run/initial_state.hpp"
 #include "run/judged_run.hpp"
-#include "run/setting_names.hpp"
 
 namespace mbs {
 namespace {
@@ -111,26 +111,22 @@ void run_batch(BatchSimulation& batch, std::span<Lane> lanes, const Variant& var
   for (const auto& lane : running) lane->finish();
 }
 
-/// Null where the variant does not offer a batch, or not of these models with these settings.
-std::unique_ptr<BatchSimulation> create_batch(std::span<Lane> lanes, const Variant& variant) {
-  if (variant.create_batch == nullptr || lanes.size() < 2) return nullptr;
+/// Null where the variant does not offer a batch; Unsupported if not of these models.
+std::unique_ptr<BatchSimulation> batch_of(std::span<Lane> lanes, const Variant& variant) {
+  if (lanes.size() < 2) return nullptr;
   std::vector<const Model*> models;
   std::vector<StepSettings> settings;
   for (const Lane& lane : lanes) {
     models.push_back(&lane.scene.model);
     settings.push_back(lane.settings.step);
   }
-  if (!why_unsuited(*models[0], settings[0]).empty() ||
-      !why_not_served(variant.serves, settings[0]).empty()) {
-    return nullptr;
-  }
-  return variant.create_batch(models, settings);
+  return create_batch(variant, models, settings);
 }
 
 /// False if the batch as a whole failed, so that no lane has an outcome by it.
 bool run_side_by_side(std::span<Lane> lanes, const Variant& variant, const LaneProgress& progress) {
   try {
-    const auto batch = create_batch(lanes, variant);
+    const auto batch = batch_of(lanes, variant);
     if (batch) run_batch(*batch, lanes, variant, progress);
     return batch != nullptr;
   } catch (const std::bad_alloc&) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "reference/reference_simulation.hpp"
+#include "registry/factory.hpp"
 
 namespace mbs::test {
 namespace {
@@ -109,6 +110,7 @@ std::unique_ptr<BatchSimulation> refuse(std::span<const Model* const> /*models*/
 
 Variant variant(std::string name, decltype(Variant::create_batch) batch) {
   Variant result;
+  result.serves.terms = all_terms();
   result.name = std::move(name);
   result.description = "the reference in batches";
   result.create = create;

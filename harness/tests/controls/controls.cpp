@@ -6,12 +6,14 @@
 
 #include "controls/wrong_endings.hpp"
 #include "controls/wrong_results.hpp"
+#include "registry/factory.hpp"
 
 namespace mbs::test {
 
 Implementation controls() {
   Implementation result{"the reference with one defect", "none", "0", "none", wrong_results()};
   std::ranges::move(wrong_endings(), std::back_inserter(result.variants));
+  for (Variant& one : result.variants) one.serves.terms = all_terms();
   return result;
 }
 

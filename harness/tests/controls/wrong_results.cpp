@@ -151,7 +151,7 @@ std::vector<Variant> wrong_results() {
       {.name = "reference",
        .description = "no defect",
        .create = create_wrong<WrappedReference>,
-       .serves = {true, true, true, true, true, true, true, true}},
+       .serves = {{}, true, true, true, true, true, true, true, true}},
       {"returns_at_once", "step() computes nothing and says converged",
        create_wrong<ReturnsAtOnce>},
       {"nan_after_100", "the state is NaN after 100 steps", create_wrong<NanAfter100>},

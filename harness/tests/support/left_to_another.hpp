@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "check/verdict.hpp"
-#include "run/setting_names.hpp"
+#include "registry/factory.hpp"
 
 namespace mbs::test {
 

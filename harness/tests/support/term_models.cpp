@@ -108,6 +108,12 @@ class Builder {
       data_.driven_mass.push_back({data_.points[E].offset + k, P, k, 0.5 / 6});
     }
   }
+  /// As bodies have that are no rods: x of B with y of B and of C.
+  void mass_across_axes() {
+    const int b = data_.points[B].offset, c = data_.points[C].offset;
+    mass(b + 1, b, 0.05);
+    mass(std::max(b, c + 1), std::min(b, c + 1), -0.04);
+  }
   void drive_value(int constraint, double amplitude) { driven_.push_back({constraint, amplitude}); }
   int bilinear(int a, int b, int c, int d) {
     BilinearConstraint constraint{a, b, c, d, {}, 0.0, "bilinear"};
@@ -248,6 +254,7 @@ std::vector<Term> terms() {
          b.drive_point();
          b.drive_value(b.bilinear(D, P, E, C), 0.2);
        }},
+      {"mass across axes", [](Builder& b) { b.mass_across_axes(); }},
       {"stored zeros",
        [](Builder& b) {
          b.data().mass.push_back({7, 0, 0.0});
@@ -260,6 +267,7 @@ std::vector<Term> terms() {
          b.data().torsion_springs = {{B, A, C, B, b.axis(), 12.0, 0.8, 0.4, "hinge"}};
          b.data().couples = {{D, C, b.spatial() ? N : -1, 2.0, "motor"}};
          b.driven_rod();
+         b.mass_across_axes();
          if (b.spatial()) {
            const int d = b.data().points[D].offset;
            b.drive_value(b.bilinear(D, P, E, C), 0.05);
