@@ -18,14 +18,16 @@ def answers(tables, view):
 
 
 def cases(tables, view):
-    """Rows of the front page's table."""
+    """Row of the front page's table: at the largest size what each error takes; a setting is worth nothing without its
+    step."""
     won = met(own_fill(tables["winners"]))
-    rows = won[won.layer == "libraries"]
+    rows = won[(won.layer == "libraries") & (won.variables == won.variables.max())].sort_values("required", ascending=False)
     if rows.empty:
         return []
-    who, setting = most(rows.implementation)[0], most(rows.setting)[0]
-    return [{"case": "You know the error that your motion may have", "link": "accuracy.html#short",
-             "take": f"{who} with the setting {setting} and the longest step that meets it (study/advise finds it)"}]
+    said = [f"{number(one.required)} m: {one.implementation}, {one.setting}, step {number(1e3 * one.step, 2)} ms"
+            + ("" if one.settled else " (not decided)") for one in rows.itertuples()]
+    return [{"case": f"You know the error that the motion may have (four-bar, {rows.variables.iloc[0]:.0f} variables)",
+             "link": "accuracy.html#short", "take": "; ".join(said) + ". study/advise finds it for your scene"}]
 
 
 def own_fill(winners):
@@ -106,8 +108,8 @@ def of_regions(winners):
             settled, decided = ((won[flag] == True).sum() for flag in ("settled", "decided"))  # noqa: E712
             who, often = most(won.implementation)
             said.append(f"{WORDS[layer]} somebody is timed who meets the error in {len(won)} of {len(rows)} cells of size, fill and error; "
-                        f"{who} is fastest in {often}. {decided} are decided, and in {settled} it is known of each "
-                        "contender whether it is as fast.")
+                        f"{who} is fastest in {often}. {decided} are decided, {settled} settled: of each contender it is "
+                        "shown whether it is as fast.")
     return said
 
 

@@ -20,14 +20,19 @@ class Registry:
                 for variant in entry["variants"]}
 
     @property
+    def examples(self):
+        """Names of the variants that are there to be read, and timed only where they are named."""
+        return frozenset(name for name, one in self.variants.items() if one.get("role") == "example")
+
+    @property
     def own(self):
         """Names of the variants that stand on no library."""
-        return frozenset(name for name, one in self.variants.items() if one.get("library") == "none")
+        return frozenset(name for name, one in self.variants.items() if one.get("library") == "none") - self.examples
 
     @property
     def libraries(self):
         """Names of the others, in order."""
-        return [name for name in self.variants if name not in self.own]
+        return [name for name in self.variants if name not in self.own | self.examples]
 
     @property
     def dense(self):

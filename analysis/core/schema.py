@@ -18,7 +18,8 @@ def of_part(part):
     path = ROOT / "analysis" / part / "schema.yaml"
     found = yaml.safe_load(path.read_text(encoding="utf-8"))
     for table, columns in found.items():
-        wrong = [name for name, one in columns.items() if len(one) != 3 or one[0] not in TYPES]
+        wrong = [name for name, one in columns.items()
+                 if len(one) != 3 or one[0] not in TYPES or not all(isinstance(word, str) for word in one)]
         if wrong or "record" not in columns:
             raise StudyError(f"{path}: {table}: {', '.join(wrong) or 'record'}: needs [type, unit, meaning], types are "
                              f"{', '.join(TYPES)}")

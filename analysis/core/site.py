@@ -1,6 +1,9 @@
 # The site of a set: a page a part, index.html with the answers, one look.
 import base64
 import importlib
+import multiprocessing
+import os
+import signal
 from pathlib import Path
 
 import jinja2
@@ -16,14 +19,14 @@ from analysis.core.view import View
 HERE = Path(__file__).parent
 
 
-def write_part(folder, part):
-    """Tables, figures and page of a part from its records; the front page again."""
+def write_part(folder, part, started=lambda: None):
+    """Tables, figures and page of a part from its records; the front page again. `started` is called in every process
+    that this begins."""
     schema.need_unchanged(folder, part)
     view, found = View(folder, part), records.read_part(folder, part)
     schema.need_same_records(folder, part, found)
     tables = schema.write_tables(folder, part, _module(part, "tables").build(found, view), found)
-    figures = {name: _saved(folder, part, name, figure)
-               for name, figure in _module(part, "figures").draw(tables, view).items()}
+    figures = _saved(folder / part / "figures", _module(part, "figures").draw(tables, view), started)
     known = _module(part, "page").context(tables, view)
     _write(folder, part, _template(ROOT / "analysis" / part / "page.html.j2").render(
         **_frame(folder, part), **known, figures=figures, schema=schema.of_part(part)))
@@ -73,11 +76,25 @@ def _template(path):
     return environment.get_template(path.name)
 
 
-def _saved(folder, part, name, figure):
-    """Writes PART/figures/NAME.svg and .png and closes the figure; the SVG in base 64."""
-    base = Path(folder) / part / "figures"
+def _saved(base, figures, started):
+    """Writes NAME.svg and NAME.png of each figure into `base`, on all cores, and closes it; {name: its SVG in base 64}."""
     base.mkdir(parents=True, exist_ok=True)
-    for kind in ("svg", "png"):
-        save(figure, base / f"{name}.{kind}")
-    plt.close(figure)
-    return base64.b64encode((base / f"{name}.svg").read_bytes()).decode()
+    paths = {base / f"{name}.{kind}": figure for name, figure in figures.items() for kind in ("svg", "png")}
+    fork = multiprocessing.get_context("fork")  # figures go with it as they are
+    with fork.Pool(len(os.sched_getaffinity(0)), _begin, (started, paths)) as pool:
+        pool.map(_save, paths, chunksize=1)
+    plt.close("all")
+    return {name: base64.b64encode((base / f"{name}.svg").read_bytes()).decode() for name in figures}
+
+
+def _begin(started, paths):
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # which is how a pool ends its processes
+    started()
+    _paths.update(paths)
+
+
+def _save(path):
+    save(_paths[path], path)
+
+
+_paths = {}  # of a process that saves figures: {path: figure}

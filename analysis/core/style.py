@@ -7,11 +7,11 @@ import numpy
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
-# Warm colours are dense implementations, the others sparse: each starts with those of Okabe and Ito
+# Warm colours are dense implementations, the others sparse: those who lead have colours of Okabe and Ito
 # (2008), safe for the colour-blind; markers and dashes tell the series apart without colour.
 DENSE = ("#E69F00", "#D55E00", "#8C4A1F", "#F2C14E", "#B03A48")
-SPARSE = ("#0072B2", "#009E73", "#CC79A7", "#56B4E9", "#5B3A9E", "#8A8A00", "#7A1F5C", "#8FBF5A",
-          "#00707A", "#A6A6D9")
+SPARSE = ("#7A1F5C", "#CC79A7", "#0072B2", "#56B4E9", "#5B3A9E", "#8A8A00", "#009E73", "#8FBF5A",
+          "#A6A6D9", "#00707A")
 ALTERNATIVES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#8A8A00", "#4D4D4D")
 SHADES = ((None, 0.0), ("white", 0.42), ("black", 0.38), ("white", 0.68), ("black", 0.62))
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", "p", ">", "h", "d")

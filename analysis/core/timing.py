@@ -62,6 +62,22 @@ class Ratio:
 NONE = Ratio(math.nan, math.nan, math.nan)
 
 
+class Paired:
+    """Samples of one scene's rows, by contender and process: what ratios are taken of. Whoever asks for many keeps it;
+    `ratio` and `rank` take the rows themselves as well."""
+
+    def __init__(self, rows):
+        self.logs = {}  # {name: {(environment, process): logarithms of samples}}
+        good = rows[rows.status == "ok"]
+        for name, environment, process, samples in zip(good.implementation, good.environment, good.process, good.samples):
+            self.logs.setdefault(name, {})[environment, process] = numpy.log(samples)
+        self.lost = set(rows[~rows.status.isin(["ok", "dropped"])].implementation)
+
+
+def paired(rows):
+    return rows if isinstance(rows, Paired) else Paired(rows)
+
+
 def ratio(rows, first, second):
     """Time of `first` over that of `second` in `rows` of one scene; NaN where they share no process. Of one
     process there is no interval: it reaches from 0 to infinity."""
@@ -79,37 +95,33 @@ def ratio(rows, first, second):
 def log_ratios(rows, first, second):
     """Logarithms of the ratio, one a process. Contenders of different environments are compared through the
     variant that both environments have."""
-    mine, other = (_by_process(rows, name) for name in (first, second))
-    direct = [_log(mine[key], other[key]) for key in sorted(set(mine) & set(other))]
+    logs = paired(rows).logs
+    mine, other = (logs.get(name, {}) for name in (first, second))
+    direct = [_median(mine[key], other[key]) for key in sorted(set(mine) & set(other))]
     if direct or not (mine and other):
         return numpy.array(direct)
     environments = [next(iter(one))[0] for one in (mine, other)]
-    common = _common(rows, environments)
+    common = _common(logs, environments)
     if common is None:
         return numpy.array([])
-    anchors = [_by_process(rows, name) for name in common]
+    anchors = [logs[name] for name in common]
     found = []
     for number in sorted({key[1] for key in mine} & {key[1] for key in other}):
         keys = [(environment, number) for environment in environments]
         if keys[0] in anchors[0] and keys[1] in anchors[1]:
-            found.append(_log(mine[keys[0]], anchors[0][keys[0]]) - _log(other[keys[1]], anchors[1][keys[1]]))
+            found.append(_median(mine[keys[0]], anchors[0][keys[0]]) - _median(other[keys[1]], anchors[1][keys[1]]))
     return numpy.array(found)
 
 
-def _by_process(rows, name):
-    chosen = rows[(rows.implementation == name) & (rows.status == "ok")]
-    return {(row.environment, row.process): row.samples for row in chosen.itertuples()}
+def _median(first, second):
+    """Of the logarithm of the ratio over the turns of a process: samples of one turn belong together."""
+    count = min(len(first), len(second))
+    return float(numpy.median(first[:count] - second[:count]))
 
 
-def _log(first, second):
-    count = min(len(first), len(second))  # samples of a turn belong together
-    return float(numpy.median(numpy.log(numpy.array(first[:count]) / numpy.array(second[:count]))))
-
-
-def _common(rows, environments):
+def _common(logs, environments):
     """Names, one in each environment, of a variant that both have."""
-    good = rows[rows.status == "ok"]
-    names = [{name.partition("+")[0]: name for name in good[good.environment == one].implementation.unique()}
+    names = [{name.partition("+")[0]: name for name, found in logs.items() if any(key[0] == one for key in found)}
              for one in environments]
     shared = sorted(set(names[0]) & set(names[1]))
     return [one[shared[0]] for one in names] if shared else None
@@ -153,10 +165,8 @@ class Ranking:
 
 def rank(rows, names=None):
     """The Ranking of one scene's rows among `names` (all of their names); None if none of them was timed."""
-    good = rows[rows.status == "ok"]
-    lost = rows[(rows.status != "ok") & (rows.status != "dropped")].implementation
-    chosen = [name for name in good.implementation.unique()
-              if (names is None or name in names) and name not in set(lost)]
+    rows = paired(rows)
+    chosen = [name for name in rows.logs if (names is None or name in names) and name not in rows.lost]
     if not chosen:
         return None
     first = chosen[0]

@@ -26,7 +26,8 @@ def of_side(table, side):
     timed = rows[rows.ratio.notna()]
     if rows.empty or (rows.reason == "none of it takes part").all():
         return ""
-    text = f"{SIDES[side].capitalize()}: faster than the engine in {(timed.ratio > 1).sum()} of {len(rows)} comparisons at equal error"
+    text = (f"{SIDES[side].capitalize()}: shown to be faster than the engine in {(timed.low > 1).sum()} of {len(rows)} "
+            "comparisons at equal error")
     if len(timed):
         worst = timed.loc[timed.ratio.idxmin()]
         text += (f", by {number(timed.ratio.median(), 2)} times in the median, at the least {number(worst.ratio, 2)} "

@@ -46,8 +46,8 @@ def _pivots(table):
     if table.empty or "guarded" not in overhead(table):
         return
     worst = table.groupby("strategy").error_worst.max()
-    yield {"anchor": "pivots", "text": f"Pivots that are kept lose up to {number(worst['refactor'], 1)} of a solution; kept with a "
-           f"guard at most {number(worst['guarded'], 1)}, for {number(overhead(table)['guarded'].median(), 3)} times the time."}
+    yield {"anchor": "pivots", "text": f"Solves with pivots that are kept have backward errors of up to {number(worst['refactor'], 1)}, "
+           f"with a guard of at most {number(worst['guarded'], 1)}, for {number(overhead(table)['guarded'].median(), 3)} times the time."}
 
 
 def cases(tables, view):
@@ -58,4 +58,4 @@ def cases(tables, view):
     if not safe:
         return []
     return [{"case": f"Masses in your mechanism differ by {number(most.value.iloc[0])}", "link": "extremes.html#ways",
-             "take": f"{' or '.join(safe)}, whatever the implementation"}]
+             "take": f"{' or '.join(safe)}, whatever the implementation (tried on the four-bar)"}]

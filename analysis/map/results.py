@@ -22,7 +22,7 @@ class Results:
     def __init__(self, tables, view):
         self.tidy, self.verification, self.view = tables["tidy"], tables["verification"], view
         self.registry, self.variants = view.registry, view.registry.variants
-        self._ranked, self._ratios = {}, {}
+        self._timed, self._ranked, self._ratios = {}, {}, {}
 
     @cached_property
     def implementations(self):
@@ -46,7 +46,14 @@ class Results:
 
     def _paired(self, scene):
         """What statistics need of a scene's rows: wide tables are slow to walk through."""
-        return self.rows(scene)[["implementation", "environment", "process", "status", "samples"]]
+        if scene not in self._timed:
+            self._timed[scene] = timed.Scene(self.rows(scene))
+        return self._timed[scene]
+
+    @cached_property
+    def _statuses(self):
+        """{scene: {status: names}}"""
+        return {scene: rows.groupby("status").implementation.agg(set).to_dict() for scene, rows in self._scenes.items()}
 
     def layer(self, name):
         """Names of those that are ranked in a layer and took part."""
@@ -85,7 +92,7 @@ class Results:
     def rank(self, scene, names):
         key = scene, frozenset(names)
         if key not in self._ranked:
-            self._ranked[key] = timed.rank(self._paired(scene), set(names) - {NULL})
+            self._ranked[key] = self._paired(scene).rank(set(names) - {NULL})
         return self._ranked[key]
 
     def fastest(self, scene, names):
@@ -97,7 +104,7 @@ class Results:
         """Time of `slow` over that of `fast`; None if they cannot be compared."""
         key = scene, slow, fast
         if key not in self._ratios:
-            self._ratios[key] = timed.ratio(self._paired(scene), slow, fast)
+            self._ratios[key] = self._paired(scene).ratio(slow, fast)
         found = self._ratios[key]
         return None if found.value != found.value else found
 
@@ -107,10 +114,13 @@ class Results:
         return rows[rows.status == "ok"].groupby("implementation").step_us.median().to_dict()
 
     def failed(self, scene, names):
-        rows = self.rows(scene)
-        return [name for name in names if name in set(rows[rows.status.isin(FAILURES)].implementation)]
+        return self._with(scene, names, FAILURES)
 
     def excluded(self, scene, names):
-        rows = self.rows(scene)
-        lost = set(rows[rows.status.isin(["excluded", "slower"])].implementation)
-        return [name for name in names if name in lost and name not in self.failed(scene, names)]
+        failed = self.failed(scene, names)
+        return [name for name in self._with(scene, names, ("excluded", "slower")) if name not in failed]
+
+    def _with(self, scene, names, statuses):
+        """Those of `names` that have a row of one of these statuses in a scene."""
+        known = self._statuses.get(scene, {})
+        return [name for name in names if any(name in known.get(status, ()) for status in statuses)]

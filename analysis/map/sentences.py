@@ -38,8 +38,8 @@ def cases(tables, view):
     libraries = results.layer("libraries")
     cells = [cell for cell in map_cells(results, libraries) if cell.ranking]
     found = []
-    for words, mine in (("Your tangent is sparse, as the four-bar's", [cell for cell in cells if cell.fill_asked is None]),
-                        (f"Your tangent is filled to {FULL} % or more", [cell for cell in cells if cell.fill_asked
+    for words, mine in (("Your tangent is as sparse as the four-bar's", [cell for cell in cells if cell.fill_asked is None]),
+                        (f"Your tangent is filled further, to {FULL} % or more", [cell for cell in cells if cell.fill_asked
                                                                         and cell.fill_percent >= FULL])):
         whole = [one for one in regrets(results, mine, libraries) if not one.failed and len(one.ratios) == len(mine) and mine]
         if whole:
@@ -47,5 +47,11 @@ def cases(tables, view):
             span = f"{sizes[0]:g} to {sizes[-1]:g} variables" if len(sizes) > 1 else f"{sizes[0]:g} variables"
             found.append({"case": f"{words} ({span})", "link": "map.html#regret",
                           "take": f"{whole[0].name}: {whole[0].mean:.2f} times the fastest library on average, "
-                                  f"{whole[0].worst:.2f} at worst"})
+                                  f"{whole[0].worst:.2f} at worst; shown to be ahead in {_ahead(mine, whole[0].name)} of "
+                                  f"{len(mine)} cells"})
     return found
+
+
+def _ahead(cells, name):
+    """Cells in which it is shown to be faster than each other library."""
+    return sum(cell.decided and cell.ranking.winner == name for cell in cells)

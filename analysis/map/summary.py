@@ -27,8 +27,8 @@ def outcome(group):
     sizes = f"n = {group['first']:g}" + (f" to {group['last']:g}" if group["last"] != group["first"] else "")
     names = group["names"]
     if group["kind"] == "decided":
-        low, high = group["low"], group["high"]
-        ahead = "" if low != low else f", {low:.2f}" + (f" to {high:.2f}" if high > low else "") + " times ahead of the second"
+        low, high = f"{group['low']:.2f}", f"{group['high']:.2f}"
+        ahead = "" if low == "nan" else f", {low}{f' to {high}' if high != low else ''} times ahead of the second"
         return sizes, f"{names[0]}{ahead}"
     listed = ", ".join(names[:-1]) + f" or {names[-1]}" if len(names) > 1 else names[0]
     return sizes, f"{listed}, as fast as each other" if group["kind"] == "equivalent" else f"{listed}: not decided"

@@ -11,7 +11,7 @@ from analysis.core.registry import NULL
 
 ROLES = ("time", "time-left-out", "again", "again-left-out")
 AFTER = 100   # added to the numbers of the processes of role "again"
-LEADING = 1.3  # whoever is not shown to be slower than the fastest, or takes at most so many times its time, leads
+LEADING, PERHAPS = 1.3, 1.6  # whoever takes at most so many times the fastest's time leads; or so many, if not shown to be slower
 
 
 def layers(registry):
@@ -31,32 +31,31 @@ def timed_rows(records):
                              if one.role.endswith("left-out") or len(one.cell["contenders"]) == least[_group(one)]])
 
 
-def rank(rows, names):
-    """timing.Ranking of one scene's rows among `names`."""
-    found, again = timing.rank(rows, names), _again(rows)
-    lead = set(again[again.status == "ok"].implementation)
-    if found is None or found.winner not in lead or len(set(found.ratios) & lead) < 2:
-        return found  # who is fastest far ahead of all leads nobody, and has no further processes
-    first = timing.rank(again, set(found.ratios))
-    others = {name: timing.ratio(rows, name, first.winner) for name in found.ratios if name not in first.ratios}
-    return timing.Ranking(first.winner, first.ratios | others)
+class Scene:
+    """The timed rows of one scene: all of its processes, and those of role "again" alone."""
 
+    def __init__(self, rows):
+        self.all, self.again = timing.Paired(rows), timing.Paired(rows[rows.process > AFTER])
 
-def ratio(rows, slow, fast):
-    """timing.Ratio of two contenders of a scene."""
-    again = _again(rows)
-    both = [set(again[(again.implementation == name) & (again.status == "ok")].process) for name in (slow, fast)]
-    return timing.ratio(again if len(both[0] & both[1]) > 1 else rows, slow, fast)
+    def rank(self, names):
+        """timing.Ranking among `names`."""
+        found, lead = timing.rank(self.all, names), set(self.again.logs)
+        if found is None or found.winner not in lead or len(set(found.ratios) & lead) < 2:
+            return found  # who is fastest far ahead of all leads nobody, and has no further processes
+        first = timing.rank(self.again, set(found.ratios))
+        others = {name: timing.ratio(self.all, name, first.winner) for name in found.ratios if name not in first.ratios}
+        return timing.Ranking(first.winner, first.ratios | others)
+
+    def ratio(self, slow, fast):
+        """timing.Ratio of two contenders."""
+        both = [set(self.again.logs.get(name, ())) for name in (slow, fast)]
+        return timing.ratio(self.again if len(both[0] & both[1]) > 1 else self.all, slow, fast)
 
 
 def leaders(rankings):
     """Names of those who lead in one of several Rankings, where they are more than one."""
-    found = [[name for name, one in ranking.ratios.items() if one.low <= 1 or one.value <= LEADING] for ranking in rankings if ranking]
+    found = [[name for name, one in ranking.ratios.items() if one.value <= (PERHAPS if one.low <= 1 else LEADING)] for ranking in rankings if ranking]
     return {name for names in found if len(names) > 1 for name in names}
-
-
-def _again(rows):
-    return rows[rows.process > AFTER]
 
 
 def _group(record):

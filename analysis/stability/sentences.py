@@ -10,7 +10,8 @@ def answers(tables, view):
         good = rows[rows.status == "ok"]
         found.append({"anchor": f"{scheme}-double", "text":
                       f"{scheme.capitalize()} form: the automatic factor is ok in {len(good)} of {len(rows)} cells of size and "
-                      f"step" + (f", with steps up to {number(1e3 * good.step.max())} ms." if len(good) else ".")})
+                      f"step" + (f", with steps up to {number(1e3 * good.step.max())} ms" if len(good) else "")
+                      + f", over {number(view.settings['duration'])} s."})
     whole = tables["whole"]
     asked = whole[whole.must_hold != ""]
     if len(asked):

@@ -134,7 +134,7 @@ def test_figures_page_and_answers(found):
     assert any("Simbody: left out, libsimbody-dev is not installed" in text for text in known["says"])
     assert known["reached"][0][:3] == ("bullet", "model bodies", "step")
     texts = [one["text"] for one in sentences.answers(found, VIEW)]
-    assert texts[0].startswith("Our code for chains: faster than the engine in 4 of 5 comparisons at equal error")
+    assert texts[0].startswith("Our code for chains: shown to be faster than the engine in 4 of 5 comparisons at equal error")
     assert "it does not reach 1 of these errors" in texts[0]
 
 

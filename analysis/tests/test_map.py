@@ -13,7 +13,7 @@ from analysis.map import figures, losses, regret, sentences, summary, tables, ti
 from analysis.map.cells import map_cells, table
 from analysis.map.grid import bounds
 from analysis.map.maps import crossings
-from analysis.map.timed import AFTER, differing, rank, timed_rows
+from analysis.map.timed import AFTER, Scene, differing, timed_rows
 from analysis.tests.map_tables import cell, failed, registry, results, scene, view
 
 A, B, C, OWN = "eigen_dense/llt", "csc_klu/refactor", "csc_cholmod/simplicial", "ours/best"
@@ -46,9 +46,9 @@ def test_who_is_far_ahead_wins_though_only_the_others_have_further_processes():
     rows = pandas.DataFrame([
         {"implementation": name, "environment": "own", "process": number, "status": "ok", "samples": speed[name]}
         for number, names in ((1, speed), (2, speed), (AFTER + 1, (A, B)), (AFTER + 2, (A, B))) for name in names])
-    found = rank(rows, [OWN, A, B])
+    found = Scene(rows).rank([OWN, A, B])
     assert found.winner == OWN and found.decided and found.equivalent == (OWN,)
-    assert rank(rows, [A, B]).winner == A
+    assert Scene(rows).rank([A, B]).winner == A
 
 
 @pytest.mark.parametrize("passes, wrong", [

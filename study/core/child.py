@@ -1,9 +1,9 @@
 # Runs one `mbs` as a child with a hard time limit and a memory limit, and says how it ended.
-import contextlib
 import ctypes
+import errno
 import os
 import re
-import resource
+import select
 import signal
 import subprocess
 import tempfile
@@ -17,6 +17,8 @@ from analysis.core.files import ROOT
 MEMORY_WORDS = re.compile(r"bad_alloc|(out of|not enough) memory|cannot allocate|std::length_error",
                           re.I)
 GRACE = 1.0  # s between being asked to end and being made to
+ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "BLIS_NUM_THREADS",
+                                     "MKL_NUM_THREADS")}  # else `mbs` sees to it, and starts a second time for that
 OUTPUT_LIMIT = 256 * 2**20  # bytes a child may write to any file
 
 
@@ -28,6 +30,7 @@ class Signalled(KeyboardInterrupt):
         self.number = number
 
 
+ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _signals = []  # received; compiled code of libraries may swallow what their handler raises
 
 
@@ -36,7 +39,7 @@ def end_on_signals():
     def end(number, _):
         _signals.append(number)
         raise Signalled(number)
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in ENDS:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, end)
 
@@ -58,21 +61,31 @@ def run(command, seconds, memory_mb):
         raise Signalled(_signals[0]) if own else StudyError("interrupted")
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         begin = time.monotonic()
-        child = subprocess.Popen(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out,
-                                 stderr=err, start_new_session=True,
-                                 preexec_fn=lambda parent=os.getpid(): _limit(memory_mb, parent))
+        child = subprocess.Popen(_limited(command, memory_mb), cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out,
+                                 stderr=err, start_new_session=True, env=os.environ | ONE_THREAD)
         try:
-            code = child.wait(timeout=seconds)
-        except subprocess.TimeoutExpired:
-            code = None
-            child.terminate()  # so that it can say in what it was
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                child.wait(timeout=GRACE)
+            ended = _ends(child, seconds)
+            if not ended:
+                child.terminate()  # so that it can say in what it was
+                _ends(child, GRACE)
         finally:
             _end_group(child)
+        code = child.returncode if ended else None
+        if ended and -code in ENDS:  # sent to this process's group, too, before the child had left it: no result
+            raise StudyError(f"interrupted: {command[0]} was ended by {signal.Signals(-code).name} from outside; "
+                             "the same command goes on from there")
         took = time.monotonic() - begin
         stdout, stderr = _text(out), _text(err, tail=4000)
     return Ended(*_judge(code, stderr, seconds, memory_mb), code, stdout, stderr, took)
+
+
+def _ends(child, seconds):
+    """Whether the child ends within that time; told at once, where `Popen.wait` looks every 50 ms."""
+    handle = os.pidfd_open(child.pid)
+    try:
+        return bool(select.select([handle], [], [], seconds)[0])
+    finally:
+        os.close(handle)
 
 
 def die_with(parent):
@@ -82,11 +95,14 @@ def die_with(parent):
         os._exit(1)
 
 
-def _limit(memory_mb, parent):
-    die_with(parent)  # never outlive the study
-    resource.setrlimit(resource.RLIMIT_AS, (memory_mb * 2**20,) * 2)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (OUTPUT_LIMIT,) * 2)
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+def _limited(command, memory_mb):
+    """The words that start `command` so that it never outlives this process, nor passes its limits. By programs of the
+    system: what Python runs between fork and exec makes it copy the tables of its memory, 8 ms with pandas loaded."""
+    if not (ROOT / command[0]).exists():
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), command[0])
+    script = '[ "$PPID" = "$1" ] || exit; ulimit -c 0; ulimit -f "$2"; ulimit -v "$3"; shift 3; exec "$@"'
+    return ["setpriv", "--pdeathsig", "KILL", "/bin/sh", "-c", script, "sh", str(os.getpid()),
+            str(OUTPUT_LIMIT // 512), str(memory_mb * 1024), *command]
 
 
 def _end_group(child):

@@ -40,7 +40,7 @@ class Display:
 def run_workflow(studyset, columns, stored=False):
     """Runs the workflow to its end. `columns`: {part: {column: seconds}}. Raises StudyError, or KeyboardInterrupt
     once all children are gone."""
-    write_json(studyset.folder / ".columns.json", {part: list(names) for part, names in columns.items()})
+    write_json(studyset.folder / ".parts.json", list(columns))
     display = Display()
     with open(studyset.log, "a", encoding="utf-8") as log:
         follower = _Follower(studyset, columns, display)
@@ -65,7 +65,7 @@ def _command(studyset, stored):
     return ["/usr/bin/python3", "-m", "snakemake", "--snakefile", str(ROOT / "study" / "Snakefile"),
             "--directory", str(studyset.folder), "--cores", "all", "--scheduler", "greedy",
             "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor", *(["--forceall"] if stored else []),
-            "--config", f"root={ROOT}", f"stored={int(stored)}", f"columns={studyset.folder / '.columns.json'}"]
+            "--config", f"root={ROOT}", f"stored={int(stored)}", f"parts={studyset.folder / '.parts.json'}"]
 
 
 class _Follower:
@@ -84,7 +84,7 @@ class _Follower:
         for line in self.log.readlines():
             self.lines = [*self.lines, line.strip()][-12:]
             rule = re.match(r"rule (\w+):", line)
-            if rule and rule[1] in ("page", "index") and not self.now:
+            if rule and not self.now and not any(self.columns.values()):  # a stored set, of which nothing is run
                 self.display.show("pages")
             if line.startswith("error: "):
                 self.error = self.error or line.removeprefix("error: ").strip()

@@ -1,4 +1,4 @@
-# One job of the workflow: a column of a part, the page of a part, or the front page.
+# One job of the workflow: the cells of a part, its page, or the front page.
 import os
 import select
 import signal
@@ -36,17 +36,20 @@ def main(arguments):
     return 1
 
 
-def run(studyset, part, column):
+def run(studyset, part):
+    """The columns of a part that are not done, and its page."""
     plan = plan_of(part)
-    columns = plan.columns(studyset.profile.parts[part], studyset)
-    lab = Lab(studyset, part, column, columns[column])
-    plan.run(lab, column)
-    finish(studyset, part, column, lab.names)
+    for column, seconds in plan.columns(studyset.profile.parts[part], studyset).items():
+        if not studyset.stamp(part, column).exists():
+            lab = Lab(studyset, part, column, seconds)
+            plan.run(lab, column)
+            finish(studyset, part, column, lab.names)
+    page(studyset, part)
 
 
 def page(studyset, part):
     from analysis.core import site  # these need modules that take a second to load
-    site.write_part(studyset.folder, part)
+    site.write_part(studyset.folder, part, lambda: end_with(os.environ.get(FRONT)))
 
 
 def index(studyset):

@@ -45,7 +45,12 @@ class StudySet:
         return read_object(path)
 
     def stamp(self, part, column):
+        """Is there when a column is done."""
         return self.folder / ".done" / part / column
+
+    def page(self, part):
+        """Is there when all columns of a part are done and drawn."""
+        return self.folder / ".done" / f"{part}.page"
 
     @property
     def progress(self):
@@ -117,7 +122,7 @@ def _other(folder, what):
 
 
 def select(registry, only):
-    """Names "folder/variant" that `only` selects, in the registry's order; empty selects all."""
+    """Names "folder/variant" that `only` selects, in the registry's order; empty selects all but examples."""
     folders = {entry["folder"]: entry for entry in registry.entries}
     for name in only:
         entry = folders.get(name.split("/")[0])
@@ -126,7 +131,8 @@ def select(registry, only):
         if name not in folders and name not in registry.variants:
             raise StudyError(f"--only: unknown implementation '{name}'; known: "
                              f"{', '.join([*folders, *registry.variants])}")
-    return [name for name in registry.variants if not only or name in only or name.split("/")[0] in only]
+    return [name for name in registry.variants
+            if name in only or name.split("/")[0] in only or not only and name not in registry.examples]
 
 
 def finish(studyset, part, column, names):
@@ -141,8 +147,8 @@ def reopen(studyset, columns):
     for part, names in columns.items():
         for column in names:
             stamp = studyset.stamp(part, column)
-            if stamp.exists() and _missing(studyset, stamp):
-                for path in (stamp, studyset.folder / f"{part}.html", studyset.folder / "index.html"):
+            if not stamp.exists() or _missing(studyset, stamp):
+                for path in (stamp, studyset.page(part), studyset.folder / f"{part}.html", studyset.folder / "index.html"):
                     path.unlink(missing_ok=True)  # the workflow runs nothing whose results are all there
 
 

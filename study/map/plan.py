@@ -103,10 +103,11 @@ def _builds(lab, scene, costs):
 
 
 def _add_between(lab, timed):
-    """Times the fill half-way in the widest gap between two with other libraries ahead, if the budget has room."""
+    """Times the fill half-way in the widest gap between two with other libraries ahead, if the budget has room for one
+    more scene like those before."""
     gaps = [(round(high.fill - low.fill, 6), low, high) for low, high in zip(timed, timed[1:])
             if high.fill - low.fill >= 100 * CLOSEST and _other_winner(low, high)]
-    if gaps and lab.left > 0:
+    if gaps and lab.left > lab.spent / len(timed):
         _, low, high = max(gaps, key=lambda gap: gap[0])
         scene = Scene(low.scene.variables, round((low.fill + high.fill) / 200, 2))
         found = TimedScene(lab, scene, *fit(lab, scene, lab.contenders))

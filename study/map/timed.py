@@ -2,7 +2,8 @@
 # more of those who lead.
 from dataclasses import dataclass, field
 
-from analysis.map.timed import differing, layers, leaders, rank, timed_rows
+from analysis.map import timed
+from analysis.map.timed import differing, layers, leaders, timed_rows
 from study.core.cell import Cell
 from study.core.contender import CONTROL, Contender
 from study.core.timing import measure
@@ -33,8 +34,11 @@ class TimedScene:
                 self.lab.skip(Cell("bench", self.scene.name, (one,), role="time-left-out"), "disagrees", wrong[one.name])
 
     def again(self, count):
-        """Processes 1 … `count` of those who lead, among the libraries or among all."""
-        names = leaders(self.rankings.values())
+        """Processes 1 … `count` of those who lead, among the libraries or among all, and of the fastest of all."""
+        rankings = self.rankings
+        names = leaders(rankings.values())
+        if names:
+            names.add(rankings["all"].winner)
         chosen = [one for one in self.costs if one.name in names]
         if len(chosen) > 1 and count:
             self.records += self.processes(chosen, count, "again")
@@ -42,8 +46,8 @@ class TimedScene:
     @property
     def rankings(self):
         """{layer: Ranking or None}"""
-        rows = timed_rows(self.records)
-        return {layer: rank(rows, names) for layer, names in layers(self.lab.registry).items()}
+        scene = timed.Scene(timed_rows(self.records))
+        return {layer: scene.rank(names) for layer, names in layers(self.lab.registry).items()}
 
     def _control(self):
         """The harness's own, which does nothing: at natural fill, on the pair of most."""

@@ -1,7 +1,6 @@
 # The study as a user starts it, on the real program; a whole run of the smoke profile that tests share.
 import fcntl
 import os
-import shutil
 import subprocess
 import tempfile
 from pathlib import Path
@@ -36,9 +35,3 @@ def smoke(tmp_path_factory, worker_id):
             done = study("run", "--profile", "smoke", "--results", folder, seconds=900)
             assert done.returncode == 0, done.stderr + (folder / "run.log").read_text()[-3000:]
     return folder
-
-
-@pytest.fixture
-def results(smoke, tmp_path):
-    """A copy of one's own, times kept."""
-    return Path(shutil.copytree(smoke, tmp_path / "results"))

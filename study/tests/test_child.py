@@ -4,6 +4,7 @@ import time
 
 import pytest
 
+from analysis.core.errors import StudyError
 from study.core import child
 
 
@@ -48,3 +49,9 @@ def test_a_signal_whose_exception_was_swallowed_ends_the_study_before_the_next_c
     with pytest.raises(child.Signalled) as ended:
         shell("exit 0")
     assert ended.value.number == 15
+
+
+@pytest.mark.parametrize("name", ["INT", "TERM", "HUP"])
+def test_what_is_sent_to_the_whole_group_is_no_result_of_the_child(name):
+    with pytest.raises(StudyError, match=f"interrupted: /bin/bash was ended by SIG{name}"):
+        shell(f"kill -{name} $$")

@@ -2,7 +2,6 @@
 import pytest
 
 from analysis.core import schema
-from study.tests.conftest import study
 
 pytestmark = pytest.mark.slow
 
@@ -21,10 +20,3 @@ def test_the_map_of_the_smoke_profile(smoke):
     assert not set(cells.winner[cells.layer == "libraries"]) & {"compiled_ldl/fronts", "compiled_ldl/chains"}
     verified = schema.read_table(smoke, "map", "verification")
     assert set(verified.verdict) <= {"agrees", "unsupported"}
-
-
-def test_drawn_again_tables_are_the_same(results):
-    before = {path.name: path.read_bytes() for path in (results / "map").glob("*.csv")}
-    done = study("figures", results)
-    assert done.returncode == 0, done.stderr
-    assert before == {path.name: path.read_bytes() for path in (results / "map").glob("*.csv")}
