@@ -30,7 +30,7 @@ def build(records, view):
             if problem is None:
                 raise StudyError(f"{record.name}: {record.cell['scene']} is no standard problem of study/scenes/problems.yaml")
             if record.role == "gate":
-                found["gate"].append(_verdict(problem, record))
+                found["gate"] += _verdicts(problem, record)
             else:
                 runs.setdefault(problem.name, {})[record.cell["contenders"][0], _option(record, "--step")] = record
     for problem in listed.values():
@@ -48,12 +48,12 @@ def _option(record, name):
     return float(words[words.index(name) + 1])
 
 
-def _verdict(problem, record):
-    row = {"problem": problem.name, "implementation": record.cell["contenders"][0], "record": record.name}
-    if not record.done:
-        return row | {"verdict": record.status, "reason": record.reason}
-    [found] = record.output["rows"]
-    return row | {"verdict": found["verdict"], "reason": found["reason"]}
+def _verdicts(problem, record):
+    """One row a contender."""
+    rows = {row["implementation"]: row for row in record.output.get("rows", [])}
+    none = {"verdict": record.status, "reason": record.reason}
+    return [{"problem": problem.name, "implementation": name, "record": record.name}
+            | {key: rows.get(name, none)[key] for key in none} for name in record.cell["contenders"]]
 
 
 def problem_rows(problem, runs):

@@ -34,7 +34,7 @@ def run(name, who, step, off=0.0, role="compared", status="ok", ended="done"):
 
 
 def verdict(name, who, said, ended="done"):
-    rows = {"rows": [{"verdict": said, "reason": "why"}]} if ended == "done" else {}
+    rows = {"rows": [{"implementation": who, "verdict": said, "reason": "why"}]} if ended == "done" else {}
     return Record(f"problems/gate/{who}-{name}.json", {"scene": LISTED[name].scene, "contenders": [who], "role": "gate"}, ended,
                   "it died", 1.0, [], {}, rows)
 

@@ -28,15 +28,10 @@ def problems(lab):
         for one in lab.contenders:
             runs += [simulate(problem, one, step, "compared" if one.name in compared else "everyone")
                      for step in problem.steps if one.name in compared or (problem.everyone and step == problem.steps[0])]
-            gates.append(gate(problem, one))
+        gates += [gate(problem, [one for one in lab.contenders if one.environment == environment])
+                  for environment in dict.fromkeys(one.environment for one in lab.contenders)]
     sizes = {record.cell["scene"]: record.output.get("variables", 0) for record in lab.run(runs)}
-    lab.run(sorted(gates, key=lambda cell: _cost(cell, sizes, lab.registry.dense)), drop=True)
-
-
-def _cost(cell, sizes, dense):
-    """About, of a gate: what costs least goes first."""
-    size = sizes.get(cell.scene, 0)
-    return size**2 if cell.contenders[0].variant in dense else size
+    lab.run(sorted(gates, key=lambda cell: sizes.get(cell.scene, 0)), drop=True)  # what costs least goes first
 
 
 def simulate(problem, one, step, role):
@@ -45,7 +40,9 @@ def simulate(problem, one, step, role):
                 every=round(problem.duration / step) // metric.SAMPLES)
 
 
-def gate(problem, one):
+def gate(problem, contenders):
+    """In one process, which runs the reference once for all of them."""
     settings = ("--step", f"{problem.check_step:g}") if problem.check_step else (
         "--step", f"{problem.steps[0]:g}", *problem.settings)
-    return Cell("check", problem.scene, (one,), (*settings, "--time-limit", CHECK_S), "gate", seconds=2 * CHECK_S)
+    return Cell("check", problem.scene, tuple(contenders), (*settings, "--time-limit", CHECK_S), "gate",
+                seconds=2 * CHECK_S)

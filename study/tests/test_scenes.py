@@ -179,7 +179,7 @@ def test_two_run_every_step_everyone_the_first_and_all_go_through_the_gate():
     assert counts["everyone", "eigen_dense/llt", "a01_pendulum.json"] == 1
     assert ("everyone", "eigen_dense/llt", "slider_crank.json") not in counts
     gates = [cell for cell in lab.cells if cell.role == "gate"]
-    assert len(gates) == 6 and [cell.contenders[0].name for cell in gates][-2:] == ["eigen_dense/llt"] * 2  # what costs most last
+    assert [len(cell.contenders) for cell in gates] == [3, 3]  # one process a problem
     for cell in lab.cells:
         assert cell.role == "gate" or cell.every * float(cell.settings[1]) * metric.SAMPLES == pytest.approx(float(cell.settings[3]))
 
