@@ -17,8 +17,8 @@ def stand_ins():
         yield Path(folder)
 
 
-def run_setup(stand_ins, installed, *more, user=None):
-    for name, text in (("dpkg-query", installed), ("apt-get", 'echo "apt-get $*" >> "$0.log"')):
+def run_setup(stand_ins, installed, *more, user=None, apt='echo "apt-get $*" >> "$0.log"'):
+    for name, text in (("dpkg-query", installed), ("apt-get", apt)):
         (stand_ins / name).write_text(f"#!/bin/bash\n{text}\n")
         (stand_ins / name).chmod(0o755)
     command = ["setpriv", "--reuid", "65534", "--clear-groups"] if user else []
@@ -40,6 +40,17 @@ def test_root_installs_what_is_missing(stand_ins):
     assert run_setup(stand_ins, ALL_BUT_CMAKE).returncode == 0
     log = (stand_ins / "apt-get.log").read_text().splitlines()
     assert log == ["apt-get update -q", "apt-get install -y --no-install-recommends cmake"]
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="installing needs root")
+def test_what_only_running_needs_comes_second_and_its_failure_is_told(stand_ins):
+    but_two = ALL_BUT_CMAKE.replace("== cmake", "== @(cmake|chromium)")
+    assert run_setup(stand_ins, but_two).returncode == 0
+    log = (stand_ins / "apt-get.log").read_text().splitlines()
+    assert [line.split()[-1] for line in log] == ["-q", "cmake", "chromium"]
+    done = run_setup(stand_ins, but_two, apt='[[ "$*" != *chromium ]] || { echo "no such package"; exit 100; }')
+    assert done.returncode == 1 and "no such package" in done.stderr
+    assert "could not be installed: chromium" in done.stderr
 
 
 ALL_BUT_ENGINES = 'for p in "$@"; do [[ $p == -* || $p == lib@(simbody|ode)-dev ]] || printf "ii %s " "$p"; done'
