@@ -75,8 +75,11 @@ void Panels<F>::add_run(const PanelShape& shape) {
     case 7:
       choose_kernels<7>(run, shape.lanes);
       break;
-    default:
+    case 8:
       choose_kernels<8>(run, shape.lanes);
+      break;
+    default:
+      throw std::logic_error("no kernel for " + std::to_string(shape.pivots) + " pivots");
   }
   runs_.push_back(run);
 }
@@ -94,8 +97,11 @@ void Panels<F>::choose_kernels(Run& run, int lanes) const {
     case 4:
       set_kernels<P, 4>(run);
       break;
-    default:
+    case 8:
       set_kernels<P, 8>(run);
+      break;
+    default:
+      throw std::logic_error("no kernel for " + std::to_string(lanes) + " rows at a time");
   }
 }
 
