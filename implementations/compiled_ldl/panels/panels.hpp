@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <string>
 
 #include "panels/vectors.hpp"
 #include "program.hpp"
@@ -177,7 +176,7 @@ void Panels<F>::add_run(const PanelShape& shape) {
       choose_kernels<8>(run, shape.lanes);
       break;
     default:
-      throw std::logic_error("no kernel for " + std::to_string(shape.pivots) + " pivots");
+      throw std::logic_error("no kernel has so many pivots");
   }
   runs_.push_back(run);
 }
@@ -199,7 +198,7 @@ void Panels<F>::choose_kernels(Run& run, int lanes) const {
       set_kernels<P, 8>(run);
       break;
     default:
-      throw std::logic_error("no kernel for " + std::to_string(lanes) + " rows at a time");
+      throw std::logic_error("no kernel takes so many rows at a time");
   }
 }
 
