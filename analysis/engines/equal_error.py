@@ -9,7 +9,7 @@ from analysis.engines.runs import ENGINE, NATIVE, OURS, key
 
 LIMITS = tuple(10.0**-power for power in range(1, 14))
 PAPER = ("penalty", "penalty, penalty 1e8")  # settings that are the paper's scheme
-CHAINS, FRONTS = "compiled_ldl/chains", "compiled_ldl/fronts"
+CHAINS, FRONTS = "compiled_chains/sweeps", "compiled_ldl/fronts"
 SIDES = {"chains": "our code for chains", "fronts": "our code for any scene", "library": "the fastest library",
          "paper": "the paper's scheme"}
 NEAR = 1.3   # untimed times are this uncertain

@@ -62,8 +62,9 @@ def _held(held):
     broken = asked[asked.verdict == NOT_HELD]
     text = f"Code without a library: {(asked.verdict == HELD).sum()} of the {len(asked)} bounds that were measured are held"
     if len(broken):
-        text += "; not held: " + "; ".join(f"{row.what} ({number(row.worst)} at {row.where}, bound {row.sign} {number(row.bound)})"
-                                           for row in broken.itertuples())
+        text += "; not held: " + "; ".join(
+            f"{row.what} ({row.folder}: {number(row.worst)} at {row.where}, bound {row.sign} {number(row.bound)})"
+            for row in broken.itertuples())
     return [{"text": f"{text}.", "anchor": "held"}]
 
 

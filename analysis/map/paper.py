@@ -21,9 +21,9 @@ NOT_OPTIMISED = "ublas_sparse"  # folder
 SYSTEMS = {"KLU": ("csc_klu/refactor",),
            "CHOLMOD": ("csc_cholmod",),
            "WSMP": ("csc_mumps", "csc_cholmod/supernodal"),
-           "SuperLU": ("eigen_superlu/superlu",),
+           "SuperLU": ("eigen_sparse/superlu",),
            "optimised dense": ("eigen_dense", "armadillo_dense")}
-OTHERS = ("csc_klu", "csc_umfpack", "eigen_superlu")  # sparse folders besides, that libraries stand behind
+OTHERS = ("csc_klu", "csc_umfpack", "eigen_sparse")  # sparse folders besides, that libraries stand behind
 FULL_PIVOTING = "csc_klu/factor"
 GUARDED = "csc_klu/guarded"
 

@@ -11,7 +11,7 @@ from analysis.map.ledger import CONFIRMED, REFUTED, UNTESTED, at_least, at_most,
 from analysis.tests.map_tables import build, cell, failed, operation, phases, results
 
 KLU, FACTOR, SIMPLICIAL = "csc_klu/refactor", "csc_klu/factor", "csc_cholmod/simplicial"
-SUPERNODAL, SUPERLU, SPD = "csc_cholmod/supernodal", "eigen_superlu/superlu", "csc_mumps/spd"
+SUPERNODAL, SUPERLU, SPD = "csc_cholmod/supernodal", "eigen_sparse/superlu", "csc_mumps/spd"
 GESV, MUMPS, POTRF = "starting_dense/gesv", "starting_sparse/mumps", "armadillo_dense/potrf"
 PLAIN, AXPY, NEW = "ublas_sparse/plain", "ublas_sparse/axpy_prod", "new_dense/only"
 IDS = {"T1", "T2", "F2", "F4", "F5", "F6", "F7", "C1", "C2", "C3", "C4", "C5"}

@@ -4,11 +4,13 @@
 #include <array>
 #include <utility>
 
-#include "panel_vectors.hpp"
+#include "panels/vectors.hpp"
 
 namespace mbs::compiled_ldl {
 
-/// Vectors of `rows` numbers, the newest first; they stay where they are, pointers move.
+/// Vectors of `rows` numbers, the newest first; they stay where they are, pointers move:
+/// w_ has five steps in the places 0 1 2 3 4, begin_step() makes that 4 0 1 2 3, and the sixth is
+/// written over the first.
 class History {
  public:
   static constexpr int kSteps = 5;

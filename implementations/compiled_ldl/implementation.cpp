@@ -3,8 +3,6 @@
 
 #include <iostream>
 
-#include "batch.hpp"
-#include "chain.hpp"
 #include "listing.hpp"
 #include "scalar.hpp"
 #include "simulations.hpp"
@@ -12,10 +10,9 @@
 namespace mbs::compiled_ldl {
 namespace {
 
-constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
-                       Term::springs,     Term::torsion_springs, Term::dampers,
-                       Term::couples,     Term::drivers,         Term::mass_across_axes,
-                       Term::spatial};
+constexpr Terms kTerms{
+    Term::dots,    Term::bilinear, Term::linear,  Term::springs,          Term::torsion_springs,
+    Term::dampers, Term::couples,  Term::drivers, Term::mass_across_axes, Term::spatial};
 
 constexpr Serves kFronts = {.terms = kTerms,
                             .saddle_point = true,
@@ -27,8 +24,6 @@ constexpr Serves kFronts = {.terms = kTerms,
                             .single_precision = true,
                             .mixed_precision = true,
                             .geometric_stiffness = true};
-constexpr Serves kChains = {
-    .terms = {Term::mass_across_axes}, .saddle_point = true, .rattle = true, .multistep = true, .projections_every = true};
 
 std::unique_ptr<Simulation> create_fronts(const Model& model, const StepSettings& settings) {
   if (is_listing_due()) list_fronts(std::cerr, model, settings);
@@ -43,12 +38,6 @@ std::unique_ptr<Simulation> create_fronts(const Model& model, const StepSettings
   return create_double(model, settings);
 }
 
-std::unique_ptr<Simulation> create_chains(const Model& model, const StepSettings& settings) {
-  auto simulation = chain::create(model, settings);
-  if (is_listing_due()) list_chain(std::cerr, model);
-  return simulation;
-}
-
 }  // namespace
 
 Implementation implementation() {
@@ -60,17 +49,10 @@ Implementation implementation() {
   fronts.serves = kFronts;
   fronts.create_batch = create_batch;
   fronts.batch_lanes = Lanes::kCount;
-  Variant chains;
-  chains.name = "chains";
-  chains.description = "kernels that eliminate a chain of points from both ends; no other scene";
-  chains.create = create_chains;
-  chains.serves = kChains;
-  chains.create_batch = chain::create_batch;
-  chains.batch_lanes = chain::batch_lanes();
   Implementation all;
   all.description = "the scene compiled at set-up; own block L D L^T";
   all.library = "none";
-  all.variants = {fronts, chains};
+  all.variants = {fronts};
   return all;
 }
 

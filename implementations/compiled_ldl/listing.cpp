@@ -1,4 +1,4 @@
-// Listings: the fronts of a program one by one, the order of a chain.
+// The listing: the fronts of a program one by one.
 #include "listing.hpp"
 
 #include <algorithm>
@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "chain_topology.hpp"
 #include "scene.hpp"
-#include "small.hpp"
+#include "simulations.hpp"
 
 namespace mbs::compiled_ldl {
 namespace listing {
@@ -129,7 +128,6 @@ void list_fronts(std::ostream& out, const Model& model, const StepSettings& sett
   const std::size_t bytes = program.storage * (doubles ? sizeof(double) : sizeof(float));
   const auto points = std::count_if(model.points().begin(), model.points().end(),
                                     [](const Point& point) { return !point.is_fixed(); });
-  if (chain::find_chain(model)) out << "This scene is a chain: compiled_ldl/chains serves it.\n";
   if (doubles && create_small(model, settings)) {
     out << "A small scene: in these settings its step is one dense matrix, not this program.\n";
   }
@@ -139,32 +137,6 @@ void list_fronts(std::ostream& out, const Model& model, const StepSettings& sett
       << "; predicted cycles of a factorization " << static_cast<long>(program.cycles)
       << ".\nA panel PxL has P pivots, and the rows below are taken L at a time.\n";
   listing::print_fronts(out, model, program);
-}
-
-void list_chain(std::ostream& out, const Model& model) {
-  const auto chain = chain::find_chain(model);
-  const auto name = [&](int place) {
-    const int offset = chain->places[place].coordinate;
-    const auto has_it = [&](const Point& point) { return point.offset == offset; };
-    return std::find_if(model.points().begin(), model.points().end(), has_it)->name;
-  };
-  const int count = static_cast<int>(chain->places.size()), last = count / 2;
-  out << "compiled_ldl/chains: points " << count << ", each a block of two rows; no program, but a "
-      << "sweep that takes\nfrom both ends at once one block in each of two lanes.\n";
-  const auto print_end = [&](int first, int final) {
-    out << ' ' << name(first) << (first == final ? "" : " ... " + name(final));
-  };
-  if (last > 0) {
-    out << "lane 0:";
-    print_end(0, last - 1);
-    out << "\nlane 1:" << (count % 2 == 0 ? " (a block at rest)" : "");
-    if (last + 1 < count) print_end(count - 1, last + 1);
-    out << '\n';
-  }
-  out << "last: " << name(last) << ", where the lanes meet\nkernel: blocks of M "
-      << (chain->isotropic ? "are multiples of I" : "are any") << "; distances to fixed points: "
-      << listing::range(chain->least_rods, chain->most_rods - chain->least_rods + 1)
-      << " a point\n";
 }
 
 }  // namespace mbs::compiled_ldl

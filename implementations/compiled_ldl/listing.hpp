@@ -14,7 +14,4 @@ bool is_listing_due();
 /// The program that `fronts` has for a scene: README.md, "Fronts", "Panels".
 void list_fronts(std::ostream& out, const Model& model, const StepSettings& settings);
 
-/// What a kernel of `chains` goes through, for a model that is a chain: chain.md, "Elimination".
-void list_chain(std::ostream& out, const Model& model);
-
 }  // namespace mbs::compiled_ldl

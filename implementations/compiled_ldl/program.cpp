@@ -6,7 +6,7 @@
 
 #include "elimination_tree.hpp"
 #include "ordering.hpp"
-#include "panel_vectors.hpp"
+#include "panels/vectors.hpp"
 
 namespace mbs::compiled_ldl {
 namespace {

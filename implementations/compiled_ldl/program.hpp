@@ -40,6 +40,19 @@ struct Group {
   bool contiguous = false;  ///< these places follow each other
 };
 
+/// Three planar points in a row, 0 - 1 - 2, eliminated from both ends, one number at a time: point
+/// 0 has rows 0-1, point 2 rows 2-3, point 1 rows 4-5, so row_of_node = {0, 4, 2} and front_of_row
+/// = {0, 0, 1, 1, 2, 2}. Each front has two pivots, each end a border of two:
+///
+///     front  first  border  rows it lists  base  stride  its column j begins at
+///     0      0      2       4, 5           0     4       4 j
+///     1      2      2       4, 5           8     4       8 + 4 j
+///     2      4      0                      16    2       16 + 2 j
+///
+/// Storage: 20 numbers. Both ends have one group {begin 0, end 2, base 16, stride 2} with positions
+/// {0, 1}: border column k of an update goes to column k of front 2. entry(5, 0) is 3, the last row
+/// of column 0; entry(5, 4) is 17. Eight numbers at a time, all three are predicted faster as one
+/// front.
 struct Program {
   int size = 0;         ///< rows; those of a point follow each other
   int padded = 0;       ///< rows, a multiple of the width

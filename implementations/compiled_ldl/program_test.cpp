@@ -5,9 +5,8 @@
 #include <random>
 
 #include "elimination_tree.hpp"
-#include "fronts.hpp"
-#include "panels.hpp"
-#include "predicted_time.hpp"
+#include "panels/fronts.hpp"
+#include "panels/panels.hpp"
 
 namespace {
 
@@ -135,6 +134,22 @@ bool chain_is_eliminated_from_both_ends() {
   return ends && waiting > 1 && both < one && program.cycles <= both;
 }
 
+/// What program.hpp tells of three points in a row.
+bool worked_example_is_compiled() {
+  const Program program = compile(chain_of(3), 1);
+  const auto& fronts = program.fronts;
+  if (program.row_of_node != std::vector{0, 4, 2} || fronts.size() != 3 || program.storage != 20 ||
+      program.groups.size() != 2) {
+    return false;
+  }
+  const Group& group = program.groups[1];
+  return fronts[1].base == 8 && fronts[1].stride == 4 && fronts[2].base == 16 &&
+         fronts[2].stride == 2 && program.border_rows == std::vector{4, 5, 4, 5} &&
+         group.begin == 0 && group.end == 2 && group.base == 16 && group.stride == 2 &&
+         program.positions == std::vector{0, 1, 0, 1} && program.entry(5, 0) == 3 &&
+         program.entry(5, 4) == 17;
+}
+
 /// Around a hub, what is taken from both ends by distance fills in completely.
 bool full_orders_are_given_up() {
   constexpr int kPoints = 1000;
@@ -155,6 +170,10 @@ int main() {
   int failed = 0;
   if (!full_orders_are_given_up()) {
     std::printf("an order that fills in completely is not given up\n");
+    ++failed;
+  }
+  if (!worked_example_is_compiled()) {
+    std::printf("three points in a row are not compiled as program.hpp says\n");
     ++failed;
   }
   if (!dependency_chain_counts()) {

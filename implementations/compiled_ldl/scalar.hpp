@@ -1,4 +1,5 @@
-// What a program computes with: double, float, or eight doubles side by side, one a simulation.
+// What a program computes with: double, float, or eight doubles side by side, one a simulation; how
+// many doubles a register holds.
 #pragma once
 
 #include <cmath>
@@ -7,6 +8,15 @@
 #include <vector>
 
 namespace mbs::compiled_ldl {
+
+/// Doubles of a register. In wider vectors compilers reach a number through memory.
+#if defined(__AVX512F__)
+inline constexpr int kRegisterDoubles = 8;
+#elif defined(__AVX__)
+inline constexpr int kRegisterDoubles = 4;
+#else
+inline constexpr int kRegisterDoubles = 2;
+#endif
 
 /// Eight doubles, one of each of eight simulations.
 struct Lanes {

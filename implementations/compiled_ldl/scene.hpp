@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "blocks.hpp"
+#include "elements/blocks.hpp"
 #include "mbs/model.hpp"
 #include "mbs/simulation.hpp"
 #include "program.hpp"

@@ -1,6 +1,5 @@
 // Simulations in double precision.
 #include "simulations.hpp"
-#include "small.hpp"
 #include "stepper.hpp"
 
 namespace mbs::compiled_ldl {

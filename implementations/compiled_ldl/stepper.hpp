@@ -20,7 +20,6 @@ class Stepper final : public Simulation {
   void do_get_state(State& state) const override;
 
  private:
-  // passes.hpp
   StepOutcome trapezoidal_step();
   void predict();
   bool run_passes(StepOutcome& outcome);
@@ -67,9 +66,175 @@ class Stepper final : public Simulation {
   bool is_complete_ = true;           // v, a and λ are those of q
 };
 
+// Predictor and Newton's passes.
+
+template <typename S, typename F, int D>
+Stepper<S, F, D>::Stepper(const Model& model, const StepSettings& settings)
+    : Simulation(model, settings),
+      settings_(settings),
+      system_(std::vector<const Model*>{&model}, std::vector<StepSettings>{settings}),
+      reuses_(settings.tangent != TangentReuse::none),
+      refines_(reuses_ || !std::is_same_v<S, F>),
+      step_(static_cast<S>(settings.step)),
+      tolerance_(static_cast<S>(settings.tolerance)),
+      velocity_terms_(system_.constraints.count(), S(0.0)),
+      star_(system_.rows.extent, S(0.0)),
+      multipliers_(system_.constraints.count(), S(0.0)),
+      difference_(system_.rows.extent, S(0.0)),
+      right_hand_side_(system_.rows.extent, S(0.0)) {
+  if (settings.scheme != Scheme::multistep6) return;
+  const Program& program = system_.program;
+  history_ = std::make_unique<History>(program.size, program.padded, settings.step);
+}
+
+template <typename S, typename F, int D>
+void Stepper<S, F, D>::do_set_state(const State& state) {
+  system_.put(0, state);
+  due_ = true;
+  unprojected_ = 0;
+  if (history_) history_->forget();
+  is_complete_ = true;
+  if (!system_.rattle) return;
+  system_.evaluate();
+  system_.assemble();
+  std::fill(system_.y.begin(), system_.y.end(), S(0.0));
+  system_.factorize_and_solve();
+  find_acceleration();
+}
+
+template <typename S, typename F, int D>
+void Stepper<S, F, D>::do_get_state(State& state) const {
+  if constexpr (kDouble) {
+    // No simulation is a constant one; nothing that a step reads changes.
+    if (!is_complete_) const_cast<Stepper*>(this)->complete();
+  }
+  system_.get(0, state);
+}
+
+template <typename S, typename F, int D>
+StepOutcome Stepper<S, F, D>::do_step() {
+  phases_.enter(Phase::other);
+  if constexpr (kDouble) {
+    if (history_) return multistep_step();
+  }
+  return system_.rattle ? rattle_step() : trapezoidal_step();
+}
+
+template <typename S, typename F, int D>
+StepOutcome Stepper<S, F, D>::trapezoidal_step() {
+  StepOutcome outcome;
+  if (reuses_) outcome.factorizations = 0;
+  if (system_.drivers.any()) system_.drive(time());
+  predict();
+  if (!run_passes(outcome) || !project(outcome)) {
+    outcome.status = StepStatus::factorization_failed;
+    due_ = true;
+  }
+  return outcome;
+}
+
+/// Eq. (2) on the difference that is left after rounding, so that v and a follow what q does.
+template <typename S, typename F, int D>
+void Stepper<S, F, D>::predict() {
+  S* q = system_.q.data();
+  S* v = system_.v.data();
+  S* a = system_.a.data();
+  const S half = step_ * step_ / S(2.0), to_v = S(2.0) / step_, to_a = S(1.0) / system_.h;
+  const S damped = S(4.0) / step_;
+  for (int i = 0; i < system_.program.padded; ++i) {
+    const S moved = q[i] + (step_ * v[i] + half * a[i]);
+    const S difference = moved - q[i];
+    q[i] = moved;
+    a[i] = to_a * difference - damped * v[i] - a[i];
+    v[i] = to_v * difference - v[i];
+  }
+}
+
+template <typename S, typename F, int D>
+bool Stepper<S, F, D>::run_passes(StepOutcome& outcome) {
+  phases_.enter(Phase::evaluation);
+  system_.evaluate();
+  const bool at_convergence = settings_.multipliers == MultiplierUpdate::converged;
+  bool updated = false;
+  S previous = S(0.0);
+  outcome.status = StepStatus::pass_limit;
+  for (int pass = 1; pass <= settings_.max_passes; ++pass) {
+    outcome.passes = pass;
+    if (!solve_pass(outcome)) return false;
+    const S change = apply_pass();
+    const bool converged = change <= tolerance_;
+    judge_factors(pass, change, previous);
+    previous = change;
+    if (converged && (!at_convergence || updated)) {
+      outcome.status = StepStatus::converged;
+      break;
+    }
+    updated = converged;
+  }
+  if (outcome.status == StepStatus::pass_limit) due_ = true;
+  return true;
+}
+
+template <typename S, typename F, int D>
+bool Stepper<S, F, D>::factorizes(int pass) const {
+  switch (settings_.tangent) {
+    case TangentReuse::none:
+      return true;
+    case TangentReuse::step:
+      return pass == 1;
+    case TangentReuse::kept:
+      return due_;
+  }
+  return true;
+}
+
+template <typename S, typename F, int D>
+bool Stepper<S, F, D>::solve_pass(StepOutcome& outcome) {
+  phases_.enter(Phase::evaluation);
+  const bool renews = factorizes(outcome.passes);
+  system_.begin_residual();
+  if (renews) {
+    phases_.enter(Phase::assembly);
+    system_.assemble();
+    phases_.enter(Phase::evaluation);
+  }
+  system_.finish_residual();
+  if (!renews) {
+    phases_.enter(Phase::solve);
+    system_.solve();
+    return true;
+  }
+  if (reuses_) ++outcome.factorizations;
+  due_ = false;
+  phases_.enter(Phase::factorization);
+  return system_.factorize_and_solve();
+}
+
+/// q', v', a' and λ with the solution; max|Δq|.
+template <typename S, typename F, int D>
+S Stepper<S, F, D>::apply_pass() {
+  phases_.enter(Phase::other);
+  if (system_.saddle) system_.take_multipliers(system_.lambda.data(), S(1.0) / system_.h);
+  const S change = system_.apply(S(2.0) / step_);
+  phases_.enter(Phase::evaluation);
+  const bool at_convergence = settings_.multipliers == MultiplierUpdate::converged;
+  if (system_.saddle || (at_convergence && !(change <= tolerance_))) {
+    system_.evaluate();
+  } else {
+    system_.evaluate_and_update();
+  }
+  return change;
+}
+
+/// Factors that are kept become due when convergence slows.
+template <typename S, typename F, int D>
+void Stepper<S, F, D>::judge_factors(int pass, S change, S previous) {
+  if (pass < 2) return;
+  if (!(change <= previous / S(4.0)) && !(change <= tolerance_)) due_ = true;
+}
+
 }  // namespace mbs::compiled_ldl
 
 #include "multistep.hpp"
-#include "passes.hpp"
 #include "projections.hpp"
 #include "rattle.hpp"

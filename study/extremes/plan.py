@@ -16,7 +16,7 @@ DENSE_LOOPS = 200  # dense implementations run up to this size
 PREFERRED = {      # of each folder the first variant that serves a way stands for it
     "eigen_dense": ("eigen_dense/llt",),
     "csc_klu": ("csc_klu/refactor", "csc_klu/guarded", "csc_klu/factor"),
-    "eigen_superlu": ("eigen_superlu/simplicial_ldlt", "eigen_superlu/superlu")}
+    "eigen_sparse": ("eigen_sparse/ldlt", "eigen_sparse/superlu")}
 
 
 def columns(settings, studyset):

@@ -134,12 +134,12 @@ def test_what_a_profile_names_exists(profile):
 
 @pytest.mark.slow
 def test_a_tiny_study_on_the_real_program(tmp_path):
-    done = study("run", "--profile", "smoke", "--part", "limit", "--only", "csc_klu/refactor", "compiled_ldl/chains", "--results",
+    done = study("run", "--profile", "smoke", "--part", "limit", "--only", "csc_klu/refactor", "compiled_chains/sweeps", "--results",
                  tmp_path / "set")
     assert done.returncode == 0, done.stderr
     steps, held, batches = (pandas.read_csv(tmp_path / "set/limit" / f"{name}.csv") for name in ("steps", "held", "batches"))
     first = steps[(steps.form == "penalty") & (steps.loops == 1)]
-    assert list(first.implementation) == ["limit/limit", "csc_klu/refactor", "compiled_ldl/chains"]
+    assert list(first.implementation) == ["limit/limit", "csc_klu/refactor", "compiled_chains/sweeps"]
     assert first.multiple.iloc[0] == 1 and set(held.folder) == {"compiled_ldl"}
     assert list(batches.status) in (["unsupported", "ok"], ["ok", "unsupported"], ["dropped", "dropped"])
     assert "What compiled_ldl is held to" in (tmp_path / "set/limit.html").read_text()

@@ -152,6 +152,7 @@ void OperationRows::run(Subject& subject, std::size_t operation, benchmark::Stat
   // What this one works on comes from the one before.
   operations.evaluate_jacobian();
   operations.rank_update();
+  static_assert(kOperations.size() == 3, "a case for each");
   switch (operation) {
     case 0:
       for (auto iteration : state) (void)iteration, operations.evaluate_jacobian();
@@ -159,9 +160,10 @@ void OperationRows::run(Subject& subject, std::size_t operation, benchmark::Stat
     case 1:
       for (auto iteration : state) (void)iteration, operations.rank_update();
       break;
-    default:
+    case 2:
       for (auto iteration : state)
         (void)iteration, operations.add_mass(eq5_factor(planned.settings));
+      break;
   }
   state.counters["variables"] = planned.scene.model.variables();
   state.counters["constraints"] = planned.scene.model.constraints();

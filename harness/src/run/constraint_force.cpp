@@ -2,6 +2,7 @@
 #include "run/constraint_force.hpp"
 
 #include <optional>
+#include <stdexcept>
 
 namespace mbs {
 namespace {
@@ -94,9 +95,12 @@ double constraint_scalar(const Scene& scene, const SceneMotion& motion, const St
     }
     case Output::Force::torque:
       return torque(scene.model, motion, state, output);
-    default:
+    case Output::Force::multiplier:
       return output.factor * lambda;
+    case Output::Force::vector:
+      break;
   }
+  throw std::logic_error("a force that is no single number");
 }
 
 Vector3 constraint_vector(const Scene& scene, const SceneMotion& motion, const State& state,

@@ -135,9 +135,11 @@ Isolated interpret(int status, const std::string& text, const IsolationLimits& l
       return {Fate::out_of_memory,
               fmt::format("needs more than the memory limit of {} MiB", memory_limit(limits) >> 20),
               ""};
-    default:
+    case kThrew:
       return {Fate::threw, printable(std::string_view(text).substr(1), 1000), ""};
   }
+  // What an implementation wrote to a descriptor that is not its own.
+  return {Fate::crashed, "exited with a result that cannot be read", ""};
 }
 
 }  // namespace

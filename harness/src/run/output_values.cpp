@@ -57,9 +57,16 @@ Vector3 OutputValues::vector(const Output& output) const {
       return motion_.velocity(output.point);
     case Output::Kind::acceleration:
       return motion_.acceleration(output.point);
-    default:
+    case Output::Kind::constraint_force:
       return constraint_vector(scene_, motion_, *state_, output);
+    case Output::Kind::angle:
+    case Output::Kind::distance:
+    case Output::Kind::kinetic_energy:
+    case Output::Kind::potential_energy:
+    case Output::Kind::total_energy:
+      break;
   }
+  throw std::logic_error("an output that is no vector");
 }
 
 double OutputValues::scalar(std::size_t index) const {
@@ -79,9 +86,12 @@ double OutputValues::scalar(std::size_t index) const {
       return motion_.kinetic_energy() + motion_.potential_energy();
     case Output::Kind::constraint_force:
       return constraint_scalar(scene_, motion_, *state_, output);
-    default:
-      throw std::logic_error("an output that is no single number");
+    case Output::Kind::position:
+    case Output::Kind::velocity:
+    case Output::Kind::acceleration:
+      break;
   }
+  throw std::logic_error("an output that is no single number");
 }
 
 Vector3 OutputValues::along(const Direction& direction) const {

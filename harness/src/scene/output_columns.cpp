@@ -13,9 +13,14 @@ const char* vector_prefix(const Output& output) {
       return ".a";
     case Output::Kind::constraint_force:
       return output.force == Output::Force::vector ? "." : nullptr;
-    default:
-      return nullptr;
+    case Output::Kind::angle:
+    case Output::Kind::distance:
+    case Output::Kind::kinetic_energy:
+    case Output::Kind::potential_energy:
+    case Output::Kind::total_energy:
+      break;
   }
+  return nullptr;
 }
 
 std::vector<std::string> columns_of(const Output& output, int dimension) {

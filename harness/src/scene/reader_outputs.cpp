@@ -90,7 +90,9 @@ void SceneReader::read_asked(const JsonNode& node, const JsonNode& value, DraftO
     case Kind::constraint_force:
       asked.constraint = value.text();
       break;
-    default: {
+    case Kind::kinetic_energy:
+    case Kind::potential_energy:
+    case Kind::total_energy: {
       std::vector<std::string> names;
       for (const auto& [text, kind] : energies()) {
         names.push_back(text);

@@ -1,0 +1,201 @@
+// Newton's passes of the penalty form over a chain, Eqs. (1) to (5): a sweep inwards, one outwards.
+#pragma once
+
+#include "elimination.hpp"
+
+namespace mbs::compiled_chains {
+
+/// What decides about a pass.
+template <class V>
+struct PassResult {
+  V least;    // pivot: the factorization is one if this is above 0
+  V largest;  // |2 s Δq|
+};
+
+/// Lanes of which only some take part. All bits of a lane are set or none.
+template <class Mask>
+struct Taking {
+  Mask pending;  // whose pass before has not yet given its λ
+  Mask active;   // that this pass is for
+};
+
+/// The first pass of a step predicts (step 1); later ones update λ, Eq. (1), by the Φ they begin
+/// with. With `kMasked` only some lanes do anything.
+template <class Store, bool kFirst, bool kMasked = false>
+class Newton {
+ public:
+  using V = typename Store::V;
+  using Mask = typename Lanes<typename Store::Use>::Mask;
+
+  static PassResult<V> pass(Store& chain) {
+    PassResult<V> result;
+    result.least = inwards(chain, Taking<Mask>());
+    result.largest = outwards(chain, Mask());
+    return result;
+  }
+
+  /// The two sweeps of a pass; the least pivot, and max|2 s Δq|.
+  static V inwards(Store& chain, const Taking<Mask>& taking) {
+    B* block = chain.blocks.data();
+    const C* const* data = chain.constants.data();
+    B* const end = block + chain.last;
+    Carry<V> carry;
+    V least = V{} + 1.0;
+    if (kFirst) predict(*block);
+    if (block != end) {
+      Pending before;
+      if (kFirst) predict(block[1]);
+      eliminate_block(*block, block[1], **data, taking, least, carry, before);
+      for (++block, ++data; block != end; ++block, ++data) {
+        if (kFirst) predict(block[1]);
+        Pending now;
+        eliminate_block(*block, block[1], **data, taking, least, carry, now);
+        finish_block(block[-1], *data[-1], before, taking.active, carry);
+        before = now;
+        before.f = carry.force + before.f;
+      }
+      finish_block(block[-1], *data[-1], before, taking.active, carry);
+    }
+    finish_chain(*block, **data, taking, least, carry);
+    return least;
+  }
+  /// Of two groups by turns: between a block's division and its factors comes the other's block.
+  static void inwards(Store& a, const Taking<Mask>& taking_a, V& least_a, Store& b,
+                      const Taking<Mask>& taking_b, V& least_b) {
+    InwardsSweep sweep_a(a, taking_a), sweep_b(b, taking_b);  // elsewhere they would be in memory
+    for (int k = 0; k < a.last; ++k) {
+      sweep_a.eliminate();
+      if (k > 0) sweep_b.complete();
+      sweep_b.eliminate();
+      sweep_a.complete();
+    }
+    if (a.last > 0) sweep_b.complete();
+    sweep_a.finish();
+    sweep_b.finish();
+    least_a = sweep_a.least;
+    least_b = sweep_b.least;
+  }
+  static V outwards(Store& chain, const Mask& active) {
+    LargestOf<typename Store::Use> largest;
+    substitute_outwards(chain, Move{largest, active});
+    return largest.value();
+  }
+  static void outwards(Store& a, const Mask& active_a, V& largest_a, Store& b, const Mask& active_b,
+                       V& largest_b) {
+    LargestOf<typename Store::Use> of_a, of_b;
+    substitute_outwards(a, Move{of_a, active_a}, b, Move{of_b, active_b});
+    largest_a = of_a.value();
+    largest_b = of_b.value();
+  }
+
+ private:
+  using B = typename Store::B;
+  using C = typename Store::C;
+
+  MBS_CHAIN_INLINE static void predict(B& block) {
+    block.w = block.w + block.u;  // (2) makes the next w of this and the next u
+    block.x = block.x + block.w;
+  }
+
+  /// The tension λ + p of a distance, (3), and λ of the pass before, Eq. (1).
+  MBS_CHAIN_INLINE static V tension(V& multiplier, const V& violation, const Mask& pending) {
+    if (!kFirst) set<kMasked>(multiplier, V(multiplier + violation), pending);
+    return multiplier + violation;
+  }
+
+  /// Eqs. (4), (2)
+  struct Move {
+    LargestOf<typename Store::Use>& largest;
+    const Mask& active;
+
+    MBS_CHAIN_INLINE void operator()(B& block, const Vec<V>& x) const {
+      largest.add(x);
+      set<kMasked>(block.x, block.x - (V{} + 0.5) * x, active);
+      set<kMasked>(block.u, block.u - x, active);
+    }
+  };
+
+  /// M + Σ d dᵀ of a point, and its right-hand side but for links.
+  MBS_CHAIN_INLINE static Sym<V> point(B& block, const C& data, Vec<V>& f, const Mask& pending) {
+    f = f + data.mass.times(block.u);
+    Sym<V> A;
+    for (int j = 0; j < Store::kRods; ++j) {
+      const Vec<V> d = data.rods[j].vector(block.x);
+      f = f + tension(block.rods[j], data.rods[j].violation(d), pending) * d;
+      A = j == 0 ? data.mass.plus_square(d) : plus_square(A, d);
+    }
+    return A;
+  }
+
+  /// An eliminated block whose factors are still to be made. They are when the next block's
+  /// division has begun: a processor takes the oldest operation that it can do, and these are many.
+  struct Pending {
+    Sym<V> S;
+    Vec<V> z, e;
+    V reciprocal;
+    Vec<V> f;      // its right-hand side
+    Vec<V> inner;  // what its link gives to the next one's
+  };
+
+  MBS_CHAIN_INLINE static void eliminate_block(B& block, const B& next, const C& data,
+                                               const Taking<Mask>& taking, V& least,
+                                               Carry<V>& carry, Pending& pending) {
+    Vec<V> f = data.mass.outer(read(next.u)) - data.force;
+    const Sym<V> own = point(block, data, f, taking.pending);
+    pending.e = data.link.vector(next.x - block.x);
+    const V violation = data.link.violation(pending.e);
+    const Vec<V> pull = product(tension(block.link, violation, taking.pending), pending.e);
+    pending.f = f - pull;
+    pending.inner = pull + data.mass.inner(block.u);
+    eliminate(data.mass, own, pending.e, pending.S, pending.z, least, carry);
+    pending.reciprocal = carry.reciprocal;
+  }
+
+  MBS_CHAIN_INLINE static void finish_block(B& block, const C& data, const Pending& pending,
+                                            const Mask& active, Carry<V>& carry) {
+    Factors<V> factors;
+    finish(factors, data.mass, pending.S, pending.z, pending.reciprocal, pending.e);
+    block.f = pending.f;
+    carry.force = forward(factors.gain, pending.inner, pending.f);
+    set<kMasked>(block.factors.scaled, factors.scaled, active);
+    for (int k = 0; k < 4; ++k) set<kMasked>(block.factors.gain[k], factors.gain[k], active);
+  }
+
+  /// A sweep inwards that stops twice a block: when it is eliminated, and when it has its factors.
+  struct InwardsSweep {
+    InwardsSweep(Store& chain, const Taking<Mask>& taking)
+        : block(chain.blocks.data()), data(chain.constants.data()), taking(taking) {
+      if (kFirst) predict(*block);
+    }
+
+    MBS_CHAIN_INLINE void eliminate() {
+      if (kFirst) predict(block[1]);
+      eliminate_block(*block, block[1], **data, taking, least, carry, pending);
+    }
+    MBS_CHAIN_INLINE void complete() {
+      pending.f = carry.force + pending.f;
+      finish_block(*block, **data, pending, taking.active, carry);
+      ++block;
+      ++data;
+    }
+    MBS_CHAIN_INLINE void finish() { finish_chain(*block, **data, taking, least, carry); }
+
+    B* block;
+    const C* const* data;
+    Taking<Mask> taking;
+    Carry<V> carry;
+    V least = V{} + 1.0;
+    Pending pending;
+  };
+
+  /// Eliminates the last block.
+  MBS_CHAIN_INLINE static void finish_chain(B& block, const C& data, const Taking<Mask>& taking,
+                                            V& least, const Carry<V>& carry) {
+    Vec<V> f = Vec<V>{} - data.force;
+    const Sym<V> own = point(block, data, f, taking.pending);
+    set<kMasked>(block.factors.scaled, meet<typename Store::Use>(own, carry, f, least, block.f),
+                 taking.active);
+  }
+};
+
+}  // namespace mbs::compiled_chains

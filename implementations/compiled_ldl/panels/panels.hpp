@@ -1,0 +1,534 @@
+// The numbers of a program's fronts in panels of up to eight pivots, for one simulation.
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "panels/vectors.hpp"
+#include "program.hpp"
+
+namespace mbs::compiled_ldl {
+
+/// A panel has the pivots' block L D Lᵀ and the rows C below. Stored are, so that both
+/// substitutions are sums of columns: M = L⁻¹ by columns, Mᵀ by columns, D⁻¹, the rows of W = C L⁻ᵀ
+/// D⁻¹, and C L⁻ᵀ in place of C.
+///
+/// Columns (4 2 | 2) and (· 5 | 9) with a row C = (2 9) below have L = (1 0; ½ 1), D = (4, 4),
+/// hence M = (1 0; −½ 1), D⁻¹ = (¼, ¼), C L⁻ᵀ = (2 8) and W = (½ 2). Row and column behind lose 2 ·
+/// ½ + 8 · 2 = 17. For y = (4 6 | 0): z = D⁻¹ M y = (1 1), and below 0 − (2 · 1 + 8 · 1) = −10.
+template <typename F>
+class Panels {
+ public:
+  /// `definite`: only positive pivots are accepted.
+  Panels(const Program& program, bool definite);
+
+  /// What every factorization begins with.
+  F* constants() { return constants_.data() + kMargin; }
+  /// The matrix, valid from start() until factorize_and_solve().
+  F* matrix() { return matrix_.data() + kMargin; }
+  void start() { std::copy(constants_.begin(), constants_.end(), matrix_.begin()); }
+
+  /// Factorizes and solves for y, which is padded; false if a pivot is not accepted.
+  bool factorize_and_solve(F* y);
+  void solve(F* y) const;
+
+ private:
+  static constexpr int kMargin = 16;  // numbers before and behind, which vectors may touch
+  struct Panel {
+    int first = 0;    // row of the first pivot
+    int columns = 0;  // storage of its diagonal block
+    int stride = 0;
+    int inside = 0;           // further columns of its front
+    int below = 0;            // rows below, those of these columns included
+    int factors = 0;          // where M, Mᵀ, D⁻¹ and W are
+    int rows = 0;             // where the list of its rows below is
+    bool contiguous = false;  // these rows follow each other
+    int groups_begin = 0, groups_end = 0;
+  };
+  /// Panels of the same shape that follow each other.
+  struct Run {
+    int begin = 0, end = 0;
+    bool (Panels::*eliminate)(const Run&, F*) = nullptr;
+    void (Panels::*forward)(const Run&, F*) const = nullptr;
+    void (Panels::*backward)(const Run&, F*) const = nullptr;
+  };
+
+  void add_front(const Front& front);
+  void add_run(const PanelShape& shape);
+  template <int P>
+  void choose_kernels(Run& run, int lanes) const;
+  template <int P, int L>
+  void set_kernels(Run& run) const;
+
+  template <int P, int L, bool kDefinite>
+  bool eliminate(const Run& run, F* y);
+  template <int P, int L, bool kDefinite>
+  bool eliminate_panel(const Panel& panel, F* y);
+  template <int L, bool kDefinite>
+  bool eliminate_pair(const Panel& panel, F* y);
+  template <int P, int L>
+  void forward(const Run& run, F* y) const;
+  template <int P, int L>
+  void backward(const Run& run, F* y) const;
+  template <int P, int L>
+  void reduce_below(const Panel& panel, const typename Short<F, lanes_for(P)>::Type (&l)[P],
+                    const F (&inverse)[P]);
+  template <int P, int L>
+  void subtract_below(const Panel& panel, const typename Short<F, lanes_for(P)>::Type& z,
+                      F* y) const;
+  /// Mᵀ z, of its columns.
+  template <int P>
+  static typename Short<F, lanes_for(P)>::Type times_transposed(
+      const F* columns, const typename Short<F, lanes_for(P)>::Type& z);
+  template <int P>
+  void update_inside(const Panel& panel);
+  template <int P>
+  void update_two(const Panel& panel, const Group& group);
+  template <int P, int L>
+  void update_border(const Panel& panel);
+  template <int P, int L>
+  void update_column(const Panel& panel, const Group& group, int k);
+
+  const Program& program_;
+  bool definite_;
+  Array<F> constants_, matrix_, factors_;
+  std::vector<Panel> panels_;
+  std::vector<Run> runs_;
+  PanelShape last_shape_;  // while tables are made, as the next
+  int next_factors_ = 0;
+  std::vector<int> rows_;
+  Array<F> work_;
+};
+
+// Tables.
+
+template <typename F>
+Panels<F>::Panels(const Program& program, bool definite)
+    : program_(program),
+      definite_(definite),
+      constants_(program.storage + 2 * kMargin, F(0)),
+      matrix_(program.storage + 2 * kMargin, F(0)) {
+  for (const Front& front : program.fronts) add_front(front);
+  int most = 0;
+  for (const Panel& panel : panels_) most = std::max(most, panel.below);
+  factors_.resize(next_factors_ + kMargin, F(0));
+  work_.resize(most + 2 * kMargin, F(0));
+}
+
+template <typename F>
+void Panels<F>::add_front(const Front& front) {
+  for (int from = 0; from < front.pivots; from += kPanel) {
+    const int pivots = std::min(kPanel, front.pivots - from);
+    Panel panel;
+    panel.first = front.first + from;
+    panel.columns = front.base + from * front.stride + from;
+    panel.stride = front.stride;
+    panel.inside = front.pivots - from - pivots;
+    panel.below = panel.inside + front.border;
+    panel.rows = static_cast<int>(rows_.size());
+    panel.groups_begin = front.groups_begin;
+    panel.groups_end = front.groups_end;
+    for (int i = 0; i < panel.inside; ++i) rows_.push_back(panel.first + pivots + i);
+    for (int i = 0; i < front.border; ++i) rows_.push_back(program_.border_rows[front.rows + i]);
+    panel.contiguous = panel.below > 0 && rows_.back() - rows_[panel.rows] == panel.below - 1;
+    panel.factors = next_factors_;
+    next_factors_ = panel.factors + lanes_for(pivots) * (2 * pivots + 1 + round_up(panel.below, 8));
+    next_factors_ = round_up(next_factors_, 8);
+    panels_.push_back(panel);
+    add_run(panel_shape(front, from));
+  }
+}
+
+template <typename F>
+void Panels<F>::add_run(const PanelShape& shape) {
+  const int last = static_cast<int>(panels_.size()) - 1;
+  if (!runs_.empty() && last_shape_ == shape) {
+    runs_.back().end = last + 1;
+    return;
+  }
+  last_shape_ = shape;
+  Run run;
+  run.begin = last;
+  run.end = last + 1;
+  switch (shape.pivots) {
+    case 1:
+      choose_kernels<1>(run, shape.lanes);
+      break;
+    case 2:
+      choose_kernels<2>(run, shape.lanes);
+      break;
+    case 3:
+      choose_kernels<3>(run, shape.lanes);
+      break;
+    case 4:
+      choose_kernels<4>(run, shape.lanes);
+      break;
+    case 5:
+      choose_kernels<5>(run, shape.lanes);
+      break;
+    case 6:
+      choose_kernels<6>(run, shape.lanes);
+      break;
+    case 7:
+      choose_kernels<7>(run, shape.lanes);
+      break;
+    case 8:
+      choose_kernels<8>(run, shape.lanes);
+      break;
+    default:
+      throw std::logic_error("no kernel has so many pivots");
+  }
+  runs_.push_back(run);
+}
+
+template <typename F>
+template <int P>
+void Panels<F>::choose_kernels(Run& run, int lanes) const {
+  switch (lanes) {
+    case 0:
+      set_kernels<P, 0>(run);
+      break;
+    case 2:
+      set_kernels<P, 2>(run);
+      break;
+    case 4:
+      set_kernels<P, 4>(run);
+      break;
+    case 8:
+      set_kernels<P, 8>(run);
+      break;
+    default:
+      throw std::logic_error("no kernel takes so many rows at a time");
+  }
+}
+
+template <typename F>
+template <int P, int L>
+void Panels<F>::set_kernels(Run& run) const {
+  run.eliminate = definite_ ? &Panels::template eliminate<P, L, true>
+                            : &Panels::template eliminate<P, L, false>;
+  run.forward = &Panels::template forward<P, L>;
+  run.backward = &Panels::template backward<P, L>;
+}
+
+// Elimination of a run of panels.
+
+template <typename F>
+bool Panels<F>::factorize_and_solve(F* y) {
+  bool accepted = true;
+  for (const Run& run : runs_) accepted &= (this->*run.eliminate)(run, y);
+  for (auto run = runs_.rbegin(); run != runs_.rend(); ++run) (this->*run->backward)(*run, y);
+  return accepted;
+}
+
+template <typename F>
+template <int P, int L, bool kDefinite>
+bool Panels<F>::eliminate(const Run& run, F* y) {
+  bool accepted = true;
+  for (int i = run.begin; i < run.end; ++i) {
+    if constexpr (P == 2) {
+      accepted &= eliminate_pair<L, kDefinite>(panels_[i], y);
+    } else {
+      accepted &= eliminate_panel<P, L, kDefinite>(panels_[i], y);
+    }
+  }
+  return accepted;
+}
+
+template <typename F>
+template <int P, int L, bool kDefinite>
+bool Panels<F>::eliminate_panel(const Panel& panel, F* y) {
+  constexpr int N = lanes_for(P);
+  using V = typename Short<F, N>::Type;
+  const F* columns = matrix() + panel.columns;
+  F* factors = factors_.data() + panel.factors;
+  V a[P], l[P], m[P];
+  F inverse[P];
+#pragma GCC unroll 8
+  for (int j = 0; j < P; ++j) a[j] = load<F, N>(columns + j * panel.stride);
+  const bool accepted = decompose<F, P, kDefinite>(a, l, inverse);
+  if constexpr (L > 0) reduce_below<P, L>(panel, l, inverse);
+  invert_triangle<F, P>(l, m);
+  V scale = V{}, z = V{};
+#pragma GCC unroll 8
+  for (int j = 0; j < P; ++j) {
+    store<F, N>(factors + j * N, m[j]);
+    scale[j] = inverse[j];
+    z += m[j] * y[panel.first + j];
+  }
+  store_transposed<F, P, P, N>(m, factors + P * N);
+  store<F, N>(factors + 2 * P * N, scale);
+  z *= scale;
+  if constexpr (L == 0) {
+    z = times_transposed<P>(factors + P * N, z);  // nothing is left for backward()
+  }
+  store_first<P>(y + panel.first, z);
+  if constexpr (L > 0) {
+    subtract_below<P, L>(panel, z, y);
+    if constexpr (L == 8) {
+      if (panel.inside > 0) update_inside<P>(panel);
+    }
+    update_border<P, L>(panel);
+  }
+  return accepted;
+}
+
+/// The same for two pivots, in scalars: a vector's load would wait for the element's narrow stores.
+/// Of the factors only l, in its place in M, and D⁻¹ are kept.
+template <typename F>
+template <int L, bool kDefinite>
+bool Panels<F>::eliminate_pair(const Panel& panel, F* y) {
+  using V = typename Short<F, 2>::Type;
+  const F* columns = matrix() + panel.columns;
+  F* factors = factors_.data() + panel.factors;
+  const F x = columns[0], c = columns[1], w = columns[panel.stride + 1];
+  const F of_pair = F(1) / determinant(x, c, w);
+  const F inverse[2] = {F(1) / x, x * of_pair};
+  const F l = c * inverse[0];
+  bool accepted = inverse[0] - inverse[0] == F(0) && of_pair - of_pair == F(0);
+  accepted &= kDefinite ? x > F(0) && of_pair > F(0) : inverse[1] != F(0);
+  factors[1] = l;
+  factors[8] = inverse[0];
+  factors[9] = inverse[1];
+  const V columns_of_l[2] = {V{F(1), l}, V{F(0), F(1)}};
+  if constexpr (L > 0) reduce_below<2, L>(panel, columns_of_l, inverse);
+  F* b = y + panel.first;
+  const V z = {b[0] * inverse[0], (b[1] - l * b[0]) * inverse[1]};
+  b[0] = L > 0 ? z[0] : z[0] - l * z[1];
+  b[1] = z[1];
+  if constexpr (L > 0) {
+    subtract_below<2, L>(panel, z, y);
+    update_border<2, L>(panel);
+  }
+  return accepted;
+}
+
+/// C becomes C L⁻ᵀ, and its rows times D⁻¹ are stored.
+template <typename F>
+template <int P, int L>
+void Panels<F>::reduce_below(const Panel& panel,
+                             const typename Short<F, lanes_for(P)>::Type (&l)[P],
+                             const F (&inverse)[P]) {
+  using W = typename Short<F, L>::Type;
+  constexpr int N = lanes_for(P);
+  F* below = matrix() + panel.columns + P;
+  F* rows = factors_.data() + panel.factors + (2 * P + 1) * N;
+  for (int i = 0; i < panel.below; i += L) {
+    W c[P];
+#pragma GCC unroll 8
+    for (int j = 0; j < P; ++j) {
+      c[j] = load<F, L>(below + j * panel.stride + i);
+#pragma GCC unroll 8
+      for (int k = 0; k < j; ++k) c[j] -= c[k] * l[k][j];
+      if (j > 0) store<F, L>(below + j * panel.stride + i, c[j]);
+    }
+#pragma GCC unroll 8
+    for (int j = 0; j < P; ++j) c[j] *= inverse[j];
+    store_transposed<F, P, L, N>(c, rows + i * N);
+  }
+}
+
+// What an eliminated panel subtracts from the rows and columns after it.
+
+/// y −= C z at the rows below.
+template <typename F>
+template <int P, int L>
+void Panels<F>::subtract_below(const Panel& panel, const typename Short<F, lanes_for(P)>::Type& z,
+                               F* y) const {
+  using W = typename Short<F, L>::Type;
+  const F* below = matrix_.data() + kMargin + panel.columns + P;
+  const int* rows = rows_.data() + panel.rows;
+  for (int i = 0; i < panel.below; i += L) {
+    W sum = load<F, L>(below + i) * z[0];
+#pragma GCC unroll 8
+    for (int j = 1; j < P; ++j) sum += load<F, L>(below + j * panel.stride + i) * z[j];
+    if (L > 4 && panel.contiguous) {
+      store<F, L>(y + rows[i], load<F, L>(y + rows[i]) - sum);
+    } else {
+      const int count = std::min(L, panel.below - i);
+      for (int l = 0; l < count; ++l) y[rows[i + l]] -= sum[l];
+    }
+  }
+}
+
+/// Further columns of the front, two at a time.
+template <typename F>
+template <int P>
+void Panels<F>::update_inside(const Panel& panel) {
+  using W = typename Short<F, 8>::Type;
+  constexpr int N = lanes_for(P);
+  const F* below = matrix() + panel.columns + P;
+  const F* g = factors_.data() + panel.factors + (2 * P + 1) * N;
+  for (int k = 0; k < panel.inside; k += 2) {
+    const bool both = k + 1 < panel.inside;
+    F* one = matrix() + panel.columns + (P + k) * panel.stride + P;
+    F* other = both ? one + panel.stride : work_.data();
+    const F* g0 = g + k * N;
+    const F* g1 = both ? g0 + N : g0;
+    for (int i = k / 8 * 8; i < panel.below; i += 8) {
+      W s0 = load<F, 8>(one + i), s1 = load<F, 8>(other + i);
+#pragma GCC unroll 8
+      for (int j = 0; j < P; ++j) {
+        const W c = load<F, 8>(below + j * panel.stride + i);
+        s0 -= c * g0[j];
+        s1 -= c * g1[j];
+      }
+      store<F, 8>(one + i, s0);
+      store<F, 8>(other + i, s1);
+    }
+  }
+}
+
+template <typename F>
+template <int P, int L>
+void Panels<F>::update_border(const Panel& panel) {
+  for (int g = panel.groups_begin; g < panel.groups_end; ++g) {
+    const Group& group = program_.groups[g];
+    if (L == 2 && group.end == 2 && group.begin == 0) {
+      update_two<P>(panel, group);
+      continue;
+    }
+    for (int k = group.begin; k < group.end; ++k) update_column<P, L>(panel, group, k);
+  }
+}
+
+/// The update of two border rows that are neighbours, in scalars.
+template <typename F>
+template <int P>
+void Panels<F>::update_two(const Panel& panel, const Group& group) {
+  constexpr int N = lanes_for(P);
+  const F* below = matrix() + panel.columns + P;
+  const F* g = factors_.data() + panel.factors + (2 * P + 1) * N;
+  F s00 = below[0] * g[0], s10 = below[1] * g[0], s11 = below[1] * g[N];
+#pragma GCC unroll 8
+  for (int j = 1; j < P; ++j) {
+    const F* c = below + j * panel.stride;
+    s00 += c[0] * g[j];
+    s10 += c[1] * g[j];
+    s11 += c[1] * g[N + j];
+  }
+  const int* places = program_.positions.data() + group.positions;
+  F* target = matrix() + group.base;
+  target[places[0]] -= s00;
+  target[places[1]] -= s10;
+  target[group.stride + places[1]] -= s11;
+}
+
+/// Border column k of the update, added to the column that it goes to.
+template <typename F>
+template <int P, int L>
+void Panels<F>::update_column(const Panel& panel, const Group& group, int k) {
+  using W = typename Short<F, L>::Type;
+  constexpr int N = lanes_for(P);
+  const int at = panel.inside + k;  // among the rows below
+  const F* below = matrix() + panel.columns + P;
+  const F* g = factors_.data() + panel.factors + (2 * P + 1 + at) * N;
+  const int* places = program_.positions.data() + group.positions - group.begin;
+  F* target = matrix() + group.base + (k - group.begin) * group.stride;
+  const int first = at / L * L;
+  for (int i = first; i < panel.below; i += L) {
+    W sum = load<F, L>(below + i) * g[0];
+#pragma GCC unroll 8
+    for (int j = 1; j < P; ++j) sum += load<F, L>(below + j * panel.stride + i) * g[j];
+    if (group.contiguous) {
+      if (i == first) {
+#pragma GCC unroll 8
+        for (int l = 0; l < L; ++l) sum[l] = i + l < at ? F(0) : sum[l];
+      }
+      F* to = target + places[k] + i - at;
+      store<F, L>(to, load<F, L>(to) - sum);
+    } else {
+      store<F, L>(work_.data() + i - first, sum);
+    }
+  }
+  if (group.contiguous) return;
+  const F* sums = work_.data() + at - first;
+  const int border = panel.below - panel.inside;
+  for (int i = k; i < border; ++i) target[places[i]] -= sums[i - k];
+}
+
+// Substitution with the factors there are.
+
+template <typename F>
+void Panels<F>::solve(F* y) const {
+  for (const Run& run : runs_) (this->*run.forward)(run, y);
+  for (auto run = runs_.rbegin(); run != runs_.rend(); ++run) (this->*run->backward)(*run, y);
+}
+
+/// z = D⁻¹ M y in place of the pivots' y; y −= C L⁻ᵀ z below.
+template <typename F>
+template <int P, int L>
+void Panels<F>::forward(const Run& run, F* y) const {
+  constexpr int N = lanes_for(P);
+  using V = typename Short<F, N>::Type;
+  for (int i = run.begin; i < run.end; ++i) {
+    const Panel& panel = panels_[i];
+    const F* factors = factors_.data() + panel.factors;
+    F* x = y + panel.first;
+    V z;
+    if constexpr (P == 2) {
+      z = V{x[0] * factors[8], (x[1] - factors[1] * x[0]) * factors[9]};
+      x[0] = L > 0 ? z[0] : z[0] - factors[1] * z[1];
+      x[1] = z[1];
+    } else {
+      z = load<F, N>(factors) * x[0];
+#pragma GCC unroll 8
+      for (int j = 1; j < P; ++j) z += load<F, N>(factors + j * N) * x[j];
+      z *= load<F, N>(factors + 2 * P * N);
+      if constexpr (L == 0) z = times_transposed<P>(factors + P * N, z);
+      store_first<P>(x, z);
+    }
+    if constexpr (L > 0) subtract_below<P, L>(panel, z, y);
+  }
+}
+
+template <typename F>
+template <int P>
+typename Short<F, lanes_for(P)>::Type Panels<F>::times_transposed(
+    const F* columns, const typename Short<F, lanes_for(P)>::Type& z) {
+  constexpr int N = lanes_for(P);
+  using V = typename Short<F, N>::Type;
+  V even = load<F, N>(columns) * z[0], odd = V{};
+#pragma GCC unroll 8
+  for (int j = 1; j < P; ++j) {
+    if (j % 2 == 0) {
+      even += load<F, N>(columns + j * N) * z[j];
+    } else {
+      odd += load<F, N>(columns + j * N) * z[j];
+    }
+  }
+  return even + odd;
+}
+
+/// x = Mᵀ (z − Wᵀ x below).
+template <typename F>
+template <int P, int L>
+void Panels<F>::backward(const Run& run, F* y) const {
+  constexpr int N = lanes_for(P);
+  using V = typename Short<F, N>::Type;
+  if constexpr (L == 0) return;
+  for (int i = run.end - 1; i >= run.begin; --i) {
+    const Panel& panel = panels_[i];
+    const F* transposed = factors_.data() + panel.factors + P * N;
+    const F* g = transposed + (P + 1) * N;
+    const int* rows = rows_.data() + panel.rows;
+    V x0 = load<F, N>(y + panel.first), x1 = V{}, x2 = V{}, x3 = V{};
+    int k = 0;
+    for (; k + 4 <= panel.below; k += 4) {
+      x0 -= load<F, N>(g + k * N) * y[rows[k]];
+      x1 -= load<F, N>(g + k * N + N) * y[rows[k + 1]];
+      x2 -= load<F, N>(g + k * N + 2 * N) * y[rows[k + 2]];
+      x3 -= load<F, N>(g + k * N + 3 * N) * y[rows[k + 3]];
+    }
+    for (; k < panel.below; ++k) x0 -= load<F, N>(g + k * N) * y[rows[k]];
+    x0 = (x0 + x1) + (x2 + x3);
+    if constexpr (P == 2) {
+      y[panel.first] = x0[0] - transposed[1 - P * N] * x0[1];
+      y[panel.first + 1] = x0[1];
+    } else {
+      store_first<P>(y + panel.first, times_transposed<P>(transposed, x0));
+    }
+  }
+}
+
+}  // namespace mbs::compiled_ldl

@@ -1,0 +1,186 @@
+// Short vectors of a panel's width: loads, stores of a part, factorization of a diagonal block.
+#pragma once
+
+#include "scalar.hpp"
+
+namespace mbs::compiled_ldl {
+
+/// N numbers in a register; `Loose` ones in memory, wherever they begin.
+template <typename F, int N>
+struct Short {
+  using Type __attribute__((vector_size(N * sizeof(F)))) = F;
+  using Loose __attribute__((vector_size(N * sizeof(F)), aligned(sizeof(F)), may_alias)) = F;
+};
+template <typename F, int N>
+typename Short<F, N>::Type load(const F* x) {
+  return *reinterpret_cast<const typename Short<F, N>::Loose*>(x);
+}
+template <typename F, int N>
+void store(F* x, const typename Short<F, N>::Type& v) {
+  *reinterpret_cast<typename Short<F, N>::Loose*>(x) = v;
+}
+
+/// Lanes of a vector for `columns` pivots, or for that many rows below them.
+constexpr int lanes_for(int count) { return count <= 2 ? 2 : count <= 4 ? 4 : 8; }
+
+/// Stores the first P lanes only, in pieces that later loads can be forwarded from.
+template <int P, typename F, typename V>
+inline void store_first(F* x, const V& v) {
+  constexpr int N = sizeof(V) / sizeof(F);
+  if constexpr (P == N) {
+    store<F, N>(x, v);
+  } else if constexpr (N == 8 && P > 4) {
+    store<F, 4>(x, __builtin_shufflevector(v, v, 0, 1, 2, 3));
+    store_first<P - 4>(x + 4, __builtin_shufflevector(v, v, 4, 5, 6, 7));
+  } else if constexpr (N == 4 && P > 2) {
+    store<F, 2>(x, __builtin_shufflevector(v, v, 0, 1));
+    x[2] = v[2];
+  } else if constexpr (P == 2) {
+    store<F, 2>(x, __builtin_shufflevector(v, v, 0, 1));
+  } else {
+    for (int i = 0; i < P; ++i) x[i] = v[i];
+  }
+}
+
+/// x w − y² to the last digit, where there are fused multiply-adds (Kahan's two products).
+inline double determinant(double x, double y, double w) {
+  const double product = y * y;
+#ifdef __FP_FAST_FMA
+  return __builtin_fma(x, w, -product) - __builtin_fma(y, y, -product);
+#else
+  return x * w - product;
+#endif
+}
+inline float determinant(float x, float y, float w) {
+  return static_cast<float>(static_cast<double>(x) * w - static_cast<double>(y) * y);
+}
+
+inline Lanes determinant(const Lanes& x, const Lanes& y, const Lanes& w) {
+  Lanes result;
+  for (int i = 0; i < Lanes::kCount; ++i) result.v[i] = determinant(x.v[i], y.v[i], w.v[i]);
+  return result;
+}
+
+/// L D Lᵀ of a symmetric block, columns in registers, of which the lower halves count: a becomes L
+/// D, l becomes L, `inverse` that of D; lanes from P on are rows below. Two pivots at a time: both
+/// inverses, 1/x and x/det, are under way together. False if a pivot is not accepted.
+template <typename F, int P, bool kDefinite, typename V>
+inline bool decompose(V (&a)[P], V (&l)[P], F (&inverse)[P]) {
+  bool accepted = true;
+#pragma GCC unroll 4
+  for (int k = 0; k < P; k += 2) {
+    const F x = a[k][k];
+    inverse[k] = F(1) / x;
+    if (kDefinite) accepted &= x > F(0);
+    l[k] = a[k] * inverse[k];
+    if (k + 1 == P) {
+      accepted &= inverse[k] - inverse[k] == F(0);
+      break;
+    }
+    const F of_pair = F(1) / determinant(x, a[k][k + 1], a[k + 1][k + 1]);
+    inverse[k + 1] = x * of_pair;
+    if (kDefinite) accepted &= of_pair > F(0);
+    accepted &= of_pair - of_pair == F(0) && inverse[k + 1] != F(0);
+    a[k + 1] -= a[k] * l[k][k + 1];
+    l[k + 1] = a[k + 1] * inverse[k + 1];
+#pragma GCC unroll 8
+    for (int j = k + 2; j < P; ++j) a[j] = (a[j] - a[k] * l[k][j]) - a[k + 1] * l[k + 1][j];
+  }
+  return accepted;
+}
+
+/// Inverse of the unit lower triangle l, columns.
+template <typename F, int P, typename V>
+inline void invert_triangle(const V (&l)[P], V (&m)[P]) {
+#pragma GCC unroll 8
+  for (int j = 0; j < P; ++j) {
+    m[j] = V{};
+    m[j][j] = F(1);
+  }
+#pragma GCC unroll 8
+  for (int k = 0; k < P; ++k) {
+    V column = l[k];
+#pragma GCC unroll 8
+    for (int i = 0; i < static_cast<int>(sizeof(V) / sizeof(F)); ++i) {
+      if (i <= k || i >= P) column[i] = F(0);
+    }
+#pragma GCC unroll 8
+    for (int j = 0; j <= k; ++j) m[j] -= column * m[j][k];
+  }
+}
+
+// Transposition of the columns of a panel, which lie in registers.
+
+/// Rows of four columns of four numbers each, the first `count`, N numbers apart.
+template <int N, typename F, typename V>
+inline void store_four(const V& c0, const V& c1, const V& c2, const V& c3, int count, F* rows) {
+  const V a0 = __builtin_shufflevector(c0, c1, 0, 4, 2, 6);
+  const V a1 = __builtin_shufflevector(c0, c1, 1, 5, 3, 7);
+  const V b0 = __builtin_shufflevector(c2, c3, 0, 4, 2, 6);
+  const V b1 = __builtin_shufflevector(c2, c3, 1, 5, 3, 7);
+  store<F, 4>(rows, __builtin_shufflevector(a0, b0, 0, 1, 4, 5));
+  if (count > 1) store<F, 4>(rows + N, __builtin_shufflevector(a1, b1, 0, 1, 4, 5));
+  if (count > 2) store<F, 4>(rows + 2 * N, __builtin_shufflevector(a0, b0, 2, 3, 6, 7));
+  if (count > 3) store<F, 4>(rows + 3 * N, __builtin_shufflevector(a1, b1, 2, 3, 6, 7));
+}
+
+/// The first L rows of the P columns c, N numbers apart, padded with zeros.
+template <typename F, int P, int L, int N, typename V>
+inline void store_transposed(const V (&c)[P], F* rows) {
+  constexpr int kLanes = sizeof(V) / sizeof(F);
+  if constexpr (kLanes == 8 && P > 4) {
+    V a[8], b[8];
+#pragma GCC unroll 4
+    for (int i = 0; i < 8; i += 2) {
+      const V one = i < P ? c[i < P ? i : 0] : V{},
+              other = i + 1 < P ? c[i + 1 < P ? i + 1 : 0] : V{};
+      a[i] = __builtin_shufflevector(one, other, 0, 8, 2, 10, 4, 12, 6, 14);
+      a[i + 1] = __builtin_shufflevector(one, other, 1, 9, 3, 11, 5, 13, 7, 15);
+    }
+#pragma GCC unroll 2
+    for (int i = 0; i < 8; i += 4) {
+#pragma GCC unroll 2
+      for (int k = 0; k < 2; ++k) {
+        b[i + k] = __builtin_shufflevector(a[i + k], a[i + k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+        b[i + k + 2] = __builtin_shufflevector(a[i + k], a[i + k + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+      }
+    }
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) {
+      const V low = __builtin_shufflevector(b[i], b[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+      const V high = __builtin_shufflevector(b[i], b[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+      store<F, 8>(rows + i * N, low);
+      if (i + 4 < L) store<F, 8>(rows + (i + 4) * N, high);
+    }
+  } else if constexpr (kLanes >= 4 && P > 2) {
+    using Four = typename Short<F, 4>::Type;
+#pragma GCC unroll 2
+    for (int from = 0; from < L; from += 4) {
+#pragma GCC unroll 2
+      for (int j = 0; j < P; j += 4) {
+        Four part[4];
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) {
+          part[k] = Four{};
+          if (j + k >= P) continue;
+          const V& column = c[j + k < P ? j + k : 0];
+          if constexpr (kLanes == 4) {
+            part[k] = column;
+          } else {
+            part[k] = from == 0 ? __builtin_shufflevector(column, column, 0, 1, 2, 3)
+                                : __builtin_shufflevector(column, column, 4, 5, 6, 7);
+          }
+        }
+        store_four<N>(part[0], part[1], part[2], part[3], L - from, rows + from * N + j);
+      }
+    }
+  } else {
+#pragma GCC unroll 8
+    for (int i = 0; i < L; ++i) {
+#pragma GCC unroll 8
+      for (int j = 0; j < P; ++j) rows[i * N + j] = c[j][i];
+    }
+  }
+}
+
+}  // namespace mbs::compiled_ldl

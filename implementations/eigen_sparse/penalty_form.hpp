@@ -1,0 +1,93 @@
+// Eqs. (3) to (6) and (15): the linear systems of the penalty form.
+#pragma once
+
+#include "assembly.hpp"
+#include "mechanism.hpp"
+#include "solver.hpp"
+
+namespace mbs::eigen_sparse {
+
+/// Forms right-hand sides at the state of a mechanism and solves with T; SaddleForm offers the
+/// same.
+template <class Solver_>
+class PenaltyForm {
+ public:
+  using Solver = Solver_;
+
+  /// `mechanism` outlives the form and gets its forces here.
+  PenaltyForm(const Model& model, const StepSettings& settings, Mechanism& mechanism)
+      : quarter_(0.25 * settings.step * settings.step),
+        penalty_(settings.penalty),
+        mechanism_(mechanism),
+        tangent_(model, mechanism.coordinates, mechanism.constraints, Solver::kTriangle,
+                 quarter_ * penalty_),
+        solver_(tangent_.matrix(), Definiteness::positive),
+        delta_(model.variables()),
+        multiplier_(Vector::Zero(model.constraints())) {
+    mechanism.add_forces(model, layout(), settings.step);
+  }
+
+  [[nodiscard]] Layout layout() const { return tangent_.layout(); }
+  /// T at q', with C and K of the last form_residual() or hold().
+  void refresh() {
+    tangent_.refresh(mechanism_.constraints.jacobian());
+    mechanism_.add_to_tangent(tangent_.values());
+  }
+  [[nodiscard]] bool factorize() { return solver_.factorize(); }
+
+  /// Right-hand side of Eq. (4): -f, Eq. (3) in its form (dt^2/4) (M a' + Phi_q^T (...) - Q).
+  void form_residual() {
+    multiplier_ = -mechanism_.lambda - penalty_ * mechanism_.constraints.phi();
+    mechanism_.unbalanced_force(multiplier_, delta_);
+    delta_ *= quarter_;
+  }
+  /// Right-hand sides of Eq. (6).
+  void form_velocity_projection() {
+    mechanism_.multiply(mechanism_.v, delta_);
+    if (mechanism_.drivers) {
+      mechanism_.rates(multiplier_);
+      add_weighted();
+    }
+  }
+  void form_acceleration_projection() {
+    mechanism_.multiply(mechanism_.a, delta_);
+    mechanism_.accelerations(multiplier_);
+    add_weighted();
+  }
+
+  /// Begins to refine a projection.
+  void start_refinement() {}
+  /// Right-hand side of Eq. (15): `change` is v* - v' (n), `violation` Phi_q v' + Phi_t (m).
+  void form_refinement(const Vector& change, const Vector& violation) {
+    mechanism_.multiply(change, delta_);
+    multiplier_ = violation;
+    add_weighted();
+  }
+  /// Accepts what solve() made of it.
+  void accept_refinement() {}
+
+  void solve() { solver_.solve(delta_); }
+  /// The solution (n).
+  [[nodiscard]] Vector& delta() { return delta_; }
+
+  /// lambda after a pass, with Phi at the new q'.
+  void update_multipliers() {
+    mechanism_.lambda += penalty_ * mechanism_.constraints.phi();  // Eq. (1)
+  }
+
+ private:
+  void add_weighted() {
+    multiplier_ *= -quarter_ * penalty_;
+    delta_.noalias() += mechanism_.constraints.jacobian().transpose() * multiplier_;
+  }
+
+  double quarter_;  // dt^2/4
+  double penalty_;
+  Mechanism& mechanism_;
+  Tangent tangent_;
+  Solver solver_;
+  Vector delta_;       // n: right-hand sides, overwritten by solutions
+  Vector multiplier_;  // m: what Phi_q^T is applied to
+};
+
+}  // namespace mbs::eigen_sparse

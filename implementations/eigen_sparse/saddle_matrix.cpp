@@ -1,0 +1,98 @@
+// Set-up and refresh of the saddle-point matrix.
+#include "saddle_matrix.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace mbs::eigen_sparse {
+namespace {
+
+/// Where the unknowns, then the multipliers are stored. The unknowns keep their order; a multiplier
+/// follows the last one that its row of Phi_q has.
+std::vector<int> interleaved(const RowSparseMatrix& jacobian) {
+  const auto unknowns = static_cast<int>(jacobian.cols());
+  std::vector<int> in_front(jacobian.rows()), order(jacobian.rows());
+  for (int row = 0; row < jacobian.rows(); ++row) {
+    for (int k = jacobian.outerIndexPtr()[row]; k < jacobian.outerIndexPtr()[row + 1]; ++k) {
+      in_front[row] = std::max(in_front[row], jacobian.innerIndexPtr()[k] + 1);
+    }
+  }
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return in_front[a] < in_front[b]; });
+  std::vector<int> place(unknowns + order.size());
+  auto row = order.begin();
+  for (int unknown = 0, next = 0; unknown <= unknowns; ++unknown) {
+    for (; row != order.end() && in_front[*row] == unknown; ++row) place[unknowns + *row] = next++;
+    if (unknown < unknowns) place[unknown] = next++;
+  }
+  return place;
+}
+
+/// Eqs. (12), (14) with `upper_left` (n x n, both triangles) and Phi_q as it is; both triangles.
+SparseMatrix assembled(const SparseMatrix& upper_left, const RowSparseMatrix& jacobian,
+                       double epsilon, std::span<const int> place) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int col = 0; col < upper_left.cols(); ++col) {
+    for (SparseMatrix::InnerIterator it(upper_left, col); it; ++it) {
+      entries.emplace_back(place[it.row()], place[col], it.value());
+    }
+  }
+  for (int row = 0; row < jacobian.rows(); ++row) {
+    const int at = place[jacobian.cols() + row];
+    entries.emplace_back(at, at, -epsilon);
+    for (int k = jacobian.outerIndexPtr()[row]; k < jacobian.outerIndexPtr()[row + 1]; ++k) {
+      const int col = place[jacobian.innerIndexPtr()[k]];
+      entries.emplace_back(at, col, jacobian.valuePtr()[k]);
+      entries.emplace_back(col, at, jacobian.valuePtr()[k]);
+    }
+  }
+  const auto size = static_cast<int>(place.size());
+  SparseMatrix matrix(size, size);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+}  // namespace
+
+SaddleMatrix::SaddleMatrix(const Model& model, const Coordinates& coordinates,
+                           const Constraints& constraints, Triangle triangle, double epsilon,
+                           Stiffness stiffness, Reorder reorder)
+    : triangle_(triangle),
+      variables_(model.variables()),
+      place_(interleaved(constraints.jacobian())) {
+  const RowSparseMatrix& jacobian = constraints.jacobian();
+  const SparseMatrix upper_left = stiffness == Stiffness::added
+                                      ? stiffness_pattern(model, coordinates)
+                                      : SparseMatrix(mass_matrix(model, coordinates));
+  const std::vector<int> order = reorder(assembled(upper_left, jacobian, epsilon, place_));
+  for (int& place : place_) place = order[place];
+  matrix_ = assembled(upper_left, jacobian, epsilon, place_);
+  if (triangle == Triangle::upper) matrix_ = SparseMatrix(matrix_.triangularView<Eigen::Upper>());
+  if (stiffness == Stiffness::added) {
+    base_ = Eigen::Map<const Vector>(matrix_.valuePtr(), matrix_.nonZeros());
+  }
+  for (int row = 0; row < constraints.quadratic(); ++row) {
+    for (int k = jacobian.outerIndexPtr()[row]; k < jacobian.outerIndexPtr()[row + 1]; ++k) {
+      const auto [low, high] =
+          std::minmax({place_[jacobian.innerIndexPtr()[k]], multipliers()[row]});
+      slots_.push_back(slot_of(matrix_, low, high));
+      if (triangle == Triangle::full) mirrored_.push_back(slot_of(matrix_, high, low));
+    }
+  }
+}
+
+void SaddleMatrix::refresh(const RowSparseMatrix& jacobian) {
+  double* values = matrix_.valuePtr();
+  if (base_.size() > 0) Eigen::Map<Vector>(values, base_.size()) = base_;
+  for (const auto* slots : {&slots_, &mirrored_}) {
+    const double* value = jacobian.valuePtr();
+    for (const int slot : *slots) values[slot] = *value++;
+  }
+}
+
+Layout SaddleMatrix::layout() const {
+  return {base_.size() > 0 ? &matrix_ : nullptr, triangle_, unknowns()};
+}
+
+}  // namespace mbs::eigen_sparse

@@ -1,0 +1,103 @@
+// Elimination order for the simplicial factorization: AMD's fill, few dependent steps in a row.
+#include <algorithm>
+#include <numeric>
+
+#include "solver.hpp"
+
+namespace mbs::eigen_sparse {
+namespace {
+
+/// The filled graph of a factor L (columns in elimination order, no diagonal), shrinking while
+/// vertices are eliminated again in another order that adds no fill.
+class FilledGraph {
+ public:
+  explicit FilledGraph(const SparseMatrix& L)
+      : neighbours_(L + SparseMatrix(L.transpose())),
+        first_(neighbours_.outerIndexPtr(), neighbours_.outerIndexPtr() + L.cols()),
+        position_(L.cols(), -1) {
+    for (int v = 0; v < L.cols(); ++v) {
+      degree_.push_back(neighbours_.outerIndexPtr()[v + 1] - first_[v]);
+      later_.push_back(L.outerIndexPtr()[v + 1] - L.outerIndexPtr()[v]);
+    }
+  }
+
+  /// Whether the neighbours of `v` that are left are joined to each other. Those of a vertex that
+  /// follow it in L are: so it is enough to count them at the first vertex among `v` and these.
+  bool is_simplicial(int v) {
+    const int* rows = neighbours_.innerIndexPtr();
+    const int end = neighbours_.outerIndexPtr()[v + 1];
+    while (first_[v] < end && position_[rows[first_[v]]] >= 0) ++first_[v];
+    const int first = first_[v] < end ? std::min(v, rows[first_[v]]) : v;
+    return degree_[v] == later_[first];
+  }
+
+  /// Takes `v` out; `visit` gets each neighbour that is left.
+  template <class Visit>
+  void eliminate(int v, Visit visit) {
+    position_[v] = eliminated_++;
+    for (SparseMatrix::InnerIterator it(neighbours_, v); it; ++it) {
+      const auto u = static_cast<int>(it.index());
+      if (position_[u] >= 0) continue;
+      --degree_[u];
+      if (u < v) --later_[u];
+      visit(u);
+    }
+  }
+
+  [[nodiscard]] const std::vector<int>& positions() const { return position_; }
+
+ private:
+  SparseMatrix neighbours_;
+  std::vector<int> first_;           // where a vertex's neighbours that may be left begin
+  std::vector<int> position_;        // in the new order; -1: left
+  std::vector<int> degree_, later_;  // neighbours left: all, those behind the vertex in L
+  int eliminated_ = 0;
+};
+
+/// Rounds of Jess and Kees: each eliminates as many independent vertices as it can without fill.
+std::vector<int> positions_by_rounds(const SparseMatrix& L) {
+  FilledGraph graph(L);
+  std::vector<int> candidates(L.cols()), next, touched(L.cols(), -1);
+  std::iota(candidates.begin(), candidates.end(), 0);
+  for (int round = 0; !candidates.empty(); ++round) {
+    for (const int v : candidates) {
+      if (touched[v] == round || !graph.is_simplicial(v)) continue;
+      graph.eliminate(v, [&](int u) {
+        if (touched[u] != round) next.push_back(u);
+        touched[u] = round;
+      });
+    }
+    candidates.swap(next);
+    next.clear();
+  }
+  return graph.positions();
+}
+
+}  // namespace
+
+template <class Scalar>
+std::vector<int> SimplicialSolver<Scalar>::elimination_order(const SparseMatrix& pattern) {
+  SparseMatrix dominant = pattern;
+  dominant.coeffs().setOnes();
+  dominant.diagonal().setConstant(static_cast<double>(pattern.cols()));
+  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper> factors(dominant);  // AMD
+  const std::vector<int> positions = positions_by_rounds(factors.matrixL().nestedExpression());
+  const auto& amd = factors.permutationP().indices();
+  std::vector<int> position(pattern.cols());
+  for (int i = 0; i < pattern.cols(); ++i) position[i] = positions[amd[i]];
+  return position;
+}
+
+template <class Scalar>
+std::vector<int> SimplicialSolver<Scalar>::equivalent_order(const SparseMatrix& pattern) {
+  std::vector<int> identity(pattern.cols());
+  std::iota(identity.begin(), identity.end(), 0);
+  return identity;
+}
+
+template std::vector<int> SimplicialSolver<double>::elimination_order(const SparseMatrix&);
+template std::vector<int> SimplicialSolver<double>::equivalent_order(const SparseMatrix&);
+template std::vector<int> SimplicialSolver<float>::elimination_order(const SparseMatrix&);
+template std::vector<int> SimplicialSolver<float>::equivalent_order(const SparseMatrix&);
+
+}  // namespace mbs::eigen_sparse

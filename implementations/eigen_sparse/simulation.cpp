@@ -1,0 +1,101 @@
+// The step of paper/README.md: prediction, passes, projections.
+#include "simulation.hpp"
+
+namespace mbs::eigen_sparse {
+
+template <class Form>
+SparseSimulation<Form>::SparseSimulation(const Model& model, const StepSettings& settings)
+    : Simulation(model, settings),
+      settings_(settings),
+      mechanism_(model, numbered_by(model, Form::Solver::elimination_order)),
+      form_(model, settings, mechanism_) {}
+
+template <class Form>
+void SparseSimulation<Form>::do_set_state(const State& state) {
+  mechanism_.set_state(state);
+}
+
+template <class Form>
+void SparseSimulation<Form>::do_get_state(State& state) const {
+  mechanism_.get_state(state);
+}
+
+template <class Form>
+StepOutcome SparseSimulation<Form>::do_step() {
+  StepOutcome outcome{StepStatus::pass_limit, 0};
+  predict();
+  while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
+    ++outcome.passes;
+    phases_.enter(Phase::evaluation);
+    form_.form_residual();
+    phases_.enter(Phase::assembly);
+    form_.refresh();
+    phases_.enter(Phase::factorization);
+    if (!form_.factorize()) {
+      phases_.enter(Phase::other);
+      return {StepStatus::factorization_failed, outcome.passes};
+    }
+    phases_.enter(Phase::solve);
+    form_.solve();  // Eqs. (4), (12)
+    if (correct() <= settings_.tolerance) outcome.status = StepStatus::converged;
+    update_multipliers();
+  }
+  if (settings_.projections != Projections::none) project_velocities();
+  if (settings_.projections == Projections::both) project_accelerations();
+  phases_.enter(Phase::other);
+  return outcome;
+}
+
+template <class Form>
+void SparseSimulation<Form>::predict() {
+  Mechanism& m = mechanism_;
+  if (m.drivers) m.drivers->sample(time(), m.q, m.v, m.constraints.value(), m.force);
+  phases_.enter(Phase::other);
+  m.predict(settings_.step, form_.delta());
+  phases_.enter(Phase::evaluation);
+  m.constraints.evaluate(m.q);
+}
+
+template <class Form>
+double SparseSimulation<Form>::correct() {
+  phases_.enter(Phase::other);
+  const double largest = mechanism_.correct(settings_.step, form_.delta());
+  phases_.enter(Phase::evaluation);
+  mechanism_.constraints.evaluate(mechanism_.q);
+  return largest;
+}
+
+template <class Form>
+void SparseSimulation<Form>::update_multipliers() {
+  phases_.enter(Phase::other);
+  form_.update_multipliers();
+}
+
+template <class Form>
+void SparseSimulation<Form>::project_velocities() {
+  phases_.enter(Phase::projection);
+  form_.form_velocity_projection();
+  phases_.enter(Phase::solve);
+  form_.solve();  // Eqs. (6), (13), velocities
+  phases_.enter(Phase::projection);
+  mechanism_.v.head(form_.delta().size()) = form_.delta();
+}
+
+template <class Form>
+void SparseSimulation<Form>::project_accelerations() {
+  form_.form_acceleration_projection();
+  phases_.enter(Phase::solve);
+  form_.solve();  // Eqs. (6), (13), accelerations
+  mechanism_.a.swap(form_.delta());
+}
+
+template class SparseSimulation<PenaltyForm<SimplicialSolver<double>>>;
+template class SparseSimulation<PenaltyForm<SuperluSolver<double>>>;
+template class SparseSimulation<SaddleForm<SimplicialSolver<double>>>;
+template class SparseSimulation<SaddleForm<SuperluSolver<double>>>;
+template class SparseSimulation<PenaltyForm<RoundedSolver<SimplicialSolver>>>;
+template class SparseSimulation<PenaltyForm<RoundedSolver<SuperluSolver>>>;
+template class SparseSimulation<SaddleForm<RoundedSolver<SimplicialSolver>>>;
+template class SparseSimulation<SaddleForm<RoundedSolver<SuperluSolver>>>;
+
+}  // namespace mbs::eigen_sparse

@@ -1,0 +1,47 @@
+// The time step on Eigen's sparse matrices, for either solver.
+#pragma once
+
+#include "mbs/simulation.hpp"
+#include "mechanism.hpp"
+#include "penalty_form.hpp"
+#include "rounded_solver.hpp"
+#include "saddle_form.hpp"
+#include "solver.hpp"
+
+namespace mbs::eigen_sparse {
+
+/// "The step" with its default settings, in the penalty or in the saddle-point form: every pass
+/// factorizes and updates lambda, every step is projected with the last factors.
+template <class Form>
+class SparseSimulation : public Simulation {
+ public:
+  SparseSimulation(const Model& model, const StepSettings& settings);
+
+ protected:
+  void do_set_state(const State& state) override;
+  StepOutcome do_step() override;
+  void do_get_state(State& state) const override;
+
+  /// Drivers, q', v', a' and the constraints there.
+  void predict();
+  /// Applies delta and evaluates the constraints at the new q'; returns max |delta|.
+  double correct();
+  void update_multipliers();
+  void project_velocities();
+  void project_accelerations();
+
+  StepSettings settings_;
+  Mechanism mechanism_;
+  Form form_;
+};
+
+extern template class SparseSimulation<PenaltyForm<SimplicialSolver<double>>>;
+extern template class SparseSimulation<PenaltyForm<SuperluSolver<double>>>;
+extern template class SparseSimulation<SaddleForm<SimplicialSolver<double>>>;
+extern template class SparseSimulation<SaddleForm<SuperluSolver<double>>>;
+extern template class SparseSimulation<PenaltyForm<RoundedSolver<SimplicialSolver>>>;
+extern template class SparseSimulation<PenaltyForm<RoundedSolver<SuperluSolver>>>;
+extern template class SparseSimulation<SaddleForm<RoundedSolver<SimplicialSolver>>>;
+extern template class SparseSimulation<SaddleForm<RoundedSolver<SuperluSolver>>>;
+
+}  // namespace mbs::eigen_sparse
