@@ -1,7 +1,7 @@
 // What reading and lowering do to a draft alike.
 #include "scene_file/scene_draft.hpp"
 
-#include <fmt/format.h>
+#include <cmath>
 
 namespace mbs {
 
@@ -22,6 +22,17 @@ int add_own(SceneDraft& draft, int body, const Vector3& local, bool is_vector,
 
 int common_body(const SceneDraft& draft, const std::vector<int>& points) {
   return common_body(draft, points, [](int) { return true; });
+}
+
+Vector3 any_across(const Vector3& x) {
+  std::size_t least = 0;
+  for (std::size_t axis = 1; axis < 3; ++axis) {
+    if (std::abs(x[axis]) < std::abs(x[least])) least = axis;
+  }
+  Vector3 unit{};
+  unit[least] = 1.0;
+  const Vector3 across = cross(x, unit);
+  return (1.0 / norm(across)) * across;
 }
 
 }  // namespace mbs

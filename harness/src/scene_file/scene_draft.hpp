@@ -195,4 +195,7 @@ int common_body(const SceneDraft& draft, const std::vector<int>& points, Accept 
 }
 int common_body(const SceneDraft& draft, const std::vector<int>& points);
 
+/// A vector of length 1 at a right angle.
+Vector3 any_across(const Vector3& x);
+
 }  // namespace mbs

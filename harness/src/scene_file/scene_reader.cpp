@@ -14,18 +14,6 @@ namespace {
 
 constexpr double kAcross = 1e-12;  // cosine that counts as a right angle
 
-/// Any vector of length 1 at a right angle.
-Vector3 any_across(const Vector3& x) {
-  std::size_t least = 0;
-  for (std::size_t axis = 1; axis < 3; ++axis) {
-    if (std::abs(x[axis]) < std::abs(x[least])) least = axis;
-  }
-  Vector3 unit{};
-  unit[least] = 1.0;
-  const Vector3 across = cross(x, unit);
-  return (1.0 / std::hypot(across[0], across[1], across[2])) * across;
-}
-
 }  // namespace
 
 SceneDraft SceneReader::read() {

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "printable.hpp"
 #include "scene_file/kinds/kinds.hpp"
@@ -60,14 +59,7 @@ void write_rows(Lowering& scene, const DraftConstraint& constraint) {
     return;
   }
   const Vector3 u = scene.along(line);
-  const std::size_t least = static_cast<std::size_t>(
-      std::min_element(u.begin(), u.end(),
-                       [](double x, double y) { return std::abs(x) < std::abs(y); }) -
-      u.begin());
-  Vector3 unit{};
-  unit[least] = 1.0;
-  const Vector3 across = cross(u, unit);
-  const Vector3 normal = (1.0 / norm(across)) * across;
+  const Vector3 normal = any_across(u);
   scene.distinct_linear(constraint.node, constraint.name + " 1", scene.fixed_dot(normal, off), 0.0);
   scene.distinct_linear(constraint.node, constraint.name + " 2",
                         scene.fixed_dot(cross(u, normal), off), 0.0);
