@@ -12,6 +12,7 @@
 #include "mbs/file_names.hpp"
 #include "registry/factory.hpp"
 #include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {

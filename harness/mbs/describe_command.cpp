@@ -5,6 +5,7 @@
 
 #include "describe/describe.hpp"
 #include "mbs/commands.hpp"
+#include "scene_file/load_scene.hpp"
 
 namespace mbs {
 

@@ -11,6 +11,7 @@
 #include "limit/bounds.hpp"
 #include "limit/limit.hpp"
 #include "mbs/commands.hpp"
+#include "scene_file/load_scene.hpp"
 
 namespace mbs {
 namespace {

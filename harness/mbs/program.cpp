@@ -11,8 +11,8 @@
 #include "mbs/bench_command.hpp"
 #include "mbs/commands.hpp"
 #include "mbs/run_program.hpp"
+#include "registry/setting_names.hpp"
 #include "run/run.hpp"
-#include "run/setting_names.hpp"
 #include "run/settings.hpp"
 #include "usage_error.hpp"
 

@@ -15,6 +15,7 @@
 #include "mbs/trajectory.hpp"
 #include "run/run.hpp"
 #include "run/scaled_equations.hpp"
+#include "scene_file/load_scene.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {

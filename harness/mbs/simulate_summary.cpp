@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "describe/describe.hpp"
-#include "run/setting_names.hpp"
+#include "registry/setting_names.hpp"
 
 namespace mbs {
 namespace {

@@ -11,6 +11,7 @@
 #include "run/settings.hpp"
 #include "run/stretch.hpp"
 #include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/gtest_name.hpp"
 

@@ -9,6 +9,7 @@
 #include "controls/batches.hpp"
 #include "run/settings.hpp"
 #include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 
 namespace mbs {
 namespace {

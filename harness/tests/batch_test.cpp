@@ -8,7 +8,7 @@
 #include "controls/batches.hpp"
 #include "run/initial_state.hpp"
 #include "run/settings.hpp"
-#include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/sample_models.hpp"
 
 namespace mbs {

@@ -12,6 +12,7 @@
 #include "bench/null_variant.hpp"
 #include "bench/reporters.hpp"
 #include "exact/four_bar_exact.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/scripted_simulation.hpp"
 #include "usage_error.hpp"
 

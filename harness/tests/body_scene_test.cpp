@@ -9,6 +9,7 @@
 
 #include "model_math/jacobian_rank.hpp"
 #include "model_math/kinematics.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/scene_support.hpp"
 
 namespace mbs {

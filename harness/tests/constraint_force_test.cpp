@@ -7,6 +7,7 @@
 
 #include "run/initial_state.hpp"
 #include "run/output_values.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/scene_support.hpp"
 
 namespace mbs {

@@ -14,6 +14,7 @@
 
 #include "check/gate.hpp"
 #include "run/settings.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/program.hpp"
 
 namespace mbs {

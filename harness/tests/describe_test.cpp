@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "describe/structure.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/sample_models.hpp"
 
 namespace mbs {

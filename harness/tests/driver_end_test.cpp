@@ -6,6 +6,7 @@
 #include <string>
 
 #include "run/stretch.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/scene_support.hpp"
 
 namespace mbs {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/null_variant.hpp"
-#include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/term_models.hpp"
 
 namespace mbs {

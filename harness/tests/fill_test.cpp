@@ -8,6 +8,7 @@
 
 #include "model_math/kinematics.hpp"
 #include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {

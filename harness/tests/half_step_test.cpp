@@ -6,6 +6,7 @@
 #include "controls/controls.hpp"
 #include "run/run.hpp"
 #include "run/settings.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/sample_models.hpp"
 
 namespace mbs {

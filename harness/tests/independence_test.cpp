@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -169,6 +171,31 @@ TEST(Independence, NobodyElseReadsTheirHeaders) {
   }
   EXPECT_GT(sources, 200) << "too few files to believe it";
   EXPECT_GT(exceptional, 0) << "the exception is not needed any more";
+}
+
+/// A room of harness/src may be read without those that include it.
+TEST(Independence, RoomsOfTheHarnessFormNoCircle) {
+  const fs::path src = kRoot / "harness" / "src";
+  std::map<std::string, std::set<std::string>> reached;  // by room; its own includes at first
+  for (const auto& item : fs::recursive_directory_iterator(src)) {
+    const std::string room = item.path().lexically_relative(src).begin()->string();
+    if (!item.is_regular_file() || !fs::is_directory(src / room)) continue;
+    for (const std::string& name : includes(joined(test::file_text(item.path().string())))) {
+      const auto begin = name.find('"') + 1, end = name.find('/');
+      if (begin == 0 || end == std::string::npos) continue;
+      const std::string other = name.substr(begin, end - begin);
+      if (other != room && fs::is_directory(src / other)) reached[room].insert(other);
+    }
+  }
+  EXPECT_TRUE(reached["scene_file"].contains("scene")) << "includes are not seen";
+  for (std::size_t pass = 0; pass < reached.size(); ++pass) {
+    for (auto& [room, others] : reached) {
+      for (const std::string& other : std::set(others)) others.merge(std::set(reached[other]));
+    }
+  }
+  for (const auto& [room, others] : reached) {
+    EXPECT_FALSE(others.contains(room)) << room << " includes itself by way of others";
+  }
 }
 
 TEST(Independence, TheListAndTheFoldersAreTheSame) {

@@ -7,6 +7,7 @@
 
 #include "exact/four_bar_exact.hpp"
 #include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/dense.hpp"
 #include "support/sample_models.hpp"
 

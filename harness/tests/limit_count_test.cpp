@@ -6,6 +6,7 @@
 #include "run/settings.hpp"
 #include "run/stretch.hpp"
 #include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 
 namespace mbs::limit {
 namespace {

@@ -16,6 +16,7 @@
 #include "run/settings.hpp"
 #include "run/stretch.hpp"
 #include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/allocation_counter.hpp"
 #include "usage_error.hpp"
 

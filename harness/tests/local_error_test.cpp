@@ -7,6 +7,7 @@
 #include "run/initial_state.hpp"
 #include "run/run.hpp"
 #include "run/settings.hpp"
+#include "scene_file/load_scene.hpp"
 
 namespace mbs {
 namespace {

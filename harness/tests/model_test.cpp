@@ -11,6 +11,7 @@
 #include "model_math/jacobian_rank.hpp"
 #include "model_math/kinematics.hpp"
 #include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 
 namespace mbs {
 namespace {

@@ -8,6 +8,7 @@
 #include "model_math/kinematics.hpp"
 #include "registry/registry.hpp"
 #include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/program.hpp"
 #include "support/sample_models.hpp"
 

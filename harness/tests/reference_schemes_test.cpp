@@ -8,6 +8,7 @@
 #include "run/initial_state.hpp"
 #include "run/settings.hpp"
 #include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/sample_models.hpp"
 
 namespace mbs {

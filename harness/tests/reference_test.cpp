@@ -11,6 +11,7 @@
 #include "reference/reference_simulation.hpp"
 #include "run/initial_state.hpp"
 #include "run/settings.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/dense.hpp"
 #include "support/sample_models.hpp"
 

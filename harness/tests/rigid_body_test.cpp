@@ -1,5 +1,5 @@
 // A body's mass matrix and constraints are those of a rigid body, whatever carries its coordinates.
-#include "scene/rigid_body.hpp"
+#include "scene_file/body/rigid_body.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,9 @@
 
 #include "model_math/jacobian_rank.hpp"
 #include "model_math/kinematics.hpp"
-#include "scene/rigid_fit.hpp"
+#include "scene_file/body/rigid_fit.hpp"
 #include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 
 namespace mbs {
 namespace {

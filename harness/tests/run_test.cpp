@@ -13,6 +13,7 @@
 #include "model_math/kinematics.hpp"
 #include "run/settings.hpp"
 #include "run/stretch.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/sample_models.hpp"
 #include "usage_error.hpp"
 

@@ -11,6 +11,7 @@
 #include "run/initial_state.hpp"
 #include "run/run.hpp"
 #include "run/settings.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/sample_models.hpp"
 #include "support/term_models.hpp"
 

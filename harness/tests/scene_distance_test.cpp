@@ -11,6 +11,7 @@
 #include "controls/controls.hpp"
 #include "run/run.hpp"
 #include "run/settings.hpp"
+#include "scene_file/load_scene.hpp"
 
 namespace mbs {
 namespace {

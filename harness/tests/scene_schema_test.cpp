@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "scene_file/kinds/kinds.hpp"
 #include "support/scene_support.hpp"
 
 namespace mbs {
@@ -51,23 +52,23 @@ std::string with(const std::string& list, const std::string& item) {
 TEST(SceneSchema, NamesTheReadersKeys) {
   const nlohmann::json all = schema();
   EXPECT_EQ(keys_taken(R"({"?": 1})"), keys_of(all));
-  const std::pair<const char*, const char*> kLists[] = {
-      {"vectors", "unit_vector"}, {"rods", "rod"},       {"masses", "mass"},
-      {"bodies", "body"},         {"springs", "spring"}, {"torsion_springs", "torsion_spring"},
-      {"forces", "force"},        {"torques", "torque"}, {"outputs", "output"}};
-  for (const auto& [list, definition] : kLists) {
-    EXPECT_EQ(keys_taken(with(list, R"([{"?": 1}])")), keys_of(all["$defs"][definition])) << list;
+  for (const ListKind& kind : list_kinds()) {
+    const std::string key(kind.key), list = R"([{"?": 1}])";
+    EXPECT_EQ(all["properties"][key]["items"]["$ref"], std::string("#/$defs/") + kind.schema);
+    if (key == "constraints") continue;  // by type: below
+    EXPECT_EQ(keys_taken(key == "points" ? R"({"points": )" + list + "}" : with(key, list)),
+              keys_of(all["$defs"][kind.schema]))
+        << key;
   }
-  EXPECT_EQ(keys_taken(R"({"points": [{"?": 1}]})"), keys_of(all["$defs"]["point"]));
   EXPECT_EQ(keys_taken(with("assembly", R"({"?": 1})")), keys_of(all["properties"]["assembly"]));
 }
 
 TEST(SceneSchema, NamesTheKeysOfConstraintsAndFunctions) {
   const nlohmann::json definitions = schema()["$defs"];
-  int types = 0;
+  Keys types, known;
   for (const auto& constraint : definitions["constraint"]["oneOf"]) {
     const std::string type = constraint["properties"]["type"]["const"];
-    ++types;
+    types.insert(type);
     EXPECT_EQ(
         keys_taken(with("constraints", R"([{"?": 1, "between": ["A", "B"], "points": ["A", "B"],
                                 "first": ["A", "B"], "second": ["B", "C"], "type": ")" +
@@ -75,7 +76,8 @@ TEST(SceneSchema, NamesTheKeysOfConstraintsAndFunctions) {
         keys_of(constraint))
         << type;
   }
-  EXPECT_EQ(types, 7);
+  for (const ConstraintKind& kind : constraint_kinds()) known.emplace(kind.type);
+  EXPECT_EQ(types, known);
   const std::string distance = R"([{"type": "distance", "between": ["A", "B"], "value": )";
   Keys functions;
   for (const auto& function : definitions["function"]["oneOf"]) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "model_math/kinematics.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/scene_support.hpp"
 #include "usage_error.hpp"
 

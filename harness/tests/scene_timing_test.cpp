@@ -10,6 +10,7 @@
 #include "bench/null_variant.hpp"
 #include "bench/paired_ratio.hpp"
 #include "bench/scene_table.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/scripted_simulation.hpp"
 
 namespace mbs {

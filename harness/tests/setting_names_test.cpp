@@ -1,5 +1,5 @@
 // Names of settings, the combinations that are refused, and who serves what.
-#include "run/setting_names.hpp"
+#include "registry/setting_names.hpp"
 
 #include <gtest/gtest.h>
 

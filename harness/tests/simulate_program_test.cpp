@@ -13,6 +13,7 @@
 #include "model_math/kinematics.hpp"
 #include "registry/registry.hpp"
 #include "run/run.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/folder.hpp"
 #include "support/program.hpp"
 

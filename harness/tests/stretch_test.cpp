@@ -8,6 +8,7 @@
 
 #include "exact/four_bar_exact.hpp"
 #include "run/initial_state.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/sample_models.hpp"
 #include "usage_error.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "controls/batches.hpp"
 #include "run/settings.hpp"
-#include "scene/scene_document.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/scene_support.hpp"
 #include "sweep/lane.hpp"
 #include "sweep/scene_number.hpp"

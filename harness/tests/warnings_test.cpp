@@ -11,6 +11,7 @@
 #include "describe/penalty_window.hpp"
 #include "describe/structure.hpp"
 #include "run/settings.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/sample_models.hpp"
 
 namespace mbs {

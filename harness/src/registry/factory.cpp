@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "run/setting_names.hpp"
+#include "registry/setting_names.hpp"
 
 namespace mbs {
 namespace {

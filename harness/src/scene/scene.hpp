@@ -6,7 +6,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "mbs/model.hpp"
@@ -158,19 +157,11 @@ inline constexpr int kMostLoops = 100'000;                ///< of four_bar(): n 
 inline constexpr std::uint64_t kFillSeed = 607'615;       ///< of "four-bar:N,fill=F"
 inline constexpr long kMostFilledPositions = 50'000'000;  ///< of a tangent, for add_fill()
 
-/// Reads "four-bar:N", "four-bar:N,fill=F" or the path of a JSON scene (harness/scenes/README.md
-/// has the format). Throws UsageError.
-Scene load_scene(const std::string& text);
-
 /// The N-loop four-bar mechanism of paper/README.md; points A0..AN (fixed), then B0..BN.
 /// Throws UsageError unless 1 <= loops <= kMostLoops.
 ModelData four_bar(int loops);
 /// Its rods, for pictures, and position and velocity of B0 as outputs.
 Elements four_bar_elements(int loops);
-
-/// Parses the text of a JSON scene, assembles its start and checks it, physically too; `where`
-/// names it in errors. A Model made from the result is valid. Throws UsageError.
-SceneData parse_scene(std::string_view json, const std::string& where);
 
 /// Moves data.model's start onto its constraints: positions onto Phi(q, 0) = 0, then velocities
 /// onto Phi_q v = -Phi_t, each by the smallest change in the norm of M (Gauss-Newton; redundant

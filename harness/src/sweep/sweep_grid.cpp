@@ -5,7 +5,7 @@
 #include <fmt/ranges.h>
 
 #include "printable.hpp"
-#include "scene/scene_document.hpp"
+#include "scene_file/load_scene.hpp"
 #include "sweep/scene_number.hpp"
 #include "sweep/value_range.hpp"
 #include "usage_error.hpp"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {

@@ -1,0 +1,119 @@
+// What makes a driver smooth is checked here; time_functions.cpp trusts it.
+#include "scene_file/kinds/drivers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "scene/time_functions.hpp"
+
+namespace mbs {
+namespace {
+
+/// A function and the longest step (s) that resolves it, infinite unless that is limited.
+struct GivenFunction {
+  TimeFunction value;
+  double longest_step = std::numeric_limits<double>::infinity();
+  std::string resolution = {};  ///< what longest_step is, for messages
+};
+
+constexpr std::size_t kMostCoefficients = 32;
+constexpr std::size_t kFewestRows = 4;
+
+std::vector<double> numbers(const JsonNode& node) {
+  std::vector<double> result;
+  for (const JsonNode& item : node.items()) result.push_back(item.number());
+  return result;
+}
+
+TimeFunction read_polynomial(const JsonNode& node) {
+  std::vector<double> coefficients = numbers(node);
+  if (coefficients.empty() || coefficients.size() > kMostCoefficients) {
+    node.fail(fmt::format("an array of 1 to {} numbers", kMostCoefficients));
+  }
+  while (coefficients.size() > 1 && coefficients.back() == 0.0) coefficients.pop_back();
+  if (coefficients.size() == 1) return coefficients.front();
+  return polynomial(std::move(coefficients));
+}
+
+GivenFunction read_sine(const JsonNode& node) {
+  node.allow_keys({"amplitude", "frequency", "phase", "offset"});
+  Sine values{node.get("amplitude").number(),
+              node.get("frequency").number_at_least(0.0, "a frequency in Hz of at least 0")};
+  if (const auto phase = node.find("phase")) values.phase = phase->number();
+  if (const auto offset = node.find("offset")) values.offset = offset->number();
+  if (values.amplitude == 0.0 || values.frequency == 0.0) return {sine(values)};
+  return {sine(values), 1.0 / (kStepsPerPeriod * values.frequency),
+          fmt::format("1/{:g} of the sine's period", kStepsPerPeriod)};
+}
+
+GivenFunction read_table(const JsonNode& node) {
+  node.allow_keys({"times", "values"});
+  const JsonNode times_node = node.get("times"), values_node = node.get("values");
+  std::vector<double> times = numbers(times_node), values = numbers(values_node);
+  if (times.size() < kFewestRows) {
+    times_node.fail(fmt::format("at least {} times: fewer make no smooth function", kFewestRows));
+  }
+  if (values.size() != times.size()) {
+    values_node.fail(fmt::format("as many values as times, {}", times.size()));
+  }
+  const auto items = times_node.items();
+  if (times.front() > 0.0) items.front().fail("a first time of at most 0, when the run starts");
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] > times[i - 1]) continue;
+    items[i].fail(fmt::format("a time above the one before, {}", times[i - 1]));
+  }
+  if (const auto row = corner_of(times, values)) {
+    values_node.items()[*row].fail(
+        fmt::format("a corner at t = {} s", times[*row]),
+        "a smooth function, whose slope changes over at least four rows (a corner would need an "
+        "infinite force)");
+  }
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    shortest = std::min(shortest, times[i] - times[i - 1]);
+  }
+  return {spline(std::move(times), std::move(values)), shortest,
+          "the table's shortest row distance"};
+}
+
+GivenFunction read_function(const JsonNode& node, const std::string& unit) {
+  if (node.is_number()) return {node.number()};
+  if (!node.is_object()) {
+    node.fail("a number " + unit + ", or an object with polynomial, sine or table");
+  }
+  node.allow_keys({"polynomial", "sine", "table"});
+  const auto members = node.members();
+  if (members.size() != 1) {
+    node.fail(fmt::format("an object with {} members", members.size()),
+              "one of polynomial, sine, table");
+  }
+  const auto& [kind, value] = members.front();
+  if (kind == "polynomial") return {read_polynomial(value)};
+  return kind == "sine" ? read_sine(value) : read_table(value);
+}
+
+}  // namespace
+
+TimeFunction read_driver(SceneReader& reader, const JsonNode& node, const std::string& unit,
+                         Driver driver) {
+  const GivenFunction given = read_function(node, unit);
+  if (given.value.is_constant()) return given.value;
+  driver.path = node.path();
+  driver.value = given.value;
+  driver.longest_step = given.longest_step;
+  driver.resolution = given.resolution;
+  reader.draft().drivers.push_back(std::move(driver));
+  return given.value;
+}
+
+void read_value(SceneReader& reader, DraftConstraint& constraint, const std::string& unit,
+                Driver driver) {
+  const auto value = constraint.node.find("value");
+  if (!value) return;
+  driver.name = constraint.name;
+  constraint.value = read_driver(reader, *value, unit, std::move(driver));
+}
+
+}  // namespace mbs

@@ -1,0 +1,149 @@
+// From what the user typed to a Scene.
+#include "scene_file/load_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "printable.hpp"
+#include "scene_file/json_text.hpp"
+#include "usage_error.hpp"
+
+namespace mbs {
+namespace {
+
+constexpr std::string_view kFourBar = "four-bar:";
+// About 400 000 rods. The worst JSON of this size takes 1 GB to parse.
+constexpr std::size_t kLargestFile = std::size_t{32} << 20;  // bytes
+constexpr std::size_t kLongestName = 4096;                   // bytes; no path is longer
+
+[[noreturn]] void fail(const std::string& scene, const std::string& what) {
+  throw UsageError(fmt::format("scene {}: {}", in_quotes(scene), what));
+}
+
+bool all_digits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+int parse_loops(const std::string& scene, std::string_view text) {
+  int loops = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), loops);
+  if (!all_digits(text) || text[0] == '0' || error != std::errc{} || loops > kMostLoops) {
+    fail(scene,
+         fmt::format(
+             "found {} for N, allowed is a whole number from 1 to {} without sign or leading 0",
+             in_quotes(text), kMostLoops));
+  }
+  return loops;
+}
+
+double parse_fill(const std::string& scene, std::string_view option) {
+  const auto equals = option.find('=');
+  if (option.substr(0, equals) != "fill" || equals == std::string_view::npos) {
+    fail(scene, fmt::format("found the option {}, allowed is fill=F", in_quotes(option)));
+  }
+  const std::string_view text = option.substr(equals + 1);
+  double fill = 0.0;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), fill, std::chars_format::fixed);
+  const bool decimal = text.find_first_not_of("0123456789.") == std::string_view::npos;
+  if (!decimal || error != std::errc{} || end != text.data() + text.size() ||
+      !(fill > 0.0 && fill <= 1.0)) {
+    fail(scene, fmt::format("found {} for F, allowed is a decimal number above 0, up to 1",
+                            in_quotes(text)));
+  }
+  return fill;
+}
+
+Scene load_four_bar(const std::string& scene) {
+  const std::string_view rest = std::string_view(scene).substr(kFourBar.size());
+  const auto comma = rest.find(',');
+  const int loops = parse_loops(scene, rest.substr(0, comma));
+  if (comma == std::string_view::npos) {
+    return {scene, Model(four_bar(loops)), loops, {}, four_bar_elements(loops), {}};
+  }
+  const double asked = parse_fill(scene, rest.substr(comma + 1));
+  ModelData data = four_bar(loops);
+  try {
+    const Fill fill = add_fill(data, asked, kFillSeed);
+    return {scene, Model(std::move(data)), loops, fill, four_bar_elements(loops), {}};
+  } catch (const UsageError& error) {
+    fail(scene, error.what());
+  }
+}
+
+[[noreturn]] void fail_too_large(const std::string& path) {
+  fail(path, fmt::format("the file is too large, allowed are {} bytes", kLargestFile));
+}
+
+std::string read_file(const std::string& path) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);  // of a regular file
+  if (!error && size > kLargestFile) fail_too_large(path);
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  std::string text;
+  std::string chunk(std::size_t{1} << 16, '\0');
+  while (file) {
+    file.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
+    text.append(chunk, 0, static_cast<std::size_t>(file.gcount()));
+    if (text.size() > kLargestFile) {
+      fail_too_large(path);
+    }
+  }
+  if (!file.eof()) {
+    fail(path, fmt::format("the file cannot be read: {}",
+                           errno != 0 ? std::strerror(errno) : "unknown reason"));
+  }
+  return text;
+}
+
+/// Throws unless there may be a JSON scene at `path`.
+void require_file(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    const bool missing = status.type() == std::filesystem::file_type::not_found || path.empty();
+    fail(path,
+         fmt::format("{}; allowed are four-bar:N (N from 1 to {}), four-bar:N,fill=F (F above "
+                     "0, up to 1), or the path of a JSON scene file",
+                     missing ? "no such file and no such kind of scene" : error.message(),
+                     kMostLoops));
+  }
+  if (std::filesystem::is_directory(status)) {
+    fail(path, "this is a directory, allowed is a JSON scene file");
+  }
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& text) {
+  return text.starts_with(kFourBar) ? load_four_bar(text) : scene_of(load_document(text), text);
+}
+
+nlohmann::json load_document(const std::string& text) {
+  if (!text.starts_with(kFourBar)) {
+    require_file(text);
+    return parse_json(read_file(text), text);
+  }
+  if (text.find(',') != std::string::npos) {
+    fail(text, "artificial fill is in no document, allowed are four-bar:N and JSON scene files");
+  }
+  return four_bar_document(parse_loops(text, std::string_view(text).substr(kFourBar.size())));
+}
+
+Scene scene_of(const nlohmann::json& document, const std::string& name) {
+  // Paths may hold any bytes; a scene's name ends up in JSON and must be UTF-8.
+  SceneData data = read_scene(document, name);
+  return {printable(name, kLongestName), Model(std::move(data.model)), {}, {},
+          std::move(data.elements),      std::move(data.assembly)};
+}
+
+}  // namespace mbs
