@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <tuple>
 
 #include "support/scene_support.hpp"
 
@@ -54,12 +55,30 @@ TEST(SceneSchema, NamesTheReadersKeys) {
   const std::pair<const char*, const char*> kLists[] = {
       {"vectors", "unit_vector"}, {"rods", "rod"},       {"masses", "mass"},
       {"bodies", "body"},         {"springs", "spring"}, {"torsion_springs", "torsion_spring"},
-      {"forces", "force"},        {"torques", "torque"}, {"outputs", "output"}};
+      {"forces", "force"},        {"torques", "torque"}, {"outputs", "output"},
+      {"force_laws", "force_law"}, {"torque_laws", "torque_law"}};
   for (const auto& [list, definition] : kLists) {
     EXPECT_EQ(keys_taken(with(list, R"([{"?": 1}])")), keys_of(all["$defs"][definition])) << list;
   }
   EXPECT_EQ(keys_taken(R"({"points": [{"?": 1}]})"), keys_of(all["$defs"]["point"]));
   EXPECT_EQ(keys_taken(with("assembly", R"({"?": 1})")), keys_of(all["properties"]["assembly"]));
+}
+
+TEST(SceneSchema, NamesTheKeysOfTables) {
+  const nlohmann::json definitions = schema()["$defs"];
+  for (const auto& [list, definition, ends] :
+       {std::tuple{"force_laws", "force_law", R"("between": ["A", "B"])"},
+        std::tuple{"torque_laws", "torque_law",
+                   R"("from": ["A", "B"], "to": ["B", "C"], "axis": "z")"}}) {
+    for (const auto& [key, table] : definitions[definition]["properties"].items()) {
+      if (!key.starts_with("by_")) continue;
+      const std::string vectors = R"([{"name": "z", "direction": [0, 0, 1]}], ")";
+      EXPECT_EQ(keys_taken(with("vectors", vectors + list + "\": [{" + ends + ", \"" + key +
+                                               R"(": {"?": 1}}])")),
+                keys_of(table))
+          << list << key;
+    }
+  }
 }
 
 TEST(SceneSchema, NamesTheKeysOfConstraintsAndFunctions) {

@@ -12,8 +12,8 @@ namespace {
 
 constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
                        Term::springs,     Term::torsion_springs, Term::dampers,
-                       Term::couples,     Term::drivers,         Term::mass_across_axes,
-                       Term::spatial};
+                       Term::couples,     Term::force_laws,      Term::drivers,
+                       Term::mass_across_axes, Term::spatial};
 
 constexpr Serves kServes = {.terms = kTerms,
                             .saddle_point = true,

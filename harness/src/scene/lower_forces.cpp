@@ -1,6 +1,7 @@
-// Springs, torsion springs and torques.
+// Springs, torsion springs, laws and torques.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -39,6 +40,8 @@ Vector3 axis_of(const ModelData& data, int axis, const Vector3& direction, const
 void Lowering::lower_forces() {
   for (const DraftSpring& spring : draft_.springs) lower_spring(spring);
   for (const DraftTorsionSpring& spring : draft_.torsion_springs) lower_torsion_spring(spring);
+  for (const DraftForceLaw& law : draft_.force_laws) lower_force_law(law);
+  for (const DraftTorqueLaw& law : draft_.torque_laws) lower_torque_law(law);
   for (const DraftTorque& torque : draft_.torques) lower_torque(torque);
 }
 
@@ -57,6 +60,16 @@ void Lowering::lower_torsion_spring(const DraftTorsionSpring& spring) {
   model().torsion_springs.push_back({from.a, from.b, to.a, to.b,
                                      spring.axis < 0 ? -1 : index(spring.axis), spring.stiffness,
                                      spring.damping, spring.angle.value_or(0.0), spring.name});
+}
+
+void Lowering::lower_force_law(const DraftForceLaw& law) {
+  model().force_laws.push_back({index(law.a), index(law.b), law.law, law.name});
+}
+
+void Lowering::lower_torque_law(const DraftTorqueLaw& law) {
+  const Edge from = edge(law.from), to = edge(law.to);
+  model().torque_laws.push_back({from.a, from.b, to.a, to.b, law.axis < 0 ? -1 : index(law.axis),
+                                 law.law, law.name});
 }
 
 void Lowering::lower_torque(const DraftTorque& torque) {
@@ -82,10 +95,12 @@ void finish_start(Lowered& lowered, const std::string& where) {
     const Vector3 u = difference(data, s.a, s.b), w = difference(data, s.c, s.d);
     s.angle = std::atan2(dot(axis_of(data, s.axis, w, s.name, where), cross(u, w)), dot(u, w));
   }
-  for (const TorsionSpring& s : data.torsion_springs) {
-    axis_of(data, s.axis, difference(data, s.a, s.b), s.name, where);
-    axis_of(data, s.axis, difference(data, s.c, s.d), s.name, where);
-  }
+  const auto require_across = [&](const auto& corner) {
+    axis_of(data, corner.axis, difference(data, corner.a, corner.b), corner.name, where);
+    axis_of(data, corner.axis, difference(data, corner.c, corner.d), corner.name, where);
+  };
+  std::ranges::for_each(data.torsion_springs, require_across);
+  std::ranges::for_each(data.torque_laws, require_across);
   for (const Couple& couple : data.couples) {
     axis_of(data, couple.axis, difference(data, couple.a, couple.b), couple.name, where);
   }

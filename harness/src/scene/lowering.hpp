@@ -100,6 +100,8 @@ class Lowering {
   void lower_spring(const DraftSpring& spring);
   void lower_torsion_spring(const DraftTorsionSpring& spring);
   void lower_torque(const DraftTorque& torque);
+  void lower_force_law(const DraftForceLaw& law);
+  void lower_torque_law(const DraftTorqueLaw& law);
 
   SceneDraft& draft_;
   Lowered lowered_;

@@ -32,17 +32,22 @@ void SceneReader::read_torsion_spring(const JsonNode& node) {
   node.allow_keys({"name", "from", "to", "axis", "stiffness", "damping", "angle"});
   DraftTorsionSpring spring{node, element_name(node), direction(node.get("from")),
                             direction(node.get("to"))};
-  std::vector<int> points{spring.from.to, spring.to.to};
-  for (const DraftDirection& d : {spring.from, spring.to}) {
-    if (d.from >= 0) points.push_back(d.from);
-  }
-  use_between(node, points);
+  use_directions(node, spring.from, spring.to);
   spring.axis = axis(node);
   spring.stiffness =
       optional_not_negative(node, "stiffness", "a stiffness in N m/rad of at least 0");
   spring.damping = optional_not_negative(node, "damping", "a damping in N m s/rad of at least 0");
   if (const auto angle = node.find("angle")) spring.angle = angle->number();
   draft_.torsion_springs.push_back(std::move(spring));
+}
+
+void SceneReader::use_directions(const JsonNode& node, const DraftDirection& from,
+                                 const DraftDirection& to) {
+  std::vector<int> points{from.to, to.to};
+  for (const DraftDirection& d : {from, to}) {
+    if (d.from >= 0) points.push_back(d.from);
+  }
+  use_between(node, points);
 }
 
 void SceneReader::read_force(const JsonNode& node) {

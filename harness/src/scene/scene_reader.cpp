@@ -20,8 +20,8 @@ constexpr double kLeastDistance = 1e-150;  // m, whose square is still a number 
 
 SceneDraft SceneReader::read() {
   root_.allow_keys({"dimension", "gravity", "points", "vectors", "rods", "masses", "bodies",
-                    "constraints", "springs", "torsion_springs", "forces", "torques", "assembly",
-                    "outputs", "$schema"});
+                    "constraints", "springs", "torsion_springs", "force_laws", "torque_laws", "forces",
+                    "torques", "assembly", "outputs", "$schema"});
   read_dimension_and_gravity();
   if (!root_.find("bodies")) static_cast<void>(root_.get("points"));
   for (const JsonNode& node : list("points")) read_point(node);
@@ -32,6 +32,8 @@ SceneDraft SceneReader::read() {
   for (const JsonNode& node : list("constraints")) read_constraint(node);
   for (const JsonNode& node : list("springs")) read_spring(node);
   for (const JsonNode& node : list("torsion_springs")) read_torsion_spring(node);
+  for (const JsonNode& node : list("force_laws")) read_force_law(node);
+  for (const JsonNode& node : list("torque_laws")) read_torque_law(node);
   for (const JsonNode& node : list("forces")) read_force(node);
   for (const JsonNode& node : list("torques")) read_torque(node);
   for (const JsonNode& node : list("outputs")) read_output(node);

@@ -66,6 +66,15 @@ class SceneReader {
   void read_force(const JsonNode& node);
   void read_torque(const JsonNode& node);
   void read_torque_on_body(const JsonNode& node, DraftTorque& torque);
+  /// The points of two directions, as use_between() has them.
+  void use_directions(const JsonNode& node, const DraftDirection& from, const DraftDirection& to);
+
+  // reader_laws.cpp
+  void read_force_law(const JsonNode& node);
+  void read_torque_law(const JsonNode& node);
+  /// A law over `position` ("length" or "angle"), whose tables have a column of `values`.
+  [[nodiscard]] Law read_law(const JsonNode& node, const std::string& position,
+                             const std::string& values);
   /// The unit vector "axis", which must be there in space and must not in the plane (-1).
   int axis(const JsonNode& node);
 
