@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/math/interpolators/pchip.hpp>
+#include <algorithm>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+
+#include "support/boost_pchip.hpp"
 
 namespace mbs {
 namespace {
@@ -13,7 +16,7 @@ namespace {
 const std::vector<double> kX{-1.0, -0.4, 0.0, 0.1, 1.5, 2.0}, kY{-5.0, -1.0, 0.0, 0.0, 3.0, 2.0};
 
 TEST(MonotoneCurve, IsBoostsWithinTheTable) {
-  const boost::math::interpolators::pchip boosts(std::vector<double>(kX), std::vector<double>(kY));
+  const auto boosts = test::boost_pchip(kX, kY);
   const Curve curve = monotone_curve(kX, kY);
   for (double x = -0.999; x < 2.0; x += 0.0137) {
     EXPECT_NEAR(curve.at(x).value, boosts(x), 1e-14) << x;

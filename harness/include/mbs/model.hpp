@@ -94,8 +94,8 @@ struct TorsionSpring {
 /// How the force of an element depends on its length or angle s and on the rate s' of that:
 /// F = factor(t) (by_position(s) + by_rate(s')), Eq. (18).
 struct Law {
-  Curve by_position;          ///< N over m, or N m over rad
-  Curve by_rate;              ///< N over m/s, or N m over rad/s
+  Curve by_position = {};     ///< N over m, or N m over rad
+  Curve by_rate = {};         ///< N over m/s, or N m over rad/s
   TimeFunction factor = 1.0;  ///< dimensionless; only its value enters
 };
 
