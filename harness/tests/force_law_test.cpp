@@ -145,8 +145,7 @@ TEST(ForceLaw, NewtonConvergesQuadratically) {
   thick.by_rate = {{0.0}, {in_rate, in_rate}};
   for (const auto& [name, create] : simulations()) {
     SCOPED_TRACE(name);
-    for (const Model& model :
-         {on_a_line(1.0, 1.1, 0.0, stiff), on_a_line(1.0, 1.1, 3.0, thick)}) {
+    for (const Model& model : {on_a_line(1.0, 1.1, 0.0, stiff), on_a_line(1.0, 1.1, 3.0, thick)}) {
       int passes = 0;
       run(create, model, 1e-2, 20, &passes);
       EXPECT_LE(passes, 5);
@@ -253,11 +252,12 @@ TEST(ForceLaw, OverAnAngleItEndsHalfATurnFromZero) {
 }
 
 TEST(ForceLaw, ItsFactorEndsWithItsTable) {
-  const SceneData data = parse_scene(R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
+  const SceneData data =
+      parse_scene(R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
       {"name": "B", "position": [1, 0]}], "masses": [{"point": "B", "mass": 1}],
     "force_laws": [{"between": ["A", "B"], "by_length": {"lengths": [0, 1], "forces": [0, 1]},
       "factor": {"table": {"times": [0, 0.1, 0.2, 0.3], "values": [0, 1, 2, 3]}}}]})",
-                                     "test.json");
+                  "test.json");
   const Scene scene{"test.json", Model(data.model), {}, {}, data.elements};
   EXPECT_EQ(driver_end(scene.model), 0.3);
   EXPECT_NO_THROW(require_drivers(scene, 0.1, 3));

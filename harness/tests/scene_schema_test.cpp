@@ -53,10 +53,12 @@ TEST(SceneSchema, NamesTheReadersKeys) {
   const nlohmann::json all = schema();
   EXPECT_EQ(keys_taken(R"({"?": 1})"), keys_of(all));
   const std::pair<const char*, const char*> kLists[] = {
-      {"vectors", "unit_vector"}, {"rods", "rod"},       {"masses", "mass"},
-      {"bodies", "body"},         {"springs", "spring"}, {"torsion_springs", "torsion_spring"},
-      {"forces", "force"},        {"torques", "torque"}, {"outputs", "output"},
-      {"force_laws", "force_law"}, {"torque_laws", "torque_law"}};
+      {"vectors", "unit_vector"},   {"rods", "rod"},
+      {"masses", "mass"},           {"bodies", "body"},
+      {"springs", "spring"},        {"torsion_springs", "torsion_spring"},
+      {"forces", "force"},          {"torques", "torque"},
+      {"outputs", "output"},        {"force_laws", "force_law"},
+      {"torque_laws", "torque_law"}};
   for (const auto& [list, definition] : kLists) {
     EXPECT_EQ(keys_taken(with(list, R"([{"?": 1}])")), keys_of(all["$defs"][definition])) << list;
   }

@@ -15,8 +15,7 @@ ForcePattern::ForcePattern(const Model& model) {
                        spring.length, append_ends({spring.a, spring.b})});
   }
   for (const ForceLaw& law : model.force_laws()) {
-    line_laws.push_back(
-        {offset[law.a], offset[law.b], &law.law, append_ends({law.a, law.b})});
+    line_laws.push_back({offset[law.a], offset[law.b], &law.law, append_ends({law.a, law.b})});
   }
   for (const TorsionSpring& spring : model.torsion_springs()) {
     torsions.push_back({offset[spring.a], offset[spring.b], offset[spring.c], offset[spring.d],

@@ -10,8 +10,8 @@ namespace mbs::csc_klu {
 
 /// Everything that gives Q at q', v': each an element with a gradient g, which has a block of `dim`
 /// values for every free point of it. Order: springs and laws along lines, the same about axes,
-/// couples; these alone have no share of C and K. Example, planar, a spring from A (fixed) to B: one end, at B's first
-/// coordinate, with first = -1.
+/// couples; these alone have no share of C and K. Example, planar, a spring from A (fixed) to B:
+/// one end, at B's first coordinate, with first = -1.
 struct ForcePattern {
   struct Spring {
     int a, b;  ///< offsets into the extended vector

@@ -42,9 +42,8 @@ void Forces<dim>::evaluate(const double* q, const double* v, double* right) {
   const double* factor = factors_.data();
   for (const auto& spring : pattern_.springs) {
     const auto linear = [&spring](double length, double rate, double inverse) -> Response {
-      return {spring.stiffness * (length - spring.length) + spring.damping * rate,
-              spring.stiffness, spring.damping,
-              std::max(0.0, spring.stiffness * (1.0 - spring.length * inverse))};
+      return {spring.stiffness * (length - spring.length) + spring.damping * rate, spring.stiffness,
+              spring.damping, std::max(0.0, spring.stiffness * (1.0 - spring.length * inverse))};
     };
     evaluate_line(spring, q, v, linear, place, right);
   }
@@ -92,8 +91,8 @@ int Forces<dim>::apply(int end, int ends_end, const Vector<dim>& by_u, const Vec
 
 template <int dim>
 template <class Line, class Respond>
-void Forces<dim>::evaluate_line(const Line& line, const double* q, const double* v,
-                                Respond respond, Place& place, double* right) {
+void Forces<dim>::evaluate_line(const Line& line, const double* q, const double* v, Respond respond,
+                                Place& place, double* right) {
   Vector<dim> e = difference<dim>(q, line.a, line.b);
   const double length = std::sqrt(dot(e, e));
   const double inverse = length > 0.0 ? 1.0 / length : 0.0;
@@ -104,7 +103,7 @@ void Forces<dim>::evaluate_line(const Line& line, const double* q, const double*
   across_[place.element] = across;
   along_[place.element] =
       damping_weight_ * response.damping + weight_ * response.stiffness - across;  // Eq. (11)
-  place.end = apply(place.end, line.ends_end, e, e, response.force, right);  // second = 0
+  place.end = apply(place.end, line.ends_end, e, e, response.force, right);        // second = 0
   ++place.element;
 }
 

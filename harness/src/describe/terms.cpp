@@ -41,8 +41,8 @@ json terms_json(const Scene& scene) {
   std::vector<const Law*> laws;
   for (const ForceLaw& law : model.force_laws()) laws.push_back(&law.law);
   for (const TorqueLaw& law : model.torque_laws()) laws.push_back(&law.law);
-  const auto factors = std::ranges::count_if(
-      laws, [](const Law* law) { return !law->factor.is_constant(); });
+  const auto factors =
+      std::ranges::count_if(laws, [](const Law* law) { return !law->factor.is_constant(); });
   const auto held = [](const Law* law) { return !law->by_position.is_zero(); };
   const auto rated = [](const Law* law) { return !law->by_rate.is_zero(); };
   const auto fixed =

@@ -15,8 +15,8 @@
 namespace mbs {
 namespace {
 
-/// A law as a spring, for its period: as stiff as it becomes, as damped as it is at rest. Bump stops
-/// are to be resolved although they do not touch at the start.
+/// A law as a spring, for its period: as stiff as it becomes, as damped as it is at rest. Bump
+/// stops are to be resolved although they do not touch at the start.
 struct LawAsSpring {
   explicit LawAsSpring(const Law& law) {
     const double factor = law.factor.at(0.0).value;

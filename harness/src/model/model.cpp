@@ -81,7 +81,8 @@ void require_not_negative(double value, const std::string& what) {
 }
 
 void check_curve(const Curve& curve, const std::string& what) {
-  if (curve.pieces.size() != curve.breaks.size() + 1) fail(what + " has not one piece more than breaks");
+  if (curve.pieces.size() != curve.breaks.size() + 1)
+    fail(what + " has not one piece more than breaks");
   for (const double x : curve.breaks) require_finite(x, what);
   const auto falls = std::ranges::adjacent_find(curve.breaks, std::ranges::greater_equal{});
   if (falls != curve.breaks.end()) fail(what + " has breaks that do not increase");

@@ -170,9 +170,7 @@ double force_of(const Law& law, double s, double rate, double t) {
 double potential_of(const Law& law, double s) {
   return law.factor.is_constant() ? law.factor.at(0.0).value * integral(law.by_position, s) : 0.0;
 }
-bool is_conservative(const Law& law) {
-  return law.by_rate.is_zero() && law.factor.is_constant();
-}
+bool is_conservative(const Law& law) { return law.by_rate.is_zero() && law.factor.is_constant(); }
 
 /// The gradient of the angle of w against axis z: (z x w) / (w . w).
 Vector3 turning(const Vector3& z, const Vector3& w) { return (1.0 / dot(w, w)) * cross(z, w); }

@@ -60,8 +60,8 @@ void mass_times(const Model& model, std::span<const double> x, std::span<double>
 /// Kinetic energy v.M v / 2, J; what driven points add is left out.
 double kinetic_energy(const Model& model, std::span<const double> v);
 
-/// Potential energy of the constant force, which is zero at q = 0, of the springs, and of laws whose factor is
-/// constant (integral()), J.
+/// Potential energy of the constant force, which is zero at q = 0, of the springs, and of laws
+/// whose factor is constant (integral()), J.
 double potential_energy(const Model& model, double t, std::span<const double> q);
 
 /// Kinetic plus potential energy, J.

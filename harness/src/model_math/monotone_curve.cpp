@@ -1,5 +1,5 @@
-// F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304: slopes that keep what F. N.
-// Fritsch and R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238-246, ask of a monotone cubic.
+// F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304: slopes that keep what F.
+// N. Fritsch and R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238-246, ask of a monotone cubic.
 #include "model_math/monotone_curve.hpp"
 
 #include <cmath>

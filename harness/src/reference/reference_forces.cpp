@@ -28,7 +28,8 @@ std::pair<Real, Real> evaluate(const Curve& curve, Real x) {
   while (k < curve.breaks.size() && curve.breaks[k] <= x) ++k;
   const Real z = x - curve.pieces[k].origin;
   const auto& c = curve.pieces[k].coefficients;
-  return {c[0] + c[1] * z + c[2] * z * z + c[3] * z * z * z, c[1] + 2 * c[2] * z + 3 * c[3] * z * z};
+  return {c[0] + c[1] * z + c[2] * z * z + c[3] * z * z * z,
+          c[1] + 2 * c[2] * z + 3 * c[3] * z * z};
 }
 
 }  // namespace
@@ -90,9 +91,8 @@ std::vector<ReferenceSimulation::Element> ReferenceSimulation::elements() const 
     return {held + spring.damping * rate, spring.stiffness, spring.damping, held};
   };
   for (const Spring& spring : model_.springs()) {
-    result.push_back(line_element(spring, [&](Real s, Real rate) {
-      return linear(spring, s - spring.length, rate);
-    }));
+    result.push_back(line_element(
+        spring, [&](Real s, Real rate) { return linear(spring, s - spring.length, rate); }));
   }
   for (const TorsionSpring& spring : model_.torsion_springs()) {
     result.push_back(corner_element(spring, [&](Real theta, Real rate) {

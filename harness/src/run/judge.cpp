@@ -178,10 +178,9 @@ std::string Judge::judge_torsion(double t, const State& state) {
     so_far_.twists[i] += std::remainder(now[i].twist - so_far_.twists[i], 2 * std::numbers::pi);
     if (!now[i].can_turn_on && !(std::abs(so_far_.twists[i]) <= std::numbers::pi)) {
       const bool is_spring = i < scene_->model.torsion_springs().size();
-      return fmt::format(
-          "{}: it is more than half a turn from {}", now[i].name,
-          is_spring ? "its free angle, where its torque would change sign"
-                    : "the angle 0, where its table would begin again");
+      return fmt::format("{}: it is more than half a turn from {}", now[i].name,
+                         is_spring ? "its free angle, where its torque would change sign"
+                                   : "the angle 0, where its table would begin again");
     }
   }
   return "";

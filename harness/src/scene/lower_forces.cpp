@@ -68,8 +68,8 @@ void Lowering::lower_force_law(const DraftForceLaw& law) {
 
 void Lowering::lower_torque_law(const DraftTorqueLaw& law) {
   const Edge from = edge(law.from), to = edge(law.to);
-  model().torque_laws.push_back({from.a, from.b, to.a, to.b, law.axis < 0 ? -1 : index(law.axis),
-                                 law.law, law.name});
+  model().torque_laws.push_back(
+      {from.a, from.b, to.a, to.b, law.axis < 0 ? -1 : index(law.axis), law.law, law.name});
 }
 
 void Lowering::lower_torque(const DraftTorque& torque) {

@@ -32,7 +32,8 @@ Curve read_curve(const JsonNode& node, const std::string& arguments, const std::
   }
   const auto rows = x_node.items();
   for (std::size_t i = 1; i < x.size(); ++i) {
-    if (!(x[i] > x[i - 1])) rows[i].fail(fmt::format("a number above the one before, {}", x[i - 1]));
+    if (!(x[i] > x[i - 1]))
+      rows[i].fail(fmt::format("a number above the one before, {}", x[i - 1]));
   }
   Curve curve = monotone_curve(x, y);
   for (std::size_t i = 0; i < curve.pieces.size(); ++i) {

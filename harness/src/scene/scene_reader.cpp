@@ -20,8 +20,8 @@ constexpr double kLeastDistance = 1e-150;  // m, whose square is still a number 
 
 SceneDraft SceneReader::read() {
   root_.allow_keys({"dimension", "gravity", "points", "vectors", "rods", "masses", "bodies",
-                    "constraints", "springs", "torsion_springs", "force_laws", "torque_laws", "forces",
-                    "torques", "assembly", "outputs", "$schema"});
+                    "constraints", "springs", "torsion_springs", "force_laws", "torque_laws",
+                    "forces", "torques", "assembly", "outputs", "$schema"});
   read_dimension_and_gravity();
   if (!root_.find("bodies")) static_cast<void>(root_.get("points"));
   for (const JsonNode& node : list("points")) read_point(node);

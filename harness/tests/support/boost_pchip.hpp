@@ -1,9 +1,10 @@
 // Boost's monotone interpolation, for what must not be evaluated by what it is held against.
 #pragma once
 
-#include <boost/math/special_functions/fpclassify.hpp>  // pchip.hpp uses it and does not say so
-
+// clang-format off: pchip.hpp uses fpclassify.hpp and does not say so.
+#include <boost/math/special_functions/fpclassify.hpp>
 #include <boost/math/interpolators/pchip.hpp>
+// clang-format on
 #include <utility>
 #include <vector>
 

@@ -261,7 +261,8 @@ std::vector<Term> terms() {
          b.drive_point();
          b.data().force_laws = {{E, P, {stop(), damper(), wave(1.0, 0.5, 9.0, 0.3)}, "driven"},
                                 {D, G, {stop(), {}, wave(0.5, 0.7, 8.0, 0.0)}, "actuator"}};
-         b.data().torque_laws = {{B, A, C, B, b.axis(), {{}, damper(), wave(-1, 1, 5, 1)}, "motor"}};
+         b.data().torque_laws = {
+             {B, A, C, B, b.axis(), {{}, damper(), wave(-1, 1, 5, 1)}, "motor"}};
        }},
       {"driven rod", [](Builder& b) { b.driven_rod(); }},
       {"driven length", [](Builder& b) { b.drive_value(1, 0.1); }},
