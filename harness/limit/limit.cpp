@@ -43,8 +43,9 @@ bool same_mechanism(const Model& model, const Model& other) {
          all_equal(model.dot_constraints(), other.dot_constraints()) &&
          all_equal(model.mass(), other.mass()) && all_equal(model.force(), other.force()) &&
          model.constraints() == other.constraints() && model.springs().empty() &&
-         model.torsion_springs().empty() && model.couples().empty() &&
-         model.driven_points().empty() && model.driven_values().empty();
+         model.torsion_springs().empty() && model.force_laws().empty() &&
+         model.torque_laws().empty() && model.couples().empty() && model.driven_points().empty() &&
+         model.driven_values().empty();
 }
 
 /// N of the N-four-bar. Throws Unsupported if the model is anything else.

@@ -117,9 +117,10 @@ std::string summary_text(const nlohmann::json& json, const RunSummary& summary) 
     text +=
         fmt::format("  local errors add up to {:.3g} m\n", json["local_error_sum"].get<double>());
   }
-  text += fmt::format("  energy drift max       {}\n",
-                      figure(summary.energy_drift_max, " of its scale",
-                             "not judged: dampers, torques or drivers change the energy"));
+  text +=
+      fmt::format("  energy drift max       {}\n",
+                  figure(summary.energy_drift_max, " of its scale",
+                         "not judged: dampers, torques, drivers or force laws change the energy"));
   text += fmt::format("  constraint violation   {}\n",
                       figure(summary.constraint_violation_max, " m^2"));
   text += fmt::format("  set-up                 {:.1f} us\n", json["setup_us"].get<double>());

@@ -170,6 +170,40 @@ TEST(BadElement, Forces) {
         {"the start is too far from its constraints", "allowed is 0.001 m"}}});
 }
 
+const std::string kLaws = R"({
+  "points": [{"name": "O", "position": [0, 0], "fixed": true},
+             {"name": "X", "position": [3, 0], "fixed": true}, {"name": "P", "position": [2, 1]}],
+  "masses": [{"point": "P", "mass": 1}],
+  "force_laws": [{"name": "stop", "between": ["O", "P"],
+                  "by_length": {"lengths": [1, 2, 3], "forces": [-9, 0, 0]},
+                  "by_rate": {"rates": [-1, 1], "forces": [-5, 5]}}],
+  "torque_laws": [{"name": "motor", "from": ["O", "X"], "to": ["O", "P"],
+                   "by_rate": {"rates": [0, 100], "torques": [7, 0]}, "factor": -1}]})";
+
+TEST(BadElement, Laws) {
+  expect_edits(
+      kLaws,
+      {{"[1, 2, 3]",
+        "[1, 1, 3]",
+        {"force_laws[0].by_length.lengths[1]: found 1, allowed is a number above the one before"}},
+       {"[1, 2, 3]", "[1, 3, 2]", {"lengths[2]: found 2, allowed is a number above", "before, 3"}},
+       {"[1, 2, 3]", "[1, 2]", {"by_length.forces: found 3 forces for 2 lengths", "as many"}},
+       {"[1, 2, 3]", "[1]", {"by_length.lengths: found 1 of lengths, allowed is at least 2"}},
+       {"[1, 2, 3]", "[1, 2, 1e60]", {"by_length.lengths[2]: found 1e+60"}},
+       {"[1, 2, 3]", "[0, 1e-200, 3]", {"by_length.lengths[1]: found rows so close together"}},
+       {"[-9, 0, 0]", "[-9, \"x\", 0]", {"by_length.forces[1]: found \"x\""}},
+       {R"("lengths")", R"("angles")", {"unknown key \"angles\"", "lengths, forces"}},
+       {R"("by_length")", R"("by_angle")", {"force_laws[0]", "unknown key \"by_angle\""}},
+       {R"("between": ["O", "P"])", R"("from": ["O", "P"])", {"unknown key \"from\""}},
+       {R"(["O", "P"],)", R"(["O", "X"],)", {"force_laws[0].between: found only fixed"}},
+       {R"("by_rate": {"rates": [0, 100], "torques": [7, 0]}, )",
+        "",
+        {"torque_laws[0]: found a law without a table, allowed is by_angle, by_rate or both"}},
+       {R"("motor")", R"("stop")", {"torque_laws[0].name: found \"stop\"", "force_laws[0] has it"}},
+       {R"("factor": -1)", R"("factor": "x")", {"torque_laws[0].factor", "without unit"}},
+       {R"("factor": -1)", R"("axis": "z")", {"axis in a planar scene"}}});
+}
+
 TEST(BadElement, Drivers) {
   const std::string sine = R"({"sine": {"amplitude": 1, "frequency": 2}})";
   const auto driver = [&](const std::string& function, std::vector<std::string> parts) {

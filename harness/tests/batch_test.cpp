@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numeric>
 
 #include "controls/batches.hpp"
+#include "model_math/monotone_curve.hpp"
 #include "run/initial_state.hpp"
 #include "run/settings.hpp"
 #include "scene_file/load_scene.hpp"
@@ -146,6 +148,16 @@ TEST(BatchShape, IsEverythingButValues) {
   EXPECT_FALSE(have_same_shape(model, with_spring(1.0, 0.0)));
   EXPECT_TRUE(have_same_shape(with_spring(2.0, 0.0), with_spring(1.0, 0.0)));
   EXPECT_FALSE(have_same_shape(with_spring(2.0, 0.0), with_spring(2.0, 1.0)));
+  const auto with_law = [&model](const std::vector<double>& forces) {
+    ModelData data = model.data();
+    std::vector<double> lengths(forces.size());
+    std::iota(lengths.begin(), lengths.end(), 1.0);
+    data.force_laws.push_back({1, 3, {monotone_curve(lengths, forces)}, "l"});
+    return Model(std::move(data));
+  };
+  EXPECT_FALSE(have_same_shape(model, with_law({1.0, 2.0})));
+  EXPECT_TRUE(have_same_shape(with_law({1.0, 2.0}), with_law({1.0, 3.0})));
+  EXPECT_FALSE(have_same_shape(with_law({1.0, 2.0}), with_law({1.0, 2.0, 3.0})));
 }
 
 TEST(BatchShape, MethodsDifferInAllButPenaltyAndTolerance) {

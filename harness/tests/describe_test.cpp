@@ -70,8 +70,8 @@ TEST(Describe, Text) {
         "terms present         gravity or constant forces (Q), rods (5), quadratic constraints "
         "(5), "
         "fixed points (3)\n",
-        "terms absent          torques, springs and dampers, torsion springs, stiffness (K), "
-        "damping (C)",
+        "terms absent          torques, springs and dampers, torsion springs, force laws, "
+        "factors of time, stiffness (K), damping (C)",
         "length l              1 m, of the fastest part: ok to an estimated error (--half-step) of "
         "0.01 m, plausible to a sum of local errors of 0.003 m\n",
         "penalty factor        ", "(singular positions) to ", "for step 0.00125 s; automatic ",

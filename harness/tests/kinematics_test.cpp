@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "support/gtest_name.hpp"
@@ -94,7 +95,9 @@ TEST_P(Kinematics, CurvatureIsWhatTheRateGainsBesidesAcceleration) {
 /// At rest, without couples and drivers, the force is minus the gradient of the energy.
 TEST_P(Kinematics, ForceIsTheGradientOfThePotential) {
   const Model& model = GetParam().model;
-  if (!model.couples().empty() || !model.driven_mass().empty() || !model.driven_points().empty()) {
+  const auto changes = [](const auto& law) { return !law.law.factor.is_constant(); };
+  if (!model.couples().empty() || !model.driven_mass().empty() || !model.driven_points().empty() ||
+      std::ranges::any_of(model.force_laws(), changes)) {
     GTEST_SKIP() << "has forces without a potential";
   }
   Values is_length(model.variables(), 0.0);  // of a unit vector: constrained, so without a force
@@ -129,6 +132,7 @@ TEST_P(Kinematics, DampersTakeEnergy) {
   for (int i = 0; i < model.variables(); ++i) power += (moving[i] - still[i]) * at.v[i];
   for (const Spring& spring : model.springs()) damping += spring.damping;
   for (const TorsionSpring& spring : model.torsion_springs()) damping += spring.damping;
+  for (const ForceLaw& law : model.force_laws()) damping += law.law.by_rate.is_zero() ? 0.0 : 1.0;
   if (damping > 0.0) {
     EXPECT_LT(power, 0.0);
   } else {

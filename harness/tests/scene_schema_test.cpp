@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <tuple>
 
 #include "scene_file/kinds/kinds.hpp"
 #include "support/scene_support.hpp"
@@ -61,6 +62,23 @@ TEST(SceneSchema, NamesTheReadersKeys) {
         << key;
   }
   EXPECT_EQ(keys_taken(with("assembly", R"({"?": 1})")), keys_of(all["properties"]["assembly"]));
+}
+
+TEST(SceneSchema, NamesTheKeysOfTables) {
+  const nlohmann::json definitions = schema()["$defs"];
+  for (const auto& [list, definition, ends] :
+       {std::tuple{"force_laws", "force_law", R"("between": ["A", "B"])"},
+        std::tuple{"torque_laws", "torque_law",
+                   R"("from": ["A", "B"], "to": ["B", "C"], "axis": "z")"}}) {
+    for (const auto& [key, table] : definitions[definition]["properties"].items()) {
+      if (!key.starts_with("by_")) continue;
+      const std::string vectors = R"([{"name": "z", "direction": [0, 0, 1]}], ")";
+      EXPECT_EQ(keys_taken(with("vectors", vectors + list + "\": [{" + ends + ", \"" + key +
+                                               R"(": {"?": 1}}])")),
+                keys_of(table))
+          << list << key;
+    }
+  }
 }
 
 TEST(SceneSchema, NamesTheKeysOfConstraintsAndFunctions) {

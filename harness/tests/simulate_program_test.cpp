@@ -139,7 +139,8 @@ TEST_F(SimulateProgram, SaysWhichFiguresAreNotKnown) {
   expect(lost, "estimated error max    not known: the run was lost");
   const auto driven = simulate(scenes + "problems/half_car.json' --duration 0.1");
   expect(driven,
-         "energy drift max       not judged: dampers, torques or drivers change the energy");
+         "energy drift max       not judged: dampers, torques, drivers or force laws change the "
+         "energy");
   const auto failed = simulate("four-bar:10 --duration 1 --step 1");
   EXPECT_EQ(failed.status, 1);
   expect(failed, "position error max     not known: the run was lost");

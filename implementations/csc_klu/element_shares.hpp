@@ -29,7 +29,7 @@ class ElementShares {
   /// One product of the gradients of two ends.
   struct Share {
     int element, left, right;  ///< an element with C and K of a ForcePattern, and two of its ends
-    double sign;               ///< what S S^T of Forces has there; 0 for torsion springs
+    double sign;               ///< what S S^T of Forces has there; 0 about an axis
     std::array<int, dim> columns;  ///< offset of the first row of each column of the block
   };
 

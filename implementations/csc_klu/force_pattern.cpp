@@ -1,4 +1,4 @@
-// Where springs, torsion springs and couples act, found once from the model.
+// Where springs, laws and couples act, found once from the model.
 #include "force_pattern.hpp"
 
 namespace mbs::csc_klu {
@@ -14,10 +14,18 @@ ForcePattern::ForcePattern(const Model& model) {
     springs.push_back({offset[spring.a], offset[spring.b], spring.stiffness, spring.damping,
                        spring.length, append_ends({spring.a, spring.b})});
   }
+  for (const ForceLaw& law : model.force_laws()) {
+    line_laws.push_back({offset[law.a], offset[law.b], &law.law, append_ends({law.a, law.b})});
+  }
   for (const TorsionSpring& spring : model.torsion_springs()) {
     torsions.push_back({offset[spring.a], offset[spring.b], offset[spring.c], offset[spring.d],
                         axis_offset(spring.axis), spring.stiffness, spring.damping, spring.angle,
                         append_ends({spring.a, spring.b, spring.c, spring.d})});
+  }
+  for (const TorqueLaw& law : model.torque_laws()) {
+    axis_laws.push_back({offset[law.a], offset[law.b], offset[law.c], offset[law.d],
+                         axis_offset(law.axis), &law.law,
+                         append_ends({law.a, law.b, law.c, law.d})});
   }
   for (const mbs::Couple& couple : model.couples()) {
     couples.push_back({offset[couple.a], offset[couple.b], axis_offset(couple.axis), couple.torque,
@@ -27,8 +35,13 @@ ForcePattern::ForcePattern(const Model& model) {
 
 std::vector<int> ForcePattern::stiff_ends() const {
   std::vector<int> stiff;
-  for (const Spring& spring : springs) stiff.push_back(spring.ends_end);
-  for (const Torsion& torsion : torsions) stiff.push_back(torsion.ends_end);
+  const auto append = [&stiff](const auto& elements) {
+    for (const auto& element : elements) stiff.push_back(element.ends_end);
+  };
+  append(springs);
+  append(line_laws);
+  append(torsions);
+  append(axis_laws);
   return stiff;
 }
 

@@ -10,10 +10,10 @@ namespace mbs::csc_klu {
 
 namespace {
 
-constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
-                       Term::springs,     Term::torsion_springs, Term::dampers,
-                       Term::couples,     Term::drivers,         Term::mass_across_axes,
-                       Term::spatial};
+constexpr Terms kTerms{
+    Term::dots,    Term::bilinear, Term::linear,     Term::springs, Term::torsion_springs,
+    Term::dampers, Term::couples,  Term::force_laws, Term::drivers, Term::mass_across_axes,
+    Term::spatial};
 
 constexpr Serves kServes = {.terms = kTerms,
                             .saddle_point = true,

@@ -32,6 +32,7 @@ class TrapezoidalSimulation final : public Simulation {
   StepOutcome do_step() override {
     Equations<dim>& e = equations_;
     if (e.has_drivers) e.drivers.sample(time(), e.q.data(), e.v.data(), e.v.data());
+    if (e.has_forces) e.forces.set_time(time());
     predict(e.n, settings_.step, e.q.data(), e.v.data(), e.a.data());
     phases_.enter(Phase::evaluation);
     e.evaluate_constraints();

@@ -243,8 +243,10 @@ def test_settings_are_served_by_name_and_fit_the_scene():
     assert serving(PENALTY, variants) == ["one/a", "two/b"]
     assert serving(LOOSE, variants) == ["two/b"] == serving(Setting("rattle6"), variants)
     assert not serving(Setting("saddle-point", (("precision", "single"),)), variants)
-    scene = {"terms": {"driven_constraints": False, "damping": True}, "driven_points": 0, "driven_vectors": 0}
-    assert fits(Setting("rattle4"), scene) and not fits(SADDLE, scene)
+    for terms in ({"damping": True}, {"factors": 1}):
+        scene = {"terms": {"driven_constraints": False, "factors": 0, "damping": False} | terms,
+                 "driven_points": 0, "driven_vectors": 0}
+        assert fits(Setting("rattle4"), scene) and not fits(SADDLE, scene)
     assert len({setting.file_name for setting in catalogue()}) == len(catalogue())
 
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mbs/curve.hpp"
 #include "mbs/time_function.hpp"
 
 namespace mbs {
@@ -90,6 +91,31 @@ struct TorsionSpring {
   std::string name;
 };
 
+/// How the force of an element depends on its length or angle s and on the rate s' of that:
+/// F = factor(t) (by_position(s) + by_rate(s')), Eq. (18).
+struct Law {
+  Curve by_position = {};     ///< N over m, or N m over rad
+  Curve by_rate = {};         ///< N over m/s, or N m over rad/s
+  TimeFunction factor = 1.0;  ///< dimensionless; only its value enters
+};
+
+/// A law along the line between two points, s = L and e as of a Spring: the force -F e acts on a,
+/// its opposite on b. F > 0 pulls them together.
+struct ForceLaw {
+  int a = 0, b = 0;  ///< indices into Model::points(), different
+  Law law;
+  std::string name;
+};
+
+/// A law about the axis z, s = theta in -pi ... pi as of a TorsionSpring: the torque -F acts on w,
+/// its opposite on u.
+struct TorqueLaw {
+  int a = 0, b = 0, c = 0, d = 0;  ///< indices into Model::points()
+  int axis = -1;                   ///< 3D: index of the unit vector z; planar: -1
+  Law law;
+  std::string name;
+};
+
 /// A constant torque about z on the direction w = r_a - r_b, which is perpendicular to z (planar:
 /// z = (0, 0, 1)): the force torque (z x w) / (w . w) acts on a, its opposite on b.
 struct Couple {
@@ -129,6 +155,8 @@ struct ModelData {
   std::vector<Spring> springs = {};
   std::vector<TorsionSpring> torsion_springs = {};
   std::vector<Couple> couples = {};
+  std::vector<ForceLaw> force_laws = {};
+  std::vector<TorqueLaw> torque_laws = {};
   std::vector<DrivenPoint> driven_points = {};
   std::vector<DrivenValue> driven_values = {};
   std::vector<DrivenMass> driven_mass = {};
@@ -141,7 +169,7 @@ struct ModelData {
 ///   Phi (m) lists the dot constraints first, then the bilinear, then the linear ones, in the order
 ///   given;
 ///   M (n x n) is symmetric positive definite and constant;
-///   Q (n) is force() plus what springs, couples and driven mass give.
+///   Q (n) is force() plus what springs, laws, couples and driven mass give.
 /// A list is empty if the scene has no such thing.
 class Model {
  public:
@@ -170,6 +198,8 @@ class Model {
     return data_.torsion_springs;
   }
   [[nodiscard]] std::span<const Couple> couples() const { return data_.couples; }
+  [[nodiscard]] std::span<const ForceLaw> force_laws() const { return data_.force_laws; }
+  [[nodiscard]] std::span<const TorqueLaw> torque_laws() const { return data_.torque_laws; }
   [[nodiscard]] std::span<const DrivenPoint> driven_points() const { return data_.driven_points; }
   [[nodiscard]] std::span<const DrivenValue> driven_values() const { return data_.driven_values; }
   [[nodiscard]] std::span<const DrivenMass> driven_mass() const { return data_.driven_mass; }

@@ -13,9 +13,10 @@ enum class Term {
   linear,            ///< LinearConstraint
   springs,           ///< Spring
   torsion_springs,   ///< TorsionSpring
-  dampers,           ///< damping of a Spring or TorsionSpring
+  dampers,           ///< damping of a Spring or TorsionSpring, Law::by_rate
   couples,           ///< Couple
-  drivers,           ///< DrivenPoint, DrivenValue, DrivenMass
+  force_laws,        ///< ForceLaw, TorqueLaw
+  drivers,           ///< DrivenPoint, DrivenValue, DrivenMass, a Law::factor that is not constant
   mass_across_axes,  ///< mass between different axes (x of one point, y of another)
   spatial,           ///< three dimensions
 };

@@ -1,4 +1,4 @@
-// Known functions of time with two derivatives: what drivers prescribe.
+// Known functions of time with two derivatives: what drivers prescribe, factors of laws.
 #pragma once
 
 #include <limits>

@@ -15,6 +15,19 @@ bool can_grow(const Model& model) {
          std::ranges::none_of(model.points(), &Point::is_vector);
 }
 
+/// The same curve over numbers `wider` times as large, its values `higher` times as large.
+void stretch(Curve& curve, double wider, double higher) {
+  for (double& x : curve.breaks) x *= wider;
+  for (Curve::Piece& piece : curve.pieces) {
+    piece.origin *= wider;
+    double factor = higher;
+    for (double& c : piece.coefficients) {
+      c *= factor;
+      factor /= wider;
+    }
+  }
+}
+
 /// Another mechanism of the same shape.
 ModelData varied(const Model& model, double heavier, double longer) {
   ModelData data = model.data();
@@ -33,6 +46,10 @@ ModelData varied(const Model& model, double heavier, double longer) {
   }
   for (TorsionSpring& spring : data.torsion_springs) spring.stiffness /= heavier;
   for (Couple& couple : data.couples) couple.torque /= heavier;
+  for (ForceLaw& law : data.force_laws) {
+    stretch(law.law.by_position, longer, heavier * longer);
+  }
+  for (TorqueLaw& law : data.torque_laws) stretch(law.law.by_position, 1.0, 1 / heavier);
   return data;
 }
 

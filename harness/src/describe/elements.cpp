@@ -45,12 +45,24 @@ json points(const Scene& scene, const SceneMotion& motion) {
   return result;
 }
 
-/// Rods, distances, springs.
+/// Rods, distances, springs, force laws.
 template <class Elements>
 json pairs(const SceneMotion& motion, const Elements& elements) {
   json result = json::array();
   for (const auto& element : elements) {
     result.push_back({{"name", element.name}, {"between", pair(motion, element.a, element.b)}});
+  }
+  return result;
+}
+
+/// Torsion springs, torque laws.
+template <class Elements>
+json corners(const SceneMotion& motion, const Elements& elements) {
+  json result = json::array();
+  for (const auto& element : elements) {
+    result.push_back({{"name", element.name},
+                      {"from", pair(motion, element.b, element.a)},
+                      {"to", pair(motion, element.d, element.c)}});
   }
   return result;
 }
@@ -64,16 +76,11 @@ json elements_json(const Scene& scene) {
       {model.initial_position().begin(), model.initial_position().end()}, zero, zero, {}, 0.0};
   SceneMotion motion(scene);
   motion.set(0.0, start);
-  json bodies = json::array(), torsion_springs = json::array(), outputs = json::array();
+  json bodies = json::array(), outputs = json::array();
   for (const auto& body : scene.elements.bodies) {
     bodies.push_back({{"name", body.name},
                       {"points", names(motion, body.points)},
                       {"vectors", names(motion, body.vectors)}});
-  }
-  for (const TorsionSpring& spring : model.torsion_springs()) {
-    torsion_springs.push_back({{"name", spring.name},
-                               {"from", pair(motion, spring.b, spring.a)},
-                               {"to", pair(motion, spring.d, spring.c)}});
   }
   for (const Output& output : scene.elements.outputs) outputs.push_back(output.name);
   return {{"points", points(scene, motion)},
@@ -81,7 +88,9 @@ json elements_json(const Scene& scene) {
           {"distances", pairs(motion, scene.elements.distances)},
           {"bodies", bodies},
           {"springs", pairs(motion, model.springs())},
-          {"torsion_springs", torsion_springs},
+          {"torsion_springs", corners(motion, model.torsion_springs())},
+          {"force_laws", pairs(motion, model.force_laws())},
+          {"torque_laws", corners(motion, model.torque_laws())},
           {"outputs", outputs}};
 }
 

@@ -18,6 +18,8 @@ constexpr std::pair<const char*, const char*> kNames[] = {
     {"couples", "torques"},
     {"springs", "springs and dampers"},
     {"torsion_springs", "torsion springs"},
+    {"laws", "force laws"},
+    {"factors", "factors of time"},
     {"stiffness", "stiffness (K)"},
     {"damping", "damping (C)"},
     {"rods", "rods"},
@@ -36,6 +38,13 @@ json terms_json(const Scene& scene) {
   const auto force = model.force();
   const auto stiff = [](const auto& spring) { return spring.stiffness != 0.0; };
   const auto damped = [](const auto& spring) { return spring.damping != 0.0; };
+  std::vector<const Law*> laws;
+  for (const ForceLaw& law : model.force_laws()) laws.push_back(&law.law);
+  for (const TorqueLaw& law : model.torque_laws()) laws.push_back(&law.law);
+  const auto factors =
+      std::ranges::count_if(laws, [](const Law* law) { return !law->factor.is_constant(); });
+  const auto held = [](const Law* law) { return !law->by_position.is_zero(); };
+  const auto rated = [](const Law* law) { return !law->by_rate.is_zero(); };
   const auto fixed =
       std::ranges::count_if(model.points(), [](const Point& p) { return p.is_fixed(); });
   const auto driven = static_cast<std::ptrdiff_t>(model.driven_points().size());
@@ -43,10 +52,14 @@ json terms_json(const Scene& scene) {
           {"couples", model.couples().size()},
           {"springs", model.springs().size()},
           {"torsion_springs", model.torsion_springs().size()},
+          {"laws", laws.size()},
+          {"factors", factors},
           {"stiffness", std::ranges::any_of(model.springs(), stiff) ||
-                            std::ranges::any_of(model.torsion_springs(), stiff)},
+                            std::ranges::any_of(model.torsion_springs(), stiff) ||
+                            std::ranges::any_of(laws, held)},
           {"damping", std::ranges::any_of(model.springs(), damped) ||
-                          std::ranges::any_of(model.torsion_springs(), damped)},
+                          std::ranges::any_of(model.torsion_springs(), damped) ||
+                          std::ranges::any_of(laws, rated)},
           {"rods", scene.elements.rods.size()},
           {"bodies", scene.elements.bodies.size()},
           {"dot_constraints", model.dot_constraints().size()},

@@ -15,7 +15,20 @@
 namespace mbs {
 namespace {
 
-/// Diagonals of K and C of Eq. (11).
+/// A law as a spring, for its period: as stiff as it becomes, as damped as it is at rest. Bump
+/// stops are to be resolved although they do not touch at the start.
+struct LawAsSpring {
+  explicit LawAsSpring(const Law& law) {
+    const double factor = law.factor.at(0.0).value;
+    for (const double x : law.by_position.breaks) {
+      stiffness = std::max(stiffness, factor * law.by_position.at(x).slope);
+    }
+    damping = std::max(0.0, factor * law.by_rate.at(0.0).slope);
+  }
+  double stiffness = 0.0, damping = 0.0;
+};
+
+/// Diagonals of K and C of Eqs. (11) and (18).
 class SpringDiagonal {
  public:
   explicit SpringDiagonal(const Model& model)
@@ -23,9 +36,16 @@ class SpringDiagonal {
         stiffness(static_cast<std::size_t>(model.variables()), 0.0),
         damping(stiffness) {
     for (const Spring& spring : model.springs()) add_spring(spring);
-    for (const TorsionSpring& spring : model.torsion_springs()) {
-      add_turning(spring, spring.a, spring.b);
-      add_turning(spring, spring.c, spring.d);
+    for (const TorsionSpring& spring : model.torsion_springs()) add_torsion_spring(spring);
+    for (const ForceLaw& law : model.force_laws()) {
+      const LawAsSpring as(law.law);
+      // Slack at the start: what a force holds across the line is left out.
+      const double length = norm(point(law.a).position - point(law.b).position);
+      add_spring({law.a, law.b, as.stiffness, as.damping, length, ""});
+    }
+    for (const TorqueLaw& law : model.torque_laws()) {
+      const LawAsSpring as(law.law);
+      add_torsion_spring({law.a, law.b, law.c, law.d, law.axis, as.stiffness, as.damping, 0.0, ""});
     }
   }
 
@@ -54,6 +74,10 @@ class SpringDiagonal {
     }
     add(spring.a, k, c);
     add(spring.b, k, c);
+  }
+  void add_torsion_spring(const TorsionSpring& spring) {
+    add_turning(spring, spring.a, spring.b);
+    add_turning(spring, spring.c, spring.d);
   }
   void add_turning(const TorsionSpring& spring, int a, int b) {
     const Vector3 w = point(a).position - point(b).position;

@@ -47,6 +47,21 @@ bool same_constraints(const Model& a, const Model& b) {
          all_alike(a.linear_constraints(), b.linear_constraints(), same_terms);
 }
 
+bool same_laws(const Model& a, const Model& b) {
+  const auto same_law = [](const Law& x, const Law& y) {
+    return x.by_position.breaks.size() == y.by_position.breaks.size() &&
+           x.by_rate.breaks.size() == y.by_rate.breaks.size();
+  };
+  return all_alike(a.force_laws(), b.force_laws(),
+                   [same_law](const ForceLaw& x, const ForceLaw& y) {
+                     return x.a == y.a && x.b == y.b && same_law(x.law, y.law);
+                   }) &&
+         all_alike(a.torque_laws(), b.torque_laws(),
+                   [same_law](const TorqueLaw& x, const TorqueLaw& y) {
+                     return same_four(x, y) && x.axis == y.axis && same_law(x.law, y.law);
+                   });
+}
+
 bool same_forces(const Model& a, const Model& b) {
   const auto same_values = [](const auto& x, const auto& y) {
     return same_zero(x.stiffness, y.stiffness) && same_zero(x.damping, y.damping);
@@ -77,7 +92,8 @@ bool same_drivers(const Model& a, const Model& b) {
 }  // namespace
 
 bool have_same_shape(const Model& a, const Model& b) {
-  return same_points(a, b) && same_constraints(a, b) && same_forces(a, b) && same_drivers(a, b) &&
+  return same_points(a, b) && same_constraints(a, b) && same_forces(a, b) && same_laws(a, b) &&
+         same_drivers(a, b) &&
          all_alike(a.mass(), b.mass(), [](const MassEntry& x, const MassEntry& y) {
            return x.row == y.row && x.col == y.col;
          });

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
 namespace mbs {
@@ -77,6 +78,42 @@ void check_quadratic(const ModelData& data) {
 void require_not_negative(double value, const std::string& what) {
   require_finite(value, what);
   if (value < 0.0) fail(what + " is negative");
+}
+
+void check_curve(const Curve& curve, const std::string& what) {
+  if (curve.pieces.size() != curve.breaks.size() + 1)
+    fail(what + " has not one piece more than breaks");
+  for (const double x : curve.breaks) require_finite(x, what);
+  const auto falls = std::ranges::adjacent_find(curve.breaks, std::ranges::greater_equal{});
+  if (falls != curve.breaks.end()) fail(what + " has breaks that do not increase");
+  for (const Curve::Piece& piece : curve.pieces) {
+    require_finite(piece.origin, what);
+    for (const double c : piece.coefficients) require_finite(c, what);
+  }
+}
+
+void check_law(const Law& law, const std::string& what) {
+  check_curve(law.by_position, what);
+  check_curve(law.by_rate, what);
+  require_finite(law.factor.at(0.0).value, what);
+}
+
+void check_laws(const ModelData& data) {
+  const IndexCheck check(data);
+  for (const ForceLaw& law : data.force_laws) {
+    const std::string what = "force law '" + law.name + "'";
+    check.points({law.a, law.b}, what);
+    check.different(law.a, law.b, what);
+    check_law(law.law, what);
+  }
+  for (const TorqueLaw& law : data.torque_laws) {
+    const std::string what = "torque law '" + law.name + "'";
+    check.points({law.a, law.b, law.c, law.d}, what);
+    check.axis(law.axis, what);
+    check.different(law.a, law.b, what);
+    check.different(law.c, law.d, what);
+    check_law(law.law, what);
+  }
 }
 
 void check_forces(const ModelData& data) {
@@ -195,6 +232,7 @@ Model::Model(ModelData data) : data_(std::move(data)) {
   check_quadratic(data_);
   check_linear(data_, variables_);
   check_forces(data_);
+  check_laws(data_);
   check_drivers(data_, variables_);
   normalise_mass(data_.mass, variables_);
   const auto n = static_cast<std::size_t>(variables_);

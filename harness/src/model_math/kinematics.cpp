@@ -1,4 +1,4 @@
-// Direct transcription of Eqs. (7), (8) and (11) of paper/README.md, and of the energy.
+// Direct transcription of Eqs. (7), (8), (11) and (18) of paper/README.md, and of the energy.
 #include "model_math/kinematics.hpp"
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include <string>
 
 #include "model_math/known_motion.hpp"
+#include "model_math/monotone_curve.hpp"
 #include "model_math/vector3.hpp"
 
 namespace mbs {
@@ -46,7 +47,8 @@ class Motion {
   [[nodiscard]] Vector3 a(int a, int b) const {
     return known_acceleration(a) - known_acceleration(b);
   }
-  /// The axis of a torsion spring or couple.
+  [[nodiscard]] double time() const { return known_.time(); }
+  /// The axis of a torsion spring, torque law or couple.
   [[nodiscard]] Vector3 axis(int point) const {
     return point < 0 ? Vector3{0.0, 0.0, 1.0} : position(point);
   }
@@ -145,34 +147,91 @@ class ForceVector {
   std::span<double> force_;
 };
 
+/// theta of a torsion spring or torque law, in -pi ... pi.
+template <class Element>
+double corner(const Element& element, const Motion& motion) {
+  const Vector3 u = motion.r(element.a, element.b), w = motion.r(element.c, element.d);
+  return std::atan2(dot(motion.axis(element.axis), cross(u, w)), dot(u, w));
+}
+
 /// theta - angle of a torsion spring, in -pi ... pi.
 double twist(const TorsionSpring& spring, const Motion& motion) {
-  const Vector3 u = motion.r(spring.a, spring.b), w = motion.r(spring.c, spring.d);
-  const double theta = std::atan2(dot(motion.axis(spring.axis), cross(u, w)), dot(u, w));
-  return std::remainder(theta - spring.angle, 2.0 * std::numbers::pi);
+  return std::remainder(corner(spring, motion) - spring.angle, 2.0 * std::numbers::pi);
 }
+double twist(const TorqueLaw& law, const Motion& motion) { return corner(law, motion); }
+
+double length(const Vector3& d) { return std::sqrt(dot(d, d)); }
+
+/// F of Eq. (18).
+double force_of(const Law& law, double s, double rate, double t) {
+  return law.factor.at(t).value * (law.by_position.at(s).value + law.by_rate.at(rate).value);
+}
+/// None where the factor changes: then it is no potential.
+double potential_of(const Law& law, double s) {
+  return law.factor.is_constant() ? law.factor.at(0.0).value * integral(law.by_position, s) : 0.0;
+}
+bool is_conservative(const Law& law) { return law.by_rate.is_zero() && law.factor.is_constant(); }
 
 /// The gradient of the angle of w against axis z: (z x w) / (w . w).
 Vector3 turning(const Vector3& z, const Vector3& w) { return (1.0 / dot(w, w)) * cross(z, w); }
 
-void add_spring(const Spring& spring, const Motion& motion, ForceVector& force) {
-  const Vector3 d = motion.r(spring.a, spring.b);
-  const double length = std::sqrt(dot(d, d));
-  const Vector3 e = (length > 0.0 ? 1.0 / length : 0.0) * d;
-  const double rate = dot(e, motion.v(spring.a, spring.b));
-  const double tension = spring.stiffness * (length - spring.length) + spring.damping * rate;
-  force.add_pair(spring.a, spring.b, -tension * e);
+/// Along the line of `element`, `tension` a function of its length and rate.
+template <class Element, class Function>
+void add_along(const Element& element, const Motion& motion, ForceVector& force,
+               Function&& tension) {
+  const Vector3 d = motion.r(element.a, element.b);
+  const double distance = length(d);
+  const Vector3 e = (distance > 0.0 ? 1.0 / distance : 0.0) * d;
+  const double rate = dot(e, motion.v(element.a, element.b));
+  force.add_pair(element.a, element.b, -tension(distance, rate) * e);
 }
 
-void add_torsion_spring(const TorsionSpring& spring, const Motion& motion, ForceVector& force) {
-  const Vector3 z = motion.axis(spring.axis);
-  const Vector3 at_u = turning(z, motion.r(spring.a, spring.b));
-  const Vector3 at_w = turning(z, motion.r(spring.c, spring.d));
+/// About the axis of `element`, `torque` a function of its twist and rate.
+template <class Element, class Function>
+void add_about(const Element& element, const Motion& motion, ForceVector& force,
+               Function&& torque) {
+  const Vector3 z = motion.axis(element.axis);
+  const Vector3 at_u = turning(z, motion.r(element.a, element.b));
+  const Vector3 at_w = turning(z, motion.r(element.c, element.d));
   const double rate =
-      dot(at_w, motion.v(spring.c, spring.d)) - dot(at_u, motion.v(spring.a, spring.b));
-  const double torque = spring.stiffness * twist(spring, motion) + spring.damping * rate;
-  force.add_pair(spring.c, spring.d, -torque * at_w);
-  force.add_pair(spring.a, spring.b, torque * at_u);
+      dot(at_w, motion.v(element.c, element.d)) - dot(at_u, motion.v(element.a, element.b));
+  const double turned = torque(twist(element, motion), rate);
+  force.add_pair(element.c, element.d, -turned * at_w);
+  force.add_pair(element.a, element.b, turned * at_u);
+}
+
+void add_springs(const Model& model, const Motion& motion, ForceVector& force) {  // Eq. (11)
+  for (const Spring& spring : model.springs()) {
+    add_along(spring, motion, force, [&spring](double s, double rate) {
+      return spring.stiffness * (s - spring.length) + spring.damping * rate;
+    });
+  }
+  for (const TorsionSpring& spring : model.torsion_springs()) {
+    add_about(spring, motion, force, [&spring](double s, double rate) {
+      return spring.stiffness * s + spring.damping * rate;
+    });
+  }
+}
+
+void add_laws(const Model& model, const Motion& motion, ForceVector& force) {
+  const auto of = [&motion](const Law& law) {
+    return [&law, t = motion.time()](double s, double rate) { return force_of(law, s, rate, t); };
+  };
+  for (const ForceLaw& law : model.force_laws()) add_along(law, motion, force, of(law.law));
+  for (const TorqueLaw& law : model.torque_laws()) add_about(law, motion, force, of(law.law));
+}
+
+/// `can_turn_on`: beyond half a turn its torque is as it was.
+template <class Element>
+Torsion torsion(const Element& element, const Motion& motion, bool can_turn_on) {
+  double tilt = 0.0;
+  if (element.axis >= 0) {
+    const Vector3 z = motion.axis(element.axis);
+    for (const Vector3& d : {motion.r(element.a, element.b), motion.r(element.c, element.d)}) {
+      tilt = std::max(tilt, std::abs(dot(z, d)) / (norm(z) * norm(d)));
+    }
+  }
+  return {element.name, twist(element, motion), tilt, can_turn_on};
 }
 
 }  // namespace
@@ -253,10 +312,8 @@ void applied_force(const Model& model, double t, Coordinates q, Coordinates v,
   require_size(force.size(), model.variables(), "force");
   std::ranges::copy(model.force(), force.begin());
   ForceVector sum(model, motion, force);
-  for (const Spring& spring : model.springs()) add_spring(spring, motion, sum);
-  for (const TorsionSpring& spring : model.torsion_springs()) {
-    add_torsion_spring(spring, motion, sum);
-  }
+  add_springs(model, motion, sum);
+  add_laws(model, motion, sum);
   for (const Couple& couple : model.couples()) {
     const Vector3 w = motion.r(couple.a, couple.b);
     sum.add_pair(couple.a, couple.b, couple.torque * turning(motion.axis(couple.axis), w));
@@ -269,17 +326,13 @@ void applied_force(const Model& model, double t, Coordinates q, Coordinates v,
 
 std::vector<Torsion> torsions(const Model& model, double t, Coordinates q) {
   std::vector<Torsion> result;
-  if (model.torsion_springs().empty()) return result;
+  if (model.torsion_springs().empty() && model.torque_laws().empty()) return result;
   const Motion motion(model, t, q);
   for (const TorsionSpring& spring : model.torsion_springs()) {
-    double tilt = 0.0;
-    if (spring.axis >= 0) {
-      const Vector3 z = motion.axis(spring.axis);
-      for (const Vector3& d : {motion.r(spring.a, spring.b), motion.r(spring.c, spring.d)}) {
-        tilt = std::max(tilt, std::abs(dot(z, d)) / (norm(z) * norm(d)));
-      }
-    }
-    result.push_back({twist(spring, motion), tilt});
+    result.push_back(torsion(spring, motion, spring.stiffness == 0.0));
+  }
+  for (const TorqueLaw& law : model.torque_laws()) {
+    result.push_back(torsion(law, motion, law.law.by_position.is_zero()));
   }
   return result;
 }
@@ -319,16 +372,24 @@ double potential_energy(const Model& model, double t, Coordinates q) {
   require_size(q.size(), model.variables(), "q");
   double result = 0.0;
   for (std::size_t i = 0; i < q.size(); ++i) result -= model.force()[i] * q[i];
-  if (model.springs().empty() && model.torsion_springs().empty()) return result;
+  if (model.springs().empty() && model.torsion_springs().empty() && model.force_laws().empty() &&
+      model.torque_laws().empty()) {
+    return result;
+  }
   const Motion motion(model, t, q);
   for (const Spring& spring : model.springs()) {
-    const Vector3 d = motion.r(spring.a, spring.b);
-    const double stretch = std::sqrt(dot(d, d)) - spring.length;
+    const double stretch = length(motion.r(spring.a, spring.b)) - spring.length;
     result += spring.stiffness / 2 * stretch * stretch;
   }
   for (const TorsionSpring& spring : model.torsion_springs()) {
     const double angle = twist(spring, motion);
     result += spring.stiffness / 2 * angle * angle;
+  }
+  for (const ForceLaw& law : model.force_laws()) {
+    result += potential_of(law.law, length(motion.r(law.a, law.b)));
+  }
+  for (const TorqueLaw& law : model.torque_laws()) {
+    result += potential_of(law.law, twist(law, motion));
   }
   return result;
 }
@@ -339,8 +400,11 @@ double energy(const Model& model, double t, Coordinates q, Coordinates v) {
 
 bool is_conservative(const Model& model) {
   const auto damped = [](const auto& spring) { return spring.damping != 0.0; };
+  const auto keeps = [](const auto& law) { return is_conservative(law.law); };
   return std::ranges::none_of(model.springs(), damped) &&
-         std::ranges::none_of(model.torsion_springs(), damped) && model.couples().empty() &&
+         std::ranges::none_of(model.torsion_springs(), damped) &&
+         std::ranges::all_of(model.force_laws(), keeps) &&
+         std::ranges::all_of(model.torque_laws(), keeps) && model.couples().empty() &&
          model.driven_points().empty() && model.driven_values().empty();
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "mbs/model.hpp"
@@ -35,17 +36,19 @@ std::vector<JacobianEntry> jacobian(const Model& model, double t, std::span<cons
 void constraint_curvature(const Model& model, double t, std::span<const double> q,
                           std::span<const double> v, std::span<double> curvature);
 
-/// Q(q, v, t): constant force, springs and dampers, couples, driven mass, into `force`
+/// Q(q, v, t): constant force, springs and dampers, laws, couples, driven mass, into `force`
 /// (variables()).
 void applied_force(const Model& model, double t, std::span<const double> q,
                    std::span<const double> v, std::span<double> force);
 
-/// Where a torsion spring is within what Eq. (11) means.
+/// Where a torsion spring or torque law is within what Eqs. (11) and (18) mean.
 struct Torsion {
-  double twist = 0.0;  ///< theta - angle in -pi ... pi
-  double tilt = 0.0;   ///< largest |cosine| between its axis and what it turns; planar: 0
+  std::string name = {};
+  double twist = 0.0;        ///< s in -pi ... pi
+  double tilt = 0.0;         ///< largest |cosine| between its axis and what it turns; planar: 0
+  bool can_turn_on = false;  ///< half a turn makes no difference: it depends on the rate alone
 };
-/// One for each torsion spring.
+/// One for each torsion spring, then one for each torque law.
 std::vector<Torsion> torsions(const Model& model, double t, std::span<const double> q);
 
 /// M_ii (n), kg.
@@ -57,13 +60,15 @@ void mass_times(const Model& model, std::span<const double> x, std::span<double>
 /// Kinetic energy v.M v / 2, J; what driven points add is left out.
 double kinetic_energy(const Model& model, std::span<const double> v);
 
-/// Potential energy of the constant force, which is zero at q = 0, and of the springs, J.
+/// Potential energy of the constant force, which is zero at q = 0, of the springs, and of laws
+/// whose factor is constant (integral()), J.
 double potential_energy(const Model& model, double t, std::span<const double> q);
 
 /// Kinetic plus potential energy, J.
 double energy(const Model& model, double t, std::span<const double> q, std::span<const double> v);
 
-/// Whether kinetic plus potential energy is constant: no damper, couple or driver.
+/// Whether kinetic plus potential energy is constant: no damper, couple or driver, no law over a
+/// rate or with a factor of time.
 bool is_conservative(const Model& model);
 
 /// Position, velocity and acceleration of a point: from q, v, a if it is free, from its driver if

@@ -18,6 +18,7 @@ KnownMotion::KnownMotion(const Model& model, double t)
 }
 
 void KnownMotion::set_time(double t) {
+  time_ = t;
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     for (int axis = 0; axis < model_.dimension(); ++axis) {
       const auto k = static_cast<std::size_t>(axis);

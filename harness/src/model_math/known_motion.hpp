@@ -17,6 +17,7 @@ class KnownMotion {
   KnownMotion(const Model& model, double t);
 
   void set_time(double t);
+  [[nodiscard]] double time() const { return time_; }
 
   /// Of a fixed or driven point, m, m/s and m/s^2; planar: the third component is 0.
   [[nodiscard]] Vector position(int point) const {
@@ -36,6 +37,7 @@ class KnownMotion {
   [[nodiscard]] Vector of(int point, const std::vector<Vector>& motion) const;
 
   const Model& model_;
+  double time_ = 0.0;
   std::vector<int> driven_;  // index into driven_points() of a point, -1 without
   std::vector<Vector> positions_, velocities_, accelerations_;  // of the driven points
   mutable std::vector<TimeFunction::Sample> values_;            // empty until somebody asks

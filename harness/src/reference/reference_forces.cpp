@@ -1,6 +1,7 @@
-// Springs, dampers and couples of the reference: Eq. (11).
+// Springs, dampers, laws and couples of the reference: Eqs. (11), (18), (19).
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "reference/reference_simulation.hpp"
 
@@ -21,52 +22,92 @@ Triple scaled(Real factor, const Triple& x) {
 /// (z x w) / (w . w)
 Triple turning(const Triple& z, const Triple& w) { return scaled(1 / dot(w, w), cross(z, w)); }
 
+/// c(x) and c'(x): Eq. (19).
+std::pair<Real, Real> evaluate(const Curve& curve, Real x) {
+  std::size_t k = 0;
+  while (k < curve.breaks.size() && curve.breaks[k] <= x) ++k;
+  const Real z = x - curve.pieces[k].origin;
+  const auto& c = curve.pieces[k].coefficients;
+  return {c[0] + c[1] * z + c[2] * z * z + c[3] * z * z * z,
+          c[1] + 2 * c[2] * z + 3 * c[3] * z * z};
+}
+
 }  // namespace
 
 Triple ReferenceSimulation::axis(int point) const {
   return point < 0 ? Triple{0, 0, 1} : position(point);
 }
 
-ReferenceSimulation::Element ReferenceSimulation::spring_element(const Spring& spring) const {
+ReferenceSimulation::Response ReferenceSimulation::respond(const Law& law, Real s,
+                                                           Real rate) const {
+  const Real factor = law.factor.at(known_.time()).value;
+  const auto [held, stiffness] = evaluate(law.by_position, s);
+  const auto [free, damping] = evaluate(law.by_rate, rate);
+  return {factor * (held + free), factor * stiffness, factor * damping, factor * held};
+}
+
+template <class Line, class Respond>
+ReferenceSimulation::Element ReferenceSimulation::line_element(const Line& line,
+                                                               Respond&& respond) const {
   const Real h = settings_.step;
-  const Triple d = difference(spring.a, spring.b);
+  const Triple d = difference(line.a, line.b);
   const Real length = std::sqrt(dot(d, d));
-  const Real inverse = length > 0 ? 1 / length : 0;
-  const Triple e = scaled(inverse, d);
+  const Triple e = scaled(length > 0 ? 1 / length : 0, d);
+  const Response response = respond(length, dot(e, velocity_difference(line.a, line.b)));
+  // At L = 0 the limit for a force that vanishes there; the spring's rule has the same.
+  const Real p = length > 0 ? response.held / length : response.stiffness;
   Element element;
-  element.points = {spring.a, spring.b, -1, -1};
+  element.points = {line.a, line.b, -1, -1};
   element.gradient = {e, scaled(-1, e)};
-  element.force = spring.stiffness * (length - spring.length) +
-                  spring.damping * dot(e, velocity_difference(spring.a, spring.b));
-  element.weight = h / 2 * spring.damping + h * h / 4 * spring.stiffness;
-  const Real p = std::max(Real{0}, spring.stiffness * (1 - spring.length * inverse));
-  element.transverse = h * h / 4 * p;
+  element.force = response.force;
+  element.weight = h / 2 * response.damping + h * h / 4 * response.stiffness;
+  element.transverse = h * h / 4 * std::max(Real{0}, p);
   return element;
 }
 
-ReferenceSimulation::Element ReferenceSimulation::torsion_element(
-    const TorsionSpring& spring) const {
+template <class Corner, class Respond>
+ReferenceSimulation::Element ReferenceSimulation::corner_element(const Corner& corner,
+                                                                 Respond&& respond) const {
   const Real h = settings_.step;
-  const Triple z = axis(spring.axis);
-  const Triple u = difference(spring.a, spring.b), w = difference(spring.c, spring.d);
+  const Triple z = axis(corner.axis);
+  const Triple u = difference(corner.a, corner.b), w = difference(corner.c, corner.d);
   const Triple at_u = turning(z, u), at_w = turning(z, w);
   const Real theta = std::atan2(dot(z, cross(u, w)), dot(u, w));
-  const Real s = std::remainder(theta - spring.angle, 2 * std::numbers::pi_v<Real>);
-  const Real rate = dot(at_w, velocity_difference(spring.c, spring.d)) -
-                    dot(at_u, velocity_difference(spring.a, spring.b));
+  const Real rate = dot(at_w, velocity_difference(corner.c, corner.d)) -
+                    dot(at_u, velocity_difference(corner.a, corner.b));
+  const Response response = respond(theta, rate);
   Element element;
-  element.points = {spring.a, spring.b, spring.c, spring.d};
+  element.points = {corner.a, corner.b, corner.c, corner.d};
   element.gradient = {scaled(-1, at_u), at_u, at_w, scaled(-1, at_w)};
-  element.force = spring.stiffness * s + spring.damping * rate;
-  element.weight = h / 2 * spring.damping + h * h / 4 * spring.stiffness;
+  element.force = response.force;
+  element.weight = h / 2 * response.damping + h * h / 4 * response.stiffness;
   return element;
 }
 
 std::vector<ReferenceSimulation::Element> ReferenceSimulation::elements() const {
   std::vector<Element> result;
-  for (const Spring& spring : model_.springs()) result.push_back(spring_element(spring));
+  const auto linear = [](const auto& spring, Real stretch, Real rate) -> Response {
+    const Real held = spring.stiffness * stretch;
+    return {held + spring.damping * rate, spring.stiffness, spring.damping, held};
+  };
+  for (const Spring& spring : model_.springs()) {
+    result.push_back(line_element(
+        spring, [&](Real s, Real rate) { return linear(spring, s - spring.length, rate); }));
+  }
   for (const TorsionSpring& spring : model_.torsion_springs()) {
-    result.push_back(torsion_element(spring));
+    result.push_back(corner_element(spring, [&](Real theta, Real rate) {
+      const Real turn = 2 * std::numbers::pi_v<Real>;
+      return linear(spring, std::remainder(theta - spring.angle, turn), rate);
+    }));
+  }
+  const auto of = [this](const Law& law) {
+    return [this, &law](Real s, Real rate) { return respond(law, s, rate); };
+  };
+  for (const ForceLaw& law : model_.force_laws()) {
+    result.push_back(line_element(law, of(law.law)));
+  }
+  for (const TorqueLaw& law : model_.torque_laws()) {
+    result.push_back(corner_element(law, of(law.law)));
   }
   return result;
 }
@@ -78,7 +119,7 @@ ReferenceSimulation::Vector ReferenceSimulation::applied_force() const {
       Q[offset(point) + k] += factor * value[k];
     }
   };
-  for (const Element& element : elements()) {  // Eq. (11)
+  for (const Element& element : elements()) {  // Eqs. (11), (18)
     for (int i = 0; i < 4; ++i) add(element.points[i], -element.force, element.gradient[i]);
   }
   for (const Couple& couple : model_.couples()) {

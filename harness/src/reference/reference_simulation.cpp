@@ -236,6 +236,10 @@ void ReferenceSimulation::set_up_matrix() {
   for (const TorsionSpring& s : model_.torsion_springs()) {
     elements.push_back(coordinates({s.a, s.b, s.c, s.d}));
   }
+  for (const ForceLaw& l : model_.force_laws()) elements.push_back(coordinates({l.a, l.b}));
+  for (const TorqueLaw& l : model_.torque_laws()) {
+    elements.push_back(coordinates({l.a, l.b, l.c, l.d}));
+  }
 
   // Each multiplier follows the last coordinate that it is coupled with.
   std::vector<std::pair<int, int>> order;  // coordinate, and 0 or 1 + the multiplier

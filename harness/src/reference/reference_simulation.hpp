@@ -46,11 +46,11 @@ class ReferenceSimulation final : public Simulation {
 
   using Triple = std::array<Real, 3>;
 
-  /// A spring or torsion spring at q, v: Eq. (11).
+  /// A spring, torsion spring or law at q, v: Eqs. (11), (18).
   struct Element {
     std::array<int, 4> points{};       // -1: unused
     std::array<Triple, 4> gradient{};  // g at each of them
-    Real force = 0;                    // k (s - s_0) + c s'
+    Real force = 0;                    // k (s - s_0) + c s', F
     Real weight = 0;                   // of g g^T in T: dt/2 c + dt^2/4 k
     Real transverse = 0;               // of I - e e^T in T: dt^2/4 p
   };
@@ -70,8 +70,16 @@ class ReferenceSimulation final : public Simulation {
   [[nodiscard]] Vector partial_rate() const;        // Phi_t
   [[nodiscard]] Vector curvature() const;           // (Phi_q)' v + (Phi_t)'
   [[nodiscard]] Vector applied_force() const;       // Q(q, v, t)
-  [[nodiscard]] Element spring_element(const Spring& spring) const;
-  [[nodiscard]] Element torsion_element(const TorsionSpring& spring) const;
+  /// The force of an element at its s and s', and the derivatives by both.
+  struct Response {
+    Real force = 0, stiffness = 0, damping = 0;
+    Real held = 0;  // the part of the force that does not depend on s'
+  };
+  [[nodiscard]] Response respond(const Law& law, Real s, Real rate) const;
+  template <class Line, class Respond>
+  [[nodiscard]] Element line_element(const Line& line, Respond&& respond) const;
+  template <class Corner, class Respond>
+  [[nodiscard]] Element corner_element(const Corner& corner, Respond&& respond) const;
   [[nodiscard]] std::vector<Element> elements() const;
   struct MatrixEntry {
     int row, col;

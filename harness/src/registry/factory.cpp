@@ -70,6 +70,19 @@ std::string constraint_name(const Model& model, int index) {
                     : model.linear_constraints()[i - both].name;
 }
 
+/// Laws over a rate are dampers too, and those with a factor of time drivers.
+void find_laws(const Model& model, Finder& finder) {
+  const auto find = [&finder](const char* kind, const auto& laws) {
+    finder.find(Term::force_laws, kind, laws);
+    finder.find(Term::dampers, kind, laws,
+                [](const auto& one) { return !one.law.by_rate.is_zero(); });
+    finder.find(Term::drivers, kind, laws,
+                [](const auto& one) { return !one.law.factor.is_constant(); });
+  };
+  find("force law", model.force_laws());
+  find("torque law", model.torque_laws());
+}
+
 void find_drivers(const Model& model, Finder& finder) {
   if (!model.driven_points().empty()) {
     const auto point = static_cast<std::size_t>(model.driven_points()[0].point);
@@ -126,6 +139,7 @@ const std::vector<std::pair<std::string, Term>>& term_names() {
       {"torsion springs", Term::torsion_springs},
       {"dampers", Term::dampers},
       {"couples", Term::couples},
+      {"force laws", Term::force_laws},
       {"drivers", Term::drivers},
       {"mass across axes", Term::mass_across_axes},
       {"three dimensions", Term::spatial}};
@@ -151,6 +165,7 @@ std::vector<std::pair<Term, std::string>> terms_of(const Model& model) {
   finder.find(Term::dampers, "spring", model.springs(), damped);
   finder.find(Term::dampers, "torsion spring", model.torsion_springs(), damped);
   finder.find(Term::couples, "couple", model.couples());
+  find_laws(model, finder);
   find_drivers(model, finder);
   find_mass_across_axes(model, finder);
   return std::move(finder).found();

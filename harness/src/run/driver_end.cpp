@@ -17,6 +17,8 @@ double driver_end(const Model& model) {
     for (const TimeFunction& function : point.position) end = std::min(end, function.end());
   }
   for (const DrivenValue& value : model.driven_values()) end = std::min(end, value.value.end());
+  for (const ForceLaw& law : model.force_laws()) end = std::min(end, law.law.factor.end());
+  for (const TorqueLaw& law : model.torque_laws()) end = std::min(end, law.law.factor.end());
   return end;
 }
 

@@ -169,19 +169,18 @@ void Judge::add_local_error(double local, const State& judged, double step, long
 std::string Judge::judge_torsion(double t, const State& state) {
   const auto now = torsions(scene_->model, t, state.q);
   for (std::size_t i = 0; i < now.size(); ++i) {
-    const TorsionSpring& spring = scene_->model.torsion_springs()[i];
     if (!(now[i].tilt <= bounds_.tilt)) {
       return fmt::format(
           "{}: its axis is not perpendicular to what it turns, cosine {:.2e} "
           "(allowed {:g})",
-          spring.name, now[i].tilt, bounds_.tilt);
+          now[i].name, now[i].tilt, bounds_.tilt);
     }
     so_far_.twists[i] += std::remainder(now[i].twist - so_far_.twists[i], 2 * std::numbers::pi);
-    if (spring.stiffness > 0.0 && !(std::abs(so_far_.twists[i]) <= std::numbers::pi)) {
-      return fmt::format(
-          "{}: it is more than half a turn from its free angle, where its torque "
-          "would change sign",
-          spring.name);
+    if (!now[i].can_turn_on && !(std::abs(so_far_.twists[i]) <= std::numbers::pi)) {
+      const bool is_spring = i < scene_->model.torsion_springs().size();
+      return fmt::format("{}: it is more than half a turn from {}", now[i].name,
+                         is_spring ? "its free angle, where its torque would change sign"
+                                   : "the angle 0, where its table would begin again");
     }
   }
   return "";

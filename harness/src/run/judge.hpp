@@ -16,7 +16,8 @@ struct RunBounds {
   double position_error = 0.1;         ///< m, where an exact solution is known
   double energy_drift = 0.1;           ///< of the energy scale, see Judge; if energy is conserved
   double constraint_violation = 1e-2;  ///< |Phi| relative to the squared length it constrains
-  double tilt = 1e-2;              ///< |cosine| between a torsion spring's axis and what it turns
+  double tilt =
+      1e-2;  ///< |cosine| between the axis of a torsion spring or torque law and what it turns
   double pass_limit_share = 0.05;  ///< of the steps; a few near singular positions are normal
 };
 
@@ -64,7 +65,7 @@ class Judge {
 
   /// The worst so far and what the next state is judged by, without the rest of the judge.
   struct Figures {
-    std::vector<double> twists;  // of the torsion springs, continued; rad
+    std::vector<double> twists;  // of the torsion springs and torque laws, continued; rad
     double energy_scale = 0.0;
     double energy_difference = 0.0;                           // J, the largest
     double last_kinetic = 0.0, last_energy_difference = 0.0;  // J, of the last judged state
@@ -99,7 +100,8 @@ class Judge {
 
  private:
   std::string judge_energy(double t, const State& state);
-  /// Whether Eq. (11) still means a spring: across its axis, and less than half a turn from rest.
+  /// Whether Eqs. (11) and (18) still mean what they say: across the axis, and less than half a
+  /// turn from s = 0.
   std::string judge_torsion(double t, const State& state);
   const Scene* scene_;  // a pointer, so that judges can be copied
   RunBounds bounds_;

@@ -63,6 +63,10 @@ void TangentPattern::read_cliques(const Model& model) {
   for (const TorsionSpring& spring : model.torsion_springs()) {
     add_points(model, {spring.a, spring.b, spring.c, spring.d});
   }
+  for (const ForceLaw& law : model.force_laws()) add_points(model, {law.a, law.b});
+  for (const TorqueLaw& law : model.torque_laws()) {
+    add_points(model, {law.a, law.b, law.c, law.d});
+  }
 }
 
 void TangentPattern::collect(int col, int row) {

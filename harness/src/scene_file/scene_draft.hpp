@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "mbs/time_function.hpp"
+#include "mbs/model.hpp"
 #include "model_math/vector3.hpp"
 #include "scene/scene.hpp"
 #include "scene_file/body/rigid_body.hpp"
@@ -132,6 +132,21 @@ struct DraftTorque {
   double torque = 0.0;
 };
 
+struct DraftForceLaw {
+  JsonNode node;
+  std::string name;
+  int a = 0, b = 0;
+  Law law = {};
+};
+
+struct DraftTorqueLaw {
+  JsonNode node;
+  std::string name;
+  DraftDirection from = {}, to = {};
+  int axis = -1;
+  Law law = {};
+};
+
 struct DraftOutput {
   JsonNode node;
   Output output;           ///< refers to draft points
@@ -150,6 +165,8 @@ struct SceneDraft {
   std::vector<DraftTorsionSpring> torsion_springs;
   std::vector<DraftForce> forces;
   std::vector<DraftTorque> torques;
+  std::vector<DraftForceLaw> force_laws;
+  std::vector<DraftTorqueLaw> torque_laws;
   std::vector<DraftOutput> outputs;
   std::vector<Driver> drivers;
   std::optional<double> largest_correction;

@@ -18,8 +18,8 @@ constexpr double kAcross = 1e-12;  // cosine that counts as a right angle
 
 SceneDraft SceneReader::read() {
   root_.allow_keys({"dimension", "gravity", "points", "vectors", "rods", "masses", "bodies",
-                    "constraints", "springs", "torsion_springs", "forces", "torques", "assembly",
-                    "outputs", "$schema"});
+                    "constraints", "springs", "torsion_springs", "force_laws", "torque_laws",
+                    "forces", "torques", "assembly", "outputs", "$schema"});
   read_dimension_and_gravity();
   if (!root_.find("bodies")) static_cast<void>(root_.get("points"));
   for (const bool is_named : {true, false}) {
@@ -173,6 +173,17 @@ void SceneReader::use_between(const JsonNode& node, const DraftDirection& first,
   if (first.from >= 0) points.push_back(first.from);
   if (second.from >= 0) points.push_back(second.from);
   use_between(node, points);
+}
+
+int SceneReader::axis(const JsonNode& node) {
+  const auto found = node.find("axis");
+  if (!is_spatial()) {
+    if (found) found->fail("an axis in a planar scene", "none: it is z");
+    return -1;
+  }
+  const int axis = vector(node.get("axis"));
+  use(axis);
+  return axis;
 }
 
 Vector3 SceneReader::local_of(int body, int point) const {

@@ -47,6 +47,8 @@ class SceneReader {
   /// one body has them all.
   void use_between(const JsonNode& node, const std::vector<int>& points);
   void use_between(const JsonNode& node, const DraftDirection& first, const DraftDirection& second);
+  /// The unit vector "axis", which must be there in space and must not in the plane (-1).
+  int axis(const JsonNode& node);
   /// In a body that has the point.
   [[nodiscard]] Vector3 local_of(int body, int point) const;
   /// A vector of the body across the local direction `along` (and `beside`): one that it has, or a

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "model_math/kinematics.hpp"
+#include "model_math/monotone_curve.hpp"
 
 namespace mbs::test {
 namespace {
@@ -179,6 +180,31 @@ class Builder {
   int origin_ = -1;
 };
 
+/// All that every variant with all terms but force laws serves.
+void everything(Builder& b) {
+  constexpr int A = Builder::A, B = Builder::B, C = Builder::C, D = Builder::D, E = Builder::E,
+                G = Builder::G, P = Builder::P, N = Builder::N;
+  b.data().springs = {{D, G, 300.0, 4.0, 0.5, "tension"}, {B, E, 200.0, 0.0, 4.0, "push"}};
+  b.data().torsion_springs = {{B, A, C, B, b.axis(), 12.0, 0.8, 0.4, "hinge"}};
+  b.data().couples = {{D, C, b.spatial() ? N : -1, 2.0, "motor"}};
+  b.driven_rod();
+  b.mass_across_axes();
+  if (b.spatial()) {
+    const int d = b.data().points[D].offset;
+    b.drive_value(b.bilinear(D, P, E, C), 0.05);
+    b.data().linear_constraints = {{{{d, 0.6}, {d + 2, 0.8}}, 0.0, "line"}};
+    b.drive_value(1, 0.05);
+  } else {
+    b.drive_value(b.bilinear(B, A, C, B), 0.05);
+    b.data().springs.push_back({P, C, 100.0, 3.0, 1.0, "driven"});
+  }
+}
+
+// Tables that the chain moves about in: both sides of a stop, the flat part and the steep one.
+Curve stop() { return monotone_curve({0.9, 1.2, 1.3, 1.5, 2.5}, {-60, -5, 0, 0, 40}); }
+Curve damper() { return monotone_curve({-2, -0.4, 0, 0.4, 2}, {-3, -1.5, 0, 2, 5}); }
+Curve hinge() { return monotone_curve({-1, 0, 0.5, 2}, {-6, 0, 1, 15}); }
+
 using Term = std::pair<const char*, std::function<void(Builder&)>>;
 
 std::vector<Term> terms() {
@@ -219,6 +245,24 @@ std::vector<Term> terms() {
       {"couples",
        [](Builder& b) {
          b.data().couples = {{B, A, b.axis(), 3.0, "motor"}, {B, C, b.axis(), -1.5, "motor"}};
+       }},
+      {"force laws",
+       [](Builder& b) {
+         b.data().force_laws = {{D, G, {stop()}, "stop"}, {B, E, {stop(), {}, -0.5}, "pushed"}};
+         b.data().torque_laws = {{B, A, C, B, b.axis(), {hinge()}, "hinge"}};
+       }},
+      {"force laws over rates",
+       [](Builder& b) {
+         b.data().force_laws = {{D, G, {stop(), damper()}, "stop"}, {B, E, {{}, damper()}, "free"}};
+         b.data().torque_laws = {{B, A, C, B, b.axis(), {hinge(), damper()}, "hinge"}};
+       }},
+      {"force laws of time",
+       [](Builder& b) {
+         b.drive_point();
+         b.data().force_laws = {{E, P, {stop(), damper(), wave(1.0, 0.5, 9.0, 0.3)}, "driven"},
+                                {D, G, {stop(), {}, wave(0.5, 0.7, 8.0, 0.0)}, "actuator"}};
+         b.data().torque_laws = {
+             {B, A, C, B, b.axis(), {{}, damper(), wave(-1, 1, 5, 1)}, "motor"}};
        }},
       {"driven rod", [](Builder& b) { b.driven_rod(); }},
       {"driven length", [](Builder& b) { b.drive_value(1, 0.1); }},
@@ -261,22 +305,13 @@ std::vector<Term> terms() {
          b.data().mass.push_back({6, 1, 0.0});
          b.data().springs = {{D, G, 300.0, 4.0, 0.5, "spring"}};
        }},
-      {"everything",
+      {"everything", [](Builder& b) { everything(b); }},
+      {"everything and force laws",
        [](Builder& b) {
-         b.data().springs = {{D, G, 300.0, 4.0, 0.5, "tension"}, {B, E, 200.0, 0.0, 4.0, "push"}};
-         b.data().torsion_springs = {{B, A, C, B, b.axis(), 12.0, 0.8, 0.4, "hinge"}};
-         b.data().couples = {{D, C, b.spatial() ? N : -1, 2.0, "motor"}};
-         b.driven_rod();
-         b.mass_across_axes();
-         if (b.spatial()) {
-           const int d = b.data().points[D].offset;
-           b.drive_value(b.bilinear(D, P, E, C), 0.05);
-           b.data().linear_constraints = {{{{d, 0.6}, {d + 2, 0.8}}, 0.0, "line"}};
-           b.drive_value(1, 0.05);
-         } else {
-           b.drive_value(b.bilinear(B, A, C, B), 0.05);
-           b.data().springs.push_back({P, C, 100.0, 3.0, 1.0, "driven"});
-         }
+         everything(b);
+         b.data().force_laws = {{D, G, {stop(), damper()}, "stop"},
+                                {P, C, {stop(), {}, wave(0.5, 0.7, 8.0, 0.0)}, "actuator"}};
+         b.data().torque_laws = {{B, A, C, B, b.axis(), {hinge(), damper()}, "hinge"}};
        }},
   };
 }

@@ -31,7 +31,7 @@ def fits(setting, scene):
     """Why a scheme cannot be used for a scene (`mbs describe --json`), or ""."""
     terms = scene["terms"]
     if setting.scheme.startswith(("rattle", "multistep")):
-        if (terms["driven_constraints"] or scene["driven_points"] or scene["driven_vectors"]):
+        if (terms["driven_constraints"] or terms["factors"] or scene["driven_points"] or scene["driven_vectors"]):
             return "not for scenes with drivers"
         if terms["damping"]:
             return "not for scenes with dampers"

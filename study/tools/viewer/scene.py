@@ -51,12 +51,13 @@ def from_description(description, name):
         joined = {frozenset(rod.points) for rod in rods}
         rods += [link for link in (_pair(index, item) for item in elements["distances"])
                  if frozenset(link.points) not in joined]
-        springs = [_pair(index, spring) for spring in elements["springs"]]
+        springs = [_pair(index, spring) for spring in elements["springs"] + elements.get("force_laws", [])]
         bodies = [Element(body["name"], [index[point] for point in body["points"]],
                           [index[vector] for vector in body.get("vectors", [])])
                   for body in elements["bodies"]]
         torsion_springs = [tuple([index[name] for name in spring[side]] for side in ("from", "to"))
-                           for spring in elements.get("torsion_springs", [])]
+                           for kind in ("torsion_springs", "torque_laws")
+                           for spring in elements.get(kind, [])]
     except (KeyError, TypeError, ValueError) as error:
         raise StudyError(f"`mbs describe {name} --json` lacks something to draw ({error!r}): "
                          "is the program older than study/view? Build it again") from error

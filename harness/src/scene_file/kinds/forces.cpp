@@ -1,6 +1,7 @@
 // Springs, torsion springs, forces and torques.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string_view>
@@ -17,18 +18,6 @@ constexpr double kPerpendicular = 1e-6;  // largest cosine of a right angle
 double optional_not_negative(const JsonNode& node, std::string_view key, const char* allowed) {
   const auto found = node.find(key);
   return found ? found->number_at_least(0.0, allowed) : 0.0;
-}
-
-/// The unit vector "axis", which must be there in space and must not in the plane (-1).
-int axis(SceneReader& reader, const JsonNode& node) {
-  const auto found = node.find("axis");
-  if (!reader.is_spatial()) {
-    if (found) found->fail("an axis in a planar scene", "none: it is z");
-    return -1;
-  }
-  const int axis = reader.vector(node.get("axis"));
-  reader.use(axis);
-  return axis;
 }
 
 /// In the plane the body's two coordinate points take the couple; in space a vector of the body's
@@ -98,12 +87,8 @@ void read_torsion_spring(SceneReader& reader, const JsonNode& node) {
   node.allow_keys({"name", "from", "to", "axis", "stiffness", "damping", "angle"});
   DraftTorsionSpring spring{node, reader.element_name(node), reader.direction(node.get("from")),
                             reader.direction(node.get("to"))};
-  std::vector<int> points{spring.from.to, spring.to.to};
-  for (const DraftDirection& d : {spring.from, spring.to}) {
-    if (d.from >= 0) points.push_back(d.from);
-  }
-  reader.use_between(node, points);
-  spring.axis = axis(reader, node);
+  reader.use_between(node, spring.from, spring.to);
+  spring.axis = reader.axis(node);
   spring.stiffness =
       optional_not_negative(node, "stiffness", "a stiffness in N m/rad of at least 0");
   spring.damping = optional_not_negative(node, "damping", "a damping in N m s/rad of at least 0");
@@ -141,7 +126,7 @@ void read_torque(SceneReader& reader, const JsonNode& node) {
   node.allow_keys({"name", "direction", "body", "axis", "torque"});
   DraftTorque torque{node, reader.element_name(node)};
   torque.torque = node.get("torque").number();
-  torque.axis = axis(reader, node);
+  torque.axis = reader.axis(node);
   if (node.find("body")) {
     if (const auto other = node.find("direction")) {
       other->fail("a direction beside a body", "one of the two");
@@ -185,10 +170,12 @@ void finish_start(Lowered& lowered, const std::string& where) {
     const Vector3 u = difference(data, s.a, s.b), w = difference(data, s.c, s.d);
     s.angle = std::atan2(dot(axis_of(data, s.axis, w, s.name, where), cross(u, w)), dot(u, w));
   }
-  for (const TorsionSpring& s : data.torsion_springs) {
-    axis_of(data, s.axis, difference(data, s.a, s.b), s.name, where);
-    axis_of(data, s.axis, difference(data, s.c, s.d), s.name, where);
-  }
+  const auto require_across = [&](const auto& corner) {
+    axis_of(data, corner.axis, difference(data, corner.a, corner.b), corner.name, where);
+    axis_of(data, corner.axis, difference(data, corner.c, corner.d), corner.name, where);
+  };
+  std::ranges::for_each(data.torsion_springs, require_across);
+  std::ranges::for_each(data.torque_laws, require_across);
   for (const Couple& couple : data.couples) {
     axis_of(data, couple.axis, difference(data, couple.a, couple.b), couple.name, where);
   }

@@ -9,9 +9,9 @@ using ReadConstraint = void(SceneReader&, const JsonNode&, DraftConstraint&);
 using LowerConstraint = Lowering::Force(Lowering&, const DraftConstraint&);
 
 ReadItem read_point, read_vector, read_rod, read_mass, read_body, read_constraint, read_spring,
-    read_torsion_spring, read_force, read_torque, read_output;
+    read_torsion_spring, read_force_law, read_torque_law, read_force, read_torque, read_output;
 LowerAll lower_rods, lower_masses, lower_bodies, lower_constraints, lower_springs,
-    lower_torsion_springs, lower_torques, lower_outputs;
+    lower_torsion_springs, lower_force_laws, lower_torque_laws, lower_torques, lower_outputs;
 ReadConstraint read_distance, read_angle, read_coincident, read_perpendicular, read_on_line,
     read_dot, read_linear;
 LowerConstraint lower_distance, lower_angle, lower_coincident, lower_perpendicular, lower_on_line,
@@ -27,6 +27,8 @@ std::span<const ListKind> list_kinds() {
       {"constraints", "constraint", false, read_constraint, lower_constraints},
       {"springs", "spring", false, read_spring, lower_springs},
       {"torsion_springs", "torsion_spring", false, read_torsion_spring, lower_torsion_springs},
+      {"force_laws", "force_law", false, read_force_law, lower_force_laws},
+      {"torque_laws", "torque_law", false, read_torque_law, lower_torque_laws},
       {"forces", "force", false, read_force},
       {"torques", "torque", false, read_torque, lower_torques},
       {"outputs", "output", false, read_output, lower_outputs},
