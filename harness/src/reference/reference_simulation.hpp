@@ -36,6 +36,8 @@ class ReferenceSimulation final : public Simulation {
   void do_set_state(const State& state) override;
   StepOutcome do_step() override;
   void do_get_state(State& state) const override;
+  /// In the penalty form.
+  bool do_show_first_pass(FirstPass& pass) override;
 
  private:
   struct Entry {
@@ -70,6 +72,8 @@ class ReferenceSimulation final : public Simulation {
   [[nodiscard]] Vector partial_rate() const;        // Phi_t
   [[nodiscard]] Vector curvature() const;           // (Phi_q)' v + (Phi_t)'
   [[nodiscard]] Vector applied_force() const;       // Q(q, v, t)
+  /// Eq. (3) without alpha Phi, which solve() adds: f_0 of Eq. (12).
+  [[nodiscard]] Vector residual(const std::vector<Row>& rows) const;
   [[nodiscard]] Element spring_element(const Spring& spring) const;
   [[nodiscard]] Element torsion_element(const TorsionSpring& spring) const;
   [[nodiscard]] std::vector<Element> elements() const;
