@@ -14,7 +14,7 @@
 namespace mbs {
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 struct ReferenceOptions {
   std::string scene;
@@ -106,6 +106,27 @@ json reference_json(const Scene& scene, const StepSettings& settings,
           {"after_the_step", step_json(model, settings, state)}};
 }
 
+/// A quantity, or a row of a matrix, a line.
+void print_json(const json& object) {
+  const char* before = "{";
+  for (const auto& [key, value] : object.items()) {
+    fmt::print("{}\n  \"{}\": ", before, key);
+    before = ",";
+    const bool is_matrix = value.is_array() && !value.empty() && value[0].is_array();
+    if (!is_matrix) {
+      fmt::print("{}", value.dump());
+      continue;
+    }
+    const char* before_row = "[";
+    for (const json& row : value) {
+      fmt::print("{}\n    {}", before_row, row.dump());
+      before_row = ",";
+    }
+    fmt::print("]");
+  }
+  fmt::print("\n}}\n");
+}
+
 int print_reference(ReferenceOptions& options) {
   require_step(options.settings.step);
   if (options.after < 0 || options.after > 100'000) {
@@ -121,7 +142,7 @@ int print_reference(ReferenceOptions& options) {
   StepSettings settings = options.settings;
   settings.penalty = parse_penalty(options.penalty, scene.model, settings);
   settings.tolerance = automatic_tolerance(scene.model, settings);
-  fmt::print("{}\n", reference_json(scene, settings, options).dump(1));
+  print_json(reference_json(scene, settings, options));
   return 0;
 }
 

@@ -67,7 +67,7 @@ TEST_P(PlantedMistake, IsNamedByTheFirstRungThatFails) {
 INSTANTIATE_TEST_SUITE_P(
     Ladder, PlantedMistake,
     ::testing::Values(
-        Fall{"planted/half_jacobian", "Phi_q", "column 0 (B0.x)", "0.5 times the reference's",
+        Fall{"planted/half_jacobian", "Phi_q", "row 0 ('A0-B0')", "0.5 times the reference's",
              "the factor 2 of a distance"},
         Fall{"planted/lambda_first", "f", "B", "differ", "lambda is updated before the residual"},
         Fall{"planted/hidden_lambda_first", "Delta q", "B", "differ",
@@ -75,17 +75,14 @@ INSTANTIATE_TEST_SUITE_P(
         Fall{"planted/no_curvature", "a'", "B", "differ", "leaves out (dPhi_q/dt) v'"},
         Fall{"skeleton/first", "predict", "B", "differ", "nothing is predicted yet"},
         Fall{"control/crashes", "Delta q", "", "killed by signal", "an index is out of range"},
-        Fall{"control/hangs", "Delta q", "", "did not finish", "an index is out of range"}),
+        Fall{"control/hangs", "Delta q", "", "did not finish", "a loop has no end"}),
     [](const auto& info) { return test::gtest_name(info.param.variant); });
 
 TEST(Ladder, ASoundImplementationGoesUpAsFarAsItServes) {
   const auto run = test::run_program(MBS_CONTROLS, "check --ladder --implementation planted/right");
   EXPECT_EQ(run.status, 0) << run.output << run.errors;
-  for (const char* line : {"  ok         Phi_q",
-                           "  ok         fill",
-                           "  ok         chain, planar",
-                           "  not served chain, spatial",
-                           "  ok         --projections none",
+  for (const char* line : {"  ok         Phi_q", "  ok         fill", "  ok         chain, planar",
+                           "  not served chain, spatial", "  ok         --projections none",
                            "  not served --scheme rattle"}) {
     EXPECT_TRUE(contains(run.output, line)) << line << '\n' << run.output;
   }
@@ -95,10 +92,8 @@ TEST(Ladder, ASoundImplementationGoesUpAsFarAsItServes) {
 TEST(Ladder, WhatIsNotShownIsNotYet) {
   const auto run =
       test::run_program(MBS_CONTROLS, "check --ladder --implementation control/returns_at_once");
-  EXPECT_TRUE(contains(run.output, "  not yet    T"))
-      << run.output;
-  EXPECT_TRUE(contains(run.output, "  FAILED     Delta q"))
-      << run.output;
+  EXPECT_TRUE(contains(run.output, "  not yet    T")) << run.output;
+  EXPECT_TRUE(contains(run.output, "  FAILED     Delta q")) << run.output;
 }
 
 TEST(Ladder, HasScenesAndSettingsOfItsOwn) {

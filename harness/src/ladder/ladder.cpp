@@ -43,7 +43,7 @@ std::vector<std::string> gate_mistakes(const std::string& check) {
        {"something is carried from step to step that do_get_state() does not show",
         "a step at the pass limit is repeated, left out or reported as a failure"}},
       {"passes",
-       {"max |Delta q| is compared before the correction, with < instead of <=, or as a 2-norm",
+       {"Newton ends by another norm than max |Delta q|, or relative to q",
         "at the pass limit the status is pass_limit, passes is max_passes"}},
       {"multipliers", {"lambda is not updated in the pass that converges"}},
       {"batch", {"a lane reads numbers of another: masses, lengths, penalty factors"}},
@@ -122,8 +122,10 @@ class Climber {
     report.result = RungResult::failed;
     report.detail = (child.fate == Fate::threw ? "threw " : "") + child.reason;
     report.mistakes = {
-        "an index is out of range, or a vector was not given its size: a build with "
-        "sanitizers names the line (CMakePresets.json)"};
+        child.fate == Fate::timeout
+            ? "a loop has no end: passes end at max_passes, also with a NaN"
+            : "an index is out of range, or a vector was not given its size: a build with "
+              "sanitizers names the line (CMakePresets.json)"};
   }
 
   static void read(const nlohmann::json& json, RungReport& report);
@@ -199,8 +201,12 @@ RungReport Climber::ten_steps(const Scene& scene) const {
       }
       if (outcome.passes != right.passes || outcome.status != right.status) {
         inner.result = RungResult::failed;
+        const auto limited = [](const StepOutcome& one) {
+          return one.status == StepStatus::pass_limit ? "pass_limit" : "converged";
+        };
         inner.finding = {"passes", "", static_cast<double>(outcome.passes),
-                         static_cast<double>(right.passes), "or another status"};
+                         static_cast<double>(right.passes),
+                         fmt::format("{} instead of {}", limited(outcome), limited(right))};
         inner.detail = fmt::format("in step {} of {}", step, kSteps);
         return;
       }
@@ -270,9 +276,12 @@ RungReport Climber::one_term(const TermModel& term) const {
   const StepSettings settings = term_settings(term.model);
   for (const StepRung& rung : step_rungs()) {
     look(report, rung, term.model, settings, fmt::format(" --step {:g}", settings.step));
+    report.equation += "; of the term: " + term.equation;
     if (report.result == RungResult::not_yet) report.result = RungResult::ok;
     if (report.result != RungResult::ok) return report;
   }
+  report.equation = term.equation;
+  report.mistakes.clear();
   judge(report, {term.name, term.model, {}, {}}, settings);
   return report;
 }

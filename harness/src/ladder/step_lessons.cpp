@@ -30,7 +30,7 @@ const std::vector<StepRung>& step_rungs() {
        "Eq. (3)",
        Look::shown,
        {"lambda is updated before the residual: alpha Phi then counts twice",
-        "the factor dt^2/4, or the sign: do_solve has -f, this is f",
+        "the factor dt^2/4, or the sign: Eq. (4) is solved with -f, here f itself is asked for",
         "half of M: the model lists its lower triangle only",
         "a is that of the last step, not the predicted a'; or Q lacks what springs, couples or "
         "drivers give"}},

@@ -181,89 +181,93 @@ class TermBuilder {
   int origin_ = -1;
 };
 
-using NamedTerm = std::pair<const char*, std::function<void(TermBuilder&)>>;
+struct NamedTerm {
+  const char *name, *equation;
+  std::function<void(TermBuilder&)> add;
+};
 
 std::vector<NamedTerm> named_terms() {
   constexpr int A = TermBuilder::A, B = TermBuilder::B, C = TermBuilder::C, D = TermBuilder::D,
                 E = TermBuilder::E, G = TermBuilder::G, P = TermBuilder::P, N = TermBuilder::N;
   return {
-      {"chain", [](TermBuilder&) {}},
-      {"springs",
+      {"chain", "Eq. (7)", [](TermBuilder&) {}},
+      {"springs", "Eq. (11)",
        [](TermBuilder& b) {
          b.data().springs = {{D, G, 300.0, 0.0, 0.5, "tension"},
                              {B, E, 200.0, 0.0, 4.0, "compression"},
                              {G, C, 150.0, 0.0, 0.0, "no length"}};
        }},
-      {"dampers",
+      {"dampers", "Eq. (11)",
        [](TermBuilder& b) {
          b.data().springs = {{D, G, 0.0, 8.0, 0.0, "to the ground"}, {B, E, 0.0, 5.0, 0.0, "free"}};
        }},
-      {"zero springs",
+      {"zero springs", "Eq. (11)",
        [](TermBuilder& b) {
          b.data().springs = {{D, G, 0.0, 0.0, 0.0, "nothing"}};
        }},
-      {"spring to a driven point",
+      {"spring to a driven point", "Eq. (11), step 0",
        [](TermBuilder& b) {
          b.drive_point();
          b.data().springs = {{E, P, 250.0, 6.0, 0.4, "driven"}, {P, C, 100.0, 3.0, 1.0, "driven"}};
        }},
-      {"torsion springs",
+      {"torsion springs", "Eq. (11)",
        [](TermBuilder& b) {
          b.data().torsion_springs = {
              {B, A, C, B, b.axis(), 12.0, 0.0, 0.4, "hinge"},
              {A, B, G, G == 0 ? A : (b.spatial() ? A : D), b.axis(), 0.0, 0.0, 0.0, "zero"}};
          if (b.spatial()) b.data().torsion_springs.pop_back();
        }},
-      {"torsion dampers",
+      {"torsion dampers", "Eq. (11)",
        [](TermBuilder& b) {
          b.data().torsion_springs = {{B, A, C, B, b.axis(), 9.0, 0.8, -2.9, "hinge"}};
        }},
-      {"couples",
+      {"couples", "Eq. (11)",
        [](TermBuilder& b) {
          b.data().couples = {{B, A, b.axis(), 3.0, "motor"}, {B, C, b.axis(), -1.5, "motor"}};
        }},
-      {"driven rod", [](TermBuilder& b) { b.driven_rod(); }},
-      {"driven length", [](TermBuilder& b) { b.drive_value(1, 0.1); }},
-      {"linear",
+      {"driven rod", "Eqs. (6), (7), step 0, Q of a driven mass",
+       [](TermBuilder& b) { b.driven_rod(); }},
+      {"driven length", "Eqs. (6), (7), step 0", [](TermBuilder& b) { b.drive_value(1, 0.1); }},
+      {"linear", "Eq. (8)",
        [](TermBuilder& b) {
          const int e = b.data().points[E].offset, d = b.data().points[D].offset;
          b.data().linear_constraints = {{{{e, 0.6}, {e + 1, 0.8}, {d, -0.3}}, 0.0, "line"}};
        }},
-      {"driven linear",
+      {"driven linear", "Eqs. (6), (8), step 0",
        [](TermBuilder& b) {
          const int e = b.data().points[E].offset, d = b.data().points[D].offset;
          b.data().linear_constraints = {{{{e, 0.6}, {e + 1, 0.8}}, 0.0, "line"},
                                         {{{d + 1, 0.5}, {e + 1, -0.5}}, 0.0, "other"}};
          b.drive_value(static_cast<int>(b.data().dot_constraints.size()), 0.05);
        }},
-      {"dot",
+      {"dot", "Eq. (7)",
        [](TermBuilder& b) {
          b.data().dot_constraints.push_back({B, A, E, D, 0.0, "dot"});
        }},
-      {"dot with a driven direction",
+      {"dot with a driven direction", "Eqs. (6), (7), step 0",
        [](TermBuilder& b) {
          b.drive_point();
          b.data().dot_constraints.push_back({P, G, E, D, 0.0, "dot"});
        }},
-      {"bilinear", [](TermBuilder& b) { b.bilinear(B, A, E, D); }},
-      {"bilinear with shared and fixed points",
+      {"bilinear", "Eq. (7), bilinear", [](TermBuilder& b) { b.bilinear(B, A, E, D); }},
+      {"bilinear with shared and fixed points", "Eq. (7), bilinear",
        [](TermBuilder& b) {
          b.bilinear(D, C, D, E);
          if (b.spatial()) b.bilinear(C, N, G, D);
        }},
-      {"driven bilinear",
+      {"driven bilinear", "Eqs. (6), (7), bilinear, step 0",
        [](TermBuilder& b) {
          b.drive_point();
          b.drive_value(b.bilinear(D, P, E, C), 0.2);
        }},
-      {"mass across axes", [](TermBuilder& b) { b.mass_across_axes(); }},
-      {"stored zeros",
+      {"mass across axes", "all of M: Model::mass()", [](TermBuilder& b) { b.mass_across_axes(); }},
+      {"stored zeros", "all of M: Model::mass()",
        [](TermBuilder& b) {
          b.data().mass.push_back({7, 0, 0.0});
          b.data().mass.push_back({6, 1, 0.0});
          b.data().springs = {{D, G, 300.0, 4.0, 0.5, "spring"}};
        }},
-      {"everything",
+      {"everything", "Eqs. (6) to (8), (11), step 0",
        [](TermBuilder& b) {
          b.data().springs = {{D, G, 300.0, 4.0, 0.5, "tension"}, {B, E, 200.0, 0.0, 4.0, "push"}};
          b.data().torsion_springs = {{B, A, C, B, b.axis(), 12.0, 0.8, 0.4, "hinge"}};
@@ -288,11 +292,11 @@ std::vector<NamedTerm> named_terms() {
 std::vector<TermModel> term_models() {
   std::vector<TermModel> models;
   for (const int dimension : {2, 3}) {
-    for (const auto& [name, add] : named_terms()) {
+    for (const auto& [name, equation, add] : named_terms()) {
       TermBuilder builder(dimension);
       add(builder);
-      models.push_back(
-          {std::string(name) + (dimension == 2 ? ", planar" : ", spatial"), builder.finish()});
+      models.push_back({std::string(name) + (dimension == 2 ? ", planar" : ", spatial"),
+                        builder.finish(), equation});
     }
   }
   return models;

@@ -11,6 +11,7 @@ namespace mbs {
 struct TermModel {
   std::string name;  ///< "springs, planar"
   Model model;
+  std::string equation;  ///< of paper/README.md, what the term is about
 };
 
 /// Mechanisms of a few points in two and three dimensions, each with one kind of term and one with
