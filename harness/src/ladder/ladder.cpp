@@ -121,11 +121,14 @@ class Climber {
     }
     report.result = RungResult::failed;
     report.detail = (child.fate == Fate::threw ? "threw " : "") + child.reason;
-    report.mistakes = {
-        child.fate == Fate::timeout
-            ? "a loop has no end: passes end at max_passes, also with a NaN"
-            : "an index is out of range, or a vector was not given its size: a build with "
-              "sanitizers names the line (CMakePresets.json)"};
+    report.mistakes.clear();
+    if (child.fate == Fate::timeout) {
+      report.mistakes = {"a loop has no end: passes end at max_passes, also with a NaN"};
+    } else if (child.fate == Fate::crashed) {
+      report.mistakes = {
+          "an index is out of range, or a vector was not given its size: a build with "
+          "sanitizers names the line (CMakePresets.json)"};
+    }
   }
 
   static void read(const nlohmann::json& json, RungReport& report);
