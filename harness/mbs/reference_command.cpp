@@ -1,6 +1,8 @@
 // mbs reference: what the reference computes in one step, as numbers to compare one's own with.
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "ladder/step_rungs.hpp"
 #include "ladder/term_models.hpp"
 #include "mbs/commands.hpp"
@@ -14,7 +16,7 @@
 namespace mbs {
 namespace {
 
-using json = nlohmann::ordered_json;
+using nlohmann::ordered_json;  // in the order in which a step computes them
 
 struct ReferenceOptions {
   std::string scene;
@@ -33,33 +35,33 @@ Scene scene_or_term(const std::string& name) {
 }
 
 /// The rows of a matrix that is stored row by row.
-json rows_of(const std::vector<double>& values, int columns) {
-  json rows = json::array();
+ordered_json rows_of(const std::vector<double>& values, int columns) {
+  ordered_json rows = ordered_json::array();
   for (auto row = values.begin(); row != values.end(); row += columns) {
     rows.push_back(std::vector<double>(row, row + columns));
   }
   return rows;
 }
 
-json state_json(const State& state) {
+ordered_json state_json(const State& state) {
   return {{"t", state.t}, {"q", state.q}, {"v", state.v}, {"a", state.a}, {"lambda", state.lambda}};
 }
 
 /// The state after a step from `state`, with what the step said of itself.
-json step_json(const Model& model, const StepSettings& settings, const State& state) {
+ordered_json step_json(const Model& model, const StepSettings& settings, const State& state) {
   ReferenceSimulation simulation(model, settings);
   simulation.set_state(state);
   const StepOutcome outcome = simulation.step();
   State after;
   simulation.get_state(after);
-  json result = state_json(after);
+  ordered_json result = state_json(after);
   result["passes"] = outcome.passes;
   result["converged"] = outcome.status == StepStatus::converged;
   return result;
 }
 
-json reference_json(const Scene& scene, const StepSettings& settings,
-                    const ReferenceOptions& options) {
+ordered_json reference_json(const Scene& scene, const StepSettings& settings,
+                            const ReferenceOptions& options) {
   const Model& model = scene.model;
   const int n = model.variables();
   ReferenceSimulation simulation(model, settings);
@@ -76,19 +78,19 @@ json reference_json(const Scene& scene, const StepSettings& settings,
   simulation.set_state(state);
   FirstPass pass;
   if (!simulation.show_first_pass(pass)) throw UsageError("the reference shows no pass");
-  json variables = json::array(), constraints = json::array();
+  ordered_json variables = ordered_json::array(), constraints = ordered_json::array();
   for (int i = 0; i < n; ++i) variables.push_back(variable_name(model, i));
   for (int k = 0; k < model.constraints(); ++k) constraints.push_back(row_name(model, k));
 
   StepSettings one_pass = settings;
   one_pass.max_passes = 1;
   one_pass.projections = Projections::none;
-  json passed = step_json(model, one_pass, state);
+  ordered_json passed = step_json(model, one_pass, state);
   std::vector<double> delta = passed.at("q").get<std::vector<double>>();
   for (std::size_t i = 0; i < delta.size(); ++i) delta[i] -= pass.q[i];
   passed["Delta_q"] = delta;
   one_pass.projections = Projections::both;
-  const json projected = step_json(model, one_pass, state);
+  const ordered_json projected = step_json(model, one_pass, state);
   return {{"scene", scene.name},
           {"step", settings.step},
           {"penalty", settings.penalty},
@@ -107,7 +109,7 @@ json reference_json(const Scene& scene, const StepSettings& settings,
 }
 
 /// A quantity, or a row of a matrix, a line.
-void print_json(const json& object) {
+void print_json(const ordered_json& object) {
   const char* before = "{";
   for (const auto& [key, value] : object.items()) {
     fmt::print("{}\n  \"{}\": ", before, key);
@@ -118,7 +120,7 @@ void print_json(const json& object) {
       continue;
     }
     const char* before_row = "[";
-    for (const json& row : value) {
+    for (const ordered_json& row : value) {
       fmt::print("{}\n    {}", before_row, row.dump());
       before_row = ",";
     }
