@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
+#include <set>
 
 #include "atomic_file.hpp"
 #include "check/gate.hpp"
 #include "environment/environment.hpp"
+#include "ladder/ladder.hpp"
 #include "mbs/commands.hpp"
 #include "mbs/file_names.hpp"
 #include "registry/factory.hpp"
@@ -24,6 +27,7 @@ struct CheckOptions {
   StepOptions step;
   double time_limit = 120.0;
   std::string json;
+  bool ladder = false;
 };
 
 void print_verdict(const Verdict& verdict) {
@@ -40,6 +44,60 @@ void print_verdict(const Verdict& verdict) {
   std::fflush(stdout);
 }
 
+void print_rung(const RungReport& report) {
+  fmt::print("  {:<11}{}", name_of(report.result), report.rung);
+  if (!report.detail.empty()) fmt::print(": {}", report.detail);
+  fmt::print("\n");
+  if (report.result == RungResult::failed) {
+    const Finding& found = report.finding;
+    const auto text = [](const std::optional<double>& x) {
+      return x ? fmt::format("{:.9g}", *x) : std::string("not a number");
+    };
+    if (!found.quantity.empty()) {
+      fmt::print("    {}{}{}", found.quantity, found.row.empty() ? "" : ", ", found.row);
+      if (!found.row.empty() || found.value) fmt::print(": {}", text(found.value));
+      if (found.reference) fmt::print(", the reference has {}", text(found.reference));
+      fmt::print("{}{}\n", found.detail.empty() ? "" : "; ", found.detail);
+    }
+    if (!report.equation.empty()) fmt::print("    {} of paper/README.md\n", report.equation);
+    if (!report.mistakes.empty()) fmt::print("    the usual mistakes:\n");
+    for (const std::string& mistake : report.mistakes) fmt::print("    - {}\n", mistake);
+    if (!report.command.empty()) fmt::print("    more: build/{}\n", report.command);
+  }
+  std::fflush(stdout);
+}
+
+/// Writes rows to the file of --json.
+template <class Row>
+void write_rows(AtomicFile& file, const std::vector<Row>& rows) {
+  nlohmann::json context;
+  for (const auto& [key, value] : environment_record()) context[key] = value;
+  file.stream() << nlohmann::json{{"context", context}, {"rows", rows}}.dump(2) << '\n';
+  file.commit();
+}
+
+int climb_all(const std::vector<NamedVariant>& variants, double seconds,
+              std::optional<AtomicFile>& file) {
+  std::vector<RungReport> reports;
+  bool any_failed = false;
+  for (const NamedVariant& variant : variants) {
+    fmt::print("{}\n", variant.name);
+    std::map<RungResult, int> counts;
+    climb(variant, {.seconds = seconds}, [&](const RungReport& report) {
+      print_rung(report);
+      ++counts[report.result];
+      reports.push_back(report);
+    });
+    const bool failed = counts[RungResult::failed] > 0;
+    fmt::print("{}: {} rungs ok, {} not yet, {} not served\n",
+               failed ? "stopped at the first rung that failed" : "up", counts[RungResult::ok],
+               counts[RungResult::not_yet], counts[RungResult::not_served]);
+    any_failed |= failed;
+  }
+  if (file) write_rows(*file, reports);
+  return any_failed ? 1 : 0;
+}
+
 int check(const CheckOptions& options) {
   if (!(options.time_limit > 0.0) || !(options.time_limit <= 1e6)) {
     throw UsageError(fmt::format("--time-limit is {:g} s: it must be above 0 and at most 1e6",
@@ -52,6 +110,7 @@ int check(const CheckOptions& options) {
   }
   std::optional<AtomicFile> file;
   if (!options.json.empty()) file.emplace(options.json);
+  if (options.ladder) return climb_all(variants, options.time_limit, file);
   std::vector<Verdict> verdicts;
   std::vector<Scene> scenes;  // all of them before the first check, so that a bad one loses nothing
   for (const std::string& name : options.scenes) scenes.push_back(load_scene(name));
@@ -67,12 +126,7 @@ int check(const CheckOptions& options) {
   }
   const auto agreeing = std::ranges::count_if(verdicts, &Verdict::agrees);
   fmt::print("{} of {} agree with the reference\n", agreeing, verdicts.size());
-  if (file) {
-    nlohmann::json context;
-    for (const auto& [key, value] : environment_record()) context[key] = value;
-    file->stream() << nlohmann::json{{"context", context}, {"rows", verdicts}}.dump(2) << '\n';
-    file->commit();
-  }
+  if (file) write_rows(*file, verdicts);
   const auto acceptable = [](const Verdict& verdict) {
     return verdict.agrees() || verdict.verdict == "unsupported";
   };
@@ -93,6 +147,14 @@ void add_check_command(CLI::App& app, int& status) {
   command->add_option("--time-limit", options->time_limit, "s a scene and implementation")
       ->capture_default_str();
   command->add_option("--json", options->json, "write the verdicts to this file too");
+  auto* ladder = command->add_flag(
+      "--ladder", options->ladder,
+      "from the predictor to every term and setting, rung by rung, up to the first that is wrong");
+  const std::set<std::string> together{"--help", "--implementation", "--time-limit",
+                                       "--json", "--blas",           "--ladder"};
+  for (CLI::Option* option : command->get_options()) {
+    if (!together.contains(option->get_name())) ladder->excludes(option);
+  }
   command->callback([options, &status] {
     if (options->scenes.empty()) {
       options->scenes = {"four-bar:1", "four-bar:10", "four-bar:10,fill=0.6", "four-bar:40"};

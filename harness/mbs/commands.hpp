@@ -15,6 +15,7 @@ void add_describe_command(CLI::App& app, int& status);
 void add_simulate_command(CLI::App& app, int& status);
 void add_sweep_command(CLI::App& app, int& status);
 void add_check_command(CLI::App& app, int& status);
+void add_reference_command(CLI::App& app, int& status);
 void add_limit_command(CLI::App& app, int& status);
 
 /// Adds --blas to `command`, for its help; main() has already obeyed it (settle_environment()).

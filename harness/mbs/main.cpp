@@ -1,4 +1,4 @@
-// The program `mbs`: list, describe, simulate, sweep, check, limit, bench.
+// The program `mbs`: list, describe, simulate, sweep, check, reference, limit, bench.
 #include <sys/resource.h>
 #include <unistd.h>
 

@@ -173,19 +173,21 @@ int run_program(int argc, char** argv) {
   add_simulate_command(app, status);
   add_sweep_command(app, status);
   add_check_command(app, status);
+  add_reference_command(app, status);
   add_limit_command(app, status);
   app.add_subcommand("bench", "time implementations with Google Benchmark (see mbs bench --help)");
   for (CLI::App* command : app.get_subcommands({})) {
     refuse_empty(*command);
     command->footer(kExits);
   }
-  for (const char* name : {"describe", "check"}) app.get_subcommand(name)->footer(kScenes);
+  for (const char* name : {"describe", "check", "reference"}) app.get_subcommand(name)->footer(kScenes);
   for (const auto& [name, scenes] : {std::pair("simulate", kScenes), std::pair("sweep", kVaried)}) {
     app.get_subcommand(name)->footer(std::string(scenes) + "\n\n" + outcomes_text());
   }
   if (argc > 1 && argv[1][0] != '-' && !is_subcommand(app, argv[1])) {
     throw UsageError(fmt::format(
-        "unknown subcommand '{}': there are list, describe, simulate, sweep, check, limit, bench",
+        "unknown subcommand '{}': there are list, describe, simulate, sweep, check, reference, "
+        "limit, bench",
         argv[1]));
   }
   try {

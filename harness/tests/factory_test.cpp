@@ -26,8 +26,8 @@ std::string name_of(Term term) {
 }
 
 const Model& model_of(const std::string& name) {
-  static const std::vector<test::TermModel> models = test::term_models();
-  for (const test::TermModel& one : models) {
+  static const std::vector<TermModel> models = term_models();
+  for (const TermModel& one : models) {
     if (one.name == name) return one.model;
   }
   throw std::invalid_argument(name);
@@ -35,7 +35,7 @@ const Model& model_of(const std::string& name) {
 
 TEST(Factory, EveryTermOfAModelHasToBeServed) {
   std::size_t most = 0;
-  for (const test::TermModel& one : test::term_models()) {
+  for (const TermModel& one : term_models()) {
     SCOPED_TRACE(one.name);
     const auto used = terms_of(one.model);
     most = std::max(most, used.size());
@@ -117,7 +117,7 @@ TEST(Factory, WhatAVariantDoesNotServeIsSaid) {
 
 TEST(Factory, RattleIsForScenesWithoutDriversAndDampers) {
   int suited = 0, unsuited = 0;
-  for (const test::TermModel& term : test::term_models()) {
+  for (const TermModel& term : term_models()) {
     EXPECT_EQ(why_unsuited(term.model, {}), "");
     (why_unsuited(term.model, {.scheme = Scheme::rattle}).empty() ? suited : unsuited) += 1;
   }

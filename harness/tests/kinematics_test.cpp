@@ -51,7 +51,7 @@ Values jacobian_times(const Model& model, double t, const Values& q, const Value
   return product;
 }
 
-class Kinematics : public ::testing::TestWithParam<test::TermModel> {};
+class Kinematics : public ::testing::TestWithParam<TermModel> {};
 
 TEST_P(Kinematics, RateIsTheDerivativeOfPhiAlongAMotion) {
   const Model& model = GetParam().model;
@@ -140,7 +140,7 @@ TEST_P(Kinematics, DampersTakeEnergy) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Terms, Kinematics, ::testing::ValuesIn(test::term_models()),
+INSTANTIATE_TEST_SUITE_P(Terms, Kinematics, ::testing::ValuesIn(term_models()),
                          [](const auto& info) { return test::gtest_name(info.param.name); });
 
 }  // namespace

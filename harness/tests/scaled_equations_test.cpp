@@ -43,7 +43,7 @@ TEST(ScaledEquations, BringTheDiagonalTogether) {
 
 // In the saddle-point form eps hardly matters: all terms move as before, multipliers too.
 TEST(ScaledEquations, LeaveEveryTermsMotionAndMultipliers) {
-  for (const test::TermModel& term : test::term_models()) {
+  for (const TermModel& term : term_models()) {
     SCOPED_TRACE(term.name);
     StepSettings settings;
     settings.step = 2.5e-4;

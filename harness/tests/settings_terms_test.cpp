@@ -14,62 +14,18 @@
 namespace mbs {
 namespace {
 
-struct Setting {
-  std::string name;
-  StepSettings settings;
-};
-
-void PrintTo(const Setting& setting, std::ostream* out) { *out << setting.name; }
-
-constexpr double kStep = 2.5e-4;  // short enough that no driver forces what geometry forbids
-
-std::vector<Setting> all_settings() {
-  constexpr auto saddle = Scheme::saddle_point;
-  constexpr auto single = Precision::single_precision;
-  constexpr auto mixed = Precision::mixed;
-  std::vector<Setting> all{
-      {"saddle_point", {.scheme = saddle}},
-      {"saddle_point_every_step", {.scheme = saddle, .tangent = TangentReuse::step}},
-      {"saddle_point_kept", {.scheme = saddle, .tangent = TangentReuse::kept}},
-      {"saddle_point_unprojected", {.projections = Projections::none, .scheme = saddle}},
-      {"saddle_point_velocities",
-       {.projections = Projections::velocity, .projections_every = 2, .scheme = saddle}},
-      {"rattle", {.scheme = Scheme::rattle}},
-      {"rattle4", {.scheme = Scheme::rattle4}},
-      {"rattle6", {.scheme = Scheme::rattle6}},
-      {"multistep6", {.scheme = Scheme::multistep6}},
-      {"converged", {.multipliers = MultiplierUpdate::converged}},
-      {"every_step", {.tangent = TangentReuse::step}},
-      {"kept", {.tangent = TangentReuse::kept}},
-      {"every_third", {.projections_every = 3}},
-      {"single", {.precision = single}},
-      {"single_saddle_point", {.scheme = saddle, .precision = single}},
-      {"single_rattle", {.scheme = Scheme::rattle, .precision = single}},
-      {"mixed", {.precision = mixed}},
-      {"mixed_saddle_point", {.scheme = saddle, .precision = mixed}},
-      {"geometric", {.geometric_stiffness = true}},
-      {"geometric_kept", {.tangent = TangentReuse::kept, .geometric_stiffness = true}},
-      {"saddle_point_geometric", {.scheme = saddle, .geometric_stiffness = true}},
-      {"mixed_kept", {.tangent = TangentReuse::kept, .precision = mixed}},
-  };
-  for (Setting& setting : all) setting.settings.step = kStep;
-  return all;
-}
-
-using Case = std::tuple<NamedVariant, Setting>;
+using Case = std::tuple<NamedVariant, SettingCase>;
 class SettingsTerms : public ::testing::TestWithParam<Case> {};
 
 TEST_P(SettingsTerms, Agree) {
   const auto& [variant, setting] = GetParam();
-  for (const test::TermModel& term : test::term_models()) {
+  for (const TermModel& term : term_models()) {
     // For the trapezoidal rule, and for RATTLE.
     const bool telling = term.name == "everything, spatial" || term.name == "couples, planar";
     if (test::kSlowReference && !telling) continue;
     SCOPED_TRACE(term.name);
     const Scene scene{term.name, term.model, {}, {}};
-    StepSettings settings = setting.settings;
-    settings.penalty = automatic_penalty(scene.model, settings);
-    settings.tolerance = automatic_tolerance(scene.model, settings);
+    const StepSettings settings = term_settings(scene.model, setting.settings);
     const bool suited = why_unsuited(scene.model, settings).empty();
     static const ReferenceRun none;
     const ReferenceRun& reference =
@@ -116,7 +72,7 @@ TEST(MixedPrecision, StaysAtRest) {
 }
 
 /// The settings that take most paths at once, for builds in which every one takes seconds.
-bool tells_much(const Setting& setting) {
+bool tells_much(const SettingCase& setting) {
   for (const char* name : {"saddle_point", "saddle_point_kept", "rattle4", "multistep6",
                            "converged", "single_saddle_point", "mixed_kept", "geometric_kept"}) {
     if (setting.name == name) return true;
@@ -127,7 +83,7 @@ bool tells_much(const Setting& setting) {
 /// Setting by setting, for kept_reference().
 std::vector<Case> cases() {
   std::vector<Case> result;
-  for (const Setting& setting : all_settings()) {
+  for (const SettingCase& setting : setting_cases()) {
     if (test::kSlowReference && !tells_much(setting)) continue;
     const RegistryEntry* last = nullptr;
     for (const NamedVariant& variant : all_variants()) {

@@ -4,7 +4,6 @@
 #include "check/gate.hpp"
 #include "registry/factory.hpp"
 #include "registry/registry.hpp"
-#include "run/settings.hpp"
 #include "support/gtest_name.hpp"
 #include "support/left_to_another.hpp"
 #include "support/term_models.hpp"
@@ -12,23 +11,14 @@
 namespace mbs {
 namespace {
 
-StepSettings settings_for(const Model& model, Projections projections) {
-  StepSettings settings;
-  settings.step = 2.5e-4;  // 800 steps: short enough that no driver forces what geometry forbids
-  settings.penalty = automatic_penalty(model, settings);
-  settings.tolerance = automatic_tolerance(model, settings);
-  settings.projections = projections;
-  return settings;
-}
-
 class EveryTerm : public ::testing::TestWithParam<NamedVariant> {};
 
 void expect_agreement(const NamedVariant& variant, const char* name, Projections projections) {
-  for (const test::TermModel& term : test::term_models()) {
+  for (const TermModel& term : term_models()) {
     if (test::kSlowReference && !term.name.starts_with("everything")) continue;
     SCOPED_TRACE(term.name);
     const Scene scene{term.name, term.model, {}, {}};
-    const StepSettings settings = settings_for(scene.model, projections);
+    const StepSettings settings = term_settings(scene.model, {.projections = projections});
     const Verdict verdict =
         check_implementation(scene, variant, settings, test::kept_reference(name, scene, settings));
     if (test::is_left_to_another(verdict, variant, scene.model, settings)) continue;

@@ -34,6 +34,17 @@ StepOutcome LoopsSimulation::do_step() {
   return outcome;
 }
 
+// Not part of a step: what its first pass computes, part by part, for `mbs check --ladder`.
+bool LoopsSimulation::do_show_first_pass(FirstPass& pass) {
+  predict();
+  evaluate_constraints();
+  evaluate_residual();
+  assemble_tangent();
+  pass = {q_, v_, a_, Phi_, Phi_q_, Delta_q_, T_};
+  for (double& minus_f : pass.f) minus_f = -minus_f;
+  return true;
+}
+
 // Eq. (2), applied to q' - q: with q' itself it cancels digits when coordinates are large.
 void LoopsSimulation::predict() {
   phases_.enter(Phase::other);

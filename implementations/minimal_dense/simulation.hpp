@@ -16,6 +16,7 @@ class LoopsSimulation final : public Simulation {
   StepOutcome do_step() override;
   void do_set_state(const State& state) override { state_ = state; }
   void do_get_state(State& state) const override { state = state_; }
+  bool do_show_first_pass(FirstPass& pass) override;
 
   // The parts of a step, in the order in which do_step() comes to them.
   void predict();
@@ -29,8 +30,7 @@ class LoopsSimulation final : public Simulation {
 
   const Model& model_;
   const StepSettings settings_;
-  const double dt_ = settings_.step;
-  const double alpha_ = settings_.penalty;
+  const double dt_ = settings_.step, alpha_ = settings_.penalty;
   const long n_ = model_.variables(), m_ = model_.constraints();  // long: n_ * n_ is one, too
 
   // From predict() on, q_, v_ and a_ are the equations' q', v' and a'.
@@ -40,13 +40,11 @@ class LoopsSimulation final : public Simulation {
   // Matrices are stored row by row, and all have rows of n: M_ij is M_[i * n_ + j].
   Vector M_ = Vector(n_ * n_);                        // both halves
   const std::span<const double> Q_ = model_.force();  // constant, as gravity is all there is
-  Vector Phi_ = Vector(m_);
-  Vector Phi_q_ = Vector(m_ * n_);
-  Vector Phi_dot_q_v_ = Vector(m_);  // the time derivative of Phi_q, times v
-  Vector T_ = Vector(n_ * n_);       // lower half
-  Vector L_ = Vector(n_ * n_);       // lower half; T = L L^T
-  Vector Delta_q_ = Vector(n_);      // -f, then the solution of Eq. (4)
-  Vector projected_ = Vector(n_);    // right-hand side of Eq. (6), then its solution
+  Vector Phi_ = Vector(m_), Phi_q_ = Vector(m_ * n_);
+  Vector Phi_dot_q_v_ = Vector(m_);                   // the time derivative of Phi_q, times v
+  Vector T_ = Vector(n_ * n_), L_ = Vector(n_ * n_);  // lower halves; T = L L^T
+  Vector Delta_q_ = Vector(n_);                       // -f, then the solution of Eq. (4)
+  Vector projected_ = Vector(n_);                     // right-hand side of Eq. (6), then its solution
 };
 
 }  // namespace mbs::minimal_dense

@@ -9,14 +9,14 @@ from study.core.options import Parser
 SKELETON = ROOT / "study" / "tools" / "skeleton"
 LIST = ROOT / "implementations" / "CMakeLists.txt"
 NAME = re.compile(r"[a-z][a-z0-9_]*")
-LIBRARIES = {"none": ("none", "none", '"0"'),
+LIBRARIES = {"none": ("none", "", '""'),
              "eigen": ("Eigen", "MPL-2.0", 'std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION)'),
              "blas": ("LAPACK", "BSD-3-Clause", '"TODO: as the library reports it"')}  # (name, licence, version as C++)
 
 
 def new(arguments):
     parser = Parser(prog="study/new", description="Writes the folder of a new implementation: it compiles, is in the list, "
-                    "and has five empty functions to fill in: constraints, Jacobian, residual, tangent, solve.")
+                    "and has six empty functions to fill in: predict, constraints, Jacobian, residual, tangent, solve.")
     parser.add_argument("name", metavar="NAME", help="its folder: lower case, digits, _")
     parser.add_argument("--library", default="none", choices=list(LIBRARIES), help="what it links (none)")
     options = parser.parse_args(arguments)
@@ -33,9 +33,12 @@ def new(arguments):
         raise
     print(f"""implementations/{options.name}/ is written and in the list. Next:
   study/setup                                                # builds it
-  build/mbs check four-bar:1 --implementation {options.name}   # says where it differs from the reference
+  build/mbs check --ladder --implementation {options.name}     # the first quantity that is wrong, and how it usually gets so
+  build/mbs reference four-bar:1 --moved                     # the reference's numbers
+  build/mbs check --implementation {options.name}              # the whole gate
   study/add {options.name}                                     # ranks it, once it agrees
-The equations are in paper/README.md; implementations/minimal_dense is an example to read.""")
+The equations are in paper/README.md; implementations/minimal_dense is an example to read. Fill in simulation.cpp from top to
+bottom, and climb the ladder after each function.""")
     return 0
 
 

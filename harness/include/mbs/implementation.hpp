@@ -30,7 +30,8 @@ struct Serves {
   bool geometric_stiffness = false;  ///< StepSettings::geometric_stiffness
 };
 
-/// One way of running an implementation, named "folder/name".
+/// One way of running an implementation, named "folder/name". It needs a name, a description and
+/// create(); all else has its default.
 struct Variant {
   std::string name;         ///< lower case, for instance "refactor"
   std::string description;  ///< one line
@@ -66,9 +67,9 @@ enum class Role {
 /// and its line in implementations/CMakeLists.txt puts it into the registry.
 struct Implementation {
   std::string description;  ///< one line: storage, algorithm
-  std::string library;      ///< for instance "KLU"
-  std::string version;      ///< as the library itself reports it, for instance "1.3.9"
-  std::string licence;      ///< of the library, SPDX, for instance "LGPL-2.1-or-later"
+  std::string library;      ///< for instance "KLU"; without one "none"
+  std::string version;      ///< as the library itself reports it, for instance "1.3.9"; else empty
+  std::string licence;      ///< of the library, SPDX, "LGPL-2.1-or-later" for instance; else empty
   std::vector<Variant> variants;
   Role role = Role::contender;
 };

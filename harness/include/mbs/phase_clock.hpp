@@ -23,6 +23,9 @@ inline constexpr int kPhaseCount = 6;
 ///   phases_.enter(Phase::evaluation);     // evaluate Phi, Phi_q, f
 ///   phases_.enter(Phase::factorization);  // books the above on `evaluation`
 ///
+/// The clock starts in Phase::other, before the first step of many, and the phase that ends a step
+/// lasts until the next one enters its own: begin a step with enter(Phase::other).
+///
 /// Ticks are those of the processor's time stamp counter where there is one, else nanoseconds; only
 /// shares of the total are meaningful.
 class PhaseClock {

@@ -48,7 +48,9 @@ enum class Precision {
 };
 
 /// Settings of the time stepping, fixed for the lifetime of a Simulation. A variant serves what its
-/// mbs::Serves says; the defaults are "The step" of the paper, which all serve.
+/// mbs::Serves says; the defaults are "The step" of the paper, which all serve, with every value of
+/// `projections`. The program checks the numbers before it creates a simulation (step, penalty and
+/// tolerance are above 0, max_passes and projections_every at least 1): an implementation need not.
 struct StepSettings {
   double step = 1.25e-3;    ///< Delta t, s
   double penalty = 1e8;     ///< alpha, kg/(m^2 s^2); of linear rows, Phi in m, N/m
@@ -69,7 +71,7 @@ struct State {
   std::vector<double> v;       ///< n, m/s
   std::vector<double> a;       ///< n, m/s^2
   std::vector<double> lambda;  ///< constraints(), lambda* of Eq. (1), N/m; of linear rows N
-  double t = 0.0;              ///< s
+  double t = 0.0;              ///< s; get_state() writes it, do_get_state() need not
 };
 
 enum class StepStatus {
@@ -80,8 +82,18 @@ enum class StepStatus {
 
 struct StepOutcome {
   StepStatus status = StepStatus::converged;
-  int passes = 0;           ///< passes done in this step, >= 1
+  int passes = 0;           ///< passes begun, >= 1: one whose factorization failed counts
   int factorizations = -1;  ///< done in this step; -1: one a pass
+};
+
+/// What the first pass of a step computes, for `mbs check --ladder`. What is left empty reads "not
+/// yet" there. Entry (i, j) of a matrix with n columns is at i n + j.
+struct FirstPass {
+  std::vector<double> q, v, a;  ///< n; q', v', a' as predicted, Eq. (2)
+  std::vector<double> Phi;      ///< m; at q', Eqs. (7) and (8)
+  std::vector<double> Phi_q;    ///< m x n
+  std::vector<double> f;        ///< n, kg m; Eq. (3) as it stands there: with dt^2/4
+  std::vector<double> T;        ///< n x n, kg; Eq. (5); what is above the diagonal is not looked at
 };
 
 /// Thrown by a factory when the implementation cannot simulate this model; `what()` says why.
@@ -117,16 +129,28 @@ class Simulation {
   /// Copies the current state out: q, v, a after the projections, lambda* and t.
   void get_state(State& state) const;
 
+  /// Predicts a step from the present state and evaluates what its first pass does. Never timed;
+  /// set_state() has to come before the next step. False: this implementation does not show it.
+  [[nodiscard]] bool show_first_pass(FirstPass& pass) {
+    ++steps_;
+    return do_show_first_pass(pass);
+  }
+
   /// The phase clock that step() marks; off unless the harness profiles.
   PhaseClock& phases() { return phases_; }
 
  protected:
+  /// `state` has the right sizes, n and m, and finite numbers.
   virtual void do_set_state(const State& state) = 0;
   virtual StepOutcome do_step() = 0;
   /// `state` arrives with the right sizes.
   virtual void do_get_state(State& state) const = 0;
 
-  /// Within do_step(): the time at the end of this step, s. Only driven models need it.
+  /// Optional: for show_first_pass(), by the functions that do_step() calls. `pass` arrives empty.
+  virtual bool do_show_first_pass(FirstPass& /*pass*/) { return false; }
+
+  /// Within do_step() and do_show_first_pass(): the time at the end of this step, s. Only driven
+  /// models need it.
   [[nodiscard]] double time() const { return start_ + static_cast<double>(steps_) * step_; }
 
   PhaseClock phases_;

@@ -22,6 +22,10 @@ class EnvelopeLdlt {
   void set_zero();
   /// Entry (row, col) with first[row] <= col <= row.
   Real& at(int row, int col) { return values_[start_[row] + static_cast<std::size_t>(col)]; }
+  /// The same for any 0 <= col <= row; zero outside the envelope.
+  [[nodiscard]] Real value(int row, int col) const {
+    return col < first_[row] ? Real{0} : entry(row, col);
+  }
 
   /// Replaces the matrix by its factors L and D; false unless D has exactly `negative` negative
   /// entries, or any number without one, and is otherwise positive.

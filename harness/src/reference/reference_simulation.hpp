@@ -36,6 +36,8 @@ class ReferenceSimulation final : public Simulation {
   void do_set_state(const State& state) override;
   StepOutcome do_step() override;
   void do_get_state(State& state) const override;
+  /// In the penalty form.
+  bool do_show_first_pass(FirstPass& pass) override;
 
  private:
   struct Entry {
@@ -80,6 +82,8 @@ class ReferenceSimulation final : public Simulation {
   [[nodiscard]] Element line_element(const Line& line, Respond&& respond) const;
   template <class Corner, class Respond>
   [[nodiscard]] Element corner_element(const Corner& corner, Respond&& respond) const;
+  /// Eq. (3) without alpha Phi, which solve() adds: f_0 of Eq. (12).
+  [[nodiscard]] Vector residual(const std::vector<Row>& rows) const;
   [[nodiscard]] std::vector<Element> elements() const;
   struct MatrixEntry {
     int row, col;

@@ -38,6 +38,45 @@ void ReferenceSimulation::predict() {
   }
 }
 
+ReferenceSimulation::Vector ReferenceSimulation::residual(const std::vector<Row>& rows) const {
+  const Real h = settings_.step;
+  const Vector inertia = mass_times(a_), applied = applied_force();
+  Vector f = transpose_times(rows, lambda_);
+  for (int i = 0; i < n_; ++i) f[i] = h * h / 4 * (inertia[i] + f[i] - applied[i]);
+  return f;
+}
+
+bool ReferenceSimulation::do_show_first_pass(FirstPass& pass) {
+  if (is_saddle()) return false;
+  known_.set_time(time());
+  predict();
+  const auto rounded = [](const Vector& x) { return std::vector<double>(x.begin(), x.end()); };
+  pass.q = rounded(q_), pass.v = rounded(v_), pass.a = rounded(a_);
+  const Real scale = Real{settings_.step} * settings_.step / 4 * settings_.penalty;
+  const Vector phi = constraints();
+  const std::vector<Row> rows = jacobian();
+  pass.Phi = rounded(phi);
+  Vector f = residual(rows);
+  const Vector penalty = transpose_times(rows, phi);
+  for (int i = 0; i < n_; ++i) f[i] += scale * penalty[i];  // Eq. (3)
+  pass.f = rounded(f);
+  const auto n = static_cast<std::size_t>(n_);
+  pass.Phi_q.assign(static_cast<std::size_t>(m_) * n, 0.0);
+  for (int k = 0; k < m_; ++k) {
+    for (const Entry& entry : rows[k]) {
+      pass.Phi_q[k * n + entry.coordinate] += static_cast<double>(entry.value);
+    }
+  }
+  assemble(rows);
+  pass.T.resize(n * n);
+  for (int i = 0; i < n_; ++i) {  // in the penalty form place_[i] is i
+    for (int j = 0; j <= i; ++j) {
+      pass.T[i * n + j] = pass.T[j * n + i] = static_cast<double>(matrix_.value(i, j));
+    }
+  }
+  return true;
+}
+
 StepOutcome ReferenceSimulation::trapezoidal_step() {
   const Real h = settings_.step;
   const Real alpha = settings_.penalty;
@@ -60,13 +99,7 @@ StepOutcome ReferenceSimulation::trapezoidal_step() {
       }
       due_ = false;
     }
-    const Vector inertia = mass_times(a_);
-    const Vector applied = applied_force();
-    Vector top = transpose_times(rows, lambda_);
-    for (int i = 0; i < n_; ++i) {  // minus f_0 of Eq. (12)
-      top[i] = -h * h / 4 * (inertia[i] + top[i] - applied[i]);
-    }
-    const Solution delta = solve(rows, top, negative(phi));  // Eqs. (4), (12)
+    const Solution delta = solve(rows, negative(residual(rows)), negative(phi));  // Eqs. (4), (12)
     for (int i = 0; i < n_; ++i) {
       q_[i] += delta.x[i];
       v_[i] += 2 / h * delta.x[i];        // Eq. (2)

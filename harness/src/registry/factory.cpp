@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "registry/setting_names.hpp"
+#include "scene/row_names.hpp"
 
 namespace mbs {
 namespace {
@@ -98,18 +99,14 @@ void find_drivers(const Model& model, Finder& finder) {
 void find_mass_across_axes(const Model& model, Finder& finder) {
   // Free points tile q with as many coordinates each as there are axes.
   const auto axis = [&](int coordinate) { return coordinate % model.dimension(); };
-  const auto name = [&](int coordinate) {
-    const auto owns = [&](const Point& one) { return one.offset == coordinate - axis(coordinate); };
-    return fmt::format("{}.{}", std::ranges::find_if(model.points(), owns)->name,
-                       "xyz"[axis(coordinate)]);
-  };
   const auto mass = model.mass();
   const auto found = std::ranges::find_if(mass, [&](const MassEntry& one) {
     return one.value != 0.0 && axis(one.row) != axis(one.col);
   });
   if (found == mass.end()) return;
   finder.add(Term::mass_across_axes,
-             fmt::format("between '{}' and '{}'", name(found->row), name(found->col)));
+             fmt::format("between '{}' and '{}'", variable_name(model, found->row),
+                         variable_name(model, found->col)));
 }
 
 const std::string& name_of(Term term) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "model_math/known_motion.hpp"
@@ -24,6 +25,13 @@ std::string row_name(const Model& model, int row) {
   const std::size_t quadratic = quadratic_rows(model);
   return printable(index < quadratic ? model.bilinear_constraints()[index - dots].name
                                      : model.linear_constraints()[index - quadratic].name);
+}
+
+std::string variable_name(const Model& model, int i) {
+  const int axis = i % model.dimension();  // free points tile q with as many coordinates as axes
+  const auto owns = [&](const Point& one) { return one.offset == i - axis; };
+  return fmt::format("{}.{}", printable(std::ranges::find_if(model.points(), owns)->name),
+                     "xyz"[axis]);
 }
 
 const char* rate_unit(const Model& model, int row) {

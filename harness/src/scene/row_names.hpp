@@ -11,6 +11,9 @@ namespace mbs {
 /// The name of constraint `row` of Phi, fit for a message.
 std::string row_name(const Model& model, int row);
 
+/// What coordinate `i` of q is called: "B.x".
+std::string variable_name(const Model& model, int i);
+
 /// "m^2/s", or "m/s" for a linear constraint.
 const char* rate_unit(const Model& model, int row);
 

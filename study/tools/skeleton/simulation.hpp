@@ -1,4 +1,4 @@
-// One simulation of one model. The five functions marked TODO are to be filled in; paper/README.md has the equations.
+// One simulation of one model. What is marked TODO is to be filled in; paper/README.md has the equations.
 #pragma once
 
 #include <vector>
@@ -15,17 +15,26 @@ class Stepper final : public Simulation {
  private:
   void do_set_state(const State& state) override;
   void do_get_state(State& state) const override;
-  StepOutcome do_step() override;
+  StepOutcome do_step() override;                    // TODO: the step, of the functions below
+  bool do_show_first_pass(FirstPass& pass) override;  // for mbs check --ladder; not part of a step
 
-  void evaluate_constraints();             // TODO: Phi at q
-  void evaluate_jacobian();                // TODO: Phi_q at q
+  // In the order in which the ladder looks at them.
+  void predict();                          // TODO: q', v', a' in state_, Eq. (2)
+  void evaluate_constraints();             // TODO: Phi at q', Eq. (7)
+  void evaluate_jacobian();                // TODO: Phi_q at q', Eq. (7)
   void evaluate_residual();                // TODO: f, Eq. (3)
   void evaluate_tangent();                 // TODO: T, Eq. (5)
   bool solve(std::vector<double>& right);  // TODO: right becomes T^-1 right; false: T was refused
 
   const Model& model_;
   StepSettings settings_;
-  State state_;
+  State state_;  // from predict() on, q', v', a'
+
+  // Row by row: entry (i, j) of a matrix with n columns is at i * n + j. Store them as you like.
+  std::vector<double> Phi_;    // m
+  std::vector<double> Phi_q_;  // m x n
+  std::vector<double> f_;      // n
+  std::vector<double> T_;      // n x n; the ladder looks at its lower half
 };
 
 }  // namespace mbs::@NAME@
