@@ -11,9 +11,10 @@
 #include "ladder/term_models.hpp"
 #include "printable.hpp"
 #include "registry/factory.hpp"
-#include "run/initial_state.hpp"
 #include "registry/setting_names.hpp"
+#include "run/initial_state.hpp"
 #include "run/settings.hpp"
+#include "scene_file/load_scene.hpp"
 
 namespace mbs {
 namespace {
