@@ -1,8 +1,7 @@
 # The answer to "Which implementation is fastest at which size and fill?", from the tables.
-from collections import Counter
-
 from analysis.map import summary
 from analysis.map.cells import map_cells
+from analysis.map.ledger import counted
 from analysis.map.regret import regrets
 from analysis.map.results import of
 
@@ -23,9 +22,7 @@ def answers(tables, view):
         first = whole[0]
         found.append({"text": f"The safest single library is {first['implementation']}: {first['mean']:.2f} times the best on "
                               f"average over {first['of']} cells, {first['worst']:.3g} times at worst.", "anchor": "regret"})
-    verdicts = Counter(tables["claims"].verdict)
-    found.append({"text": "Of the paper's claims " + ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items()) + ".",
-                  "anchor": "claims"})
+    found.append({"text": f"The paper's claims: {counted(tables['claims'])}.", "anchor": "claims"})
     return found
 
 
