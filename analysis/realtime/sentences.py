@@ -35,8 +35,8 @@ def _best(layer, rows):
     row = rows.loc[rows.largest.idxmax()]
     if not row.largest:
         return f"none of the {layer} keeps up with any size"
-    text = (f"of {layer} {row.implementation} keeps up with N = {number(row.largest, 4)} ({number(row.missed, 4)} of "
-            f"{number(row.steps, 5)} steps missed, {number(row.null_missed, 4)} lost by the null process")
+    text = (f"of {layer} {row.implementation} keeps up with N = {number(row.largest, 4)} ({row.missed} of {row.steps} steps missed, "
+            f"{row.null_missed} lost by the null process)")
     if row.next == row.next:
-        text += f"; N = {number(row.next, 4)} failed"
-    return text + ")"
+        text += f", and not with N = {number(row.next, 4)} ({row.next_reason})"
+    return text
