@@ -1,7 +1,7 @@
 # The answer to "How far is each step from code that was written by hand for one mechanism?", from the tables.
 from analysis.core.text import number
 from analysis.limit.figures import everyone
-from analysis.limit.held import HELD, NOT_HELD, NOT_MEASURED
+from analysis.limit.held import HELD, NOT_HELD, NOT_MEASURED, OPEN, PARTLY
 from analysis.limit.tables import KINDS
 
 
@@ -56,15 +56,18 @@ def _gains(batches):
 
 
 def _held(held):
-    asked = held[held.verdict != NOT_MEASURED]
-    if asked.empty:
+    by_verdict = {verdict: held[held.verdict == verdict] for verdict in (HELD, PARTLY, OPEN, NOT_HELD, NOT_MEASURED)}
+    lost = by_verdict.pop(NOT_MEASURED)
+    if len(lost) == len(held):
         return []
-    broken = asked[asked.verdict == NOT_HELD]
-    text = f"Code without a library: {(asked.verdict == HELD).sum()} of the {len(asked)} bounds that were measured are held"
-    if len(broken):
-        text += "; not held: " + "; ".join(f"{row.what} ({number(row.worst)} at {row.where}, bound {row.sign} {number(row.bound)})"
-                                           for row in broken.itertuples())
-    return [{"text": f"{text}.", "anchor": "held"}]
+    text = f"Code without a library: of {len(held)} bounds {len(held) - len(lost)} were measured: " + ", ".join(
+        f"{len(rows)} {verdict}" for verdict, rows in by_verdict.items() if len(rows)) + "."
+    if len(by_verdict[NOT_HELD]):
+        text += " Not held: " + "; ".join(f"{row.what} ({number(row.worst)} at {row.where}, bound {row.sign} {number(row.bound)})"
+                                          for row in by_verdict[NOT_HELD].itertuples()) + "."
+    if len(lost):
+        text += f" Not measured: {'; '.join(lost.what)}."
+    return [{"text": text, "anchor": "held"}]
 
 
 def span(values, digits=3):
