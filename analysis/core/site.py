@@ -65,7 +65,7 @@ def _frame(folder, part):
     """What the frame of every page shows."""
     view = View(folder, part)
     return {"part": part, "parts": parts(), "question": parts().get(part, ""), "facts": view.facts,
-            "context": view.context}
+            "context": view.context, "libraries": view.registry.versions}
 
 
 def _template(path):
