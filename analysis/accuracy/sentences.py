@@ -46,8 +46,8 @@ def of_layer(rows, layer):
     who, often = most(rows.implementation)
     setting, with_it = most(rows.setting)
     settled = int((rows.settled == True).sum())  # noqa: E712 (a nullable flag)
-    text = (f"{WORDS[layer]} {who} is fastest for {often} of {len(rows)} required errors and sizes of the N-four-bar, and "
-            f"{setting} is the best setting of {with_it}; {settled} are settled.")
+    text = (f"{WORDS[layer]} {who} is fastest for {often} of {len(rows)} required errors and sizes of the N-four-bar; "
+            f"{settled} of these are settled. The best setting is most often {setting}, in {with_it}.")
     largest = rows[rows.variables == rows.variables.max()].sort_values("required")
     if len(largest) > 1:
         fine, coarse = largest.iloc[0], largest.iloc[-1]

@@ -31,8 +31,8 @@ def _multiples(rows, view):
     for who, mine in sides.items():
         best = mine.sort_values("multiple").drop_duplicates("loops")
         if len(best):
-            said.append(f"{who} takes {span(best.multiple, 2)} times as long (n = {span(best.variables, 5)})")
-    return [{"text": f"Beside code written for the N-four-bar alone {'; '.join(said)}.", "anchor": "sizes"}] if said else []
+            said.append(f"{who[0].upper()}{who[1:]} takes {span(best.multiple, 2)} times as long (n = {span(best.variables, 5)})")
+    return [{"text": f"Beside code written for the N-four-bar alone: {'. '.join(said)}.", "anchor": "sizes"}] if said else []
 
 
 def _leads(leads):
@@ -41,7 +41,7 @@ def _leads(leads):
         faster, slower = (mine.low > 1).sum(), (mine.high < 1).sum()
         found.append(f"{name} is shown to be faster than the fastest library in {faster} of {len(mine)} scenes that it "
                      f"serves and slower in {slower} ({span(mine.lead)} times)")
-    return [{"text": f"Scene by scene, {'; '.join(found)}.", "anchor": "ahead"}] if found else []
+    return [{"text": f"Scene by scene: {'. '.join(found)}.", "anchor": "ahead"}] if found else []
 
 
 def _of_scenes(leads):

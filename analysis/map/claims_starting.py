@@ -31,8 +31,8 @@ def _share(results, kind, size, group, phases, share):
     head = "T1", f"starting {kind} version, {size} variables: {group} takes {share} % of the time", f"{share} %"
     rule = share - SHARE_BAND, share + SHARE_BAND
     if len(cell) < PROCESSES:
-        what = f"{len(cell)} processes of {name} were profiled" if len(cell) else f"{name} was not profiled"
-        return unmeasured(head, f"{what} at n = {size}, an interval needs {PROCESSES}.", rule, " %")
+        what = f"{len(cell)} process{'es' if len(cell) > 1 else ''} of {name} profiled" if len(cell) else f"{name} not profiled"
+        return unmeasured(head, f"{what} at n = {size}; an interval needs {PROCESSES}.", rule, " %")
     shares = phase_shares(cell, PHASES)
     inside = ", ".join(f"{phase} {100 * shares[phase]:.0f} %" for phase in phases)
     return tested(head, [100 * value for value in share_interval(cell, phases)], rule, f"n = {size}, {name}",

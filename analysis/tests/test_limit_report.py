@@ -232,7 +232,7 @@ def test_figures_sentences_and_page_of_a_small_set_and_of_none():
         page.context(found, VIEW)
         assert all(one["text"].endswith(".") for one in sentences.answers(found, VIEW))
     texts = [one["text"] for one in sentences.answers(small, VIEW)]
-    assert "the fastest library takes 5 times as long (n = 22 to 20000)" in texts[0] and "own/x is shown to be faster" in texts[1]
+    assert "The fastest library takes 5 times as long (n = 22 to 20000)" in texts[0] and "own/x is shown to be faster" in texts[1]
     assert sentences.answers(made(), VIEW)[0]["text"].startswith("Not measured")
     assert [key for key, _ in page.context(small, VIEW)["sizes"]] == [22, 82, 20000]
 
