@@ -1,7 +1,7 @@
 # What the page and the front page say, computed from the tables.
 from analysis.accuracy import names, pairs
 from analysis.accuracy.winners import LAYERS, meeting, met
-from analysis.core.text import number
+from analysis.core.text import between, bounded, ends, number, rough
 
 WORDS = {"libraries": "Of the libraries", "all": "Of all, code without a library included,"}
 
@@ -46,8 +46,8 @@ def of_layer(rows, layer):
     who, often = most(rows.implementation)
     setting, with_it = most(rows.setting)
     settled = int((rows.settled == True).sum())  # noqa: E712 (a nullable flag)
-    text = (f"{WORDS[layer]} {who} is fastest for {often} of {len(rows)} required errors and sizes of the N-four-bar, and "
-            f"{setting} is the best setting of {with_it}; {settled} are settled.")
+    text = (f"{WORDS[layer]} {who} is fastest for {often} of {len(rows)} required errors and sizes of the N-four-bar; "
+            f"{settled} of these are settled. The best setting is most often {setting}, in {with_it}.")
     largest = rows[rows.variables == rows.variables.max()].sort_values("required")
     if len(largest) > 1:
         fine, coarse = largest.iloc[0], largest.iloc[-1]
@@ -128,8 +128,8 @@ def of_forms(table):
 
 
 def _cost(row):
-    return (f"{number(row.ratio, 2)} ({number(row.low, 2)} to {number(row.high, 2)}; {row.implementation}, "
-            f"n = {row.variables:.0f})")
+    value = number(row.ratio, 2) if bounded(row.low, row.high) else rough(row.ratio)
+    return f"{value} ({ends(row.low, row.high, 2)}; {row.implementation}, n = {row.variables:.0f})"
 
 
 def of_precision(table):
@@ -145,13 +145,17 @@ def _gain(what, rows):
     if same.empty:
         return f"{what}: none of {len(rows)} pairs with double is in the same error class."
     best = same.loc[same.high.idxmin()]
-    words = (f"{number(1 / best.ratio)} ({number(1 / best.high)} to {number(1 / best.low)}) of {best.implementation}, "
-             f"{best.second}, n = {best.variables:.0f}")
+    words = (f"{_speed_up(best)} of {best.implementation}, {best.second}, n = {best.variables:.0f}")
     if won.empty:
         return (f"{what} is nowhere shown to be {pairs.GAIN:g} times faster than double at the same error class "
                 f"({len(same)} of {len(rows)} pairs are in the same); the best speed-up is {words}.")
     return (f"{what} is at least {pairs.GAIN:g} times faster than double at the same error class in {len(won)} of {len(rows)} "
             f"pairs; the best speed-up is {words}.")
+
+
+def _speed_up(row):
+    low, high = (1 / row.high, 1 / row.low) if bounded(row.low, row.high) else (row.low, row.high)
+    return between(1 / row.ratio, low, high)
 
 
 def reuse_rows(table):

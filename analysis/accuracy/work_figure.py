@@ -7,7 +7,7 @@ from matplotlib.ticker import LogLocator
 
 from analysis.accuracy import names
 from analysis.accuracy.points import NOT_JUDGED
-from analysis.accuracy.winners import LAYERS, meeting
+from analysis.accuracy.winners import LAYERS, meeting, met
 from analysis.core.outcomes import FINISHED
 from analysis.core.pareto import near
 from analysis.core.style import GREY, missing, number_axis
@@ -15,6 +15,8 @@ from analysis.core.style import GREY, missing, number_axis
 CLOSE = 1.25  # times the front's time at its error
 MOST = 8      # named series of a panel
 GAP = 2.6     # times the shorter of two steps
+RINGED = "fastest for a required error (dashed)"
+RING = {"marker": "o", "markersize": 13, "markerfacecolor": "none", "markeredgecolor": "black", "markeredgewidth": 1.3}
 TITLES = {"libraries": "libraries", "all": "libraries and code without one"}
 
 
@@ -22,8 +24,8 @@ def name(subject):
     return "work-" + subject.replace(":", "-").replace(" ", "-").lower()
 
 
-def draw(rows, look, unit, title):
-    """The figure of one subject's points at its own fill."""
+def draw(rows, won, look, unit, title):
+    """The figure of one subject's points at its own fill. `won`: its rows of winners.csv, which are ringed."""
     figure, panels = plt.subplots(1, 2, figsize=(13, 6), sharex=True, sharey=True, constrained_layout=True)
     drawn = False
     for axes, layer in zip(panels, LAYERS):
@@ -33,7 +35,7 @@ def draw(rows, look, unit, title):
             missing(axes, "nobody finished and was timed")
             continue
         drawn = True
-        _panel(axes, mine, mine[mine[f"front_{layer}"].astype(bool)], look)
+        _panel(axes, mine, mine[mine[f"front_{layer}"].astype(bool)], met(won[won.layer == layer]), look)
         axes.set(xscale="log", yscale="log", xlabel="computation for a simulated second, s")
         axes.grid(True)
     if drawn:
@@ -57,7 +59,7 @@ def named(rows, front):
     return order[:MOST]
 
 
-def _panel(axes, rows, front, look):
+def _panel(axes, rows, front, won, look):
     chosen = named(rows, front)
     done = rows[rows.status.isin((*FINISHED, NOT_JUDGED)) & rows.time.notna() & rows.error.notna()]
     for key, mine in done.groupby(["implementation", "setting"], sort=False):
@@ -83,6 +85,12 @@ def _panel(axes, rows, front, look):
     axes.plot(front.time, front.error, color="black", linewidth=4, alpha=0.22, zorder=2, drawstyle="steps-post")
     handles += [Line2D([], [], color="black", alpha=0.22, linewidth=4, label="front"),
                 Line2D([], [], color="#c4c8ce", marker=".", linewidth=0.7, label="others")]
+    for required in won.required:
+        axes.axhline(required, color="black", linewidth=0.8, linestyle=(0, (2, 2)), zorder=1.5)
+    axes.plot(won.time, won.error, linestyle="none", zorder=5, **RING)
+    if len(won):
+        handles.append(Line2D([], [], linestyle=(0, (2, 2)), linewidth=0.8, color="black",
+                              **RING, label=RINGED))
     if front.at_most.fillna(False).any():
         handles.append(Line2D([], [], color=GREY, marker="v", markerfacecolor="none", linestyle="none",
                               label="below the reference's own error"))

@@ -1,4 +1,5 @@
 # What `mbs list --json` says: who there is, in the order that tables and figures use.
+import re
 from dataclasses import dataclass
 
 NULL = "null/null"  # the harness's control: a simulation that does nothing
@@ -42,6 +43,17 @@ class Registry:
     def pairs(self):
         """{name: why it cannot be used, or ""} of the BLAS and LAPACK pairs."""
         return {pair["name"]: "" if pair["available"] else pair["reason"] for pair in self.listed.get("blas", [])}
+
+    @property
+    def versions(self):
+        """"Eigen 3.4.0", "KLU 1.3.9", …: each library once, of entries that name one or several ("A + B", "A, B")."""
+        found = []
+        for entry in self.entries:
+            if entry["available"] and entry["library"] != "none":
+                names, versions = (re.split(r" \+ |, ", entry[key]) for key in ("library", "version"))
+                found += ([version if version.startswith(name) else f"{name} {version}" for name, version in zip(names, versions)]
+                          if len(names) == len(versions) else [f"{entry['library']} {entry['version']}"])
+        return list(dict.fromkeys(found))
 
     def serves(self, name, *settings):
         """Whether a variant serves settings by name; everyone serves the paper's step."""

@@ -13,7 +13,7 @@ from analysis.core import records, schema
 from analysis.core.files import ROOT, read_object, write_json, write_text
 from analysis.core.parts import parts
 from analysis.core.style import save
-from analysis.core.text import number
+from analysis.core.text import between, ends, number
 from analysis.core.view import View
 
 HERE = Path(__file__).parent
@@ -65,7 +65,7 @@ def _frame(folder, part):
     """What the frame of every page shows."""
     view = View(folder, part)
     return {"part": part, "parts": parts(), "question": parts().get(part, ""), "facts": view.facts,
-            "context": view.context}
+            "context": view.context, "libraries": view.registry.versions}
 
 
 def _template(path):
@@ -73,6 +73,7 @@ def _template(path):
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters |= {"number": number}
+    environment.globals |= {"between": between, "ends": ends}
     return environment.get_template(path.name)
 
 

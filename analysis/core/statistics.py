@@ -17,6 +17,18 @@ def power_law_exponent(sizes, times):
     return float(numpy.polyfit(numpy.log(sizes), numpy.log(times), 1)[0])
 
 
+def power_law_interval(sizes, times, confidence=0.95):
+    """(exponent, low, high): `power_law_exponent` with Student's interval of the slope, whose width also says how far the
+    times are from a power law."""
+    exponent = power_law_exponent(sizes, times)
+    if numpy.isnan(exponent):
+        return exponent, numpy.nan, numpy.nan
+    from scipy import stats
+    error = stats.linregress(numpy.log(sizes), numpy.log(times)).stderr
+    half = stats.t.ppf((1 + confidence) / 2, len(sizes) - 2) * error
+    return exponent, exponent - half, exponent + half
+
+
 def phase_shares(rows, phases):
     """{phase: share} of one cell: medians over its profiled runs, scaled so that they add up to 1
     (a median, because a run that the system interrupts books the interruption on one phase)."""

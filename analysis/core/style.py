@@ -129,8 +129,8 @@ def number_axis(axis, unit=""):
 
 
 def plain(value):
-    """A tick's number: 0.5, 20, 10000, and powers of ten from there on."""
-    if value < 1e5:
+    """A tick's number: 0.001, 0.5, 20, 10000, and powers of ten beyond."""
+    if 0.99e-4 < value < 1e5:
         return f"{value:.0f}" if value >= 10 else f"{value:g}"
     digits, power = f"{value:.0e}".split("e")
     return f"${'' if digits == '1' else digits + '·'}10^{{{int(power)}}}$"

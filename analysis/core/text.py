@@ -1,11 +1,13 @@
 # Numbers as the report and the claims ledger print them.
+import math
+
 import pandas
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def number(value, digits=3):
-    """`value` with `digits` significant digits; a dash if there is none."""
+    """`value` with `digits` significant digits, or as a whole number if that is not much longer; a dash if there is none."""
     if value is None or value == "" or pandas.isna(value):
         return "–"
     text = f"{float(value):.{digits}g}"
@@ -18,7 +20,30 @@ def number(value, digits=3):
     return power if mantissa == "1" else f"{mantissa}·{power}"
 
 
+def bounded(low, high):
+    """Whether an interval says something: that of a single process does not, it reaches from 0 to infinity."""
+    return math.isfinite(low) and math.isfinite(high)
+
+
+def rough(value):
+    """"about 6600": a value of which nobody knows how far it may be off."""
+    return f"about {number(float(f'{value:.2g}'))}"
+
+
+def ends(low, high, digits=3):
+    """"2.43 to 2.6", or that the interval says nothing; a dash if there is none."""
+    if pandas.isna(low) or pandas.isna(high):
+        return "–"
+    return f"{number(low, digits)} to {number(high, digits)}" if bounded(low, high) else "not bounded"
+
+
+def between(value, low, high, digits=3):
+    """"2.51 (2.43 to 2.6)", or "about 2.5 (not bounded)"; a dash if there is no value."""
+    if pandas.isna(value):
+        return "–"
+    return f"{number(value, digits) if bounded(low, high) else rough(value)} ({ends(low, high, digits)})"
+
+
 def interval(ratio, digits=3):
-    """"2.51 (2.43 to 2.60)" of a compare.Ratio."""
-    return (f"{number(ratio.value, digits)} ({number(ratio.low, digits)} to "
-            f"{number(ratio.high, digits)})")
+    """`between` of a timing.Ratio."""
+    return between(ratio.value, ratio.low, ratio.high, digits)

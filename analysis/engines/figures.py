@@ -15,6 +15,7 @@ COLOURS = {"simbody": "#0072B2", "mujoco": "#D55E00", "ode": "#009E73", "bullet"
 NAMES = {"simbody": "Simbody", "mujoco": "MuJoCo", "ode": "Open Dynamics Engine", "bullet": "Bullet"}
 LINES = {"chains": {"color": "black", "linewidth": 2.2}, "fronts": {"color": "black", "linewidth": 1.4, "linestyle": (0, (4, 1.5))},
          "library": {"color": "#5B3A9E", "linewidth": 1.8}, "paper": {"color": "#8A8A00", "linewidth": 1.4, "linestyle": (0, (1, 1))}}
+HEADROOM = 0.13  # share of the height that runs which lost the motion have for themselves
 NOT_MADE = ("unavailable", "not-reached", "dropped")
 
 
@@ -52,6 +53,8 @@ def panels(tables, subjects, own):
         if place + columns >= len(subjects):
             axes.tick_params(labelbottom=True)
             axes.set_xlabel("computation for a simulated second, s")
+    low, high = numpy.log10(grid[0, 0].get_ylim())  # which all share
+    grid[0, 0].set_ylim(10**low, 10**(high + HEADROOM * (high - low)))
     for axes in grid[:, 0]:
         axes.set_ylabel("largest position error, m")
     figure.legend(handles=_key(engines.engine.unique()), loc="upper center", bbox_to_anchor=(0.5, 0.1 - 0.1 / lines),

@@ -1,9 +1,8 @@
 # What the front page says of the engines, computed from the tables.
-import math
 
 from analysis.core.outcomes import FINISHED
 from analysis.core.pareto import finished
-from analysis.core.text import number
+from analysis.core.text import bounded, ends, number, rough
 from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import NOT_MADE, title
 from analysis.engines.runs import NATIVE
@@ -30,8 +29,9 @@ def of_side(table, side):
             "comparisons at equal error")
     if len(timed):
         worst = timed.loc[timed.ratio.idxmin()]
-        text += (f", by {number(timed.ratio.median(), 2)} times in the median, at the least {number(worst.ratio, 2)} "
-                 f"({interval(worst)}; {title(worst.engine)}, {Subject(worst.subject).title}, "
+        least = number(worst.ratio, 2) if bounded(worst.low, worst.high) else rough(worst.ratio)
+        text += (f", by {number(timed.ratio.median(), 2)} times in the median, at the least {least} "
+                 f"({ends(worst.low, worst.high, 2)}; {title(worst.engine)}, {Subject(worst.subject).title}, "
                  f"{number(worst.engine_error, 2)} m)")
     if len(timed) < len(rows):
         text += f"; it does not reach {len(rows) - len(timed)} of these errors"
@@ -45,10 +45,6 @@ def of_native(native):
     least, most = (native.loc[place] for place in (native.ratio.idxmin(), native.ratio.idxmax()))
     return (f"{title(native.engine.iloc[0])} from Debian takes {number(native.ratio.median(), 3)} times as long as built "
             f"with our flags (median of {len(native)} runs, {number(least.ratio, 3)} to {number(most.ratio, 3)}).")
-
-
-def interval(row):
-    return f"{number(row.low, 2)} to {number(row.high, 2)}" if math.isfinite(row.high) else "of one round"
 
 
 def value(over, amount):

@@ -15,9 +15,9 @@ def _battery(table):
     if runs.empty:
         return
     count, places = int(runs.silent.sum()), "; ".join(f"{one['axis']} {one['value']}" for one in silent(runs))
-    yield {"anchor": "battery", "text": f"{right(runs).sum()} of {len(runs)} runs at the extremes are ok or plausible, and right; "
-           f"{count or 'none'} {'are' if count > 1 else 'is'} silently wrong{f' ({places})' if places else ''}; "
-           "the others say themselves that they failed or are off."}
+    yield {"anchor": "battery", "text": f"{right(runs).sum()} of {len(runs)} runs at the extremes are ok or plausible, and right. "
+           f"{count or 'None'} {'are' if count > 1 else 'is'} silently wrong{f' ({places})' if places else ''}. "
+           "The others say themselves that they failed or are off."}
     forms = runs[runs.setting.isin([form.name for form in FORMS])]
     lost = {}
     for axis, value, _ in nobody(forms):

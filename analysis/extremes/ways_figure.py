@@ -11,14 +11,14 @@ COLOURS = {"safe": "#009E73", "silent": SILENT, "degraded": LOOKS["degraded"][0]
            "not run": "#ffffff"}
 WORDS = {"safe": "safe: ok or plausible, and right", "silent": "silently wrong", "lost": "did not get through",
          "not run": "not served, refused or left out"}
-GAP, BLOCK = 2.0, 4.4  # between groups of columns; height of a way
+GAP, BLOCK = 3.4, 4.4  # between groups of columns; height of a way
 
 
 def draw(ways, cost):
     """The figure of ways.csv and ways_cost.csv."""
     names, own = list(dict.fromkeys(ways.way)), folders(ways)
     figure, panels = plt.subplots(1, len(own), squeeze=False, sharey=True, constrained_layout=True,
-                                  figsize=(4.6 * len(own) + 1.4, 0.78 * len(names) + 1.9))
+                                  figsize=(5.0 * len(own) + 1.4, 0.78 * len(names) + 1.9))
     used, groups = set(), _groups(ways)
     for axes, folder in zip(panels.flat, own):
         rows = ways[ways.folder == folder]
@@ -71,18 +71,18 @@ def _remark(axes, rows, cost, groups, top):
         return
     right = groups[-1][3] + len(groups[-1][1]) + 0.5
     times = [f"N = {one.loops:g}: {factor(one)}" for one in cost.itertuples()]
-    axes.text(right, top + 1.5, "\n".join(["{} of {} safe".format(*share(rows)), *times]), va="center", fontsize=7.5)
+    axes.text(right, top + 1.5, "\n".join(["{} of {} safe".format(*share(rows)), *times]), va="center", fontsize=8.5)
 
 
 def _frame(axes, folder, names, groups):
     bottom = BLOCK * len(names) - (BLOCK - 3)
     axes.set_title(folder)
-    axes.set_xlim(-0.3, (groups[-1][3] + len(groups[-1][1]) if groups else 10) + 10)
+    axes.set_xlim(-0.3, (groups[-1][3] + len(groups[-1][1]) if groups else 10) + 12)
     axes.set_ylim(bottom + 0.1, -0.4)
     axes.set_yticks([BLOCK * place + 1.5 for place in range(len(names))], names)
     ticks = [(left + 0.5 + i * (len(values) - 1), f"{1e3 * value:g} ms" if axis == "step" else f"{value:.0e}")
              for axis, values, _, left in groups for i, value in enumerate((values[0], values[-1]))]
-    axes.set_xticks([x for x, _ in ticks], [text.replace("e+0", "e") for _, text in ticks], fontsize=8)
+    axes.set_xticks([x for x, _ in ticks], [text.replace("e+0", "e") for _, text in ticks], fontsize=8.5)
     for axis, values, sizes, left in groups:
         label = {"step": f"Δt; rows N = {', '.join(f'{n:g}' for n in sizes)}"}.get(axis, axis.replace(" ", "\n"))
         axes.annotate(label, (left + len(values) / 2, bottom), xytext=(0, -20), textcoords="offset points", ha="center",

@@ -12,6 +12,7 @@ BOUNDS = {"latency_ns": ("bound: dependent operations", "--"),
           "memory_ns": ("bound: memory traffic", "-."),
           "arithmetic_ns": ("bound: rate of arithmetic", ":")}
 COLOURS = dict(zip(PHASES, ("#56B4E9", "#009E73", "#0072B2", "#E69F00", "#CC79A7", "#999999")))
+LIMIT_LABEL = "limit: code for the N-four-bar alone"
 WHOLE = 0.99  # of a step in "other": it has no phases
 
 
@@ -57,7 +58,7 @@ def over_size(bounds, rows, look, own=()):
     for name in [LIMIT, *leaders(rows, own)]:
         mine = rows[rows.implementation == name].sort_values("variables")
         style = ({"color": "black", "linewidth": 2.2, "marker": "o", "markersize": 4.5} if name == LIMIT else look.line(name))
-        times.plot(mine.variables, mine.step_us, **style, label="limit: code for the N-four-bar alone" if name == LIMIT else name)
+        times.plot(mine.variables, mine.step_us, **style, label=LIMIT_LABEL if name == LIMIT else name)
         times.fill_between(mine.variables, mine.low_us, mine.high_us, color=style["color"], alpha=0.15, linewidth=0)
         multiples.plot(mine.variables, mine.multiple, **style)
         known = mine[(mine.multiple_low > 0) & (mine.multiple_high < numpy.inf)]
@@ -71,7 +72,7 @@ def over_size(bounds, rows, look, own=()):
         number_axis(axes.yaxis, unit)
         axes.grid(True, which="major")
     size_ticks(multiples, sorted(rows.variables.unique()))
-    legend(times)
+    legend(times, order=[*(label for label, _ in BOUNDS.values()), LIMIT_LABEL, *leaders(rows, own)].index)
     return figure
 
 

@@ -1,14 +1,17 @@
-# What an implementation without a library is held to: bounds, and the worst that was measured for each.
+# What code without a library is held to: bounds, and the worst that was measured for each.
 #
-# An implementation is a folder; of its variants the fastest counts, size by size and scene by scene. A ratio is held or not
-# held where its whole interval says so, else open; an exponent and a set-up, which have none, by their value.
+# Of all such code the fastest counts, size by size and scene by scene. A ratio is held or not
+# held where its whole interval says so, else open; an exponent too, by the interval of its fit; a set-up, which has none, by its value.
+# Where not all cases were measured nothing is held as a whole.
 import numpy
+
+from analysis.core.statistics import power_law_interval
 
 AHEAD_SIZES, NEAR_SIZES = (22, 50, 82, 160, 1000, 4000), (22, 82, 1000)  # n
 AHEAD, AHEAD_PLANAR, AHEAD_SPATIAL = 3.0, 2.0, 1.5
 NEAR_LIMIT, BEHIND_FILLED, GAIN, EXPONENT, SET_UP_S = 1.5, 1.1, 4.0, 1.05, 0.5
 GROWTH_FROM, GROWTH_TO = 100, 20000  # n
-HELD, NOT_HELD, OPEN, NOT_MEASURED = "held", "not held", "open", "not measured"
+HELD, PARTLY, NOT_HELD, OPEN, NOT_MEASURED = "held", "held where measured", "not held", "open", "not measured"
 LEAST, MOST = "≥", "≤"
 
 
@@ -17,9 +20,9 @@ def wanted(kind, dimension):
     return {"fill": 1 / BEHIND_FILLED, "problem": AHEAD_PLANAR if dimension == 2 else AHEAD_SPATIAL}.get(kind, numpy.nan)
 
 
-def must_hold(folder, registry, tables):
-    """Rows of held.csv."""
-    steps, leads, batches = (_of(tables[name], folder) for name in ("steps", "leads", "batches"))
+def must_hold(own, tables):
+    """Rows of held.csv. `own`: variants of such code."""
+    steps, leads, batches = (_of(tables[name], own) for name in ("steps", "leads", "batches"))
     ahead = leads[leads.status == "ok"] if len(leads) else leads
     found = [
         _worst("times faster than the fastest library, N-four-bar", LEAST, AHEAD,
@@ -39,11 +42,11 @@ def must_hold(folder, registry, tables):
         rows = batches[(batches.sets == sets) & (batches.status != "unsupported")]
         found.append(_worst(f"throughput of batches ÷ that of their lanes alone, {sets:.0f} sets of parameters", LEAST, GAIN,
                             _fastest(rows, "scene", "step_us", True), "gain", rows.scene.nunique()))
-    return [{"folder": folder} | row for row in found]
+    return found
 
 
-def _of(rows, folder):
-    return rows[rows.implementation.str.startswith(f"{folder}/")] if len(rows) else rows
+def _of(rows, own):
+    return rows[rows.implementation.isin(own)] if len(rows) else rows
 
 
 def _in(rows, key, values, other=None, among=()):
@@ -74,9 +77,10 @@ def _worst(what, sign, bound, rows, column, cases):
     ends = ("low", "high") if column != "multiple" else ("multiple_low", "multiple_high")
     low, high = (worst.get(end, numpy.nan) for end in ends)
     where = worst.scene if "scene" in worst.index else f"n = {worst.variables:.0f}"
+    verdict = _verdict(sign, bound, worst[column], low, high)
     return row | {"worst": worst[column], "low": low, "high": high, "record": worst.record, "variant": worst.implementation,
                   "where": where.removeprefix("harness/scenes/").removesuffix(".json"),
-                  "verdict": _verdict(sign, bound, worst[column], low, high)}
+                  "verdict": PARTLY if verdict == HELD and len(rows) < cases else verdict}
 
 
 def _verdict(sign, bound, value, low, high):
@@ -87,20 +91,22 @@ def _verdict(sign, bound, value, low, high):
 
 
 def _growth(steps, form):
-    """Exponents of the fastest variant at each size from GROWTH_FROM on; and the largest one's set-up."""
+    """Exponents of the fastest variant at each size from GROWTH_FROM on, with Student's interval of the fit; and the
+    largest one's set-up."""
     rows = _fastest(steps[steps.variables >= GROWTH_FROM] if len(steps) and "variables" in steps else steps[:0],
                     "loops", "step_us", True)
     rows = rows.sort_values("variables") if len(rows) else rows
-    whole = len(rows) > 1 and rows.variables.iloc[-1] >= GROWTH_TO
+    whole = len(rows) > 2 and rows.variables.iloc[-1] >= GROWTH_TO
     what = {"a step's time": "step_us", "a pass's time": "pass_us", "memory": "memory_bytes"}
     for name, column in what.items():
         row = {"what": f"exponent of {name} over n, {form} form", "sign": MOST, "bound": EXPONENT, "cases": len(rows),
                "measured": len(rows) if whole else 0, "verdict": NOT_MEASURED, "record": ""}
         if whole and rows[column].notna().all():
-            exponent = float(numpy.polyfit(numpy.log(rows.variables.astype(float)), numpy.log(rows[column].astype(float)), 1)[0])
-            row |= {"worst": exponent, "where": f"n = {rows.variables.iloc[0]:.0f} to {rows.variables.iloc[-1]:.0f}",
+            exponent, low, high = power_law_interval(rows.variables.astype(float), rows[column].astype(float))
+            row |= {"worst": exponent, "low": low, "high": high,
+                    "where": f"fit of {len(rows)} sizes, n = {rows.variables.iloc[0]:.0f} to {rows.variables.iloc[-1]:.0f}",
                     "variant": rows.implementation.iloc[-1], "record": rows.record.iloc[-1],
-                    "verdict": _verdict(MOST, EXPONENT, exponent, numpy.nan, numpy.nan)}
+                    "verdict": _verdict(MOST, EXPONENT, exponent, low, high)}
         yield row
     if form == "penalty":
         last = rows[rows.variables >= GROWTH_TO] if len(rows) else rows

@@ -1,7 +1,7 @@
 # The answer to "How far is each step from code that was written by hand for one mechanism?", from the tables.
 from analysis.core.text import number
 from analysis.limit.figures import everyone
-from analysis.limit.held import HELD, NOT_HELD, NOT_MEASURED
+from analysis.limit.held import HELD, NOT_HELD, NOT_MEASURED, OPEN, PARTLY
 from analysis.limit.tables import KINDS
 
 
@@ -31,8 +31,8 @@ def _multiples(rows, view):
     for who, mine in sides.items():
         best = mine.sort_values("multiple").drop_duplicates("loops")
         if len(best):
-            said.append(f"{who} takes {span(best.multiple, 2)} times as long (n = {span(best.variables, 5)})")
-    return [{"text": f"Beside code written for the N-four-bar alone {'; '.join(said)}.", "anchor": "sizes"}] if said else []
+            said.append(f"{who[0].upper()}{who[1:]} takes {span(best.multiple, 2)} times as long (n = {span(best.variables, 5)})")
+    return [{"text": f"Beside code written for the N-four-bar alone: {'. '.join(said)}.", "anchor": "sizes"}] if said else []
 
 
 def _leads(leads):
@@ -41,7 +41,7 @@ def _leads(leads):
         faster, slower = (mine.low > 1).sum(), (mine.high < 1).sum()
         found.append(f"{name} is shown to be faster than the fastest library in {faster} of {len(mine)} scenes that it "
                      f"serves and slower in {slower} ({span(mine.lead)} times)")
-    return [{"text": f"Scene by scene, {'; '.join(found)}.", "anchor": "ahead"}] if found else []
+    return [{"text": f"Scene by scene: {'. '.join(found)}.", "anchor": "ahead"}] if found else []
 
 
 def _of_scenes(leads):
@@ -56,16 +56,18 @@ def _gains(batches):
 
 
 def _held(held):
-    asked = held[held.verdict != NOT_MEASURED]
-    if asked.empty:
+    by_verdict = {verdict: held[held.verdict == verdict] for verdict in (HELD, PARTLY, OPEN, NOT_HELD, NOT_MEASURED)}
+    lost = by_verdict.pop(NOT_MEASURED)
+    if len(lost) == len(held):
         return []
-    broken = asked[asked.verdict == NOT_HELD]
-    text = f"Code without a library: {(asked.verdict == HELD).sum()} of the {len(asked)} bounds that were measured are held"
-    if len(broken):
-        text += "; not held: " + "; ".join(
-            f"{row.what} ({row.folder}: {number(row.worst)} at {row.where}, bound {row.sign} {number(row.bound)})"
-            for row in broken.itertuples())
-    return [{"text": f"{text}.", "anchor": "held"}]
+    text = f"Code without a library: of {len(held)} bounds {len(held) - len(lost)} were measured: " + ", ".join(
+        f"{len(rows)} {verdict}" for verdict, rows in by_verdict.items() if len(rows)) + "."
+    if len(by_verdict[NOT_HELD]):
+        text += " Not held: " + "; ".join(f"{row.what} ({number(row.worst)} at {row.where}, bound {row.sign} {number(row.bound)})"
+                                          for row in by_verdict[NOT_HELD].itertuples()) + "."
+    if len(lost):
+        text += f" Not measured: {'; '.join(lost.what)}."
+    return [{"text": text, "anchor": "held"}]
 
 
 def span(values, digits=3):

@@ -4,7 +4,7 @@ from analysis.core.timing import rank
 from analysis.map import paper
 from analysis.map.compare import Versus, best, over_sizes, step_us
 from analysis.map.explain import phase_times
-from analysis.map.ledger import at_least, at_most, compared, of, tested, untested
+from analysis.map.ledger import at_least, at_most, compared, of, tested, unmeasured
 
 ANCHOR = "csc_klu/refactor"  # it calls no BLAS; processes on two pairs are compared through it (study/core/timing.py)
 FIGURE_SIZES = 160    # variables; Figures 2 and 4 end here
@@ -25,7 +25,7 @@ def _against_starting(results):
     head = "F2", "optimised dense versions on a BLAS+LAPACK pair beat the starting one 2-3 times", "2-3×"
     found = over_sizes(results, [paper.STARTING["dense"]], paper.dense(results, pairs=True), high=FIGURE_SIZES)
     if not found or found[-1].size < COVERED:
-        return untested(head, f"{paper.STARTING['dense']} and another dense version were not both timed at {COVERED} "
+        return unmeasured(head, f"{paper.STARTING['dense']} and another dense version were not both timed at {COVERED} "
                         "variables or more.", at_least(DENSE_GAIN))
     largest = max(found, key=lambda one: one.value)
     why = "Starting ÷ best pair by size: " + ", ".join(f"{number(one.value)}× (n = {one.size:g}, {one.fast})" for one in found)
@@ -46,7 +46,7 @@ def _against_reference(results):
                 reason = (" The reference dsyrk leaves out zero entries of the Jacobian, which is nearly empty; tuned ones "
                           "multiply them." if found.high < 1 else "")
                 return compared(head, found, at_least(1), f"{variant} at n = {size:g}, µs a step by pair: {listed}.{reason}")
-    return untested(head, f"No optimised dense version was timed on the reference pair and on another at {COVERED} to "
+    return unmeasured(head, f"No optimised dense version was timed on the reference pair and on another at {COVERED} to "
                     f"{FIGURE_SIZES} variables.", at_least(1))
 
 
@@ -57,7 +57,7 @@ def tuned_blas(results):
     """C3. Rule: 1 − tuned ÷ reference at most TUNED_GAIN at the size where it is largest; one row a sparse variant that
     was timed on both."""
     rows = [row for name in paper.sparse(results) if (row := _tuned(results, name))]
-    return rows or [untested(("C3", _C3, "2-3 %"), "No sparse version was timed on the reference BLAS and on another at "
+    return rows or [unmeasured(("C3", _C3, "2-3 %"), "No sparse version was timed on the reference BLAS and on another at "
                              f"{COVERED} variables or more.", at_most(TUNED_GAIN), " %")]
 
 
@@ -85,8 +85,8 @@ def compilers(results):
     at one size, taken at the size where that share is largest."""
     rows = [row for name in results.variants if (row := _compilers(results, name))]
     rule, quoted = at_most(ORDER_OF_MAGNITUDE), "≤ 10 %"
-    rows = rows or [untested(("C5", _C5, quoted), "No variant was timed in builds of several compilers.", rule, " %")]
-    return rows + [untested(("C5", "the operating system matters an order of magnitude less than the linear algebra", quoted),
+    rows = rows or [unmeasured(("C5", _C5, quoted), "No variant was timed in builds of several compilers.", rule, " %")]
+    return rows + [unmeasured(("C5", "the operating system matters an order of magnitude less than the linear algebra", quoted),
                             "The study runs on one operating system.", rule, " %")]
 
 

@@ -3,7 +3,7 @@ from analysis.core.text import number
 from analysis.map import paper
 from analysis.map.cells import map_cells
 from analysis.map.compare import best
-from analysis.map.ledger import at_least, at_most, compared, more_than, tested, untested
+from analysis.map.ledger import at_least, at_most, compared, more_than, tested, unmeasured
 
 F5_SIZE = 100
 FILLS_NEEDED = 3     # filled scenes that a size needs for Figure 5
@@ -23,7 +23,7 @@ def over_fill(results):
     for system in ("CHOLMOD", "WSMP"):
         head = "F5", f"at 100 variables {system} is faster than the best dense version at every fill", "> 1×"
         rows.append(_over_fill(results, head, system, size) if size is not None else
-                    untested(head, f"No size has {FILLS_NEEDED} filled scenes.", at_least(1)))
+                    unmeasured(head, f"No size has {FILLS_NEEDED} filled scenes.", at_least(1)))
     return rows
 
 
@@ -43,7 +43,7 @@ def _over_fill(results, head, system, size):
     found = [one for one in found if one]
     if not found or lost:
         text = f"at fills of {', '.join(lost)} %" if lost else "anywhere"
-        return untested(head, f"At n = {size:g} {system}'s stand-ins were not timed against a dense version {text}.", at_least(1))
+        return unmeasured(head, f"At n = {size:g} {system}'s stand-ins were not timed against a dense version {text}.", at_least(1))
     worst = min(found, key=lambda one: one.value)
     slower = [number(one.fill, 2) for one in found if one.high < 1]
     across = ", ".join(f"{number(one.value)}× at {one.fill:.0f} %" for one in found)
@@ -78,9 +78,9 @@ def _region(cells, figure, claim, names, sizes, fills, rule=more_than(HALF), quo
     inside = [cell for cell in cells if sizes[0] <= cell.variables <= sizes[1] and fills[0] <= cell.fill_percent <= fills[1]
               and cell.ranking]
     if len(inside) < CELLS_NEEDED[figure]:
-        return untested(head, f"{len(inside)} cells of this region were timed, {CELLS_NEEDED[figure]} are needed.", rule, " %")
+        return unmeasured(head, f"{len(inside)} cells of this region were timed, {CELLS_NEEDED[figure]} are needed.", rule, " %")
     if not names:
-        return untested(head, "No stand-in of this system was timed.", rule, " %")
+        return unmeasured(head, "No stand-in of this system was timed.", rule, " %")
     won = [cell for cell in inside if cell.decided and cell.ranking.winner in names]
     doubtful = [cell for cell in inside if not cell.decided and set(cell.winners) & set(names)]
     measured = [100 * value / len(inside) for value in (len(won), len(won), len(won) + len(doubtful))]

@@ -3,7 +3,7 @@ from analysis.core.text import number
 from analysis.map import paper
 from analysis.map.compare import best, over_sizes, versus
 from analysis.map.explain import difference
-from analysis.map.ledger import at_least, compared, of, tested, untested
+from analysis.map.ledger import at_least, compared, of, tested, undecided, unmeasured
 
 FIGURE4 = 160        # variables; the last of Figure 4
 COVERED = 82         # variables that a run has to reach to speak of Figure 4
@@ -32,13 +32,13 @@ def _fastest(results, klu, others, low, high):
     head = "F4", f"KLU with refactor is the fastest sparse solver, {span}", "fastest"
     found = over_sizes(results, others, klu, low, high)
     if not found or found[-1].size < COVERED:
-        return untested(head, f"KLU and another of the paper's solvers were not both timed at {COVERED} variables or more.",
+        return unmeasured(head, f"KLU and another of the paper's solvers were not both timed at {COVERED} variables or more.",
                         at_least(1))
     worst = min(found, key=lambda one: one.value)
     led = sum(one.low > 1 for one in found)
-    today = results.fastest(results.natural(worst.size), paper.sparse(results))
-    why = (f"Second ÷ KLU at its worst size; KLU leads at {led} of {len(found)} sizes. The fastest of all sparse solvers of "
-           f"libraries there is {today}. {difference(results, worst.slow, worst.fast, worst.size)}")
+    today = results.rank(results.natural(worst.size), paper.sparse(results))
+    why = (f"Second ÷ KLU at its worst size; KLU is shown to lead at {led} of {len(found)} sizes. Of all sparse solvers of libraries "
+           f"{today.winner} has the least time there, {'decided' if today.decided else 'not decided'}. {difference(results, worst.slow, worst.fast, worst.size)}")
     return compared(head, worst, at_least(1), why)
 
 
@@ -52,7 +52,7 @@ def _share_of_speed(results, klu, cholmod):
     rule = CHOLMOD_OF_KLU - SPEED_BAND, CHOLMOD_OF_KLU + SPEED_BAND
     found = _last(results, klu, cholmod)
     if found is None:
-        return untested(head, f"{_NEEDED}KLU and CHOLMOD timed.", rule, " %")
+        return unmeasured(head, f"{_NEEDED}KLU and CHOLMOD timed.", rule, " %")
     why = (f"KLU's time ÷ CHOLMOD's at the end of Figure 4; at other sizes "
            f"{_other_sizes(results, klu, cholmod, found.size, 100, ' %')}. "
            f"{difference(results, found.fast, found.slow, found.size)}")
@@ -68,7 +68,7 @@ def _behind(results, slow_system, slow, fast_system, fast):
     head = "F4", f"{slow_system} is slower than {fast_system}", "slower"
     found = _last(results, slow, fast)
     if found is None:
-        return untested(head, f"{_NEEDED}{slow_system}'s and {fast_system}'s stand-ins timed.", at_least(1))
+        return unmeasured(head, f"{_NEEDED}{slow_system}'s and {fast_system}'s stand-ins timed.", at_least(1))
     return compared(head, found, at_least(1), difference(results, found.slow, found.fast, found.size))
 
 
@@ -80,7 +80,7 @@ def pivoting(results):
     head = "C1", "KLU with full pivoting costs 50 % more than with refactor", "1.5×"
     rule = 1.5 - PIVOTING_BAND, 1.5 + PIVOTING_BAND
     if found is None:
-        first = untested(head, f"{_NEEDED}{full} and {klu} timed.", rule)
+        first = unmeasured(head, f"{_NEEDED}{full} and {klu} timed.", rule)
     else:
         guarded = versus(results, results.natural(found.size), paper.GUARDED, klu)
         price = f" Pivoting only when needed ({paper.GUARDED}) costs {number(guarded.value)}×." if guarded else ""
@@ -96,19 +96,20 @@ def _stale_pivots(results, klu, full):
     if lost:
         rows = results.rows(lost[0])
         reason = rows[(rows.implementation == klu) & (rows.status != "ok")].reason.iloc[0]
-        return untested(head, f"Full pivoting was timed where {klu} failed ({lost[0]}: {reason}); whether its pivots are the "
-                        "cause cannot be told from times.", rule)
+        return undecided(head, "Times do not tell whether pivots are the cause.", rule,
+                         f"Full pivoting was timed where {klu} failed ({lost[0]}: {reason}).")
     errors = samples.groupby(["implementation", "scene"]).position_error.median()
     if klu not in errors.index or full not in errors.index:
-        return untested(head, f"{klu} and {full} were not both timed.", rule)
+        return unmeasured(head, f"{klu} and {full} were not both timed.", rule)
     shares = (errors[klu] / errors[full]).dropna()
     if shares.empty:
-        return untested(head, "No scene has a position error of both.", rule)
+        return unmeasured(head, "No scene has a position error of both.", rule)
     scene, largest = shares.idxmax(), shares.max()
     why = (f"Error at the end of the stretch, {klu} ÷ {full}: at most {number(largest, 5)} over {len(shares)} scenes ({scene}).")
     if largest < ERROR_GROWS:  # nothing is refuted: the mechanism has no violent change
-        return untested(head, f"{why} The tangent of this mechanism is positive definite and its pivots stay diagonal: both are "
-                        "equally exact. What pivots forced off the diagonal lose is a question of the part extremes.", rule)
+        return undecided(head, "Nothing changes violently here.", rule,
+                         f"{why} The tangent of this mechanism is positive definite and its pivots stay diagonal: both are equally "
+                         "exact. What pivots forced off the diagonal lose is a question of the part extremes.")
     return tested(head, (largest,) * 3, rule, f"{scene}, {klu} ÷ {full}", why)
 
 
@@ -118,7 +119,7 @@ def sparse_against_dense(results):
     for size, quoted in C4_SIZES.items():
         head = "C4", f"sparse beats dense {quoted} times at {size} variables", f"{quoted}×"
         found = best(results, results.natural(size), paper.dense(results, pairs=True), paper.sparse(results))
-        rows.append(untested(head, f"Dense and sparse versions were not both timed at n = {size}.", at_least(quoted))
+        rows.append(unmeasured(head, f"Dense and sparse versions were not both timed at n = {size}.", at_least(quoted))
                     if found is None else
                     compared(head, found, at_least(quoted), difference(results, found.slow, found.fast, size)))
     return rows

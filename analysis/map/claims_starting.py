@@ -6,7 +6,7 @@ from analysis.core.text import interval, number
 from analysis.map import paper
 from analysis.map.compare import best, group_shares, profiled, share_interval
 from analysis.map.explain import difference, split
-from analysis.map.ledger import at_least, compared, tested, untested
+from analysis.map.ledger import at_least, compared, tested, unmeasured
 from analysis.map.operations import table as table2
 from analysis.map.tidy import PHASES
 
@@ -31,8 +31,8 @@ def _share(results, kind, size, group, phases, share):
     head = "T1", f"starting {kind} version, {size} variables: {group} takes {share} % of the time", f"{share} %"
     rule = share - SHARE_BAND, share + SHARE_BAND
     if len(cell) < PROCESSES:
-        what = f"{len(cell)} processes of {name} were profiled" if len(cell) else f"{name} was not profiled"
-        return untested(head, f"{what} at n = {size}, an interval needs {PROCESSES}.", rule, " %")
+        what = f"{len(cell)} process{'es' if len(cell) > 1 else ''} of {name} profiled" if len(cell) else f"{name} not profiled"
+        return unmeasured(head, f"{what} at n = {size}; an interval needs {PROCESSES}.", rule, " %")
     shares = phase_shares(cell, PHASES)
     inside = ", ".join(f"{phase} {100 * shares[phase]:.0f} %" for phase in phases)
     return tested(head, [100 * value for value in share_interval(cell, phases)], rule, f"n = {size}, {name}",
@@ -65,14 +65,14 @@ def table2_claims(results):
 
 def _any_size(head, quoted, rows):
     if not rows:
-        return untested(head, "The operations alone were not timed in this run.", at_least(quoted))
+        return unmeasured(head, "The operations alone were not timed in this run.", at_least(quoted))
     largest = max(rows, key=lambda row: row["ratio"].value)
     return compared(head, largest["ratio"], at_least(quoted), analysis_of(rows))
 
 
 def _at_size(head, quoted, size, rows):
     if not rows:
-        return untested(head, f"The operations were not timed at n = {size}.", at_least(quoted))
+        return unmeasured(head, f"The operations were not timed at n = {size}.", at_least(quoted))
     worst, fair = max(rows, key=lambda row: row["ratio"].value), min(rows, key=lambda row: row["ratio"].value)
     times = ", ".join(f"{row['slow']} {number(row['slow_us'])} µs" for row in rows)
     return compared(head, worst["ratio"], at_least(quoted),
@@ -141,7 +141,7 @@ def starting_sparse(results):
     for size, quoted in C2_SIZES.items():
         head = "C2", f"the best sparse version beats the starting one {quoted} times ({size} variables)", f"{quoted}×"
         found = best(results, results.natural(size), [paper.STARTING["sparse"]], paper.sparse(results))
-        rows.append(untested(head, f"n = {size} lacks samples of {paper.STARTING['sparse']} or of an optimised one.",
+        rows.append(unmeasured(head, f"n = {size} lacks samples of {paper.STARTING['sparse']} or of an optimised one.",
                              at_least(quoted)) if found is None else
                     compared(head, found, at_least(quoted), difference(results, found.slow, found.fast, size)))
     return rows

@@ -2,6 +2,7 @@
 import matplotlib.pyplot as plt
 
 from analysis.core.style import GREY, missing, number_axis, size_ticks
+from analysis.core.text import bounded
 from analysis.map import paper
 from analysis.map.compare import operations
 from analysis.map.marks import footnote
@@ -16,7 +17,7 @@ def draw(results, look):
         missing(axes, "no operation of Table 2 was timed")
         return figure
     figure, panels = plt.subplots(2, 3, figsize=(10.4, 6.4), sharex=True, gridspec_kw={
-        "hspace": 0.16, "wspace": 0.27, "height_ratios": [1.25, 1]})
+        "hspace": 0.3, "wspace": 0.27, "height_ratios": [1.25, 1]})
     for (operation, label), (times, ratios) in zip(paper.OPERATIONS.items(), panels.T):
         samples = operations(results, operation)
         if samples.empty:
@@ -32,9 +33,9 @@ def draw(results, look):
                     x=0.125, ha="left", fontsize=11, y=0.965)
     handles = {label: handle for axes in panels[0] for handle, label in zip(*axes.get_legend_handles_labels())}
     if handles:
-        figure.legend(handles.values(), handles.keys(), loc="upper center", ncol=4, fontsize=8.5, bbox_to_anchor=(0.5, 0.06))
+        figure.legend(handles.values(), handles.keys(), loc="upper center", ncol=4, fontsize=8.5, bbox_to_anchor=(0.5, 0.03))
     footnote(figure, ["above: medians; below: ratio to the fastest optimised of the size that stores as much (both halves of "
-                      "symmetric matrices); bars: its 95 % interval over processes"], -0.06)
+                      "symmetric matrices);", "bars: its 95 % interval over processes, none of a single one; dashed: the paper"], -0.03)
     return figure
 
 
@@ -55,11 +56,11 @@ def _ratios(axes, rows, look, quoted):
         mine = [row for row in rows if row["slow"] == slow]
         sizes = [row["variables"] for row in mine]
         axes.plot(sizes, [row["ratio"].value for row in mine], **look.line(slow))
-        axes.vlines(sizes, [row["ratio"].low for row in mine], [row["ratio"].high for row in mine], color=look.colour(slow),
-                    linewidth=3, alpha=0.35)
+        known = [row for row in mine if bounded(row["ratio"].low, row["ratio"].high)]
+        axes.vlines([row["variables"] for row in known], [row["ratio"].low for row in known],
+                    [row["ratio"].high for row in known], color=look.colour(slow), linewidth=3, alpha=0.35)
     axes.axhline(quoted, color="black", linewidth=1, linestyle=(0, (6, 3)))
-    axes.annotate(f"paper: {quoted}", (0.02, quoted), xycoords=("axes fraction", "data"), xytext=(0, 3),
-                  textcoords="offset points", fontsize=8.5)
+    axes.set_title(f"paper: {quoted}", fontsize=9)
     axes.axhline(1, color=GREY, linewidth=0.8)
     axes.set_yscale("log")
     _ticks(axes, sorted({row["variables"] for row in rows}))

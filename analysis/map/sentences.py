@@ -1,8 +1,7 @@
 # The answer to "Which implementation is fastest at which size and fill?", from the tables.
-from collections import Counter
-
 from analysis.map import summary
 from analysis.map.cells import map_cells
+from analysis.map.ledger import counted
 from analysis.map.regret import regrets
 from analysis.map.results import of
 
@@ -13,8 +12,7 @@ def answers(tables, view):
     groups = summary.by_size(results, libraries)
     if not groups:
         return [{"text": "Nothing was timed: no library took part or agreed with the reference.", "anchor": "losses"}]
-    listed = "; ".join(": ".join(summary.outcome(group)) for group in groups)
-    found = [{"text": f"Fastest library at the four-bar's own fill: {listed}.", "anchor": "answer"}]
+    found = [{"text": f"At the four-bar's own fill: {' '.join(by_outcome(groups))}", "anchor": "answer"}]
     dense = [f"n = {row['variables']:g} from {row['from']:.0f} %" for row in summary.dense_from(results) if row["from"] is not None]
     if dense:
         found.append({"text": f"As the tangent fills, dense libraries overtake: {', '.join(dense)}.", "anchor": "maps"})
@@ -23,10 +21,24 @@ def answers(tables, view):
         first = whole[0]
         found.append({"text": f"The safest single library is {first['implementation']}: {first['mean']:.2f} times the best on "
                               f"average over {first['of']} cells, {first['worst']:.3g} times at worst.", "anchor": "regret"})
-    verdicts = Counter(tables["claims"].verdict)
-    found.append({"text": "Of the paper's claims " + ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items()) + ".",
-                  "anchor": "claims"})
+    found.append({"text": f"The paper's claims: {counted(tables['claims'])}.", "anchor": "claims"})
     return found
+
+
+def by_outcome(groups):
+    """A sentence for each library that is shown to be fastest at some sizes, one for sizes of each other kind."""
+    told = {}
+    for group in groups:
+        told.setdefault((group["kind"], group["names"][0] if group["kind"] == "decided" else ""), []).append(group)
+    for (kind, name), mine in told.items():
+        sizes = f"n = {', '.join(summary.span(group) for group in mine)}"
+        margins = [value for group in mine for value in group["margins"] if value == value]
+        names = ", ".join(dict.fromkeys(one for group in mine for one in group["names"]))
+        ahead = " to ".join(dict.fromkeys(f"{value:.2f}" for value in (min(margins), max(margins)))) if margins else ""
+        ahead = f", {ahead} times ahead of the second" if ahead else ""
+        yield (f"{name} is the fastest library at {sizes}{ahead}." if kind == "decided" else
+               f"At {sizes} several are as fast as each other: {names}." if kind == "equivalent" else
+               f"At {sizes} it is not decided; the fastest is among {names}.")
 
 
 FULL = 50  # %, of a tangent that counts as filled

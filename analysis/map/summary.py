@@ -22,9 +22,14 @@ def by_size(results, names):
     return [group | {"low": min(group["margins"]), "high": max(group["margins"])} for group in groups]
 
 
+def span(group):
+    """Sizes of one of `by_size`: "10 to 22"."""
+    return f"{group['first']:g}" + (f" to {group['last']:g}" if group["last"] != group["first"] else "")
+
+
 def outcome(group):
     """One of `by_size` in words: (size, who)."""
-    sizes = f"n = {group['first']:g}" + (f" to {group['last']:g}" if group["last"] != group["first"] else "")
+    sizes = f"n = {span(group)}"
     names = group["names"]
     if group["kind"] == "decided":
         low, high = f"{group['low']:.2f}", f"{group['high']:.2f}"

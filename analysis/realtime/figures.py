@@ -2,7 +2,8 @@
 import matplotlib.pyplot as plt
 import numpy
 
-from analysis.core.style import GREY, missing
+from analysis.core.outcomes import FINISHED
+from analysis.core.style import GREY, missing, number_axis
 
 FORMS = {"penalty": ("#0072B2", "o", -0.17), "saddle-point": ("#D55E00", "s", 0.17)}  # colour, marker, place in a line
 LEFT = 0.7  # of the axis of sizes
@@ -83,7 +84,9 @@ def sizes(table, machine):
         for row in table[table.step == step].itertuples():
             _search(axes, row, names.index(row.implementation), len(shown) > 1)
         axes.set_xscale("log")
-        axes.set_xlim(LEFT, 60 * max(1, *table.largest.dropna(), *table.next.dropna()))
+        known = [size for size in (*table.largest.dropna(), *table.next.dropna()) if size > 0]
+        axes.set_xlim(LEFT if (table.largest == 0).any() else 0.6 * min(known, default=1), 1.6 * max(known, default=1))
+        number_axis(axes.xaxis)
         axes.set_title(f"step and deadline {1e3 * step:g} ms")
         axes.set_xlabel("N of the four-bar (n = 2N + 2 variables)")
         axes.set_yticks(range(len(names)), names)
@@ -92,8 +95,8 @@ def sizes(table, machine):
     figure.suptitle(f"Largest N in real time on {machine}", x=0.01, ha="left", fontsize=12)
     handles = [plt.Line2D([], [], color=FORMS[form][0], marker=FORMS[form][1], linestyle="none",
                           label=f"{form}: kept up with") for form in shown]
-    handles += [plt.Line2D([], [], color=GREY, marker="X", linestyle="none", label="next size tried: failed"),
-                plt.Line2D([], [], color="none", label="numbers: steps missed (lost by the null process)")]
+    handles += [plt.Line2D([], [], color=GREY, marker="X", linestyle="none", label="next size tried: not kept up with"),
+                plt.Line2D([], [], color="none", label="right: N, steps missed (lost by the null process)")]
     figure.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=4)
     return figure
 
@@ -109,24 +112,20 @@ def _search(axes, row, place, several):
     axes.plot(start, y, marker, color=colour, markersize=5.5, markerfacecolor=colour if row.complete else "white")
     if row.next == row.next:
         axes.plot(end, y, "X", color=colour, markersize=5.5)
-    axes.text(1.15 * end, y, answer(row), va="center", fontsize=7.5)
+    axes.text(1.02, y, answer(row), transform=axes.get_yaxis_transform(), va="center", fontsize=8.5)
 
 
 def answer(row):
     """The largest N of a row of largest.csv, with the misses there and at the next size."""
     text = f"{row.largest:.0f}"
     if row.largest:
-        text += f": {_count(row.missed)} ({_count(row.null_missed)})" + (f", {row.status}" if row.status != "ok" else "")
+        text += f": {row.missed} ({row.null_missed})" + (f", {row.status}" if row.status != "ok" else "")
     if row.next == row.next:
-        text += f"; {row.next:.0f}: " + (f"{_count(row.next_missed)} ({_count(row.next_null_missed)})"
-                                         if row.next_missed == row.next_missed else row.next_reason.split(":")[0])
+        text += f"; {row.next:.0f}: " + (f"{row.next_missed} ({row.next_null_missed})" if row.next_status in FINISHED
+                                         else row.next_status)
     if not row.complete or row.next != row.next:
         text += "; or more" + (", as the budget was spent" if not row.complete else "")
     return text
-
-
-def _count(value):
-    return "–" if value != value else f"{value:.0f}"
 
 
 def _nothing(text):

@@ -11,7 +11,7 @@ def answers(tables, view):
         layers = {"libraries": rows[~rows.implementation.isin(own)], "own code": rows[rows.implementation.isin(own)]}
         said = [_best(name, one) for name, one in layers.items() if len(one)]
         if said:
-            found.append({"anchor": "largest", "text": f"Steps of {number(1e3 * step)} ms: {'; '.join(said)}."})
+            found.append({"anchor": "largest", "text": f"Steps of {number(1e3 * step)} ms: {'. '.join(said)}."})
     return [*found, *_clean(tables["steps"], view), *_machine(tables["machine"])] or [
         {"text": "Not measured: no implementation of this part took part.", "anchor": ""}]
 
@@ -34,9 +34,9 @@ def _machine(machine):
 def _best(layer, rows):
     row = rows.loc[rows.largest.idxmax()]
     if not row.largest:
-        return f"none of the {layer} keeps up with any size"
-    text = (f"of {layer} {row.implementation} keeps up with N = {number(row.largest, 4)} ({number(row.missed, 4)} of "
-            f"{number(row.steps, 5)} steps missed, {number(row.null_missed, 4)} lost by the null process")
+        return f"None of the {layer} keeps up with any size"
+    text = (f"Of {layer} {row.implementation} keeps up with N = {number(row.largest, 4)} ({row.missed} of {row.steps} steps missed, "
+            f"{row.null_missed} lost by the null process)")
     if row.next == row.next:
-        text += f"; N = {number(row.next, 4)} failed"
-    return text + ")"
+        text += f", and not with N = {number(row.next, 4)} ({row.next_reason})"
+    return text

@@ -2,6 +2,7 @@
 import pandas
 
 from analysis.core.outcomes import of_run
+from analysis.core.text import number
 from analysis.realtime.verdict import judge, lost, missed
 
 TIMES = ("mean", "median", "p99", "p999", "max")
@@ -61,14 +62,20 @@ def _largest(tried):
 
 
 def _observed(runs, prefix):
-    """Sums over the runs of a size, and the worst of them."""
+    """Counts of each run of a size, and the longest step of all."""
     if runs.empty:
         return {"record": ""} if not prefix else {}
-    found = {f"{prefix}steps": runs.steps.sum(min_count=1), f"{prefix}missed": runs.missed.sum(min_count=1),
-             f"{prefix}null_missed": runs.null_missed.sum(min_count=1), f"{prefix}max_us": runs.max_us.max()}
+    found = {f"{prefix}steps": _counts(runs.steps), f"{prefix}missed": _counts(runs.missed),
+             f"{prefix}null_missed": _counts(runs.null_missed), f"{prefix}max_us": runs.max_us.max()}
     if prefix:
-        return found | {"next_reason": next(one for one in runs.reason_not if one)}
+        worst = runs[~runs.kept.astype(bool)].iloc[0]
+        return found | {"next_status": worst.status, "next_reason": worst.reason_not}
     return found | {"status": runs.status.iloc[-1], "reason": runs.reason.iloc[-1], "record": " ".join(runs.record)}
+
+
+def _counts(values):
+    """"1300 and 1300": one a run."""
+    return " and ".join(number(value, 6) for value in values)
 
 
 def _machine(nulls):

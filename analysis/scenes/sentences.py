@@ -1,6 +1,6 @@
 # The answer to "Do standard problems come out right, and what does each piece of modelling cost?", from the tables.
 from analysis.core.outcomes import GOOD
-from analysis.core.text import number
+from analysis.core.text import between, number
 
 DROPPED = ("unsupported", "dropped")
 
@@ -53,5 +53,4 @@ def _costs(modelling):
 
 
 def _cost(row):
-    ends = f" ({number(row.ratio_low)} to {number(row.ratio_high)})" if row.rounds > 1 else ""
-    return f"{row.case} takes {number(row.ratio)}{ends} times the plain step"
+    return f"{row.case} takes {between(row.ratio, row.ratio_low, row.ratio_high)} times the plain step"

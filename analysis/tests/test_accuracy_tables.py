@@ -12,7 +12,7 @@ from analysis.accuracy import figures, page, pairs, points, sentences, tables, w
 from analysis.core import schema
 from analysis.core.records import Record
 from analysis.core.style import Look
-from analysis.core.text import number
+from analysis.core.text import between, ends, number
 from study.accuracy import plan
 from study.core.setting import read_settings
 from study.tests.accuracy_fakes import SETTINGS, Lab, view
@@ -180,8 +180,11 @@ def test_the_figures_show_what_won_and_name_few(found):
     assert set(drawn) == {"work-four-bar-10", "regions", pairs.FORMS}
     libraries, everyone = drawn["work-four-bar-10"].axes
     named = [text.get_text() for text in libraries.get_legend().get_texts()]
-    assert named[-2:] == ["front", "others"] and len(named) <= work_figure.MOST + 2
-    assert all(name.startswith("lib_") for name in named[:-2]) and named[0] == "lib_a/fast, rattle"
+    assert named[-3:] == ["front", "others", work_figure.RINGED] and len(named) <= work_figure.MOST + 3
+    rings = [line for line in libraries.get_lines() if line.get_markeredgewidth() == work_figure.RING["markeredgewidth"]]
+    won = made["winners"][(made["winners"].layer == "libraries") & made["winners"].fill_asked.isna()]
+    assert sorted(rings[0].get_ydata()) == sorted(won.error)
+    assert all(name.startswith("lib_") for name in named[:-3]) and named[0] == "lib_a/fast, rattle"
     assert everyone.get_legend().get_texts()[0].get_text().startswith("own/code")
     panels = drawn["regions"].axes
     assert [axes.get_title(loc="left") for axes in panels] == [
@@ -253,6 +256,7 @@ def render(made, seen):
                                   jinja2.FileSystemLoader([HERE, HERE.parent / "core"])])
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined)
     environment.filters |= {"number": number}
+    environment.globals |= {"between": between, "ends": ends}
     drawn = figures.draw(made, seen)
     plt.close("all")
     return environment.get_template("page.html.j2").render(**page.context(made, seen), figures=dict.fromkeys(drawn, "AAAA"))

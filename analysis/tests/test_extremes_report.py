@@ -315,7 +315,7 @@ def test_page_figures_and_answers_of_all_columns():
     assert "1 run is “ok” or “plausible” though" in text and "build/mbs simulate &#39;a scene.json&#39;" in text
     assert "N = 10: ×1.00" in text and "holds" in text and "Not measured" not in text
     said = [one["text"] for one in sentences.answers(found, VIEW)]
-    assert said[0].startswith("2 of 3 runs at the extremes are ok or plausible, and right; 1 is silently wrong (loops N = 1)")
+    assert said[0].startswith("2 of 3 runs at the extremes are ok or plausible, and right. 1 is silently wrong (loops N = 1)")
     assert any("“α auto” is safe in most cells: 1 of 1" in text for text in said) and any("1.2 times the time" in text for text in said)
     assert {one["anchor"] for one in sentences.answers(found, VIEW)} <= {"battery", "nobody", "ways", "pivots"}
     assert all(f'id="{one["anchor"]}"' in text for one in sentences.answers(found, VIEW))

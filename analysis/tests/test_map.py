@@ -122,6 +122,9 @@ def test_neighbouring_sizes_with_one_outcome_are_one_line():
     groups = summary.by_size(some(rows), [A, B])
     assert [summary.outcome(group) for group in groups] == [
         ("n = 10 to 22", f"{B}, 2.00 to 3.00 times ahead of the second"), ("n = 50", f"{A}, 2.00 times ahead of the second")]
+    assert list(sentences.by_outcome(groups)) == [
+        f"{B} is the fastest library at n = 10 to 22, 2.00 to 3.00 times ahead of the second.",
+        f"{A} is the fastest library at n = 50, 2.00 times ahead of the second."]
 
 
 def test_exclusions_of_one_are_one_line_of_what_was_not_timed():

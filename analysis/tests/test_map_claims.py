@@ -1,4 +1,7 @@
 # The claims ledger on made-up times: every verdict by its rule, and what a set cannot tell.
+import math
+
+import pandas
 import pytest
 
 from analysis.map import ledger
@@ -7,7 +10,7 @@ from analysis.map.claims_libraries import compilers, dense_pairs, tuned_blas
 from analysis.map.claims_maps import over_fill, regions
 from analysis.map.claims_solvers import pivoting, solvers, sparse_against_dense
 from analysis.map.claims_starting import starting_sparse, table1, table2_claims
-from analysis.map.ledger import CONFIRMED, REFUTED, UNTESTED, at_least, at_most, more_than, verdict
+from analysis.map.ledger import CONFIRMED, REFUTED, UNDECIDED, UNMEASURED, at_least, at_most, more_than, verdict
 from analysis.tests.map_tables import build, cell, failed, operation, phases, results
 
 KLU, FACTOR, SIMPLICIAL = "csc_klu/refactor", "csc_klu/factor", "csc_cholmod/simplicial"
@@ -36,38 +39,49 @@ def outcome(rows, *words):
 
 
 @pytest.mark.parametrize("low, high, rule, expected", [
-    (3, 4, at_least(3), CONFIRMED), (2, 2.9, at_least(3), REFUTED), (2, 4, at_least(3), UNTESTED),
-    (1, 2, at_most(2), CONFIRMED), (2.1, 3, at_most(2), REFUTED), (40, 60, (30, 50), UNTESTED),
-    (35, 45, (30, 50), CONFIRMED), (10, 20, (30, 50), REFUTED), (50, 50, more_than(50), UNTESTED),
-    (50, 60, more_than(50), UNTESTED), (51, 60, more_than(50), CONFIRMED), (40, 49, more_than(50), REFUTED)])
+    (3, 4, at_least(3), CONFIRMED), (2, 2.9, at_least(3), REFUTED), (2, 4, at_least(3), UNDECIDED),
+    (1, 2, at_most(2), CONFIRMED), (2.1, 3, at_most(2), REFUTED), (40, 60, (30, 50), UNDECIDED),
+    (35, 45, (30, 50), CONFIRMED), (10, 20, (30, 50), REFUTED), (50, 50, more_than(50), UNDECIDED),
+    (50, 60, more_than(50), UNDECIDED), (51, 60, more_than(50), CONFIRMED), (40, 49, more_than(50), REFUTED)])
 def test_verdict_needs_the_whole_interval(low, high, rule, expected):
     assert verdict(low, high, rule) == expected
 
 
 def test_an_undecided_row_says_so():
     row = ledger.tested(("X", "", ""), (3, 2, 4), at_least(3), "", "Reason.")
-    assert row["verdict"] == UNTESTED and row["why"].startswith("Undecided") and row["ours"] == "3×"
+    assert (row["verdict"], row["reason"], row["ours"]) == (UNDECIDED, "The interval includes 3×.", "3×")
+
+
+def test_a_value_without_an_interval_is_rough_and_decides_nothing():
+    row = ledger.tested(("X", "", ""), (6609.3, 0, math.inf), at_least(3), "", "Reason.")
+    assert (row["verdict"], row["ours"], row["low"], row["high"]) == (UNDECIDED, "about 6600×", "", "")
+    assert row["reason"] == "A single process has no interval."
+
+
+def test_verdicts_are_counted_apart():
+    rows = [ledger.unmeasured(("X", "", ""), "Not timed.", at_least(3)), ledger.tested(("X", "", ""), (3, 2, 4), at_least(3), "", "")]
+    assert ledger.counted(pandas.DataFrame(rows)) == "0 confirmed, 0 refuted, 1 undecided, 1 not measured"
 
 
 def test_every_claim_has_a_row_even_without_any_data():
     rows = claims(load(cell(KLU, 10, 1.0)))
-    assert {row["id"] for row in rows} == IDS and {row["verdict"] for row in rows} == {UNTESTED}
-    assert all(row["why"] for row in rows)
+    assert {row["id"] for row in rows} == IDS and {row["verdict"] for row in rows} == {UNMEASURED}
+    assert all(row["reason"] for row in rows)
 
 
 def test_a_single_process_decides_nothing():
     rows = cell(KLU, 100, 1.0) + cell(SIMPLICIAL, 100, 2.0)
-    assert outcome(solvers(load(rows)), "KLU with refactor", "to 160")[0] == UNTESTED
+    assert outcome(solvers(load(rows)), "KLU with refactor", "to 160")[0] == UNDECIDED
 
 
 def test_table1_compares_shares_in_points():
     shares = (0.20, 0.25, 0.20, 0.10, 0.05, 0.20)  # evaluation and assembly: 45 %; solving: 30 %
     rows = table1(load(cell(GESV, 22, 8.0) + phases(GESV, 22, *[shares] * 6)))
     few = table1(load(cell(GESV, 22, 8.0) + phases(GESV, 22, shares, shares)))
-    assert outcome(few, "dense", "residual")[0] == UNTESTED and "2 processes" in few[0]["why"]
+    assert outcome(few, "dense", "residual")[0] == UNMEASURED and "2 processes" in few[0]["reason"]
     assert outcome(rows, "dense", "residual") == (CONFIRMED, "45 %")
     assert outcome(rows, "dense", "factorize") == (REFUTED, "30 %")
-    assert {row["verdict"] for row in rows if "sparse" in row["claim"]} == {UNTESTED}
+    assert {row["verdict"] for row in rows if "sparse" in row["claim"]} == {UNMEASURED}
     why = next(row["why"] for row in rows if "residual" in row["claim"])
     assert "takes 8 µs a step at n = 22, of which assembly 25 %" in why
     assert "from factorize and solve (14 points less) to other (16 points more)" in why
@@ -81,7 +95,7 @@ def test_table2_reports_every_size_and_what_grows():
     rows = table2_claims(load(rows))
     assert outcome(rows, "rank-k", "one of the sizes") == (CONFIRMED, "1000×")
     assert outcome(rows, "rank-k", "n = 1000") == (CONFIRMED, "1000×")
-    assert outcome(rows, "rank-k", "n = 82")[0] == outcome(rows, "addition", "one of the sizes")[0] == UNTESTED
+    assert outcome(rows, "rank-k", "n = 82")[0] == outcome(rows, "addition", "one of the sizes")[0] == UNMEASURED
     why = next(row["why"] for row in rows if "one of the sizes" in row["claim"])
     assert f"n^1.0 optimised, {PLAIN} as n^2.0, {AXPY} as n^1.0" in why and "it passes 269 near n = 269" in why
     assert "Fair ratio (faster plain version) at most 5 (5 to 5)" in why
@@ -96,14 +110,14 @@ def test_solvers_and_pivoting():
     data = load(rows)
     found = solvers(data)
     assert outcome(found, "KLU with refactor", "to 160") == (REFUTED, "0.833×")
-    assert "leads at 1 of 2 sizes" in found[0]["why"] and outcome(found, "from 161")[0] == UNTESTED
+    assert "KLU is shown to lead at 1 of 2 sizes" in found[0]["why"] and outcome(found, "from 161")[0] == UNMEASURED
     assert outcome(found, "85 %") == (REFUTED, "120 %")
     assert outcome(found, "WSMP is slower") == (CONFIRMED, "3×")
     assert outcome(found, "SuperLU is slower") == (REFUTED, "0.833×")
     assert outcome(pivoting(data), "full pivoting") == (CONFIRMED, "1.5×")
 
 
-@pytest.mark.parametrize("stale, expected", [(1e-6, UNTESTED), (3e-6, CONFIRMED)])
+@pytest.mark.parametrize("stale, expected", [(1e-6, UNDECIDED), (3e-6, CONFIRMED)])
 def test_stale_pivots_are_judged_by_the_error(stale, expected):
     rows = cell(KLU, 100, 1, position_error=stale) + cell(FACTOR, 100, 1, position_error=1e-6)
     assert outcome(pivoting(load(rows)), "stale")[0] == expected
@@ -136,11 +150,11 @@ def test_libraries():
     assert outcome(tuned_blas(data), SUPERNODAL) == (REFUTED, "10 %") and len(tuned_blas(data)) == 1
     assert outcome(compilers(data), KLU) == (CONFIRMED, "6.25 %")  # 5 % of the middle one's 80 %
     assert "gcc-O3 5 µs" in compilers(data)[0]["why"]
-    assert outcome(compilers(data), "operating system")[0] == UNTESTED
+    assert outcome(compilers(data), "operating system")[0] == UNMEASURED
 
 
 def test_pairs_at_small_sizes_only_do_not_speak_of_the_figure():
-    assert outcome(dense_pairs(load(steady(GESV, 10, 30) + steady(POTRF, 10, 10))), "starting")[0] == UNTESTED
+    assert outcome(dense_pairs(load(steady(GESV, 10, 30) + steady(POTRF, 10, 10))), "starting")[0] == UNMEASURED
 
 
 def test_over_fill_names_the_fill_where_dense_is_faster():
@@ -148,14 +162,14 @@ def test_over_fill_names_the_fill_where_dense_is_faster():
             for row in steady(SIMPLICIAL, 100, sparse, fill=fill) + steady(POTRF, 100, 4, fill=fill)]
     found = over_fill(load(rows))
     assert outcome(found, "CHOLMOD") == (REFUTED, "0.8×") and "Dense is faster at 100 %" in found[0]["why"]
-    assert outcome(found, "WSMP")[0] == UNTESTED
+    assert outcome(found, "WSMP")[0] == UNMEASURED
 
 
 def test_a_fill_at_which_a_solver_was_lost_leaves_the_claim_open():
     rows = [row for fill in (0.2, 0.5) for row in steady(SIMPLICIAL, 100, 1, fill=fill) + steady(POTRF, 100, 4, fill=fill)]
     rows += steady(POTRF, 100, 4, fill=1.0) + failed(SIMPLICIAL, 100, "crashed", "SIGSEGV", fill=1.0)
     row = over_fill(load(rows))[0]
-    assert row["verdict"] == UNTESTED and "fills of 100 %" in row["why"]
+    assert row["verdict"] == UNMEASURED and "fills of 100 %" in row["reason"]
 
 
 def test_regions_count_undecided_cells_both_ways():
@@ -167,12 +181,12 @@ def test_regions_count_undecided_cells_both_ways():
     rows += steady(SPD, 22, 1, fill=0.2) + steady(KLU, 22, 2, fill=0.2)  # not of the profile's grid: does not count
     found = regions(load(rows))
     assert outcome(found, "KLU wins") == (CONFIRMED, "100 %")
-    assert outcome(found, "WSMP wins at high") == (UNTESTED, "50 %")
+    assert outcome(found, "WSMP wins at high") == (UNDECIDED, "50 %")
     wsmp = next(row for row in found if "high fill" in row["claim"])
     assert (wsmp["low"], wsmp["high"]) == ("50", "100")
     dense = next(row for row in found if "dense wins nowhere" in row["claim"])
-    assert (dense["low"], dense["high"], dense["verdict"]) == ("0", "25", UNTESTED)
-    assert outcome(found, "above 900")[0] == UNTESTED
+    assert (dense["low"], dense["high"], dense["verdict"]) == ("0", "25", UNDECIDED)
+    assert outcome(found, "above 900")[0] == UNMEASURED
 
 
 def test_half_of_a_region_is_a_draw():
@@ -181,6 +195,6 @@ def test_half_of_a_region_is_a_draw():
         klu, cholmod = (1, 2) if size < 2500 else (2, 1)
         rows += steady(KLU, size, klu) + steady(SIMPLICIAL, size, cholmod)
     row = next(row for row in regions(load(rows)) if "above 900" in row["claim"])
-    assert (row["verdict"], row["ours"], row["rule"]) == (UNTESTED, "50 %", "more than 50 %")
+    assert (row["verdict"], row["ours"], row["rule"]) == (UNDECIDED, "50 %", "more than 50 %")
     rows += steady(KLU, 5000, 2) + steady(SIMPLICIAL, 5000, 1)
     assert outcome(regions(load(rows)), "above 900") == (CONFIRMED, "60 %")

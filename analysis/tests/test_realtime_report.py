@@ -60,8 +60,8 @@ def test_the_largest_is_a_size_all_of_whose_runs_were_kept():
     runs = [run(8, 0), run(16, 5), run(16, 0, number=2), run(32, 0), run(64, 400), run(45, 2)]
     found = made(*runs, null(runs[1].name, 1), null(runs[3].name, 0), null(runs[5].name, 1))
     [row] = found["largest"].to_dict("records")
-    assert (row["largest"], row["next"], row["missed"], row["null_missed"]) == (32, 45, 0, 0) and row["complete"]
-    assert (row["next_missed"], row["next_null_missed"]) == (2, 1)
+    assert (row["largest"], row["next"], row["missed"], row["null_missed"]) == (32, 45, "0", "0") and row["complete"]
+    assert (row["next_missed"], row["next_null_missed"]) == ("2", "1")
     assert row["next_reason"] == "2 of 1300 steps missed, 1 by the null process"
     assert row["record"] == runs[3].name
     assert figures.answer(SimpleNamespace(**row)) == "32: 0 (0); 45: 2 (1)"
@@ -80,6 +80,14 @@ def test_what_the_budget_ends_or_nothing_ends_is_said():
     assert row["largest"] != row["largest"] and not row["complete"]
     [row] = made(run(1, 900, status="not-converged"))["largest"].to_dict("records")
     assert row["largest"] == 0 and row["next_reason"] == "not-converged: because"
+    assert figures.answer(SimpleNamespace(**row)) == "0; 1: not-converged"
+
+
+def test_two_runs_of_a_size_are_not_added_up():
+    runs = [run(8, 0), run(16, 5), run(16, 0, number=2)]
+    [row] = made(*runs, null(runs[1].name, 1))["largest"].to_dict("records")
+    assert (row["next_steps"], row["next_missed"], row["next_null_missed"]) == ("1300 and 1300", "5 and 0", "1 and –")
+    assert row["next_reason"] == "5 of 1300 steps missed, 1 by the null process"
 
 
 def test_figures_page_and_answers():
@@ -92,8 +100,9 @@ def test_figures_page_and_answers():
     known = page.context(found, VIEW)
     assert known["machine"] == [(1e-3, 1, 1.3, 1, 7.0)] and known["judging"]["share"] == pytest.approx(0.005)
     texts = [one["text"] for one in sentences.answers(found, VIEW)]
-    assert texts[0] == ("Steps of 1 ms: of libraries lib/a keeps up with N = 8 (0 of 1300 steps missed, – lost by the null process; N = 16 failed); "
-                        "of own code own/a keeps up with N = 64 (0 of 1300 steps missed, – lost by the null process).")
+    assert texts[0] == ("Steps of 1 ms: Of libraries lib/a keeps up with N = 8 (0 of 1300 steps missed, – lost by the null process), "
+                        "and not with N = 16 (90 of 1300 steps missed, 0 by the null process). "
+                        "Of own code own/a keeps up with N = 64 (0 of 1300 steps missed, – lost by the null process).")
     assert texts[1:] == ["1 of 2 runs of 5 s missed no deadline at all.", "The machine itself lost 1 deadlines of 1 ms in 1.3 s."]
 
 

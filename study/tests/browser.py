@@ -17,6 +17,10 @@ FLAGS = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-u
 COMPLAINTS = ("Runtime.exceptionThrown", "Log.entryAdded", "Runtime.consoleAPICalled")
 
 
+class Navigated(AssertionError):
+    """The page was left while it was asked."""
+
+
 class Browser:
     """One page. `complaints` has everything that it wrote to the console, `requests` every address
     that it asked for; both grow while commands run."""
@@ -66,6 +70,8 @@ class Browser:
         while True:
             answer = self._next(end)
             if answer.get("id") == number:
+                if "navigated" in answer.get("error", {}).get("message", ""):
+                    raise Navigated(f"{method}: {answer['error']}")
                 assert "error" not in answer, f"{method}: {answer['error']}"
                 return answer["result"]
             self._note(answer)
@@ -107,9 +113,15 @@ class Browser:
 
     def wait(self, expression, seconds=30):
         end = time.monotonic() + seconds
-        while not self.value(expression):
+        while not self._holds(expression):
             assert time.monotonic() < end, f"never came true: {expression}"
             time.sleep(0.05)
+
+    def _holds(self, expression):
+        try:
+            return self.value(expression)
+        except Navigated:
+            return False
 
     def key(self, key, **more):
         text = {"text": key} if len(key) == 1 else {}

@@ -36,6 +36,10 @@ def test_readmes_are_short():
     assert long == {}
 
 
+def test_every_part_says_what_it_runs():
+    assert [part for part in parts() if f"study/{part}/README.md" not in TRACKED] == []
+
+
 @pytest.mark.parametrize("path", fragments.texts(), ids=lambda path: str(path.relative_to(ROOT)))
 def test_numbers_in_texts_are_those_of_the_sets(path):
     text = path.read_text(encoding="utf-8")
