@@ -1,8 +1,7 @@
 # What code without a library is held to: bounds, and the worst that was measured for each.
 #
-# Of all such code the fastest counts, size by size and scene by scene. A ratio is held or not
-# held where its whole interval says so, else open; an exponent too, by the interval of its fit; a set-up, which has none, by its value.
-# Where not all cases were measured nothing is held as a whole.
+# Of all such code the fastest counts, size by size and scene by scene. A ratio is held or not held where its whole interval
+# says so, else open; an exponent too, by the interval of its fit; a set-up, which has none, by its value. Where not all cases were measured nothing is held as a whole.
 import numpy
 
 from analysis.core.statistics import power_law_interval

@@ -7,7 +7,7 @@ def context(tables, view):
     steps = tables["steps"]
     wide = {"penalty": steps[steps.form == "penalty"], "saddle-point": steps[steps.form == "saddle-point"]}
     return {"LIMIT": LIMIT, "phases": PHASES, "LEAST": LEAST, "NOT_MEASURED": NOT_MEASURED, "settings": view.settings,
-            "held": _grouped(tables["held"], "folder"), "bounds": tables["bounds"].sort_values("loops").to_dict("records"),
+            "held": tables["held"].to_dict("records"), "bounds": tables["bounds"].sort_values("loops").to_dict("records"),
             "sizes": _grouped(_timed(wide["penalty"]).sort_values(["loops", "step_us"]), "variables"),
             "growth": _grouped(_own(wide, view), "form"), "scenes": by_scene(tables["scenes"]),
             "leads": tables["leads"][tables["leads"].status == "ok"].to_dict("records"),

@@ -41,12 +41,8 @@ def build(records, view):
                                 for name in _ordered(cells, order)]
             found["leads"] += [known | one for one in _leads(rows, cells, registry)]
     tables = {name: pandas.DataFrame(rows) for name, rows in found.items()}
-    tables["held"] = pandas.DataFrame([row for folder in own_folders(registry) for row in must_hold(folder, registry, tables)])
+    tables["held"] = pandas.DataFrame(must_hold(registry.own, tables) if registry.own else [])
     return tables
-
-
-def own_folders(registry):
-    return list(dict.fromkeys(name.partition("/")[0] for name in registry.variants if name in registry.own))
 
 
 def _by_scene(records):

@@ -144,7 +144,7 @@ def test_the_worst_scene_of_a_kind_counts_by_its_whole_interval():
     assert found.verdict["times the limit code's step"] == "not measured"
 
 
-def test_of_the_variants_of_a_folder_the_fastest_counts_scene_by_scene():
+def test_of_all_own_code_the_fastest_counts_scene_by_scene():
     what = "times faster than the fastest library, planar standard problems"
     records = [look(A, own_x=1.0, own_y=0.5, one_a=1.5), *(bench("problem", A, number, own_x=1.0, own_y=0.5, one_a=1.5)
                                                            for number in (1, 2)), *agree("problem", A, "own_x", "one_a", "own_y")]

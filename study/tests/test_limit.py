@@ -140,6 +140,6 @@ def test_a_tiny_study_on_the_real_program(tmp_path):
     steps, held, batches = (pandas.read_csv(tmp_path / "set/limit" / f"{name}.csv") for name in ("steps", "held", "batches"))
     first = steps[(steps.form == "penalty") & (steps.loops == 1)]
     assert list(first.implementation) == ["limit/limit", "csc_klu/refactor", "compiled_chains/sweeps"]
-    assert first.multiple.iloc[0] == 1 and set(held.folder) == {"compiled_ldl"}
+    assert first.multiple.iloc[0] == 1 and len(held) > 5
     assert list(batches.status) in (["unsupported", "ok"], ["ok", "unsupported"], ["dropped", "dropped"])
-    assert "What compiled_ldl is held to" in (tmp_path / "set/limit.html").read_text()
+    assert "What code without a library is held to" in (tmp_path / "set/limit.html").read_text()
