@@ -299,8 +299,8 @@ def render(found):
         plt.close(figure)
     template = site._template(ROOT / "analysis" / "extremes" / "page.html.j2")
     return set(drawn), template.render(**page.context(found, VIEW), figures=dict.fromkeys(drawn, "AA"), schema={}, part="extremes", parts={},
-                                       question="?", facts=FACTS, context=dict.fromkeys(("cpu_model", "num_cpus", "commit", "compiler",
-                                                                                        "flags", "libraries", "kernel", "machine", "dirty"), "c"))
+                                       question="?", facts=FACTS, libraries=["c"], context=dict.fromkeys(("cpu_model", "num_cpus", "commit", "compiler",
+                                                                                        "flags", "kernel", "machine", "dirty"), "c"))
 
 
 FACTS = {"date": "today", "profile": "smoke", "only": [], "parts": ["extremes"]}
