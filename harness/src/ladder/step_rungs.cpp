@@ -129,7 +129,7 @@ void mirror(std::vector<double>& T, std::size_t n) {
   }
 }
 
-/// At most `allowed` apart; without it, 1e-9 of the largest entry.
+/// At most `allowed` apart; without it, 1e-6 of the largest entry.
 std::optional<Finding> compare(const Model& model, Quantity ours, const Quantity& expected,
                                std::optional<double> given = {}) {
   const std::vector<double>& y = expected.values;
@@ -146,7 +146,7 @@ std::optional<Finding> compare(const Model& model, Quantity ours, const Quantity
   const std::vector<double>& x = ours.values;
   double largest = 0.0;
   for (const double value : y) largest = std::max(largest, std::abs(value));
-  const double allowed = given.value_or(1e-9 * largest);
+  const double allowed = given.value_or(1e-6 * largest);
   const auto differs = [&](std::size_t i) { return !(std::abs(x[i] - y[i]) <= allowed); };
   std::size_t count = 0, worst = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {

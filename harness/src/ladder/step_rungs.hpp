@@ -46,7 +46,8 @@ struct Compared {
 };
 
 /// Compares what `rung` looks at in the step of `make`'s simulation from `state` with the
-/// reference's. Rounding moves it by some 1e-12 of its largest entry; 1e-9 is allowed.
+/// reference's. Rounding, amplified by the condition of T, moves it by up to some 1e-7 of its largest
+/// entry; 1e-6 is allowed.
 Compared compare_step(const StepRung& rung, const Maker& make, const Model& model,
                       const StepSettings& settings, const State& state);
 
