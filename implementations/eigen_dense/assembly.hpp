@@ -25,9 +25,12 @@ class Assembly {
   Assembly(const Model& model, const StepSettings& settings, const Layout& layout);
 
   /// Whether drive() has to be called in every step, before all else.
-  [[nodiscard]] bool driven() const { return !drivers_.empty(); }
-  /// Takes the drivers' values at time t (s) and puts the driven points into q and v.
-  void drive(double t, Vector& q, Vector& v) { drivers_.drive(t, q, v); }
+  [[nodiscard]] bool driven() const { return !drivers_.empty() || forces_.driven(); }
+  /// Takes the values of drivers and factors at time t (s), puts the driven points into q and v.
+  void drive(double t, Vector& q, Vector& v) {
+    drivers_.drive(t, q, v);
+    forces_.drive(t);
+  }
 
   /// Phi and Phi_q at q (m). All other methods use this Phi_q.
   void evaluate(const Vector& q);

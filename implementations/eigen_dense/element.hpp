@@ -1,4 +1,4 @@
-// What a spring or torsion spring gives to C and K, element by element.
+// What a spring, torsion spring or law gives to C and K, element by element.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,13 +12,12 @@ namespace mbs::eigen_dense {
 ///
 ///     W = along g gᵀ + across H,    along = (Δt/2) c + (Δt²/4) (k − p),    across = (Δt²/4) p
 ///
-/// with H = [I, −I; −I, I] for the points a and b, because the geometric stiffness of a spring is
-/// G = p (H − g gᵀ), Eq. (11). A torsion spring has p = 0.
+/// with H = [I, −I; −I, I] for the points a and b, because the geometric stiffness along a line is
+/// G = p (H − g gᵀ), Eqs. (11) and (18). About an axis p = 0.
 template <typename Scalar>
 struct Element {
-  Shares shares;          ///< its free points
-  Scalar weight = 0;      ///< (Δt/2) c + (Δt²/4) k
-  Scalar along = weight;  ///< at the last evaluation, like the following
+  Shares shares;     ///< its free points
+  Scalar along = 0;  ///< at the last evaluation, like the following
   Scalar across = 0;
   std::array<Scalar, 12> g{};  ///< `dimension` numbers a free point
 

@@ -1,4 +1,4 @@
-// Springs, torsion springs and couples: their part of Q and, matrix-free, of C and K.
+// Springs, laws and couples: their part of Q and, matrix-free, of C and K.
 #include "forces.hpp"
 
 #include <Eigen/Geometry>
@@ -31,38 +31,39 @@ Forces<Scalar>::Forces(const Model& model, const StepSettings& settings, const L
     : dimension_(layout.dimension()),
       half_step_(Scalar(settings.step / 2)),
       scale_(Scalar(settings.step * settings.step / 4)) {
-  lower_springs(model, layout);
-  lower_torsion_springs(model, layout);
+  lower_elements(model, layout);
   lower_couples(model, layout);
 }
 
 template <typename Scalar>
-Scalar Forces<Scalar>::weight(Scalar stiffness, Scalar damping) const {
-  return half_step_ * damping + scale_ * stiffness;
-}
-
-template <typename Scalar>
-void Forces<Scalar>::lower_springs(const Model& model, const Layout& layout) {
-  for (const Spring& spring : model.springs()) {
-    const Shares shares = layout.shares({spring.a, spring.b});
-    if (shares.empty()) continue;
-    springs_.push_back({layout.start(spring.a), layout.start(spring.b), Scalar(spring.stiffness),
-                        Scalar(spring.damping), Scalar(spring.length)});
-    elements_.push_back({shares, weight(springs_.back().stiffness, springs_.back().damping)});
+void Forces<Scalar>::lower_elements(const Model& model, const Layout& layout) {
+  const auto lower_line = [&](const auto& one, double rest, const auto& law, auto& lines) {
+    const Shares shares = layout.shares({one.a, one.b});
+    if (shares.empty()) return;
+    lines.push_back({layout.start(one.a), layout.start(one.b), Scalar(rest), law});
+    elements_.push_back({shares});
+  };
+  const auto lower_angle = [&](const auto& one, double rest, const auto& law, auto& angles) {
+    const Shares shares = layout.shares({one.a, one.b, one.c, one.d});
+    if (shares.empty()) return;
+    angles.push_back({layout.start(one.a), layout.start(one.b), layout.start(one.c),
+                      layout.start(one.d), layout.start(one.axis), Scalar(rest), law});
+    elements_.push_back({shares});
+  };
+  const auto straight = [](const auto& spring) {
+    return StraightLaw{Scalar(spring.stiffness), Scalar(spring.damping)};
+  };
+  const auto curved = [&](const Law& law) {
+    driven_ = driven_ || !law.factor.is_constant();
+    return CurvedLaw{law};
+  };
+  for (const Spring& one : model.springs()) lower_line(one, one.length, straight(one), springs_);
+  for (const TorsionSpring& one : model.torsion_springs()) {
+    lower_angle(one, one.angle, straight(one), torsion_springs_);
   }
-}
-
-template <typename Scalar>
-void Forces<Scalar>::lower_torsion_springs(const Model& model, const Layout& layout) {
-  for (const TorsionSpring& spring : model.torsion_springs()) {
-    const Shares shares = layout.shares({spring.a, spring.b, spring.c, spring.d});
-    if (shares.empty()) continue;
-    torsion_springs_.push_back({layout.start(spring.a), layout.start(spring.b),
-                                layout.start(spring.c), layout.start(spring.d),
-                                layout.start(spring.axis), Scalar(spring.stiffness),
-                                Scalar(spring.damping), Scalar(spring.angle)});
-    elements_.push_back(
-        {shares, weight(torsion_springs_.back().stiffness, torsion_springs_.back().damping)});
+  for (const ForceLaw& one : model.force_laws()) lower_line(one, 0, curved(one.law), force_laws_);
+  for (const TorqueLaw& one : model.torque_laws()) {
+    lower_angle(one, 0, curved(one.law), torque_laws_);
   }
 }
 
@@ -77,42 +78,52 @@ void Forces<Scalar>::lower_couples(const Model& model, const Layout& layout) {
 }
 
 template <typename Scalar>
-template <int dimension>
-void Forces<Scalar>::evaluate_springs(const Scalar* q, const Scalar* v, Scalar* rhs) {
-  Element<Scalar>* element = elements_.data();
-  for (const LinearSpring& spring : springs_) {
-    const Point<dimension, Scalar> d = difference<dimension>(q, spring.a, spring.b);
+void Forces<Scalar>::drive(double t) {
+  for (Line<CurvedLaw>& line : force_laws_) line.law.drive(t);
+  for (Angle<CurvedLaw>& angle : torque_laws_) angle.law.drive(t);
+}
+
+template <typename Scalar>
+template <int dimension, typename AnyLaw>
+void Forces<Scalar>::evaluate_lines(const std::vector<Line<AnyLaw>>& lines, const Scalar* q,
+                                    const Scalar* v, Scalar* rhs, Element<Scalar>*& element) const {
+  for (const Line<AnyLaw>& line : lines) {
+    const Point<dimension, Scalar> d = difference<dimension>(q, line.a, line.b);
     const Scalar L = d.norm();
     const Scalar inverse = L == 0 ? Scalar(0) : 1 / L;
     const Point<dimension, Scalar> e = inverse * d;
-    const Scalar rate = e.dot(difference<dimension>(v, spring.a, spring.b));
-    const Scalar p = std::max(Scalar(0), spring.stiffness * (1 - spring.length * inverse));
+    const Scalar rate = e.dot(difference<dimension>(v, line.a, line.b));
+    const Pull pull = line.law.at(L - line.rest, rate);
+    const Scalar p = std::max(Scalar(0), L == 0 ? pull.stiffness : pull.by_position * inverse);
     element->across = scale_ * p;
-    element->along = element->weight - scale_ * p;
-    const Scalar tension = spring.stiffness * (L - spring.length) + spring.damping * rate;
-    element->template apply<dimension>(e, Point<dimension, Scalar>::Zero(), -scale_ * tension,
-                                       rhs);  // Eq. (11)
+    element->along = weight(pull) - scale_ * p;
+    element->template apply<dimension>(e, Point<dimension, Scalar>::Zero(),
+                                       -scale_ * (pull.by_position + pull.by_rate),
+                                       rhs);  // Eqs. (11), (18)
     ++element;
   }
 }
 
 template <typename Scalar>
-template <int dimension>
-void Forces<Scalar>::evaluate_torsion_springs(const Scalar* q, const Scalar* v, Scalar* rhs) {
-  Element<Scalar>* element = elements_.data() + springs_.size();
-  for (const AngularSpring& spring : torsion_springs_) {
-    const Point<dimension, Scalar> u = difference<dimension>(q, spring.a, spring.b);
-    const Point<dimension, Scalar> w = difference<dimension>(q, spring.c, spring.d);
-    const Point<dimension, Scalar> zu = turned<dimension>(q, spring.axis, u);
-    const Point<dimension, Scalar> zw = turned<dimension>(q, spring.axis, w);
+template <int dimension, typename AnyLaw>
+void Forces<Scalar>::evaluate_angles(const std::vector<Angle<AnyLaw>>& angles, const Scalar* q,
+                                     const Scalar* v, Scalar* rhs,
+                                     Element<Scalar>*& element) const {
+  for (const Angle<AnyLaw>& angle : angles) {
+    const Point<dimension, Scalar> u = difference<dimension>(q, angle.a, angle.b);
+    const Point<dimension, Scalar> w = difference<dimension>(q, angle.c, angle.d);
+    const Point<dimension, Scalar> zu = turned<dimension>(q, angle.axis, u);
+    const Point<dimension, Scalar> zw = turned<dimension>(q, angle.axis, w);
     const Point<dimension, Scalar> g_u = zu / -u.squaredNorm();
     const Point<dimension, Scalar> g_w = zw / w.squaredNorm();
     const Scalar theta = std::atan2(zu.dot(w), u.dot(w));  // z·(u × w) = (z × u)·w
-    const Scalar s = std::remainder(theta - spring.angle, 2 * std::numbers::pi_v<Scalar>);
-    const Scalar rate = g_u.dot(difference<dimension>(v, spring.a, spring.b)) +
-                        g_w.dot(difference<dimension>(v, spring.c, spring.d));
-    const Scalar torque = spring.stiffness * s + spring.damping * rate;
-    element->template apply<dimension>(g_u, g_w, -scale_ * torque, rhs);  // Eq. (11)
+    const Scalar s = std::remainder(theta - angle.rest, 2 * std::numbers::pi_v<Scalar>);
+    const Scalar rate = g_u.dot(difference<dimension>(v, angle.a, angle.b)) +
+                        g_w.dot(difference<dimension>(v, angle.c, angle.d));
+    const Pull pull = angle.law.at(s, rate);
+    element->along = weight(pull);
+    element->template apply<dimension>(g_u, g_w, -scale_ * (pull.by_position + pull.by_rate),
+                                       rhs);  // Eqs. (11), (18)
     ++element;
   }
 }
@@ -133,8 +144,11 @@ void Forces<Scalar>::evaluate_couples(const Scalar* q, Scalar* rhs) const {
 template <typename Scalar>
 template <int dimension>
 void Forces<Scalar>::evaluate_all(const Scalar* q, const Scalar* v, Scalar* rhs) {
-  evaluate_springs<dimension>(q, v, rhs);
-  evaluate_torsion_springs<dimension>(q, v, rhs);
+  Element<Scalar>* element = elements_.data();
+  evaluate_lines<dimension>(springs_, q, v, rhs, element);
+  evaluate_angles<dimension>(torsion_springs_, q, v, rhs, element);
+  evaluate_lines<dimension>(force_laws_, q, v, rhs, element);
+  evaluate_angles<dimension>(torque_laws_, q, v, rhs, element);
   evaluate_couples<dimension>(q, rhs);
 }
 

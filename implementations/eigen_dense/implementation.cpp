@@ -22,10 +22,10 @@ namespace mbs::eigen_dense {
 
 namespace {
 
-constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
-                       Term::springs,     Term::torsion_springs, Term::dampers,
-                       Term::couples,     Term::drivers,         Term::mass_across_axes,
-                       Term::spatial};
+constexpr Terms kTerms{
+    Term::dots,    Term::bilinear, Term::linear,     Term::springs, Term::torsion_springs,
+    Term::dampers, Term::couples,  Term::force_laws, Term::drivers, Term::mass_across_axes,
+    Term::spatial};
 
 /// No matrix larger than this is stored; there are three or four of them.
 constexpr double kMatrixLimit = 2.0 * 1024 * 1024 * 1024;  // bytes
