@@ -33,6 +33,7 @@ Assembly::Assembly(const Model& model, const StepSettings& settings, std::vector
 
 void Assembly::drive(double t, double* q, double* u) {
   drivers_.drive(t, q, u, constraints_.target(), force_.data());
+  forces_.drive(t);
 }
 
 void Assembly::balance(const double* q, const double* u, const double* s, double* result) {

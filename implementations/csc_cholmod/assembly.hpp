@@ -26,8 +26,9 @@ class Assembly {
   [[nodiscard]] const Coordinates& coordinates() const { return coordinates_; }
   [[nodiscard]] const LoweredConstraints& constraints() const { return lowered_; }
 
-  [[nodiscard]] bool has_drivers() const { return !drivers_.empty(); }
-  /// Samples the drivers at time t, for the whole step; writes their places of q and u.
+  [[nodiscard]] bool has_drivers() const { return !drivers_.empty() || forces_.is_driven(); }
+  /// Samples the drivers and factors of laws at time t, for the whole step; writes their places of
+  /// q and u.
   void drive(double t, double* q, double* u);
   /// Phi and Phi_q at q; every other call works with them.
   void evaluate(const double* q) {

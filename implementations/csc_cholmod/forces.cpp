@@ -1,6 +1,8 @@
 // Elements write summands, schedules gather them.
 #include "forces.hpp"
 
+#include <cstddef>
+
 #include "schedule.hpp"
 
 namespace mbs::csc_cholmod {
@@ -13,6 +15,20 @@ std::vector<Contribution> contributions(const LoweredForces& lowered, bool with_
   return result;
 }
 
+std::vector<ScaledLaw> scaled(const std::vector<const Law*>& laws, const StepSettings& settings) {
+  std::vector<ScaledLaw> result;
+  for (const Law* law : laws) result.emplace_back(*law, settings);
+  return result;
+}
+
+std::vector<int> driven(const std::vector<ScaledLaw>& laws) {
+  std::vector<int> result;
+  for (std::size_t k = 0; k < laws.size(); ++k) {
+    if (laws[k].is_driven()) result.push_back(static_cast<int>(k));
+  }
+  return result;
+}
+
 void negate(const double* __restrict values, int count, double* __restrict result) {
   for (int i = 0; i < count; ++i) result[i] = -values[i];
 }
@@ -21,8 +37,10 @@ void negate(const double* __restrict values, int count, double* __restrict resul
 
 Forces::Forces(const LoweredForces& lowered, const StepSettings& settings)
     : lowered_(lowered),
-      springs_(lowered.springs, settings),
-      torsions_(lowered.springs.dimension, lowered.torsions, settings),
+      laws_(scaled(lowered.laws, settings)),
+      driven_laws_(driven(laws_)),
+      springs_(lowered.springs, laws_, settings),
+      torsions_(lowered.springs.dimension, lowered.torsions, laws_, settings),
       couples_(lowered.springs.dimension, lowered.couples, settings),
       load_rows_(contributions(lowered, true)),
       stiff_rows_(contributions(lowered, false)),

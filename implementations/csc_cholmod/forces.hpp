@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gather.hpp"
+#include "laws.hpp"
 #include "lowered_forces.hpp"
 #include "mbs/simulation.hpp"
 #include "springs.hpp"
@@ -19,9 +20,14 @@ class Forces {
   Forces(const LoweredForces& lowered, const StepSettings& settings);
 
   [[nodiscard]] bool empty() const { return lowered_.values() == 0; }
+  [[nodiscard]] bool is_driven() const { return !driven_laws_.empty(); }
+  /// Takes the laws' factors at time t, for the whole step.
+  void drive(double t) {
+    for (int k : driven_laws_) laws_[k].drive(t);
+  }
   /// Takes all elements at q and u (all places, m; u = (dt/2) v).
   void evaluate(const double* q, const double* u);
-  /// result (n) += (dt^2/4) times what they give of Q; q is that of evaluate(). Eq. (11)
+  /// result (n) += (dt^2/4) times what they give of Q; q is that of evaluate(). Eqs. (11), (18)
   void add_loads(const double* q, double* result);
   /// result (n) += [(dt/2) C + (dt^2/4) K] x; x (n, then a zero).
   void add_product(const double* x, double* result);
@@ -32,6 +38,8 @@ class Forces {
   void gather(const GatherSchedule& rows, double* result);
 
   const LoweredForces& lowered_;
+  std::vector<ScaledLaw> laws_;   ///< those of `lowered`
+  std::vector<int> driven_laws_;  ///< those whose factor is not constant
   Springs springs_;
   TorsionSprings torsions_;
   Couples couples_;

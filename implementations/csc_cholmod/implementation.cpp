@@ -12,10 +12,10 @@
 namespace mbs::csc_cholmod {
 namespace {
 
-constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
-                       Term::springs,     Term::torsion_springs, Term::dampers,
-                       Term::couples,     Term::drivers,         Term::mass_across_axes,
-                       Term::spatial};
+constexpr Terms kTerms{
+    Term::dots,    Term::bilinear, Term::linear,     Term::springs, Term::torsion_springs,
+    Term::dampers, Term::couples,  Term::force_laws, Term::drivers, Term::mass_across_axes,
+    Term::spatial};
 
 template <Factorization kFactorization>
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {

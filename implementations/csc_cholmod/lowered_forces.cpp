@@ -24,33 +24,40 @@ LoweredForces::LoweredForces(const Model& model, const Coordinates& coordinates)
 
 void LoweredForces::add_springs(const Model& model, const Coordinates& coordinates) {
   SpringBlock& s = springs;
-  const int count = s.count = static_cast<int>(model.springs().size());
+  const int count = s.count = static_cast<int>(model.springs().size() + model.force_laws().size());
   for (auto* places : {&s.plus, &s.minus, &s.free_plus, &s.free_minus}) {
     places->resize(spring_values());
   }
   int k = 0;
-  for (const Spring& spring : model.springs()) {
-    const Places free_a = coordinates.free_places(spring.a);
-    const Places free_b = coordinates.free_places(spring.b);
+  const auto add = [&](int a, int b) {
+    const Places free_a = coordinates.free_places(a);
+    const Places free_b = coordinates.free_places(b);
     for (int axis = 0; axis < s.dimension; ++axis) {
       const int value = axis * count + k;
-      s.plus[value] = coordinates.place(spring.a, axis);
-      s.minus[value] = coordinates.place(spring.b, axis);
+      s.plus[value] = coordinates.place(a, axis);
+      s.minus[value] = coordinates.place(b, axis);
       s.free_plus[value] = free_a[axis];
       s.free_minus[value] = free_b[axis];
       if (coordinates.is_unknown(free_a[0])) gradients_.push({free_a[axis], value, false});
       if (coordinates.is_unknown(free_b[0])) gradients_.push({free_b[axis], value, true});
     }
     gradients_.end_row();
+    ++k;
+  };
+  for (const Spring& spring : model.springs()) {
+    add(spring.a, spring.b);
     s.stiffness.push_back(spring.stiffness);
     s.damping.push_back(spring.damping);
     s.length.push_back(spring.length);
-    ++k;
+  }
+  for (const ForceLaw& f : model.force_laws()) {
+    add(f.a, f.b);
+    laws.push_back(&f.law);
   }
 }
 
 void LoweredForces::add_torsions(const Model& model, const Coordinates& coordinates) {
-  for (const TorsionSpring& t : model.torsion_springs()) {
+  const auto add = [&](const auto& t) -> TorsionElement& {
     const int u = gradient_values();
     const int w = u + model.dimension();
     push_point(coordinates, t.a, u, true, gradients_);
@@ -60,9 +67,19 @@ void LoweredForces::add_torsions(const Model& model, const Coordinates& coordina
     gradients_.end_row();
     const auto at = [&](int point) { return coordinates.places(point); };
     const auto free_at = [&](int point) { return coordinates.free_places(point); };
-    torsions.push_back({at(t.a), at(t.b), at(t.c), at(t.d), coordinates.axis_places(t.axis),
-                        free_at(t.a), free_at(t.b), free_at(t.c), free_at(t.d), t.stiffness,
-                        t.damping, t.angle});
+    return torsions.emplace_back(TorsionElement{at(t.a), at(t.b), at(t.c), at(t.d),
+                                                coordinates.axis_places(t.axis), free_at(t.a),
+                                                free_at(t.b), free_at(t.c), free_at(t.d)});
+  };
+  for (const TorsionSpring& t : model.torsion_springs()) {
+    TorsionElement& element = add(t);
+    element.stiffness = t.stiffness;
+    element.damping = t.damping;
+    element.angle = t.angle;
+  }
+  for (const TorqueLaw& t : model.torque_laws()) {
+    add(t).law = static_cast<int>(laws.size());
+    laws.push_back(&t.law);
   }
 }
 

@@ -1,4 +1,4 @@
-// Springs, torsion springs and couples lowered to flat arrays, and where their gradients stand.
+// Force elements lowered to flat arrays, and where their gradients stand.
 #pragma once
 
 #include <vector>
@@ -9,23 +9,25 @@
 
 namespace mbs::csc_cholmod {
 
-/// Springs, all axes in one run: element axis * count + k of spring k is q[plus] - q[minus].
-/// e = +-(r_a - r_b) / L is a row's value of the same index.
+/// Springs, then force laws, all axes in one run: element axis * count + k of spring k is q[plus] -
+/// q[minus]. e = +-(r_a - r_b) / L is a row's value of the same index.
 struct SpringBlock {
   int dimension = 0;
   int count = 0;
   std::vector<int> plus, minus;                    ///< dimension x count
   std::vector<int> free_plus, free_minus;          ///< likewise, of free points or the zero
-  std::vector<double> stiffness, damping, length;  ///< count; N/m, N s/m, m
+  std::vector<double> stiffness, damping, length;  ///< of springs; N/m, N s/m, m
 };
 
-/// Of the two values of a row, of `dimension` components each, the first is that of u.
+/// A torsion spring or torque law. Of the two values of a row, of `dimension` components each, the
+/// first is that of u.
 struct TorsionElement {
   Places a, b, c, d, axis;
   Places free_a, free_b, free_c, free_d;  ///< of free points or the zero
   double stiffness = 0.0;                 ///< N m/rad
   double damping = 0.0;                   ///< N m s/rad
   double angle = 0.0;                     ///< rad
+  int law = -1;                           ///< index into LoweredForces::laws; -1: a spring
 };
 
 struct CoupleElement {
@@ -39,7 +41,7 @@ class LoweredForces {
  public:
   LoweredForces(const Model& model, const Coordinates& coordinates);
 
-  /// Of springs, then torsion springs: what C and K consist of.
+  /// Of `springs`, then `torsions`: what C and K consist of.
   [[nodiscard]] const SignedRows& gradients() const { return gradients_; }
   /// Of couples; values are numbered on after those of the gradients.
   [[nodiscard]] const SignedRows& couple_rows() const { return couple_rows_; }
@@ -54,6 +56,7 @@ class LoweredForces {
   SpringBlock springs;
   std::vector<TorsionElement> torsions;
   std::vector<CoupleElement> couples;
+  std::vector<const Law*> laws;  ///< force laws, then torque laws; the model's
 
  private:
   [[nodiscard]] int spring_values() const { return springs.dimension * springs.count; }

@@ -1,4 +1,4 @@
-// Loops over all springs, one axis after the other.
+// Loops over all springs and laws, one axis after the other.
 #include "springs.hpp"
 
 #include <algorithm>
@@ -6,8 +6,10 @@
 
 namespace mbs::csc_cholmod {
 
-Springs::Springs(const SpringBlock& block, const StepSettings& settings)
+Springs::Springs(const SpringBlock& block, const std::vector<ScaledLaw>& laws,
+                 const StepSettings& settings)
     : block_(block),
+      laws_(laws),
       half_(settings.step / 2.0),
       quarter_(half_ * half_),
       e_(block.plus.size()),
@@ -28,16 +30,26 @@ void Springs::evaluate(const double* q, const double* u) {
       product_[k] += e_[i] * (u[block_.plus[i]] - u[block_.minus[i]]);
     }
   }
-  for (int k = 0; k < count; ++k) {
+  const auto set = [&](int k, const auto& force_at) {
     const double length = std::sqrt(square_[k]);
     const double inverse = length > 0.0 ? 1.0 / length : 0.0;
+    const ElementForce f = force_at(length, inverse * product_[k]);
+    force_[k] = -(f.spring + f.damper);  // Eqs. (11), (18)
+    across_[k] = std::max(0.0, length > 0.0 ? f.spring * inverse : f.stiffness);
+    along_[k] = f.damping + f.stiffness - across_[k];
+    square_[k] = inverse;
+  };
+  const int springs = static_cast<int>(block_.stiffness.size());
+  for (int k = 0; k < springs; ++k) {
     const double stiffness = quarter_ * block_.stiffness[k];
     const double damping = half_ * block_.damping[k];
-    const double stretch = length - block_.length[k];
-    force_[k] = -(stiffness * stretch + damping * inverse * product_[k]);  // Eq. (11)
-    across_[k] = std::max(0.0, stiffness * (1.0 - block_.length[k] * inverse));
-    along_[k] = damping + stiffness - across_[k];
-    square_[k] = inverse;
+    set(k, [&](double length, double rate) {
+      return ElementForce{stiffness * (length - block_.length[k]), damping * rate, stiffness,
+                          damping};
+    });
+  }
+  for (int k = springs; k < count; ++k) {
+    set(k, [&](double length, double rate) { return laws_[k - springs].at(length, rate); });
   }
   for (int i = 0, axis = 0; axis < block_.dimension; ++axis) {
     for (int k = 0; k < count; ++k) e_[i++] *= square_[k];
@@ -47,7 +59,7 @@ void Springs::evaluate(const double* q, const double* u) {
 double* Springs::loads(double* __restrict summands) const {
   const double* e = e_.data();
   for (int axis = 0; axis < block_.dimension; ++axis) {
-    for (int k = 0; k < block_.count; ++k) *summands++ = force_[k] * *e++;  // Eq. (11)
+    for (int k = 0; k < block_.count; ++k) *summands++ = force_[k] * *e++;  // Eqs. (11), (18)
   }
   return summands;
 }

@@ -31,15 +31,20 @@ Vector turn(const Vector& z, const Vector& w) {
 }  // namespace
 
 TorsionSprings::TorsionSprings(int dimension, const std::vector<TorsionElement>& elements,
-                               const StepSettings& settings)
+                               const std::vector<ScaledLaw>& laws, const StepSettings& settings)
     : dimension_(dimension),
       elements_(elements),
+      laws_(laws),
       half_(settings.step / 2.0),
       quarter_(half_ * half_),
-      numbers_(elements.size()) {
-  for (std::size_t k = 0; k < elements.size(); ++k) {
-    numbers_[k].weight = half_ * elements[k].damping + quarter_ * elements[k].stiffness;
-  }
+      numbers_(elements.size()) {}
+
+ElementForce TorsionSprings::force(const TorsionElement& e, double angle, double rate) const {
+  if (e.law >= 0) return laws_[e.law].at(angle, rate);
+  const double deviation = std::remainder(angle - e.angle, 2.0 * std::numbers::pi);
+  const double stiffness = quarter_ * e.stiffness;
+  const double damping = half_ * e.damping;
+  return {stiffness * deviation, damping * rate, stiffness, damping};
 }
 
 void TorsionSprings::evaluate(const double* q, const double* u) {
@@ -51,9 +56,10 @@ void TorsionSprings::evaluate(const double* q, const double* u) {
     const Vector g_u = turn(z, from);
     const Vector g_w = turn(z, to);
     const double angle = std::atan2(dot(z, cross(from, to)), dot(from, to));
-    const double deviation = std::remainder(angle - e.angle, 2.0 * std::numbers::pi);
     const double rate = dot(g_w, difference(u, e.c, e.d)) - dot(g_u, difference(u, e.a, e.b));
-    numbers->torque = -(quarter_ * e.stiffness * deviation + half_ * e.damping * rate);  // Eq. (11)
+    const ElementForce f = force(e, angle, rate);
+    numbers->torque = -(f.spring + f.damper);  // Eqs. (11), (18)
+    numbers->weight = f.damping + f.stiffness;
     for (int axis = 0; axis < dimension_; ++axis) {
       numbers->g[axis] = g_u[axis];
       numbers->g[dimension_ + axis] = g_w[axis];
@@ -68,7 +74,7 @@ double* TorsionSprings::write(const Numbers& numbers, double factor, double* sum
 }
 
 double* TorsionSprings::loads(double* summands) const {
-  for (const Numbers& n : numbers_) summands = write(n, n.torque, summands);  // Eq. (11)
+  for (const Numbers& n : numbers_) summands = write(n, n.torque, summands);  // Eqs. (11), (18)
   return summands;
 }
 

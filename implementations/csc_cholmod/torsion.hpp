@@ -1,22 +1,24 @@
-// The numbers of torsion springs and couples, which turn directions about an axis.
+// The numbers of torsion springs, torque laws and couples, which turn directions about an axis.
 #pragma once
 
 #include <array>
 #include <vector>
 
+#include "laws.hpp"
 #include "lowered_forces.hpp"
 #include "mbs/simulation.hpp"
 
 namespace mbs::csc_cholmod {
 
-/// Summands and products come as in Springs.
+/// Torque laws as well. Summands and products come as in Springs.
 class TorsionSprings {
  public:
-  /// `elements` must outlive this.
+  /// `elements` and `laws`, which they index, must outlive this.
   TorsionSprings(int dimension, const std::vector<TorsionElement>& elements,
-                 const StepSettings& settings);
+                 const std::vector<ScaledLaw>& laws, const StepSettings& settings);
 
-  /// Takes gradients and torques at q and u (all places, m; u = (dt/2) v). Eq. (11)
+  /// Takes gradients and torques at q and u (all places, m; u = (dt/2) v).
+  /// Eqs. (11), (18)
   void evaluate(const double* q, const double* u);
   double* loads(double* summands) const;
   double* multiply(const double* x, double* summands) const;
@@ -25,13 +27,15 @@ class TorsionSprings {
  private:
   struct Numbers {
     std::array<double, 6> g{};  ///< at b, the negative of that at a; then at c, that of d
-    double torque = 0.0;        ///< -(dt^2/4) (k s + c s')
-    double weight = 0.0;        ///< (dt/2) c + (dt^2/4) k
+    double torque = 0.0;        ///< -(dt^2/4) F
+    double weight = 0.0;        ///< (dt/2) c + (dt^2/4) k; of laws their slopes
   };
+  [[nodiscard]] ElementForce force(const TorsionElement& element, double angle, double rate) const;
   double* write(const Numbers& numbers, double factor, double* summands) const;
 
   int dimension_;
   const std::vector<TorsionElement>& elements_;
+  const std::vector<ScaledLaw>& laws_;
   double half_;     ///< dt/2, s
   double quarter_;  ///< dt^2/4, s^2
   std::vector<Numbers> numbers_;
