@@ -107,6 +107,16 @@ def test_who_failed_in_one_process_has_failed_and_who_was_slow_in_one_has_not():
         ("diverged", [("one/a", ["four-bar:10"])]), ("crashed", [("two/c", ["four-bar:10"])])]
 
 
+def test_who_ended_a_process_of_all_is_lost_alone():
+    alone = bench("size-alone", "four-bar:10", 0, "crashed", one_b=2.0)
+    found = made(bench("size", "four-bar:10", 1, limit_limit=1.0, one_a=3.0, one_b=2.0),
+                 bench("size", "four-bar:10", 2, "crashed", limit_limit=1.0, one_a=3.0, one_b=2.0), alone,
+                 bench("size-left-out", "four-bar:10", 0, "crashed", one_b=2.0),
+                 *(bench("size", "four-bar:10", number, limit_limit=1.0, one_a=4.0) for number in (1, 2)))
+    rows = found["steps"].set_index("implementation")
+    assert list(rows.status) == ["ok", "ok", "crashed"] and rows.processes["one/a"] == 2 and rows.step_us["one/a"] == 4.0
+
+
 def test_a_lead_is_over_the_fastest_library_that_the_gate_agrees_with():
     found = made(look(A, own_x=1.0, own_y=0.5, one_a=3.0, one_b=1.1, two_c=9.0),
                  *(bench("problem", A, number, own_x=1.0 * number, own_y=0.5 * number, one_a=3.0 * number) for number in (1, 2)),
