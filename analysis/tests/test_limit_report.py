@@ -151,6 +151,8 @@ def test_the_worst_scene_of_a_kind_counts_by_its_whole_interval():
     spatial = found.loc["times faster than the fastest library, spatial standard problems"]
     assert spatial.verdict == "open" and spatial.low < 1.5 < spatial.high
     assert found.verdict["times faster than the fastest library, n = 100, filled"] == "held"
+    wide = said(made(scene(A, 2.5, 2.5), scene(B, 2.0, 5.0))).loc["times faster than the fastest library, planar standard problems"]
+    assert (wide.verdict, wide["where"]) == ("open", "problems/a") and wide.worst == 2.5 and wide.low < 2 < wide.high
     assert found.verdict["times the limit code's step"] == "not measured"
 
 
