@@ -107,7 +107,7 @@ def _growth(steps, form):
             exponent, low, high = power_law_interval(rows.variables.astype(float), rows[column].astype(float))
             row |= {"worst": exponent, "low": low, "high": high,
                     "where": f"fit of {len(rows)} sizes, n = {rows.variables.iloc[0]:.0f} to {rows.variables.iloc[-1]:.0f}",
-                    "variant": rows.implementation.iloc[-1], "record": rows.record.iloc[-1],
+                    "variant": rows.implementation.iloc[-1], "record": " ".join(rows.record),
                     "verdict": _verdict(MOST, EXPONENT, exponent, low, high)}
         yield row
     if form == "penalty":

@@ -175,6 +175,7 @@ def test_sizes_and_growth():
     for what in ("a step's time", "a pass's time", "memory"):
         assert found.worst[f"exponent of {what} over n, penalty form"] == pytest.approx(1)
         assert found.loc[f"exponent of {what} over n, penalty form", "where"].startswith("fit of 3 sizes")
+    assert len(found.record["exponent of memory over n, penalty form"].split()) == 3  # one a size of the fit
     assert found.worst["set-up, s"] == pytest.approx(0.09999) and found.verdict["set-up, s"] == "held"
     steep = said(made(sizes(49, 499, 9999, power=1.1, setup=100.0)))
     assert steep.verdict["exponent of a step's time over n, penalty form"] == "not held" == steep.verdict["set-up, s"]
