@@ -51,7 +51,8 @@ def runs(records, subject, known):
 
 def timed(records):
     """A row for each contender of each process of timed cells ("look/SETTING", "time/SETTING", "pair/SETTING")."""
-    chosen = {record.name: record for record in records if record.role.partition("/")[0] in (*ROLES, "pair")}
+    chosen = {record.name: record for record in timing.counted(
+        [one for one in records if one.role.partition("/")[0] in (*ROLES, "pair")])}
     found = timing.processes(chosen.values())
     found["implementation"] = [name.partition("+")[0] for name in found.implementation]  # of another pair: the anchor
     for name, value in (("setting", setting_of), ("step", lambda record: option(record, "--step")),

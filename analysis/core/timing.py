@@ -7,7 +7,7 @@
 # Times are those of the processor: a turn takes a few milliseconds, and whoever is interrupted in one would lose by
 # the clock what others did meanwhile. `clock_us` beside them tells how much that was.
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy
 import pandas
@@ -15,6 +15,7 @@ import pandas
 CONFIDENCE = 0.95
 PHASES = ("evaluation", "assembly", "factorization", "solve", "projection", "other")  # of a step: counters phase_…
 EQUIVALENT = 1.05  # who is shown to take at most so many times the fastest's time is as fast
+LEFT_OUT, ALONE = "-left-out", "-alone"  # ends of roles of study.core.timing.measure
 COLUMNS = ("scene", "implementation", "environment", "process", "status", "reason", "step_us", "low_us", "high_us",
            "clock_us", "samples", "record")
 
@@ -26,6 +27,42 @@ def processes(records):
     rows = [row for record in records for row in _rows(record)]
     found = pandas.DataFrame(rows)
     return found.reindex(columns=[*COLUMNS, *(name for name in found if name not in COLUMNS)])
+
+
+def counted(records):
+    """The records of timed cells that count. Who ended a process or differed was left out, and the others were measured
+    again. So a process that failed speaks for nobody who has a record of being left out of it or was measured beside
+    one; a process that ended well gives way to the one of the same number without those who were left out. Trials of
+    one alone do not count. Roles come without "-left-out"."""
+    records = [one for one in records if not one.role.endswith(ALONE)]
+    out, groups = {}, {}
+    for one in records:
+        chosen = out if one.role.endswith(LEFT_OUT) else groups
+        chosen.setdefault(_asked(one), []).append(one)
+    found = []
+    for one in records:
+        lost = {name for other in out.get(_asked(one), []) for name in other.cell["contenders"]}
+        if one.role.endswith(LEFT_OUT):
+            found.append(replace(one, cell=one.cell | {"role": one.role.removesuffix(LEFT_OUT)}))
+        elif not _replaced(one, groups[_asked(one)], lost):
+            found.append(one)
+    return found
+
+
+def _asked(record):
+    """What records of one group and of its smaller ones have in common."""
+    words = list(map(str, record.cell["settings"]))
+    step = words[words.index("--step") + 1] if "--step" in words else ""
+    return record.cell["scene"], record.cell["environment"], record.role.removesuffix(LEFT_OUT), step
+
+
+def _replaced(record, group, lost):
+    """Whether a process is stood for by others. `group`: what was asked alike; `lost`: who was left out of it."""
+    names = set(record.cell["contenders"])
+    if not names & lost or record.status == "dropped":
+        return False
+    return not record.done or any(other.done and other.cell["number"] == record.cell["number"]
+                                  and names - lost <= set(other.cell["contenders"]) < names for other in group)
 
 
 def _rows(record):

@@ -68,16 +68,19 @@ def _fastest(rows, key, column, least):
 
 
 def _worst(what, sign, bound, rows, column, cases):
-    """`cases`: how many there are to be; fewer are said, none is not measured."""
+    """`cases`: how many there are to be; fewer are said, none is not measured. All of them have to keep the bound: the
+    interval is that of the worst over all, and reaches from the worst lower end to the worst upper end."""
     row = {"what": what, "sign": sign, "bound": bound, "cases": cases, "measured": len(rows), "verdict": NOT_MEASURED, "record": ""}
     if rows.empty:
         return row
-    worst = rows.loc[rows[column].idxmin() if sign == LEAST else rows[column].idxmax()]
     ends = ("low", "high") if column != "multiple" else ("multiple_low", "multiple_high")
-    low, high = (worst.get(end, numpy.nan) for end in ends)
+    places = [rows[key].idxmin() if sign == LEAST else rows[key].idxmax() for key in (column, *ends) if key in rows]
+    worst = rows.loc[places[0]]
+    low, high = (rows.loc[place, end] for place, end in zip(places[1:], ends)) if len(places) > 1 else (numpy.nan,) * 2
     where = worst.scene if "scene" in worst.index else f"n = {worst.variables:.0f}"
     verdict = _verdict(sign, bound, worst[column], low, high)
-    return row | {"worst": worst[column], "low": low, "high": high, "record": worst.record, "variant": worst.implementation,
+    return row | {"worst": worst[column], "low": low, "high": high, "variant": worst.implementation,
+                  "record": " ".join(dict.fromkeys(rows.record[places])),
                   "where": where.removeprefix("harness/scenes/").removesuffix(".json"),
                   "verdict": PARTLY if verdict == HELD and len(rows) < cases else verdict}
 
@@ -104,7 +107,7 @@ def _growth(steps, form):
             exponent, low, high = power_law_interval(rows.variables.astype(float), rows[column].astype(float))
             row |= {"worst": exponent, "low": low, "high": high,
                     "where": f"fit of {len(rows)} sizes, n = {rows.variables.iloc[0]:.0f} to {rows.variables.iloc[-1]:.0f}",
-                    "variant": rows.implementation.iloc[-1], "record": rows.record.iloc[-1],
+                    "variant": rows.implementation.iloc[-1], "record": " ".join(rows.record),
                     "verdict": _verdict(MOST, EXPONENT, exponent, low, high)}
         yield row
     if form == "penalty":

@@ -15,7 +15,7 @@ def build(records, view):
     registry = view.registry
     by_role = {}
     for record in records:
-        by_role.setdefault(record.role.removesuffix("-left-out").removesuffix("-alone"), []).append(record)
+        by_role.setdefault(record.role.removesuffix(timing.LEFT_OUT).removesuffix(timing.ALONE), []).append(record)
     order = {name: place for place, name in enumerate([LIMIT, *registry.variants])}
     about = {record.cell["scene"]: record.output for record in by_role.get("about", []) if record.done}
     found = {"bounds": [row | {"record": record.name} for record in by_role.get("bounds", []) if record.done
@@ -47,7 +47,7 @@ def build(records, view):
 
 def _by_scene(records):
     """(scene, rows of its processes), four-bars by size."""
-    rows = timing.processes(records)
+    rows = timing.processes(timing.counted(records))
     return sorted(rows.groupby("scene"), key=lambda one: (len(one[0]), one[0])) if len(rows) else []
 
 

@@ -2,7 +2,7 @@
 from analysis.core.text import interval, number
 from analysis.core.timing import rank
 from analysis.map import paper
-from analysis.map.compare import Versus, best, over_sizes, step_us
+from analysis.map.compare import Versus, best, extreme, over_sizes, step_us
 from analysis.map.explain import phase_times
 from analysis.map.ledger import at_least, at_most, compared, of, tested, unmeasured
 
@@ -27,7 +27,7 @@ def _against_starting(results):
     if not found or found[-1].size < COVERED:
         return unmeasured(head, f"{paper.STARTING['dense']} and another dense version were not both timed at {COVERED} "
                         "variables or more.", at_least(DENSE_GAIN))
-    largest = max(found, key=lambda one: one.value)
+    largest = extreme(found, max)
     why = "Starting ÷ best pair by size: " + ", ".join(f"{number(one.value)}× (n = {one.size:g}, {one.fast})" for one in found)
     return compared(head, largest, at_least(DENSE_GAIN), f"{why}.")
 
@@ -65,16 +65,15 @@ def _tuned(results, name):
     found = over_sizes(results, [name], [f"{name}+reference"]) if name != ANCHOR and results.usual(name) != "reference" else []
     if not found or found[-1].size < COVERED:
         return None
-    gains = [[100 * (1 - value) for value in (one.value, one.high, one.low)] for one in found]
-    place = max(range(len(found)), key=lambda place: gains[place][0])
-    size = found[place].size
-    others = ", ".join(f"{gain[0]:.1f} % (n = {one.size:g})" for gain, one in zip(gains, found))
+    least = extreme(found, min)  # of tuned ÷ reference: the largest gain
+    size, gain = least.size, [100 * (1 - value) for value in (least.value, least.high, least.low)]
+    others = ", ".join(f"{100 * (1 - one.value):.1f} % (n = {one.size:g})" for one in found)
     times, total = phase_times(results, name, size), step_us(results, name, size)
     share = (f" Factorization and solves, which alone may call BLAS often, are "
              f"{100 * (times['factorization'] + times['solve']) / total:.0f} % of its step." if times else "")
-    return tested(("C3", f"{_C3}: {name}", "2-3 %"), gains[place], at_most(TUNED_GAIN),
+    return tested(("C3", f"{_C3}: {name}", "2-3 %"), gain, at_most(TUNED_GAIN),
                   f"n = {size:g}, {name} on {results.usual(name)} against reference", f"Gain by size: {others}.{share}", " %",
-                  found[place].record)
+                  least.record)
 
 
 _C5 = "the compiler matters an order of magnitude less than the linear algebra"
@@ -95,7 +94,8 @@ def _compilers(results, name):
     found = [one for one in found if one]
     if not found:
         return None
-    share, builds, spread, medians = max(found, key=lambda one: one[0][0])
+    _, builds, spread, medians = max(found, key=lambda one: one[0][0])
+    share = [max(ends) for ends in zip(*(one[0] for one in found))]  # and the ends of its interval, over all sizes
     listed = ", ".join(f"{build} {number(value)} µs" for build, value in medians.items())
     why = (f"Builds: {listed}; slowest ÷ fastest {interval(builds)}. Implementations of today at that size: {spread.slow}, "
            f"their middle, ÷ {spread.fast} = {number(spread.value)}. Only this study's code is built anew; libraries that are "

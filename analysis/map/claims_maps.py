@@ -2,7 +2,7 @@
 from analysis.core.text import number
 from analysis.map import paper
 from analysis.map.cells import map_cells
-from analysis.map.compare import best
+from analysis.map.compare import best, extreme
 from analysis.map.ledger import at_least, at_most, compared, more_than, tested, unmeasured
 
 F5_SIZE = 100
@@ -44,7 +44,7 @@ def _over_fill(results, head, system, size):
     if not found or lost:
         text = f"at fills of {', '.join(lost)} %" if lost else "anywhere"
         return unmeasured(head, f"At n = {size:g} {system}'s stand-ins were not timed against a dense version {text}.", at_least(1))
-    worst = min(found, key=lambda one: one.value)
+    worst = extreme(found, min)
     slower = [number(one.fill, 2) for one in found if one.high < 1]
     across = ", ".join(f"{number(one.value)}× at {one.fill:.0f} %" for one in found)
     why = (f"Dense ÷ {system}'s stand-in over fill: {across}. "

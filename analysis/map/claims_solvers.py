@@ -1,7 +1,7 @@
 # Claims about solvers at the mechanism's own fill: F4, C1, C4.
 from analysis.core.text import number
 from analysis.map import paper
-from analysis.map.compare import best, over_sizes, versus
+from analysis.map.compare import best, extreme, over_sizes, versus
 from analysis.map.explain import difference
 from analysis.map.ledger import at_least, compared, of, tested, undecided, unmeasured
 
@@ -34,7 +34,7 @@ def _fastest(results, klu, others, low, high):
     if not found or found[-1].size < COVERED:
         return unmeasured(head, f"KLU and another of the paper's solvers were not both timed at {COVERED} variables or more.",
                         at_least(1))
-    worst = min(found, key=lambda one: one.value)
+    worst = extreme(found, min)
     led = sum(one.low > 1 for one in found)
     today = results.rank(results.natural(worst.size), paper.sparse(results))
     why = (f"Second ÷ KLU at its worst size; KLU is shown to lead at {led} of {len(found)} sizes. Of all sparse solvers of libraries "

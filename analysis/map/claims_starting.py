@@ -4,7 +4,7 @@ import numpy
 from analysis.core.statistics import phase_shares, power_law_exponent
 from analysis.core.text import interval, number
 from analysis.map import paper
-from analysis.map.compare import best, group_shares, profiled, share_interval
+from analysis.map.compare import best, extreme, group_shares, profiled, share_interval
 from analysis.map.explain import difference, split
 from analysis.map.ledger import at_least, compared, tested, unmeasured
 from analysis.map.operations import table as table2
@@ -66,8 +66,8 @@ def table2_claims(results):
 def _any_size(head, quoted, rows):
     if not rows:
         return unmeasured(head, "The operations alone were not timed in this run.", at_least(quoted))
-    largest = max(rows, key=lambda row: row["ratio"].value)
-    return compared(head, largest["ratio"], at_least(quoted), analysis_of(rows))
+    largest = extreme([row["ratio"] for row in rows], max)
+    return compared(head, largest, at_least(quoted), analysis_of(rows))
 
 
 def _at_size(head, quoted, size, rows):

@@ -2,14 +2,13 @@
 #
 # A scene has a few processes of all ("time"), and then more of those who lead ("again"), with more samples. Leaders are
 # compared by the latter alone: they are the better ones, and nobody was chosen by them.
-import math
 from collections import Counter
 from dataclasses import replace
 
 from analysis.core import timing
 from analysis.core.registry import NULL
 
-ROLES = ("time", "time-left-out", "again", "again-left-out")
+ROLES = ("time", "again")  # of timed cells, before what timing.measure adds to them
 AFTER = 100   # added to the numbers of the processes of role "again"
 LEADING, PERHAPS = 1.3, 1.6  # whoever takes at most so many times the fastest's time leads; or so many, if not shown to be slower
 
@@ -20,15 +19,9 @@ def layers(registry):
 
 
 def timed_rows(records):
-    """Rows as `analysis.core.timing.processes` gives them, of the timed scenes among `records`. Who ended a process or
-    differed was left out, and the others were measured again: the smallest group of contenders counts."""
-    chosen = [one for one in records if one.role in ROLES]
-    least = {}
-    for one in chosen:
-        key = _group(one)
-        least[key] = min(len(one.cell["contenders"]), least.get(key, math.inf))
-    return timing.processes([_numbered(one) for one in chosen
-                             if one.role.endswith("left-out") or len(one.cell["contenders"]) == least[_group(one)]])
+    """Rows as `analysis.core.timing.processes` gives them, of the timed scenes among `records` that count."""
+    chosen = [one for one in records if one.role.partition("-")[0] in ROLES]
+    return timing.processes([_numbered(one) for one in timing.counted(chosen)])
 
 
 class Scene:
@@ -58,12 +51,8 @@ def leaders(rankings):
     return {name for names in found if len(names) > 1 for name in names}
 
 
-def _group(record):
-    return record.cell["scene"], record.cell["environment"], record.role
-
-
 def _numbered(record):
-    if not record.role.startswith("again"):
+    if record.role != "again":
         return record
     return replace(record, cell=record.cell | {"number": AFTER + record.cell["number"]})
 

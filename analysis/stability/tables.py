@@ -11,7 +11,7 @@ MUST_HOLD = {  # scheme: up to which N, position error (m), passes a step, steps
 def build(records, view):
     found = {"maps": [], "windows": [], "whole": []}
     for record in records:
-        if record.role == "window" and record.done:
+        if record.role == "window":
             found["windows"].append(_window(record))
         elif record.role == "map":
             found["maps"].append(_run(record))
@@ -40,9 +40,10 @@ def _run(record):
 
 
 def _window(record):
-    asked, window = _options(record), record.output["penalty_window"]
-    return {"loops": _loops(record), "precision": asked["precision"], "record": record.name} | {
-        key: window[key] for key in ("step", "lower", "lower_from", "upper", "upper_from")}
+    asked, window = _options(record), record.output["penalty_window"] if record.done else {}
+    return {"loops": _loops(record), "precision": asked["precision"], "step": float(asked["step"]),
+            "status": "ok" if record.done else record.status, "reason": record.reason, "record": record.name} | {
+        key: window.get(key) for key in ("lower", "lower_from", "upper", "upper_from")}
 
 
 def _loops(record):

@@ -93,6 +93,20 @@ def test_the_longest_run_judges_and_a_lost_process_is_a_row():
     assert table.status.iloc[0] == "ok" and table.processes.iloc[0] == 1
 
 
+def test_who_ended_a_look_is_lost_at_that_setting_and_the_others_are_not():
+    def look(names, number, status="done", more=""):
+        timed = {"steps": 10, "passes": 20, "cpu_us": [100.0], "stretch_us": [100.0]}
+        cell = {"scene": "s", "contenders": names, "environment": "own", "role": f"look/default{more}", "number": number,
+                "settings": ["--step", "1e-3"]}
+        return Record(f"look{more}/{len(names)}-{number}", cell, status, "", 1.0, [], {},
+                      {"rows": {f"{name}/s": timed for name in names}} if status == "done" else {})
+    lost = [look(["a/x", "b/y"], 1, "crashed"), look(["b/y"], 0, "crashed", "-left-out"), look(["a/x"], 0, more="-alone")]
+    for records in ([look(["a/x"], 1), *lost], [*lost, look(["a/x"], 1)]):
+        rows = points.timed(records)
+        assert set(rows.setting) == {"default"}
+        assert list(rows.sort_values("implementation").status) == ["ok", "crashed"]
+
+
 def test_a_winner_is_decided_as_fast_or_open():
     both = [run(), run("b/y")]
     clear, _ = winner(both, rounds("a/x", (10, 10.1, 9.9)) + rounds("b/y", (15, 15.1, 14.9)))

@@ -107,6 +107,16 @@ def test_who_failed_in_one_process_has_failed_and_who_was_slow_in_one_has_not():
         ("diverged", [("one/a", ["four-bar:10"])]), ("crashed", [("two/c", ["four-bar:10"])])]
 
 
+def test_who_ended_a_process_of_all_is_lost_alone():
+    alone = bench("size-alone", "four-bar:10", 0, "crashed", one_b=2.0)
+    found = made(bench("size", "four-bar:10", 1, limit_limit=1.0, one_a=3.0, one_b=2.0),
+                 bench("size", "four-bar:10", 2, "crashed", limit_limit=1.0, one_a=3.0, one_b=2.0), alone,
+                 bench("size-left-out", "four-bar:10", 0, "crashed", one_b=2.0),
+                 *(bench("size", "four-bar:10", number, limit_limit=1.0, one_a=4.0) for number in (1, 2)))
+    rows = found["steps"].set_index("implementation")
+    assert list(rows.status) == ["ok", "ok", "crashed"] and rows.processes["one/a"] == 2 and rows.step_us["one/a"] == 4.0
+
+
 def test_a_lead_is_over_the_fastest_library_that_the_gate_agrees_with():
     found = made(look(A, own_x=1.0, own_y=0.5, one_a=3.0, one_b=1.1, two_c=9.0),
                  *(bench("problem", A, number, own_x=1.0 * number, own_y=0.5 * number, one_a=3.0 * number) for number in (1, 2)),
@@ -141,6 +151,8 @@ def test_the_worst_scene_of_a_kind_counts_by_its_whole_interval():
     spatial = found.loc["times faster than the fastest library, spatial standard problems"]
     assert spatial.verdict == "open" and spatial.low < 1.5 < spatial.high
     assert found.verdict["times faster than the fastest library, n = 100, filled"] == "held"
+    wide = said(made(scene(A, 2.5, 2.5), scene(B, 2.0, 5.0))).loc["times faster than the fastest library, planar standard problems"]
+    assert (wide.verdict, wide["where"]) == ("open", "problems/a") and wide.worst == 2.5 and wide.low < 2 < wide.high
     assert found.verdict["times the limit code's step"] == "not measured"
 
 
@@ -163,6 +175,7 @@ def test_sizes_and_growth():
     for what in ("a step's time", "a pass's time", "memory"):
         assert found.worst[f"exponent of {what} over n, penalty form"] == pytest.approx(1)
         assert found.loc[f"exponent of {what} over n, penalty form", "where"].startswith("fit of 3 sizes")
+    assert len(found.record["exponent of memory over n, penalty form"].split()) == 3  # one a size of the fit
     assert found.worst["set-up, s"] == pytest.approx(0.09999) and found.verdict["set-up, s"] == "held"
     steep = said(made(sizes(49, 499, 9999, power=1.1, setup=100.0)))
     assert steep.verdict["exponent of a step's time over n, penalty form"] == "not held" == steep.verdict["set-up, s"]

@@ -123,6 +123,12 @@ def test_stale_pivots_are_judged_by_the_error(stale, expected):
     assert outcome(pivoting(load(rows)), "stale")[0] == expected
 
 
+def test_a_claim_over_all_sizes_is_open_where_one_of_them_is():
+    rows = steady(KLU, 50, 1) + steady(SIMPLICIAL, 50, 1.1)
+    rows += steady(KLU, 160, 1) + cell(SIMPLICIAL, 160, 0.8, 1.2, 2.4)  # slower in the mean, and nothing is certain
+    assert outcome(solvers(load(rows)), "KLU with refactor", "to 160") == (UNDECIDED, "1.1×")
+
+
 def test_starting_sparse_and_dense_against_the_best():
     rows = [row for size, sparse, dense, start in ((10, 2, 1, 9), (22, 1, 3, 4), (50, 1, 6, 9), (1000, 1, 99, 2))
             for name, time in ((KLU, sparse), (POTRF, dense), (MUMPS, start)) for row in steady(name, size, time)]

@@ -48,6 +48,15 @@ def test_a_row_says_what_was_asked_and_how_it_ended():
     assert (rows[rows.status == "timeout"].reason == "because").all()
 
 
+def test_a_window_that_could_not_be_estimated_is_a_row_and_a_gap_of_its_lines():
+    lost = Record("maps/window/lost.json", window(4e-3).cell, "crashed", "SIGSEGV", 0.1, [], {})
+    found = made([*maps(), lost])
+    assert list(found["windows"].status) == ["ok", "ok", "crashed"] and found["windows"].reason.iloc[2] == "SIGSEGV"
+    assert found["windows"].lower.isna().tolist() == [False, False, True] and found["windows"].step.iloc[2] == 4e-3
+    for figure in figures.draw(found, VIEW).values():
+        plt.close(figure)
+
+
 def test_the_map_names_every_outcome_that_occurs():
     figure = figures.draw(made(maps()), VIEW)["penalty-double"]
     named = {text.get_text() for text in figure.legends[0].get_texts()}

@@ -5,8 +5,9 @@ import numpy
 import pandas
 import pytest
 
+from analysis.core.records import Record
 from analysis.core.statistics import median, phase_shares, power_law_exponent
-from analysis.core.timing import rank, ratio
+from analysis.core.timing import counted, rank, ratio
 from analysis.map.tidy import PHASES
 
 
@@ -74,6 +75,26 @@ def test_nobody_is_faster_than_the_winner_where_not_all_share_the_same_processes
 def test_who_failed_once_is_not_ranked():
     table = pandas.DataFrame(rows("a", {1: (1.0,)}) + rows("b", {1: (2.0,)}) + rows("a", {2: ()}, status="crashed"))
     assert list(rank(table).ratios) == ["b"] and rank(table.iloc[:0]) is None
+
+
+def asked(names, number, status="done", role="look/default", step="1e-3", environment="own"):
+    return Record(f"{role}/{names}-{number}-{step}", {"scene": "s", "contenders": list(names), "environment": environment, "role": role,
+                                               "number": number, "settings": ["--step", step, "--seed", number]}, status, "", 1.0, [], {})
+
+
+def test_a_process_that_was_measured_again_without_who_ended_it_does_not_count():
+    lost = [asked("abc", 1), asked("abc", 2, "crashed"), asked("a", 0, role="look/default-alone"),
+            asked("c", 0, "crashed", role="look/default-alone"), asked("c", 0, "crashed", role="look/default-left-out")]
+    again = [asked("ab", 1), asked("ab", 2)]
+    apart = [asked("abc", 1, step="2e-3"), asked("abc", 1, environment="other"),  # nobody was lost there
+             asked("de", 1), asked("d", 1)]                                       # nor of these, who were asked apart
+    found = counted([*lost, *again, *apart])
+    assert [one.name for one in found] == [one.name for one in (lost[-1], *again, *apart)]
+    assert {one.role for one in found} == {"look/default"}
+    spent = counted([*lost, asked("ab", 1, "dropped")])  # what was measured before still counts
+    assert [(one.cell["contenders"], one.status) for one in spent] == [
+        (list("abc"), "done"), (["c"], "crashed"), (list("ab"), "dropped")]
+    assert [one.status for one in counted([asked("ab", 1, "crashed")])] == ["crashed"]  # nobody knows yet who did it
 
 
 def test_power_law_exponent():
