@@ -177,7 +177,7 @@ std::optional<Finding> compare_values(const Model& model, const std::string& nam
 }
 
 State moved_state(const Model& model, State state, double penalty) {
-  constexpr double kAway = 0.01;  // m
+  constexpr double kAway = 1e-4;  // m
   for (std::size_t i = 0; i < state.q.size(); ++i) {
     const auto x = static_cast<double>(i);
     state.q[i] += kAway * std::sin(x + 1);
