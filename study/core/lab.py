@@ -18,6 +18,7 @@ class Lab:
         self.set, self.part, self.column, self.budget = studyset, part, column, seconds
         self.base = studyset.folder / "raw" / part
         self.progress, self.names, self.spent = Progress(studyset, part, column), [], 0.0
+        self.known = set()  # programs that are those of the set's records
 
     def contender(self, name):
         """The one of a variant; None if it does not take part."""
@@ -50,6 +51,7 @@ class Lab:
                 found[cell] = self._keep(records.read(path, self._name(cell)))
             else:
                 todo.append(cell)
+        self._need({cell.built for cell in todo})
         self.progress.expect(len(todo))
         self.progress.done(len(found))
         alone = [cell for cell in todo if cell.timed]
@@ -69,7 +71,7 @@ class Lab:
         path = self._path(cell)
         if not path.exists():
             records.write(path, {"cell": cell.document(), "status": status, "reason": reason, "seconds": 0.0,
-                                 "command": executor.command_of(cell), "context": self.set.facts["context"]})
+                                 "command": executor.command_of(cell), "context": self._context(cell, self.set.facts["context"])})
         return self._keep(records.read(path, self._name(cell)))
 
     def scene(self, name, document):
@@ -94,11 +96,20 @@ class Lab:
         context = self.set.context(cell.contenders[0]) if cell.contenders else self.set.facts["context"]
         data = executor.run(cell, context if cell.program == "mbs" and cell.contenders else None, self.set.scratch)
         if not data["context"]:
-            data["context"] = context
+            data["context"] = self._context(cell, context)
         records.write(self._path(cell), data)
         record = self._keep(records.read(self._path(cell), self._name(cell)), at_once)
         self.progress.done()
         return record
+
+    def _need(self, programs):
+        self.set.need_programs(sorted(programs - self.known))
+        self.known |= programs
+
+    @staticmethod
+    def _context(cell, context):
+        """What is known of a cell that says nothing of it: other programs have compilers and libraries of their own."""
+        return context if cell.program == "mbs" else {key: context[key] for key in executor.OF_ALL if key in context}
 
     def _keep(self, record, at_once=None):
         if record.name not in self.names:
