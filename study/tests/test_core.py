@@ -300,6 +300,23 @@ def test_what_the_budget_has_no_room_for_has_a_record_that_says_so(mbs, tmp_path
     assert again.left == pytest.approx(lab.left)
 
 
+def test_a_program_that_is_not_built_is_unavailable(tmp_path):
+    record = Lab(Set(tmp_path), "part", "column").one(replace(CELL, program="no_such_program"))
+    assert (record.status, record.reason) == ("unavailable", "build/no_such_program is missing: study/setup builds it")
+
+
+def test_the_count_of_cells_comes_to_its_end(mbs, tmp_path):
+    mbs('sleep 0.2; echo "{}"')
+    for _ in range(2):  # the second time all have records
+        reader = Reader(tmp_path / ".progress")
+        lab = Lab(Set(tmp_path), "part", "column", 0.1)
+        lab.run(cells(3, timed=True), drop=True)
+        lab.run(cells(2, timed=True))
+        lab.skip(CELL, "excluded", "too slow")
+        events = reader.events()
+        assert [sum(event.get(key, 0) for event in events) for key in ("expected", "done")] == [4, 4]
+
+
 def test_untimed_cells_share_the_cores_and_timed_ones_have_the_machine(mbs, tmp_path):
     mbs(f'echo begin >> {tmp_path}/log; sleep 0.1; echo end >> {tmp_path}/log; echo "{{}}"')
     Lab(Set(tmp_path), "part", "timed").run(cells(3, timed=True))
@@ -312,7 +329,7 @@ def test_untimed_cells_share_the_cores_and_timed_ones_have_the_machine(mbs, tmp_
 def test_a_skipped_cell_has_a_reason_and_stays(tmp_path):
     lab = Lab(Set(tmp_path), "part", "column")
     assert lab.skip(CELL, "excluded", "too slow").reason == "too slow"
-    assert lab.skip(CELL, "excluded", "another one").reason == "too slow" and lab.names == ["column/" + CELL.settled().file_name()]
+    assert lab.skip(CELL, "excluded", "another one").reason == "too slow" and list(lab.names) == ["column/" + CELL.settled().file_name()]
 
 
 def test_progress_is_told_and_read_in_lines(tmp_path):
