@@ -1,6 +1,7 @@
 # What `mbs list --json` says: who there is, in the order that tables and figures use.
 import re
 from dataclasses import dataclass
+from functools import cached_property
 
 NULL = "null/null"  # the harness's control: a simulation that does nothing
 
@@ -14,28 +15,28 @@ class Registry:
         """Folders with their variants, the unavailable ones too."""
         return self.listed["implementations"]
 
-    @property
+    @cached_property
     def variants(self):
         """{name: what is said of it and of its folder} of those that are available."""
         return {variant["name"]: entry | variant for entry in self.entries if entry["available"]
                 for variant in entry["variants"]}
 
-    @property
+    @cached_property
     def examples(self):
         """Names of the variants that are there to be read, and timed only where they are named."""
         return frozenset(name for name, one in self.variants.items() if one.get("role") == "example")
 
-    @property
+    @cached_property
     def own(self):
         """Names of the variants that stand on no library."""
         return frozenset(name for name, one in self.variants.items() if one.get("library") == "none") - self.examples
 
-    @property
+    @cached_property
     def libraries(self):
         """Names of the others, in order."""
         return [name for name in self.variants if name not in self.own | self.examples]
 
-    @property
+    @cached_property
     def dense(self):
         return frozenset(name for name, one in self.variants.items() if one.get("dense"))
 

@@ -20,8 +20,8 @@ HERE = Path(__file__).parent
 
 
 def write_part(folder, part, started=lambda: None):
-    """Tables, figures and page of a part from its records; the front page again. `started` is called in every process
-    that this begins."""
+    """Tables, figures and page of a part from its records. `started` is called in every process that this begins. The front
+    page is left to the caller: beside another part at work it would overwrite that one's page by one to come."""
     schema.need_unchanged(folder, part)
     view, found = View(folder, part), records.read_part(folder, part)
     schema.need_same_records(folder, part, found)
@@ -33,7 +33,6 @@ def write_part(folder, part, started=lambda: None):
     said = _module(part, "sentences")
     write_json(folder / part / "answers.json", {
         "answers": said.answers(tables, view), "cases": said.cases(tables, view) if hasattr(said, "cases") else []})
-    write_index(folder)
 
 
 def write_index(folder):

@@ -22,7 +22,7 @@ def distributions(table, machine):
     figure, panels = plt.subplots(len(steps), len(loops), sharey=True, squeeze=False, constrained_layout=True,
                                   figsize=(5.2 * len(loops) + 1.5, (0.27 * len(names) + 1.1) * len(steps) + 0.4))
     for line, step in zip(panels, steps):
-        gaps = machine[(machine.beside == "distributions") & (machine.step == step)].largest_us.dropna()
+        gaps = machine[(machine.after == "distributions") & (machine.step == step)].largest_us.dropna()
         for axes, size in zip(line, loops):
             _panel(axes, table[(table.step == step) & (table.loops == size)], names)
             axes.axvline(1e6 * step, color="black", linewidth=1.2, linestyle=(0, (4, 2)))

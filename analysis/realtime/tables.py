@@ -10,7 +10,7 @@ END = "end of the search"
 
 
 def build(records, view):
-    nulls = {_words(one)["beside"]: one for one in records if one.role == "null"}
+    nulls = {_after(one): one for one in records if one.role == "null"}
     order = {name: place for place, name in enumerate(view.registry.variants)}
     found = {role: pandas.DataFrame([_run(one, nulls.get(one.name)) for one in records if one.role == role])
              for role in ("steps", "search")}
@@ -22,6 +22,12 @@ def build(records, view):
 def _words(record):
     words = record.cell["settings"]
     return {key.removeprefix("--"): value for key, value in zip(words[::2], words[1::2])}
+
+
+def _after(null):
+    """The record of the run that a null process came after, or distributions."""
+    words = _words(null)
+    return words["after"] if "after" in words else words["beside"]  # as stored sets call it
 
 
 def _run(record, null):
@@ -80,6 +86,6 @@ def _counts(values):
 
 def _machine(nulls):
     return pandas.DataFrame([{
-        "beside": _words(one)["beside"], "step": float(f"{1e-6 * float(_words(one)['deadline-us']):g}"),
+        "after": _after(one), "step": float(f"{1e-6 * float(_words(one)['deadline-us']):g}"),
         "seconds": float(_words(one)["seconds"]), "status": one.status, "reason": one.reason, "record": one.name} | {
         key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for one in nulls])

@@ -1,4 +1,4 @@
-# Whether a run kept its deadline: every observed step did, but for as many as a null process beside it lost.
+# Whether a run kept its deadline: every observed step did, but for as many as a null process after it lost.
 from dataclasses import dataclass
 
 from analysis.core.outcomes import FINISHED, of_run
@@ -34,7 +34,7 @@ def needs_null(record):
 
 
 def judge(record, null):
-    """The Verdict on a run. `null`: the record of the null process beside it, or None."""
+    """The Verdict on a run. `null`: the record of the null process after it, or None."""
     status, reason = of_run(record)
     if status not in FINISHED:
         return Verdict(False, f"{status}: {reason}", True)

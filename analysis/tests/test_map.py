@@ -170,6 +170,7 @@ def test_records_become_tables_and_a_page(tmp_path):
     write_json(tmp_path / "set.json", {"profile": "smoke", "only": [], "parts": ["map"], "context": context, "date": "today",
                                        "programs": {}})
     site.write_part(tmp_path, "map")
+    assert not (tmp_path / "index.html").exists()  # else two parts at once overwrite each other's page
     rows = schema.read_table(tmp_path, "map", "tidy")
     assert dict(rows[rows.process.isna()].groupby("implementation").status.first()) == {C: "disagrees", OWN: "excluded"}
     assert (rows[rows.status == "ok"].step_us == 10.5).all() and set(rows.fill_percent) == {52.0}

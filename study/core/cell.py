@@ -32,6 +32,12 @@ class Cell:
     def environment(self):
         return self.contenders[0].environment if self.contenders else "own|system"
 
+    @property
+    def built(self):
+        """Its program: "mbs", or "mbs@BUILD" of another build."""
+        build = self.contenders[0].build if self.contenders else ""
+        return f"{self.program}@{build}" if build else self.program
+
     def document(self):
         """As it stands in records."""
         found = asdict(self)

@@ -87,6 +87,9 @@ FINGERPRINT = ("machine", "commit", "dirty", "compiler", "flags", "build_type", 
 KEPT = (*FINGERPRINT, "cpu_model", "kernel", "num_cpus")
 
 
+OF_ALL = ("machine", "commit", "dirty", "cpu_model", "kernel", "num_cpus")  # true of programs other than `mbs`, too
+
+
 def brief(context):
     """What a record keeps of the context that a program prints."""
     return {key: context[key] for key in KEPT if key in context}

@@ -45,6 +45,7 @@ def run(studyset, part):
             plan.run(lab, column)
             finish(studyset, part, column, lab.names)
     page(studyset, part)
+    index(studyset)  # nothing else runs now
 
 
 def page(studyset, part):

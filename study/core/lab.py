@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from analysis.core import records
 from analysis.core.files import ROOT, write_json
 from study.core import executor, locks
+from study.core.executor import program_of
 from study.core.progress import Progress
 
 
@@ -17,7 +18,8 @@ class Lab:
     def __init__(self, studyset, part, column, seconds=float("inf")):
         self.set, self.part, self.column, self.budget = studyset, part, column, seconds
         self.base = studyset.folder / "raw" / part
-        self.progress, self.names, self.spent = Progress(studyset, part, column), [], 0.0
+        self.progress, self.names, self.spent = Progress(studyset, part, column), {}, 0.0
+        self.known = set()  # programs that are those of the set's records
 
     def contender(self, name):
         """The one of a variant; None if it does not take part."""
@@ -43,6 +45,7 @@ class Lab:
         others run at once on all cores. With `drop`, what is left when the budget is spent gets a record that says
         so: order cells by their worth."""
         cells = [cell.settled() for cell in cells]
+        self._expect(cells)
         found, todo = {}, []
         for cell in dict.fromkeys(cells):
             path = self._path(cell)
@@ -50,8 +53,7 @@ class Lab:
                 found[cell] = self._keep(records.read(path, self._name(cell)))
             else:
                 todo.append(cell)
-        self.progress.expect(len(todo))
-        self.progress.done(len(found))
+        self._need({cell.built for cell in todo})
         alone = [cell for cell in todo if cell.timed]
         with ThreadPoolExecutor(cores()) as pool:
             others = [cell for cell in todo if not cell.timed]
@@ -66,10 +68,14 @@ class Lab:
     def skip(self, cell, status, reason):
         """The record of a cell that is not run, with its reason."""
         cell = cell.settled()
+        self._expect([cell])
+        return self._skipped(cell, status, reason)
+
+    def _skipped(self, cell, status, reason):
         path = self._path(cell)
         if not path.exists():
             records.write(path, {"cell": cell.document(), "status": status, "reason": reason, "seconds": 0.0,
-                                 "command": executor.command_of(cell), "context": self.set.facts["context"]})
+                                 "command": executor.command_of(cell), "context": self._context(cell, self.set.facts["context"])})
         return self._keep(records.read(path, self._name(cell)))
 
     def scene(self, name, document):
@@ -89,21 +95,35 @@ class Lab:
         return self.budget - self.spent
 
     def _made(self, cell, drop, at_once):
+        program = program_of(*cell.built.split("@"))
+        if cell.program != "mbs" and not (ROOT / program).exists():  # `mbs` is there, or nothing is
+            return self._skipped(cell, "unavailable", f"{program} is missing: study/setup builds it")
         if drop and self.left <= 0:
-            return self.skip(cell, "dropped", f"the budget of {self.budget:.0f} s was spent")
+            return self._skipped(cell, "dropped", f"the budget of {self.budget:.0f} s was spent")
         context = self.set.context(cell.contenders[0]) if cell.contenders else self.set.facts["context"]
         data = executor.run(cell, context if cell.program == "mbs" and cell.contenders else None, self.set.scratch)
         if not data["context"]:
-            data["context"] = context
+            data["context"] = self._context(cell, context)
         records.write(self._path(cell), data)
-        record = self._keep(records.read(self._path(cell), self._name(cell)), at_once)
-        self.progress.done()
-        return record
+        return self._keep(records.read(self._path(cell), self._name(cell)), at_once)
+
+    def _expect(self, cells):
+        self.progress.expect(len({self._name(cell) for cell in cells} - self.names.keys()))
+
+    def _need(self, programs):
+        self.set.need_programs(sorted(programs - self.known))
+        self.known |= programs
+
+    @staticmethod
+    def _context(cell, context):
+        """What is known of a cell that says nothing of it: other programs have compilers and libraries of their own."""
+        return context if cell.program == "mbs" else {key: context[key] for key in executor.OF_ALL if key in context}
 
     def _keep(self, record, at_once=None):
         if record.name not in self.names:
-            self.names.append(record.name)
+            self.names[record.name] = None  # in their order
             self.spent += record.seconds / (at_once or (1 if record.cell["timed"] else cores()))
+            self.progress.done()
         return record
 
     def _name(self, cell):

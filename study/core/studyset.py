@@ -44,6 +44,18 @@ class StudySet:
             write_json(path, context_of(one))
         return read_object(path)
 
+    def need_programs(self, names):
+        """StudyError naming a program (Cell.built) that changed since the set's records were made; notes new ones."""
+        known = self.facts["programs"]
+        paths = {name: ROOT / program_of(*name.split("@")) for name in names}
+        found = {name: digest(path)[:16] for name, path in paths.items() if path.exists()}
+        for name in found:
+            if known.get(name, found[name]) != found[name]:
+                raise _other(self.folder, f"programs: {name} was built anew")
+        if set(found) - set(known):
+            known.update(found)
+            write_json(self.folder / "set.json", self.facts)
+
     def stamp(self, part, column):
         """Is there when a column is done."""
         return self.folder / ".done" / part / column
@@ -92,20 +104,21 @@ def start(folder, profile, only, chosen):
     control = Contender(CONTROL.name, CONTROL.variant, usable(registry, profile.blas["all"]))
     context = context_of(control)
     record = {"profile": profile.name, "only": only, "parts": chosen, "context": context,
-              "programs": {name: digest(ROOT / program_of(name))[:16] for name in ("mbs", "mbs_reference")
-                           if (ROOT / program_of(name)).exists()},
+              "programs": {},
               "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M")}
     text = (profiles.FOLDER / f"{profile.name}.yaml").read_text()
     kept = folder / "profile.yaml"
     if (folder / "set.json").exists():
-        old = StudySet(folder).facts
+        known = StudySet(folder)
+        old = known.facts
         need_same(old["context"], context, str(folder))
-        for key in ("profile", "only", "programs"):
+        known.need_programs([*old["programs"]])
+        for key in ("profile", "only"):
             if old[key] != record[key]:
                 raise _other(folder, key)
         if kept.read_bytes() != text.encode():
             raise _other(folder, "the profile's settings")
-        record |= {"date": old["date"], "parts": [*old["parts"], *(part for part in chosen if part not in old["parts"])]}
+        record |= {"date": old["date"], "programs": old["programs"], "parts": [*old["parts"], *(part for part in chosen if part not in old["parts"])]}
     shutil.rmtree(folder / ".scratch", ignore_errors=True)
     (folder / ".scratch").mkdir(parents=True)
     for path in folder.rglob(".partial-*"):  # of a process that was killed
@@ -113,7 +126,9 @@ def start(folder, profile, only, chosen):
     write_json(folder / "registry.json", registry.listed)
     write_text(kept, text)
     write_json(folder / "set.json", record)
-    return StudySet(folder)
+    found = StudySet(folder)
+    found.need_programs(["mbs"])  # a lab notes the others when it runs them
+    return found
 
 
 def _other(folder, what):

@@ -1,9 +1,7 @@
 # Every implementation at the extremes; ways out of what goes wrong there; kept pivots; the growth of roundoff.
-from analysis.core.files import ROOT
 from analysis.extremes import battery as table, cells, judge, roundoff, ways
 from study.core.cell import Cell
 from study.core.contender import REFERENCE
-from study.core.executor import program_of
 
 SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms and roundoff, for other settings ...
             "everyone": bool,         # ... and whether all others come after them
@@ -35,8 +33,8 @@ def battery(lab):
     telling = [cell for cell in chosen if cell.place is not None and cell.place < few]
     rest = [cell for cell in chosen if cell.place is None and not lab.settings["cells"]]
     scenes = {cell.name: cell.scene or lab.scene(cell.name, cell.document) for cell in telling + rest}
-    _run_built(lab, [_reference(lab, cell, scenes[cell.name], factor) for cell in telling + rest if cell.motion is None
-                     for factor in judge.FINER])
+    lab.run([_reference(lab, cell, scenes[cell.name], factor) for cell in telling + rest if cell.motion is None
+             for factor in judge.FINER])
     todo = []
     for rank in (0, 1):
         forms, others = (_who(lab, kind)[rank] for kind in ("forms", "others"))
@@ -71,14 +69,6 @@ def _reference(lab, cell, scene, factor):
                 every=cell.every * factor)
 
 
-def _run_built(lab, asked, drop=False):
-    """Runs cells of another program than `mbs`, if it is there."""
-    missing = [cell for cell in asked if not (ROOT / program_of(cell.program)).exists()]
-    for cell in missing:
-        lab.skip(cell, "unavailable", f"{program_of(cell.program)} is missing: study/setup builds it")
-    lab.run([cell for cell in asked if cell not in missing], drop)
-
-
 def way_out(lab):
     sizes, limit = lab.settings["loops"], lab.settings["limit"]
     served = []
@@ -108,7 +98,7 @@ def pivots(lab):
     asked = [Cell("", "", (), ("--json",), "pivots", number=number, program="stale_pivots", timed=True, seconds=600)
              for number in range(1, lab.settings["processes"] + 1)]
     if any(one.variant.startswith("csc_klu/") for one in lab.contenders):
-        return _run_built(lab, asked, drop=True)
+        return lab.run(asked, drop=True)
     for cell in asked:
         lab.skip(cell, "excluded", "csc_klu takes no part")
 
@@ -117,7 +107,7 @@ def growth(lab):
     kinds, others = _who(lab, "forms")
     limit = 5 * lab.settings["limit"]
     asked = [(loops, form) for loops in lab.settings["loops"]["roundoff"] for form in roundoff.FORMS]
-    _run_built(lab, [_growth(loops, form, REFERENCE, limit, "mbs_reference") for loops, form in asked])
+    lab.run([_growth(loops, form, REFERENCE, limit, "mbs_reference") for loops, form in asked])
     lab.run([_growth(loops, form, one, limit) for who in (kinds, others) for loops, form in asked for one in who
              if lab.registry.serves(one.variant, form)], drop=True)
 

@@ -55,13 +55,13 @@ def cases(lab):
 def distributions(lab):
     duration = lab.settings["duration"]
     for step in lab.settings["steps"]:
-        beside(lab, step, duration, "distributions")
+        null(lab, step, duration, "distributions")
     lab.run([case.cell("steps", loops, duration) for case in cases(lab) for loops in lab.settings["loops"]], drop=True)
 
 
-def beside(lab, step, seconds, name):
-    """The record of a null process; `name`: what it belongs to."""
-    return lab.one(Cell("", settings=("--deadline-us", f"{1e6 * step:g}", "--seconds", f"{seconds:.3g}", "--beside", name),
+def null(lab, step, seconds, name):
+    """The record of a null process; `name`: the record of the run that it comes after, or distributions."""
+    return lab.one(Cell("", settings=("--deadline-us", f"{1e6 * step:g}", "--seconds", f"{seconds:.3g}", "--after", name),
                         role="null", program=NULL, timed=True, seconds=PATIENCE * seconds + SET_UP))
 
 
@@ -88,8 +88,8 @@ class Probe:
         return second and ("unsure" if second.kept else "failed")
 
     def null(self, place):
-        """Beside the run of a place, for as long as its steps took."""
-        return beside(self.lab, self.case.step, observed(self.runs[place]), self.runs[place].name)
+        """After the run of a place, for as long as its steps took."""
+        return null(self.lab, self.case.step, observed(self.runs[place]), self.runs[place].name)
 
     def _verdict(self, place, number):
         cell = self.case.cell("search", self.grid[place], self.lab.settings["pilot"], number)

@@ -3,6 +3,7 @@ import json
 import math
 import os
 import shlex
+from types import SimpleNamespace
 
 import matplotlib.pyplot as plt
 import pandas
@@ -11,12 +12,13 @@ import pytest
 from analysis.core import records
 from analysis.core.errors import StudyError
 from analysis.core.files import read_json
+from study.core.contender import Contender
 from study.core.setting import Setting
 from study.tools.advise import answer, timing
 from study.tools.advise.advice import Advice, Question
 from study.tools.advise.choice import Next, Pilot, allowed, counts, interval, local_order, next_at, next_step, tidy
 from study.tools.advise.main import duration
-from study.tools.advise.runner import REPEATS, advised as advised_line, typed
+from study.tools.advise.runner import REPEATS, Runner, advised as advised_line, typed
 from study.tools.advise.search import Found, Search
 from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.validate import fastest, luck, verdict
@@ -236,6 +238,23 @@ def test_the_deadline_is_verified_too():
     advice, ran = verified(lambda step: 1e-4, p99=12.0, deadline_us=10.0)
     assert advice.chosen is None and [name for name, _ in ran] == ["a", "b"]
     assert advice.candidates[0].reason == "99th percentile 12 us when verified: beyond the deadline"
+
+
+def test_without_the_automatic_tolerance_none_is_made_up():
+    asked = []
+
+    def one(cell):
+        asked.append(cell.settings)
+        found = {"tolerance": 1e-6, "status": "ok", "status_reason": ""} if works else {}
+        return records.Record("runs/x", cell.settled().document(), "done" if works else "crashed", "" if works else "SIGSEGV",
+                              0.1, ["build/mbs"], {}, found)
+    run = Runner(SimpleNamespace(one=one), "four-bar:1", [Contender("one/a", "one/a")])
+    works = True
+    assert run("search", LOOSE, "one/a", 1e-2, 1.0, 60)["status"] == "ok" and len(asked) == 2
+    assert asked[1][asked[1].index("--tolerance") + 1] == "1e-05"
+    works = False
+    row = run("search", LOOSE, "one/a", 1e-2, 1.0, 60)
+    assert (row["status"], row["reason"], row["step_us"]) == ("crashed", "SIGSEGV", None) and len(asked) == 3
 
 
 def test_settings_are_served_by_name_and_fit_the_scene():

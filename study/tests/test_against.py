@@ -58,7 +58,7 @@ def test_a_program_that_is_twice_as_fast_is_found_out(programs, tmp_path):
     assert (table.low < table.ratio).all() and (table.ratio < table.high).all() and (table.high < 0.7).all()
 
 
-@pytest.mark.parametrize("tree, key", [("old", "old"), ("new", "programs")])
+@pytest.mark.parametrize("tree, key", [("old", "old"), ("new", "programs: mbs was built anew")])
 def test_samples_of_a_program_built_anew_are_refused(programs, tmp_path, tree, key):
     compare(tmp_path / "results")
     programs[tree].write_text(FAKE.read_text() + "# edited and built again\n")

@@ -1,6 +1,7 @@
 # The common layer: cells and their identity, records and their digests, the lab, schemas, sets, locks, profiles.
 import json
 import math
+import os
 import shutil
 import tempfile
 import threading
@@ -14,7 +15,7 @@ import pytest
 
 from analysis.core import records, schema
 from analysis.core.errors import StudyError
-from analysis.core.files import digest, read_object, write_json, write_text
+from analysis.core.files import ROOT, digest, read_object, write_json, write_text
 from analysis.core.parts import parts
 from analysis.core.registry import Registry
 from analysis.core.text import number
@@ -227,6 +228,9 @@ class Set:
     def context(self, _):
         return self.facts["context"]
 
+    def need_programs(self, _):
+        pass
+
 
 def cells(count, **more):
     return [replace(CELL, number=number, **more) for number in range(count)]
@@ -245,6 +249,33 @@ def test_what_has_a_record_is_never_run_again(mbs, tmp_path):
     assert runs() == 7 and sorted(second.names) == sorted(first.names) == sorted(set(first.names))
     assert [one.stat().st_mtime_ns for one in before if one != path] == [at for one, at in before.items() if one != path]
     assert [one.output for one in again] == [{}] * 6 and second.settings == {"key": 3}
+
+
+def test_other_programs_are_not_said_to_be_built_as_mbs_is(mbs, tmp_path):
+    mbs('echo "{}"')
+    known = Set(tmp_path)
+    known.facts = {"context": {"machine": "m1", "commit": "c1", "compiler": "gcc", "libraries": "KLU"}}
+    (tmp_path / "other").symlink_to("mbs")  # which prints no context
+    other = Cell("", program=os.path.relpath(tmp_path / "other", ROOT / "build"))
+    lab = Lab(known, "part", "column")
+    for record in (lab.one(other), lab.skip(replace(other, number=1), "unavailable", "not built")):
+        assert record.context == {"machine": "m1", "commit": "c1"}
+    assert lab.one(CELL).context == known.facts["context"]
+
+
+def test_a_program_may_come_anew_but_not_change(mbs, tmp_path):
+    mbs('echo "{}"')
+    write_json(tmp_path / "set.json", FACTS)
+    (tmp_path / ".scratch").mkdir()
+    known = studyset.StudySet(tmp_path)
+    write_json(tmp_path / "contexts" / "own-system.json", {"machine": "m1"})
+    Lab(known, "part", "column").run(cells(1))
+    known.need_programs(["mbs", "study/engines/engine_that_is_not_built"])
+    assert set(facts_of(tmp_path)["programs"]) == {"mbs"}
+    mbs('echo "{}"; exit 0')
+    Lab(studyset.StudySet(tmp_path), "part", "column").run(cells(1))  # has its record
+    with pytest.raises(StudyError, match="something else .programs: mbs was built anew"):
+        Lab(studyset.StudySet(tmp_path), "part", "column").run(cells(2))
 
 
 def test_a_changed_record_stops_it(mbs, tmp_path):
@@ -269,6 +300,23 @@ def test_what_the_budget_has_no_room_for_has_a_record_that_says_so(mbs, tmp_path
     assert again.left == pytest.approx(lab.left)
 
 
+def test_a_program_that_is_not_built_is_unavailable(tmp_path):
+    record = Lab(Set(tmp_path), "part", "column").one(replace(CELL, program="no_such_program"))
+    assert (record.status, record.reason) == ("unavailable", "build/no_such_program is missing: study/setup builds it")
+
+
+def test_the_count_of_cells_comes_to_its_end(mbs, tmp_path):
+    mbs('sleep 0.2; echo "{}"')
+    for _ in range(2):  # the second time all have records
+        reader = Reader(tmp_path / ".progress")
+        lab = Lab(Set(tmp_path), "part", "column", 0.1)
+        lab.run(cells(3, timed=True), drop=True)
+        lab.run(cells(2, timed=True))
+        lab.skip(CELL, "excluded", "too slow")
+        events = reader.events()
+        assert [sum(event.get(key, 0) for event in events) for key in ("expected", "done")] == [4, 4]
+
+
 def test_untimed_cells_share_the_cores_and_timed_ones_have_the_machine(mbs, tmp_path):
     mbs(f'echo begin >> {tmp_path}/log; sleep 0.1; echo end >> {tmp_path}/log; echo "{{}}"')
     Lab(Set(tmp_path), "part", "timed").run(cells(3, timed=True))
@@ -281,7 +329,7 @@ def test_untimed_cells_share_the_cores_and_timed_ones_have_the_machine(mbs, tmp_
 def test_a_skipped_cell_has_a_reason_and_stays(tmp_path):
     lab = Lab(Set(tmp_path), "part", "column")
     assert lab.skip(CELL, "excluded", "too slow").reason == "too slow"
-    assert lab.skip(CELL, "excluded", "another one").reason == "too slow" and lab.names == ["column/" + CELL.settled().file_name()]
+    assert lab.skip(CELL, "excluded", "another one").reason == "too slow" and list(lab.names) == ["column/" + CELL.settled().file_name()]
 
 
 def test_progress_is_told_and_read_in_lines(tmp_path):

@@ -50,8 +50,8 @@ def test_the_search_gives_up_without_budget(at):
 def test_the_null_process_counts_gaps():
     def watched(deadline):
         done = subprocess.run([ROOT / "study/realtime/null_process", "--deadline-us", deadline, "--seconds", "0.02",
-                               "--beside", "it"], capture_output=True, text=True, check=True, timeout=30)
+                               "--after", "it"], capture_output=True, text=True, check=True, timeout=30)
         return json.loads(done.stdout)
     loose, tight = watched("1e9"), watched("0.001")
-    assert loose["lost"] == 0 and loose["beside"] == "it" and loose["largest_us"] > 0
+    assert loose["lost"] == 0 and loose["after"] == "it" and loose["largest_us"] > 0
     assert tight["lost"] == tight["readings"] > 0

@@ -78,6 +78,9 @@ class _Present(StudySet):
     def context(self, one):
         return self.present[one.environment]
 
+    def need_programs(self, names):
+        """Nothing: _begin sees to them."""
+
     @property
     def facts(self):
         return {"context": next(iter(self.present.values()))}
@@ -92,6 +95,7 @@ def measured(folder, name):
     cells = schema.read_table(folder, "map", "cells")
     cells = cells[cells.winner != ""]
     steps = schema.read_table(folder, "map", "scenes").set_index("scene")
+    times = _times(schema.read_table(folder, "map", "tidy"))
     blas = profiles.read(folder / "profile.yaml", StudySet(folder).facts["profile"], []).blas
     rivals = {*cells.winner, *cells[cells.layer == "libraries"].second} & set(known.variants)
     contenders = {one.name: one for one in on_usual_pairs(known, blas, [*newcomers, *sorted(rivals - set(newcomers))])}
@@ -107,9 +111,8 @@ def measured(folder, name):
         for scene in scenes:
             fit = [contenders[one] for one in newcomers if verdicts[scene][one][0] == "ok"]
             if fit and chosen[scene]:
-                times = _times(folder, scene)
                 records[scene] = measure(lab, scene, [*fit, *(contenders[one] for one in chosen[scene])], processes=count,
-                                         drop=True, **_size(lab, times, chosen[scene], steps.steps[scene], len(scenes)))
+                                         drop=True, **_size(lab, times.get(scene, {}), chosen[scene], steps.steps[scene], len(scenes)))
     lab.progress.end()
     context = present[contenders[newcomers[0]].environment]
     rows = [row | {"commit": context["commit"], "dirty": context["dirty"]} for scene in scenes
@@ -183,12 +186,10 @@ def _gate(lab, scene, newcomers, contenders):
     return found
 
 
-def _times(folder, scene):
-    """{implementation: µs a step} that the set has; for the number of samples only."""
-    from analysis.core import schema
-    tidy = schema.read_table(folder, "map", "tidy")
-    tidy = tidy[(tidy.kind == "timing") & (tidy.scene == scene)]
-    return tidy.groupby("implementation").step_us.median().dropna().to_dict()
+def _times(tidy):
+    """{scene: {implementation: µs a step}} that the set has; for the number of samples only."""
+    return {scene: rows.groupby("implementation").step_us.median().dropna().to_dict()
+            for scene, rows in tidy[tidy.kind == "timing"].groupby("scene")}
 
 
 def _size(lab, times, rivals, steps, scenes):

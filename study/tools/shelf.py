@@ -3,8 +3,8 @@ import datetime
 import shutil
 
 from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, digest, write_json
-from study.core.executor import need_same, program_of
+from analysis.core.files import write_json
+from study.core.executor import need_same
 from study.core.front import Display
 from study.core.lab import Lab
 from study.core.studyset import StudySet
@@ -14,17 +14,18 @@ def open_shelf(folder, tool, context, only, **question):
     """The StudySet in `folder`, new or continued; StudyError if it holds results of something else. `question`:
     what must be equal for the records to be of use."""
     facts = {"profile": tool, "only": only, "parts": [], "context": context,
-             "programs": {"mbs": digest(ROOT / program_of())[:16]},
+             "programs": {},
              "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M"), **question}
     found = StudySet(folder)
     if (folder / "set.json").exists():
         need_same(found.facts["context"], context, str(folder))
         for key in facts:
-            if key not in ("context", "date") and found.facts.get(key) != facts[key]:
+            if key not in ("context", "date", "programs") and found.facts.get(key) != facts[key]:
                 raise StudyError(f"{folder} holds results of something else ({key}); results are never merged: name "
                                  "another directory, or move this one away")
     else:
         write_json(folder / "set.json", facts)
+    found.need_programs(["mbs"])
     shutil.rmtree(found.scratch, ignore_errors=True)
     found.scratch.mkdir(parents=True)
     for path in folder.rglob(".partial-*"):  # of a process that was killed

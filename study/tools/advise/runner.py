@@ -61,8 +61,10 @@ class Runner:
         or HALVED where its error matters, not only its time. `step_us`, by which runs are ranked, is the mean over
         the steps of each one's least time over the repeats; the other times are those of the first repeat."""
         repeats = [] if checks == HALVED else ["--repeats", str(REPEATS)]
-        words = [*setting.words(tolerance=self._tolerance(setting, variant, step)), *self.deadline, *repeats, *checks]
-        record = self._simulate(kind, variant, step, duration, seconds, words)
+        record, tolerance = self._tolerance(setting, variant, step) if setting.loose else (None, None)
+        if tolerance or not setting.loose:  # else the row is that of the run which should have told it
+            words = [*setting.words(tolerance=tolerance), *self.deadline, *repeats, *checks]
+            record = self._simulate(kind, variant, step, duration, seconds, words)
         status, reason = of_run(record)
         found = record.output
         times = found.get("step_us", {})
@@ -85,8 +87,7 @@ class Runner:
             "--step", f"{step:g}", "--duration", f"{duration:g}", *words), kind, timed=True, seconds=round(seconds, 3)))
 
     def _tolerance(self, setting, variant, step):
-        """What the automatic tolerance, which a run of one step tells, is loosened to, m."""
-        if not setting.loose:
-            return None
+        """(record of a run of one step, which tells the automatic tolerance; what that is loosened to, m, or None)"""
         record = self._simulate("automatic", variant, step, step, 60, setting.parent.words())
-        return LOOSER * record.output.get("tolerance", 1e-9)
+        found = record.output.get("tolerance")
+        return record, LOOSER * found if found else None
