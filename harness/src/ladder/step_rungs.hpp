@@ -33,7 +33,7 @@ struct StepRung {
 /// predict, Phi, Phi_q, f, T, Delta q, lambda, v', a'.
 const std::vector<StepRung>& step_rungs();
 
-/// The state at which step rungs look: `state` of `model`, moved off its constraints by 0.01 m,
+/// The state at which step rungs look: `state` of `model`, moved off its constraints by 0.1 mm,
 /// with multipliers of the size of `penalty` times that, so that every term of the equations shows.
 State moved_state(const Model& model, State state, double penalty);
 
