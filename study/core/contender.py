@@ -43,3 +43,11 @@ def on_usual_pairs(registry, pairs, names):
 def usable(registry, pair):
     """The pair, or the system's where it is not installed."""
     return pair if registry.pairs.get(pair, "unknown") == "" else SYSTEM
+
+
+def by_environment(contenders):
+    """{environment: its contenders, which processes may have in common}"""
+    found = {}
+    for one in contenders:
+        found[one.environment] = (*found.get(one.environment, ()), one)
+    return found

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from study.core.cell import Cell
+from study.core.contender import by_environment
 
 ANCHOR = "csc_klu/refactor"  # stands on no BLAS: in common to the processes of all pairs and builds
 
@@ -12,9 +13,7 @@ def measure(lab, scene, contenders, *, processes=5, repetitions=None, settings=(
     """Records of a scene: a process a number and environment. Those on another BLAS pair or build have processes of
     their own, with the `anchor` in common. Who ends a process is left out with a record that says how, and the
     environment is measured again without it. Several scenes: call for each."""
-    groups = {}
-    for one in contenders:
-        groups.setdefault(one.environment, []).append(one)
+    groups = by_environment(contenders)
     words = (*settings, *(("--benchmark_repetitions=%d" % repetitions,) if repetitions else ()))
     main = max(groups, key=lambda name: len(groups[name]), default=None)
     common = next((one for one in groups.get(main, []) if one.variant == anchor), None) or next(
@@ -23,8 +22,8 @@ def measure(lab, scene, contenders, *, processes=5, repetitions=None, settings=(
     for name, group in groups.items():
         if name != main and common.variant not in [one.variant for one in group]:
             label = f"{common.variant}+{group[0].build or group[0].blas}"
-            group = [replace(common, name=label, blas=group[0].blas, build=group[0].build), *group]
-        cell = Cell("bench", scene, tuple(group), words, role, timed=True, seconds=seconds)
+            group = (replace(common, name=label, blas=group[0].blas, build=group[0].build), *group)
+        cell = Cell("bench", scene, group, words, role, timed=True, seconds=seconds)
         found += _environment(lab, cell, processes, drop)
     return found
 

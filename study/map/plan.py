@@ -4,7 +4,7 @@
 # is decided from records, so that a run that was interrupted decides alike.
 from analysis.core.errors import StudyError
 from study.core.cell import Cell
-from study.core.contender import Contender
+from study.core.contender import Contender, by_environment
 from study.core.profile import need_keys
 from study.core.timing import measure
 from study.map.scene import NATURAL, Scene
@@ -82,8 +82,7 @@ def _operations(lab, scene):
     """`mbs` checks their results itself, so that a step too slow to be timed excludes nobody."""
     asked = lab.settings["operations"]
     chosen = [one for one in lab.contenders if lab.registry.variants[one.variant].get("operations")]
-    for environment in dict.fromkeys(one.environment for one in chosen) if scene.variables in asked["columns"] else ():
-        group = tuple(one for one in chosen if one.environment == environment)
+    for group in by_environment(chosen).values() if scene.variables in asked["columns"] else ():
         lab.run([Cell("bench", scene.name, group, ("--operations", "--benchmark_repetitions=3", "--benchmark_min_time=0.01"),
                       "operations", number, timed=True, seconds=lab.settings["limits"]["time"])
                  for number in range(1, asked["processes"] + 1)], drop=True)
@@ -93,13 +92,10 @@ def _builds(lab, scene, costs):
     """Processes of all builds alternate, so that those of one number are near in time: no contender is the same in two
     builds."""
     variants = {one.variant for one in costs if one.build}
-    groups = {}
-    for one in costs:
-        if one.variant in variants and (one.build or one.ranked):
-            groups.setdefault(one.environment, {})[one] = costs[one]
+    groups = by_environment(one for one in costs if one.variant in variants and (one.build or one.ranked))
     for number in range(1, lab.settings["processes"] + 1):
         for group in groups.values():
-            TimedScene(lab, scene, group, 0.0).processes(list(group), number, "builds")
+            TimedScene(lab, scene, {one: costs[one] for one in group}, 0.0).processes(list(group), number, "builds")
 
 
 def _add_between(lab, timed):

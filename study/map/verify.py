@@ -6,11 +6,10 @@
 # within FAMILY times that factor: maps are drawn for families too.
 import math
 from dataclasses import dataclass
-from itertools import groupby
 
 from study.core.builds import BUILDS, build
 from study.core.cell import Cell
-from study.core.contender import Contender
+from study.core.contender import Contender, by_environment
 
 FAMILY = 5
 SLOW = 4  # of those who take as long as they may, that a process has time for
@@ -98,8 +97,7 @@ class Rule:
 
 def _gate(lab, scene, contenders):
     """{contender: whether it agrees}. Several in a process save time; if it dies, one by one loses only the culprit."""
-    groups = [tuple(group) for _, group in groupby(sorted(contenders, key=lambda one: one.environment),
-                                                   lambda one: one.environment)]
+    groups = by_environment(contenders).values()
     records = lab.run([_check(lab, scene, group) for group in groups])
     verdicts = {}
     for group, record in zip(groups, records):

@@ -7,6 +7,7 @@ import random
 from dataclasses import dataclass
 
 from study.core.cell import Cell
+from study.core.contender import by_environment
 from study.scenes import metric
 
 IMPLEMENTATIONS = ("csc_klu/refactor", "csc_cholmod/simplicial", "eigen_dense/llt")
@@ -92,15 +93,13 @@ def slug(name):
 
 def run(lab):
     those = [one for name in IMPLEMENTATIONS if (one := lab.contender(name))]
-    groups = {}
-    for one in those:
-        groups.setdefault(one.environment, []).append(one)
+    groups = by_environment(those)
     motions, timed = [], []
     for loops in lab.settings["loops"]:
         paths = {name: lab.scene(f"{loops}-{slug(name)}", scene) for name, scene in scenes(loops).items()}
         for case in CASES:
             motions += [_motion(case, paths[case.scene], one) for one in those]
-            timed += [_timed(case, paths[case.scene], tuple(group), lab.settings["samples"]) for group in groups.values()]
+            timed += [_timed(case, paths[case.scene], group, lab.settings["samples"]) for group in groups.values()]
         timed += [_written(name, paths[PLAIN], those[0]) for name in OUTPUTS if those]
     lab.run(motions)
     for number in range(1, lab.settings["rounds"] + 1):

@@ -1,5 +1,6 @@
 # The standard problems: the gate of everyone, runs of the two that are compared; then what modelling costs.
 from study.core.cell import Cell
+from study.core.contender import by_environment
 from study.scenes import metric, modelling
 from study.scenes.problems import compared_of, read_list
 
@@ -28,8 +29,7 @@ def problems(lab):
         for one in lab.contenders:
             runs += [simulate(problem, one, step, "compared" if one.name in compared else "everyone")
                      for step in problem.steps if one.name in compared or (problem.everyone and step == problem.steps[0])]
-        gates += [gate(problem, [one for one in lab.contenders if one.environment == environment])
-                  for environment in dict.fromkeys(one.environment for one in lab.contenders)]
+        gates += [gate(problem, group) for group in by_environment(lab.contenders).values()]
     sizes = {record.cell["scene"]: record.output.get("variables", 0) for record in lab.run(runs)}
     lab.run(sorted(gates, key=lambda cell: sizes.get(cell.scene, 0)), drop=True)  # what costs least goes first
 
@@ -44,5 +44,5 @@ def gate(problem, contenders):
     """In one process, which runs the reference once for all of them."""
     settings = ("--step", f"{problem.check_step:g}") if problem.check_step else (
         "--step", f"{problem.steps[0]:g}", *problem.settings)
-    return Cell("check", problem.scene, tuple(contenders), (*settings, "--time-limit", CHECK_S), "gate",
+    return Cell("check", problem.scene, contenders, (*settings, "--time-limit", CHECK_S), "gate",
                 seconds=2 * CHECK_S)

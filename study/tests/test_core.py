@@ -22,7 +22,7 @@ from analysis.core.text import number
 from analysis.core.view import View, facts_of
 from study.core import executor, locks, profile, studyset
 from study.core.cell import Cell
-from study.core.contender import Contender, on_usual_pairs
+from study.core.contender import Contender, by_environment, on_usual_pairs
 from study.core.lab import Lab, cores
 from study.core.options import Parser, positive
 from study.core.progress import Reader, duration
@@ -483,6 +483,13 @@ def test_selections():
     assert REGISTRY.serves("own/c", "kept", "penalty") and not REGISTRY.serves("one/a", "kept")
     pairs = {"all": "openblas", "own": "atlas"}
     assert [one.blas for one in on_usual_pairs(REGISTRY, pairs, ["one/a", "own/c"])] == ["openblas", "system"]
+
+
+def test_contenders_of_an_environment_are_together_in_their_order():
+    other = Contender("three/c", "three/c", "openblas", "gcc-O2")
+    assert by_environment([TWO, ONE, other, replace(ONE, name="one/b")]) == {
+        "own|openblas": (TWO,), "own|system": (ONE, replace(ONE, name="one/b")), "gcc-O2|openblas": (other,)}
+    assert by_environment([]) == {}
 
 
 def test_files_are_seen_whole_or_not_at_all(tmp_path):

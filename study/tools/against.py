@@ -13,7 +13,7 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write
 from study.core import child, locks, profile as profiles
 from study.core.cell import Cell
-from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
+from study.core.contender import CONTROL, Contender, by_environment, on_usual_pairs, usable
 from study.core.executor import program_of
 from study.core.main import need_modules, set_up, writable
 from study.core.options import Parser, rounds
@@ -97,10 +97,7 @@ def _measure(folder, options, revision, build):
     there = _variants_of(build)
     rows = [{"implementation": one.name, "scene": scene, "reason": f"is not in {revision}"}
             for one in contenders if one.variant not in there for scene in options.scenes]
-    groups = {}
-    for one in contenders:
-        if one.variant in there:
-            groups.setdefault(one.environment, []).append(one)
+    groups = by_environment(one for one in contenders if one.variant in there)
     for scene in options.scenes:
         for group in groups.values():
             rows += _ratios(lab, scene, group, options.rounds, build, revision)
