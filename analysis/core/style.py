@@ -29,7 +29,7 @@ matplotlib.rcParams.update({
 
 class Look:
     """How each implementation is drawn, by its place in the registry: a colour a folder and a shade
-    of it a variant; a marker and a letter of its own; a dash a variant. An alternative
+    of it a variant; a marker of its own; a dash a variant. An alternative
     "folder/variant+gcc-O2" or "…+atlas-reference" has colour and marker by the first word behind
     the plus, dash and fill by the second."""
 
@@ -57,10 +57,6 @@ class Look:
         towards, share = SHADES[shade % len(SHADES)]
         mixed = numpy.array(to_rgb(base)) * (1 - share)
         return to_hex(mixed + share if towards == "white" else mixed)
-
-    def letter(self, name):
-        """One to fifty-two implementations have letters of their own."""
-        return LETTERS[self.place[name.partition("+")[0]] % len(LETTERS)]
 
     def marker(self, name):
         place = self._alternative(name)[0] if "+" in name else self.place[name]
