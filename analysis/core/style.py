@@ -7,6 +7,8 @@ import numpy
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
+from analysis.core.files import write
+
 # Warm colours are dense implementations, the others sparse: those who lead have colours of Okabe and Ito
 # (2008), safe for the colour-blind; markers and dashes tell the series apart without colour.
 DENSE = ("#E69F00", "#D55E00", "#8C4A1F", "#F2C14E", "#B03A48")
@@ -133,9 +135,7 @@ def plain(value):
 
 
 def save(figure, path):
-    """Writes a figure atomically, in the format of the suffix of `path`; equal figures give equal files."""
-    path = Path(path)
-    partial = path.with_name(path.name + ".partial")
-    figure.savefig(partial, format=path.suffix[1:] or "png", bbox_inches="tight",
-                   metadata={"Date": None} if path.suffix == ".svg" else None)
-    partial.replace(path)
+    """Writes a figure in the format of the suffix of `path`; equal figures give equal files."""
+    kind = Path(path).suffix
+    write(path, lambda partial: figure.savefig(partial, format=kind[1:] or "png", bbox_inches="tight",
+                                               metadata={"Date": None} if kind == ".svg" else None))

@@ -1,4 +1,5 @@
 # What page.html.j2 shows of the limit.
+from analysis.core.rows import grouped
 from analysis.limit.tables import KINDS, PHASES
 
 
@@ -7,15 +8,10 @@ def context(tables, view):
     wide = {"penalty": steps[steps.form == "penalty"], "saddle-point": steps[steps.form == "saddle-point"]}
     return {"phases": PHASES, "settings": view.settings,
             "held": tables["held"].to_dict("records"), "bounds": tables["bounds"].sort_values("loops").to_dict("records"),
-            "sizes": _grouped(_timed(wide["penalty"]).sort_values(["loops", "step_us"]), "variables"),
-            "growth": _grouped(_own(wide, view), "form"), "scenes": by_scene(tables["scenes"]),
+            "sizes": grouped(_timed(wide["penalty"]).sort_values(["loops", "step_us"]), "variables"),
+            "growth": grouped(_own(wide, view), "form"), "scenes": by_scene(tables["scenes"]),
             "batches": tables["batches"][tables["batches"].status != "unsupported"].sort_values(["variables", "sets"]).to_dict("records"),
             "alone": sorted(set(tables["batches"].implementation[tables["batches"].status == "unsupported"])), "lost": lost(tables)}
-
-
-def _grouped(table, key):
-    """[(key, rows)]"""
-    return [(name, group.to_dict("records")) for name, group in table.groupby(key, sort=False)]
 
 
 def _timed(rows):
