@@ -1,5 +1,6 @@
 # What the page shows: sentences and tables beside the figures.
 from analysis.accuracy import names, pairs, sentences, work_figure
+from analysis.core.rows import rows_of
 
 
 def context(tables, view):
@@ -8,22 +9,17 @@ def context(tables, view):
     subjects = [{"about": about, "figure": work_figure.name(about["subject"]),
                  "says": sentences.of_subject(by_subject[about["subject"]]),
                  "statuses": sentences.rest(by_subject[about["subject"]], "status")}
-                for about in records(tables["references"]) if about["subject"] in by_subject]
+                for about in rows_of(tables["references"]) if about["subject"] in by_subject]
     subjects = list({part["about"]["subject"]: part for part in subjects}.values())
-    kinds = {kind: records(table[table.kind == kind]) for kind in pairs.PAIRS}
+    kinds = {kind: rows_of(table[table.kind == kind]) for kind in pairs.PAIRS}
     return {
         "settings": view.settings, "step": names.step, "summary": sentences.summary(winners),
         "chains": [part for part in subjects if part["about"]["unit"] == "m"],
         "problems": [part for part in subjects if part["about"]["unit"] != "m"],
-        "lost": [about for about in records(tables["references"]) if about["own_error"] is None],
-        "problem_winners": records(winners[winners.loops.isna()]), "regions_says": sentences.of_regions(winners),
+        "lost": [about for about in rows_of(tables["references"]) if about["own_error"] is None],
+        "problem_winners": rows_of(winners[winners.loops.isna()]), "regions_says": sentences.of_regions(winners),
         "forms": kinds[pairs.FORMS], "forms_says": sentences.of_forms(table),
         "precision": kinds[pairs.PRECISION], "precision_says": sentences.of_precision(table),
         "reuse": sentences.reuse_rows(table), "reuse_says": sentences.of_reuse(table), "pairs_step": pairs.STEP,
-        "references": list({about["subject"]: about for about in records(tables["references"])}.values()),
+        "references": list({about["subject"]: about for about in rows_of(tables["references"])}.values()),
         "left_out": sentences.rest(tables["left_out"], "reason")}
-
-
-def records(table):
-    """Rows as dictionaries, None where there is nothing."""
-    return table.astype(object).where(table.notna(), None).to_dict("records")

@@ -91,7 +91,7 @@ def reference(subject, runs=()):
     times = numpy.linspace(0, subject.duration, SAMPLES + 1)
     name, judged = subject.entry.known, subject.entry.judged
     if name == EXTRAPOLATED:
-        known, less = _extrapolated(subject, runs)
+        known, less = _extrapolated(runs)
         word, origin = f"extrapolated runs of {runs[0].cell['contenders'][0]} (self-convergence)", "one step less"
     else:
         known, word = KNOWN[name](times), kind(name)
@@ -105,7 +105,7 @@ def reference(subject, runs=()):
     return Reference(word, metric.errors(less, known)[0], origin, known)
 
 
-def _extrapolated(subject, runs):
+def _extrapolated(runs):
     """({column: values}, the same with one step less)"""
     lost = next((of_run(one) for one in runs if of_run(one)[0] not in FINISHED), None)
     if lost or len(runs) < 3:

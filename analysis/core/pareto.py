@@ -28,10 +28,3 @@ def near(rows, factor):
     front = done.loc[pareto(rows)]
     return done.index[[row.time <= factor * front.time[(1 - SAME) * front.error <= row.error].min()
                        for row in done.itertuples()]]
-
-
-def fastest(rows, error):
-    """The row of the front that meets `error` in the least time; None if nobody does."""
-    meeting = finished(rows)
-    meeting = meeting[meeting.error <= error]
-    return None if meeting.empty else meeting.loc[meeting.time.idxmin()]

@@ -7,6 +7,8 @@ import numpy
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
+from analysis.core.files import write
+
 # Warm colours are dense implementations, the others sparse: those who lead have colours of Okabe and Ito
 # (2008), safe for the colour-blind; markers and dashes tell the series apart without colour.
 DENSE = ("#E69F00", "#D55E00", "#8C4A1F", "#F2C14E", "#B03A48")
@@ -29,7 +31,7 @@ matplotlib.rcParams.update({
 
 class Look:
     """How each implementation is drawn, by its place in the registry: a colour a folder and a shade
-    of it a variant; a marker and a letter of its own; a dash a variant. An alternative
+    of it a variant; a marker of its own; a dash a variant. An alternative
     "folder/variant+gcc-O2" or "…+atlas-reference" has colour and marker by the first word behind
     the plus, dash and fill by the second."""
 
@@ -57,10 +59,6 @@ class Look:
         towards, share = SHADES[shade % len(SHADES)]
         mixed = numpy.array(to_rgb(base)) * (1 - share)
         return to_hex(mixed + share if towards == "white" else mixed)
-
-    def letter(self, name):
-        """One to fifty-two implementations have letters of their own."""
-        return LETTERS[self.place[name.partition("+")[0]] % len(LETTERS)]
 
     def marker(self, name):
         place = self._alternative(name)[0] if "+" in name else self.place[name]
@@ -137,9 +135,7 @@ def plain(value):
 
 
 def save(figure, path):
-    """Writes a figure atomically, in the format of the suffix of `path`; equal figures give equal files."""
-    path = Path(path)
-    partial = path.with_name(path.name + ".partial")
-    figure.savefig(partial, format=path.suffix[1:] or "png", bbox_inches="tight",
-                   metadata={"Date": None} if path.suffix == ".svg" else None)
-    partial.replace(path)
+    """Writes a figure in the format of the suffix of `path`; equal figures give equal files."""
+    kind = Path(path).suffix
+    write(path, lambda partial: figure.savefig(partial, format=kind[1:] or "png", bbox_inches="tight",
+                                               metadata={"Date": None} if kind == ".svg" else None))

@@ -1,8 +1,7 @@
 # What the page says besides its figures.
-import pandas
-
 from analysis.core.outcomes import FINISHED
 from analysis.core.pareto import finished
+from analysis.core.rows import rows_of
 from analysis.engines import sentences
 from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import NOT_MADE, title
@@ -19,10 +18,10 @@ def context(tables, view):
             "sides": {side: what for side, what in SIDES.items() if (table.side == side).any()},
             "engines": {name: title(name) for name in names}, "duration": DURATION_S, "subjects": titles(engines),
             "summaries": {side: summary(table[table.side == side], names) for side in SIDES},
-            "behind": _rows(table[(table.ratio < 1)].sort_values("ratio")),
-            "unreached": unreached(table), "comparisons": {subject: _rows(rows) for subject, rows in
+            "behind": rows_of(table[(table.ratio < 1)].sort_values("ratio")),
+            "unreached": unreached(table), "comparisons": {subject: rows_of(rows) for subject, rows in
                                                            table.groupby("subject", sort=False)},
-            "native": _rows(tables["native"]), "native_says": sentences.of_native(tables["native"]),
+            "native": rows_of(tables["native"]), "native_says": sentences.of_native(tables["native"]),
             "reached": reached(engines), "complaints": complaints(engines), "value": sentences.value, "title": title,
             "dropped": {name: int((tables[name].status == "dropped").sum()) for name in ("engines", "ours", "rounds")}}
 
@@ -71,8 +70,3 @@ def complaints(engines):
     """[(engine, runs, first)]: what engines said while they ran."""
     said = engines[engines.first_complaint != ""]
     return [(title(engine), len(rows), rows.first_complaint.iloc[0]) for engine, rows in said.groupby("engine", sort=False)]
-
-
-def _rows(table):
-    """Rows as dictionaries, without NaN."""
-    return table.astype(object).where(pandas.notna(table), None).to_dict("records")

@@ -3,7 +3,6 @@ import pandas
 
 from analysis.core import timing
 
-KEY = ["sequence", "form", "strategy", "pivoting"]
 PLAIN = ("refactor", "default")  # strategy and pivots that times are over
 
 

@@ -1,23 +1,17 @@
 # What page.html.j2 shows of the limit.
-from analysis.limit.held import LEAST, NOT_MEASURED
-from analysis.limit.tables import KINDS, LIMIT, PHASES
+from analysis.core.rows import grouped
+from analysis.limit.tables import KINDS, PHASES
 
 
 def context(tables, view):
     steps = tables["steps"]
     wide = {"penalty": steps[steps.form == "penalty"], "saddle-point": steps[steps.form == "saddle-point"]}
-    return {"LIMIT": LIMIT, "phases": PHASES, "LEAST": LEAST, "NOT_MEASURED": NOT_MEASURED, "settings": view.settings,
+    return {"phases": PHASES, "settings": view.settings,
             "held": tables["held"].to_dict("records"), "bounds": tables["bounds"].sort_values("loops").to_dict("records"),
-            "sizes": _grouped(_timed(wide["penalty"]).sort_values(["loops", "step_us"]), "variables"),
-            "growth": _grouped(_own(wide, view), "form"), "scenes": by_scene(tables["scenes"]),
-            "leads": tables["leads"][tables["leads"].status == "ok"].to_dict("records"),
+            "sizes": grouped(_timed(wide["penalty"]).sort_values(["loops", "step_us"]), "variables"),
+            "growth": grouped(_own(wide, view), "form"), "scenes": by_scene(tables["scenes"]),
             "batches": tables["batches"][tables["batches"].status != "unsupported"].sort_values(["variables", "sets"]).to_dict("records"),
             "alone": sorted(set(tables["batches"].implementation[tables["batches"].status == "unsupported"])), "lost": lost(tables)}
-
-
-def _grouped(table, key):
-    """[(key, rows)]"""
-    return [(name, group.to_dict("records")) for name, group in table.groupby(key, sort=False)]
 
 
 def _timed(rows):

@@ -1,4 +1,5 @@
 # Claims about BLAS, LAPACK and compilers: F2, C3, C5.
+from analysis.core.registry import ANCHOR
 from analysis.core.text import interval, number
 from analysis.core.timing import rank
 from analysis.map import paper
@@ -6,7 +7,6 @@ from analysis.map.compare import Versus, best, extreme, over_sizes, step_us
 from analysis.map.explain import phase_times
 from analysis.map.ledger import at_least, at_most, compared, of, tested, unmeasured
 
-ANCHOR = "csc_klu/refactor"  # it calls no BLAS; processes on two pairs are compared through it (study/core/timing.py)
 FIGURE_SIZES = 160    # variables; Figures 2 and 4 end here
 COVERED = 82          # variables that a run has to reach to speak of them
 SMALLEST = 22         # variables; the paper's small problem, where comparing compilers begins

@@ -15,5 +15,5 @@ def draw(tables, view):
             "map_families": maps.draw_families(results, look),
             "regret": regret.draw(results, map_cells(results, libraries), libraries),
             "f4_sparse_solvers": sparse_figure.draw(results, look), "f5_fill": fill_figure.draw(results, look),
-            "f2_dense_pairs": dense_figure.draw(results, look), "t1_phases": phases_figure.draw(results, look),
+            "f2_dense_pairs": dense_figure.draw(results, look), "t1_phases": phases_figure.draw(results),
             "t2_operations": operations_figure.draw(results, look)}

@@ -59,7 +59,7 @@ def panel_sizes(results):
     return SIZES if not there or set(there) & set(SIZES) else there[-2:]
 
 
-def draw(results, look):
+def draw(results):
     names = results.implementations
     low = 0.6 + 0.2 * max(4, len(names))
     figure = plt.figure(figsize=(9.6, 3.6 + low))

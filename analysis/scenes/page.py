@@ -5,6 +5,7 @@ import numpy
 
 from analysis.core.files import ROOT
 from analysis.core.outcomes import GOOD
+from analysis.core.rows import grouped
 from analysis.scenes.sentences import finest
 
 SHEETS = ROOT / "harness" / "scenes" / "pictures"
@@ -14,17 +15,12 @@ CONSERVED = 1e-3  # share of the energy's scale
 def context(tables, view):
     problems, convergence = tables["problems"], tables["convergence"]
     rows = finest(problems)
-    return {"compared": list(dict.fromkeys(rows.implementation)), "finest": _grouped(rows, "title"),
+    return {"compared": list(dict.fromkeys(rows.implementation)), "finest": grouped(rows, "title"),
             "gate": gate(tables["gate"]), "everyone": everyone(problems), "conserved_limit": CONSERVED,
-            "convergence": _grouped(convergence, "problem"), "digits": digits, "good": GOOD,
+            "convergence": grouped(convergence, "problem"), "digits": digits, "good": GOOD,
             "published": set(convergence.problem[convergence.published.notna()]),
-            "modelling": _grouped(tables["modelling"], ["implementation", "loops"]),
+            "modelling": grouped(tables["modelling"], ["implementation", "loops"]),
             "outputs": tables["outputs"].to_dict("records"), "settings": view.settings, "sheets": sheets()}
-
-
-def _grouped(table, key):
-    """[(key, rows)]"""
-    return [(name, group.to_dict("records")) for name, group in table.groupby(key, sort=False)]
 
 
 def gate(table):

@@ -36,7 +36,7 @@ def follow(runs, speed):
     return curves
 
 
-def between(runs, curves, speed):
+def between(runs, curves):
     """Runs between the two steps that bracket a required error, of curves near the fastest of their layer there."""
     by_name = {one.name: one for group in runs.layers.values() for one in group}
     jobs = []

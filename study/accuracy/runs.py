@@ -1,6 +1,7 @@
 # What a column of accuracy runs: motions of a subject (untimed), and points of these in timed processes.
 from analysis.accuracy import points, subjects
 from analysis.core.errors import StudyError
+from analysis.core.registry import ANCHOR
 from study.core import timing
 from study.core.cell import Cell
 from study.core.setting import read_settings
@@ -35,7 +36,7 @@ class Runs:
 
     def refer(self):
         """Makes the reference; what is extrapolated is simulated by one contender, the same in every study."""
-        one = self.lab.contender(timing.ANCHOR) or next(iter(self.lab.contenders), None)
+        one = self.lab.contender(ANCHOR) or next(iter(self.lab.contenders), None)
         finest = self.subject.steps[-1]
         cells = [self._cell(one, "default", finest / divisor, self.subject.scene, "reference", seconds=300)
                  for divisor in (1, 2, 4) if self.subject.entry and self.subject.entry.known == "extrapolated"]

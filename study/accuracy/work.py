@@ -28,7 +28,7 @@ def run(lab, kind, entry):
     lab.tell("curves")
     found = curves.follow(runs, speed)
     if runs.subject.loops:
-        found = curves.between(runs, found, speed)
+        found = curves.between(runs, found)
     scenes = {scene: speed}
     _measure(runs, scene, speed, found)
     for fill in entry.get("fills", ()):

@@ -13,8 +13,7 @@ class Contender:
     name: str
     variant: str
     blas: str = SYSTEM
-    build: str = ""    # "" is the study's own
-    missing: str = ""  # why it cannot run
+    build: str = ""  # "" is the study's own
 
     @property
     def ranked(self):

@@ -10,7 +10,7 @@ from analysis.core.errors import StudyError
 from study.core import child
 
 USAGE = 2  # the exit status of a program that refuses what it is asked for
-BY_FILE = {"check": ("--json",), "bench": ("--benchmark_out_format=json", "--benchmark_out")}
+BY_FILE = ("check", "bench")  # these write their JSON into a file
 CULPRIT = re.compile(r"ended by \S+ in (\S+)")  # what `mbs bench` says where a contender ends it
 
 

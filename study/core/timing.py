@@ -2,21 +2,20 @@
 # another layout of memory, say how far that matters. analysis/core/timing.py has the statistics.
 from dataclasses import replace
 
+from analysis.core.registry import ANCHOR
 from study.core.cell import Cell
 from study.core.contender import by_environment
 
-ANCHOR = "csc_klu/refactor"  # stands on no BLAS: in common to the processes of all pairs and builds
-
 
 def measure(lab, scene, contenders, *, processes=5, repetitions=None, settings=(), role="time", seconds=120.0,
-            anchor=ANCHOR, drop=False):
+            drop=False):
     """Records of a scene: a process a number and environment. Those on another BLAS pair or build have processes of
-    their own, with the `anchor` in common. Who ends a process is left out with a record that says how, and the
+    their own, with the ANCHOR in common. Who ends a process is left out with a record that says how, and the
     environment is measured again without it. Several scenes: call for each."""
     groups = by_environment(contenders)
     words = (*settings, *(("--benchmark_repetitions=%d" % repetitions,) if repetitions else ()))
     main = max(groups, key=lambda name: len(groups[name]), default=None)
-    common = next((one for one in groups.get(main, []) if one.variant == anchor), None) or next(
+    common = next((one for one in groups.get(main, []) if one.variant == ANCHOR), None) or next(
         iter(groups.get(main, [])), None)
     found = []
     for name, group in groups.items():

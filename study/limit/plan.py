@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from analysis.core.files import ROOT
 from analysis.core.timing import processes as rows_of
+from analysis.limit.tables import LIMIT
 from study.core.cell import Cell
 from study.core.setting import Setting
 from study.core.timing import measure
@@ -20,7 +21,6 @@ SETTINGS = {"loops": list,     # sizes of the N-four-bar for everyone
             "processes": int,  # of a scene
             "samples": int}    # of a process and contender
 SHARES = {"sizes": 0.33, "growth": 0.1, "scenes": 0.47, "batches": 0.1}  # of the budget
-LIMIT = "limit/limit"
 NEAR = 2.0  # times the fastest library: who is near may be the rival of a lead; the others are not timed in scenes
 LOOK = ("--steps", 40, "--patience", 1.0)  # first, of everyone
 FIRST = ("--start", 0, "--steps", 40)  # the same passes at all sizes

@@ -1,4 +1,5 @@
 # The common layer: cells and their identity, records and their digests, the lab, schemas, sets, locks, profiles.
+import fnmatch
 import json
 import math
 import os
@@ -8,6 +9,7 @@ import threading
 import time
 from dataclasses import fields, replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy
 import pandas
@@ -18,6 +20,7 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_object, write_json, write_text
 from analysis.core.parts import parts
 from analysis.core.registry import Registry
+from analysis.core.style import save
 from analysis.core.text import number
 from analysis.core.view import View, facts_of
 from study.core import executor, locks, profile, studyset
@@ -504,6 +507,17 @@ def test_files_are_seen_whole_or_not_at_all(tmp_path):
     assert digest(path) == digest(path.read_text()) == digest(path.read_bytes())
     with pytest.raises(StudyError, match="cannot read .*nothing"):
         digest(Path(tmp_path / "nothing"))
+
+
+def test_a_figure_that_is_cut_short_leaves_what_a_set_removes(tmp_path):
+    def killed(partial, **_):
+        written.append(partial.name)
+        partial.write_text("half")
+        raise KeyboardInterrupt
+    written = []
+    with pytest.raises(KeyboardInterrupt):
+        save(SimpleNamespace(savefig=killed), tmp_path / "one.svg")
+    assert fnmatch.fnmatch(written[0], ".partial-*") and not any(tmp_path.iterdir())
 
 
 def test_threads_that_write_one_file_at_once_do_not_disturb_each_other(tmp_path):

@@ -104,7 +104,7 @@ def next_step(pilots, limit, order, start, duration):
                 return Next(step=math.sqrt(2) * step)
             if between and between.valid and by_step[step].estimate <= between.estimate <= limit:
                 return Next(chosen=between.step)
-            return Next(chosen=_between(step, longer, pilots, limit, order))
+            return Next(chosen=_between(step, longer, pilots, limit))
         # Two halvings are needed to believe it; the longer step is the cheaper witness.
         for witness in (2 * step, step / 2):
             if fits(witness) and find(witness) is None:
@@ -131,7 +131,7 @@ def next_at(step, pilots, limit, duration):
                        "the step")
 
 
-def _between(step, longer, pilots, limit, order):
+def _between(step, longer, pilots, limit):
     """The step between a good one and twice that, where the estimate is expected to meet the limit."""
     if longer is None or not longer.valid:
         return step
