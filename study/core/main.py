@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 from analysis.core.errors import StudyError
@@ -16,7 +17,7 @@ from study.core import child, locks, profile as profiles
 from study.core.front import Display, run_workflow
 from study.core.options import Parser
 from study.core.progress import duration
-from study.core.studyset import StudySet, listed, need_records, reopen, select, start
+from study.core.studyset import StudySet, listed, need_own, need_records, reopen, select, start
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
            "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
@@ -68,6 +69,7 @@ def run(arguments):
     profile = profiles.load(options.profile, chosen)
     name = "-".join([profile.name, *(only.replace("/", ".") for only in options.only)])
     folder = Path(options.results).absolute() if options.results else ROOT / "results" / "local" / name
+    need_own(folder)
     if options.dry_run:
         return dry_run(profile, chosen, folder, options.only)
     writable(folder)
@@ -181,9 +183,8 @@ def need_modules(*modules):
 def writable(folder):
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".writable"
-        probe.touch()
-        probe.unlink()
+        with tempfile.TemporaryFile(dir=folder):
+            pass
     except OSError as error:
         raise StudyError(f"cannot write to {folder}: {error.strerror}") from error
     if shutil.disk_usage(folder).free < 100 * 2**20:

@@ -26,7 +26,7 @@ from study.core.contender import Contender, on_usual_pairs
 from study.core.lab import Lab, cores
 from study.core.options import Parser, positive
 from study.core.progress import Reader, duration
-from study.tests.conftest import TEMPORARY
+from study.tests.conftest import FAKE, TEMPORARY, study
 
 ONE, TWO = Contender("one/a", "one/a"), Contender("two/b", "two/b", "openblas")
 CELL = Cell("simulate", "four-bar:3", (ONE,), ("--step", 0.001), "map")
@@ -444,6 +444,42 @@ def test_a_wrong_profile_is_one_line(tmp_path, change, words):
     (tmp_path / "one.yaml").write_text(yaml.safe_dump(data))
     with pytest.raises(StudyError, match=words):
         profile.read(tmp_path / "one.yaml", "one", ["stability"])
+
+
+def test_only_a_set_or_what_became_none_is_continued(tmp_path):
+    own = tmp_path / "own"
+    for theirs in ("notes.txt", "profile.yaml", ".scratch", "raw"):
+        folder = tmp_path / theirs
+        (folder / theirs).mkdir(parents=True)
+        with pytest.raises(StudyError, match="is not empty and holds no set .no set.json.: name another"):
+            studyset.need_own(folder)
+        studyset.need_own(own)  # it may be missing, empty, or begun by a run that was killed
+        own.mkdir(exist_ok=True)
+    for name in (".partial-1-set.json", ".lock", "run.log", ".scratch", "registry.json", "profile.yaml"):
+        (own / name).touch()
+        studyset.need_own(own)
+    (own / "notes.txt").touch()
+    with pytest.raises(StudyError, match="is not empty"):
+        studyset.need_own(own)
+    (own / "set.json").touch()
+    studyset.need_own(own)
+
+
+def test_only_the_folders_of_a_set_are_cleared(tmp_path):
+    names = [f"{folder}/.partial-1-x" for folder in (".", "raw/map/c", "contexts", ".done/map", "map/figures", "theirs")]
+    for name in names:
+        write_text(tmp_path / name, "")
+    studyset.StudySet(tmp_path).clear()
+    assert [name for name in names if (tmp_path / name).exists()] == ["theirs/.partial-1-x"]
+
+
+@pytest.mark.parametrize("command", [["run", "--profile", "smoke"], ["advise", "four-bar:2", "--error", "1"],
+                                     ["advise", "--validate"], ["against", "HEAD"]])
+def test_a_folder_of_a_user_is_left_alone(tmp_path, command):
+    (tmp_path / "notes.txt").write_text("mine")
+    done = study(*command, "--results", tmp_path, program=FAKE)
+    assert done.returncode == 2 and "is not empty" in done.stderr and done.stderr.count("\n") == 1, done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
 
 
 def test_a_column_is_opened_again_only_where_a_record_is_missing(tmp_path):

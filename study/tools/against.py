@@ -17,7 +17,7 @@ from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
 from study.core.executor import program_of
 from study.core.main import need_modules, set_up, writable
 from study.core.options import Parser, rounds
-from study.core.studyset import context_of, listed, select
+from study.core.studyset import context_of, listed, need_own, select
 
 SECONDS = 120.0  # of a process
 # Google's option makes the programs of older revisions take turns too; later ones do so anyway.
@@ -48,6 +48,7 @@ def against(arguments):
     need_modules("pandas", "yaml", "scipy")
     revision = _resolve(options.revision)[:10]
     folder = Path(options.results).absolute() if options.results else ROOT / "results" / "local" / f"against-{revision}"
+    need_own(folder)
     writable(folder)
     with locks.only_one(folder), locks.only_one_study(options.wait):
         if "MBS_PROGRAM" not in os.environ:

@@ -11,7 +11,7 @@ from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
 from study.core.executor import program_of
 from study.core.main import need_modules, writable
 from study.core.options import Parser, positive
-from study.core.studyset import context_of, listed, select
+from study.core.studyset import context_of, listed, need_own, select
 
 DURATION, BUDGET, LONGEST = 20.0, 45.0, 1e6  # s
 OF_A_QUESTION = ("SCENE", "--error", "--deadline-us", "--step", "--duration", "--budget", "--json", "--plot")
@@ -27,10 +27,13 @@ def advise(arguments):
         raise StudyError(f"--plot {options.plot}: there is no such directory")
     if options.validate:
         _nothing_beside_validate(options)
-        from study.tools.advise.validate import validate
+        from study.tools.advise.validate import BEGUN, validate
         results = Path(options.results or DEFAULT / "validation").absolute()
+        need_own(results, BEGUN)
         writable(results)
         return validate(options, ask, runner_of, results)
+    if options.results:
+        need_own(Path(options.results).absolute())
     if not options.scene or options.error is None:
         raise StudyError("a SCENE and --error E are needed (see study/advise --help)")
     answer, _ = ask(options)
