@@ -20,7 +20,7 @@ from analysis.core.parts import parts
 from analysis.core.registry import Registry
 from analysis.core.text import number
 from analysis.core.view import View, facts_of
-from study.core import executor, locks, profile, studyset
+from study.core import child, executor, locks, main, profile, studyset
 from study.core.cell import Cell
 from study.core.contender import Contender, on_usual_pairs
 from study.core.lab import Lab, cores
@@ -569,6 +569,14 @@ def test_locks_are_held_once_and_waited_for(tmp_path, monkeypatch):
         order.append("first")
     thread.join(timeout=10)
     assert order == ["first", "second"] and told == ["waiting until another study is done"]
+
+
+@pytest.mark.parametrize("command", [["run", "--results", ""], ["figures", ""], ["store", ""], ["add", "klu", "--to", ""],
+                                     ["advise", "--results", ""], ["against", "HEAD", "--results", ""], ["compare", "", ""]])
+def test_an_empty_name_stands_for_no_default(command, capsys, monkeypatch):
+    monkeypatch.setattr(child, "end_on_signals", lambda: None)
+    assert main.main(command) == 2
+    assert "an empty name is no directory" in capsys.readouterr().err
 
 
 def test_numbers_and_bad_options_are_plain():
