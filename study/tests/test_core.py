@@ -3,6 +3,7 @@ import json
 import math
 import os
 import shutil
+import subprocess
 import tempfile
 import threading
 import time
@@ -20,7 +21,7 @@ from analysis.core.parts import parts
 from analysis.core.registry import Registry
 from analysis.core.text import number
 from analysis.core.view import View, facts_of
-from study.core import child, executor, locks, main, profile, studyset
+from study.core import child, executor, front, locks, main, profile, studyset
 from study.core.cell import Cell
 from study.core.contender import Contender, on_usual_pairs
 from study.core.lab import Lab, cores
@@ -480,6 +481,13 @@ def test_a_folder_of_a_user_is_left_alone(tmp_path, command):
     done = study(*command, "--results", tmp_path, program=FAKE)
     assert done.returncode == 2 and "is not empty" in done.stderr and done.stderr.count("\n") == 1, done.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
+
+
+def test_the_workflow_runs_in_a_folder_of_any_name(tmp_path):
+    folder = tmp_path / "a: b #c\nd"
+    write_json(folder / ".parts.json", ["stability"])
+    done = subprocess.run([*front._command(studyset.StudySet(folder), False), "--dry-run"], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0 and ".done/stability.page" in done.stdout + done.stderr, done.stderr
 
 
 def test_a_column_is_opened_again_only_where_a_record_is_missing(tmp_path):
