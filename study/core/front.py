@@ -65,7 +65,7 @@ def _command(studyset, stored):
     return ["/usr/bin/python3", "-m", "snakemake", "--snakefile", str(ROOT / "study" / "Snakefile"),
             "--directory", str(studyset.folder), "--cores", "all", "--scheduler", "greedy",
             "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor", *(["--forceall"] if stored else []),
-            "--config", f"root={ROOT}", f"stored={int(stored)}", f"parts={studyset.folder / '.parts.json'}"]
+            "--config", f"stored={int(stored)}"]
 
 
 class _Follower:

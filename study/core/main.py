@@ -7,16 +7,16 @@ import shutil
 import signal
 import subprocess
 import sys
-from pathlib import Path
+import tempfile
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
 from analysis.core.parts import need_parts, parts
 from study.core import child, locks, profile as profiles
 from study.core.front import Display, run_workflow
-from study.core.options import Parser
+from study.core.options import Parser, directory
 from study.core.progress import duration
-from study.core.studyset import StudySet, listed, need_records, reopen, select, start
+from study.core.studyset import StudySet, listed, need_own, need_records, reopen, select, start
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
            "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
@@ -53,21 +53,20 @@ def run(arguments):
     parser.add_argument("--part", nargs="+", default=[], metavar="NAME", help="only these parts")
     parser.add_argument("--only", nargs="+", default=[], metavar="IMPLEMENTATION",
                         help="only these implementations (folder or folder/variant)")
-    parser.add_argument("--results", metavar="DIR", help="results directory (results/local/PROFILE)")
+    parser.add_argument("--results", type=directory, metavar="DIR", help="results directory (results/local/PROFILE)")
     parser.add_argument("--dry-run", action="store_true", help="say what would run and for how long; build nothing")
     parser.add_argument("--list", action="store_true", help="list parts, profiles and implementations")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
     options = parser.parse_args(arguments)
     if options.list:
         return list_choices()
-    if options.results == "":
-        raise StudyError("--results is empty: it must be a directory")
     need_modules("yaml")
     need_parts(options.part)
     chosen = [part for part in parts() if not options.part or part in options.part]
     profile = profiles.load(options.profile, chosen)
     name = "-".join([profile.name, *(only.replace("/", ".") for only in options.only)])
-    folder = Path(options.results).absolute() if options.results else ROOT / "results" / "local" / name
+    folder = options.results or ROOT / "results" / "local" / name
+    need_own(folder)
     if options.dry_run:
         return dry_run(profile, chosen, folder, options.only)
     writable(folder)
@@ -100,10 +99,10 @@ def columns_of(profile, chosen, studyset=None):
 
 def figures(arguments):
     parser = Parser(prog="study/figures", description="Draws every table, figure and page of a set again, from its records.")
-    parser.add_argument("set", nargs="?", default=None, help="its directory (the newest in results/)")
+    parser.add_argument("set", nargs="?", type=directory, help="its directory (the newest in results/)")
     given = parser.parse_args(arguments).set
     need_modules()
-    folder = Path(given).absolute() if given else newest()
+    folder = given or newest()
     if not (folder / "set.json").exists():
         raise StudyError(f"{folder} holds no set (no set.json)")
     writable(folder)
@@ -181,9 +180,8 @@ def need_modules(*modules):
 def writable(folder):
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".writable"
-        probe.touch()
-        probe.unlink()
+        with tempfile.TemporaryFile(dir=folder):
+            pass
     except OSError as error:
         raise StudyError(f"cannot write to {folder}: {error.strerror}") from error
     if shutil.disk_usage(folder).free < 100 * 2**20:

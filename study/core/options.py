@@ -1,6 +1,7 @@
 # What the command lines of the studies share.
 import argparse
 import math
+from pathlib import Path
 
 from analysis.core.errors import StudyError
 
@@ -10,6 +11,13 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message):
         raise StudyError(f"{message} (see {self.prog} --help)")
+
+
+def directory(text):
+    """Its absolute path; an empty text never stands for a default."""
+    if not text:
+        raise argparse.ArgumentTypeError("an empty name is no directory")
+    return Path(text).absolute()
 
 
 def positive(text):

@@ -8,12 +8,15 @@ from pathlib import Path
 from analysis.core import records
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_object, write_json, write_text
+from analysis.core.parts import parts
 from analysis.core.registry import Registry
 from analysis.core.view import facts_of, registry_of
 from study.core import executor, profile as profiles
 from study.core.cell import Cell
 from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
 from study.core.executor import need_same, program_of
+
+BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml"}  # what is written before set.json
 
 
 @dataclass(frozen=True)
@@ -56,6 +59,14 @@ class StudySet:
             known.update(found)
             write_json(self.folder / "set.json", self.facts)
 
+    def clear(self):
+        """Removes what a process that was killed has left, in the set's own folders only."""
+        shutil.rmtree(self.scratch, ignore_errors=True)
+        self.scratch.mkdir(parents=True)
+        own = [self.folder / name for name in ("raw", "contexts", ".done", "added", *parts())]
+        for path in [*self.folder.glob(".partial-*"), *(path for base in own for path in base.rglob(".partial-*"))]:
+            path.unlink()
+
     def stamp(self, part, column):
         """Is there when a column is done."""
         return self.folder / ".done" / part / column
@@ -97,6 +108,16 @@ def listed():
     return Registry(found["output"])
 
 
+def need_own(folder, begun=BEGUN):
+    """StudyError if a folder holds anything but a set, or one that was just begun: nothing of a user's is overwritten."""
+    if not folder.is_dir() or (folder / "set.json").exists():
+        return
+    names = {path.name for path in folder.iterdir() if not path.name.startswith(".partial-")}
+    if names and (".lock" not in names or not names <= begun):
+        raise StudyError(f"{folder} is not empty and holds no set (no set.json): name another directory with --results, "
+                         "or an empty one")
+
+
 def start(folder, profile, only, chosen):
     """Records what a folder is for, or continues it; StudyError if it holds results of something else."""
     registry = listed()
@@ -119,14 +140,11 @@ def start(folder, profile, only, chosen):
         if kept.read_bytes() != text.encode():
             raise _other(folder, "the profile's settings")
         record |= {"date": old["date"], "programs": old["programs"], "parts": [*old["parts"], *(part for part in chosen if part not in old["parts"])]}
-    shutil.rmtree(folder / ".scratch", ignore_errors=True)
-    (folder / ".scratch").mkdir(parents=True)
-    for path in folder.rglob(".partial-*"):  # of a process that was killed
-        path.unlink()
+    found = StudySet(folder)
+    found.clear()
     write_json(folder / "registry.json", registry.listed)
     write_text(kept, text)
     write_json(folder / "set.json", record)
-    found = StudySet(folder)
     found.need_programs(["mbs"])  # a lab notes the others when it runs them
     return found
 

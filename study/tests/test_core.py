@@ -4,6 +4,7 @@ import json
 import math
 import os
 import shutil
+import subprocess
 import tempfile
 import threading
 import time
@@ -23,13 +24,13 @@ from analysis.core.registry import Registry
 from analysis.core.style import save
 from analysis.core.text import number
 from analysis.core.view import View, facts_of
-from study.core import executor, locks, profile, studyset
+from study.core import child, executor, front, locks, main, profile, studyset
 from study.core.cell import Cell
 from study.core.contender import Contender, by_environment, on_usual_pairs
 from study.core.lab import Lab, cores
 from study.core.options import Parser, positive
 from study.core.progress import Reader, duration
-from study.tests.conftest import TEMPORARY
+from study.tests.conftest import FAKE, TEMPORARY, study
 
 ONE, TWO = Contender("one/a", "one/a"), Contender("two/b", "two/b", "openblas")
 CELL = Cell("simulate", "four-bar:3", (ONE,), ("--step", 0.001), "map")
@@ -449,6 +450,49 @@ def test_a_wrong_profile_is_one_line(tmp_path, change, words):
         profile.read(tmp_path / "one.yaml", "one", ["stability"])
 
 
+def test_only_a_set_or_what_became_none_is_continued(tmp_path):
+    own = tmp_path / "own"
+    for theirs in ("notes.txt", "profile.yaml", ".scratch", "raw"):
+        folder = tmp_path / theirs
+        (folder / theirs).mkdir(parents=True)
+        with pytest.raises(StudyError, match="is not empty and holds no set .no set.json.: name another"):
+            studyset.need_own(folder)
+        studyset.need_own(own)  # it may be missing, empty, or begun by a run that was killed
+        own.mkdir(exist_ok=True)
+    for name in (".partial-1-set.json", ".lock", "run.log", ".scratch", "registry.json", "profile.yaml"):
+        (own / name).touch()
+        studyset.need_own(own)
+    (own / "notes.txt").touch()
+    with pytest.raises(StudyError, match="is not empty"):
+        studyset.need_own(own)
+    (own / "set.json").touch()
+    studyset.need_own(own)
+
+
+def test_only_the_folders_of_a_set_are_cleared(tmp_path):
+    names = [f"{folder}/.partial-1-x" for folder in (".", "raw/map/c", "contexts", ".done/map", "map/figures", "theirs")]
+    for name in names:
+        write_text(tmp_path / name, "")
+    studyset.StudySet(tmp_path).clear()
+    assert [name for name in names if (tmp_path / name).exists()] == ["theirs/.partial-1-x"]
+
+
+@pytest.mark.parametrize("command", [["run", "--profile", "smoke"], ["advise", "four-bar:2", "--error", "1"],
+                                     ["advise", "--validate"], ["against", "HEAD"]])
+def test_a_folder_of_a_user_is_left_alone(tmp_path, command):
+    (tmp_path / "notes.txt").write_text("mine")
+    done = study(*command, "--results", tmp_path, program=FAKE)
+    assert done.returncode == 2 and "is not empty" in done.stderr and done.stderr.count("\n") == 1, done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
+
+
+def test_the_workflow_runs_in_a_folder_of_any_name(tmp_path):
+    folder = tmp_path / "a: b"
+    write_json(folder / ".parts.json", ["stability"])
+    done = subprocess.run([*front._command(studyset.StudySet(folder), False), "--dry-run"], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0 and ".done/stability.page" in done.stdout + done.stderr, done.stderr
+
+
 def test_a_column_is_opened_again_only_where_a_record_is_missing(tmp_path):
     known = studyset.StudySet(tmp_path)
     for column in ("a", "b"):
@@ -554,6 +598,14 @@ def test_locks_are_held_once_and_waited_for(tmp_path, monkeypatch):
         order.append("first")
     thread.join(timeout=10)
     assert order == ["first", "second"] and told == ["waiting until another study is done"]
+
+
+@pytest.mark.parametrize("command", [["run", "--results", ""], ["figures", ""], ["store", ""], ["add", "klu", "--to", ""],
+                                     ["advise", "--results", ""], ["against", "HEAD", "--results", ""], ["compare", "", ""]])
+def test_an_empty_name_stands_for_no_default(command, capsys, monkeypatch):
+    monkeypatch.setattr(child, "end_on_signals", lambda: None)
+    assert main.main(command) == 2
+    assert "an empty name is no directory" in capsys.readouterr().err
 
 
 def test_numbers_and_bad_options_are_plain():

@@ -40,7 +40,11 @@ def test_it_is_the_last_of_the_list(repository):
 
 
 @pytest.mark.parametrize("name, words", [("Upper", "is no name"), ("1st", "is no name"), ("a-b", "is no name"),
-                                         ("../evil", "is no name"), ("eigen_dense", "exists already")])
+                                         ("../evil", "is no name"),
+                                         *((name, "of C\\+\\+ or of the harness") for name in (
+                                             "class", "int", "namespace", "std", "null", "reference", "limit", "control",
+                                             "main", "mbs", "mbs_registry", "a__b", "all", "test")),
+                                         ("eigen_dense", "exists already")])
 def test_what_cannot_be_a_folder_is_refused(repository, name, words):
     before = (repository / "CMakeLists.txt").read_text()
     with pytest.raises(StudyError, match=words):

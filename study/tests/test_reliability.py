@@ -277,7 +277,6 @@ def test_a_record_that_is_missing_is_measured_again_and_no_other(whole, program,
 @pytest.mark.parametrize("arguments, words", [
     (["run", "--results", "/proc/nowhere"], "cannot write to /proc/nowhere"),
     (["run", "--results", "/dev/null"], "cannot write to /dev/null"),
-    (["run", "--results", ""], "--results is empty"),
     (["figures", "/nowhere/at/all"], "holds no set"),
     (["store", "/nowhere/at/all"], "holds no set"),
     (["run", "--profile", "\udcff"], "unknown profile"),

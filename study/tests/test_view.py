@@ -114,6 +114,18 @@ def test_files_that_are_no_trajectories_are_refused(tmp_path, text, words):
         trajectory.read(path, scene_of("crank"), 100)
 
 
+def test_what_has_no_end_is_not_read(tmp_path):
+    with pytest.raises(StudyError, match="/dev/null is no regular file"):
+        trajectory.read("/dev/null", scene_of("crank"), 100)
+    header = csv_of(tmp_path, "crank").read_text().partition("\n")[0] + "\n"
+    for text in ("", header):  # and zeros without a line's end
+        path = tmp_path / "some.csv"
+        path.write_text(text)
+        os.truncate(path, len(text) + 2 * trajectory.LONGEST)
+        with pytest.raises(StudyError, match="has a line of more than"):
+            trajectory.read(path, scene_of("crank"), 100)
+
+
 def test_one_row_is_no_motion(tmp_path):
     with pytest.raises(StudyError, match="1 row"):
         trajectory.read(csv_of(tmp_path, "crank", times=[0.0]), scene_of("crank"), 100)

@@ -8,7 +8,6 @@ import os
 import shutil
 from collections import Counter
 from dataclasses import dataclass
-from pathlib import Path
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_json, write, write_json
@@ -17,7 +16,7 @@ from study.core.cell import Cell
 from study.core.contender import on_usual_pairs
 from study.core.executor import fingerprint, program_of
 from study.core.main import need_modules, set_up, writable
-from study.core.options import Parser
+from study.core.options import Parser, directory
 from study.core.progress import duration
 from study.core.studyset import StudySet, context_of, listed, select
 from study.core.timing import measure
@@ -45,11 +44,11 @@ def add(arguments):
     parser = Parser(prog="study/add", description="Measures a new or changed implementation into a set of the same machine "
                     "and libraries: the newcomer beside the leaders of each cell of its map, in fresh common processes.")
     parser.add_argument("name", metavar="NAME", help="folder or folder/variant")
-    parser.add_argument("--to", metavar="SET", help="its directory (the newest in results/, or else in results/local)")
+    parser.add_argument("--to", type=directory, metavar="SET", help="its directory (the newest in results/, or else in results/local)")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
     options = parser.parse_args(arguments)
     need_modules()
-    folder = Path(options.to).absolute() if options.to else newest()
+    folder = options.to or newest()
     if not (folder / "set.json").exists():
         raise StudyError(f"{folder} holds no set (no set.json)")
     writable(folder)

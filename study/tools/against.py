@@ -7,7 +7,6 @@ import os
 import subprocess
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write
@@ -16,8 +15,8 @@ from study.core.cell import Cell
 from study.core.contender import CONTROL, Contender, by_environment, on_usual_pairs, usable
 from study.core.executor import program_of
 from study.core.main import need_modules, set_up, writable
-from study.core.options import Parser, rounds
-from study.core.studyset import context_of, listed, select
+from study.core.options import Parser, directory, rounds
+from study.core.studyset import context_of, listed, need_own, select
 
 SECONDS = 120.0  # of a process
 # Google's option makes the programs of older revisions take turns too; later ones do so anyway.
@@ -42,12 +41,13 @@ def against(arguments):
     parser.add_argument("--scenes", nargs="+", metavar="SCENE", default=[
         "four-bar:10", "four-bar:40", "four-bar:79", "four-bar:499"], help="four-bar:10 ... 499")
     parser.add_argument("--rounds", type=rounds, default=4, help="of two processes of each program (4)")
-    parser.add_argument("--results", metavar="DIR", help="(results/local/against-REVISION)")
+    parser.add_argument("--results", type=directory, metavar="DIR", help="(results/local/against-REVISION)")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
     options = parser.parse_args(arguments)
     need_modules("pandas", "yaml", "scipy")
     revision = _resolve(options.revision)[:10]
-    folder = Path(options.results).absolute() if options.results else ROOT / "results" / "local" / f"against-{revision}"
+    folder = options.results or ROOT / "results" / "local" / f"against-{revision}"
+    need_own(folder)
     writable(folder)
     with locks.only_one(folder), locks.only_one_study(options.wait):
         if "MBS_PROGRAM" not in os.environ:

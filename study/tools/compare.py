@@ -1,11 +1,9 @@
 # study/compare A B: do two sets give the same map? The libraries and all, own code included, apart.
-from pathlib import Path
-
 from analysis.core import schema
 from analysis.core.errors import StudyError
 from analysis.core.files import read_json
 from study.core.main import need_modules
-from study.core.options import Parser
+from study.core.options import Parser, directory
 
 LAYERS = {"libraries": "Libraries", "all": "All, own code included"}
 
@@ -14,13 +12,13 @@ def compare(arguments):
     parser = Parser(prog="study/compare", description="Compares the maps of two sets: how many cells each decides or gives an "
                     "equivalence set for, and how many of these are alike.")
     for name in ("first", "second"):
-        parser.add_argument(name, metavar=name[0].upper() + name[1:], help="directory of a set")
+        parser.add_argument(name, type=directory, metavar=name[0].upper() + name[1:], help="directory of a set")
     options = parser.parse_args(arguments)
     need_modules()
-    tables = [cells_of(Path(folder)) for folder in (options.first, options.second)]
+    tables = [cells_of(folder) for folder in (options.first, options.second)]
     print("\n".join(line for layer in LAYERS for line in report(layer, *tables)))
     for what in ("machine", "commit"):
-        values = [str(read_json(Path(folder) / "set.json")["context"].get(what)) for folder in (options.first, options.second)]
+        values = [str(read_json(folder / "set.json")["context"].get(what)) for folder in (options.first, options.second)]
         if values[0] != values[1]:
             print(f"the sets are of different {what}s: {values[0]} and {values[1]}")
     return 0

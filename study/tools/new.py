@@ -9,6 +9,14 @@ from study.core.options import Parser
 SKELETON = ROOT / "study" / "tools" / "skeleton"
 LIST = ROOT / "implementations" / "CMakeLists.txt"
 NAME = re.compile(r"[a-z][a-z0-9_]*")
+KEYWORDS = set("""alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class
+compl concept const consteval constexpr constinit const_cast continue co_await co_return co_yield decltype default delete do
+double dynamic_cast else enum explicit export extern false float for friend goto if inline int long mutable namespace new
+noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast requires return short signed
+sizeof static static_assert static_cast struct switch template this thread_local throw true try typedef typeid typename union
+unsigned using virtual void volatile wchar_t while xor xor_eq""".split())
+TAKEN = {"mbs", "std", "null", "reference", "limit", "control", "controls", "main", "all", "clean", "help", "install", "test",
+         "harness", "engines", "registry", "implementation", "simulation"}  # names of the harness, of C++ and of CMake
 LIBRARIES = {"none": ("none", "", '""'),
              "eigen": ("Eigen", "MPL-2.0", 'std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION)'),
              "blas": ("LAPACK", "BSD-3-Clause", '"TODO: as the library reports it"')}  # (name, licence, version as C++)
@@ -23,6 +31,8 @@ def new(arguments):
     folder = ROOT / "implementations" / options.name
     if not NAME.fullmatch(options.name):
         raise StudyError(f"'{options.name}' is no name: a letter from a to z, then letters, digits or _")
+    if options.name in KEYWORDS | TAKEN or re.match("(mbs|implementation)_", options.name) or "__" in options.name:
+        raise StudyError(f"'{options.name}' is a name of C++ or of the harness: take another name")
     if folder.exists() or options.name in listed():
         raise StudyError(f"implementations/{options.name} exists already: take another name")
     try:

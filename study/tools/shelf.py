@@ -1,13 +1,12 @@
 # Where a tool keeps its records: a set without parts, so that cells run, resume and are refused as those of parts.
 import datetime
-import shutil
 
 from analysis.core.errors import StudyError
 from analysis.core.files import write_json
 from study.core.executor import need_same
 from study.core.front import Display
 from study.core.lab import Lab
-from study.core.studyset import StudySet
+from study.core.studyset import StudySet, need_own
 
 
 def open_shelf(folder, tool, context, only, **question):
@@ -16,6 +15,7 @@ def open_shelf(folder, tool, context, only, **question):
     facts = {"profile": tool, "only": only, "parts": [], "context": context,
              "programs": {},
              "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M"), **question}
+    need_own(folder)
     found = StudySet(folder)
     if (folder / "set.json").exists():
         need_same(found.facts["context"], context, str(folder))
@@ -26,10 +26,7 @@ def open_shelf(folder, tool, context, only, **question):
     else:
         write_json(folder / "set.json", facts)
     found.need_programs(["mbs"])
-    shutil.rmtree(found.scratch, ignore_errors=True)
-    found.scratch.mkdir(parents=True)
-    for path in folder.rglob(".partial-*"):  # of a process that was killed
-        path.unlink()
+    found.clear()
     return StudySet(folder)
 
 

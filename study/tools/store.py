@@ -5,14 +5,13 @@ import os
 import re
 import shutil
 import subprocess
-from pathlib import Path
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_json
 from analysis.core.parts import parts
 from study.core import locks
 from study.core.main import columns_of, need_modules
-from study.core.options import Parser
+from study.core.options import Parser, directory
 from study.core.studyset import StudySet
 
 RESULTS = ROOT / "results"
@@ -24,18 +23,18 @@ COMMON = {"r", "tm", "cpu", "processor", "family", "model", "stepping", "core", 
 
 def store(arguments):
     parser = Parser(prog="study/store", description="Stores a finished set of a clean tree in results/NAME, to be committed.")
-    parser.add_argument("set", nargs="?", metavar="DIR", help="its directory (the newest in results/local)")
+    parser.add_argument("set", nargs="?", type=directory, metavar="DIR", help="its directory (the newest in results/local)")
     parser.add_argument("name", nargs="?", metavar="NAME", help="(PROFILE-PROCESSOR)")
     options = parser.parse_args(arguments)
     need_modules()
-    folder = Path(options.set).absolute() if options.set else newest_local()
+    folder = options.set or newest_local()
     if not (folder / "set.json").exists():
         raise StudyError(f"{folder} holds no set (no set.json)")
     studyset = StudySet(folder)
     with locks.only_one(RESULTS), locks.only_one(folder):
         need_clean(studyset)
         need_whole(studyset)
-        name = options.name or f"{studyset.facts['profile']}-{short(studyset.facts['context']['cpu_model'])}"
+        name = options.name if options.name is not None else f"{studyset.facts['profile']}-{short(studyset.facts['context']['cpu_model'])}"
         _need_place(name)
         pictures = _build(studyset, name)
     _tell(folder, name, pictures)

@@ -10,8 +10,8 @@ from study.core import locks, profile as profiles
 from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
 from study.core.executor import program_of
 from study.core.main import need_modules, writable
-from study.core.options import Parser, positive
-from study.core.studyset import context_of, listed, select
+from study.core.options import Parser, directory, positive
+from study.core.studyset import context_of, listed, need_own, select
 
 DURATION, BUDGET, LONGEST = 20.0, 45.0, 1e6  # s
 OF_A_QUESTION = ("SCENE", "--error", "--deadline-us", "--step", "--duration", "--budget", "--json", "--plot")
@@ -27,10 +27,13 @@ def advise(arguments):
         raise StudyError(f"--plot {options.plot}: there is no such directory")
     if options.validate:
         _nothing_beside_validate(options)
-        from study.tools.advise.validate import validate
-        results = Path(options.results or DEFAULT / "validation").absolute()
+        from study.tools.advise.validate import BEGUN, validate
+        results = options.results or DEFAULT / "validation"
+        need_own(results, BEGUN)
         writable(results)
         return validate(options, ask, runner_of, results)
+    if options.results:
+        need_own(options.results)
     if not options.scene or options.error is None:
         raise StudyError("a SCENE and --error E are needed (see study/advise --help)")
     answer, _ = ask(options)
@@ -65,7 +68,7 @@ def ask(options, folder=None):
     inputs = {"scene": scene, "file": digest(ROOT / scene) if (ROOT / scene).is_file() else "",
               "error": question.error, "duration": question.duration, "deadline_us": question.deadline_us,
               "budget": question.budget, "step": question.step, "repeats": REPEATS}
-    folder = Path(folder or options.results or DEFAULT / _folder(inputs, names)).absolute()
+    folder = folder or options.results or DEFAULT / _folder(inputs, names)
     writable(folder)
     with locks.only_one(folder), locks.only_one_study(options.wait):
         variants, runner = runner_of(folder, inputs, names, known, question.deadline_us, options.json)
@@ -109,7 +112,7 @@ def _parser():
                         help=f"for pilots and timings ({BUDGET:g} s); what is left out then is said")
     parser.add_argument("--json", action="store_true", help="print everything as JSON (study/tools/advise/README.md)")
     parser.add_argument("--plot", metavar="FILE", help="draw the pilots and the choice (.svg or .png)")
-    parser.add_argument("--results", metavar="DIR",
+    parser.add_argument("--results", type=directory, metavar="DIR",
                         help="where raw files are kept (results/local/advice/, one folder a question)")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
     parser.add_argument("--validate", action="store_true", help="hold the advice against an exhaustive "

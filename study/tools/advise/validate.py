@@ -13,6 +13,7 @@ from study.tools.advise.runner import EXACT, REPEATS
 from study.tools.advise.settings import catalogue, serving
 
 LOOPS, ERRORS, DURATION = (1, 2, 10, 40), (1e-1, 1e-2, 1e-3, 1e-4), 5.0
+BEGUN = {".lock", "searched.csv", "validation.csv", *(f"n{count}" for count in LOOPS)}  # its folder
 LONGEST, SHORTEST, RATIO = 0.08, 5e-5, 2**-0.5  # steps of the search, s
 NEAR = 2.0        # settings this times the fastest one's time, by one implementation each, are timed with all
 MOST = 1.5        # times the best found that an advised run may take

@@ -1,4 +1,5 @@
 # Reads the CSV of `mbs simulate --trajectory`, however long: only the rows that are shown are kept.
+import os
 from collections import Counter
 from dataclasses import dataclass, field
 
@@ -8,6 +9,7 @@ from analysis.core.errors import StudyError
 
 CURVES = ("kinetic_energy", "potential_energy", "constraint_violation")
 NUMBERS = b"0123456789+-.eE,"
+LONGEST = 2**24  # bytes of a line: a hundred times what the largest scenes need
 START_TOLERANCE = 1e-3  # of the scene's extent: a start farther off is another scene's
 
 
@@ -26,8 +28,8 @@ def read(path, scene, frames):
     """About `frames` rows, equally spaced in the file, and its last. The constraint violation of a
     frame is the largest of all rows since the frame before. Raises StudyError."""
     try:
-        with open(path, "rb") as file:
-            columns = _header(path, file.readline())
+        with _open(path) as file:
+            columns = _header(path, _line(path, file))
             places, curves = _places(path, columns, scene)
             rows = _check_rows(path, file, len(columns))
             file.seek(0)
@@ -48,18 +50,36 @@ def read_outputs(path, scene, frames):
     """Motion.outputs from the CSV of `mbs simulate --output`, of the run that `read` read the trajectory
     of: their rows are at the same times. Raises StudyError."""
     try:
-        with open(path, "rb") as file:
-            columns = _header(path, file.readline())
+        with _open(path) as file:
+            columns = _header(path, _line(path, file))
             rows = _check_rows(path, file, len(columns))
             kept = set(_kept(rows, frames))
             file.seek(0)
             file.readline()
             table = numpy.array([_numbers(path, row, line, len(columns))
-                                 for row, line in enumerate(file) if row in kept])
+                                 for row, line in enumerate(_lines(path, file)) if row in kept])
     except OSError as error:
         raise StudyError(f"cannot read {path}: {error.strerror}") from error
     return {name: {column: table[:, place] for place, column in enumerate(columns)
                    if name in (column, column.rpartition(".")[0])} for name in scene.outputs}
+
+
+def _open(path):
+    """The file at `path`; StudyError if it is a device or a pipe, which may have no end and cannot be read twice."""
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise StudyError(f"{path} is no regular file")
+    return open(path, "rb")
+
+
+def _line(path, file):
+    line = file.readline(LONGEST + 1)
+    if len(line) > LONGEST:
+        raise StudyError(f"{path} is no trajectory: it has a line of more than {LONGEST} bytes")
+    return line
+
+
+def _lines(path, file):
+    return iter(lambda: _line(path, file), b"")
 
 
 def _header(path, line):
@@ -99,7 +119,7 @@ def _places(path, columns, scene):
 def _check_rows(path, file, columns):
     """The number of rows, all complete, all of finite numbers."""
     rows = 0
-    for rows, line in enumerate(file, 1):
+    for rows, line in enumerate(_lines(path, file), 1):
         if line.count(b",") != columns - 1:
             raise StudyError(f"{path}, line {rows + 1}: {line.count(b',') + 1} values, but the "
                              f"header has {columns} columns: is the file complete?")
@@ -125,7 +145,7 @@ def _kept_rows(path, file, kept, columns, places, curves):
     times, table = numpy.empty(len(kept)), numpy.empty((len(kept), len(places)))
     violation = numpy.zeros(len(kept))
     last, frame = -numpy.inf, 0
-    for row, line in enumerate(file):
+    for row, line in enumerate(_lines(path, file)):
         t = _numbers(path, row, line.split(b",", 1)[0], 1)[0]
         if t <= last:
             raise StudyError(f"{path}, line {row + 2}: the time {t:g} s does not come after "
