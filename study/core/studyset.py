@@ -108,6 +108,16 @@ def listed():
     return Registry(found["output"])
 
 
+def opened(folder):
+    """The StudySet in a folder; StudyError if it holds none, or one without parts."""
+    if not (folder / "set.json").exists():
+        raise StudyError(f"{folder} holds no set (no set.json)")
+    found = StudySet(folder)
+    if not found.facts["parts"]:
+        raise StudyError(f"{folder / 'set.json'} has no parts: it is damaged, or of a tool's records")
+    return found
+
+
 def need_own(folder, begun=BEGUN):
     """StudyError if a folder holds anything but a set, or one that was just begun: nothing of a user's is overwritten."""
     if not folder.is_dir() or (folder / "set.json").exists():
@@ -130,7 +140,7 @@ def start(folder, profile, only, chosen):
     text = (profiles.FOLDER / f"{profile.name}.yaml").read_text()
     kept = folder / "profile.yaml"
     if (folder / "set.json").exists():
-        known = StudySet(folder)
+        known = opened(folder)
         old = known.facts
         need_same(old["context"], context, str(folder))
         known.need_programs([*old["programs"]])
