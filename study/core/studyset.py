@@ -185,14 +185,25 @@ def finish(studyset, part, column, names):
 
 
 def reopen(studyset, columns):
-    """Makes the workflow run columns again of which a record is missing; StudyError naming one that was changed.
-    `columns`: {part: names}."""
+    """Makes the workflow run columns again of which a record is missing, and draw pages that are missing or empty;
+    StudyError naming a record that was changed. `columns`: {part: names}."""
+    index = studyset.folder / "index.html"
+    if _empty(index):
+        index.unlink(missing_ok=True)
     for part, names in columns.items():
+        page = studyset.folder / f"{part}.html"
+        if _empty(page):
+            for path in (studyset.page(part), index):
+                path.unlink(missing_ok=True)
         for column in names:
             stamp = studyset.stamp(part, column)
             if not stamp.exists() or _missing(studyset, stamp):
-                for path in (stamp, studyset.page(part), studyset.folder / f"{part}.html", studyset.folder / "index.html"):
+                for path in (stamp, studyset.page(part), page, index):
                     path.unlink(missing_ok=True)  # the workflow runs nothing whose results are all there
+
+
+def _empty(page):
+    return not page.exists() or page.stat().st_size == 0
 
 
 def need_records(studyset):

@@ -522,6 +522,21 @@ def test_a_column_is_opened_again_only_where_a_record_is_missing(tmp_path):
             check(known)
 
 
+@pytest.mark.parametrize("damage", [Path.unlink, lambda path: path.write_text("")])
+def test_a_page_that_is_missing_or_empty_is_drawn_again(tmp_path, damage):
+    known = studyset.StudySet(tmp_path)
+    for name in (".done/one.page", ".done/two.page", "one.html", "two.html", "index.html"):
+        write_text(tmp_path / name, "page")
+    studyset.reopen(known, {"one": [], "two": []})
+    assert known.page("one").exists() and known.page("two").exists() and (tmp_path / "index.html").exists()
+    damage(tmp_path / "one.html")
+    studyset.reopen(known, {"one": [], "two": []})
+    assert not known.page("one").exists() and known.page("two").exists() and not (tmp_path / "index.html").exists()
+    write_text(tmp_path / "index.html", "")
+    studyset.reopen(known, {"two": []})
+    assert not (tmp_path / "index.html").exists() and known.page("two").exists()
+
+
 REGISTRY = Registry({"implementations": [
     {"folder": "one", "available": True, "library": "Lib", "variants": [{"name": "one/a"}, {"name": "one/b", "dense": True}]},
     {"folder": "own", "available": True, "library": "none", "variants": [{"name": "own/c", "settings": ["kept"]}]},
