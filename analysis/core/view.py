@@ -7,12 +7,17 @@ import yaml
 
 from analysis.core.errors import StudyError
 from analysis.core.files import read_object
+from analysis.core.parts import parts
 from analysis.core.registry import Registry
 
 
 def facts_of(folder):
     """set.json: profile, selection, parts, date, context of the usual environment, digests of the programs."""
-    return read_object(folder / "set.json", profile=str, only=list, parts=list, programs=dict, context=dict, date=str)
+    found = read_object(folder / "set.json", profile=str, only=list, parts=list, programs=dict, context=dict, date=str)
+    unknown = [part for part in found["parts"] if part not in [*parts()]]
+    if unknown:
+        raise StudyError(f"{folder / 'set.json'} is damaged (parts: {unknown[0]!r} is none of {', '.join(parts())})")
+    return found
 
 
 def registry_of(folder):

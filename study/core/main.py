@@ -16,7 +16,7 @@ from study.core import child, locks, profile as profiles
 from study.core.front import Display, run_workflow
 from study.core.options import Parser, directory
 from study.core.progress import duration
-from study.core.studyset import StudySet, listed, need_own, need_records, reopen, select, start
+from study.core.studyset import StudySet, listed, need_own, need_records, opened, reopen, select, start
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
            "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
@@ -103,10 +103,8 @@ def figures(arguments):
     given = parser.parse_args(arguments).set
     need_modules()
     folder = given or newest()
-    if not (folder / "set.json").exists():
-        raise StudyError(f"{folder} holds no set (no set.json)")
+    studyset = opened(folder)
     writable(folder)
-    studyset = StudySet(folder)
     with locks.only_one(folder):
         need_records(studyset)
         _ = studyset.registry  # StudyError if it is damaged

@@ -108,6 +108,16 @@ def listed():
     return Registry(found["output"])
 
 
+def opened(folder):
+    """The StudySet in a folder; StudyError if it holds none, or one without parts."""
+    if not (folder / "set.json").exists():
+        raise StudyError(f"{folder} holds no set (no set.json)")
+    found = StudySet(folder)
+    if not found.facts["parts"]:
+        raise StudyError(f"{folder / 'set.json'} has no parts: it is damaged, or of a tool's records")
+    return found
+
+
 def need_own(folder, begun=BEGUN):
     """StudyError if a folder holds anything but a set, or one that was just begun: nothing of a user's is overwritten."""
     if not folder.is_dir() or (folder / "set.json").exists():
@@ -130,7 +140,7 @@ def start(folder, profile, only, chosen):
     text = (profiles.FOLDER / f"{profile.name}.yaml").read_text()
     kept = folder / "profile.yaml"
     if (folder / "set.json").exists():
-        known = StudySet(folder)
+        known = opened(folder)
         old = known.facts
         need_same(old["context"], context, str(folder))
         known.need_programs([*old["programs"]])
@@ -175,14 +185,25 @@ def finish(studyset, part, column, names):
 
 
 def reopen(studyset, columns):
-    """Makes the workflow run columns again of which a record is missing; StudyError naming one that was changed.
-    `columns`: {part: names}."""
+    """Makes the workflow run columns again of which a record is missing, and draw pages that are missing or empty;
+    StudyError naming a record that was changed. `columns`: {part: names}."""
+    index = studyset.folder / "index.html"
+    if _empty(index):
+        index.unlink(missing_ok=True)
     for part, names in columns.items():
+        page = studyset.folder / f"{part}.html"
+        if _empty(page):
+            for path in (studyset.page(part), index):
+                path.unlink(missing_ok=True)
         for column in names:
             stamp = studyset.stamp(part, column)
             if not stamp.exists() or _missing(studyset, stamp):
-                for path in (stamp, studyset.page(part), studyset.folder / f"{part}.html", studyset.folder / "index.html"):
+                for path in (stamp, studyset.page(part), page, index):
                     path.unlink(missing_ok=True)  # the workflow runs nothing whose results are all there
+
+
+def _empty(page):
+    return not page.exists() or page.stat().st_size == 0
 
 
 def need_records(studyset):

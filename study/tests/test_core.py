@@ -408,6 +408,18 @@ def test_a_set_of_another_shape_is_named(tmp_path, key):
             facts_of(tmp_path)
 
 
+@pytest.mark.parametrize("parts, words", [(["foo"], "parts: 'foo' is none of"), ([1], "parts: 1 is none"),
+                                          ([["map"]], "is none"), ([], "has no parts")])
+@pytest.mark.parametrize("command", ["figures", "store", "compare", "add"])
+def test_a_set_of_parts_that_are_none_is_named_before_anything_else(tmp_path, monkeypatch, capsys, command, parts, words):
+    monkeypatch.setattr(child, "end_on_signals", lambda: None)
+    write_json(tmp_path / "set.json", FACTS | {"parts": parts})
+    folder = str(tmp_path)
+    assert main.main({"compare": [command, folder, folder], "add": [command, "klu", "--to", folder]}.get(command, [command, folder])) == 2
+    told = capsys.readouterr()
+    assert told.out == "" and "set.json" in told.err and words in told.err and told.err.count("\n") == 1
+
+
 @pytest.mark.parametrize("content", [b"", b"[]", b"3", b"\xff\xfe", b"[" * 100000, b'{"a": '])
 def test_what_is_no_object_is_named(tmp_path, content):
     (tmp_path / "one.json").write_bytes(content)
@@ -511,6 +523,21 @@ def test_a_column_is_opened_again_only_where_a_record_is_missing(tmp_path):
     for check in (studyset.need_records, lambda one: studyset.reopen(one, {"part": ["a"]})):
         with pytest.raises(StudyError, match="is not the one that was measured"):
             check(known)
+
+
+@pytest.mark.parametrize("damage", [Path.unlink, lambda path: path.write_text("")])
+def test_a_page_that_is_missing_or_empty_is_drawn_again(tmp_path, damage):
+    known = studyset.StudySet(tmp_path)
+    for name in (".done/one.page", ".done/two.page", "one.html", "two.html", "index.html"):
+        write_text(tmp_path / name, "page")
+    studyset.reopen(known, {"one": [], "two": []})
+    assert known.page("one").exists() and known.page("two").exists() and (tmp_path / "index.html").exists()
+    damage(tmp_path / "one.html")
+    studyset.reopen(known, {"one": [], "two": []})
+    assert not known.page("one").exists() and known.page("two").exists() and not (tmp_path / "index.html").exists()
+    write_text(tmp_path / "index.html", "")
+    studyset.reopen(known, {"two": []})
+    assert not (tmp_path / "index.html").exists() and known.page("two").exists()
 
 
 REGISTRY = Registry({"implementations": [

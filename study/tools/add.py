@@ -18,7 +18,7 @@ from study.core.executor import fingerprint, program_of
 from study.core.main import need_modules, set_up, writable
 from study.core.options import Parser, directory
 from study.core.progress import duration
-from study.core.studyset import StudySet, context_of, listed, select
+from study.core.studyset import StudySet, context_of, listed, opened, select
 from study.core.timing import measure
 
 SHARE = 0.2     # of the time that the set's map had
@@ -49,8 +49,7 @@ def add(arguments):
     options = parser.parse_args(arguments)
     need_modules()
     folder = options.to or newest()
-    if not (folder / "set.json").exists():
-        raise StudyError(f"{folder} holds no set (no set.json)")
+    opened(folder)
     writable(folder)
     with locks.only_one(folder), locks.only_one_study(options.wait):
         if "MBS_PROGRAM" not in os.environ:

@@ -1,9 +1,9 @@
 # study/compare A B: do two sets give the same map? The libraries and all, own code included, apart.
 from analysis.core import schema
 from analysis.core.errors import StudyError
-from analysis.core.files import read_json
 from study.core.main import need_modules
 from study.core.options import Parser, directory
+from study.core.studyset import opened
 
 LAYERS = {"libraries": "Libraries", "all": "All, own code included"}
 
@@ -15,18 +15,17 @@ def compare(arguments):
         parser.add_argument(name, type=directory, metavar=name[0].upper() + name[1:], help="directory of a set")
     options = parser.parse_args(arguments)
     need_modules()
-    tables = [cells_of(folder) for folder in (options.first, options.second)]
+    sets = [opened(folder) for folder in (options.first, options.second)]
+    tables = [cells_of(studyset.folder) for studyset in sets]
     print("\n".join(line for layer in LAYERS for line in report(layer, *tables)))
     for what in ("machine", "commit"):
-        values = [str(read_json(folder / "set.json")["context"].get(what)) for folder in (options.first, options.second)]
+        values = [str(studyset.facts["context"].get(what)) for studyset in sets]
         if values[0] != values[1]:
             print(f"the sets are of different {what}s: {values[0]} and {values[1]}")
     return 0
 
 
 def cells_of(folder):
-    if not (folder / "set.json").exists():
-        raise StudyError(f"{folder} holds no set (no set.json)")
     if not (folder / "map" / "cells.csv").exists():
         raise StudyError(f"{folder} has no map: add it with study/run --part map --results {folder}")
     return schema.read_table(folder, "map", "cells")

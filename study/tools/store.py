@@ -12,7 +12,7 @@ from analysis.core.parts import parts
 from study.core import locks
 from study.core.main import columns_of, need_modules
 from study.core.options import Parser, directory
-from study.core.studyset import StudySet
+from study.core.studyset import StudySet, opened
 
 RESULTS = ROOT / "results"
 MOST = 3  # sets
@@ -28,9 +28,7 @@ def store(arguments):
     options = parser.parse_args(arguments)
     need_modules()
     folder = options.set or newest_local()
-    if not (folder / "set.json").exists():
-        raise StudyError(f"{folder} holds no set (no set.json)")
-    studyset = StudySet(folder)
+    studyset = opened(folder)
     with locks.only_one(RESULTS), locks.only_one(folder):
         need_clean(studyset)
         need_whole(studyset)
