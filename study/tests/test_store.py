@@ -110,7 +110,7 @@ DAMAGES = {
     "is not as it was written": change_table,
     "its tables are not those of its records": lambda folder: (folder / PART / "tables.json").unlink(),
     "lacks stability: a stored set has all parts":
-        lambda folder: edit(folder / "set.json", lambda found: found.update(parts=[])),
+        lambda folder: edit(folder / "set.json", lambda found: found.update(parts=["extremes"])),
     "no set.json": lambda folder: (folder / "set.json").unlink(),
 }
 
