@@ -136,7 +136,8 @@ def cells(folder, *rows):
     found["cells"] = pandas.DataFrame([{"scene": scene, "layer": "libraries", "winner": winner, "second": "z", "equivalent": same,
                                         "decided": decided, "settled": settled} for scene, winner, same, decided, settled in rows])
     schema.write_tables(folder, "map", found, [])
-    write_json(folder / "set.json", {"context": {"machine": "m", "commit": "c"}})
+    write_json(folder / "set.json", {"profile": "smoke", "only": [], "parts": ["map"], "programs": {}, "date": "2020-01-01 00:00",
+                                     "context": {"machine": "m", "commit": "c"}})
     return folder
 
 
