@@ -8,7 +8,6 @@
 #include "run/initial_state.hpp"
 #include "run/settings.hpp"
 #include "support/gtest_name.hpp"
-#include "support/left_to_another.hpp"
 #include "support/term_models.hpp"
 
 namespace mbs {
@@ -31,7 +30,6 @@ TEST_P(SettingsTerms, Agree) {
     const ReferenceRun& reference =
         suited ? test::kept_reference(setting.name, scene, settings) : none;
     const Verdict verdict = check_implementation(scene, variant, settings, reference);
-    if (test::is_left_to_another(verdict, variant, scene.model, settings)) continue;
     const bool served = why_not_served(variant.variant->serves.terms, scene.model).empty();
     EXPECT_EQ(verdict.verdict, suited && served ? "agrees" : "unsupported") << verdict.reason;
   }

@@ -53,6 +53,20 @@ class IndexCheck {
   void different(int a, int b, const std::string& what) const {
     if (a == b) fail(what + " has the same point at both ends");
   }
+  /// The ends of a spring or force law.
+  template <class Line>
+  void line(const Line& one, const std::string& what) const {
+    points({one.a, one.b}, what);
+    different(one.a, one.b, what);
+  }
+  /// The two directions and the axis of a torsion spring or torque law.
+  template <class Corner>
+  void corner(const Corner& one, const std::string& what) const {
+    points({one.a, one.b, one.c, one.d}, what);
+    axis(one.axis, what);
+    different(one.a, one.b, what);
+    different(one.c, one.d, what);
+  }
 
  private:
   const ModelData& data_;
@@ -102,16 +116,12 @@ void check_laws(const ModelData& data) {
   const IndexCheck check(data);
   for (const ForceLaw& law : data.force_laws) {
     const std::string what = "force law '" + law.name + "'";
-    check.points({law.a, law.b}, what);
-    check.different(law.a, law.b, what);
+    check.line(law, what);
     check_law(law.law, what);
   }
   for (const TorqueLaw& law : data.torque_laws) {
     const std::string what = "torque law '" + law.name + "'";
-    check.points({law.a, law.b, law.c, law.d}, what);
-    check.axis(law.axis, what);
-    check.different(law.a, law.b, what);
-    check.different(law.c, law.d, what);
+    check.corner(law, what);
     check_law(law.law, what);
   }
 }
@@ -120,18 +130,14 @@ void check_forces(const ModelData& data) {
   const IndexCheck check(data);
   for (const Spring& spring : data.springs) {
     const std::string what = "spring '" + spring.name + "'";
-    check.points({spring.a, spring.b}, what);
-    check.different(spring.a, spring.b, what);
+    check.line(spring, what);
     for (const double value : {spring.stiffness, spring.damping, spring.length}) {
       require_not_negative(value, what);
     }
   }
   for (const TorsionSpring& spring : data.torsion_springs) {
     const std::string what = "torsion spring '" + spring.name + "'";
-    check.points({spring.a, spring.b, spring.c, spring.d}, what);
-    check.axis(spring.axis, what);
-    check.different(spring.a, spring.b, what);
-    check.different(spring.c, spring.d, what);
+    check.corner(spring, what);
     for (const double value : {spring.stiffness, spring.damping}) require_not_negative(value, what);
     require_finite(spring.angle, what);
   }
