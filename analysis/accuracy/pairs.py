@@ -36,7 +36,7 @@ def table(scene, made, measured):
 
 
 def _row(rows, made, both):
-    named = rows.assign(implementation=rows.setting, environment="")  # processes of one number follow each other
+    named = timing.apart(rows.assign(implementation=rows.setting))
     lost = rows[rows.status != "ok"]
     ratio = timing.ratio(named, both[1], both[0])
     why = "" if lost.empty or ratio.value > 0 else f"{lost.iloc[0].setting}: {lost.iloc[0].status}: {lost.iloc[0].reason}"

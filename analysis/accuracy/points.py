@@ -20,12 +20,6 @@ def setting_of(record):
     return record.role.partition("/")[2].replace(".", " ")
 
 
-def option(record, name):
-    """The value of an option of its cell."""
-    words = list(map(str, record.cell["settings"]))
-    return float(words[words.index(name) + 1])
-
-
 def runs(records, subject, known):
     """A row for each untimed run ("run/SETTING"). `known`: the subject's Reference, or None where it has none."""
     rows = []
@@ -34,7 +28,7 @@ def runs(records, subject, known):
             continue
         status, reason = of_run(record)
         row = {"scene": record.cell["scene"], "implementation": record.cell["contenders"][0], "setting": setting_of(record),
-               "step": option(record, "--step"), "duration": option(record, "--duration"), "status": status,
+               "step": record.option("--step"), "duration": record.option("--duration"), "status": status,
                "reason": reason, "seconds": record.seconds, "record": record.name}
         found = record.output
         if record.done and found["steps"]:
@@ -55,7 +49,7 @@ def timed(records):
         [one for one in records if one.role.partition("/")[0] in (*ROLES, "pair")])}
     found = timing.processes(chosen.values())
     found["implementation"] = [name.partition("+")[0] for name in found.implementation]  # of another pair: the anchor
-    for name, value in (("setting", setting_of), ("step", lambda record: option(record, "--step")),
+    for name, value in (("setting", setting_of), ("step", lambda record: record.option("--step")),
                         ("role", lambda record: record.role.partition("/")[0])):
         found[name] = [value(chosen[one]) for one in found.record]
     for name in ("passes", "steps"):  # of which nobody has one
@@ -131,9 +125,9 @@ def rounds(table, measured):
     times, rows = _processes(measured, ("time",)), []
     for point in table[table.time_from == ROUNDS].to_dict("records"):
         for one in times[_key(point)]:
-            row = {"implementation": label(point), "environment": "", "process": one["process"], "status": one["status"]}
-            rows.append(row | {"samples": tuple(_seconds(one, point))} if one["status"] == "ok" else row)
-    return pandas.DataFrame(rows, columns=["implementation", "environment", "process", "status", "samples"])
+            row = {"implementation": label(point), "process": one["process"], "status": one["status"]}
+            rows.append(row | {"seconds": float(numpy.median(_seconds(one, point)))} if one["status"] == "ok" else row)
+    return timing.apart(pandas.DataFrame(rows, columns=["implementation", "process", "status", "seconds"]), "seconds")
 
 
 def label(point):

@@ -29,8 +29,7 @@ def build(records, view):
 
 def reference_of(subject, records):
     """(the Reference of a subject or None, its row)"""
-    finest = sorted((record for record in records if record.role == "reference"),
-                    key=lambda record: -float(record.cell["settings"][record.cell["settings"].index("--step") + 1]))
+    finest = sorted((record for record in records if record.role == "reference"), key=lambda record: -record.option("--step"))
     row = {"subject": subject.name, "title": subject.title, "unit": subject.unit, "duration": subject.duration,
            "record": " ".join(record.name for record in finest or records[:1])}
     try:

@@ -6,6 +6,7 @@
 import io
 import json
 import lzma
+import math
 import re
 import tarfile
 from dataclasses import dataclass, field
@@ -48,6 +49,20 @@ class Record:
     def done(self):
         return self.status == RUN_ENDED
 
+    def option(self, name):
+        """The number behind an option of its cell; NaN without one."""
+        words = [str(word) for word in self.cell["settings"]]
+        return float(words[words.index(name) + 1]) if name in words else math.nan
+
+    @property
+    def verdicts(self):
+        """{contender: (verdict, reason)} of a check: the gate's, or how the process ended without one."""
+        rows = {row["implementation"]: row for row in self.output.get("rows", []) if row["scene"] == self.cell["scene"]}
+        none = {"verdict": "disagrees", "reason": "the check gave no verdict"} if self.done else {
+            "verdict": self.status, "reason": f"the check: {self.reason}"}
+        found = {name: rows.get(name.partition("+")[0], none) for name in self.cell["contenders"]}
+        return {name: (row["verdict"], row["reason"]) for name, row in found.items()}
+
 
 def to_text(data):
     line = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
@@ -79,6 +94,14 @@ def read(path, name):
     except OSError as error:
         raise StudyError(f"cannot read {path}: {error.strerror}") from error
     return from_text(text, name, path)
+
+
+def need_same_origin(record, context, where):
+    """StudyError if a record is of another machine or commit than the set's `context`."""
+    for key in ("machine", "commit"):
+        if record.context.get(key, context.get(key)) != context.get(key):
+            raise StudyError(f"{where}: {record.name} is of another {key} than its set ({record.context[key]} instead of "
+                             f"{context.get(key)}): remove it")
 
 
 def files_of(folder, part):

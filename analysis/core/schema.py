@@ -86,7 +86,9 @@ def need_same_records(folder, part, records):
 
 def read_table(folder, part, name):
     """A table of a set; StudyError if it is not as it was written."""
-    path = Path(folder) / part / f"{name}.csv"
+    path, kept = Path(folder) / part / f"{name}.csv", Path(folder) / part / DIGESTS
+    if not kept.exists():
+        raise StudyError(f"{kept} is missing: study/figures makes the tables again from the records")
     need_unchanged(folder, part)
     try:
         frame = pandas.read_csv(path, dtype=str, keep_default_na=False)

@@ -25,6 +25,8 @@ def write_part(folder, part, started=lambda: None):
     schema.need_unchanged(folder, part)
     view, found = View(folder, part), records.read_part(folder, part)
     schema.need_same_records(folder, part, found)
+    for record in found:
+        records.need_same_origin(record, view.context, f"{folder}/raw/{part}")
     tables = schema.write_tables(folder, part, _module(part, "tables").build(found, view), found)
     figures = _saved(folder / part / "figures", _module(part, "figures").draw(tables, view), started)
     known = _module(part, "page").context(tables, view)

@@ -51,9 +51,7 @@ def counted(records):
 
 def _asked(record):
     """What records of one group and of its smaller ones have in common."""
-    words = list(map(str, record.cell["settings"]))
-    step = words[words.index("--step") + 1] if "--step" in words else ""
-    return record.cell["scene"], record.cell["environment"], record.role.removesuffix(LEFT_OUT), step
+    return record.cell["scene"], record.cell["environment"], record.role.removesuffix(LEFT_OUT), str(record.option("--step"))
 
 
 def _replaced(record, group, lost):
@@ -87,6 +85,12 @@ def _rows(record):
             yield counters | row | {"status": "ok", "reason": "", "step_us": float(numpy.median(samples)),
                                     "low_us": min(samples), "high_us": max(samples), "samples": tuple(samples),
                                     "clock_us": float(numpy.median(found["stretch_us"])) / found["steps"]}
+
+
+def apart(rows, column="step_us"):
+    """`rows` for ratios of processes that follow each other: their samples are of no common turns, so that `column`
+    (of a process, its median) is compared. Processes of one number belong together."""
+    return rows.assign(environment="", samples=[(one,) for one in rows[column]])
 
 
 @dataclass(frozen=True)

@@ -96,9 +96,11 @@ def native(engines, rounds):
 
 
 def samples(rounds):
-    """Rows as analysis/core/timing.py has them, a process a round."""
-    done = finished(rounds.assign(error=0.0))
-    return pandas.DataFrame({"implementation": [key(row) for row in done.to_dict("records")], "environment": "",
+    """Rows as analysis/core/timing.py has them, a process a round. Who failed in one round has failed."""
+    ended = rounds.assign(error=0.0, key=[key(row) for row in rounds.to_dict("records")])
+    done = finished(ended)
+    done = done[~done.key.isin(set(ended.key[~ended.index.isin(done.index) & (ended.status != "dropped")]))]
+    return pandas.DataFrame({"implementation": done.key.to_list(), "environment": "",
                              "process": done["round"].to_list(), "status": "ok", "step_us": done.time.to_list(),
                              "samples": [(time,) for time in done.time]})
 

@@ -59,19 +59,19 @@ def places(sizes):
 
 
 def build(records, settings, registry):
-    """{"ways": outcomes over the region, "ways_cost": time of a step over that of PLAIN}"""
+    """{"ways": outcomes over the region, "ways_cost": time of a step over that of the same variant by PLAIN}"""
     titles = {setting.file_name: title for title, setting in WAYS.items()}
     known = {place.name: place for place in places(settings["loops"]["ways"])}
     regions, times = [], []
     for record in records:
-        role, scene = record.role.removeprefix("cost-"), judge.scene_of(record)
+        role, scene = record.role.removeprefix("cost-").removeprefix("beside-"), judge.scene_of(record)
         if role not in titles or scene not in ("", *known) and record.role == role:
             raise StudyError(f"{record.name}: its cell is none of the ways out: the set is of another state of them")
         name = record.cell["contenders"][0]
         own = {"way": titles[role], "folder": name.split("/")[0], "implementation": name}
         order = list(WAYS).index(titles[role]), list(registry.variants).index(name)
         if record.role != role:
-            times.append((order, own | _time(record)))
+            times.append((order, own | {"beside": record.role.startswith("beside-")} | _time(record)))
         else:
             regions.append(((*order, list(known).index(scene) if scene else 0), own | _outcome(record, known.get(scene))))
     regions, times = (pandas.DataFrame([row for _, row in sorted(found, key=lambda one: one[0])]) for found in (regions, times))
@@ -101,12 +101,12 @@ def _time(record):
 
 
 def _costs(times):
-    for (way, folder, loops), own in times.groupby(["way", "folder", "loops"], sort=False):
-        rows = times[(times.folder == folder) & (times.loops == loops)]
+    for (way, name, loops), own in times[~times.beside].groupby(["way", "implementation", "loops"], sort=False):
+        rows = times[(times.implementation == name) & (times.loops == loops)]
         found = timing.ratio(rows.assign(implementation=rows.way), way, PLAIN)
         lost = own[own.status != "ok"]
         first = (lost if len(lost) else own).iloc[0]
-        yield {"way": way, "folder": folder, "implementation": own.implementation.iloc[0], "loops": loops,
+        yield {"way": way, "folder": first.folder, "implementation": name, "loops": loops,
                "processes": len(own) - len(lost), "ratio": found.value, "low": found.low, "high": found.high,
                "passes_per_step": median(own.passes_per_step), "status": first.ended, "reason": first.reason,
                "record": " ".join(own.record)}

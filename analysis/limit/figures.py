@@ -50,7 +50,7 @@ def over_size(bounds, rows, look, own=()):
         missing(times, "no size was timed")
         missing(multiples, "")
         return figure
-    bounds = bounds.sort_values("variables")
+    bounds = bounds[bounds.status == "done"].sort_values("variables")
     for column, (label, dash) in BOUNDS.items():
         times.plot(bounds.variables, bounds[column] / 1e3, dash, color=GREY, label=label)
     if len(bounds):

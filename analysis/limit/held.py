@@ -56,7 +56,10 @@ def _in(rows, key, values, other=None, among=()):
 
 
 def _count(leads, kind, dimension):
-    return _in(leads, "kind", [kind], "dimension", [dimension]).scene.nunique() if len(leads) else 0
+    """How many scenes there are; one that could not be described is counted everywhere."""
+    if leads.empty:
+        return 0
+    return leads[(leads.kind == kind) & (leads.dimension.isin([dimension]) | leads.dimension.isna())].scene.nunique()
 
 
 def _fastest(rows, key, column, least):

@@ -18,8 +18,8 @@ def build(records, view):
         by_role.setdefault(record.role.removesuffix(timing.LEFT_OUT).removesuffix(timing.ALONE), []).append(record)
     order = {name: place for place, name in enumerate([LIMIT, *registry.variants])}
     about = {record.cell["scene"]: record.output for record in by_role.get("about", []) if record.done}
-    found = {"bounds": [row | {"record": record.name} for record in by_role.get("bounds", []) if record.done
-                        for row in record.output["rows"]],
+    found = {"bounds": [row | {"status": record.status, "reason": record.reason, "record": record.name}
+                        for record in by_role.get("bounds", []) for row in record.output.get("rows", [{}])],
              "steps": [], "scenes": [], "leads": [], "batches": _batches(by_role.get("batch", []))}
     for role in FORMS:
         said = _verdicts(by_role.get(f"{role}-gate", []))
@@ -53,11 +53,7 @@ def _by_scene(records):
 
 def _verdicts(records):
     """{(scene, implementation): (verdict, reason)} of the gate."""
-    found = {}
-    for record in records:
-        row = record.output["rows"][0] if record.done else {"verdict": record.status, "reason": record.reason}
-        found[record.cell["scene"], record.cell["contenders"][0]] = row["verdict"], row["reason"]
-    return found
+    return {(record.cell["scene"], name): found for record in records for name, found in record.verdicts.items()}
 
 
 def _cells(rows, scene, verdicts):
@@ -159,9 +155,9 @@ def _batches(records):
 
 
 def _batch(record):
-    cell, words = record.cell, record.cell["settings"]
+    cell = record.cell
     for name in cell["contenders"]:
-        row = {"scene": cell["scene"], "sets": int(words[words.index("--sets") + 1]), "implementation": name, "environment": "",
+        row = {"scene": cell["scene"], "sets": int(record.option("--sets")), "implementation": name, "environment": "",
                "process": cell["number"], "status": record.status, "reason": record.reason, "record": record.name}
         found = record.output.get("rows", {}).get(f"{name}/{cell['scene']}/batch", {})
         if record.done and (found.get("error_occurred") or not found):

@@ -83,7 +83,7 @@ class Results:
         """Rows of `variant` in several builds. Their processes alternate: those of one number belong together."""
         rows = self.tidy[(self.tidy.kind == "builds") & (self.tidy.status == "ok")]
         rows = rows[rows.folder + "/" + rows.variant == variant]
-        return rows.assign(environment="", samples=[(one,) for one in rows.step_us])
+        return timing.apart(rows)
 
     def usual(self, variant):
         """The pair that a variant is ranked on."""

@@ -53,13 +53,9 @@ def _common(row, kind):
 def _rejected(records):
     """A row for each verdict of the gate that is not "agrees", and for each gate that ended without one."""
     for one, cell in ((one, one.cell) for one in records if one.role == "gate"):
-        found = {row["implementation"]: row for row in one.output.get("rows", []) if row["scene"] == cell["scene"]}
-        for name in cell["contenders"]:
-            row = found.get(name.partition("+")[0])
-            if one.done and row and row["verdict"] == "agrees" or not one.done and len(cell["contenders"]) > 1:
+        for name, (status, reason) in one.verdicts.items():
+            if status == "agrees" or not one.done and len(cell["contenders"]) > 1:
                 continue  # one by one they are checked again
-            status, reason = (row["verdict"], row["reason"]) if row else (
-                ("disagrees", "the check gave no verdict") if one.done else (one.status, f"the check {one.reason}"))
             yield {"scene": cell["scene"], "implementation": name, "environment": cell["environment"], "status": status,
                    "reason": reason, "record": one.name}
 

@@ -32,7 +32,7 @@ def build(records, view):
             if record.role == "gate":
                 found["gate"] += _verdicts(problem, record)
             else:
-                runs.setdefault(problem.name, {})[record.cell["contenders"][0], _option(record, "--step")] = record
+                runs.setdefault(problem.name, {})[record.cell["contenders"][0], record.option("--step")] = record
     for problem in listed.values():
         found["problems"] += problem_rows(problem, runs.get(problem.name, {}))
         found["convergence"] += convergence_rows(problem, runs.get(problem.name, {}))
@@ -43,17 +43,10 @@ def build(records, view):
     return {name: pandas.DataFrame(rows) for name, rows in found.items()}
 
 
-def _option(record, name):
-    words = record.cell["settings"]
-    return float(words[words.index(name) + 1])
-
-
 def _verdicts(problem, record):
     """One row a contender."""
-    rows = {row["implementation"]: row for row in record.output.get("rows", [])}
-    none = {"verdict": record.status, "reason": record.reason}
-    return [{"problem": problem.name, "implementation": name, "record": record.name}
-            | {key: rows.get(name, none)[key] for key in none} for name in record.cell["contenders"]]
+    return [{"problem": problem.name, "implementation": name, "verdict": verdict, "reason": reason, "record": record.name}
+            for name, (verdict, reason) in record.verdicts.items()]
 
 
 def problem_rows(problem, runs):
@@ -145,7 +138,7 @@ def modelling_rows(records):
         rows = timed[(timed.implementation == name) & (timed.loops == loops)]
         mine, base = rows[rows.case == case], cases[case].base
         good, wrong = mine[mine.status == "ok"], mine[mine.status != "ok"]
-        by_case = rows.assign(implementation=rows.case)  # cases are compared as contenders are elsewhere
+        by_case = timing.apart(rows.assign(implementation=rows.case))  # cases are compared as contenders are elsewhere
         cost = timing.ratio(by_case, case, base) if case != base else timing.Ratio(1.0, 1.0, 1.0)
         row = {"implementation": name, "loops": loops, "case": case, "piece": cases[case].piece, "base": base,
                "status": status, "reason": reason, "rounds": len(good), "step_us": median(good.step_us),

@@ -29,7 +29,8 @@ void add_options(CLI::App& app, BenchRequest& request, StepOptions& step) {
   app.add_option("scenes", request.scenes, "scenes (default: four-bar:10 four-bar:40)");
   app.add_option("--implementation", request.implementations,
                  "folder or folder/variant, repeatable (default: all but examples, and the control "
-                 "null/null that does nothing)");
+                 "null/null that does nothing)")
+      ->allow_extra_args(false);
   step.add_to(app);
   app.add_option("--steps", request.steps,
                  "steps of the stretch (default: 800, fewer above 400 variables or to be centred)");
@@ -75,7 +76,7 @@ void print_help(const CLI::App& app) {
 
 /// Operations and batches, each row on its own.
 int run_benchmarks(const std::vector<PlannedCell>& cells, const BenchRequest& request,
-                   const BenchOutput& output) {
+                   BenchOutput& output) {
   redirect_benchmark_out(output.path());
   OperationRows operations;
   BatchRows batches;
@@ -96,7 +97,7 @@ int run_cells(const std::vector<PlannedCell>& cells, const BenchRequest& request
   for (const std::string& scene : request.scenes) {
     require_not_scene("--benchmark_out", flags.out, scene);
   }
-  const BenchOutput output(flags.out);
+  BenchOutput output(flags.out);
   for (const auto& [key, value] : environment_record()) benchmark::AddCustomContext(key, value);
   if (request.operations || request.batch) return run_benchmarks(cells, request, output);
   return time_steps(cells, request, flags, output);

@@ -33,7 +33,10 @@ bool is_given(int argc, char** argv, const std::string& name) {
   });
 }
 
-void check_flags() {
+void check_flags(bool out) {
+  if (out && benchmark::FLAGS_benchmark_out.empty()) {
+    throw UsageError("--benchmark_out= names no file");
+  }
   if (benchmark::FLAGS_benchmark_out_format != "json") {
     throw UsageError(fmt::format("--benchmark_out_format={}: results are written as json only",
                                  benchmark::FLAGS_benchmark_out_format));
@@ -55,6 +58,7 @@ BenchFlags take_benchmark_flags(int& argc, char** argv) {
   BenchFlags flags;
   const bool min_time = is_given(argc, argv, "benchmark_min_time");
   const bool repetitions = is_given(argc, argv, "benchmark_repetitions");
+  const bool out = is_given(argc, argv, "benchmark_out");
   benchmark::Initialize(&argc, argv, [] {
     // Help never comes here; for a wrong value the library prints its usage and exits with status
     // 0.
@@ -62,7 +66,7 @@ BenchFlags take_benchmark_flags(int& argc, char** argv) {
         "--benchmark_format and --benchmark_out_format are one of console, json, csv; "
         "--benchmark_time_unit is one of ns, us, ms, s");
   });
-  check_flags();
+  check_flags(out);
   flags.filter = benchmark::GetBenchmarkFilter();
   flags.out = benchmark::FLAGS_benchmark_out;
   flags.format = benchmark::FLAGS_benchmark_format;

@@ -94,7 +94,7 @@ TimingWishes wishes_of(const BenchRequest& request, const BenchFlags& flags) {
 }  // namespace
 
 int time_steps(const std::vector<PlannedCell>& cells, const BenchRequest& request,
-               const BenchFlags& flags, const BenchOutput& output) {
+               const BenchFlags& flags, BenchOutput& output) {
   const TimingWishes wishes = wishes_of(request, flags);
   benchmark::AddCustomContext("seed", std::to_string(wishes.seed));
   benchmark::AddCustomContext("slice_seconds", fmt::format("{:g}", wishes.slice));

@@ -13,6 +13,6 @@ namespace mbs {
 /// on standard output; rows of JSON in the output file. Returns 1 if a contender failed. Throws
 /// UsageError if the file cannot be written to its end.
 int time_steps(const std::vector<PlannedCell>& cells, const BenchRequest& request,
-               const BenchFlags& flags, const BenchOutput& output);
+               const BenchFlags& flags, BenchOutput& output);
 
 }  // namespace mbs

@@ -48,6 +48,12 @@ void remember(const std::string& path) {
   }
 }
 
+/// Whether it names what is open already: a pipe with both its ends, or a file to be kept.
+bool is_open_already(const std::string& path) {
+  return path == "/dev/stdout" || path == "/dev/stderr" || path.starts_with("/dev/fd/") ||
+         path.starts_with("/proc/self/fd/");
+}
+
 /// Creates a file beside `path` that nobody else has, and returns its name; empty on failure.
 std::string create_beside(const std::string& path) {
   for (int attempt = 0; attempt < 100; ++attempt) {
@@ -71,13 +77,17 @@ AtomicFile::AtomicFile(std::string path) : name_(path), path_(std::move(path)) {
   const fs::file_status status = fs::status(path_, error);
   if (path_.empty() || path_ == "-" || fs::is_directory(status)) refuse("it is not a file name");
   if (status.type() == fs::file_type::none) refuse(error.message().c_str());
-  if (fs::is_fifo(status) || fs::is_socket(status)) refuse("it is a pipe or a socket");
-  // A rename would replace a link; and a device such as /dev/stdout must be written to directly.
-  if (fs::exists(status)) path_ = fs::canonical(path_).string();
-  partial_ = fs::exists(status) && !fs::is_regular_file(status) ? path_ : create_beside(path_);
+  const bool open_already = is_open_already(path_);
+  if (!open_already && (fs::is_fifo(status) || fs::is_socket(status))) {
+    refuse("it is a pipe or a socket");
+  }
+  // A rename would replace a link; and a device must be written to directly.
+  if (fs::exists(status) && !open_already) path_ = fs::canonical(path_).string();
+  const bool direct = open_already || (fs::exists(status) && !fs::is_regular_file(status));
+  partial_ = direct ? path_ : create_beside(path_);
   if (partial_.empty()) refuse(std::strerror(errno));
-  if (partial_ != path_) remember(partial_);
-  stream_.open(partial_, std::ios::binary);
+  if (!direct) remember(partial_);
+  stream_.open(partial_, std::ios::binary | (open_already ? std::ios::app : std::ios::out));
   if (!stream_) refuse(std::strerror(errno));
 }
 

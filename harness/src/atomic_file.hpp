@@ -7,8 +7,8 @@
 namespace mbs {
 
 /// Writes to a file of its own beside `path` and renames it on commit(); without a commit nothing
-/// stays, also when SIGINT, SIGTERM or SIGHUP ends the program. Links are followed, devices written
-/// to directly. Up to four at a time.
+/// stays, also when SIGINT, SIGTERM or SIGHUP ends the program. Links are followed, devices and what
+/// is open already (/dev/stdout) written to directly. Up to four at a time.
 ///
 ///   AtomicFile file("summary.json");
 ///   file.stream() << text;
@@ -22,6 +22,8 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   std::ostream& stream() { return stream_; }
+  /// The file that is written to until commit(): for a library that opens it by name.
+  [[nodiscard]] const std::string& partial() const { return partial_; }
   /// Throws UsageError if not everything could be written.
   void commit();
 

@@ -51,6 +51,7 @@ class Lab:
             path = self._path(cell)
             if path.exists():
                 found[cell] = self._keep(records.read(path, self._name(cell)))
+                records.need_same_origin(found[cell], self._asked_of(cell), self.base)
             else:
                 todo.append(cell)
         self._need({cell.built for cell in todo})
@@ -100,12 +101,16 @@ class Lab:
             return self._skipped(cell, "unavailable", f"{program} is missing: study/setup builds it")
         if drop and self.left <= 0:
             return self._skipped(cell, "dropped", f"the budget of {self.budget:.0f} s was spent")
-        context = self.set.context(cell.contenders[0]) if cell.contenders else self.set.facts["context"]
+        context = self._asked_of(cell)
         data = executor.run(cell, context if cell.program == "mbs" and cell.contenders else None, self.set.scratch)
         if not data["context"]:
             data["context"] = self._context(cell, context)
         records.write(self._path(cell), data)
         return self._keep(records.read(self._path(cell), self._name(cell)), at_once)
+
+    def _asked_of(self, cell):
+        """The context of a cell's environment."""
+        return self.set.context(cell.contenders[0]) if cell.contenders else self.set.facts["context"]
 
     def _expect(self, cells):
         self.progress.expect(len({self._name(cell) for cell in cells} - self.names.keys()))

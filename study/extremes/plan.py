@@ -81,12 +81,17 @@ def way_out(lab):
             elif present:
                 lab.skip(Cell("simulate", "", (present[0],), way.words(), way.file_name), "unsupported",
                          f"no variant serves {', '.join(sorted(way.needs))}")
+    # What a way costs is told beside the same variant without it.
+    plain = {one for way, one in served if way == ways.WAYS[ways.PLAIN]}
+    timed = [(f"cost-{way.file_name}", way, one) for way, one in served] + [
+        (f"beside-{ways.WAYS[ways.PLAIN].file_name}", ways.WAYS[ways.PLAIN], one)
+        for one in dict.fromkeys(one for _, one in served) if one not in plain]
     places = ways.places(sizes["ways"])
     scenes = {place.name: lab.scene(place.name, place.chain.document()) for place in places}
     times = [Cell("simulate", f"four-bar:{loops}", (one,),
                   ("--step", ways.STEP, "--duration", ways.DURATION, "--repeats", 3, *way.words()),
-                  f"cost-{way.file_name}", number=number, timed=True, seconds=limit)
-             for number in range(1, lab.settings["processes"] + 1) for loops in sizes["times"] for way, one in served]
+                  role, number=number, timed=True, seconds=limit)
+             for number in range(1, lab.settings["processes"] + 1) for loops in sizes["times"] for role, way, one in timed]
     lab.run(times, drop=True)
     lab.run([Cell("simulate", scenes[place.name], (one,),
                   ("--step", f"{place.step:g}", "--duration", f"{place.step * place.steps:g}", *way.words()), way.file_name,

@@ -3,7 +3,7 @@ from collections import Counter
 from dataclasses import dataclass, replace
 
 from analysis.core.files import ROOT
-from analysis.core.timing import processes as rows_of
+from analysis.core.timing import LEFT_OUT, processes as rows_of
 from analysis.limit.tables import LIMIT
 from study.core.cell import Cell
 from study.core.setting import Setting
@@ -47,7 +47,7 @@ def sizes(lab):
         scene = f"four-bar:{loops}"
         for one in here:
             if one.name in lost:
-                lab.skip(Cell("bench", scene, (one,), role="size-left-out"), "excluded", lost[one.name])
+                lab.skip(Cell("bench", scene, (one,), role=f"size{LEFT_OUT}"), "excluded", lost[one.name])
         patience = ("--patience", lab.settings["patience"]) if loops in known else ()
         rows = timed(lab, scene, [one for one in here if one.name not in lost], "size", ("--phases", *patience))
         timed_once = set(rows.implementation[rows.status == "ok"])
@@ -86,6 +86,7 @@ def scenes(lab):
     here = [one for one in lab.contenders if one.environment == environment(lab)]
     for scene in listed(lab.settings) if here else []:
         lab.one(Cell("describe", scene.name, role="about"))
+        _elsewhere(lab, Cell("bench", scene.name, role=f"{scene.kind}-look{LEFT_OUT}"))
         look = rows_of(measure(lab, scene.name, here, processes=1, repetitions=1, settings=(*LOOK, *scene.settings),
                                role=f"{scene.kind}-look", drop=True))
         timed(lab, scene.name, ask_gate(lab, scene.name, look, here, f"{scene.kind}-gate", scene.settings), scene.kind,
@@ -95,10 +96,20 @@ def scenes(lab):
 def batches(lab):
     """Processes take turns over all cells: what disturbs the machine for some seconds is not all of a cell."""
     here = tuple(one for one in lab.contenders if one.environment == environment(lab))
+    for loops in lab.settings["batches"]:
+        for sets in lab.settings["sets"]:
+            _elsewhere(lab, Cell("bench", f"four-bar:{loops}", (), ("--batch", "--sets", sets), "batch"))
     for number in range(1, lab.settings["processes"] + 1):
         lab.run([Cell("bench", f"four-bar:{loops}", here, ("--batch", "--sets", sets, f"--benchmark_min_time={BATCH_S}"),
                       "batch", number, timed=True)
                  for loops in lab.settings["batches"] for sets in lab.settings["sets"] if here], drop=True)
+
+
+def _elsewhere(lab, cell):
+    """Records of those who take no part in a cell, as they have processes of their own."""
+    for one in lab.contenders:
+        if one.environment != environment(lab):
+            lab.skip(replace(cell, contenders=(one,)), "excluded", "on another BLAS pair: timed with the sizes alone")
 
 
 def timed(lab, scene, contenders, role, settings=()):
@@ -116,7 +127,7 @@ def ask_gate(lab, scene, rows, contenders, role, settings=()):
     asked = [one for one in contenders if one.name in times and (one.name in mine or times[one.name] <= NEAR * best)]
     found = lab.run([Cell("check", scene, (one,), (*settings, "--time-limit", CHECK_S), role, seconds=2 * CHECK_S)
                      for one in asked], drop=True)
-    return [one for one, record in zip(asked, found) if record.done and record.output["rows"][0]["verdict"] == "agrees"]
+    return [one for one, record in zip(asked, found) if record.verdicts[one.name][0] == "agrees"]
 
 
 def own(lab):

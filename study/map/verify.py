@@ -102,9 +102,7 @@ def _gate(lab, scene, contenders):
     verdicts = {}
     for group, record in zip(groups, records):
         if record.done or len(group) == 1:
-            found = {row["implementation"]: row["verdict"] == "agrees" for row in record.output.get("rows", [])
-                     if row["scene"] == scene.name}
-            verdicts |= {one: found.get(one.variant, False) for one in group}
+            verdicts |= {one: record.verdicts[one.name][0] == "agrees" for one in group}
         else:
             for one in group:
                 verdicts |= _gate(lab, scene, [one])

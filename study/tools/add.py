@@ -178,9 +178,7 @@ def _gate(lab, scene, newcomers, contenders):
     found = {}
     for name in newcomers:
         record = lab.run([Cell("check", scene, (contenders[name],), ("--time-limit", 50), "gate")], drop=True)[0]
-        row = next((row for row in record.output.get("rows", []) if row["scene"] == scene), None)
-        found[name] = (record.status, record.reason) if not row else ("ok", "") if row["verdict"] == "agrees" else (
-            row["verdict"], row["reason"])
+        found[name] = ("ok", "") if record.verdicts[name][0] == "agrees" else record.verdicts[name]
     return found
 
 

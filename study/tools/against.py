@@ -149,10 +149,8 @@ def _row(name, scene, found):
         return row | {"reason": f"{wrong.implementation.iloc[0]}: {wrong.status.iloc[0]}: {wrong.reason.iloc[0]}"}
     if both.steps.nunique() > 1 or both.start.nunique() > 1:
         return row | {"reason": "the two programs time different stretches"}
-    # Samples of two processes do not belong together as those of one turn do: their medians are compared; by the clock,
-    # since what the processor's time covers is not alike in all revisions.
-    pairs = both.assign(environment="pair", samples=[(middle,) for middle in both.clock_us])
-    ratio = timing.ratio(pairs, "new", "old")
+    # By the clock, since what the processor's time covers is not alike in all revisions.
+    ratio = timing.ratio(timing.apart(both, "clock_us"), "new", "old")
     middle = both.groupby("implementation").clock_us.median()
     return row | {"old_us": middle["old"], "new_us": middle["new"], "ratio": ratio.value, "low": ratio.low,
                   "high": ratio.high, "pairs": len(found["old"])}

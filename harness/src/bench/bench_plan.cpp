@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <regex>
 #include <utility>
 
@@ -27,6 +28,9 @@ void check(const BenchRequest& request) {
   }
   if (request.batch && (request.operations || request.phases)) {
     throw UsageError("--batch goes with neither --operations nor --phases");
+  }
+  if (request.operations && request.phases) {
+    throw UsageError("--phases are those of steps: they do not go with --operations");
   }
   constexpr int kMostSets = 4096;
   if (request.sets && !request.batch) throw UsageError("--sets goes with --batch");
@@ -49,8 +53,11 @@ void check_timing(const BenchRequest& request) {
         throw UsageError(fmt::format("{} goes with neither --batch nor --operations", name));
     }
   }
-  if (request.seed && *request.seed < 0) {
-    throw UsageError(fmt::format("--seed is {}: it must be at least 0", *request.seed));
+  // What overflows is read as the largest number that there is.
+  constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max() - 1;
+  if (request.seed && (*request.seed < 0 || *request.seed > kLargestSeed)) {
+    throw UsageError(
+        fmt::format("--seed is {}: it must be 0 to {}", *request.seed, kLargestSeed));
   }
   constexpr double kMost = 1e9;
   if (request.slower_than && !(*request.slower_than >= 1.0 && *request.slower_than <= kMost)) {
