@@ -79,9 +79,9 @@ def _template(path):
 
 
 def _saved(base, figures, started):
-    """Writes NAME.svg and NAME.png of each figure into `base`, on all cores, and closes it; {name: its SVG in base 64}."""
+    """Writes NAME.svg of each figure into `base`, on all cores, and closes it; {name: the file in base 64}."""
     base.mkdir(parents=True, exist_ok=True)
-    paths = {base / f"{name}.{kind}": figure for name, figure in figures.items() for kind in ("svg", "png")}
+    paths = {base / f"{name}.svg": figure for name, figure in figures.items()}
     fork = multiprocessing.get_context("fork")  # figures go with it as they are
     with fork.Pool(len(os.sched_getaffinity(0)), _begin, (started, paths)) as pool:
         pool.map(_save, paths, chunksize=1)

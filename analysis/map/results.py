@@ -1,6 +1,7 @@
 # What figures, claims and pages ask the tables of a set: who was timed, ratios and rankings of a scene.
 from functools import cached_property
 
+from analysis.core import timing
 from analysis.core.registry import NULL
 from analysis.map import timed
 from analysis.map.timed import layers

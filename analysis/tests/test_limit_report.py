@@ -36,7 +36,7 @@ def bench(role, scene, number=1, status="done", **times):
 
 def gate(role, scene, **verdicts):
     return [Record(f"{role}-gate/{name}.json", {"scene": scene, "contenders": [name.replace("_", "/")], "role": f"{role}-gate"},
-                   "done", "", 1.0, [], {}, {"rows": [{"verdict": verdict, "reason": "why"}]}) for name, verdict in verdicts.items()]
+                   "done", "", 1.0, [], {}, {"rows": [{"scene": scene, "implementation": name.replace("_", "/"), "verdict": verdict, "reason": "why"}]}) for name, verdict in verdicts.items()]
 
 
 def about(scene, dimension=2):

@@ -34,7 +34,7 @@ def run(name, who, step, off=0.0, role="compared", status="ok", ended="done"):
 
 
 def verdict(name, who, said, ended="done"):
-    rows = {"rows": [{"implementation": who, "verdict": said, "reason": "why"}]} if ended == "done" else {}
+    rows = {"rows": [{"scene": LISTED[name].scene, "implementation": who, "verdict": said, "reason": "why"}]} if ended == "done" else {}
     return Record(f"problems/gate/{who}-{name}.json", {"scene": LISTED[name].scene, "contenders": [who], "role": "gate"}, ended,
                   "it died", 1.0, [], {}, rows)
 
@@ -97,7 +97,7 @@ def test_verdicts_stay_with_the_reason_and_the_sentence_counts_who_serves():
     found = made(verdict("A01", "one/a", "agrees"), verdict("A01", "two/b", "disagrees"), verdict("A01", "three/c", "unsupported"),
                  verdict("A03", "one/a", "", ended="crashed"))
     assert list(found["gate"].verdict) == ["agrees", "disagrees", "unsupported", "crashed"]
-    assert found["gate"].reason.iloc[3] == "it died"
+    assert found["gate"].reason.iloc[3] == "the check: it died"
     [said] = sentences.answers(found, VIEW)
     assert said["text"].startswith("The gate: 1 of 3 pairs")
     [(_, good, of, others), _] = page.gate(found["gate"])

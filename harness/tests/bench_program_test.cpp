@@ -110,7 +110,7 @@ TEST(BenchProgram, AgreesWithItselfOnWhatItTimed) {
 TEST(BenchProgram, KeepsTheRowOfACellThatFails) {
   if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
   const std::string name = all_variants().front().name;
-  const std::string only = " --implementation " + name + " null --start 0 --steps 700";
+  const std::string only = " --implementation " + name + " --implementation null --start 0 --steps 700";
   // A penalty that constrains nothing: the rods fly apart, but the control runs.
   const std::string out = test::temporary_path("bench.json");
   const auto run = test::run_mbs(

@@ -27,7 +27,7 @@ class Asked:
 
     def run(self, cells, drop=False):
         self.cells += cells
-        return [SimpleNamespace(done=True, output={"rows": [{"verdict": "disagrees" if cell.contenders[0].name in self.wrong else "agrees"}]})
+        return [SimpleNamespace(verdicts={one.name: ("disagrees" if one.name in self.wrong else "agrees", "") for one in cell.contenders})
                 for cell in cells if cell.kind == "check"]
 
     def one(self, cell):

@@ -59,11 +59,11 @@ def test_a_set_is_packed_and_read_as_it_was(folder, capsys):
 
 
 def test_pictures_that_a_text_shows_are_kept(folder, tmp_path, monkeypatch):
-    picture = next((folder / PART / "figures").glob("*.png")).name
+    picture = next((folder / PART / "figures").glob("*.svg")).name
     (tmp_path / "README.md").write_text(f"![](results/older-set/{PART}/figures/{picture})")
     monkeypatch.setattr(fragments, "texts", lambda: [tmp_path / "README.md"])
     store.store([str(folder), "one"])
-    assert [path.name for path in (folder.parent / "results" / "one").rglob("*.png")] == [picture]
+    assert [path.name for path in (folder.parent / "results" / "one").rglob("*.svg")] == [picture]
 
 
 def test_equal_sets_give_equal_archives(folder):

@@ -17,7 +17,7 @@ from study.core.studyset import StudySet, opened
 RESULTS = ROOT / "results"
 MOST = 3  # sets
 OF_ALL = ("set.json", "registry.json", "profile.yaml", "contexts")
-SHOWN = re.compile(r"results/[\w.+-]+/(\w+/figures/[\w.+-]+\.png)")
+SHOWN = re.compile(r"results/[\w.+-]+/(\w+/figures/[\w.+-]+\.svg)")
 COMMON = {"r", "tm", "cpu", "processor", "family", "model", "stepping", "core", "intel", "amd"}  # words of processors
 
 
