@@ -47,7 +47,7 @@ struct Compared {
 
 /// Compares what `rung` looks at in the step of `make`'s simulation from `state` with the
 /// reference's. Rounding, amplified by the condition of T, moves it by up to some 1e-7 of its largest
-/// entry; 1e-6 is allowed.
+/// entry; 1e-6 is allowed, of the projected a' 1e-6 of the a' that it is made of.
 Compared compare_step(const StepRung& rung, const Maker& make, const Model& model,
                       const StepSettings& settings, const State& state);
 
