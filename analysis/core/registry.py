@@ -57,6 +57,13 @@ class Registry:
                           if len(names) == len(versions) else [f"{entry['library']} {entry['version']}"])
         return list(dict.fromkeys(found))
 
+    @property
+    def coverage(self):
+        """{term or setting: names of the variants that serve it}, beyond the paper's step on its own scenes."""
+        every = dict.fromkeys(word for kind in ("terms", "settings") for one in self.variants.values() for word in one.get(kind, []))
+        return {word: [name for name, one in self.variants.items() if word in (*one.get("terms", []), *one.get("settings", []))]
+                for word in every}
+
     def serves(self, name, *settings):
         """Whether a variant serves settings by name; everyone serves the paper's step."""
         return set(settings) <= {"penalty", "double", *self.variants[name].get("settings", [])}

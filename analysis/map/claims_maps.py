@@ -63,17 +63,17 @@ def regions(results):
     cells = [cell for cell in map_cells(results, standing) if (cell.variables, cell.fill_asked or "natural") in grid]
     of, dense = lambda system: paper.members(results, system), paper.dense(results)
     return [
-        _region(cells, "F6", "KLU wins at low fill, 10 to 100 variables", of("KLU"), small, (0, LOW_FILL)),
-        _region(cells, "F6", "WSMP wins at high fill, 10 to 100 variables", of("WSMP"), small, (HIGH_FILL, 100)),
-        _region(cells, "F6", "dense wins nowhere, 10 to 100 variables", dense, small, (0, 100), at_most(0), "0 %"),
-        _region(cells, "F7", "CHOLMOD wins at low fill above 900 variables", of("CHOLMOD"), beyond, (0, LOW_FILL)),
-        _region(cells, "F7", f"WSMP wins at middle fill above {LARGE} variables", of("WSMP"), large,
+        _region(results, cells, "F6", "KLU wins at low fill, 10 to 100 variables", of("KLU"), small, (0, LOW_FILL)),
+        _region(results, cells, "F6", "WSMP wins at high fill, 10 to 100 variables", of("WSMP"), small, (HIGH_FILL, 100)),
+        _region(results, cells, "F6", "dense wins nowhere, 10 to 100 variables", dense, small, (0, 100), at_most(0), "0 %"),
+        _region(results, cells, "F7", "CHOLMOD wins at low fill above 900 variables", of("CHOLMOD"), beyond, (0, LOW_FILL)),
+        _region(results, cells, "F7", f"WSMP wins at middle fill above {LARGE} variables", of("WSMP"), large,
                 (LOW_FILL + 0.01, FULL_FILL - 0.01)),
-        _region(cells, "F7", f"LAPACK (dense) wins near full matrices above {LARGE} variables", dense, large,
+        _region(results, cells, "F7", f"LAPACK (dense) wins near full matrices above {LARGE} variables", dense, large,
                 (FULL_FILL, 100.1))]
 
 
-def _region(cells, figure, claim, names, sizes, fills, rule=more_than(HALF), quoted="region"):
+def _region(results, cells, figure, claim, names, sizes, fills, rule=more_than(HALF), quoted="region"):
     head = figure, claim, quoted
     inside = [cell for cell in cells if sizes[0] <= cell.variables <= sizes[1] and fills[0] <= cell.fill_percent <= fills[1]
               and cell.ranking]
@@ -91,7 +91,13 @@ def _region(cells, figure, claim, names, sizes, fills, rule=more_than(HALF), quo
     listed = ", ".join(f"{name} {count}" for name, count in sorted(winners.items(), key=lambda one: -one[1]))
     return tested(head, measured, rule, f"{_extent(inside)}, {', '.join(names)}: {len(won)} of {len(inside)} cells",
                   f"Cells of the grid by winner among the paper's systems: {listed}. Bounds: undecided cells counted against "
-                  f"and for it.{_shared(names)}", " %")
+                  f"and for it.{_shared(names)}", " %", " ".join(_record(results, cell) for cell in inside))
+
+
+def _record(results, cell):
+    """One of the winner's in a cell."""
+    rows = results.rows(cell.scene)
+    return rows.record[rows.implementation == cell.ranking.winner].iloc[0]
 
 
 def _shared(names):

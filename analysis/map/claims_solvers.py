@@ -110,7 +110,8 @@ def _stale_pivots(results, klu, full):
         return undecided(head, "Nothing changes violently here.", rule,
                          f"{why} The tangent of this mechanism is positive definite and its pivots stay diagonal: both are equally "
                          "exact. What pivots forced off the diagonal lose is a question of the part extremes.")
-    return tested(head, (largest,) * 3, rule, f"{scene}, {klu} ÷ {full}", why)
+    return tested(head, (largest,) * 3, rule, f"{scene}, {klu} ÷ {full}", why,
+                  record=" ".join(results.rows(scene).set_index("implementation").record[[klu, full]].unique()))
 
 
 def sparse_against_dense(results):

@@ -21,6 +21,7 @@ def context(tables, view):
             "pairs": [pair | {"used": _used(results, pair["name"])} for pair in view.registry.listed.get("blas", [])],
             "verdicts": losses.verdicts(results), "checks": losses.checks(results), "losses": losses.losses(results),
             "not_reached": list(scenes[scenes.reason != ""].scene), "entries": view.registry.entries,
+            "coverage": view.registry.coverage, "variants": list(view.registry.variants),
             "processes": results.timing[results.timing.status == "ok"].record.nunique()}
 
 

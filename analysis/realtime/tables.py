@@ -61,6 +61,8 @@ def _largest(tried):
             "largest": good, "complete": len(made) == len(runs),
             "next_reason": runs[runs.status == "dropped"].reason.iloc[0] if len(made) < len(runs) else END}
         row |= _observed(made[made.loops == good], "")
+        if not good:
+            row["record"] = " ".join(made.record)  # none of these kept the deadline
         if above:
             row |= {"next": min(above)} | _observed(made[made.loops == min(above)], "next_")
         rows.append(row)

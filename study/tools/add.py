@@ -159,6 +159,7 @@ def _begin(folder, column, lab):
     path, program = folder / "added" / f"{column}.json", digest(ROOT / program_of())
     if not path.exists() or read_json(path).get("program") != program:
         shutil.rmtree(lab.base / column, ignore_errors=True)
+        (folder / "added" / f"{column}.csv").unlink(missing_ok=True)
     write_json(path, {"program": program})
     shutil.rmtree(lab.set.scratch, ignore_errors=True)
     lab.set.scratch.mkdir(parents=True)
