@@ -164,15 +164,16 @@ def _other(folder, what):
                       "name another directory with --results, or move this one away")
 
 
-def select(registry, only):
-    """Names "folder/variant" that `only` selects, in the registry's order; empty selects all but examples."""
+def select(registry, only, option="--only: "):
+    """Names "folder/variant" that `only` selects, in the registry's order; empty selects all but examples. `option`: how they
+    were asked for."""
     folders = {entry["folder"]: entry for entry in registry.entries}
     for name in only:
         entry = folders.get(name.split("/")[0])
         if entry and not entry["available"]:
-            raise StudyError(f"--only {name}: unavailable: {entry['reason']}")
+            raise StudyError(f"{option}{name} is unavailable: {entry['reason']}")
         if name not in folders and name not in registry.variants:
-            raise StudyError(f"--only: unknown implementation '{name}'; known: "
+            raise StudyError(f"{option}unknown implementation '{name}'; known: "
                              f"{', '.join([*folders, *registry.variants])}")
     return [name for name in registry.variants
             if name in only or name.split("/")[0] in only or not only and name not in registry.examples]

@@ -550,7 +550,7 @@ REGISTRY = Registry({"implementations": [
 def test_selections():
     assert studyset.select(REGISTRY, []) == ["one/a", "one/b", "own/c"]
     assert studyset.select(REGISTRY, ["own", "one/b"]) == ["one/b", "own/c"]
-    for only, words in (["gone", "unavailable: not installed"], ["nobody", "unknown implementation"], ["one/x", "unknown"]):
+    for only, words in (["gone", "gone is unavailable: not installed"], ["nobody", "unknown implementation"], ["one/x", "unknown"]):
         with pytest.raises(StudyError, match=words):
             studyset.select(REGISTRY, [only])
     assert REGISTRY.own == {"own/c"} and REGISTRY.libraries == ["one/a", "one/b"] and REGISTRY.dense == {"one/b"}

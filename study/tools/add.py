@@ -89,7 +89,7 @@ def measured(folder, name):
     from analysis.core import schema
     from study.tools.shelf import ToolLab
     known = listed()
-    newcomers = select(known, [name])
+    newcomers = select(known, [name], "")
     cells = schema.read_table(folder, "map", "cells")
     cells = cells[cells.winner != ""]
     steps = schema.read_table(folder, "map", "scenes").set_index("scene")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from analysis.core.errors import StudyError
 from analysis.core.files import write
-from study.core.options import Parser
+from study.core.options import Parser, positive
 from study.core.main import need_modules
 
 VALUES_AT_MOST = 2_000_000  # coordinates in a page: 11 MB of it
@@ -58,9 +58,9 @@ def _options(arguments):
     parser.add_argument("--frames", type=int, default=600, help="at most in the page (600)")
     parser.add_argument("--open", action="store_true", help="open the page in a browser")
     own = parser.add_argument_group("without TRAJECTORY")
-    own.add_argument("--duration", type=_positive, metavar="S", help="simulated time (10 or, with "
+    own.add_argument("--duration", type=positive, metavar="S", help="simulated time (10 or, with "
                      "small steps or large scenes, what a minute is enough for)")
-    own.add_argument("--step", type=_positive, metavar="S", help="time step (1.25e-3, or the first "
+    own.add_argument("--step", type=positive, metavar="S", help="time step (1.25e-3, or the first "
                      "tenth, hundredth, … of it that does)")
     own.add_argument("--implementation", default=IMPLEMENTATION,
                      help=f"folder/variant ({IMPLEMENTATION})")
@@ -72,13 +72,6 @@ def _options(arguments):
 def _number(text):
     value = float(text)
     if not math.isfinite(value):
-        raise ValueError
-    return value
-
-
-def _positive(text):
-    value = _number(text)
-    if value <= 0:
         raise ValueError
     return value
 
