@@ -207,6 +207,11 @@ NAMED = {  # damage: (file that the line names, what is done to it, commands tha
                                                ("run", "figures")),
     "record without its cell, right digest": (record_in, lambda path: forge(path, lambda data: data.pop("cell")),
                                               ("run", "figures")),
+    "record of nobody's": (lambda folder: record_in(folder).with_name("more.json"),
+                           lambda path: shutil.copy(record_in(path.parents[4]), path), ("run", "figures")),
+    "record of another machine, without a stamp": (
+        record_in, lambda path: (forge(path, lambda data: data["context"].update(machine="another")),
+                                 shutil.rmtree(path.parents[4] / ".done")), ("run", "figures")),
     "changed table": (lambda folder: folder / PART / "maps.csv", lambda path: edit(path, "0", "1"), ("run", "figures")),
     "removed table": (lambda folder: folder / PART / "maps.csv", Path.unlink, ("run", "figures")),
     "digests that are a list": (lambda folder: folder / PART / "tables.json", lambda path: path.write_text("[]"),
