@@ -22,22 +22,22 @@ def build(records, view):
                         for record in by_role.get("bounds", []) for row in record.output.get("rows", [{}])],
              "steps": [], "scenes": [], "leads": [], "batches": _batches(by_role.get("batch", []))}
     for role in FORMS:
-        said = _verdicts(by_role.get(f"{role}-gate", []))
-        for scene, rows in _by_scene(by_role.get(role, [])):
-            cells, loops = _cells(rows, scene, said), int(scene.partition(":")[2])
+        said = verdicts_of(by_role.get(f"{role}-gate", []))
+        for scene, rows in by_scene(by_role.get(role, [])):
+            cells, loops = cells_of(rows, scene, said), int(scene.partition(":")[2])
             found["steps"] += [{"form": FORMS[role], "loops": loops, "variables": 2 * loops + 2} | cells[name]
-                               | _ratio("multiple", rows, name, LIMIT, cells[name]) for name in _ordered(cells, order)]
+                               | ratio_to("multiple", rows, name, LIMIT, cells[name]) for name in _ordered(cells, order)]
             if set(registry.libraries) & set(cells):
                 known = {"scene": scene, "kind": "four-bar", "dimension": 2, "variables": 2 * loops + 2}
                 found["leads"] += [known | one for one in _leads(rows, cells, registry)]
     for kind in KINDS:
-        said, timed = _verdicts(by_role.get(f"{kind}-gate", [])), dict(_by_scene(by_role.get(kind, [])))
-        for scene, look in _by_scene(by_role.get(f"{kind}-look", [])):
+        said, timed = verdicts_of(by_role.get(f"{kind}-gate", [])), dict(by_scene(by_role.get(kind, [])))
+        for scene, look in by_scene(by_role.get(f"{kind}-look", [])):
             known = {"scene": scene, "kind": kind} | {key: about.get(scene, {}).get(key) for key in ("dimension", "variables")}
             rows = timed.get(scene, look[:0])
-            cells = {name: _looked(one) for name, one in _cells(look, scene, said).items()} | _cells(rows, scene, said)
-            rival = _rival(rows, cells, registry)
-            found["scenes"] += [known | cells[name] | _ratio("to_rival", rows, name, rival, cells[name])
+            cells = {name: looked(one) for name, one in cells_of(look, scene, said).items()} | cells_of(rows, scene, said)
+            rival = rival_of(rows, cells, registry)
+            found["scenes"] += [known | cells[name] | ratio_to("to_rival", rows, name, rival, cells[name])
                                 for name in _ordered(cells, order)]
             found["leads"] += [known | one for one in _leads(rows, cells, registry)]
     tables = {name: pandas.DataFrame(rows) for name, rows in found.items()}
@@ -45,18 +45,18 @@ def build(records, view):
     return tables
 
 
-def _by_scene(records):
+def by_scene(records):
     """(scene, rows of its processes), four-bars by size."""
     rows = timing.processes(timing.counted(records))
     return sorted(rows.groupby("scene"), key=lambda one: (len(one[0]), one[0])) if len(rows) else []
 
 
-def _verdicts(records):
+def verdicts_of(records):
     """{(scene, implementation): (verdict, reason)} of the gate."""
     return {(record.cell["scene"], name): found for record in records for name, found in record.verdicts.items()}
 
 
-def _cells(rows, scene, verdicts):
+def cells_of(rows, scene, verdicts):
     return {name: _cell(group, verdicts.get((scene, name))) for name, group in rows.groupby("implementation")}
 
 
@@ -65,7 +65,7 @@ def _ordered(cells, order):
     return sorted((name for name in cells if name in order), key=order.get)
 
 
-def _looked(cell):
+def looked(cell):
     """What a first look says of who was not timed further."""
     if cell["status"] != "ok":
         return cell
@@ -97,7 +97,7 @@ def _cell(rows, verdict):
     return row
 
 
-def _ratio(what, rows, name, other, cell):
+def ratio_to(what, rows, name, other, cell):
     """{what: time of `name` over that of `other`, with its interval}, where both were timed."""
     if cell["status"] != "ok" or other is None or name == other:
         return {what: 1.0} if name == other and cell["status"] == "ok" else {}
@@ -105,24 +105,24 @@ def _ratio(what, rows, name, other, cell):
     return {what: found.value, f"{what}_low": found.low, f"{what}_high": found.high}
 
 
-def _agreed(cells, names):
+def agreed(cells, names):
     return [name for name in names if name in cells and cells[name]["status"] == "ok" and cells[name]["verdict"] == "agrees"]
 
 
-def _rival(rows, cells, registry):
+def rival_of(rows, cells, registry):
     """The fastest library of a scene, of those that the gate agrees with; None if there is none."""
-    found = timing.rank(rows[rows.status == "ok"], _agreed(cells, registry.libraries))
+    found = timing.rank(rows[rows.status == "ok"], agreed(cells, registry.libraries))
     return found.winner if found else None
 
 
 def _leads(rows, cells, registry):
     """A row for each variant of our own: how many times faster than the fastest library it is; or why that is not known."""
-    rival = _rival(rows, cells, registry)
+    rival = rival_of(rows, cells, registry)
     for name in (name for name in registry.variants if name in registry.own and name in cells):
         cell = cells[name]
         row = {"implementation": name, "rival": rival, "status": cell["status"],
                "reason": cell["reason"], "record": cell["record"]}
-        if not _agreed(cells, [name]):
+        if not agreed(cells, [name]):
             why = {"status": "dropped", "reason": "the gate was not asked, as the budget was spent"}
             yield row | (why if cell["status"] == "ok" else {})
         elif rival is None:

@@ -54,6 +54,7 @@ nlohmann::json list_json() {
                           {"operations", variant.operations != nullptr},
                           {"settings", served_settings(variant.serves)},
                           {"terms", served_terms(variant.serves.terms)}});
+      if (variant.own_code) variants.back()["library"] = "none";
     }
     implementations.push_back({{"folder", entry.folder},
                                {"description", implementation.description},
@@ -105,7 +106,7 @@ void print_list() {
     }
     const Implementation& implementation = entry.implementation;
     for (const Variant& variant : implementation.variants) {
-      const std::string library = implementation.library == "none"
+      const std::string library = implementation.library == "none" || variant.own_code
                                       ? "no library"
                                       : fmt::format("{} {}, {}", implementation.library,
                                                     implementation.version, implementation.licence);

@@ -86,7 +86,7 @@ def scenes(lab):
     here = [one for one in lab.contenders if one.environment == environment(lab)]
     for scene in listed(lab.settings) if here else []:
         lab.one(Cell("describe", scene.name, role="about"))
-        _elsewhere(lab, Cell("bench", scene.name, role=f"{scene.kind}-look{LEFT_OUT}"))
+        elsewhere(lab, Cell("bench", scene.name, role=f"{scene.kind}-look{LEFT_OUT}"))
         look = rows_of(measure(lab, scene.name, here, processes=1, repetitions=1, settings=(*LOOK, *scene.settings),
                                role=f"{scene.kind}-look", drop=True))
         timed(lab, scene.name, ask_gate(lab, scene.name, look, here, f"{scene.kind}-gate", scene.settings), scene.kind,
@@ -98,14 +98,14 @@ def batches(lab):
     here = tuple(one for one in lab.contenders if one.environment == environment(lab))
     for loops in lab.settings["batches"]:
         for sets in lab.settings["sets"]:
-            _elsewhere(lab, Cell("bench", f"four-bar:{loops}", (), ("--batch", "--sets", sets), "batch"))
+            elsewhere(lab, Cell("bench", f"four-bar:{loops}", (), ("--batch", "--sets", sets), "batch"))
     for number in range(1, lab.settings["processes"] + 1):
         lab.run([Cell("bench", f"four-bar:{loops}", here, ("--batch", "--sets", sets, f"--benchmark_min_time={BATCH_S}"),
                       "batch", number, timed=True)
                  for loops in lab.settings["batches"] for sets in lab.settings["sets"] if here], drop=True)
 
 
-def _elsewhere(lab, cell):
+def elsewhere(lab, cell):
     """Records of those who take no part in a cell, as they have processes of their own."""
     for one in lab.contenders:
         if one.environment != environment(lab):

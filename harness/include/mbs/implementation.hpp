@@ -51,6 +51,7 @@ struct Variant {
   std::unique_ptr<BatchSimulation> (*create_batch)(
       std::span<const Model* const> models, std::span<const StepSettings> settings) = nullptr;
   int batch_lanes = 0;  ///< with create_batch: the number of lanes that it is best given
+  bool own_code = false;  ///< stands on no library, though others of its folder do
 };
 
 /// What an implementation is for.
