@@ -18,35 +18,23 @@ Numbering number_unknowns(const Model& model, bool saddle_point) {
   const Elements elements(model, at, 1.0);
 
   EliminationProblem problem;
-  problem.size = n + (saddle_point ? constraints.count() : 0);
-  problem.waits_for.resize(problem.size);
+  problem.variables = n;
+  if (saddle_point) problem.rows = constraints.count();
   const auto couple = [&](int i, int j) {
     if (i < j) problem.entries.emplace_back(i, j);
   };
   for (const MassEntry& entry : model.mass()) couple(entry.col, entry.row);
   elements.visit_products([&](int i, int j, int) { couple(i, j); });
   if (saddle_point) {
-    std::vector<int> point_of(n);
-    for (const Point& point : model.points()) {
-      if (point.is_fixed()) continue;
-      for (int axis = 0; axis < model.dimension(); ++axis) {
-        point_of[point.offset + axis] = static_cast<int>(problem.block.size());
-      }
-      problem.block.emplace_back(model.dimension());
-      std::iota(problem.block.back().begin(), problem.block.back().end(), point.offset);
-    }
-    constraints.visit_forces([&](int row, int i, int) {
-      couple(i, n + row);
-      problem.waits_for[n + row].push_back(point_of[i]);
-    });
+    constraints.visit_forces([&](int row, int i, int) { couple(i, n + row); });
   } else {
     constraints.visit_products([&](int i, int j, int) { couple(i, j); });
     constraints.visit_linear([&](int i, int j, double) { couple(i, j); });
   }
 
   const std::vector<int> order = elimination_order(problem);
-  numbering.row.resize(problem.size - n);
-  for (int place = 0; place < problem.size; ++place) {
+  numbering.row.resize(problem.rows);
+  for (int place = 0; place < n + problem.rows; ++place) {
     if (order[place] < n) {
       numbering.state[order[place]] = static_cast<int>(numbering.variable.size());
       numbering.variable.push_back(place);

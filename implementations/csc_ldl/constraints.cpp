@@ -43,8 +43,11 @@ Constraints::Constraints(const Model& model, const Coordinates& at)
     model_row_.push_back(all_dots + k);
     value_.push_back(bilinear[k].value);
   }
-  first_row_ = {0, distances, all_dots};
-  for (Group* group : groups_) {
+  int first = 0;
+  for (Group* group : {&distances_, &dots_, &bilinear_}) {
+    if (group->count == 0) continue;
+    groups_.push_back({group, first});
+    first += group->count;
     group->first_force = force_parts_;
     group->first_matrix = matrix_parts_;
     force_parts_ += group->force_parts();
@@ -76,10 +79,10 @@ Constraints::Constraints(const Model& model, const Coordinates& at)
 }
 
 void Constraints::visit_forces(const Visit& visit) const {
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    for (int k = 0; k < groups_[g]->count; ++k) {
-      for (const Group::End& end : groups_[g]->ends(k)) {
-        visit(first_row_[g] + k, end.variable, groups_[g]->force_part(k, end));
+  for (const auto& [group, first] : groups_) {
+    for (int k = 0; k < group->count; ++k) {
+      for (const Group::End& end : group->ends(k)) {
+        visit(first + k, end.variable, group->force_part(k, end));
       }
     }
   }
@@ -92,7 +95,7 @@ void Constraints::visit_forces(const Visit& visit) const {
 }
 
 void Constraints::visit_products(const Visit& visit) const {
-  for (const Group* group : groups_) group->visit_products(visit);
+  for (const auto& [group, first] : groups_) group->visit_products(visit);
 }
 
 void Constraints::visit_linear(
@@ -147,7 +150,7 @@ void Constraints::evaluate_dots(const double* q) {
     }
   }
   for (int k = 0; k < dots_.count; ++k) {
-    const int row = first_row_[1] + k;
+    const int row = distances_.count + k;
     double u_w = 0.0;
     for (int c = 0; c < dimension; ++c) {
       const double u = dots_.difference(q, c, k), w = dots_.difference(q, dimension + c, k);
@@ -159,7 +162,7 @@ void Constraints::evaluate_dots(const double* q) {
   }
   const int count = bilinear_.count;
   for (int k = 0; k < count; ++k) {
-    const int row = first_row_[2] + k;
+    const int row = distances_.count + dots_.count + k;
     double B_w[dimension] = {}, Bt_u[dimension] = {}, u_B_w = 0.0;
     for (int r = 0; r < dimension; ++r) {
       const double u = bilinear_.difference(q, r, k);
@@ -179,9 +182,9 @@ void Constraints::evaluate_dots(const double* q) {
 }
 
 void Constraints::write_forces(const double* g, double* parts) const {
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
-    const double* of_group = g + first_row_[i];
-    groups_[i]->write_forces([=](int k) { return of_group[k]; }, parts);
+  for (const auto& [group, first] : groups_) {
+    const double* of_group = g + first;
+    group->write_forces([=](int k) { return of_group[k]; }, parts);
   }
   double* part = parts + first_linear_part_;
   for (int row = first_linear_, t = 0; row < count(); ++row) {
@@ -190,16 +193,14 @@ void Constraints::write_forces(const double* g, double* parts) const {
 }
 
 void Constraints::write_products(double factor, double* parts) const {
-  for (const Group* group : groups_) {
+  for (const auto& [group, first] : groups_) {
     group->write_products([=](int) { return factor; }, parts);
   }
 }
 
 void Constraints::time_derivative(const double* driven_v, double* Phi_t) const {
   std::fill_n(Phi_t + first_linear_, count() - first_linear_, 0.0);
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
-    groups_[i]->contract(driven_v, Phi_t + first_row_[i]);
-  }
+  for (const auto& [group, first] : groups_) group->contract(driven_v, Phi_t + first);
   for (const DrivenRow& driven : driven_) Phi_t[driven.row] -= value_rate_[driven.row];
 }
 
@@ -222,7 +223,7 @@ void Constraints::add_squares(const double* v, double* __restrict result) const 
     for (int c = 0; c < dimension; ++c) {
       sum += dots_.difference(v, c, k) * dots_.difference(v, dimension + c, k);
     }
-    result[first_row_[1] + k] = 2 * sum;
+    result[distances_.count + k] = 2 * sum;
   }
   for (int k = 0; k < bilinear_.count; ++k) {
     double sum = 0.0;
@@ -232,15 +233,15 @@ void Constraints::add_squares(const double* v, double* __restrict result) const 
                bilinear_.difference(v, dimension + c, k);
       }
     }
-    result[first_row_[2] + k] = 2 * sum;
+    result[distances_.count + dots_.count + k] = 2 * sum;
   }
   std::fill_n(result + first_linear_, count() - first_linear_, 0.0);
 }
 
 void Constraints::add_driven_curvature(const double* driven_a, double* result) const {
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
-    groups_[i]->contract(driven_a, row_.data());
-    for (int k = 0; k < groups_[i]->count; ++k) result[first_row_[i] + k] += row_[k];
+  for (const auto& [group, first] : groups_) {
+    group->contract(driven_a, row_.data());
+    for (int k = 0; k < group->count; ++k) result[first + k] += row_[k];
   }
   for (const DrivenRow& driven : driven_) result[driven.row] -= value_acceleration_[driven.row];
 }

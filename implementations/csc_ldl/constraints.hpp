@@ -1,7 +1,6 @@
 // Phi and Phi_q, Eqs. (7) and (8), in groups of equal rows.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <vector>
 
@@ -61,8 +60,11 @@ class Constraints {
   int dimension_;
   bool are_driven_;
   Group distances_, dots_, bilinear_;
-  std::array<Group*, 3> groups_ = {&distances_, &dots_, &bilinear_};
-  std::array<int, 3> first_row_{};
+  struct Rows {
+    const Group* group;
+    int first;
+  };
+  std::vector<Rows> groups_;  // those that have members
   std::vector<double> B_;  // entry (r, c) of member k at (r * dimension + c) * count + k
   int first_linear_ = 0, first_linear_part_ = 0, force_parts_ = 0, matrix_parts_ = 0;
   std::vector<int> linear_begin_, linear_variable_;

@@ -13,32 +13,8 @@ namespace {
 
 using Lists = std::vector<std::vector<int>>;
 
-/// Whether the unknowns that may only follow others have been waited for.
-class Waiting {
- public:
-  explicit Waiting(const EliminationProblem& problem)
-      : problem_(problem), blocks_of_(problem.size) {
-    for (std::size_t b = 0; b < problem.block.size(); ++b) {
-      left_.push_back(static_cast<int>(problem.block[b].size()));
-      for (const int i : problem.block[b]) blocks_of_[i].push_back(static_cast<int>(b));
-    }
-  }
-  [[nodiscard]] bool may_go(int unknown) const {
-    const std::vector<int>& blocks = problem_.waits_for[unknown];
-    return blocks.empty() || std::ranges::any_of(blocks, [&](int b) { return left_[b] == 0; });
-  }
-  void goes(int unknown) {
-    for (const int b : blocks_of_[unknown]) --left_[b];
-  }
-
- private:
-  const EliminationProblem& problem_;
-  Lists blocks_of_;
-  std::vector<int> left_;  // of a block: unknowns that are not eliminated
-};
-
 Lists neighbours(const EliminationProblem& problem) {
-  Lists lists(problem.size);
+  Lists lists(problem.variables + problem.rows);
   for (const auto& [i, j] : problem.entries) {
     if (i == j) continue;
     lists[i].push_back(j);
@@ -64,22 +40,27 @@ std::vector<int> amd(const Lists& adjacent) {
   return order;
 }
 
-/// The same order, but whoever has to wait goes as soon as it may.
-std::vector<int> held_back(const std::vector<int>& order, const EliminationProblem& problem) {
-  Waiting waiting(problem);
-  std::vector<int> result, held;
+/// Of each unknown, how many have to go before it: of a row all of its variables.
+std::vector<int> waits(const Lists& adjacent, int variables) {
+  std::vector<int> left(adjacent.size(), 0);
+  for (std::size_t row = variables; row < left.size(); ++row) {
+    left[row] = static_cast<int>(adjacent[row].size());
+  }
+  return left;
+}
+
+/// The same order, but rows that come too early are held back until they may go.
+std::vector<int> held_back(const std::vector<int>& order, const Lists& adjacent, int variables) {
+  std::vector<int> left = waits(adjacent, variables), result;
+  std::vector<bool> held(order.size(), false);
   for (const int next : order) {
-    if (!waiting.may_go(next)) {
-      held.push_back(next);
-      continue;
-    }
+    held[next] = left[next] > 0;
+    if (held[next]) continue;
     result.push_back(next);
-    waiting.goes(next);
-    std::erase_if(held, [&](int one) {
-      if (!waiting.may_go(one)) return false;
-      result.push_back(one);
-      return true;
-    });
+    if (next >= variables) continue;
+    for (const int row : adjacent[next]) {
+      if (row >= variables && --left[row] == 0 && held[row]) result.push_back(row);
+    }
   }
   return result;
 }
@@ -109,20 +90,20 @@ Lists filled(const Lists& adjacent, const std::vector<int>& order) {
 /// already. Unknowns of one round stand side by side, so that consecutive rows of L do not wait for
 /// each other.
 std::vector<int> lowest_tree(const std::vector<int>& first_order, const Lists& later,
-                             const EliminationProblem& problem) {
-  const int n = problem.size;
+                             const Lists& adjacent, int variables) {
+  const int n = static_cast<int>(first_order.size());
   Lists earlier(n);  // each in the first order
   for (const int i : first_order) {
     for (const int j : later[i]) earlier[j].push_back(i);
   }
-  Waiting waiting(problem);
+  std::vector<int> left = waits(adjacent, variables);
   std::vector<bool> gone(n, false), ready(n, false);
   std::vector<int> mark(n, -1), blocked(n, -1), first(n, 0);
 
   // With u the first of v and its neighbours, all of these are coupled if u is coupled to each:
   // what comes after u and is coupled to it is coupled among itself.
   const auto is_ready = [&](int v) {
-    if (!waiting.may_go(v)) return false;
+    if (left[v] > 0) return false;
     while (first[v] < static_cast<int>(earlier[v].size()) && gone[earlier[v][first[v]]]) ++first[v];
     if (first[v] == static_cast<int>(earlier[v].size())) return true;
     const int u = earlier[v][first[v]];
@@ -158,7 +139,9 @@ std::vector<int> lowest_tree(const std::vector<int>& first_order, const Lists& l
     candidates = next;
     for (std::size_t k = begin; k < order.size(); ++k) {
       gone[order[k]] = true;
-      waiting.goes(order[k]);
+      if (order[k] < variables) {
+        for (const int row : adjacent[order[k]]) left[row] -= row >= variables;
+      }
     }
     for (std::size_t k = begin; k < order.size(); ++k) {
       std::ranges::for_each(earlier[order[k]], consider);
@@ -172,8 +155,8 @@ std::vector<int> lowest_tree(const std::vector<int>& first_order, const Lists& l
 
 std::vector<int> elimination_order(const EliminationProblem& problem) {
   const Lists adjacent = neighbours(problem);
-  const std::vector<int> order = held_back(amd(adjacent), problem);
-  return lowest_tree(order, filled(adjacent, order), problem);
+  const std::vector<int> order = held_back(amd(adjacent), adjacent, problem.variables);
+  return lowest_tree(order, filled(adjacent, order), adjacent, problem.variables);
 }
 
 }  // namespace mbs::csc_ldl

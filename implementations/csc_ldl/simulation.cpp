@@ -95,9 +95,11 @@ bool LdlSimulation::do_show_first_pass(FirstPass& pass) {
   evaluate_constraints();
   evaluate_residual();
   assemble();
-  State state{.q = Vector(n_), .v = Vector(n_), .a = Vector(n_), .lambda = Vector(m_)};
+  State state{Vector(n_), Vector(n_), Vector(n_), Vector(m_)};
   do_get_state(state);
-  pass = {.q = state.q, .v = state.v, .a = state.a};
+  pass.q = state.q;
+  pass.v = state.v;
+  pass.a = state.a;
   pass.Phi.resize(m_);
   pass.Phi_q.resize(static_cast<std::size_t>(m_) * n_);
   std::vector<int> coordinate(n_);  // of the model, by place in the state

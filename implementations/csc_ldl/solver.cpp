@@ -20,6 +20,7 @@ LdlSolver::LdlSolver(UpperPattern pattern, std::vector<double> sign)
   L_begin_.resize(n + 1);
   for (std::vector<int>* each : {&parent_, &L_count_, &stack_, &flag_}) each->resize(n);
   D_.resize(n);
+  inverse_D_.resize(n);
   row_.resize(n);
   // No permutation: the matrix is assembled in the order of elimination.
   ldl_symbolic(n, pattern_.begin.data(), pattern_.row.data(), L_begin_.data(), parent_.data(),
@@ -36,15 +37,28 @@ bool LdlSolver::factorize() {
     return false;
   }
   bool sound = true;
-  for (int k = 0; k < n; ++k) sound &= sign_[k] * D_[k] > 0.0;  // false for NaN, too
+  for (int k = 0; k < n; ++k) {
+    sound &= sign_[k] * D_[k] > 0.0;  // false for NaN, too
+    inverse_D_[k] = 1 / D_[k];
+  }
   return sound;
 }
 
-void LdlSolver::solve(double* x) {
-  const int n = pattern_.size;
-  ldl_lsolve(n, x, L_begin_.data(), L_row_.data(), L_.data());
-  ldl_dsolve(n, x, D_.data());
-  ldl_ltsolve(n, x, L_begin_.data(), L_row_.data(), L_.data());
+// What ldl_lsolve(), ldl_dsolve() and ldl_ltsolve() do, on the same arrays. The library's keep sums
+// in memory, as nothing tells their compiler that x and L do not overlap.
+void LdlSolver::solve(double* __restrict x) const {
+  const int n = pattern_.size, *begin = L_begin_.data(), *row = L_row_.data();
+  const double *L = L_.data(), *inverse_D = inverse_D_.data();
+  for (int j = 0, k = 0; j < n; ++j) {
+    const double x_j = x[j];
+    for (; k < begin[j + 1]; ++k) x[row[k]] -= L[k] * x_j;
+  }
+  for (int j = 0; j < n; ++j) x[j] *= inverse_D[j];
+  for (int j = n - 1, k = begin[n] - 1; j >= 0; --j) {
+    double x_j = x[j];
+    for (; k >= begin[j]; --k) x_j -= L[k] * x[row[k]];
+    x[j] = x_j;
+  }
 }
 
 }  // namespace mbs::csc_ldl

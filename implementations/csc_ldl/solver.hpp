@@ -28,13 +28,13 @@ class LdlSolver {
   /// False if a pivot is zero, NaN or of the wrong sign.
   [[nodiscard]] bool factorize();
   /// x is the right-hand side when it arrives.
-  void solve(double* x);
+  void solve(double* x) const;
 
  private:
   UpperPattern pattern_;
   std::vector<double> values_, sign_;
   std::vector<int> L_begin_, parent_, L_count_, L_row_, stack_, flag_;  // as ldl.h wants them
-  std::vector<double> L_, D_, row_;
+  std::vector<double> L_, D_, row_, inverse_D_;
 };
 
 }  // namespace mbs::csc_ldl
