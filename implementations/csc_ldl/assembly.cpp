@@ -54,7 +54,7 @@ Assembly::Assembly(const Model& model, const StepSettings& settings, const Numbe
       parts_(row_parts_ + elements.matrix_parts()),
       ones_(saddle_point_ ? constraints.count() : 0, 1.0) {
   const std::vector<int>&state = numbering_.state, &variable = numbering_.variable,
-                        &row = numbering_.row;
+        &row = numbering_.row;
   // Places of all entries in the upper triangle, then what they are the sum of.
   struct Contribution {
     int col, row, part;  // part -1: a constant
@@ -68,9 +68,8 @@ Assembly::Assembly(const Model& model, const StepSettings& settings, const Numbe
     const int i = variable[state[entry.row]], j = variable[state[entry.col]];
     add(std::min(i, j), std::max(i, j), -1, entry.value);
   }
-  elements.visit_products([&](int i, int j, int part) {
-    add(variable[i], variable[j], row_parts_ + part, 0.0);
-  });
+  elements.visit_products(
+      [&](int i, int j, int part) { add(variable[i], variable[j], row_parts_ + part, 0.0); });
   if (saddle_point_) {
     constraints.visit_forces([&](int k, int i, int part) {
       add(std::min(row[k], variable[i]), std::max(row[k], variable[i]), part, 0.0);
@@ -84,9 +83,8 @@ Assembly::Assembly(const Model& model, const StepSettings& settings, const Numbe
     });
   }
 
-  std::ranges::stable_sort(all, {}, [](const Contribution& one) {
-    return std::pair(one.col, one.row);
-  });
+  std::ranges::stable_sort(all, {},
+                           [](const Contribution& one) { return std::pair(one.col, one.row); });
   pattern_.size = static_cast<int>(variable.size() + row.size());
   pattern_.begin.resize(pattern_.size + 1);
   for (std::size_t k = 0; k < all.size(); ++k) {

@@ -1,4 +1,5 @@
-// The matrix of a pass, T of Eq. (5) or the saddle-point matrix of Eq. (12), in the order of elimination.
+// The matrix of a pass, T of Eq. (5) or the saddle-point matrix of Eq. (12), in the order of
+// elimination.
 #pragma once
 
 #include <vector>

@@ -10,7 +10,9 @@ Constraints::Constraints(const Model& model, const Coordinates& at)
       are_driven_(!model.driven_points().empty() || !model.driven_values().empty()) {
   const std::span<const DotConstraint> dots = model.dot_constraints();
   const std::span<const BilinearConstraint> bilinear = model.bilinear_constraints();
-  const auto is_distance = [](const DotConstraint& dot) { return dot.a == dot.c && dot.b == dot.d; };
+  const auto is_distance = [](const DotConstraint& dot) {
+    return dot.a == dot.c && dot.b == dot.d;
+  };
   const int all_dots = static_cast<int>(dots.size());
   const int distances = static_cast<int>(std::ranges::count_if(dots, is_distance));
   const int all_bilinear = static_cast<int>(bilinear.size());
@@ -72,9 +74,9 @@ Constraints::Constraints(const Model& model, const Coordinates& at)
     each->resize(count());
   }
   for (const DrivenValue& driven : model.driven_values()) {
-    driven_.push_back({static_cast<int>(std::ranges::find(model_row_, driven.constraint) -
-                                        model_row_.begin()),
-                       driven.value});
+    driven_.push_back(
+        {static_cast<int>(std::ranges::find(model_row_, driven.constraint) - model_row_.begin()),
+         driven.value});
   }
 }
 
@@ -188,7 +190,8 @@ void Constraints::write_forces(const double* g, double* parts) const {
   }
   double* part = parts + first_linear_part_;
   for (int row = first_linear_, t = 0; row < count(); ++row) {
-    for (; t < linear_begin_[row - first_linear_ + 1]; ++t) part[t] = linear_coefficient_[t] * g[row];
+    for (; t < linear_begin_[row - first_linear_ + 1]; ++t)
+      part[t] = linear_coefficient_[t] * g[row];
   }
 }
 

@@ -65,7 +65,7 @@ class Constraints {
     int first;
   };
   std::vector<Rows> groups_;  // those that have members
-  std::vector<double> B_;  // entry (r, c) of member k at (r * dimension + c) * count + k
+  std::vector<double> B_;     // entry (r, c) of member k at (r * dimension + c) * count + k
   int first_linear_ = 0, first_linear_part_ = 0, force_parts_ = 0, matrix_parts_ = 0;
   std::vector<int> linear_begin_, linear_variable_;
   std::vector<double> linear_coefficient_;

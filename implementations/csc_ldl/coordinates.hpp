@@ -1,4 +1,5 @@
-// Vectors of coordinates as they are stored here: the state in the order of elimination, then what is fixed.
+// Vectors of coordinates as they are stored here: the state in the order of elimination, then what
+// is fixed.
 #pragma once
 
 #include <utility>

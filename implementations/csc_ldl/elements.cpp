@@ -130,6 +130,7 @@ void Elements::evaluate(const double* q, const double* v, double* force_parts,
     evaluate_geometry<3>(q);
   }
   for (Family* family : {&lines_, &angles_}) {
+    if (family->group.count == 0) continue;
     family->group.contract(v, family->rate.data());
     evaluate_forces(*family, family == &lines_);
     family->group.write_forces([family](int k) { return family->force[k]; }, force_parts);
@@ -186,8 +187,8 @@ void Elements::evaluate_forces(Family& family, bool along_lines) {
     double by_position, position_slope, by_rate, rate_slope;
     if (k < springs) {
       const Spring& spring = family.springs[k];
-      const double off = along_lines ? s - spring.free
-                                           : std::remainder(s - spring.free, 2 * std::numbers::pi);
+      const double off =
+          along_lines ? s - spring.free : std::remainder(s - spring.free, 2 * std::numbers::pi);
       by_position = spring.stiffness * off;
       position_slope = spring.stiffness;
       by_rate = spring.damping * rate;
@@ -212,6 +213,7 @@ void Elements::evaluate_forces(Family& family, bool along_lines) {
 
 void Elements::multiply(const double* x, double* force_parts) {
   for (Family* family : {&lines_, &angles_}) {
+    if (family->group.count == 0) continue;
     family->group.contract(x, family->rate.data());
     family->group.write_forces([family](int k) { return family->slope[k] * family->rate[k]; },
                                force_parts);

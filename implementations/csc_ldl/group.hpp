@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
 #include <vector>
 
 #include "coordinates.hpp"
@@ -82,42 +83,74 @@ struct Group {
   }
   /// y_k = gradient_k . x, a row of Phi_q times x. x counts at fixed points, too.
   void contract(const double* x, double* y) const {
-    for (int k = 0; k < count; ++k) y[k] = 0.0;
-    for (int c = 0; c < components; ++c) {
-      for (int k = 0; k < count; ++k) y[k] += gradient[c * count + k] * difference(x, c, k);
-    }
+    with_components([&](auto components) {
+#pragma GCC ivdep
+      for (int k = 0; k < count; ++k) {
+        double sum = 0.0;
+        for (int c = 0; c < components; ++c) sum += gradient[c * count + k] * difference(x, c, k);
+        y[k] = sum;
+      }
+    });
   }
   /// Gradients times factor(k).
   template <class Factor>
   void write_forces(Factor factor, double* parts) const {
-    for (int c = 0; c < components; ++c) {
-      const double* __restrict g = gradient.data() + c * count;
-      double* __restrict part = parts + first_force + 2 * c * count;
-      double* __restrict opposite = part + count;
-      for (int k = 0; k < count; ++k) {
-        part[k] = g[k] * factor(k);
-        opposite[k] = -part[k];
+    with_components([&](auto components) {
+      const int n = count;
+      const double* g = gradient.data();
+      double* part = parts + first_force;
+#pragma GCC ivdep
+      for (int k = 0; k < n; ++k) {
+        for (int c = 0; c < components; ++c) {
+          const double value = factor(k) * g[c * n + k];
+          part[2 * c * n + k] = value;
+          part[(2 * c + 1) * n + k] = -value;
+        }
       }
-    }
+    });
   }
   /// factor(k) gradient gradient^T.
   template <class Factor>
   void write_products(Factor factor, double* parts) const {
-    for (int high = 0; high < components; ++high) {
-      for (int low = 0; low <= high; ++low) {
-        const double* __restrict g = gradient.data() + high * count;
-        const double* h = gradient.data() + low * count;
-        double* __restrict part = parts + first_matrix + (high * (high + 1) + 2 * low) * count;
-        double* __restrict opposite = part + count;
-        for (int k = 0; k < count; ++k) {
-          part[k] = factor(k) * (g[k] * h[k]);
-          opposite[k] = -part[k];
+    // `factor` by value: behind a reference, GCC has to expect that what is written changes it.
+    with_components([this, factor, parts](auto components) {
+      const int n = count;
+      const double* all = gradient.data();
+      double* part = parts + first_matrix;
+#pragma GCC ivdep
+      for (int k = 0; k < n; ++k) {
+        const double scale = factor(k);
+        double g[components];
+        for (int c = 0; c < components; ++c) g[c] = all[c * n + k];
+        for (int high = 0; high < components; ++high) {
+#pragma GCC unroll 8  // early enough for the loop over members to be vectorized
+          for (int low = 0; low <= high; ++low) {
+            const double value = scale * (g[high] * g[low]);
+            part[(high * (high + 1) + 2 * low) * n + k] = value;
+            part[(high * (high + 1) + 2 * low + 1) * n + k] = -value;
+          }
         }
       }
-    }
+    });
   }
 
  private:
+  /// Loops over components are unrolled: few members are common, and one loop over them is quicker
+  /// than one for each component.
+  template <class Function>
+  void with_components(Function f) const {
+    switch (components) {
+      case 2:
+        return f(std::integral_constant<int, 2>{});
+      case 3:
+        return f(std::integral_constant<int, 3>{});
+      case 4:
+        return f(std::integral_constant<int, 4>{});
+      default:
+        return f(std::integral_constant<int, 6>{});
+    }
+  }
+
   int dimension_ = 0, variables_ = 0;
 };
 

@@ -110,8 +110,8 @@ std::vector<int> lowest_tree(const std::vector<int>& first_order, const Lists& l
     for (const int w : later[u]) mark[w] = v;
     mark[u] = v;
     const auto coupled = [&](int w) { return gone[w] || mark[w] == v; };
-    const bool all = std::ranges::all_of(earlier[v], coupled) &&
-                     std::ranges::all_of(later[v], coupled);
+    const bool all =
+        std::ranges::all_of(earlier[v], coupled) && std::ranges::all_of(later[v], coupled);
     for (const int w : later[u]) mark[w] = -1;
     mark[u] = -1;
     return all;

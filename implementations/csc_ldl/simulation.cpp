@@ -159,8 +159,8 @@ void LdlSimulation::evaluate_constraints() {
   constraints_.evaluate(q_.data());
 }
 
-// Eq. (3), shorter by Eq. (2): -f = -(dt^2/4) (M a' + Phi_q^T g - Q) with g = lambda + alpha Phi or,
-// of f_0 in Eq. (12), g = lambda.
+// Eq. (3), shorter by Eq. (2): -f = -(dt^2/4) (M a' + Phi_q^T g - Q) with g = lambda + alpha Phi
+// or, of f_0 in Eq. (12), g = lambda.
 void LdlSimulation::evaluate_residual() {
   phases_.enter(Phase::evaluation);
   const double alpha = saddle_point_ ? 0.0 : alpha_, factor = -dt_ * dt_ / 4;

@@ -32,8 +32,8 @@ LdlSolver::LdlSolver(UpperPattern pattern, std::vector<double> sign)
 bool LdlSolver::factorize() {
   const int n = pattern_.size;
   if (ldl_numeric(n, pattern_.begin.data(), pattern_.row.data(), values_.data(), L_begin_.data(),
-                  parent_.data(), L_count_.data(), L_row_.data(), L_.data(), D_.data(),
-                  row_.data(), stack_.data(), flag_.data(), nullptr, nullptr) != n) {
+                  parent_.data(), L_count_.data(), L_row_.data(), L_.data(), D_.data(), row_.data(),
+                  stack_.data(), flag_.data(), nullptr, nullptr) != n) {
     return false;
   }
   bool sound = true;
