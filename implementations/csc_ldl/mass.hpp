@@ -1,0 +1,31 @@
+// The mass matrix as an operator on vectors.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mbs/model.hpp"
+
+namespace mbs::csc_ldl {
+
+/// M, both halves, rows of equally many entries in one run of one tight loop.
+class Mass {
+ public:
+  /// `place` says where the state has a coordinate of the model.
+  Mass(std::span<const MassEntry> entries, const std::vector<int>& place);
+
+  /// y = M x.
+  void multiply(const double* x, double* y) const;
+  /// y1 = M x1 and y2 = M x2, reading M once.
+  void multiply(const double* x1, double* y1, const double* x2, double* y2) const;
+
+ private:
+  struct Run {
+    int entries, rows;
+  };
+  std::vector<Run> runs_;
+  std::vector<int> row_, col_;  // run by run
+  std::vector<double> value_;
+};
+
+}  // namespace mbs::csc_ldl

@@ -1,0 +1,278 @@
+// The step; equations are those of paper/README.md. Start at do_step().
+#include "simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mbs::csc_ldl {
+namespace {
+
+bool has_factors_of_time(const Model& model) {
+  const auto varies = [](const auto& element) { return !element.law.factor.is_constant(); };
+  return std::ranges::any_of(model.force_laws(), varies) ||
+         std::ranges::any_of(model.torque_laws(), varies);
+}
+
+}  // namespace
+
+LdlSimulation::LdlSimulation(const Model& model, const StepSettings& settings)
+    : Simulation(model, settings),
+      model_(model),
+      settings_(settings),
+      numbering_(number_unknowns(model, saddle_point_)),
+      at_(model, numbering_.state),
+      mass_(model.mass(), numbering_.state),
+      constraints_(model, at_),
+      elements_(model, at_, dt_),
+      assembly_(model, settings, numbering_, constraints_, elements_),
+      row_parts_(constraints_.force_parts()),
+      element_parts_(elements_.force_parts()),
+      are_driven_(!model.driven_points().empty() || !model.driven_values().empty() ||
+                  has_factors_of_time(model)) {
+  for (int i = 0; i < n_; ++i) minus_Q_[numbering_.state[i]] = -model.force()[i];
+  for (std::size_t p = 0; p < model.points().size(); ++p) {
+    const Point& point = model.points()[p];
+    for (int axis = 0; point.is_fixed() && axis < model.dimension(); ++axis) {
+      q_[at_(static_cast<int>(p), axis)] = point.position[axis];
+    }
+  }
+  constraints_.visit_forces([this](int, int i, int part) { row_forces_.add(i, part); });
+  elements_.visit_forces([this](int i, int part) { element_forces_.add(i, part); });
+  row_forces_.finish();
+  element_forces_.finish();
+  if (are_driven_) {
+    driven_v_ = driven_a_ = all_v_ = Vector(at_.total);
+    force_ = minus_Q_;
+  }
+}
+
+void LdlSimulation::do_set_state(const State& state) {
+  for (int i = 0; i < n_; ++i) {
+    const int place = numbering_.state[i];
+    q_[place] = state.q[i];
+    v_[place] = state.v[i];
+    a_[place] = state.a[i];
+  }
+  for (int k = 0; k < m_; ++k) lambda_[k] = state.lambda[constraints_.model_row()[k]];
+}
+
+void LdlSimulation::do_get_state(State& state) const {
+  for (int i = 0; i < n_; ++i) {
+    const int place = numbering_.state[i];
+    state.q[i] = q_[place];
+    state.v[i] = v_[place];
+    state.a[i] = a_[place];
+  }
+  for (int k = 0; k < m_; ++k) state.lambda[constraints_.model_row()[k]] = lambda_[k];
+}
+
+// "The step" of paper/README.md, or its saddle-point form in other_schemes.md.
+StepOutcome LdlSimulation::do_step() {
+  StepOutcome outcome{StepStatus::pass_limit};  // unless a pass converges
+  phases_.enter(Phase::other);
+  if (are_driven_) drive();
+  predict();
+  evaluate_constraints();
+  while (outcome.status == StepStatus::pass_limit && outcome.passes < settings_.max_passes) {
+    ++outcome.passes;
+    evaluate_residual();
+    assemble();
+    if (!factorize()) return {StepStatus::factorization_failed, outcome.passes};
+    solve(top_);  // Eq. (4) or (12)
+    if (correct()) outcome.status = StepStatus::converged;
+    evaluate_constraints();  // at the new q': for lambda, the next pass and the projections
+    update_multipliers();
+  }
+  // A step that stops at the pass limit is projected like any other.
+  if (settings_.projections != Projections::none) project();
+  return outcome;
+}
+
+// Not part of a step: what its first pass computes, for `mbs check --ladder`.
+bool LdlSimulation::do_show_first_pass(FirstPass& pass) {
+  if (are_driven_) drive();
+  predict();
+  evaluate_constraints();
+  evaluate_residual();
+  assemble();
+  State state{Vector(n_), Vector(n_), Vector(n_), Vector(m_)};
+  do_get_state(state);
+  pass.q = state.q;
+  pass.v = state.v;
+  pass.a = state.a;
+  pass.Phi.resize(m_);
+  pass.Phi_q.resize(static_cast<std::size_t>(m_) * n_);
+  std::vector<int> coordinate(n_);  // of the model, by place in the state
+  for (int i = 0; i < n_; ++i) coordinate[numbering_.state[i]] = i;
+  std::ranges::fill(g_, 1.0);
+  constraints_.write_forces(g_.data(), row_parts_.data());
+  constraints_.visit_forces([&](int row, int i, int part) {
+    const std::size_t model_row = constraints_.model_row()[row];
+    pass.Phi_q[model_row * n_ + coordinate[i]] += row_parts_[part];
+  });
+  for (int k = 0; k < m_; ++k) pass.Phi[constraints_.model_row()[k]] = constraints_.Phi[k];
+  if (saddle_point_) return true;  // f and T are those of the penalty form
+  pass.f.resize(n_);
+  for (int i = 0; i < n_; ++i) pass.f[i] = -top_[numbering_.state[i]];
+  pass.T = assembly_.dense();
+  return true;
+}
+
+// What is known of time t', for the whole step.
+void LdlSimulation::drive() {
+  const double t = time();
+  constraints_.drive(t);
+  elements_.drive(t);
+  for (const DrivenPoint& driven : model_.driven_points()) {
+    for (int axis = 0; axis < at_.dimension; ++axis) {
+      const TimeFunction::Sample r = driven.position[axis].at(t);
+      const int place = at_(driven.point, axis);
+      q_[place] = r.value;
+      driven_v_[place] = r.rate;
+      driven_a_[place] = r.acceleration;
+    }
+  }
+  minus_Q_ = force_;
+  for (const DrivenMass& mass : model_.driven_mass()) {
+    minus_Q_[numbering_.state[mass.coordinate]] +=
+        mass.value * driven_a_[at_(mass.point, mass.axis)];
+  }
+}
+
+// Eq. (2), applied to q' - q: with q' itself it cancels digits when coordinates are large.
+void LdlSimulation::predict() {
+  phases_.enter(Phase::other);
+  double *q = q_.data(), *v = v_.data(), *a = a_.data();
+  const double v_by_q = 2 / dt_, a_by_q = 4 / (dt_ * dt_), a_by_v = 4 / dt_, half = dt_ * dt_ / 2;
+#pragma GCC ivdep
+  for (int i = 0; i < n_; ++i) {
+    const double difference = dt_ * v[i] + half * a[i];
+    q[i] += difference;
+    a[i] = a_by_q * difference - a_by_v * v[i] - a[i];
+    v[i] = v_by_q * difference - v[i];
+  }
+}
+
+// Phi and Phi_q, Eqs. (7) and (8).
+void LdlSimulation::evaluate_constraints() {
+  phases_.enter(Phase::evaluation);
+  constraints_.evaluate(q_.data());
+}
+
+// Eq. (3), shorter by Eq. (2): -f = -(dt^2/4) (M a' + Phi_q^T g - Q) with g = lambda + alpha Phi
+// or, of f_0 in Eq. (12), g = lambda.
+void LdlSimulation::evaluate_residual() {
+  phases_.enter(Phase::evaluation);
+  const double alpha = saddle_point_ ? 0.0 : alpha_, factor = -dt_ * dt_ / 4;
+  for (int k = 0; k < m_; ++k) g_[k] = lambda_[k] + alpha * constraints_.Phi[k];
+  constraints_.write_forces(g_.data(), row_parts_.data());
+  mass_.multiply(a_.data(), top_.data());
+  row_forces_.apply(top_.data(), row_parts_.data(), top_.data());
+  if (!elements_.empty()) {
+    elements_.evaluate(q_.data(), velocities_of_all_points(), element_parts_.data(),
+                       assembly_.element_parts());
+    element_forces_.apply(top_.data(), element_parts_.data(), top_.data());
+  }
+  for (int i = 0; i < n_; ++i) top_[i] = factor * (top_[i] + minus_Q_[i]);
+  if (saddle_point_) {
+    for (int k = 0; k < m_; ++k) bottom_[k] = -constraints_.Phi[k];
+  }
+}
+
+void LdlSimulation::assemble() {
+  phases_.enter(Phase::assembly);
+  assembly_.assemble(constraints_);
+}
+
+bool LdlSimulation::factorize() {
+  phases_.enter(Phase::factorization);
+  return assembly_.factorize();
+}
+
+void LdlSimulation::solve(Vector& top) {
+  phases_.enter(Phase::solve);
+  assembly_.solve(top, bottom_);
+}
+
+// Adds Delta q; v' and a' follow by Eq. (2). True if Newton has converged, which NaN has not.
+bool LdlSimulation::correct() {
+  phases_.enter(Phase::other);
+  double *q = q_.data(), *v = v_.data(), *a = a_.data();
+  const double* Delta_q = top_.data();
+  const double v_by_q = 2 / dt_, a_by_q = 4 / (dt_ * dt_), tolerance = settings_.tolerance;
+  int larger = 0;
+#pragma GCC ivdep
+  for (int i = 0; i < n_; ++i) {
+    q[i] += Delta_q[i];
+    v[i] += v_by_q * Delta_q[i];
+    a[i] += a_by_q * Delta_q[i];
+    larger += !(std::abs(Delta_q[i]) <= tolerance);
+  }
+  return larger == 0;
+}
+
+// Eq. (1) or, in saddle-point form, what comes with Eq. (12); converged or not.
+void LdlSimulation::update_multipliers() {
+  phases_.enter(Phase::other);
+  const double factor = saddle_point_ ? 4 / (dt_ * dt_) : alpha_;
+  const Vector& change = saddle_point_ ? bottom_ : constraints_.Phi;
+  for (int k = 0; k < m_; ++k) lambda_[k] += factor * change[k];
+}
+
+const double* LdlSimulation::velocities_of_all_points() {
+  if (!are_driven_) return v_.data();
+  for (int i = 0; i < n_; ++i) all_v_[i] = v_[i];
+  for (int i = n_; i < at_.total; ++i) all_v_[i] = driven_v_[i];
+  return all_v_.data();
+}
+
+// The part of T_0 x that springs and laws give.
+void LdlSimulation::add_elements(const double* x, Vector& right) {
+  elements_.multiply(x, element_parts_.data());
+  element_forces_.apply(right.data(), element_parts_.data(), right.data());
+}
+
+// What constraints put on the right of Eq. (6) or (13); g_ is Phi_t or the part of Phi's second
+// derivative that is free of a.
+void LdlSimulation::add_constraints(Vector& right) {
+  if (saddle_point_) {
+    for (int k = 0; k < m_; ++k) bottom_[k] = -g_[k];
+    return;
+  }
+  const double factor = -dt_ * dt_ / 4 * alpha_;
+  for (int k = 0; k < m_; ++k) g_[k] *= factor;
+  constraints_.write_forces(g_.data(), row_parts_.data());
+  row_forces_.apply(right.data(), row_parts_.data(), right.data());
+}
+
+// Eq. (6) or (13), with the last pass's factors, C and K.
+void LdlSimulation::project() {
+  phases_.enter(Phase::projection);
+  const bool both = settings_.projections == Projections::both;
+  if (both) {
+    mass_.multiply(v_.data(), top_.data(), a_.data(), top_a_.data());
+  } else {
+    mass_.multiply(v_.data(), top_.data());
+  }
+  if (!elements_.empty()) add_elements(v_.data(), top_);
+  if (constraints_.are_driven()) {
+    constraints_.time_derivative(driven_v_.data(), g_.data());
+    add_constraints(top_);
+  } else if (saddle_point_) {
+    std::ranges::fill(bottom_, 0.0);
+  }
+  solve(top_);
+  phases_.enter(Phase::projection);
+  std::copy_n(top_.begin(), n_, v_.begin());
+  if (!both) return;
+
+  if (!elements_.empty()) add_elements(a_.data(), top_a_);
+  constraints_.curvature(velocities_of_all_points(), g_.data());
+  if (constraints_.are_driven()) constraints_.add_driven_curvature(driven_a_.data(), g_.data());
+  add_constraints(top_a_);
+  solve(top_a_);
+  phases_.enter(Phase::projection);
+  std::copy_n(top_a_.begin(), n_, a_.begin());
+}
+
+}  // namespace mbs::csc_ldl
