@@ -1,5 +1,6 @@
 // mbs check: the agreement gate over scenes and implementations.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -83,15 +84,22 @@ int climb_all(const std::vector<NamedVariant>& variants, double seconds,
   for (const NamedVariant& variant : variants) {
     fmt::print("{}\n", variant.name);
     std::map<RungResult, int> counts;
+    std::vector<std::string> not_served;
     climb(variant, {.seconds = seconds}, [&](const RungReport& report) {
-      print_rung(report);
+      if (report.result == RungResult::not_served) {
+        not_served.push_back(report.rung);
+      } else {
+        print_rung(report);
+      }
       ++counts[report.result];
       reports.push_back(report);
     });
     const bool failed = counts[RungResult::failed] > 0;
+    if (!not_served.empty()) fmt::print("  not served {}\n", fmt::join(not_served, "; "));
     fmt::print("{}: {} rungs ok, {} not yet, {} not served\n",
-               failed ? "stopped at the first rung that failed" : "up", counts[RungResult::ok],
-               counts[RungResult::not_yet], counts[RungResult::not_served]);
+               failed ? "stopped at the first rung that failed" : "all that it serves is right",
+               counts[RungResult::ok], counts[RungResult::not_yet], not_served.size());
+    if (!failed) fmt::print("next: build/mbs check --implementation {}\n", variant.name);
     any_failed |= failed;
   }
   if (file) write_rows(*file, reports);

@@ -32,7 +32,8 @@ def load(name, chosen=None):
 
 
 def read(path, name, chosen=None):
-    """The profile in a file; StudyError if a setting is missing, unknown or of another kind."""
+    """The profile in a file; StudyError if a setting is missing, unknown or of another kind. A set may be older than a part:
+    its profile needs the `chosen` ones."""
     try:
         data = yaml.safe_load(path.read_bytes().decode())
     except (yaml.YAMLError, UnicodeDecodeError) as error:
@@ -42,7 +43,8 @@ def read(path, name, chosen=None):
     need_keys(path, "the profile", data, {"title", "blas", "dropped", "parts"})
     if not isinstance(data["blas"], dict) or "all" not in data["blas"]:
         raise StudyError(f"{path}: blas must name a pair for all")
-    need_keys(path, "parts", data["parts"], set(parts()))
+    more = data["parts"].keys() if chosen is not None and isinstance(data["parts"], dict) else ()
+    need_keys(path, "parts", data["parts"], {*(parts() if chosen is None else chosen), *more})
     for part in parts() if chosen is None else chosen:
         settings = data["parts"][part]
         wanted = plan_of(part).SETTINGS

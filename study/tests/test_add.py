@@ -1,4 +1,5 @@
 # study/add on a small set that was made by hand and the fake `mbs`: who changes hands, what is refused, what is kept.
+import shutil
 import tempfile
 
 import pandas
@@ -8,7 +9,7 @@ from analysis.core import records, schema
 from analysis.core.errors import StudyError
 from analysis.core.files import digest, read_json, write_json
 from study.core.contender import CONTROL, Contender
-from study.core.studyset import context_of
+from study.core.studyset import context_of, listed
 from study.tests.conftest import FAKE, ROOT, TEMPORARY
 from study.tools import add
 
@@ -57,7 +58,7 @@ def test_a_faster_newcomer_takes_the_cells(folder, monkeypatch, capsys):
     assert ((table.low < table.ratio) & (table.ratio < table.high) & (table.high < 1)).all()
     assert set(table.before) == {"good_dense/first"} and set(table.processes) == {3}
     assert set(zip(table.commit, table.dirty.astype(str))) == {("fedcba9", "True")}
-    assert "4 cells change hands, 0 are open, 0 stay" in capsys.readouterr().out
+    assert "4 cells change hands, 0 are open, 0 stay, 0 were not timed" in capsys.readouterr().out
 
 
 def test_all_take_turns_in_the_same_processes_and_records_have_digests(folder, monkeypatch):
@@ -138,6 +139,20 @@ def test_a_changed_table_is_named(folder, monkeypatch):
         measure(folder, monkeypatch, 0.5)
 
 
+def test_the_newest_of_this_machine_is_the_default_and_without_one_it_says_what_to_do(folder, monkeypatch, tmp_path):
+    monkeypatch.setattr(add, "RESULTS", folder.parent)
+    monkeypatch.setattr(add, "ROOT", folder.parent)
+    older = folder.parent / "local" / "older"
+    shutil.copytree(folder, older)
+    write_json(older / "set.json", read_json(older / "set.json") | {"date": "2025-01-01 10:00"})
+    assert add.newest(listed()) == folder
+    monkeypatch.setattr(add, "ROOT", ROOT)
+    monkeypatch.setenv("FAKE_MACHINE", "m2")
+    monkeypatch.setattr(add, "ROOT", folder.parent)
+    with pytest.raises(StudyError, match="set is of .*study/run --part map makes one.*mbs bench"):
+        add.newest(listed())
+
+
 def test_unknown_names_and_sets(folder, monkeypatch, tmp_path):
     with pytest.raises(StudyError, match="unknown implementation 'nobody'"):
         measure(folder, monkeypatch, name="nobody")
@@ -148,4 +163,4 @@ def test_unknown_names_and_sets(folder, monkeypatch, tmp_path):
 def test_it_keeps_to_a_fifth_of_the_maps_time(folder, monkeypatch):
     monkeypatch.setattr(add, "budget_of", lambda _: 0.0)
     table = measure(folder, monkeypatch, 0.5)
-    assert set(table.status) == {"dropped"} and "budget" in table.reason[0] and set(table.hands) == {"open"}
+    assert set(table.status) == {"dropped"} and "budget" in table.reason[0] and set(table.hands) == {"not timed"}

@@ -22,7 +22,7 @@ def repository(tmp_path, monkeypatch):
 @pytest.mark.parametrize("library", new.LIBRARIES)
 def test_what_it_writes_compiles_without_a_warning(repository, library, capsys):
     assert new.new(["my_first", "--library", library]) == 0
-    assert "study/add my_first" in capsys.readouterr().out
+    assert "mbs bench" in capsys.readouterr().out
     folder = repository / "my_first"
     assert sorted(path.name for path in folder.iterdir()) == [
         "CMakeLists.txt", "README.md", "implementation.cpp", "simulation.cpp", "simulation.hpp"]

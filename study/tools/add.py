@@ -13,7 +13,7 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_json, write, write_json
 from study.core import locks, profile as profiles
 from study.core.cell import Cell
-from study.core.contender import on_usual_pairs
+from study.core.contender import CONTROL, Contender, on_usual_pairs
 from study.core.executor import fingerprint, program_of
 from study.core.main import need_modules, set_up, writable
 from study.core.options import Parser, directory
@@ -21,10 +21,14 @@ from study.core.progress import duration
 from study.core.studyset import StudySet, context_of, listed, opened, select
 from study.core.timing import measure
 
-SHARE = 0.2     # of the time that the set's map had
+SHARE = 0.2     # of the time that all parts of the set's profile have
 PASSES = (3, 5)  # processes of all scenes before there are more of any
 MOST_SAMPLES, TURN = 40, 0.005  # of a process; s, the least that a turn takes
+GATE_S = 20     # s of a check
+NOT_TIMED = ("dropped", "slower", "timeout")  # statuses of who might still be the fastest
 PATIENT = 8     # times the slowest rival's stretch: whose first takes longer is left out
+RESULTS = ROOT / "results"
+LOG = RESULTS / "local" / "add.log"  # of setting up
 SAME = ("machine", "compiler", "flags", "build_type")  # of two contexts
 CELLS = {
     "scene": ("text", "", "of the set's map"), "variables": ("number", "", "n"),
@@ -34,7 +38,7 @@ CELLS = {
     "rival_us": ("number", "µs", "of the rival, median over processes"),
     "ratio": ("number", "", "time of the newcomer over the rival's"), "low": ("number", "", "lower end of its 95 % interval"),
     "high": ("number", "", "upper end"), "processes": ("number", "", "in which both were timed"),
-    "hands": ("text", "", "changes, stays or open (the interval includes 1)"),
+    "hands": ("text", "", "changes, stays, open (the interval includes 1) or not timed"),
     "status": ("text", "", "of the newcomer: ok, or why it was not timed"), "reason": ("text", "", "in words"),
     "commit": ("text", "", "of the newcomer's tree"), "dirty": ("text", "", "whether that had changes beside"),
     "record": ("text", "", "first record of the scene, in raw/added")}
@@ -44,28 +48,37 @@ def add(arguments):
     parser = Parser(prog="study/add", description="Measures a new or changed implementation into a set of the same machine "
                     "and libraries: the newcomer beside the leaders of each cell of its map, in fresh common processes.")
     parser.add_argument("name", metavar="NAME", help="folder or folder/variant")
-    parser.add_argument("--to", type=directory, metavar="SET", help="its directory (the newest in results/, or else in results/local)")
+    parser.add_argument("--to", type=directory, metavar="SET", help="its directory (the newest of this machine and build in results/ and results/local)")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
     options = parser.parse_args(arguments)
     need_modules()
-    folder = options.to or newest()
-    opened(folder)
-    writable(folder)
-    with locks.only_one(folder), locks.only_one_study(options.wait):
+    if options.to:
+        opened(options.to)
+    with locks.only_one_study(options.wait):
         if "MBS_PROGRAM" not in os.environ:
-            set_up(folder / "run.log")
-        table = measured(folder, options.name)
+            LOG.parent.mkdir(parents=True, exist_ok=True)
+            set_up(LOG)
+        known = listed()
+        select(known, [options.name], "")
+        folder = options.to or newest(known)
+        writable(folder)
+        with locks.only_one(folder):
+            table = measured(folder, options.name, known)
     tell(table, folder, options.name)
     return 0
 
 
-def newest():
-    for base in (ROOT / "results", ROOT / "results" / "local"):
-        found = {path.parent: StudySet(path.parent).facts for path in base.glob("*/set.json")}
-        found = {folder: facts["date"] for folder, facts in found.items() if "map" in facts["parts"]}
-        if found:
-            return max(found, key=found.get)
-    raise StudyError("there is no set with a map in results/ or results/local: make one with study/run")
+def newest(known):
+    """The newest set with a map of this machine and build, stored or one's own."""
+    found = {path.parent: StudySet(path.parent).facts for base in (RESULTS, RESULTS / "local") for path in base.glob("*/set.json")}
+    found = {folder: facts for folder, facts in found.items() if "map" in facts["parts"]}
+    now = fingerprint(context_of(Contender(CONTROL.name, CONTROL.variant, next(name for name, why in known.pairs.items() if not why))))
+    same = [folder for folder, facts in found.items() if all(fingerprint(facts["context"])[key] == now[key] for key in SAME)]
+    if same:
+        return max(same, key=lambda folder: found[folder]["date"])
+    others = ", ".join(f"{folder.relative_to(ROOT)} is of {facts['context'].get('cpu_model', 'another')}" for folder, facts in found.items())
+    raise StudyError(f"no set with a map is of this machine and build{f' ({others})' * bool(others)}: study/run --part map makes one in "
+                     "some minutes, with every implementation in it; for a first look: build/mbs bench four-bar:10 four-bar:40")
 
 
 @dataclass(frozen=True)
@@ -84,11 +97,10 @@ class _Present(StudySet):
         return {"context": next(iter(self.present.values()))}
 
 
-def measured(folder, name):
+def measured(folder, name, known):
     """The table of one newcomer, or several variants of one, which is written."""
     from analysis.core import schema
     from study.tools.shelf import ToolLab
-    known = listed()
     newcomers = select(known, [name], "")
     cells = schema.read_table(folder, "map", "cells")
     cells = cells[cells.winner != ""]
@@ -103,10 +115,10 @@ def measured(folder, name):
     _begin(folder, column, lab)
     scenes = list(dict.fromkeys(cells.scene))
     chosen = {scene: _rivals(cells[cells.scene == scene], newcomers, contenders) for scene in scenes}
-    verdicts = {scene: _gate(lab, scene, newcomers, contenders) for scene in scenes}
-    records = {}
+    verdicts, records = {}, {}
     for count in PASSES:
         for scene in scenes:
+            verdicts[scene] = verdicts.get(scene) or _gate(lab, scene, newcomers, contenders)
             fit = [contenders[one] for one in newcomers if verdicts[scene][one][0] == "ok"]
             if fit and chosen[scene]:
                 records[scene] = measure(lab, scene, [*fit, *(contenders[one] for one in chosen[scene])], processes=count,
@@ -120,9 +132,9 @@ def measured(folder, name):
 
 
 def budget_of(folder):
-    """Seconds that the set's map had."""
-    from analysis.core.view import View
-    return View(folder, "map").settings["seconds"]
+    """Seconds that all parts of the set's profile have."""
+    studyset = StudySet(folder)
+    return sum(part["seconds"] for part in profiles.read(folder / "profile.yaml", studyset.facts["profile"], []).parts.values())
 
 
 def contexts(folder, contenders):
@@ -137,8 +149,8 @@ def contexts(folder, contenders):
         for key in (*SAME, *(("blas_loaded",) if kept.exists() else ())):
             was, one_is = (fingerprint(context)[key] for context in (then, now))
             if was != one_is:
-                raise StudyError(f"{folder} is of another machine or build: its {key} is '{was}', here it is "
-                                 f"'{one_is}'; times of both cannot stand side by side")
+                raise StudyError(f"{folder} is of another machine or build ({then.get('cpu_model', '')}; here: {now.get('cpu_model', '')}): "
+                                 f"its {key} is '{was}', here it is '{one_is}'; times of both cannot stand side by side")
         lost = versions(then) - versions(now)
         if lost:
             raise StudyError(f"{folder} is of other libraries: it has {', '.join(sorted(lost))}, here there is "
@@ -175,11 +187,12 @@ def _rivals(cells, newcomers, contenders):
 
 
 def _gate(lab, scene, newcomers, contenders):
-    """{newcomer: (status, reason)}"""
-    found = {}
+    """{newcomer: (status, reason)}. Being right takes nothing of the budget of times."""
+    found, spent = {}, lab.spent
     for name in newcomers:
-        record = lab.run([Cell("check", scene, (contenders[name],), ("--time-limit", 50), "gate")], drop=True)[0]
+        record = lab.one(Cell("check", scene, (contenders[name],), ("--time-limit", GATE_S), "gate", seconds=2 * GATE_S))
         found[name] = ("ok", "") if record.verdicts[name][0] == "agrees" else record.verdicts[name]
+    lab.budget += lab.spent - spent
     return found
 
 
@@ -194,7 +207,7 @@ def _size(lab, times, rivals, steps, scenes):
     stretches = [1e-6 * steps * times[name] for name in rivals if name in times] or [1.0]
     turns = sum(max(one, TURN) for one in (*stretches, max(stretches)))  # the newcomer taken for as slow as the slowest
     samples = min(max(round(0.6 * lab.budget / (scenes * PASSES[-1]) / turns), 1), MOST_SAMPLES)
-    patience = max(PATIENT * max(stretches), 0.05)
+    patience = max(PATIENT * max(stretches), 0.5)
     return {"repetitions": samples, "settings": ("--patience", f"{patience:.3g}"),
             "seconds": 30 + 3 * samples * turns + 5 * patience}
 
@@ -222,7 +235,7 @@ def _rows(cells, newcomers, known, verdicts, records, asked):
                 status, reason = lost.status.iloc[0], lost.reason.iloc[0]
             row |= {"status": status, "reason": reason}
             if status != "ok":
-                yield row | {"hands": "open" if status == "dropped" else "stays"}
+                yield row | {"hands": "not timed" if status in NOT_TIMED else "stays"}
                 continue
             others = [one for one in rows.implementation.unique() if one not in newcomers and "+" not in one
                       and (cell.layer == "all" or one not in known.own) and one not in wrong]
@@ -259,9 +272,10 @@ def _finish(folder, column, lab, rows):
 def tell(table, folder, name):
     print(f"\ntime of {name} over that of the fastest other one, timed anew (95 % interval)")
     for row in table.itertuples():
-        print(f"{row.scene:24} {row.layer:10} " + (f"{row.status}: {row.reason[:70]}" if row.status != "ok" or not row.rival else (
+        print(f"{row.scene:24} {row.layer:10} " + (f"{row.status}: {row.reason}" if row.status != "ok" or not row.rival else (
             f"{row.implementation} ÷ {row.rival}: {row.ratio:.3f} ({row.low:.3f} to {row.high:.3f})"
             + ("" if row.hands == "stays" else f": {row.hands}{' hands' if row.hands == 'changes' else ''}"))))
     counts = Counter(table.hands)
-    print(f"{counts['changes']} cells change hands, {counts['open']} are open, {counts['stays']} stay")
+    print(f"{counts['changes']} cells change hands, {counts['open']} are open, {counts['stays']} stay, "
+          f"{counts['not timed']} were not timed")
     print(f"table: {folder / 'added' / name.replace('/', '.')}.csv")

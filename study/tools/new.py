@@ -24,7 +24,7 @@ LIBRARIES = {"none": ("none", "", '""'),
 
 def new(arguments):
     parser = Parser(prog="study/new", description="Writes the folder of a new implementation: it compiles, is in the list, "
-                    "and has six empty functions to fill in: predict, constraints, Jacobian, residual, tangent, solve.")
+                    "and has empty functions to fill in: predict, constraints, Jacobian, residual, tangent, solve, correct, project, the step.")
     parser.add_argument("name", metavar="NAME", help="its folder: lower case, digits, _")
     parser.add_argument("--library", default="none", choices=list(LIBRARIES), help="what it links (none)")
     options = parser.parse_args(arguments)
@@ -41,12 +41,15 @@ def new(arguments):
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
+    commands = {"study/setup": "installs what is missing, builds all", "cmake --build build --target mbs": "after each function",
+                f"build/mbs check --ladder --implementation {options.name}": "the first quantity that is wrong, and how it usually gets so",
+                "build/mbs reference four-bar:1 --moved": "the reference's numbers",
+                f"build/mbs check --implementation {options.name}": "the whole gate",
+                "build/mbs bench four-bar:10 four-bar:40": "a first ranking, once it agrees"}
+    width = max(map(len, commands)) + 2
+    listing = "\n".join(f"  {command:{width}}# {what}" for command, what in commands.items())
     print(f"""implementations/{options.name}/ is written and in the list. Next:
-  study/setup                                                # builds it
-  build/mbs check --ladder --implementation {options.name}     # the first quantity that is wrong, and how it usually gets so
-  build/mbs reference four-bar:1 --moved                     # the reference's numbers
-  build/mbs check --implementation {options.name}              # the whole gate
-  study/add {options.name}                                     # ranks it, once it agrees
+{listing}
 The equations are in paper/README.md; implementations/minimal_dense is an example to read. Fill in simulation.cpp from top to
 bottom, and climb the ladder after each function.""")
     return 0

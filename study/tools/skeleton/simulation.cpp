@@ -30,8 +30,8 @@ bool Stepper::do_show_first_pass(FirstPass& pass) {
 }
 
 StepOutcome Stepper::do_step() {
-  // TODO: predict; then passes of residual, tangent, solve until max |Delta q| <= settings_.tolerance, with lambda
-  // updated in each; then the projections of v and a, Eq. (6).
+  // TODO: predict; then passes of residual, tangent, solve, correct until max |Delta q| <= settings_.tolerance, Phi and
+  // Phi_q evaluated anew after each; then project.
   return {StepStatus::pass_limit, 1};
 }
 
@@ -45,6 +45,11 @@ void Stepper::evaluate_residual() {}
 
 void Stepper::evaluate_tangent() {}
 
+// A library may call a NaN in T a success (Eigen's LLT does): look at the solution.
 bool Stepper::solve(std::vector<double>& /*right*/) { return false; }
+
+void Stepper::correct(const std::vector<double>& /*delta*/) {}
+
+void Stepper::project() {}
 
 }  // namespace mbs::@NAME@

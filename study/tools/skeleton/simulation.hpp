@@ -24,7 +24,9 @@ class Stepper final : public Simulation {
   void evaluate_jacobian();                // TODO: Phi_q at q', Eq. (7)
   void evaluate_residual();                // TODO: f, Eq. (3)
   void evaluate_tangent();                 // TODO: T, Eq. (5)
-  bool solve(std::vector<double>& right);  // TODO: right becomes T^-1 right; false: T was refused
+  bool solve(std::vector<double>& right);  // TODO: right becomes T^-1 right; false: T was refused, or has a NaN
+  void correct(const std::vector<double>& delta);  // TODO: q', v', a', Eq. (4), then lambda, Eq. (1)
+  void project();                                  // TODO: v', then a', Eq. (6)
 
   const Model& model_;
   StepSettings settings_;
