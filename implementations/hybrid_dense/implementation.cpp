@@ -24,7 +24,15 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
 
 template <class Solver>
 Variant variant(const char* name, const char* description) {
-  return {.name = name, .description = description, .create = create<Solver>, .dense = true};
+  return {.name = name,
+          .description = description,
+          .create = create<Solver>,
+          .dense = true,
+          .serves = {.terms = {Term::dots, Term::bilinear, Term::linear, Term::springs,
+                               Term::torsion_springs, Term::dampers, Term::couples,
+                               Term::force_laws, Term::drivers, Term::mass_across_axes,
+                               Term::spatial},
+                     .saddle_point = true}};
 }
 
 }  // namespace
