@@ -39,7 +39,13 @@ class Array {
 [[gnu::always_inline]] inline void store(double* p, const Vec& x) {
   *reinterpret_cast<Vec*>(p) = x;
 }
-[[gnu::always_inline]] inline Vec broadcast(double x) { return Vec{} + x; }
+[[gnu::always_inline]] inline Vec broadcast(double x) {
+#ifdef __AVX512F__
+  return Vec{x, x, x, x, x, x, x, x};
+#else
+  return Vec{x, x, x, x};
+#endif
+}
 
 /// Entry t of the result is the sum of the entries of x[t].
 [[gnu::always_inline]] inline Vec sums(const Vec (&x)[kWidth]) {
