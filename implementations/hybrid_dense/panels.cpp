@@ -1,5 +1,6 @@
 #include "panels.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mbs::hybrid_dense {
@@ -101,27 +102,29 @@ template <int G, bool kDiagonal>
   return positive;
 }
 
+// Panels at once where `left` are left. Three W accumulators and four vectors fill the registers; four panels
+// are two and two, as one alone is slow.
+long step(long left) { return left == 4 ? 2 : std::min(left, 3L); }
+
+template <bool kDiagonal>
+[[gnu::always_inline]] inline bool finish(long c, long row, long left, const double* A, double* Z,
+                                          Block& block) {
+  switch (step(left)) {
+    case 1: return finish<1, kDiagonal>(c, row, A, Z, block);
+    case 2: return finish<2, kDiagonal>(c, row, A, Z, block);
+    default: return finish<3, kDiagonal>(c, row, A, Z, block);
+  }
+}
+
 }  // namespace
 
 bool factorize(const Panels& panels, const double* A, double* Z) {
-  constexpr int G = 3;  // panels at once: G W accumulators and G + 1 vectors fill the registers
   bool positive = true;
   for (long c = 0; c < panels.count; ++c) {
     Block block;
-    const long left = panels.count - c;
-    if (left >= G) {
-      positive &= finish<G, true>(c, c, A, Z, block);
-    } else if (left == 2) {
-      positive &= finish<2, true>(c, c, A, Z, block);
-    } else {
-      positive &= finish<1, true>(c, c, A, Z, block);
-    }
-    long row = c + G;
-    for (; row + G <= panels.count; row += G) finish<G, false>(c, row, A, Z, block);
-    if (row + 2 == panels.count) {
-      finish<2, false>(c, row, A, Z, block);
-    } else if (row + 1 == panels.count) {
-      finish<1, false>(c, row, A, Z, block);
+    positive &= finish<true>(c, c, panels.count - c, A, Z, block);
+    for (long row = c; (row += step(panels.count - row)) < panels.count;) {
+      finish<false>(c, row, panels.count - row, A, Z, block);
     }
   }
   return positive;
