@@ -16,7 +16,9 @@ Constraints<D>::Constraints(const Model& model, const Slots& slots) {
       for (int i = 0; i < D; ++i) slot_.push_back(slots.of[point] + i);
     }
   };
-  const auto is_distance = [](const DotConstraint& dot) { return dot.a == dot.c && dot.b == dot.d; };
+  const auto is_distance = [](const DotConstraint& dot) {
+    return dot.a == dot.c && dot.b == dot.d;
+  };
   for (std::size_t k = 0; k < dots.size(); ++k) {
     const auto& [a, b, c, d, value, name] = dots[k];
     if (!is_distance(dots[k])) continue;
@@ -32,7 +34,8 @@ Constraints<D>::Constraints(const Model& model, const Slots& slots) {
   for (std::size_t k = 0; k < bilinear.size(); ++k) {
     const BilinearConstraint& row = bilinear[k];
     add_row(static_cast<int>(dots.size() + k), {row.a, row.b, row.c, row.d});
-    Bilinear mine{{slots.of[row.a], slots.of[row.b], slots.of[row.c], slots.of[row.d], row.value}, {}};
+    Bilinear mine{{slots.of[row.a], slots.of[row.b], slots.of[row.c], slots.of[row.d], row.value},
+                  {}};
     for (int i = 0; i < D; ++i) std::copy_n(row.B[i].begin(), D, mine.B[i].begin());
     bilinear_.push_back(mine);
   }
@@ -159,7 +162,8 @@ void Constraints<D>::add_forces(const double* Phi_q, const double* y, double* f)
     Phi_q += 2 * D;
     ++y;
   }
-  for (std::size_t e = 2 * D * distances_.size(), k = distances_.size(); k + 1 < first_.size(); ++k) {
+  for (std::size_t e = 2 * D * distances_.size(), k = distances_.size(); k + 1 < first_.size();
+       ++k) {
     for (; e < static_cast<std::size_t>(first_[k + 1]); ++e) f[slot_[e]] += *Phi_q++ * *y;
     ++y;
   }
@@ -173,7 +177,8 @@ void Constraints<D>::multiply(const double* Phi_q, const double* x, double* y) c
     *y++ = sum;
     Phi_q += 2 * D;
   }
-  for (std::size_t e = 2 * D * distances_.size(), k = distances_.size(); k + 1 < first_.size(); ++k) {
+  for (std::size_t e = 2 * D * distances_.size(), k = distances_.size(); k + 1 < first_.size();
+       ++k) {
     double sum = 0.0;
     for (; e < static_cast<std::size_t>(first_[k + 1]); ++e) sum += *Phi_q++ * x[slot_[e]];
     *y++ = sum;

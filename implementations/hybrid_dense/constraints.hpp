@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -9,8 +10,8 @@
 
 namespace mbs::hybrid_dense {
 
-/// D is the dimension. Rows are in an order of their own: distances, dots, bilinear, linear. A row of
-/// Phi_q has an entry for every component of its points, fixed ones too: 2 D of a distance (two
+/// D is the dimension. Rows are in an order of their own: distances, dots, bilinear, linear. A row
+/// of Phi_q has an entry for every component of its points, fixed ones too: 2 D of a distance (two
 /// points), 4 D of a dot or bilinear constraint, one a term of a linear one.
 template <int D>
 class Constraints {
@@ -29,12 +30,14 @@ class Constraints {
   void multiply(const double* Phi_q, const double* x, double* y) const;
   /// The part of the second derivative of Phi that is free of accelerations, without driven ones.
   void second_derivative(const double* v, double* result) const;
-  /// With v (or a) of driven points alone in `fixed`: result += Phi_t (or its like of second order).
+  /// With v (or a) of driven points alone in `fixed`: result += Phi_t (or its like of second
+  /// order).
   void add_rates(const double* Phi_q, const double* fixed, double* result) const;
   void add_accelerations(const double* Phi_q, const double* fixed, double* result) const;
 
   [[nodiscard]] int count() const { return static_cast<int>(order_.size()); }
-  /// Entries of row k are firsts()[k] ... firsts()[k + 1] - 1; entry e is of the coordinate slots()[e].
+  /// Entries of row k are firsts()[k] ... firsts()[k + 1] - 1; entry e is of the coordinate
+  /// slots()[e].
   [[nodiscard]] std::span<const int> firsts() const { return first_; }
   [[nodiscard]] std::span<const int> slots() const { return slot_; }
   [[nodiscard]] int entries() const { return first_.back(); }

@@ -38,9 +38,9 @@ Vector<D> turned(const double* q, int axis, const Vector<D>& w) {
 
 // Of Eq. (18) at s and its rate; a spring is the law of two straight lines.
 struct Strength {
-  double position;                    // eta kappa
-  double force;                       // eta (kappa + delta)
-  double stiffness, damping;          // eta kappa', eta delta'
+  double position;            // eta kappa
+  double force;               // eta (kappa + delta)
+  double stiffness, damping;  // eta kappa', eta delta'
 };
 
 template <class Element>
@@ -130,7 +130,8 @@ void Forces<D>::evaluate(const double* q, const double* v, double* f) {
       g[D + i] = -g[i];
       g[2 * D + i] = z_w[i] * per_w;
       g[3 * D + i] = -g[2 * D + i];
-      rate += g[i] * (v[angle.a + i] - v[angle.b + i]) + g[2 * D + i] * (v[angle.c + i] - v[angle.d + i]);
+      rate += g[i] * (v[angle.a + i] - v[angle.b + i]) +
+              g[2 * D + i] * (v[angle.c + i] - v[angle.d + i]);
     }
     const double theta = std::atan2(dot<D>(z_u, w), dot<D>(u, w));  // z . (u x w) = (z x u) . w
     const double excess = std::remainder(theta - angle.angle, 2 * std::numbers::pi);
@@ -165,7 +166,8 @@ void Forces<D>::visit_lines(Visit visit) const {
         const int value = static_cast<int>(k * D * D) + i * D + j;
         if (is_free(a) && i >= j) visit(a + i, a + j, value, false);
         if (is_free(b) && i >= j) visit(b + i, b + j, value, false);
-        if (is_free(a) && is_free(b)) visit(std::max(a + i, b + j), std::min(a + i, b + j), value, true);
+        if (is_free(a) && is_free(b))
+          visit(std::max(a + i, b + j), std::min(a + i, b + j), value, true);
       }
     }
   }
@@ -231,7 +233,8 @@ void Forces<D>::add_product(const double* x, double* y) const {
     const auto& [weight, g] = gradients_[k];
     double sum = 0.0;
     for (int i = 0; i < D; ++i) {
-      sum += g[i] * (x[angle.a + i] - x[angle.b + i]) + g[2 * D + i] * (x[angle.c + i] - x[angle.d + i]);
+      sum += g[i] * (x[angle.a + i] - x[angle.b + i]) +
+             g[2 * D + i] * (x[angle.c + i] - x[angle.d + i]);
     }
     for (int i = 0; i < D; ++i) {
       y[angle.a + i] += weight * sum * g[i];

@@ -10,14 +10,16 @@
 
 namespace mbs::hybrid_dense {
 
-/// D is the dimension. "Lines" are springs and laws between two points, "angles" torsion springs and laws
-/// about an axis.
+/// D is the dimension. "Lines" are springs and laws between two points, "angles" torsion springs
+/// and laws about an axis.
 template <int D>
 class Forces {
  public:
   Forces(const Model& model, const Slots& slots, double dt);
 
-  [[nodiscard]] bool any() const { return !lines_.empty() || !angles_.empty() || !couples_.empty(); }
+  [[nodiscard]] bool any() const {
+    return !lines_.empty() || !angles_.empty() || !couples_.empty();
+  }
   /// Whether T_0 changes with the motion.
   [[nodiscard]] bool in_tangent() const { return !lines_.empty() || !angles_.empty(); }
 
@@ -67,7 +69,7 @@ class Forces {
     int angle, left, right;
   };
   template <class Visit>
-  void visit_lines(Visit visit) const;   // visit(row, column, value, negative)
+  void visit_lines(Visit visit) const;  // visit(row, column, value, negative)
   template <class Visit>
   void visit_angles(Visit visit) const;  // visit(row, column, angle, left, right)
 

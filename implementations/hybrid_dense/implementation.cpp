@@ -24,15 +24,15 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
 
 template <class Solver>
 Variant variant(const char* name, const char* description) {
-  return {.name = name,
-          .description = description,
-          .create = create<Solver>,
-          .dense = true,
-          .serves = {.terms = {Term::dots, Term::bilinear, Term::linear, Term::springs,
-                               Term::torsion_springs, Term::dampers, Term::couples,
-                               Term::force_laws, Term::drivers, Term::mass_across_axes,
-                               Term::spatial},
-                     .saddle_point = true}};
+  return {
+      .name = name,
+      .description = description,
+      .create = create<Solver>,
+      .dense = true,
+      .serves = {.terms = {Term::dots, Term::bilinear, Term::linear, Term::springs,
+                           Term::torsion_springs, Term::dampers, Term::couples, Term::force_laws,
+                           Term::drivers, Term::mass_across_axes, Term::spatial},
+                 .saddle_point = true}};
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ Variant variant(const char* name, const char* description) {
 Implementation implementation() {
   return {.description = "sparse evaluation and scheduled assembly, dense Cholesky",
           .library = "Eigen, LAPACK",
-          .version = "",
+          .version = library_versions(),
           .licence = "MPL-2.0, BSD-3-Clause",
           .variants = {variant<LltSolver>("llt", "Eigen's kernels, own block sizes"),
                        variant<PotrfSolver>("potrf", "LAPACK's dpotrf and dpotrs"),

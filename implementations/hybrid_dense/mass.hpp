@@ -8,7 +8,8 @@
 
 namespace mbs::hybrid_dense {
 
-/// M by rows of equally many entries; as a dense half where it is filled so far that this is faster.
+/// M by rows of equally many entries; as a dense half where it is filled so far that this is
+/// faster.
 class Mass {
  public:
   Mass(const Model& model, const Slots& slots);

@@ -11,8 +11,8 @@ constexpr int W = kWidth;
 // What rows below a diagonal block are divided by: the block is U D U^T, U unit lower triangular.
 // Without roots in the chain of pivots, that chain is half as long.
 struct Block {
-  double U[W][W];    // U[row][column]
-  double scale[W];   // 1 / sqrt(d)
+  double U[W][W];   // U[row][column]
+  double scale[W];  // 1 / sqrt(d)
 };
 
 // acc[g] -= (rows of panel g) (rows of the panel `across`)^T over `depth` columns.
@@ -29,7 +29,8 @@ template <int G>
   }
 }
 
-// Factorizes a diagonal block; stores the inverse of U sqrt(D). False unless all pivots are positive.
+// Factorizes a diagonal block; stores the inverse of U sqrt(D). False unless all pivots are
+// positive.
 [[gnu::always_inline]] inline bool factorize_block(const Vec (&acc)[W], Block& block,
                                                    double* inverse) {
   double a[W][W];  // a[column][row]
@@ -102,17 +103,20 @@ template <int G, bool kDiagonal>
   return positive;
 }
 
-// Panels at once where `left` are left. Three W accumulators and four vectors fill the registers; four panels
-// are two and two, as one alone is slow.
+// Panels at once where `left` are left. Three W accumulators and four vectors fill the registers;
+// four panels are two and two, as one alone is slow.
 long step(long left) { return left == 4 ? 2 : std::min(left, 3L); }
 
 template <bool kDiagonal>
 [[gnu::always_inline]] inline bool finish(long c, long row, long left, const double* A, double* Z,
                                           Block& block) {
   switch (step(left)) {
-    case 1: return finish<1, kDiagonal>(c, row, A, Z, block);
-    case 2: return finish<2, kDiagonal>(c, row, A, Z, block);
-    default: return finish<3, kDiagonal>(c, row, A, Z, block);
+    case 1:
+      return finish<1, kDiagonal>(c, row, A, Z, block);
+    case 2:
+      return finish<2, kDiagonal>(c, row, A, Z, block);
+    default:
+      return finish<3, kDiagonal>(c, row, A, Z, block);
   }
 }
 

@@ -23,14 +23,15 @@ struct Panels {
   long count;
 };
 
-/// A = Z Z^T; false unless A is positive definite. Z has the inverses of its diagonal blocks in their places.
+/// A = Z Z^T; false unless A is positive definite. Z has the inverses of its diagonal blocks in
+/// their places.
 [[nodiscard]] bool factorize(const Panels& panels, const double* A, double* Z);
 
 /// A x = b with Z of factorize(); x, padded to whole vectors by zeros, is b when it arrives.
 void solve(const Panels& panels, const double* Z, double* x);
 
-/// y_r = A x_r for `Count` vectors at once, A symmetric. All are padded by zeros; A's padding is not read
-/// for anything that counts.
+/// y_r = A x_r for `Count` vectors at once, A symmetric. All are padded by zeros; A's padding is
+/// not read for anything that counts.
 template <int Count>
 void multiply(const Panels& panels, const double* A, const double* const (&x)[Count],
               double* const (&y)[Count]);

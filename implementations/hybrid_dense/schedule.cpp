@@ -59,11 +59,20 @@ void Schedule::assemble(double s, const double* Phi_q, double* T) const {
   const Pair* pair = pairs_.data();
   for (const Group& group : groups_) {
     switch (group.products) {
-      case 1: assemble_group<1>(group, s, Phi_q, T, entry, pair); break;
-      case 2: assemble_group<2>(group, s, Phi_q, T, entry, pair); break;
-      case 3: assemble_group<3>(group, s, Phi_q, T, entry, pair); break;
-      case 4: assemble_group<4>(group, s, Phi_q, T, entry, pair); break;
-      default: assemble_group<0>(group, s, Phi_q, T, entry, pair);
+      case 1:
+        assemble_group<1>(group, s, Phi_q, T, entry, pair);
+        break;
+      case 2:
+        assemble_group<2>(group, s, Phi_q, T, entry, pair);
+        break;
+      case 3:
+        assemble_group<3>(group, s, Phi_q, T, entry, pair);
+        break;
+      case 4:
+        assemble_group<4>(group, s, Phi_q, T, entry, pair);
+        break;
+      default:
+        assemble_group<0>(group, s, Phi_q, T, entry, pair);
     }
   }
 }

@@ -10,15 +10,15 @@
 
 namespace mbs::hybrid_dense {
 
-/// Writes M + s Phi_q^T Phi_q, but only those entries that change from pass to pass. All others keep
-/// what write_mass() gave them.
+/// Writes M + s Phi_q^T Phi_q, but only those entries that change from pass to pass. All others
+/// keep what write_mass() gave them.
 class Schedule {
  public:
   /// Of an entry (row, column), row >= column.
   using Position = std::function<long(long row, long column)>;
 
-  /// Row k of Phi_q has the entries first[k] ... first[k + 1] - 1, of the coordinates `slots`; slots from n on
-  /// have no column. `others` are (row, column) of entries that others will add to.
+  /// Row k of Phi_q has the entries first[k] ... first[k + 1] - 1, of the coordinates `slots`;
+  /// slots from n on have no column. `others` are (row, column) of entries that others will add to.
   Schedule(const Model& model, std::span<const int> first, std::span<const int> slots,
            std::span<const std::pair<int, int>> others, const Position& position);
 

@@ -10,8 +10,10 @@ HybridSimulation<D, System>::HybridSimulation(const Model& model, const StepSett
     : Simulation(model, settings),
       model_(model),
       settings_(settings),
-      driven_(std::ranges::any_of(model.force_laws(), [](const auto& law) { return !law.law.factor.is_constant(); }) ||
-              std::ranges::any_of(model.torque_laws(), [](const auto& law) { return !law.law.factor.is_constant(); }) ||
+      driven_(std::ranges::any_of(model.force_laws(),
+                                  [](const auto& law) { return !law.law.factor.is_constant(); }) ||
+              std::ranges::any_of(model.torque_laws(),
+                                  [](const auto& law) { return !law.law.factor.is_constant(); }) ||
               !model.driven_points().empty() || !model.driven_values().empty()) {
   for (std::size_t p = 0; p < model.points().size(); ++p) {
     if (model.points()[p].is_fixed()) {
@@ -124,7 +126,8 @@ void HybridSimulation<D, System>::drive() {
   }
 }
 
-// Into v'; with factor 0 zeros, for products with matrices, which have no columns for driven points.
+// Into v'; with factor 0 zeros, for products with matrices, which have no columns for driven
+// points.
 template <int D, class System>
 void HybridSimulation<D, System>::write_driven_velocities(double factor) {
   for (const DrivenPoint& driven : model_.driven_points()) {
@@ -154,7 +157,8 @@ void HybridSimulation<D, System>::evaluate_constraints() {
   constraints_.evaluate(q_.data(), Phi_.data(), Phi_q_.data());
 }
 
-// Eq. (3), shorter by Eq. (2): f = (dt^2/4) (M a' + Phi_q^T (lambda + alpha Phi) - Q); f_0 has no alpha Phi.
+// Eq. (3), shorter by Eq. (2): f = (dt^2/4) (M a' + Phi_q^T (lambda + alpha Phi) - Q); f_0 has no
+// alpha Phi.
 template <int D, class System>
 void HybridSimulation<D, System>::evaluate_residual() {
   phases_.enter(Phase::evaluation);
@@ -189,7 +193,8 @@ bool HybridSimulation<D, System>::correct() {
   return large == 0;
 }
 
-// Eq. (6) or (13), with the last pass's matrix. M v* and M a* are one product: a* does not depend on v'.
+// Eq. (6) or (13), with the last pass's matrix. M v* and M a* are one product: a* does not depend
+// on v'.
 template <int D, class System>
 void HybridSimulation<D, System>::project() {
   phases_.enter(Phase::projection);
@@ -206,7 +211,7 @@ void HybridSimulation<D, System>::project() {
     if (both) forces_.add_product(a_.data(), right_a_.data());
     write_driven_velocities(1.0);
   }
-  const bool rates = constraints_.driven();  // else Phi_t = 0
+  const bool rates = constraints_.driven();                          // else Phi_t = 0
   const auto solve = [&](Array& right, Array& result, bool has_y) {  // y_ is what follows Phi_q^T
     if constexpr (System::kSaddle) {
       static_cast<void>(has_y), static_cast<void>(minus_s);

@@ -47,10 +47,11 @@ class HybridSimulation final : public Simulation {
   Array q_{slots_.total}, v_{slots_.total}, a_{slots_.total};
   Array lambda_{padded(m_)}, Phi_{padded(m_)}, y_{padded(m_)};
   Array Phi_q_{constraints_.entries()};
-  Array Q_{padded(n_)};                      // gravity, less what driven mass takes
+  Array Q_{padded(n_)};                                  // gravity, less what driven mass takes
   Array fixed_v_{slots_.total}, fixed_a_{slots_.total};  // of driven points; zero elsewhere
-  Array Delta_q_{slots_.total};              // -f, then the solution of Eq. (4)
-  Array right_v_{slots_.total}, right_a_{slots_.total};  // right-hand sides of Eq. (6), then v' and a'
+  Array Delta_q_{slots_.total};                          // -f, then the solution of Eq. (4)
+  Array right_v_{slots_.total},
+      right_a_{slots_.total};  // right-hand sides of Eq. (6), then v' and a'
 };
 
 }  // namespace mbs::hybrid_dense

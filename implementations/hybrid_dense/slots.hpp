@@ -1,4 +1,5 @@
-// Where the components of points lie: all points in one array, so that loops need not ask which are fixed.
+// Where the components of points lie: all points in one array, so that loops need not ask which are
+// fixed.
 #pragma once
 
 #include <vector>

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 
 extern "C" {
+void ilaver_(int* major, int* minor, int* patch);
 void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
 void dpotrs_(const char* uplo, const int* n, const int* nrhs, const double* a, const int* lda,
              double* b, const int* ldb, int* info);
@@ -18,8 +19,8 @@ using Columns = Eigen::Map<Matrix, kAlignment, Eigen::OuterStride<>>;
 // Up to here Eigen's unblocked factorization is the fastest; measured.
 constexpr long kUnblocked = 64;
 
-// Halves, so that products are as large as they can be: Eigen's pack their factors, which narrow ones do
-// not repay. Eigen's own blocks are of 8 where n is below 128.
+// Halves, so that products are as large as they can be: Eigen's pack their factors, which narrow
+// ones do not repay. Eigen's own blocks are of 8 where n is below 128.
 bool factorize_halves(Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>> L) {
   using Factorization = Eigen::internal::llt_inplace<double, Eigen::Lower>;
   const long n = L.rows();
@@ -35,6 +36,16 @@ bool factorize_halves(Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>> L) {
 }
 
 }  // namespace
+
+std::string library_versions() {
+  int major = 0, minor = 0, patch = 0;
+  ilaver_(&major, &minor, &patch);
+  const auto join = [](int a, int b, int c) {
+    return std::to_string(a) + '.' + std::to_string(b) + '.' + std::to_string(c);
+  };
+  return join(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION) + ", " +
+         join(major, minor, patch);
+}
 
 bool LltSolver::factorize() {
   copy();

@@ -1,12 +1,16 @@
-// Dense Cholesky factorizations and solves. All three keep the assembled matrix and factorize a copy, so
-// that entries which never change are written once.
+// Dense Cholesky factorizations and solves. All three keep the assembled matrix and factorize a
+// copy, so that entries which never change are written once.
 #pragma once
 
 #include <algorithm>
+#include <string>
 
 #include "panels.hpp"
 
 namespace mbs::hybrid_dense {
+
+/// Of Eigen and of the LAPACK that is loaded.
+std::string library_versions();
 
 /// Own kernels, in panels.
 class PanelsSolver {
@@ -14,7 +18,8 @@ class PanelsSolver {
   explicit PanelsSolver(long n) : panels_(n), A_(panels_.size()), Z_(panels_.size()) {
     for (long i = n; i < padded(n); ++i) A_[Panels::position(i, i)] = 1.0;
   }
-  /// The lower half is to be written; kWidth rows from a multiple of kWidth on lie one behind the other.
+  /// The lower half is to be written; kWidth rows from a multiple of kWidth on lie one behind the
+  /// other.
   double* matrix() { return A_.data(); }
   static long position(long i, long j) { return Panels::position(i, j); }
   /// False unless the matrix is positive definite.
@@ -30,7 +35,8 @@ class PanelsSolver {
 /// Columns one behind the other, as libraries take them.
 class ColumnsSolver {
  public:
-  explicit ColumnsSolver(long n) : n_(n), rows_(std::max<long>(padded(n), kWidth)), A_(n * rows_), L_(n * rows_) {}
+  explicit ColumnsSolver(long n)
+      : n_(n), rows_(std::max<long>(padded(n), kWidth)), A_(n * rows_), L_(n * rows_) {}
   double* matrix() { return A_.data(); }
   [[nodiscard]] long position(long i, long j) const { return j * rows_ + i; }
 

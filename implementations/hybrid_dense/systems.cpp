@@ -51,7 +51,8 @@ SaddleSystem<D, Solver>::SaddleSystem(const Model& model, const Slots& slots,
   regular_ = T_0_.factorize() && invert();
 }
 
-// Column by column; T_0 is well conditioned where masses are, and Cholesky does not mind their scale.
+// Column by column; T_0 is well conditioned where masses are, and Cholesky does not mind their
+// scale.
 template <int D, class Solver>
 bool SaddleSystem<D, Solver>::invert() {
   for (long j = 0; j < n_; ++j) {

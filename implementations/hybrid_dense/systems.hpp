@@ -5,6 +5,7 @@
 
 #include "constraints.hpp"
 #include "forces.hpp"
+#include "mbs/simulation.hpp"
 #include "schedule.hpp"
 
 namespace mbs::hybrid_dense {
@@ -15,8 +16,8 @@ class PenaltySystem {
  public:
   static constexpr bool kSaddle = false;
 
-  PenaltySystem(const Model& model, const Slots&, const Constraints<D>& constraints, Forces<D>& forces,
-                const StepSettings& settings)
+  PenaltySystem(const Model& model, const Slots&, const Constraints<D>& constraints,
+                Forces<D>& forces, const StepSettings& settings)
       : forces_(forces),
         s_(settings.step * settings.step / 4 * settings.penalty),
         solver_(model.variables()),
@@ -47,10 +48,12 @@ class PenaltySystem {
 
 /// Eq. (12) by its Schur complement, which is positive definite as T_0 is:
 ///
-///   S = epsilon + Phi_q T_0^-1 Phi_q^T,   S mu = Phi_q T_0^-1 r_1 - r_2,   T_0 x = r_1 - Phi_q^T mu
+///   S = epsilon + Phi_q T_0^-1 Phi_q^T,   S mu = Phi_q T_0^-1 r_1 - r_2,   T_0 x = r_1 - Phi_q^T
+///   mu
 ///
-/// This is the factorization L D L^T of the quasi-definite matrix in the order (q, mu), whose pivots are those of T_0
-/// and then those of -S; no other order is safer, as T_0 holds no 1/epsilon. Without springs T_0 = M is inverted once.
+/// This is the factorization L D L^T of the quasi-definite matrix in the order (q, mu), whose
+/// pivots are those of T_0 and then those of -S; no other order is safer, as T_0 holds no
+/// 1/epsilon. Without springs T_0 = M is inverted once.
 template <int D, class Solver>
 class SaddleSystem {
  public:

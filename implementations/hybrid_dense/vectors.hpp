@@ -33,9 +33,7 @@ class Array {
   std::vector<Line> lines_;
 };
 
-[[gnu::always_inline]] inline Vec load(const double* p) {
-  return *reinterpret_cast<const Vec*>(p);
-}
+[[gnu::always_inline]] inline Vec load(const double* p) { return *reinterpret_cast<const Vec*>(p); }
 [[gnu::always_inline]] inline void store(double* p, const Vec& x) {
   *reinterpret_cast<Vec*>(p) = x;
 }
