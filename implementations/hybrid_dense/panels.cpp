@@ -103,9 +103,8 @@ template <int G, bool kDiagonal>
   return positive;
 }
 
-// Panels at once where `left` are left. Three W accumulators and four vectors fill the registers;
-// four panels are two and two, as one alone is slow.
-long step(long left) { return left == 4 ? 2 : std::min(left, 3L); }
+// Panels at once where `left` are left: three W accumulators and four vectors fill the registers.
+long step(long left) { return std::min(left, 3L); }
 
 template <bool kDiagonal>
 [[gnu::always_inline]] inline bool finish(long c, long row, long left, const double* A, double* Z,
