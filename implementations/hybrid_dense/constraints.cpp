@@ -1,0 +1,241 @@
+#include "constraints.hpp"
+
+#include <algorithm>
+
+namespace mbs::hybrid_dense {
+
+template <int D>
+Constraints<D>::Constraints(const Model& model, const Slots& slots) {
+  const auto dots = model.dot_constraints();
+  const auto bilinear = model.bilinear_constraints();
+  const auto linear = model.linear_constraints();
+  const auto add_row = [&](int model_row, std::initializer_list<int> points) {
+    order_.push_back(model_row);
+    first_.push_back(static_cast<int>(slot_.size()));
+    for (const int point : points) {
+      for (int i = 0; i < D; ++i) slot_.push_back(slots.of[point] + i);
+    }
+  };
+  const auto is_distance = [](const DotConstraint& dot) {
+    return dot.a == dot.c && dot.b == dot.d;
+  };
+  for (std::size_t k = 0; k < dots.size(); ++k) {
+    const auto& [a, b, c, d, value, name] = dots[k];
+    if (!is_distance(dots[k])) continue;
+    add_row(static_cast<int>(k), {a, b});
+    distances_.push_back({slots.of[a], slots.of[b], value});
+  }
+  for (std::size_t k = 0; k < dots.size(); ++k) {
+    const auto& [a, b, c, d, value, name] = dots[k];
+    if (is_distance(dots[k])) continue;
+    add_row(static_cast<int>(k), {a, b, c, d});
+    dots_.push_back({slots.of[a], slots.of[b], slots.of[c], slots.of[d], value});
+  }
+  for (std::size_t k = 0; k < bilinear.size(); ++k) {
+    const BilinearConstraint& row = bilinear[k];
+    add_row(static_cast<int>(dots.size() + k), {row.a, row.b, row.c, row.d});
+    Bilinear mine{{slots.of[row.a], slots.of[row.b], slots.of[row.c], slots.of[row.d], row.value},
+                  {}};
+    for (int i = 0; i < D; ++i) std::copy_n(row.B[i].begin(), D, mine.B[i].begin());
+    bilinear_.push_back(mine);
+  }
+  for (std::size_t k = 0; k < linear.size(); ++k) {
+    add_row(static_cast<int>(dots.size() + bilinear.size() + k), {});
+    const int first = static_cast<int>(slot_.size());
+    for (const LinearConstraint::Term& term : linear[k].terms) {
+      slot_.push_back(term.coordinate);
+      coefficients_.push_back(term.coefficient);
+    }
+    linear_.push_back({first, static_cast<int>(slot_.size()), linear[k].value});
+  }
+  first_.push_back(static_cast<int>(slot_.size()));
+
+  // Driven values and rows with driven points.
+  std::vector<bool> driven_slot(slots.total);
+  for (const DrivenPoint& driven : model.driven_points()) {
+    for (int i = 0; i < D; ++i) driven_slot[slots.of[driven.point] + i] = true;
+  }
+  std::vector<int> function(count(), -1);  // by row of the model
+  functions_.reserve(model.driven_values().size());
+  for (const DrivenValue& driven : model.driven_values()) {
+    function[driven.constraint] = static_cast<int>(functions_.size());
+    functions_.push_back({driven.value, nullptr, {}});
+  }
+  const auto value_of = [&](int k) -> double* {
+    std::size_t index = k;
+    if (index < distances_.size()) return &distances_[index].value;
+    index -= distances_.size();
+    if (index < dots_.size()) return &dots_[index].value;
+    index -= dots_.size();
+    if (index < bilinear_.size()) return &bilinear_[index].dot.value;
+    return &linear_[index - bilinear_.size()].value;
+  };
+  for (int k = 0; k < count(); ++k) {
+    DrivenRow row{k, static_cast<int>(fixed_entries_.size()), 0, function[order_[k]]};
+    for (int e = first_[k]; e < first_[k + 1]; ++e) {
+      if (driven_slot[slot_[e]]) fixed_entries_.push_back(e);
+    }
+    row.end_fixed = static_cast<int>(fixed_entries_.size());
+    if (row.function >= 0) functions_[row.function].target = value_of(k);
+    if (row.function >= 0 || row.end_fixed > row.first_fixed) driven_rows_.push_back(row);
+  }
+}
+
+template <int D>
+void Constraints<D>::write_constants(double* Phi_q) const {
+  if (!linear_.empty()) {
+    std::copy(coefficients_.begin(), coefficients_.end(), Phi_q + linear_.front().first);
+  }
+}
+
+template <int D>
+void Constraints<D>::drive(double t) {
+  for (Function& function : functions_) {
+    function.now = function.value.at(t);
+    *function.target = function.now.value;
+  }
+}
+
+template <int D>
+void Constraints<D>::evaluate(const double* q, double* Phi, double* Phi_q) const {
+  for (const auto& [a, b, value] : distances_) {
+    double sum = 0.0;
+    for (int i = 0; i < D; ++i) {
+      const double u = q[a + i] - q[b + i];
+      sum += u * u;
+      Phi_q[i] = 2 * u;
+      Phi_q[D + i] = -2 * u;
+    }
+    *Phi++ = sum - value;
+    Phi_q += 2 * D;
+  }
+  for (const auto& [a, b, c, d, value] : dots_) {
+    double sum = 0.0;
+    for (int i = 0; i < D; ++i) {
+      const double u = q[a + i] - q[b + i], w = q[c + i] - q[d + i];
+      sum += u * w;
+      Phi_q[i] = w;
+      Phi_q[D + i] = -w;
+      Phi_q[2 * D + i] = u;
+      Phi_q[3 * D + i] = -u;
+    }
+    *Phi++ = sum - value;
+    Phi_q += 4 * D;
+  }
+  for (const auto& [dot, B] : bilinear_) {
+    double u[D], w[D], Bw[D] = {}, Btu[D] = {}, sum = 0.0;
+    for (int i = 0; i < D; ++i) {
+      u[i] = q[dot.a + i] - q[dot.b + i];
+      w[i] = q[dot.c + i] - q[dot.d + i];
+    }
+    for (int i = 0; i < D; ++i) {
+      for (int j = 0; j < D; ++j) {
+        Bw[i] += B[i][j] * w[j];
+        Btu[j] += B[i][j] * u[i];
+      }
+    }
+    for (int i = 0; i < D; ++i) {
+      sum += u[i] * Bw[i];
+      Phi_q[i] = Bw[i];
+      Phi_q[D + i] = -Bw[i];
+      Phi_q[2 * D + i] = Btu[i];
+      Phi_q[3 * D + i] = -Btu[i];
+    }
+    *Phi++ = sum - dot.value;
+    Phi_q += 4 * D;
+  }
+  for (const auto& [first, end, value] : linear_) {
+    double sum = 0.0;
+    for (int e = first; e < end; ++e) sum += *Phi_q++ * q[slot_[e]];
+    *Phi++ = sum - value;
+  }
+}
+
+template <int D>
+void Constraints<D>::add_forces(const double* Phi_q, const double* y, double* f) const {
+  for (const auto& [a, b, value] : distances_) {
+    for (int i = 0; i < D; ++i) {
+      const double force = Phi_q[i] * *y;
+      f[a + i] += force;
+      f[b + i] -= force;
+    }
+    Phi_q += 2 * D;
+    ++y;
+  }
+  for (std::size_t e = 2 * D * distances_.size(), k = distances_.size(); k + 1 < first_.size();
+       ++k) {
+    for (; e < static_cast<std::size_t>(first_[k + 1]); ++e) f[slot_[e]] += *Phi_q++ * *y;
+    ++y;
+  }
+}
+
+template <int D>
+void Constraints<D>::multiply(const double* Phi_q, const double* x, double* y) const {
+  for (const auto& [a, b, value] : distances_) {
+    double sum = 0.0;
+    for (int i = 0; i < D; ++i) sum += Phi_q[i] * (x[a + i] - x[b + i]);
+    *y++ = sum;
+    Phi_q += 2 * D;
+  }
+  for (std::size_t e = 2 * D * distances_.size(), k = distances_.size(); k + 1 < first_.size();
+       ++k) {
+    double sum = 0.0;
+    for (; e < static_cast<std::size_t>(first_[k + 1]); ++e) sum += *Phi_q++ * x[slot_[e]];
+    *y++ = sum;
+  }
+}
+
+template <int D>
+void Constraints<D>::second_derivative(const double* v, double* result) const {
+  for (const auto& [a, b, value] : distances_) {
+    double sum = 0.0;
+    for (int i = 0; i < D; ++i) {
+      const double u = v[a + i] - v[b + i];
+      sum += u * u;
+    }
+    *result++ = 2 * sum;
+  }
+  for (const auto& [a, b, c, d, value] : dots_) {
+    double sum = 0.0;
+    for (int i = 0; i < D; ++i) sum += (v[a + i] - v[b + i]) * (v[c + i] - v[d + i]);
+    *result++ = 2 * sum;
+  }
+  for (const auto& [dot, B] : bilinear_) {
+    double sum = 0.0;
+    for (int i = 0; i < D; ++i) {
+      for (int j = 0; j < D; ++j) {
+        sum += (v[dot.a + i] - v[dot.b + i]) * B[i][j] * (v[dot.c + j] - v[dot.d + j]);
+      }
+    }
+    *result++ = 2 * sum;
+  }
+  std::fill_n(result, linear_.size(), 0.0);
+}
+
+template <int D>
+void Constraints<D>::add_rates(const double* Phi_q, const double* fixed, double* result) const {
+  for (const DrivenRow& row : driven_rows_) {
+    double sum = row.function < 0 ? 0.0 : -functions_[row.function].now.rate;
+    for (int k = row.first_fixed; k < row.end_fixed; ++k) {
+      sum += Phi_q[fixed_entries_[k]] * fixed[slot_[fixed_entries_[k]]];
+    }
+    result[row.row] += sum;
+  }
+}
+
+template <int D>
+void Constraints<D>::add_accelerations(const double* Phi_q, const double* fixed,
+                                       double* result) const {
+  for (const DrivenRow& row : driven_rows_) {
+    double sum = row.function < 0 ? 0.0 : -functions_[row.function].now.acceleration;
+    for (int k = row.first_fixed; k < row.end_fixed; ++k) {
+      sum += Phi_q[fixed_entries_[k]] * fixed[slot_[fixed_entries_[k]]];
+    }
+    result[row.row] += sum;
+  }
+}
+
+template class Constraints<2>;
+template class Constraints<3>;
+
+}  // namespace mbs::hybrid_dense

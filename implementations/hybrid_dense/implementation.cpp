@@ -1,0 +1,50 @@
+// What this folder offers: one sparse evaluation and assembly, three dense factorizations.
+#include "mbs/implementation.hpp"
+
+#include <string>
+
+#include "simulation.hpp"
+
+namespace mbs::hybrid_dense {
+namespace {
+
+template <int D, class Solver>
+std::unique_ptr<Simulation> create_in(const Model& model, const StepSettings& settings) {
+  if (settings.scheme == Scheme::saddle_point) {
+    return std::make_unique<HybridSimulation<D, SaddleSystem<D, Solver>>>(model, settings);
+  }
+  return std::make_unique<HybridSimulation<D, PenaltySystem<D, Solver>>>(model, settings);
+}
+
+template <class Solver>
+std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
+  return model.dimension() == 2 ? create_in<2, Solver>(model, settings)
+                                : create_in<3, Solver>(model, settings);
+}
+
+template <class Solver>
+Variant variant(const char* name, const char* description) {
+  return {
+      .name = name,
+      .description = description,
+      .create = create<Solver>,
+      .dense = true,
+      .serves = {.terms = {Term::dots, Term::bilinear, Term::linear, Term::springs,
+                           Term::torsion_springs, Term::dampers, Term::couples, Term::force_laws,
+                           Term::drivers, Term::mass_across_axes, Term::spatial},
+                 .saddle_point = true}};
+}
+
+}  // namespace
+
+Implementation implementation() {
+  return {.description = "sparse evaluation and scheduled assembly, dense Cholesky",
+          .library = "Eigen, LAPACK",
+          .version = library_versions(),
+          .licence = "MPL-2.0, BSD-3-Clause",
+          .variants = {variant<LltSolver>("llt", "Eigen's kernels, own block sizes"),
+                       variant<PotrfSolver>("potrf", "LAPACK's dpotrf and dpotrs"),
+                       variant<PanelsSolver>("panels", "own kernels in panel-major storage")}};
+}
+
+}  // namespace mbs::hybrid_dense

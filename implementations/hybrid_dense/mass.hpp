@@ -1,0 +1,33 @@
+// Products with the mass matrix.
+#pragma once
+
+#include <vector>
+
+#include "panels.hpp"
+#include "slots.hpp"
+
+namespace mbs::hybrid_dense {
+
+/// M by rows of equally many entries; as a dense half where it is filled so far that this is
+/// faster.
+class Mass {
+ public:
+  Mass(const Model& model, const Slots& slots);
+
+  /// y_r = M x_r for `Count` vectors at once.
+  template <int Count>
+  void multiply(const double* const (&x)[Count], double* const (&y)[Count]) const;
+
+ private:
+  struct Group {  // rows of `length` entries
+    int length, rows;
+  };
+
+  Panels panels_;
+  Array dense_;  // empty: sparse
+  std::vector<Group> groups_;
+  std::vector<int> rows_, columns_;  // in the groups' order
+  std::vector<double> values_;
+};
+
+}  // namespace mbs::hybrid_dense

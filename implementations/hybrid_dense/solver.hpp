@@ -1,0 +1,71 @@
+// Dense Cholesky factorizations and solves. All three keep the assembled matrix and factorize a
+// copy, so that entries which never change are written once.
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "panels.hpp"
+
+namespace mbs::hybrid_dense {
+
+/// Of Eigen and of the LAPACK that is loaded.
+std::string library_versions();
+
+/// Own kernels, in panels.
+class PanelsSolver {
+ public:
+  explicit PanelsSolver(long n) : panels_(n), A_(panels_.size()), Z_(panels_.size()) {
+    for (long i = n; i < padded(n); ++i) A_[Panels::position(i, i)] = 1.0;
+  }
+  /// The lower half is to be written; kWidth rows from a multiple of kWidth on lie one behind the
+  /// other.
+  double* matrix() { return A_.data(); }
+  static long position(long i, long j) { return Panels::position(i, j); }
+  /// False unless the matrix is positive definite.
+  [[nodiscard]] bool factorize() { return hybrid_dense::factorize(panels_, A_.data(), Z_.data()); }
+  /// x is the right-hand side when it arrives; padded by zeros.
+  void solve(double* x) const { hybrid_dense::solve(panels_, Z_.data(), x); }
+
+ private:
+  Panels panels_;
+  Array A_, Z_;
+};
+
+/// Columns one behind the other, as libraries take them.
+class ColumnsSolver {
+ public:
+  explicit ColumnsSolver(long n)
+      : n_(n), rows_(std::max<long>(padded(n), kWidth)), A_(n * rows_), L_(n * rows_) {}
+  double* matrix() { return A_.data(); }
+  [[nodiscard]] long position(long i, long j) const { return j * rows_ + i; }
+
+ protected:
+  // The upper half is never read.
+  void copy() {
+    for (long j = 0; j < n_; ++j) {
+      std::copy(A_.data() + j * rows_ + j, A_.data() + j * rows_ + n_, L_.data() + j * rows_ + j);
+    }
+  }
+
+  const long n_, rows_;
+  Array A_, L_;
+};
+
+/// Eigen's kernels, blocks of our own.
+class LltSolver : public ColumnsSolver {
+ public:
+  using ColumnsSolver::ColumnsSolver;
+  [[nodiscard]] bool factorize();
+  void solve(double* x) const;
+};
+
+/// LAPACK's dpotrf and dpotrs.
+class PotrfSolver : public ColumnsSolver {
+ public:
+  using ColumnsSolver::ColumnsSolver;
+  [[nodiscard]] bool factorize();
+  void solve(double* x) const;
+};
+
+}  // namespace mbs::hybrid_dense

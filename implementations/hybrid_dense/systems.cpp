@@ -1,0 +1,128 @@
+#include "systems.hpp"
+
+#include "solver.hpp"
+
+namespace mbs::hybrid_dense {
+namespace {
+
+constexpr int W = kWidth;
+
+// Rows become columns: each round deals the rows out like two halves of a pack of cards.
+[[gnu::always_inline]] inline void transpose(Vec (&x)[W]) {
+  for (int round = 1; round < W; round *= 2) {
+    Vec y[W];
+    for (int i = 0; i < W / 2; ++i) {
+#ifdef __AVX512F__
+      y[2 * i] = __builtin_shufflevector(x[i], x[i + 4], 0, 8, 1, 9, 2, 10, 3, 11);
+      y[2 * i + 1] = __builtin_shufflevector(x[i], x[i + 4], 4, 12, 5, 13, 6, 14, 7, 15);
+#else
+      y[2 * i] = __builtin_shufflevector(x[i], x[i + 2], 0, 4, 1, 5);
+      y[2 * i + 1] = __builtin_shufflevector(x[i], x[i + 2], 2, 6, 3, 7);
+#endif
+    }
+    for (int i = 0; i < W; ++i) x[i] = y[i];
+  }
+}
+
+}  // namespace
+
+template <int D, class Solver>
+SaddleSystem<D, Solver>::SaddleSystem(const Model& model, const Slots& slots,
+                                      const Constraints<D>& constraints, Forces<D>& forces,
+                                      const StepSettings& settings)
+    : constraints_(constraints),
+      forces_(forces),
+      n_(slots.n),
+      m_(model.constraints()),
+      total_(slots.total),
+      epsilon_(4 / (settings.penalty * settings.step * settings.step)),
+      T_0_(n_),
+      S_(m_),
+      schedule_(model, {}, {}, forces.tangent_entries(),
+                [this](long i, long j) { return T_0_.position(i, j); }),
+      Phi_q_(constraints.entries()),
+      inverse_(total_ * padded(n_)),
+      product_(total_ * padded(m_)),
+      z_(total_),
+      z_y_(padded(m_)) {
+  const Schedule::Position position = [this](long i, long j) { return T_0_.position(i, j); };
+  Schedule::write_mass(model, position, T_0_.matrix());
+  forces.schedule(position);
+  regular_ = T_0_.factorize() && invert();
+}
+
+// Column by column; T_0 is well conditioned where masses are, and Cholesky does not mind their
+// scale.
+template <int D, class Solver>
+bool SaddleSystem<D, Solver>::invert() {
+  for (long j = 0; j < n_; ++j) {
+    double* row = inverse_.data() + j * padded(n_);
+    std::fill_n(row, padded(n_), 0.0);
+    row[j] = 1.0;
+    T_0_.solve(row);
+  }
+  return true;
+}
+
+template <int D, class Solver>
+void SaddleSystem<D, Solver>::assemble(const double* Phi_q) {
+  std::copy_n(Phi_q, constraints_.entries(), Phi_q_.data());
+  if (forces_.in_tangent()) {
+    schedule_.assemble(0.0, Phi_q, T_0_.matrix());
+    forces_.add_tangent(T_0_.matrix());
+    regular_ = T_0_.factorize() && invert();
+  }
+  if (!regular_) return;
+  const auto first = constraints_.firsts();
+  const auto slots = constraints_.slots();
+  const long columns = padded(n_);
+  for (long p = 0; p < m_; p += W) {
+    double* product = product_.data() + p * total_;
+    const long rows = std::min<long>(W, m_ - p);
+    for (long j = 0; j < columns; j += W) {
+      Vec sums[W] = {};
+      for (long r = 0; r < rows; ++r) {
+        for (int e = first[p + r]; e < first[p + r + 1]; ++e) {
+          sums[r] += broadcast(Phi_q[e]) * load(inverse_.data() + slots[e] * columns + j);
+        }
+      }
+      transpose(sums);
+      for (int t = 0; t < W; ++t) store(product + (j + t) * W, sums[t]);
+    }
+    for (long l = 0; l < p + rows; ++l) {
+      Vec sum = {};
+      for (int e = first[l]; e < first[l + 1]; ++e) {
+        sum += broadcast(Phi_q[e]) * load(product + slots[e] * W);
+      }
+      store(S_.matrix() + S_.position(p, l), sum);
+    }
+  }
+  for (long k = 0; k < m_; ++k) S_.matrix()[S_.position(k, k)] += epsilon_;
+}
+
+template <int D, class Solver>
+bool SaddleSystem<D, Solver>::factorize() {
+  return regular_ && S_.factorize();
+}
+
+template <int D, class Solver>
+void SaddleSystem<D, Solver>::solve(double* x, double* y) {
+  // Fixed points' entries of right-hand sides mean nothing; Phi_q's products read them.
+  std::copy_n(x, n_, z_.data());
+  T_0_.solve(z_.data());
+  constraints_.multiply(Phi_q_.data(), z_.data(), z_y_.data());
+  for (long k = 0; k < m_; ++k) y[k] = z_y_[k] - y[k];
+  S_.solve(y);
+  for (long k = 0; k < m_; ++k) z_y_[k] = -y[k];
+  constraints_.add_forces(Phi_q_.data(), z_y_.data(), x);
+  T_0_.solve(x);
+}
+
+template class SaddleSystem<2, LltSolver>;
+template class SaddleSystem<2, PotrfSolver>;
+template class SaddleSystem<2, PanelsSolver>;
+template class SaddleSystem<3, LltSolver>;
+template class SaddleSystem<3, PotrfSolver>;
+template class SaddleSystem<3, PanelsSolver>;
+
+}  // namespace mbs::hybrid_dense
