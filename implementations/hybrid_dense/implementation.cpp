@@ -2,6 +2,7 @@
 #include "mbs/implementation.hpp"
 
 #include <string>
+#include <utility>
 
 #include "simulation.hpp"
 
@@ -38,13 +39,15 @@ Variant variant(const char* name, const char* description) {
 }  // namespace
 
 Implementation implementation() {
+  Variant panels = variant<PanelsSolver>("panels", "own kernels in panel-major storage");
+  panels.own_code = true;
   return {.description = "sparse evaluation and scheduled assembly, dense Cholesky",
           .library = "Eigen, LAPACK",
           .version = library_versions(),
           .licence = "MPL-2.0, BSD-3-Clause",
           .variants = {variant<LltSolver>("llt", "Eigen's kernels, own block sizes"),
                        variant<PotrfSolver>("potrf", "LAPACK's dpotrf and dpotrs"),
-                       variant<PanelsSolver>("panels", "own kernels in panel-major storage")}};
+                       std::move(panels)}};
 }
 
 }  // namespace mbs::hybrid_dense
