@@ -12,6 +12,8 @@
 #include "mbs/commands.hpp"
 #include "registry/factory.hpp"
 #include "registry/registry.hpp"
+#include "scene/families/families.hpp"
+#include "scene/scene.hpp"
 
 namespace mbs {
 namespace {
@@ -125,14 +127,33 @@ void print_list() {
   }
 }
 
+/// Each scene that a name stands for.
+void print_scenes() {
+  const auto print = [](const std::string& form, const std::string& title, const std::string& ranges) {
+    fmt::print("{:<26} {}\n{:<26} {}\n", form, title, "", ranges);
+  };
+  print("four-bar:N[,fill=F]", "the N-loop four-bar mechanism, F of its tangent filled",
+        fmt::format("N from 1 to {}; F above 0, up to 1, its own fill if left out", kMostLoops));
+  for (const SceneFamily& family : scene_families()) {
+    print(family.form(), family.title, family.ranges());
+  }
+  fmt::print("At most {} variables in a family. More: harness/src/scene/families/README.md\n",
+             kMostFamilyVariables);
+}
+
 }  // namespace
 
 void add_list_command(CLI::App& app, int& status) {
   auto* command = app.add_subcommand("list", "list the implementations and their libraries");
   const auto json = std::make_shared<bool>(false);
-  command->add_flag("--json", *json, "machine-readable");
-  command->callback([json, &status] {
-    if (*json) {
+  const auto scenes = std::make_shared<bool>(false);
+  auto* machine_readable = command->add_flag("--json", *json, "machine-readable");
+  command->add_flag("--scenes", *scenes, "the families of mechanisms that a SCENE may be of")
+      ->excludes(machine_readable);
+  command->callback([json, scenes, &status] {
+    if (*scenes) {
+      print_scenes();
+    } else if (*json) {
       fmt::print("{}\n", list_json().dump(2));
     } else {
       print_list();

@@ -21,11 +21,12 @@ namespace {
 
 constexpr const char* kScenes =
     "A SCENE is four-bar:N (the N-loop four-bar mechanism), four-bar:N,fill=F (with artificial\n"
-    "non-zeros in M until a share F of the tangent is filled, 0 < F <= 1), or a JSON file.";
+    "non-zeros in M until a share F of the tangent is filled, 0 < F <= 1), one of a family of\n"
+    "mechanisms such as ladder:12 (mbs list --scenes has all), or a JSON file.";
 constexpr const char* kVaried =
-    "A SCENE is four-bar:N (the N-loop four-bar mechanism) or a JSON file. A lane whose start "
-    "cannot\n"
-    "be assembled is not-assembled; the others end as one run does.";
+    "A SCENE is four-bar:N (the N-loop four-bar mechanism), one of a family (mbs list --scenes) or\n"
+    "a JSON file. A lane whose start cannot be assembled is not-assembled; the others end as one\n"
+    "run does.";
 constexpr const char* kExits = "Exit status: 0 done, 1 a result that is not right, 2 bad input.";
 
 /// A positive, finite number from "auto" or text.

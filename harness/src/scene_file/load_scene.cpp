@@ -2,6 +2,7 @@
 #include "scene_file/load_scene.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "printable.hpp"
+#include "scene/families/families.hpp"
 #include "scene_file/json_text.hpp"
 #include "usage_error.hpp"
 
@@ -28,20 +30,8 @@ constexpr std::size_t kLongestName = 4096;                   // bytes; no path i
   throw UsageError(fmt::format("scene {}: {}", in_quotes(scene), what));
 }
 
-bool all_digits(std::string_view text) {
-  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
-}
-
 int parse_loops(const std::string& scene, std::string_view text) {
-  int loops = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), loops);
-  if (!all_digits(text) || text[0] == '0' || error != std::errc{} || loops > kMostLoops) {
-    fail(scene,
-         fmt::format(
-             "found {} for N, allowed is a whole number from 1 to {} without sign or leading 0",
-             in_quotes(text), kMostLoops));
-  }
-  return loops;
+  return parse_whole(scene, text, "N", 1, kMostLoops);
 }
 
 double parse_fill(const std::string& scene, std::string_view option) {
@@ -110,12 +100,14 @@ void require_file(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {
+    std::vector<std::string> forms;
+    for (const SceneFamily& family : scene_families()) forms.push_back(family.form());
     const bool missing = status.type() == std::filesystem::file_type::not_found || path.empty();
     fail(path,
          fmt::format("{}; allowed are four-bar:N (N from 1 to {}), four-bar:N,fill=F (F above "
-                     "0, up to 1), or the path of a JSON scene file",
+                     "0, up to 1), {} (mbs list --scenes), or the path of a JSON scene file",
                      missing ? "no such file and no such kind of scene" : error.message(),
-                     kMostLoops));
+                     kMostLoops, fmt::join(forms, ", ")));
   }
   if (std::filesystem::is_directory(status)) {
     fail(path, "this is a directory, allowed is a JSON scene file");
@@ -129,12 +121,15 @@ Scene load_scene(const std::string& text) {
 }
 
 nlohmann::json load_document(const std::string& text) {
+  if (is_family_scene(text)) return family_document(text);
   if (!text.starts_with(kFourBar)) {
     require_file(text);
     return parse_json(read_file(text), text);
   }
   if (text.find(',') != std::string::npos) {
-    fail(text, "artificial fill is in no document, allowed are four-bar:N and JSON scene files");
+    fail(text,
+         "artificial fill is in no document, allowed are four-bar:N, scenes of a family (mbs list "
+         "--scenes) and JSON scene files");
   }
   return four_bar_document(parse_loops(text, std::string_view(text).substr(kFourBar.size())));
 }

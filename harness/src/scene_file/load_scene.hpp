@@ -9,16 +9,16 @@
 
 namespace mbs {
 
-/// Reads "four-bar:N", "four-bar:N,fill=F" or the path of a JSON scene (harness/scenes/README.md
-/// has the format). Throws UsageError.
+/// Reads "four-bar:N", "four-bar:N,fill=F", a scene of a family ("ladder:12", scene_families()) or
+/// the path of a JSON scene (harness/scenes/README.md has the format). Throws UsageError.
 Scene load_scene(const std::string& text);
 
 /// Parses the text of a JSON scene, assembles its start and checks it, physically too; `where`
 /// names it in errors. A Model made from the result is valid. Throws UsageError.
 SceneData parse_scene(std::string_view json, const std::string& where);
 
-/// The document of "four-bar:N" (with neither the exact motion nor artificial fill) or of the JSON
-/// file at a path. Throws UsageError.
+/// The document of "four-bar:N" (with neither the exact motion nor artificial fill), of a family's
+/// scene or of the JSON file at a path. Throws UsageError.
 nlohmann::json load_document(const std::string& text);
 
 /// The scene that a document says; `name` is what it is called, in errors too. Throws UsageError.

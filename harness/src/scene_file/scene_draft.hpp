@@ -1,6 +1,7 @@
 // A JSON scene as read: names resolved, nothing lowered yet.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -82,6 +83,12 @@ struct DraftMass {
   double mass = 0.0;
 };
 
+struct DraftMassMatrix {
+  JsonNode node;
+  std::vector<int> points;
+  Eigen::MatrixXd M;  ///< kg; x, y (and z) of the first point first
+};
+
 struct ConstraintKind;
 
 struct DraftConstraint {
@@ -160,6 +167,7 @@ struct SceneDraft {
   std::vector<DraftBody> bodies;
   std::vector<DraftRod> rods;
   std::vector<DraftMass> masses;
+  std::vector<DraftMassMatrix> mass_matrices;
   std::vector<DraftConstraint> constraints;
   std::vector<DraftSpring> springs;
   std::vector<DraftTorsionSpring> torsion_springs;

@@ -17,7 +17,7 @@ constexpr double kAcross = 1e-12;  // cosine that counts as a right angle
 }  // namespace
 
 SceneDraft SceneReader::read() {
-  root_.allow_keys({"dimension", "gravity", "points", "vectors", "rods", "masses", "bodies",
+  root_.allow_keys({"dimension", "gravity", "points", "vectors", "rods", "masses", "mass_matrices", "bodies",
                     "constraints", "springs", "torsion_springs", "force_laws", "torque_laws",
                     "forces", "torques", "assembly", "outputs", "$schema"});
   read_dimension_and_gravity();

@@ -95,7 +95,7 @@ def _parser():
                     "simulate SCENE with positions as accurate as E, in the least time? Runs pilots of "
                     "that very scene, under a minute for four-bar:40; exit status 1 if no setting is "
                     "good enough.")
-    parser.add_argument("scene", nargs="?", metavar="SCENE", help="four-bar:N or a JSON file")
+    parser.add_argument("scene", nargs="?", metavar="SCENE", help="four-bar:N, one of mbs list --scenes, or a JSON file")
     parser.add_argument("--error", type=positive, metavar="E",
                         help="largest position error of any point over the whole time, m")
     parser.add_argument("--deadline-us", type=positive, metavar="D",

@@ -46,7 +46,7 @@ def view(arguments):
 def _options(arguments):
     parser = Parser(prog="study/view", description="Shows the motion of a scene: an HTML page that "
                     "needs nothing else to play it, and a PNG sheet for documents.")
-    parser.add_argument("scene", help="four-bar:N or a JSON file")
+    parser.add_argument("scene", help="four-bar:N, one of mbs list --scenes, or a JSON file")
     parser.add_argument("trajectory", nargs="?", help="CSV of `mbs simulate --trajectory`; without "
                         "it, the scene is simulated now")
     parser.add_argument("--output", metavar="FILE.html", help="the page (SCENE.html, here)")

@@ -8,9 +8,9 @@ using LowerAll = void(Lowering&);
 using ReadConstraint = void(SceneReader&, const JsonNode&, DraftConstraint&);
 using LowerConstraint = Lowering::Force(Lowering&, const DraftConstraint&);
 
-ReadItem read_point, read_vector, read_rod, read_mass, read_body, read_constraint, read_spring,
+ReadItem read_point, read_vector, read_rod, read_mass, read_mass_matrix, read_body, read_constraint, read_spring,
     read_torsion_spring, read_force_law, read_torque_law, read_force, read_torque, read_output;
-LowerAll lower_rods, lower_masses, lower_bodies, lower_constraints, lower_springs,
+LowerAll lower_rods, lower_masses, lower_mass_matrices, lower_bodies, lower_constraints, lower_springs,
     lower_torsion_springs, lower_force_laws, lower_torque_laws, lower_torques, lower_outputs;
 ReadConstraint read_distance, read_angle, read_coincident, read_perpendicular, read_on_line,
     read_dot, read_linear;
@@ -23,6 +23,7 @@ std::span<const ListKind> list_kinds() {
       {"vectors", "unit_vector", true, read_vector},
       {"rods", "rod", false, read_rod, lower_rods},
       {"masses", "mass", false, read_mass, lower_masses},
+      {"mass_matrices", "mass_matrix", false, read_mass_matrix, lower_mass_matrices},
       {"bodies", "body", true, read_body, lower_bodies},  // and forces, which may be on bodies
       {"constraints", "constraint", false, read_constraint, lower_constraints},
       {"springs", "spring", false, read_spring, lower_springs},

@@ -1,0 +1,361 @@
+// Families of mechanisms: their names, their sizes, and the physics of each against a closed form.
+#include "scene/families/families.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "controls/controls.hpp"
+#include "model_math/kinematics.hpp"
+#include "model_math/vector3.hpp"
+#include "run/initial_state.hpp"
+#include "run/run.hpp"
+#include "run/settings.hpp"
+#include "scene/families/beam_mass.hpp"
+#include "support/scene_support.hpp"
+
+namespace mbs {
+namespace {
+
+constexpr double kG = 9.81;
+
+const Point& point_named(const Scene& scene, const std::string& name) {
+  for (const Point& point : scene.model.points()) {
+    if (point.name == name) return point;
+  }
+  throw std::runtime_error("no point " + name);
+}
+
+Vector3 part(const Scene& scene, const std::string& name, const std::vector<double>& x) {
+  Vector3 result{};
+  const Point& point = point_named(scene, name);
+  if (!point.is_fixed()) {
+    std::copy_n(x.begin() + point.offset, scene.model.dimension(), result.begin());
+  }
+  return result;
+}
+Vector3 place(const Scene& scene, const std::string& name) {
+  return point_named(scene, name).position;
+}
+
+/// The accelerations with which a scene begins, Eq. (1) with Phi'' = 0.
+class Start {
+ public:
+  explicit Start(const std::string& name) : Start(load_scene(name)) {}
+  explicit Start(Scene begun) : scene(std::move(begun)), state(initial_state(scene.model)) {}
+
+  [[nodiscard]] Vector3 acceleration(const std::string& point) const {
+    return part(scene, point, state.a);
+  }
+  void expect(const std::string& point, const Vector3& acceleration) const {
+    const Vector3 off = this->acceleration(point) - acceleration;
+    EXPECT_LT(norm(off), 1e-8 * (1.0 + norm(acceleration)))
+        << point << ": " << this->acceleration(point)[0] << ", " << this->acceleration(point)[1];
+  }
+  /// That of a body turning about the origin from rest at `angular` rad/s^2.
+  void expect_turning(const std::string& point, double angular) const {
+    expect(point, cross({0.0, 0.0, angular}, place(scene, point)));
+  }
+
+  Scene scene;
+  State state;
+};
+
+/// Angular acceleration of a pendulum of one rod, or of what is in closed form the same.
+double pendulum(double lean, double moment, double inertia) {
+  return -kG * moment * std::sin(lean) / inertia;
+}
+
+Variant reference() {
+  for (const Variant& variant : test::controls().variants) {
+    if (variant.name == "reference") return variant;
+  }
+  throw std::logic_error("the controls have no reference");
+}
+
+RunSummary simulate(const Scene& scene, double duration, const Observer& observer = {}) {
+  RunSettings settings;
+  settings.step.step = 2e-3;
+  settings.step.penalty = automatic_penalty(scene.model, settings.step);
+  settings.step.tolerance = automatic_tolerance(scene.model, settings.step);
+  settings.duration = duration;
+  return run(scene, reference(), settings, observer);
+}
+
+/// A few values of all parameters, the least ones first.
+std::vector<FamilyValues> some_values(const SceneFamily& family) {
+  FamilyValues least, more;
+  for (const FamilyParameter& one : family.parameters) {
+    least.push_back(one.otherwise.value_or(one.least));
+    more.push_back(std::min(one.least + 4, one.most));
+  }
+  return {least, more};
+}
+
+TEST(Families, HaveTheSizesOfTheTableAndStartOnTheirConstraints) {
+  for (const SceneFamily& family : scene_families()) {
+    for (const FamilyValues& values : some_values(family)) {
+      const Scene scene = scene_of(family.document(values), family.name);
+      SCOPED_TRACE(family.name + std::to_string(values[0]));
+      EXPECT_EQ(scene.model.variables(), family.size(values).variables);
+      EXPECT_EQ(scene.model.constraints(), family.size(values).constraints);
+      EXPECT_LT(scene.assembly.position_correction, 1e-12);
+      EXPECT_LT(scene.assembly.velocity_correction, 1e-12);
+    }
+  }
+}
+
+TEST(Families, AreSimulatedAndConserveEnergy) {
+  for (const SceneFamily& family : scene_families()) {
+    SCOPED_TRACE(family.name);
+    for (const FamilyValues& values : some_values(family)) {
+      const Scene scene = scene_of(family.document(values), family.name);
+      const RunSummary summary = simulate(scene, 1.0);
+      EXPECT_EQ(summary.status, RunStatus::plausible) << summary.reason;
+      EXPECT_EQ(summary.energy_drift_max.has_value(), family.name != std::string("vehicle"));
+      EXPECT_LT(summary.energy_drift_max.value_or(0.0), 2e-3);
+    }
+  }
+}
+
+TEST(Families, LoadByName) {
+  EXPECT_EQ(load_scene("grid:2x3").model.variables(), 24);
+  EXPECT_EQ(load_scene("chain:5").model.variables(), 10);
+  EXPECT_EQ(load_scene("chain:5,dimension=3").model.variables(), 15);
+  EXPECT_EQ(load_scene("flexible:2,nodes=5").model.variables(), 16);
+  EXPECT_EQ(load_scene("ladder:12").name, "ladder:12");
+  EXPECT_EQ(load_scene("chain:20000").model.variables(), 40'000);
+}
+
+TEST(Families, RefuseWhatTheyDoNotTake) {
+  for (const char* name : {"chain:", "chain:0", "chain:-1", "chain:+1", "chain:1.5", "chain:1e3",
+                           "chain:20001", "chain: 3", "chain:03", "chain:99999999999"}) {
+    expect_parts(error_of(name),
+                 {name, "for N, allowed is a whole number from 1 to 20000 without sign"});
+  }
+  expect_parts(error_of("loop:3"), {"for N, allowed is a whole number from 4 to"});
+  expect_parts(error_of("grid:3"), {"\"3\" as its size, allowed is grid:NxM (N from 1 to 5000;"});
+  expect_parts(error_of("chain:3x4"), {"\"3x4\" as its size", "chain:N[,dimension=D]"});
+  expect_parts(error_of("grid:3x0"), {"\"0\" for M"});
+  expect_parts(error_of("chain:3,dimension=4"), {"\"4\" for dimension", "from 2 to 3"});
+  for (const char* option : {"", "dimension", "nodes=3", "fill=0.5"}) {
+    expect_parts(error_of(std::string("chain:3,") + option),
+                 {"found the option \"" + std::string(option), "dimension from 2 to 3, 2 if left"});
+  }
+  expect_parts(error_of("chain:20000,dimension=3"), {"60000 variables", "at most 40000"});
+  expect_parts(error_of("robot:7"), {"N = 7", "an even number of legs"});
+  expect_parts(error_of("chains:3"), {"no such kind of scene", "chain:N[,dimension=D], loop:N",
+                                      "flexible:N[,nodes=K]", "mbs list --scenes"});
+}
+
+TEST(Families, ChainIsAPendulumOfRods) {
+  Start("chain:1").expect_turning("P1", pendulum(0.25, 0.5, 1.0 / 3.0));
+  const Start two("chain:2");  // Lagrange's equations of two rods at one angle
+  const Vector3 across{std::cos(0.25), std::sin(0.25), 0.0};
+  const double rate = kG * std::sin(0.25);
+  two.expect("P1", (-9.0 / 7.0 * rate) * across);
+  two.expect("P2", (-9.0 / 7.0 + 3.0 / 7.0) * rate * across);
+}
+
+TEST(Families, SpatialChainGoesRoundLikeAConicalPendulum) {
+  const Start one("chain:1,dimension=3");
+  const double square = 1.5 * kG / std::cos(0.25);
+  one.expect("P1", {-square * std::sin(0.25), 0.0, 0.0});
+}
+
+/// Largest difference between one side and the mirror image of the other, over a run.
+double asymmetry(const std::string& name, double twice_axis,
+                 const std::vector<std::pair<std::string, std::string>>& pairs) {
+  const Scene scene = load_scene(name);
+  double largest = 0.0, moved = 0.0;
+  const RunSummary summary = simulate(scene, 1.0, [&](long, double, const State& state) {
+    for (const auto& [left, right] : pairs) {
+      const Vector3 l = part(scene, left, state.q), r = part(scene, right, state.q);
+      largest = std::max(largest, std::hypot(l[0] + r[0] - twice_axis, l[1] - r[1]));
+      moved = std::max(moved, norm(l - place(scene, left)));
+    }
+  });
+  EXPECT_EQ(summary.status, RunStatus::plausible) << summary.reason;
+  EXPECT_GT(moved, 0.01);
+  return largest;
+}
+
+TEST(Families, LoopAndTreeMirrorThemselves) {
+  const double span = place(load_scene("loop:7"), "P7")[0];
+  EXPECT_LT(asymmetry("loop:7", span, {{"P1", "P6"}, {"P2", "P5"}, {"P3", "P4"}}), 1e-8);
+  EXPECT_LT(asymmetry("tree:6", 0.0, {{"P1", "P2"}, {"P3", "P6"}, {"P4", "P5"}}), 1e-8);
+}
+
+TEST(Families, TreeOfTwoRodsIsTwoPendulums) {
+  const double turning = pendulum(0.15, 0.5, 1.0 / 3.0);
+  const Start two("tree:2");
+  two.expect_turning("P1", -turning);
+  two.expect_turning("P2", turning);
+}
+
+TEST(Families, LadderKeepsItsRungsLevel) {
+  // Two sides of 1 kg and 0.5 m that turn, a rung of 0.5 kg that does not.
+  const Start one("ladder:1");
+  const double angular = pendulum(0.25, 0.5 * (2 * 0.5 + 0.5), 0.25 * (2.0 / 3.0 + 0.5));
+  one.expect_turning("A1", angular);
+  one.expect("B1", one.acceleration("A1"));
+  const Start many("ladder:9");
+  for (const char* i : {"1", "5", "9"}) {
+    many.expect(std::string("A") + i, many.acceleration(std::string("B") + i));
+  }
+}
+
+TEST(Families, GridMovesAsOneColumn) {
+  // Of a row of 4: five cords that turn, four that do not, all of 0.2 kg.
+  const Start one("grid:1x4");
+  const double angular = pendulum(0.4, 0.5 * (5 * 0.5 + 4), 0.25 * (5 / 3.0 + 4));
+  const double along = 0.5 * angular, level = along * std::cos(0.4) * std::sqrt(0.5);
+  for (const char* name : {"P1_0", "P1_1", "P1_4"}) {
+    one.expect(name, {level, along * std::sin(0.4), level});
+  }
+  const Start many("grid:6x5");
+  many.expect("P6_0", many.acceleration("P6_5"));
+  many.expect("P3_2", many.acceleration("P3_4"));
+}
+
+TEST(Families, TrussTurnsAsOneBody) {
+  const Start boom("truss:1,bays=7");
+  double moment = 0.0, inertia = 0.0;  // of rods of 4 kg/m
+  for (const Elements::Rod& rod : boom.scene.elements.rods) {
+    const Vector3 a = boom.scene.model.points()[static_cast<std::size_t>(rod.a)].position;
+    const Vector3 b = boom.scene.model.points()[static_cast<std::size_t>(rod.b)].position;
+    const double mass = 4.0 * norm(a - b);
+    moment += mass * (a[0] + b[0]) / 2.0;
+    inertia += mass * (dot(a, a) + dot(a, b) + dot(b, b)) / 3.0;
+  }
+  for (const char* name : {"B0_0", "A3", "A7", "B0_7"}) {
+    boom.expect_turning(name, -kG * moment / inertia);
+  }
+}
+
+TEST(Families, ScissorsHaveOneFreedom) {
+  for (const int stages : {1, 7}) {
+    const std::string name = "scissors:" + std::to_string(stages);
+    nlohmann::json document = load_document(name);
+    const double s = std::sin(0.8), c = std::cos(0.8), n = stages, rate = 0.3 / n;
+    for (nlohmann::json& spring : document["springs"]) spring["length"] = 0.9 * c;
+    const Start gate(scene_of(document, "changed"));
+    // (inertia rate^2 / 2)' + V' = 0, all over the angle of the bars, which are 1 m long.
+    double inertia = 10.0 * n * n * c * c + 5.0 * s * s;
+    double change = (-10.0 * n * n + 5.0) * 2.0 * s * c;
+    for (int i = 0; i < stages; ++i) {
+      const double height = (i + 0.5) * (i + 0.5);
+      inertia += 2 * 2.0 * (s * s / 4.0 + height * c * c + 1.0 / 12.0);
+      change += 2 * 2.0 * (0.25 - height) * 2.0 * s * c;
+    }
+    const double angular = (n * 200.0 * 0.1 * c * s - 0.5 * change * rate * rate) / inertia;
+    gate.expect("R" + std::to_string(stages),
+                {-c * rate * rate - s * angular, n * (-s * rate * rate + c * angular), 0.0});
+  }
+}
+
+TEST(Families, OneBodyIsACompoundPendulum) {
+  const double x = 0.5 * std::sin(0.2) + 0.05 * std::cos(0.2);  // of the centre
+  const double planar = -kG * 2.0 * x / (0.2 + 2.0 * (0.5 * 0.5 + 0.05 * 0.05));
+  const auto turning = [](const std::string& name) {
+    const Start start(name);
+    const Scene& scene = start.scene;
+    for (const Point& point : scene.model.points()) {
+      if (!point.is_fixed() && !point.is_vector) {
+        return cross(point.position, start.acceleration(point.name))[2] /
+               (point.position[0] * point.position[0] + point.position[1] * point.position[1]);
+      }
+    }
+    return 0.0;
+  };
+  EXPECT_NEAR(turning("bodies:1"), planar, 1e-8);
+  EXPECT_NEAR(turning("bodies:1,dimension=3"), planar, 1e-8);
+}
+
+TEST(Families, VehicleStandsUntilTheRoadMoves) {
+  const Start vehicle("vehicle:5");
+  for (int i = 0; i < 5; ++i) {
+    const std::string number = std::to_string(i);
+    const double phase = -2.0 * std::numbers::pi * 1.5 * i / 10.0;
+    const double height = 0.01 * std::sin(phase);
+    const double rate = 0.01 * 2.0 * std::numbers::pi * std::cos(phase);
+    vehicle.expect("hub" + number, {0.0, (400e3 * height + 2e3 * rate) / 400.0, 0.0});
+    vehicle.expect("mount" + number, {});
+  }
+}
+
+TEST(Families, RobotStandsWithoutTheBlow) {
+  for (const int legs : {6, 10}) {
+    nlohmann::json document = load_document("robot:" + std::to_string(legs));
+    for (nlohmann::json& point : document["points"]) point.erase("velocity");
+    for (const char* key : {"velocity", "angular_velocity"}) document["bodies"][0].erase(key);
+    const Start robot(scene_of(document, "changed"));
+    for (const double a : robot.state.a) EXPECT_NEAR(a, 0.0, 1e-8);
+  }
+}
+
+TEST(Families, StarsBladesSwingAboutTheRadius) {
+  const Start star("star:8");
+  for (int i = 0; i < 8; ++i) {
+    const std::string number = std::to_string(i);
+    const Vector3 rim = place(star.scene, "R" + number);
+    const Vector3 blade = place(star.scene, "T" + number) - rim;
+    // Hinged at 0.5 m, 1 m long: angle'' = -(3/2) (0.5 / 1) 9 sin(angle).
+    const double swing = -0.75 * 9.0 * (i % 2 == 0 ? 1.0 : -1.0) * std::sin(0.2);
+    star.expect("R" + number, -9.0 * rim);
+    star.expect("T" + number, -9.0 * (rim + blade) + cross({0.0, 0.0, swing}, blade));
+  }
+}
+
+TEST(Families, ClustersBreathe) {
+  nlohmann::json document = load_document("clusters:2,size=7");
+  document["gravity"] = {0.0, 0.0};
+  const Scene scene = load_scene("clusters:2,size=7");
+  for (nlohmann::json& spring : document["springs"]) {
+    const std::string a = spring["between"][0], b = spring["between"][1];
+    spring["length"] = (a[0] == 'A' ? 1.0 : 1.01) * norm(place(scene, a) - place(scene, b));
+  }
+  const Start start(scene_of(document, "changed"));
+  Vector3 centre{};
+  for (int i = 0; i < 7; ++i) centre = centre + (1 / 7.0) * place(scene, "P0_" + std::to_string(i));
+  for (const char* name : {"P0_1", "P0_4", "P0_6"}) {  // the chain is at P0_0
+    start.expect(name, 0.01 * 144.0 * (place(scene, name) - centre));
+  }
+}
+
+TEST(Families, FlexibleBeamTurnsAsABodyAndBendsAsABeam) {
+  constexpr int kNodes = 15;
+  const Scene scene = load_scene("flexible:1,nodes=15");
+  EXPECT_EQ(tangent_nonzeros(scene.model), 28 * 28);
+  std::vector<double> turn;  // about P0, which is fixed, at 1 rad/s
+  for (int i = 1; i < kNodes; ++i) {
+    const Vector3 v = cross({0.0, 0.0, 1.0}, place(scene, "P" + std::to_string(i)));
+    turn.insert(turn.end(), {v[0], v[1]});
+  }
+  EXPECT_NEAR(kinetic_energy(scene.model, turn),
+              0.5 * 10.0 * (16.0 / 3.0 + 0.1 * 0.1 + 0.05 * 0.05), 1e-9);
+  double power = 0.0;  // of gravity: the centre is 2 m down the beam, 0.1 m to its right
+  for (std::size_t i = 0; i < turn.size(); ++i) power += turn[i] * scene.model.force()[i];
+  EXPECT_NEAR(power, -kG * 10.0 * (2.0 * std::sin(0.05) - 0.1 * std::cos(0.05)), 1e-9);
+  // Rayleigh's quotient of half a sine across the beam against (pi/L)^4 EI/(m/L), EI = 60 N m^2.
+  const Eigen::MatrixXd M = beam_mass({.nodes = kNodes, .length = 4.0, .mass = 10.0});
+  const double h = 4.0 / (kNodes - 1);
+  Eigen::VectorXd across = Eigen::VectorXd::Zero(2 * kNodes);
+  for (int i = 0; i < kNodes; ++i) {
+    across[2 * i + 1] = std::sin(std::numbers::pi * i / (kNodes - 1));
+  }
+  double twice_potential = 0.0;
+  ASSERT_EQ(scene.model.torsion_springs().size(), kNodes - 2U);
+  for (int i = 1; i + 1 < kNodes; ++i) {
+    const double bend = (across[2 * i + 3] - 2.0 * across[2 * i + 1] + across[2 * i - 1]) / h;
+    twice_potential +=
+        scene.model.torsion_springs()[static_cast<std::size_t>(i - 1)].stiffness * bend * bend;
+  }
+  const double exact = std::pow(std::numbers::pi / 4.0, 4) * 60.0 / (10.0 / 4.0);
+  EXPECT_NEAR(twice_potential / across.dot(M * across), exact, 0.01 * exact);
+}
+
+}  // namespace
+}  // namespace mbs
