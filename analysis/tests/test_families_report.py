@@ -1,0 +1,76 @@
+# Who is fastest on real mechanisms: tables, figure, page and sentences on synthetic records.
+from dataclasses import replace
+from types import SimpleNamespace
+
+import matplotlib.pyplot as plt
+import pandas
+import pytest
+
+from analysis.core.schema import conform, of_part
+from analysis.families import figures, page, sentences, tables
+from analysis.tests.test_limit_report import REGISTRY, about, bench, gate
+
+SCENES = ["ladder:2", "grid:3x3"]
+VIEW = SimpleNamespace(registry=REGISTRY, settings={"processes": 3, "scenes": SCENES}, context={"cpu_model": "P"})
+
+
+def described(scene):
+    found = about(scene)
+    return replace(found, output=found.output | {"constraints": 5, "tangent": {"fill": 0.5}})
+
+
+def asked(scene, **verdicts):
+    return [replace(one, cell=one.cell | {"role": "gate"}) for one in gate("any", scene, **verdicts)]
+
+
+def made(*records):
+    found, schema = tables.build([one for group in records for one in (group if isinstance(group, list) else [group])], VIEW), of_part("families")
+    assert set(found) == set(schema)
+    return {name: conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(schema[name])), schema[name], name)
+            for name, frame in found.items()}
+
+
+def measured(scene, number, **times):
+    return bench("time", scene, number, **times)
+
+
+def small():
+    return made([described(scene) for scene in SCENES],
+                [bench("look", scene, 1, one_a=2.0, one_b=9.0, two_c="unsupported: no", own_x=1.0) for scene in SCENES],
+                asked(SCENES[0], one_a="agrees", own_x="agrees"), asked(SCENES[1], one_a="agrees", one_b="agrees", own_x="disagrees"),
+                [measured(SCENES[0], number, one_a=2.0, own_x=1.0) for number in (1, 2, 3)],
+                [measured(SCENES[1], number, one_a=2.0 + 0.001 * number, one_b=2.01, own_x=1.0) for number in (1, 2, 3)])
+
+
+def test_libraries_and_all_have_their_winners_among_those_that_agree():
+    found = small()
+    winners = found["winners"].set_index(["scene", "layer"])
+    assert list(dict.fromkeys(found["winners"].scene)) == SCENES  # as the profile has them
+    first = winners.loc[SCENES[0]]
+    assert (first.winner["libraries"], first.winner["all"]) == ("one/a", "own/x") and first.margin["all"] == pytest.approx(2)
+    assert bool(first.decided["all"]) and first.step_us["libraries"] == 2.0
+    second = winners.loc[SCENES[1]]
+    assert second.winner["all"] == "one/a" and set(second.equivalent["libraries"].split()) == {"one/a", "one/b"}
+    rows = found["scenes"].set_index(["scene", "implementation"])
+    assert rows.to_rival[SCENES[0], "own/x"] == pytest.approx(0.5) and rows.fill[SCENES[0], "own/x"] == 50
+    assert (rows.status[SCENES[1], "own/x"], rows.status[SCENES[0], "two/c"]) == ("disagrees", "unsupported")
+    assert rows.status[SCENES[0], "one/b"] == "slower"
+
+
+def test_figure_page_and_sentences_of_a_small_set_and_of_none():
+    for found in (small(), made()):
+        for figure in figures.draw(found, VIEW).values():
+            plt.close(figure)
+        page.context(found, VIEW)
+        assert all(one["text"].endswith(".") for one in sentences.answers(found, VIEW))
+    texts = [one["text"] for one in sentences.answers(small(), VIEW)]
+    assert "one/a on 2, one/b on 1" in texts[0] and "faster than the fastest library on 1 of 1" in texts[1]
+    [case] = sentences.cases(small(), VIEW)
+    assert case["take"].startswith("one/a: the fastest library, or as fast to 5 %, on 2 of 2")
+    assert sentences.cases(made(), VIEW) == []
+
+
+def test_a_scene_where_nobody_agrees_has_its_reason():
+    found = made(described(SCENES[0]), bench("look", SCENES[0], 1, one_a="failed: it died"))
+    row = found["winners"].iloc[0]
+    assert row.winner == "" and row.reason == "failed: it died"
