@@ -59,7 +59,7 @@ TEST(MassMatrix, RefusesWhatIsNone) {
   expect(rod("", "[[2], [0, 2]]"), {"mass_matrices[0].matrix: found an array of 2", "of 4 rows"});
   expect(rod("", "[[2], [0, 2], [1, 0], [0, 1, 0, 2]]"),
          {"mass_matrices[0].matrix[2]", "an array of 3 numbers"});
-  expect(rod("", "[[2], [0, 2], [2, 0, 2], [0, 1, 0, 2]]"), {"positive definite"});
+  expect(rod("", "[[2], [0, 2], [3, 0, 2], [0, 1, 0, 2]]"), {"positive definite"});
   expect(rod("", "[[2], [0, 2], [1, 0, 2], [0, 1, 0, -2]]"), {"positive definite"});
   expect(rod("", "[[2], [0, 2], [1, 0, 2], [0, 1, 0, 2]]", R"(["A", "A"])"),
          {"mass_matrices[0].points[1]", "\"A\" twice", "different points"});

@@ -12,7 +12,8 @@ SceneSize grid_size(const FamilyValues& values) {
 }
 
 /// Folded to and fro along its upper edge, so that no cord of it is in one plane with all others;
-/// the cords that hang lean. All columns move alike.
+/// the cords that hang lean. A rope along each side weighs half a cord a mesh, so that columns
+/// weigh alike: they move alike.
 nlohmann::json grid_document(const FamilyValues& values) {
   constexpr double kMesh = 0.5, kCordMass = 0.2;  // m, kg
   constexpr double kFold = 0.3, kLean = 0.4;      // rad
@@ -32,6 +33,7 @@ nlohmann::json grid_document(const FamilyValues& values) {
       scene.point(name(i, j), r);
       scene.rod(name(i - 1, j), name(i, j), kCordMass);
       if (j > 0) scene.rod(name(i, j - 1), name(i, j), kCordMass);
+      if (j == 0 || j == columns) scene.mass(name(i, j), kCordMass / 2.0);
     }
   }
   scene.position_output(name(rows, columns));

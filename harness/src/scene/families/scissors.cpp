@@ -9,7 +9,7 @@ namespace mbs {
 
 SceneSize scissors_size(const FamilyValues& values) {
   const long stages = values[0];
-  return {6 * stages + 2, 6 * stages + 1};
+  return {6 * stages - 2, 6 * stages - 3};
 }
 
 /// Lies flat. Bars go from L_i to R_(i+1) and from R_i to L_(i+1) and share the pin C_i at their
