@@ -1,7 +1,3 @@
-// Eigen packs factors on the stack up to this size, in bytes, else it allocates. A call has four of
-// them at most, and each level of halves a quarter of that: well within eight megabytes.
-#define EIGEN_STACK_ALLOCATION_LIMIT (1 << 20)
-
 #include "solver.hpp"
 
 #include <Eigen/Cholesky>
