@@ -12,11 +12,12 @@ def answers(tables, view):
 
 
 def cases(tables, view):
-    """Row of the front page's table: the code of our own that serves most scenes."""
+    """Row of the front page's table: the code of our own that is shown to be faster on most scenes."""
     rows = _of_scenes(tables["leads"])
     if rows.empty:
         return []
-    name = rows.implementation.value_counts().index[0]
+    ahead = (rows.low > 1).groupby(rows.implementation).sum()
+    name = max(ahead.index, key=lambda name: (ahead[name], rows.lead[rows.implementation == name].median()))
     mine = rows[rows.implementation == name]
     return [{"case": "You may take code that is no library", "link": "limit.html#ahead",
              "take": f"{name}: shown to be faster than the fastest library in {(mine.low > 1).sum()} of {len(mine)} scenes "
