@@ -8,7 +8,8 @@ def answers(tables, view):
     if mine.empty:
         return [{"text": "Not measured: no library was timed that the gate agrees with.", "anchor": ""}]
     found = [{"anchor": "map", "text": f"On {len(mine)} mechanisms of {mine.family.nunique()} families (n = {number(mine.variables.min(), 5)} to "
-              f"{number(mine.variables.max(), 5)}), the fastest library or as fast to 5 %: {_shares(mine)}."}]
+              f"{number(mine.variables.max(), 5)}), in front among libraries, or as fast to 5 %: {_shares(mine)}. Of {_said(mine)} of the "
+              f"{len(mine)} this run says who is fastest."}]
     own = scenes[scenes.implementation.isin(view.registry.own) & (scenes.status == "ok") & scenes.to_rival.notna()]
     for name, rows in own.groupby("implementation", sort=False):
         ahead, behind = rows[rows.to_rival_high < 1], rows[rows.to_rival_low > 1]
@@ -27,12 +28,17 @@ def cases(tables, view):
     name = max(names, key=names.get)
     others = scenes[(scenes.implementation == name) & (scenes.status == "ok") & scenes.scene.isin(mine.scene)]
     return [{"case": f"Your mechanism is like one of {mine.family.nunique()} families, at its own fill", "link": "families.html#map",
-             "take": f"{name}: the fastest library, or as fast to 5 %, on {names[name]} of {len(mine)} mechanisms; at most "
-                     f"{number(others.to_rival.max())} times the fastest where it was timed ({len(others)})"}]
+             "take": f"{name}: in front among libraries, or as fast to 5 %, on {names[name]} of {len(mine)} mechanisms ({_said(mine)} decided); at "
+                     f"most {number(others.to_rival.max())} times the fastest where it was timed ({len(others)})"}]
 
 
 def _libraries(winners):
     return winners[(winners.layer == "libraries") & (winners.winner != "")]
+
+
+def _said(rows):
+    """Of how many the fastest, or all that are as fast, are known."""
+    return int((rows.decided.astype(bool) | rows.settled.astype(bool)).sum())
 
 
 def _led(rows):

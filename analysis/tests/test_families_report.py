@@ -66,7 +66,7 @@ def test_figure_page_and_sentences_of_a_small_set_and_of_none():
     texts = [one["text"] for one in sentences.answers(small(), VIEW)]
     assert "one/a on 2, one/b on 1" in texts[0] and "faster than the fastest library on 1 of 1" in texts[1]
     [case] = sentences.cases(small(), VIEW)
-    assert case["take"].startswith("one/a: the fastest library, or as fast to 5 %, on 2 of 2")
+    assert case["take"].startswith("one/a: in front among libraries, or as fast to 5 %, on 2 of 2 mechanisms (2 decided)")
     assert sentences.cases(made(), VIEW) == []
 
 
