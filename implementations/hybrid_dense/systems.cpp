@@ -5,13 +5,11 @@
 namespace mbs::hybrid_dense {
 namespace {
 
-constexpr int W = kWidth;
-
 // Rows become columns: each round deals the rows out like two halves of a pack of cards.
-[[gnu::always_inline]] inline void transpose(Vec (&x)[W]) {
-  for (int round = 1; round < W; round *= 2) {
-    Vec y[W];
-    for (int i = 0; i < W / 2; ++i) {
+[[gnu::always_inline]] inline void transpose(Vec (&x)[kWidth]) {
+  for (int round = 1; round < kWidth; round *= 2) {
+    Vec y[kWidth];
+    for (int i = 0; i < kWidth / 2; ++i) {
 #ifdef __AVX512F__
       y[2 * i] = __builtin_shufflevector(x[i], x[i + 4], 0, 8, 1, 9, 2, 10, 3, 11);
       y[2 * i + 1] = __builtin_shufflevector(x[i], x[i + 4], 4, 12, 5, 13, 6, 14, 7, 15);
@@ -20,7 +18,7 @@ constexpr int W = kWidth;
       y[2 * i + 1] = __builtin_shufflevector(x[i], x[i + 2], 2, 6, 3, 7);
 #endif
     }
-    for (int i = 0; i < W; ++i) x[i] = y[i];
+    for (int i = 0; i < kWidth; ++i) x[i] = y[i];
   }
 }
 
@@ -76,23 +74,23 @@ void SaddleSystem<D, Solver>::assemble(const double* Phi_q) {
   const auto first = constraints_.firsts();
   const auto slots = constraints_.slots();
   const long columns = padded(n_);
-  for (long p = 0; p < m_; p += W) {
+  for (long p = 0; p < m_; p += kWidth) {
     double* product = product_.data() + p * total_;
-    const long rows = std::min<long>(W, m_ - p);
-    for (long j = 0; j < columns; j += W) {
-      Vec sums[W] = {};
+    const long rows = std::min<long>(kWidth, m_ - p);
+    for (long j = 0; j < columns; j += kWidth) {
+      Vec sums[kWidth] = {};
       for (long r = 0; r < rows; ++r) {
         for (int e = first[p + r]; e < first[p + r + 1]; ++e) {
           sums[r] += broadcast(Phi_q[e]) * load(inverse_.data() + slots[e] * columns + j);
         }
       }
       transpose(sums);
-      for (int t = 0; t < W; ++t) store(product + (j + t) * W, sums[t]);
+      for (int t = 0; t < kWidth; ++t) store(product + (j + t) * kWidth, sums[t]);
     }
     for (long l = 0; l < p + rows; ++l) {
       Vec sum = {};
       for (int e = first[l]; e < first[l + 1]; ++e) {
-        sum += broadcast(Phi_q[e]) * load(product + slots[e] * W);
+        sum += broadcast(Phi_q[e]) * load(product + slots[e] * kWidth);
       }
       store(S_.matrix() + S_.position(p, l), sum);
     }
