@@ -8,7 +8,7 @@ namespace mbs::csc_ldl {
 namespace {
 
 template <int dimension>
-using Vector = std::array<double, dimension>;
+using Components = std::array<double, dimension>;
 
 template <std::size_t dimension>
 double dot(const std::array<double, dimension>& a, const std::array<double, dimension>& b) {
@@ -18,20 +18,20 @@ double dot(const std::array<double, dimension>& a, const std::array<double, dime
 }
 
 /// z x u; planar: z = (0, 0, 1).
-Vector<2> turned(const Vector<2>& /*z*/, const Vector<2>& u) { return {-u[1], u[0]}; }
-Vector<3> turned(const Vector<3>& z, const Vector<3>& u) {
+Components<2> turned(const Components<2>& /*z*/, const Components<2>& u) { return {-u[1], u[0]}; }
+Components<3> turned(const Components<3>& z, const Components<3>& u) {
   return {z[1] * u[2] - z[2] * u[1], z[2] * u[0] - z[0] * u[2], z[0] * u[1] - z[1] * u[0]};
 }
 
 template <int dimension>
-Vector<dimension> difference(const Group& group, const double* q, int vector, int k) {
-  Vector<dimension> u;
+Components<dimension> difference(const Group& group, const double* q, int vector, int k) {
+  Components<dimension> u;
   for (int c = 0; c < dimension; ++c) u[c] = group.difference(q, vector * dimension + c, k);
   return u;
 }
 
 template <int dimension>
-Vector<dimension> axis_of(const std::array<int, 3>& places, const double* q) {
+Components<dimension> axis_of(const std::array<int, 3>& places, const double* q) {
   if constexpr (dimension == 2) {
     return {};
   } else {
@@ -153,14 +153,14 @@ template <int dimension>
 void Elements::evaluate_geometry(const double* q) {
   Group& lines = lines_.group;
   for (int k = 0; k < lines.count; ++k) {
-    const Vector<dimension> d = difference<dimension>(lines, q, 0, k);
+    const Components<dimension> d = difference<dimension>(lines, q, 0, k);
     const double L = std::sqrt(dot(d, d)), inverse = L > 0.0 ? 1 / L : 0.0;
     for (int c = 0; c < dimension; ++c) lines.gradient[c * lines.count + k] = d[c] * inverse;
     lines_.s[k] = L;
   }
   Group& angles = angles_.group;
   for (int k = 0; k < angles.count; ++k) {
-    const Vector<dimension> u = difference<dimension>(angles, q, 0, k),
+    const Components<dimension> u = difference<dimension>(angles, q, 0, k),
                             w = difference<dimension>(angles, q, 1, k),
                             z = axis_of<dimension>(angle_axis_[k], q), z_u = turned(z, u),
                             z_w = turned(z, w);
@@ -172,7 +172,7 @@ void Elements::evaluate_geometry(const double* q) {
     angles_.s[k] = std::atan2(dot(z_u, w), dot(u, w));  // z . (u x w) = (z x u) . w
   }
   for (int k = 0; k < couples_.count; ++k) {
-    const Vector<dimension> w = difference<dimension>(couples_, q, 0, k),
+    const Components<dimension> w = difference<dimension>(couples_, q, 0, k),
                             z_w = turned(axis_of<dimension>(couple_axis_[k], q), w);
     const double factor = -torque_[k] / dot(w, w);
     for (int c = 0; c < dimension; ++c) couples_.gradient[c * couples_.count + k] = factor * z_w[c];
