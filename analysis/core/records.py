@@ -104,10 +104,10 @@ def need_same_origin(record, context, where):
                              f"{context.get(key)}): remove it")
 
 
-def files_of(folder, part):
-    """{name: path} of the records of a part that lie loose in a set's folder."""
+def files_of(folder, part, column="."):
+    """{name: path} of the records of a part, or of one of its columns, that lie loose in a set's folder."""
     base = Path(folder) / "raw" / part
-    found = {path.relative_to(base).as_posix(): path for path in base.rglob("*.json")
+    found = {path.relative_to(base).as_posix(): path for path in (base / column).rglob("*.json")
              if path.parent != base / "scenes" and not path.name.startswith(".")}
     return dict(sorted(found.items()))  # by the same order as those of an archive
 

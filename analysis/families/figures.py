@@ -16,7 +16,7 @@ def draw(tables, view):
 def real_map(winners, scenes, look, machine):
     """A field a mechanism: the fastest library, split among those that are as fast, hatched where that is not known.
     Below it the fastest code of our own, with how many times faster than that library it is."""
-    rows = winners[(winners.layer == "libraries") & (winners.winner != "")]
+    rows = winners[(winners.layer == "libraries") & (winners.winner != "") & winners.variables.notna()]
     families = list(dict.fromkeys(winners.family))
     figure, axes = plt.subplots(figsize=(10.5, 0.62 * max(1, len(families)) + 1.6))
     if rows.empty:
@@ -25,7 +25,7 @@ def real_map(winners, scenes, look, machine):
     shown = {}
     for row in rows.itertuples():
         place, at = families.index(row.family), numpy.log10(row.variables)
-        members = row.equivalent.split() if row.settled or row.decided else [row.winner, *(name for name in row.equivalent.split() if name != row.winner)]
+        members = row.equivalent.split()  # the winner first
         for k, name in enumerate(members):
             shown.setdefault(name, look.colour(name))
             axes.add_patch(Rectangle((at - WIDTH / 2 + k * WIDTH / len(members), place - HEIGHT / 2), WIDTH / len(members), HEIGHT,
@@ -34,7 +34,7 @@ def real_map(winners, scenes, look, machine):
         axes.text(at, place - HEIGHT / 2 - 0.03, f"{number(row.step_us)} µs", ha="center", va="bottom", fontsize=7.5)
         lead = _lead(winners, scenes, row.scene)
         axes.text(at, place + HEIGHT / 2 + 0.02, lead, ha="center", va="top", fontsize=7.5, color="#333333")
-    axes.set_xlim(*_limits(numpy.log10(rows.variables)))
+    axes.set_xlim(numpy.log10(rows.variables.min()) - WIDTH, numpy.log10(rows.variables.max()) + WIDTH)
     ticks = [power for power in range(1, 6) if axes.get_xlim()[0] <= power <= axes.get_xlim()[1]]
     axes.set_xticks(ticks, [f"{10**power}" for power in ticks])
     axes.set_xlabel("variables n")
@@ -46,10 +46,6 @@ def real_map(winners, scenes, look, machine):
                          Patch(facecolor="white", edgecolor="#444444", hatch="////", label="not decided")],
                 loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
     return figure
-
-
-def _limits(places):
-    return min(places) - WIDTH, max(places) + WIDTH
 
 
 def _lead(winners, scenes, scene):

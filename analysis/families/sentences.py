@@ -45,7 +45,7 @@ def _led(rows):
     """{library: scenes on which it is the winner or in the equivalence set}, most first."""
     counts = {}
     for row in rows.itertuples():
-        for name in {row.winner, *row.equivalent.split()}:
+        for name in row.equivalent.split():  # the winner among them
             counts[name] = counts.get(name, 0) + 1
     return dict(sorted(counts.items(), key=lambda one: (-one[1], one[0])))
 

@@ -218,8 +218,8 @@ def need_records(studyset):
 def _missing(studyset, stamp):
     """Paths of a column's records that are not there; StudyError naming one that was changed or added."""
     found, known = [], read_object(stamp)
-    for name, path in records.files_of(studyset.folder, stamp.parent.name).items():
-        if name.startswith(f"{stamp.name}/") and name not in known:
+    for name, path in records.files_of(studyset.folder, stamp.parent.name, stamp.name).items():
+        if name not in known:
             raise StudyError(f"{path} is no record of this study: remove it")
     for name, kept in known.items():
         path = studyset.folder / "raw" / stamp.parent.name / name

@@ -146,9 +146,7 @@ def test_the_newest_of_this_machine_is_the_default_and_without_one_it_says_what_
     shutil.copytree(folder, older)
     write_json(older / "set.json", read_json(older / "set.json") | {"date": "2025-01-01 10:00"})
     assert add.newest(listed()) == folder
-    monkeypatch.setattr(add, "ROOT", ROOT)
     monkeypatch.setenv("FAKE_MACHINE", "m2")
-    monkeypatch.setattr(add, "ROOT", folder.parent)
     with pytest.raises(StudyError, match="set is of .*study/run --part map makes one.*mbs bench"):
         add.newest(listed())
 
