@@ -1,57 +1,121 @@
-# The map of real mechanisms: who is fastest, by family and size; and how far ahead code without a library is.
+# The map of real mechanisms, libraries first and code of our own beside; the rule on families that were left out.
 import matplotlib.pyplot as plt
 import numpy
-from matplotlib.patches import Patch, Rectangle
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
-from analysis.core.style import Look, missing
+from analysis.core.style import GREY, MARKERS, Look, missing, number_axis
 from analysis.core.text import number
+from analysis.families.rule import SPLITS, WITHIN
+from analysis.families.tables import SCHEMES
 
-WIDTH, HEIGHT = 0.3, 0.34  # of a field: in decades of n, in rows
+DECIDES = "per_column"  # beside n, the number that tells mechanisms apart; the page shows what each tells alone
+NAMED = {"per_column": "non-zeros a column of the factor L (AMD's order)"}
 
 
 def draw(tables, view):
-    return {"map": real_map(tables["winners"], tables["scenes"], Look(view.registry), view.context.get("cpu_model", ""))}
+    look, machine = Look(view.registry), view.context.get("cpu_model", "")
+    return {"map": real_map(tables, look, view.registry, machine), "held": held_figure(tables["held"], machine)}
 
 
-def real_map(winners, scenes, look, machine):
-    """A field a mechanism: the fastest library, split among those that are as fast, hatched where that is not known.
-    Below it the fastest code of our own, with how many times faster than that library it is."""
-    rows = winners[(winners.layer == "libraries") & (winners.winner != "") & winners.variables.notna()]
-    families = list(dict.fromkeys(winners.family))
-    figure, axes = plt.subplots(figsize=(10.5, 0.62 * max(1, len(families)) + 1.6))
-    if rows.empty:
-        missing(axes, "nobody was timed")
+def best_form(winners, layer):
+    """The rows of a layer in the paper's form of the step, or in the saddle-point form where that has no winner."""
+    rows = winners[(winners.layer == layer) & (winners.winner != "")]
+    order = {scheme: place for place, scheme in enumerate(SCHEMES)}
+    return rows.assign(place=rows.scheme.map(order)).sort_values("place", kind="stable").drop_duplicates("scene").drop(columns="place")
+
+
+def real_map(tables, look, registry, machine):
+    """Left: a mark a mechanism, in the colour of its fastest library; a second colour inside is another that is as fast; empty
+    inside: not decided. Right: how many times faster the fastest code of our own is."""
+    mechanisms, winners, scenes = (tables[name] for name in ("mechanisms", "winners", "scenes"))
+    figure, (left, right) = plt.subplots(1, 2, figsize=(13.5, 5.6), gridspec_kw={"width_ratios": [1.25, 1.0], "wspace": 0.16})
+    rows = best_form(winners, "libraries")
+    if rows.empty or DECIDES not in mechanisms or mechanisms[DECIDES].isna().all():
+        for axes in (left, right):
+            missing(axes, "nobody was timed")
         return figure
+    rows = rows.merge(mechanisms[["scene", "n", DECIDES]], on="scene")
+    families = list(dict.fromkeys(rows.family))
+    marks = {family: MARKERS[place % len(MARKERS)] for place, family in enumerate(families)}
     shown = {}
     for row in rows.itertuples():
-        place, at = families.index(row.family), numpy.log10(row.variables)
-        members = row.equivalent.split()  # the winner first
-        for k, name in enumerate(members):
-            shown.setdefault(name, look.colour(name))
-            axes.add_patch(Rectangle((at - WIDTH / 2 + k * WIDTH / len(members), place - HEIGHT / 2), WIDTH / len(members), HEIGHT,
-                                     facecolor=look.colour(name), edgecolor="white", linewidth=0.8,
-                                     hatch="" if row.settled or row.decided else "////"))
-        axes.text(at, place - HEIGHT / 2 - 0.03, f"{number(row.step_us)} µs", ha="center", va="bottom", fontsize=7.5)
-        lead = _lead(winners, scenes, row.scene)
-        axes.text(at, place + HEIGHT / 2 + 0.02, lead, ha="center", va="top", fontsize=7.5, color="#333333")
-    axes.set_xlim(numpy.log10(rows.variables.min()) - WIDTH, numpy.log10(rows.variables.max()) + WIDTH)
-    ticks = [power for power in range(1, 6) if axes.get_xlim()[0] <= power <= axes.get_xlim()[1]]
-    axes.set_xticks(ticks, [f"{10**power}" for power in ticks])
-    axes.set_xlabel("variables n")
-    axes.set_yticks(range(len(families)), families)
-    axes.set_ylim(len(families) - 0.35, -0.65)
-    axes.tick_params(axis="y", length=0)
-    axes.set_title(f"Fastest library on real mechanisms, {machine}")
-    axes.legend(handles=[*(Patch(facecolor=colour, label=name) for name, colour in shown.items()),
-                         Patch(facecolor="white", edgecolor="#444444", hatch="////", label="not decided")],
-                loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
+        members = row.equivalent.split()
+        known = row.settled or row.decided
+        shown |= {name: look.colour(name) for name in members}
+        left.plot(row.n, getattr(row, DECIDES), marks[row.family], markersize=10.5, markeredgewidth=2.6, markeredgecolor=look.colour(members[0]),
+                  markerfacecolor=look.colour(members[1] if len(members) > 1 else members[0]) if known else "white", linestyle="none")
+    _scales(left, rows.n, rows[DECIDES], NAMED[DECIDES])
+    left.set_title(f"Fastest library, by size and sparsity of the factor\n{machine}")
+    _lead(right, rows, winners, scenes, look, marks, registry)
+    colours = [Patch(facecolor=colour, label=name) for name, colour in shown.items()]
+    forms = [Line2D([], [], marker=mark, linestyle="none", color="#444444", label=family) for family, mark in marks.items()]
+    empty = Line2D([], [], marker="o", linestyle="none", markerfacecolor="white", markeredgecolor="#444444", label="not decided")
+    figure.legend(handles=[*colours, empty], loc="upper left", bbox_to_anchor=(0.905, 0.9), fontsize=8.5, title="edge: fastest; inside: as fast",
+                  title_fontsize=8.5, alignment="left")
+    figure.legend(handles=forms, loc="upper left", bbox_to_anchor=(0.905, 0.58), fontsize=8.5, title="family", title_fontsize=8.5, alignment="left")
     return figure
 
 
-def _lead(winners, scenes, scene):
-    """"fronts 2.1×": the fastest of all where it is no library, over the fastest library."""
-    best = winners[(winners.layer == "all") & (winners.scene == scene)].iloc[0].winner
-    row = scenes[(scenes.scene == scene) & (scenes.implementation == best)]
-    if row.empty or not row.to_rival.iloc[0] < 1:
-        return ""
-    return f"{best.partition('/')[2]} {number(1 / row.to_rival.iloc[0], 2)}×"
+def _lead(axes, rows, winners, scenes, look, marks, registry):
+    """Times faster than the fastest library, by size: the fastest code of our own on each mechanism."""
+    own = scenes[scenes.implementation.isin(registry.own) & (scenes.status == "ok") & (scenes.verdict == "agrees") & scenes.to_rival.notna()]
+    fastest = own.merge(rows[["scene", "scheme", "n"]], on=["scene", "scheme"]).sort_values("to_rival").drop_duplicates("scene")
+    if fastest.empty:
+        missing(axes, "no code of our own was timed")
+        return
+    for row in fastest.itertuples():
+        axes.plot([row.n, row.n], [1 / row.to_rival_high, 1 / row.to_rival_low] if row.to_rival_low > 0 else [1 / row.to_rival] * 2,
+                  color=look.colour(row.implementation), linewidth=1.0, alpha=0.7)
+        axes.plot(row.n, 1 / row.to_rival, marks[row.family], markersize=7.5, color=look.colour(row.implementation), linestyle="none")
+    axes.axhline(1.0, color=GREY, linewidth=0.9)
+    _scales(axes, fastest.n, 1 / fastest.to_rival, "times as fast as the fastest library")
+    axes.set_title("Fastest code of our own, which is no library\n95 % intervals")
+    axes.legend(handles=[Patch(facecolor=look.colour(name), label=name) for name in dict.fromkeys(fastest.implementation)], loc="upper right",
+                fontsize=8.5, frameon=True, framealpha=0.85, edgecolor="none")
+
+
+def _scales(axes, n, values, label):
+    for axis, found in ((axes.xaxis, n), (axes.yaxis, values)):
+        low, high = float(min(found)), float(max(found))
+        room = (high / low) ** 0.05 if high > low else 1.5
+        (axes.set_xlim if axis is axes.xaxis else axes.set_ylim)(low / room, high * room)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    number_axis(axes.xaxis)
+    number_axis(axes.yaxis)
+    axes.set_xlabel("variables n")
+    axes.set_ylabel(label)
+    axes.grid(True, which="major")
+    axes.set_axisbelow(True)
+
+
+def held_figure(held, machine):
+    """Families left out: predicted over measured time of a step; what the choice costs."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 4.6), gridspec_kw={"wspace": 0.25})
+    rows = held[held.step_us.notna() & held.predicted_us.notna()] if len(held) else held
+    if rows.empty:
+        for axes in (left, right):
+            missing(axes, "too few mechanisms for a rule")
+        return figure
+    for scheme, mark in zip(SCHEMES, ("o", "^")):
+        some = rows[rows.scheme == scheme]
+        left.plot(some.step_us, some.predicted_us / some.step_us, mark, markersize=5.5, label=scheme, linestyle="none")
+        right.plot(some.variables, 100 * some.loss, mark, markersize=5.5, label=scheme, linestyle="none")
+    for bound in (1 / WITHIN, WITHIN):
+        left.axhline(bound, color=GREY, linewidth=0.9, linestyle="--")
+    left.set_xscale("log")
+    left.set_yscale("log")
+    number_axis(left.xaxis)
+    number_axis(left.yaxis)
+    left.set_xlabel("measured step, µs")
+    left.set_ylabel("predicted ÷ measured")
+    left.set_title(f"Time of a step; dashed: within {number(WITHIN)} times")
+    right.set_xscale("log")
+    number_axis(right.xaxis)
+    right.set_xlabel("variables n")
+    right.set_ylabel("loss of the choice, %")
+    right.set_title("Time lost by the chosen library")
+    left.legend(fontsize=8.5)
+    figure.suptitle(f"Each family predicted by the others, {machine}", x=0.01, ha="left", fontsize=10)
+    return figure

@@ -1,11 +1,28 @@
 # What page.html.j2 shows of families of mechanisms.
+from analysis.families.bounds import bounds
+from analysis.families.rule import rule, summary
+from analysis.families.tables import SCHEMES
+
+
 def context(tables, view):
-    winners, scenes = tables["winners"], tables["scenes"]
-    ranked = [(name, rows.set_index("layer").to_dict("index")) for name, rows in winners.groupby("scene", sort=False)]
+    winners, scenes, mechanisms = tables["winners"], tables["scenes"], tables["mechanisms"]
+    known = mechanisms.set_index("scene").to_dict("index")
+    ranked = [(name, known.get(name, {}), {(row["scheme"], row["layer"]): row for row in rows.to_dict("records")})
+              for name, rows in winners.groupby("scene", sort=False)]
     times = scenes[scenes.status.isin(["ok", "slower"]) & scenes.step_us.notna()].sort_values("step_us")
     lost = {}
     for row in scenes[~scenes.status.isin(["ok", "slower"])].to_dict("records"):
-        lost.setdefault((row["status"], row["reason"]), {}).setdefault(row["implementation"], []).append(row["scene"])
-    return {"settings": view.settings, "ranked": ranked, "order": list(dict.fromkeys(scenes.scene)),
-            "times": {name: rows.to_dict("records") for name, rows in times.groupby("scene", sort=False)},
-            "lost": [(*what, list(names.items())) for what, names in lost.items()]}
+        lost.setdefault((row["status"], row["reason"]), {}).setdefault(row["implementation"], []).append(f"{row['scene']}, {row['scheme']}")
+    held = tables["held"]
+    return {"settings": view.settings, "schemes": SCHEMES, "ranked": ranked, "bounds": bounds(tables, view.registry),
+            "times": {name: rows.to_dict("records") for name, rows in times.groupby(["scene", "scheme"], sort=False)},
+            "lost": [(*what, list(names.items())) for what, names in lost.items()],
+            "rule": rule(tables, view.registry), "by_family": [(family, summary(rows)) for family, rows in held.groupby("family", sort=False)],
+            "alone": tables["alone"].to_dict("records"), "growth": tables["growth"].to_dict("records"),
+            "orderings": _wide(tables["orderings"])}
+
+
+def _wide(orderings):
+    """(scene, n, {ordering: row})"""
+    return [(scene, rows.n.iloc[0], {row["ordering"]: row for row in rows.to_dict("records")})
+            for scene, rows in orderings.groupby("scene", sort=False)]

@@ -1,33 +1,44 @@
-# Rows of scenes and of winners, scene by scene.
+# Rows of mechanisms, of contenders and of winners, scene by scene and form by form.
 import pandas
 
 from analysis.core import timing
-from analysis.limit.tables import agreed, by_scene, cells_of, looked, ratio_to, rival_of, verdicts_of
+from analysis.core.contest import agreed, by_scene, cells_of, contests, grouped, ratio_to, rival_of
+from analysis.families.growth import growth, orderings
+from analysis.families.rule import alone, held
 
+SCHEMES = ("penalty", "saddle-point")  # the two forms of the step; roles of their records begin with them
 COLUMNS = ("implementation", "status", "reason", "verdict", "processes", "step_us", "low_us", "high_us", "passes", "pass_us", "record")
 
 
 def build(records, view):
-    registry, order = view.registry, {name: place for place, name in enumerate(view.registry.variants)}
-    by_role = {}
-    for record in records:
-        by_role.setdefault(record.role.removesuffix(timing.LEFT_OUT).removesuffix(timing.ALONE), []).append(record)
-    about = {record.cell["scene"]: record.output for record in by_role.get("about", []) if record.done}
-    said, timed = verdicts_of(by_role.get("gate", [])), dict(by_scene(by_role.get("time", [])))
+    registry, by_role = view.registry, grouped(records)
+    order = {name: place for place, name in enumerate(registry.variants)}
+    place = {scene: at for at, scene in enumerate(view.settings["scenes"])}
+    about = {record.cell["scene"]: record for record in by_role.get("about", []) if record.done}
     layers = {"libraries": registry.libraries, "all": [name for name in registry.variants if name not in registry.examples]}
     scenes, winners = [], []
-    for scene, look in by_scene(by_role.get("look", [])):
-        rows = timed.get(scene, look[:0])
-        cells = {name: looked(one) for name, one in cells_of(look, scene, said).items()} | cells_of(rows, scene, said)
-        known = {"family": scene.partition(":")[0], "scene": scene, "variables": about.get(scene, {}).get("variables")}
-        more = {key: about.get(scene, {}).get(key) for key in ("constraints", "dimension")}
-        more["fill"] = 100 * about[scene]["tangent"]["fill"] if scene in about else None
-        rival = rival_of(rows, cells, registry)
-        scenes += [known | more | {key: value for key, value in cells[name].items() if key in COLUMNS}
-                   | ratio_to("to_rival", rows, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
-        winners += [known | {"layer": layer} | _winner(rows, cells, names) for layer, names in layers.items()]
-    place = {scene: at for at, scene in enumerate(view.settings["scenes"])}
-    return {"scenes": _sorted(scenes, place), "winners": _sorted(winners, place)}
+    for scheme in SCHEMES:
+        looks = {scene: cells_of(rows, scene, {}) for scene, rows in by_scene(by_role.get(f"{scheme}-look", []))}
+        for scene, rows, cells in contests(by_role, scheme):
+            known = {"family": family_of(scene), "scene": scene, "scheme": scheme,
+                     "variables": about[scene].output.get("variables") if scene in about else None}
+            rival = rival_of(rows, cells, registry)
+            scenes += [known | {key: value for key, value in cells[name].items() if key in COLUMNS}
+                       | {"look_us": looks[scene].get(name, {}).get("step_us")}
+                       | ratio_to("to_rival", rows, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
+            winners += [known | {"layer": layer} | _winner(rows, cells, names) for layer, names in layers.items()]
+    mechanisms = [{"family": family_of(scene), "scene": scene, "dimension": record.output.get("dimension")}
+                  | record.output.get("features", {}) | {"record": record.name} for scene, record in about.items()]
+    tables = {name: pandas.DataFrame(sorted(rows, key=lambda row: place.get(row["scene"], len(place))))
+              for name, rows in (("mechanisms", mechanisms), ("scenes", scenes), ("winners", winners))}
+    return tables | {"growth": growth(tables["scenes"], tables["mechanisms"]) if len(scenes) else pandas.DataFrame(),
+                     "orderings": orderings(about), "alone": alone(tables, registry), "held": held(tables, registry).drop(columns="models", errors="ignore")}
+
+
+def family_of(scene):
+    """The four-bar with artificial fill is no mechanism: a family of its own."""
+    name, _, options = scene.partition(":")
+    return f"{name}, filled" if "fill=" in options else name
 
 
 def _winner(rows, cells, names):
@@ -42,7 +53,3 @@ def _winner(rows, cells, names):
             "margin": found.margin.value, "low": found.margin.low, "high": found.margin.high, "decided": found.decided,
             "settled": found.settled, "equivalent": " ".join(found.equivalent),
             "record": " ".join(dict.fromkeys(cells[name]["record"] for name in both))}
-
-
-def _sorted(rows, place):
-    return pandas.DataFrame(sorted(rows, key=lambda row: place.get(row["scene"], len(place))))

@@ -6,7 +6,8 @@ from matplotlib.ticker import NullLocator
 from analysis.core.style import ALTERNATIVES, GREY, MARKERS, Look, legend, missing, number_axis, size_ticks
 from analysis.core.text import number
 from analysis.limit.held import wanted
-from analysis.limit.tables import KINDS, LIMIT, PHASES
+from analysis.core.timing import PHASES
+from analysis.limit.tables import KINDS, LIMIT
 
 BOUNDS = {"latency_ns": ("bound: dependent operations", "--"),
           "memory_ns": ("bound: memory traffic", "-."),

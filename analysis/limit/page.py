@@ -1,6 +1,7 @@
 # What page.html.j2 shows of the limit.
 from analysis.core.rows import grouped
-from analysis.limit.tables import KINDS, PHASES
+from analysis.core.timing import PHASES
+from analysis.limit.tables import KINDS
 
 
 def context(tables, view):

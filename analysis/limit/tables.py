@@ -2,8 +2,8 @@
 import pandas
 
 from analysis.core import timing
+from analysis.core.contest import agreed, by_scene, cells_of, contests, grouped, ratio_to, rival_of, verdicts_of
 from analysis.core.statistics import median
-from analysis.core.timing import PHASES
 from analysis.limit.held import must_hold
 
 LIMIT = "limit/limit"
@@ -13,9 +13,7 @@ FORMS = {"size": "penalty", "growth": "saddle-point"}  # roles of the N-four-bar
 
 def build(records, view):
     registry = view.registry
-    by_role = {}
-    for record in records:
-        by_role.setdefault(record.role.removesuffix(timing.LEFT_OUT).removesuffix(timing.ALONE), []).append(record)
+    by_role = grouped(records)
     order = {name: place for place, name in enumerate([LIMIT, *registry.variants])}
     about = {record.cell["scene"]: record.output for record in by_role.get("about", []) if record.done}
     found = {"bounds": [row | {"status": record.status, "reason": record.reason, "record": record.name}
@@ -31,11 +29,8 @@ def build(records, view):
                 known = {"scene": scene, "kind": "four-bar", "dimension": 2, "variables": 2 * loops + 2}
                 found["leads"] += [known | one for one in _leads(rows, cells, registry)]
     for kind in KINDS:
-        said, timed = verdicts_of(by_role.get(f"{kind}-gate", [])), dict(by_scene(by_role.get(kind, [])))
-        for scene, look in by_scene(by_role.get(f"{kind}-look", [])):
+        for scene, rows, cells in contests(by_role, kind):
             known = {"scene": scene, "kind": kind} | {key: about.get(scene, {}).get(key) for key in ("dimension", "variables")}
-            rows = timed.get(scene, look[:0])
-            cells = {name: looked(one) for name, one in cells_of(look, scene, said).items()} | cells_of(rows, scene, said)
             rival = rival_of(rows, cells, registry)
             found["scenes"] += [known | cells[name] | ratio_to("to_rival", rows, name, rival, cells[name])
                                 for name in _ordered(cells, order)]
@@ -45,74 +40,9 @@ def build(records, view):
     return tables
 
 
-def by_scene(records):
-    """(scene, rows of its processes), four-bars by size."""
-    rows = timing.processes(timing.counted(records))
-    return sorted(rows.groupby("scene"), key=lambda one: (len(one[0]), one[0])) if len(rows) else []
-
-
-def verdicts_of(records):
-    """{(scene, implementation): (verdict, reason)} of the gate."""
-    return {(record.cell["scene"], name): found for record in records for name, found in record.verdicts.items()}
-
-
-def cells_of(rows, scene, verdicts):
-    return {name: _cell(group, verdicts.get((scene, name))) for name, group in rows.groupby("implementation")}
-
-
 def _ordered(cells, order):
     """Without anchors of other pairs."""
     return sorted((name for name in cells if name in order), key=order.get)
-
-
-def looked(cell):
-    """What a first look says of who was not timed further."""
-    if cell["status"] != "ok":
-        return cell
-    cell = {key: cell[key] for key in ("implementation", "record", "verdict", "step_us", "passes", "pass_us")}
-    if cell["verdict"]:
-        return cell | {"status": "dropped", "reason": "the budget was spent"}
-    return cell | {"status": "slower", "reason": "in a first look far slower than the fastest library"}
-
-
-def _cell(rows, verdict):
-    """What is known of a contender in a scene. Who failed in one process has failed; a disturbed process may make one
-    look slow. Without a verdict the gate was not asked."""
-    good, lost = rows[rows.status == "ok"], rows[~rows.status.isin(["ok", "dropped", "slower"])]
-    first = lost.iloc[0] if len(lost) else good.iloc[0] if len(good) else rows.iloc[0]
-    row = {"implementation": rows.implementation.iloc[0], "status": "ok", "reason": "", "verdict": "", "record": first.record}
-    if len(lost) or good.empty:
-        return row | {"status": first.status, "reason": first.reason}
-    if verdict:
-        row["verdict"] = verdict[0]
-        if verdict[0] not in ("agrees", "dropped"):
-            row |= {"status": verdict[0], "reason": verdict[1]}
-    step, passes = median(good.step_us), good.passes.iloc[0] / good.steps.iloc[0]
-    row |= {"processes": len(good), "step_us": step, "low_us": good.step_us.min(),
-            "high_us": good.step_us.max(), "passes": passes, "pass_us": step / passes, "setup_us": median(good.setup_us),
-            "memory_bytes": median(good.memory_bytes), "position_error": good.get("position_error", pandas.Series([None])).iloc[0]}
-    if "phase_other" in good and good.phase_other.notna().all():
-        shares = {phase: median(good[f"phase_{phase}"]) for phase in PHASES}
-        row |= {f"{phase}_us": step * share / sum(shares.values()) for phase, share in shares.items()}
-    return row
-
-
-def ratio_to(what, rows, name, other, cell):
-    """{what: time of `name` over that of `other`, with its interval}, where both were timed."""
-    if cell["status"] != "ok" or other is None or name == other:
-        return {what: 1.0} if name == other and cell["status"] == "ok" else {}
-    found = timing.ratio(rows, name, other)
-    return {what: found.value, f"{what}_low": found.low, f"{what}_high": found.high}
-
-
-def agreed(cells, names):
-    return [name for name in names if name in cells and cells[name]["status"] == "ok" and cells[name]["verdict"] == "agrees"]
-
-
-def rival_of(rows, cells, registry):
-    """The fastest library of a scene, of those that the gate agrees with; None if there is none."""
-    found = timing.rank(rows[rows.status == "ok"], agreed(cells, registry.libraries))
-    return found.winner if found else None
 
 
 def _leads(rows, cells, registry):

@@ -10,7 +10,8 @@ from analysis.core.records import Record
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
 from analysis.limit import figures, held, page, sentences, tables
-from analysis.limit.tables import LIMIT, PHASES
+from analysis.core.timing import PHASES
+from analysis.limit.tables import LIMIT
 
 REGISTRY = Registry({"implementations": [
     {"folder": "one", "available": True, "library": "L", "variants": [{"name": "one/a"}, {"name": "one/b"}]},

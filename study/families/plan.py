@@ -1,23 +1,49 @@
-# Families of real mechanisms at their own fill: who is fastest on each, by size.
-from analysis.core.timing import LEFT_OUT, processes as rows_of
+# Families of real mechanisms at their own fill: who is fastest on each, by size, in both forms of the step.
+from analysis.core.errors import StudyError
+from analysis.families.tables import SCHEMES
 from study.core.cell import Cell
-from study.core.timing import measure
-from study.limit.plan import LOOK, ask_gate, elsewhere, environment, timed
+from study.core.contest import about, contest, elsewhere, usual
+from study.core.setting import Setting
 
 SETTINGS = {"scenes": list,     # families with their sizes, as the program takes them, the most telling first
-            "processes": int,   # of a scene
+            "processes": dict,  # of a scene, by scheme
             "samples": int}     # of a process and contender
+FAR = 8.0  # times the fastest library
 
 
 def columns(settings, studyset):
+    if settings["processes"].keys() != set(SCHEMES):
+        raise StudyError(f"profile: families: processes: has a number for each of {', '.join(SCHEMES)}")
     return {"mechanisms": settings["seconds"]}
 
 
 def run(lab, column):
-    """First a look at everyone; then those on whom an answer may stand, as far as the gate agrees with them."""
-    here = [one for one in lab.contenders if one.environment == environment(lab)]
+    here, looks = usual(lab), {}
     for scene in lab.settings["scenes"] if here else []:
-        lab.one(Cell("describe", scene, role="about"))
-        elsewhere(lab, Cell("bench", scene, role=f"look{LEFT_OUT}"))
-        look = rows_of(measure(lab, scene, here, processes=1, repetitions=1, settings=LOOK, role="look", drop=True))
-        timed(lab, scene, ask_gate(lab, scene, look, here, "gate"), "time")
+        about(lab, scene)
+        elsewhere(lab, Cell("bench", scene, role="penalty-look"))
+        for scheme in SCHEMES:
+            setting = Setting(scheme)
+            before = looks.setdefault((scene.partition(":")[0], scheme), [])
+            chosen = [one for one in here if lab.registry.serves(one.variant, *setting.needs)]
+            behind = [one for one in chosen if falling(one.name, before)]
+            for one in behind:
+                lab.skip(Cell("bench", scene, (one,), role=f"{scheme}-look-left-out"), "excluded",
+                         f"on smaller ones of the family more than {FAR:g} times as slow as the fastest library, and more so with size")
+            rows = contest(lab, scene, [one for one in chosen if one not in behind], scheme, setting.words(),
+                           own=lab.registry.own, processes=lab.settings["processes"][scheme], samples=lab.settings["samples"])
+            before.append(multiples(rows, lab.registry.libraries))
+
+
+def multiples(rows, libraries):
+    """{name: time of the look over the fastest library's}; of who was left out as too slow: infinite."""
+    times = rows[rows.status == "ok"].groupby("implementation").step_us.median()
+    best = min((time for name, time in times.items() if name in libraries), default=None)
+    slow = dict.fromkeys(rows[rows.status == "slower"].implementation, float("inf"))
+    return slow | ({name: time / best for name, time in times.items()} if best else {})
+
+
+def falling(name, before):
+    """Whether somebody falls behind the libraries in the looks of smaller sizes."""
+    known = [one[name] for one in before if name in one]
+    return known[-1:] == [float("inf")] or len(known) > 1 and known[-1] > FAR and known[-1] > known[-2]

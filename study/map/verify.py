@@ -7,12 +7,13 @@
 import math
 from dataclasses import dataclass
 
+from study.core import gate
 from study.core.builds import BUILDS, build
 from study.core.cell import Cell
-from study.core.contender import Contender, by_environment
+from study.core.contender import Contender
 
 FAMILY = 5
-SLOW = 4  # of those who take as long as they may, that a process has time for
+SLOW = 4  # of those who take as long as they may, that a process of the gate has time for
 RUNS = 3  # of a pilot; the fastest counts
 WORK = 3200  # variables times steps of a pilot
 
@@ -32,9 +33,10 @@ def fit(lab, scene, contenders):
     """({contender: µs a step of its pilot} of those to be timed, the scene's fill in %); each other one gets a record
     that says why not."""
     pilots = dict(zip(contenders, _pilots(lab, scene, contenders)))
-    verdicts, rule = {}, Rule(lab, scene, pilots)
+    verdicts, rule, limit = {}, Rule(lab, scene, pilots), lab.settings["limits"]["check"]
     while todo := [one for one in rule.chosen(verdicts) if one not in verdicts]:
-        verdicts |= _gate(lab, scene, todo)
+        verdicts |= {one: found == "agrees" for one, (found, _) in gate.verdicts(
+            lab, scene.name, todo, each=limit / SLOW, seconds=limit).items()}
     best = rule.best(verdicts)
     for one, pilot in pilots.items():
         if pilot.alive and one not in verdicts:
@@ -93,27 +95,6 @@ class Rule:
         said = self.lab.registry.variants
         return {one for key in ("dense", "unsymmetric") for value in (True, False)
                 for one in [one for one in alive if said[one.variant].get(key, False) == value][:2]}
-
-
-def _gate(lab, scene, contenders):
-    """{contender: whether it agrees}. Several in a process save time; if it dies, one by one loses only the culprit."""
-    groups = by_environment(contenders).values()
-    records = lab.run([_check(lab, scene, group) for group in groups])
-    verdicts = {}
-    for group, record in zip(groups, records):
-        if record.done or len(group) == 1:
-            verdicts |= {one: record.verdicts[one.name][0] == "agrees" for one in group}
-        else:
-            for one in group:
-                verdicts |= _gate(lab, scene, [one])
-    return verdicts
-
-
-def _check(lab, scene, group):
-    # A limit of its own for each: the program can then blame a slow one, before the limit on the whole process takes all
-    # verdicts with it.
-    limit = lab.settings["limits"]["check"]
-    return Cell("check", scene.name, group, ("--time-limit", f"{limit / SLOW:g}"), "gate", seconds=limit)
 
 
 def alternatives(lab, scene):

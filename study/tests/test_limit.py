@@ -5,6 +5,7 @@ import pandas
 import pytest
 
 from analysis.core.registry import Registry
+from study.core import contest
 from study.core.contender import Contender
 from study.limit import plan
 from study.tests.conftest import ROOT, study
@@ -27,7 +28,7 @@ class Asked:
 
     def run(self, cells, drop=False):
         self.cells += cells
-        return [SimpleNamespace(verdicts={one.name: ("disagrees" if one.name in self.wrong else "agrees", "") for one in cell.contenders})
+        return [SimpleNamespace(done=True, verdicts={one.name: ("disagrees" if one.name in self.wrong else "agrees", "") for one in cell.contenders})
                 for cell in cells if cell.kind == "check"]
 
     def one(self, cell):
@@ -53,8 +54,9 @@ def measured(monkeypatch):
         names = [one.name for one in contenders]
         found.asked.append((role, scene, names, settings))
         return found.said(scene, names)
-    monkeypatch.setattr(plan, "measure", measure)
-    monkeypatch.setattr(plan, "rows_of", lambda table: table)
+    for module in (plan, contest):
+        monkeypatch.setattr(module, "measure", measure)
+        monkeypatch.setattr(module, "rows_of", lambda table: table)
     return found
 
 
@@ -97,7 +99,7 @@ def test_after_a_look_at_everyone_those_are_timed_that_are_near_and_agree(measur
     assert "--steps" in look and "--steps" not in problem
     assert problem[problem.index("--step") + 1] == "0.001" and "--step" not in fill
     gates = [cell for cell in lab.cells if cell.kind == "check" and "pendulum" in cell.scene]
-    assert [cell.contenders[0].name for cell in gates] == names and gates[0].settings[:2] == ("--step", "0.001")
+    assert [one.name for cell in gates for one in cell.contenders] == names and gates[0].settings[:2] == ("--step", "0.001")
     lab.wrong, measured.asked[:] = ("one/a",), []
     plan.run(lab, "scenes")
     assert measured.asked[1][2] == ["own/x"]

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_json, write, write_json
 from study.core import locks, profile as profiles
-from study.core.cell import Cell
 from study.core.contender import CONTROL, Contender, on_usual_pairs
 from study.core.executor import fingerprint, program_of
+from study.core.gate import verdicts
 from study.core.main import need_modules, set_up, writable
 from study.core.options import Parser, directory
 from study.core.progress import duration
@@ -188,12 +188,10 @@ def _rivals(cells, newcomers, contenders):
 
 def _gate(lab, scene, newcomers, contenders):
     """{newcomer: (status, reason)}. Being right takes nothing of the budget of times."""
-    found, spent = {}, lab.spent
-    for name in newcomers:
-        record = lab.one(Cell("check", scene, (contenders[name],), ("--time-limit", GATE_S), "gate", seconds=2 * GATE_S))
-        found[name] = ("ok", "") if record.verdicts[name][0] == "agrees" else record.verdicts[name]
+    spent = lab.spent
+    said = verdicts(lab, scene, [contenders[name] for name in newcomers], each=GATE_S, seconds=2 * GATE_S)
     lab.budget += lab.spent - spent
-    return found
+    return {one.name: ("ok", "") if found[0] == "agrees" else found for one, found in said.items()}
 
 
 def _times(tidy):
