@@ -1,13 +1,34 @@
 // mbs describe: what a scene requires.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "describe/describe.hpp"
+#include "describe/recommendation.hpp"
 #include "mbs/commands.hpp"
+#include "registry/factory.hpp"
+#include "registry/registry.hpp"
 #include "scene_file/load_scene.hpp"
 
 namespace mbs {
+namespace {
+
+/// Whether the variants of this build serve the scene.
+WhyNot why_not(const Model& model, StepSettings settings) {
+  return [&model, settings](const std::string& name, Scheme scheme) mutable -> std::string {
+    const auto variants = all_variants();
+    const auto found = std::ranges::find(variants, name, &NamedVariant::name);
+    if (found == variants.end()) return "it is not in this build";
+    settings.scheme = scheme;
+    const Serves& serves = found->variant->serves;
+    std::string missing = why_not_served(serves, settings);
+    if (missing.empty()) missing = why_not_served(serves.terms, model);
+    return missing.empty() ? "" : "it does not serve " + missing;
+  };
+}
+
+}  // namespace
 
 void add_describe_command(CLI::App& app, int& status) {
   struct Options {
@@ -15,8 +36,9 @@ void add_describe_command(CLI::App& app, int& status) {
     StepSettings settings;
     bool json = false;
   };
-  auto* command = app.add_subcommand(
-      "describe", "coordinates, constraints, degrees of freedom, terms and fill of a scene");
+  auto* command = app.add_subcommand("describe",
+                                     "coordinates, constraints, degrees of freedom, terms, fill "
+                                     "and elimination of a scene, and what to run it with");
   const auto options = std::make_shared<Options>();
   command->add_option("scene", options->scene, "the scene")->required();
   command
@@ -27,10 +49,13 @@ void add_describe_command(CLI::App& app, int& status) {
   command->callback([options, &status] {
     require_step(options->settings.step);
     const Scene scene = load_scene(options->scene);
+    nlohmann::json description = describe_json(scene, options->settings);
+    description.update(recommendation_json(parse_rule(kRuleText), description,
+                                           why_not(scene.model, options->settings)));
     if (options->json) {
-      fmt::print("{}\n", describe_json(scene, options->settings).dump(2));
+      fmt::print("{}\n", description.dump(2));
     } else {
-      fmt::print("{}", describe_text(scene, options->settings));
+      fmt::print("{}{}", describe_text(description), recommendation_text(description));
     }
     status = 0;
   });

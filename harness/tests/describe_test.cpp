@@ -50,6 +50,31 @@ TEST(Describe, FourBar) {
   EXPECT_EQ(d["jacobian"]["fill"], 14.0 / 30.0);
   EXPECT_EQ(d["tangent"]["nonzeros"], 28);
   EXPECT_EQ(d["tangent"]["fill"], 28.0 / 36.0);
+  // Three points in a chain, two coordinates each: columns of 4, 3, 4, 3, 2 and 1 non-zeros.
+  const nlohmann::json counts = {
+      {"factor_nonzeros", 17}, {"flops", 55.0}, {"height", 6}, {"widest", 4}};
+  EXPECT_EQ(d["elimination"]["orderings"]["natural"], counts);
+  EXPECT_EQ(d["elimination"]["ordering"], "AMD");
+  for (const auto& [key, count] : counts.items()) EXPECT_EQ(d["elimination"][key], count) << key;
+  EXPECT_EQ(d["elimination"]["per_column"], 17.0 / 6.0);
+  EXPECT_EQ(d["features"], nlohmann::json({{"one", 1},
+                                           {"n", 6},
+                                           {"m", 5},
+                                           {"n2", 36},
+                                           {"n3", 216},
+                                           {"jacobian", 14},
+                                           {"mass", 14},
+                                           {"tangent", 28},
+                                           {"fill", 100.0 * (28.0 / 36.0)},
+                                           {"factor", 17},
+                                           {"per_column", 17.0 / 6.0},
+                                           {"flops", 55},
+                                           {"height", 6},
+                                           {"widest", 4},
+                                           {"dimension", 2},
+                                           {"springs", 0}}));
+  EXPECT_EQ(d["scheme"]["take"], "penalty");
+  EXPECT_EQ(d["precision"], "double");
   EXPECT_EQ(d["terms"]["gravity"], true);
   EXPECT_EQ(d["terms"]["dot_constraints"], 5);
   EXPECT_EQ(d["terms"]["linear_constraints"], 0);
@@ -62,7 +87,7 @@ TEST(Describe, FourBar) {
 }
 
 TEST(Describe, Text) {
-  const std::string text = describe_text(load_scene("four-bar:2"), kSettings);
+  const std::string text = describe_text(describe_json(load_scene("four-bar:2"), kSettings));
   for (const char* part :
        {"coordinates n         6 (3 free and 3 fixed", "constraints m         5\n",
         "degrees of freedom    1 (n - rank of the Jacobian, 5)\n", "redundant             none\n",
@@ -75,7 +100,9 @@ TEST(Describe, Text) {
         "length l              1 m, of the fastest part: ok to an estimated error (--half-step) of "
         "0.01 m, plausible to a sum of local errors of 0.003 m\n",
         "penalty factor        ", "(singular positions) to ", "for step 0.00125 s; automatic ",
-        "14 non-zeros, 46.67 % of m n", "28 non-zeros, 77.78 % of n^2"}) {
+        "14 non-zeros, 46.67 % of m n", "28 non-zeros, 77.78 % of n^2",
+        "elimination, AMD      17 non-zeros of L, 2.83 a column, 4 at most; 55 operations; tree of "
+        "height 6\n"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\nnot in\n" << text;
   }
   EXPECT_EQ(text.find("artificial"), std::string::npos);
@@ -89,7 +116,7 @@ TEST(Describe, ArtificialFill) {
   EXPECT_EQ(d["artificial_fill"]["reached"], 0.5);
   EXPECT_EQ(d["artificial_fill"]["seed"], kFillSeed);
   EXPECT_EQ(d["tangent"]["fill"], 0.5);
-  EXPECT_NE(describe_text(scene, kSettings)
+  EXPECT_NE(describe_text(d)
                 .find("asked 50 %, natural 44.44 %, reached 50 %, seed 607615"),
             std::string::npos);
 }
@@ -113,7 +140,7 @@ TEST(Describe, NamesRedundantConstraints) {
       << d["redundant_constraints"];
   EXPECT_EQ(d["singular_start"], false);
   EXPECT_NE(
-      describe_text(scene, kSettings).find("redundant             1, implied by those before"),
+      describe_text(d).find("redundant             1, implied by those before"),
       std::string::npos);
   // Redundancy does not stretch the window down to nothing.
   EXPECT_LT(d["penalty_window"]["lower"], d["penalty_window"]["upper"]);
@@ -137,7 +164,7 @@ TEST(Describe, TellsASingularStartFromRedundancy) {
   EXPECT_EQ(d["degrees_of_freedom"], 1);
   EXPECT_EQ(d["singular_start"]["rank"], 3);
   EXPECT_EQ(d["singular_start"]["constraints"].size(), 2u);
-  EXPECT_NE(describe_text(scene, kSettings).find("start                 singular, rank 3 only: "),
+  EXPECT_NE(describe_text(d).find("start                 singular, rank 3 only: "),
             std::string::npos);
 }
 
@@ -157,7 +184,7 @@ TEST(Describe, RankShowsDegreesOfFreedomThatCountingMisses) {
   EXPECT_EQ(d["terms"]["gravity"], false);
   EXPECT_EQ(d["terms"]["linear_constraints"], 3);
   EXPECT_NE(
-      describe_text(scene, kSettings).find("terms absent          gravity or constant forces"),
+      describe_text(d).find("terms absent          gravity or constant forces"),
       std::string::npos);
 }
 
@@ -169,8 +196,15 @@ TEST(Describe, SaysWhatAssemblyMoved) {
   EXPECT_NEAR(d["assembly"]["position_correction"].get<double>(), 0.01, 1e-12);
   EXPECT_EQ(d["assembly"]["velocity_correction"], 0.0);
   EXPECT_EQ(d["assembly"]["point"], "B");
-  EXPECT_NE(describe_text(scene, kSettings).find("points moved by up to 0.01 m (B)\n"),
+  EXPECT_NE(describe_text(d).find("points moved by up to 0.01 m (B)\n"),
             std::string::npos);
+}
+
+TEST(Describe, TakesTheSaddlePointFormWhereNoPenaltyFactorSuitsTheStep) {
+  const auto d = describe_json(load_scene("four-bar:40"), {.step = 2e-2});
+  EXPECT_EQ(d["scheme"]["take"], "saddle-point");
+  EXPECT_EQ(d["scheme"]["reason"],
+            "saddle-point form, as no penalty factor is expected to do at step 0.02 s");
 }
 
 TEST(Describe, CountsTerms) {
@@ -185,7 +219,9 @@ TEST(Describe, CountsTerms) {
   data.couples.push_back({1, 0, -1, 2.0, "motor"});
   data.driven_points.push_back({0, {}});
   const Scene scene{"test", Model(data), {}, {}};
-  const auto terms = describe_json(scene, kSettings)["terms"];
+  const auto d = describe_json(scene, kSettings);
+  EXPECT_EQ(d["features"]["springs"], 2);
+  const auto& terms = d["terms"];
   EXPECT_EQ(terms["bilinear_constraints"], 1);
   EXPECT_EQ(terms["springs"], 1);
   EXPECT_EQ(terms["torsion_springs"], 1);
@@ -259,7 +295,8 @@ TEST(Describe, FreeFlightHasNoConstraints) {
   EXPECT_EQ(d["degrees_of_freedom"], 4);
   EXPECT_EQ(d["jacobian"]["fill"], 0.0);
   EXPECT_TRUE(d["penalty_window"].is_null());
-  EXPECT_NE(describe_text(scene, kSettings).find("any, there are no constraints"),
+  EXPECT_EQ(d["scheme"]["take"], "penalty");
+  EXPECT_NE(describe_text(d).find("any, there are no constraints"),
             std::string::npos);
 }
 

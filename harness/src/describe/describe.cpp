@@ -1,17 +1,22 @@
 // The description as JSON.
 #include "describe/describe.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 #include <optional>
 #include <vector>
 
 #include "describe/elements.hpp"
+#include "describe/elimination.hpp"
+#include "describe/features.hpp"
 #include "describe/penalty_window.hpp"
 #include "describe/structure.hpp"
 #include "describe/terms.hpp"
 #include "describe/warnings.hpp"
 #include "model_math/kinematics.hpp"
+#include "registry/setting_names.hpp"
 #include "run/driver_end.hpp"
 #include "run/judge.hpp"
 #include "scene/row_names.hpp"
@@ -77,10 +82,16 @@ json penalty_json(const PenaltyWindow& window, double step) {
           {"upper_from", window.cancellation ? "cancellation" : "nonlinearity"}};
 }
 
+json scheme_json(Scheme scheme, const std::string& reason) {
+  return {{"take", name_of(scheme)}, {"reason", reason}};
+}
+
 /// The window, and what is likely to go wrong with the automatic factor and this step.
 void add_settings(json& result, const Model& model, const Structure& structure,
                   StepSettings settings) {
+  result["precision"] = name_of(settings.precision);
   result["penalty_window"] = nullptr;
+  result["scheme"] = scheme_json(Scheme::penalty, "penalty form, as there are no constraints");
   result["warnings"] = json::array();
   std::vector<std::string> warnings{period_warning(model, settings.step)};
   if (model.constraints() > 0) {
@@ -88,6 +99,13 @@ void add_settings(json& result, const Model& model, const Structure& structure,
     result["penalty_window"] = penalty_json(window, settings.step);
     settings.penalty = window.automatic;
     warnings.push_back(penalty_warning(window, settings, PenaltyFrom::rule));
+    const bool is_open = warnings.back().empty();
+    result["scheme"] = scheme_json(
+        is_open ? Scheme::penalty : Scheme::saddle_point,
+        fmt::format("{}, as {} at step {:g} s", is_open ? "penalty form" : "saddle-point form",
+                    is_open ? "the automatic penalty factor is expected to do"
+                            : "no penalty factor is expected to do",
+                    settings.step));
   }
   for (const std::string& warning : warnings) {
     if (!warning.empty()) result["warnings"].push_back(warning);
@@ -132,6 +150,8 @@ json describe_json(const Scene& scene, const StepSettings& settings) {
       {"drivers_end", finite_or_null(driver_end(model))},
       {"artificial_fill", fill_json(scene.fill)},
       {"elements", elements_json(scene)}};
+  result["elimination"] = elimination_json(tangent_pattern(model));
+  result["features"] = features_json(result);
   add_points(result, scene);
   add_structure(result, model, structure);
   add_settings(result, model, structure, settings);

@@ -9,8 +9,8 @@
 
 namespace mbs {
 
-/// The description for programs. Step and precision of `settings` are what the penalty window and
-/// the warnings are for. Keys:
+/// The description for programs, but for what recommendation_json() adds. Step and precision of
+/// `settings` are what the penalty window and the warnings are for. Keys:
 ///
 /// - scene, dimension, variables, constraints; free_points, free_vectors: those that own the
 ///   variables; fixed_points, fixed_vectors, driven_points, driven_vectors: those that the scene
@@ -21,16 +21,19 @@ namespace mbs {
 /// - assembly {position_correction, velocity_correction, point};
 /// - terms {name: count or true/false};
 /// - mass, jacobian and tangent {nonzeros, fill}, fill as a share of n^2 or m n;
+/// - elimination, see elimination_json(); features {name: number or null}, README.md;
 /// - judged_length (m), what `mbs simulate` judges estimated and local errors by;
 /// - drivers_end (s; null if drivers are known for ever or there are none);
 /// - penalty_window {step, lower, upper, automatic, lower_from, upper_from} or null;
+/// - precision, of `settings`; scheme {take, reason}: "penalty", or "saddle-point" where no penalty
+///   factor is expected to do at this step;
 /// - warnings [text]: why the automatic penalty factor or the step is likely to be wrong;
 /// - artificial_fill {asked, natural, reached, seed} or null;
 /// - elements, see elements_json().
 nlohmann::json describe_json(const Scene& scene, const StepSettings& settings);
 
 /// The same for people, several lines.
-std::string describe_text(const Scene& scene, const StepSettings& settings);
+std::string describe_text(const nlohmann::json& description);
 
 /// What the assembly of the start changed: keys position_correction, velocity_correction, point.
 nlohmann::json assembly_json(const AssemblyReport& report);

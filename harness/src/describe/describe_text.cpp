@@ -1,8 +1,12 @@
 // The description as text, printed from the JSON.
+#include "describe/describe_text.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "describe/describe.hpp"
@@ -14,22 +18,9 @@ namespace {
 
 using nlohmann::json;
 
-std::string line(const char* label, const std::string& text) {
-  return fmt::format("{:<22}{}\n", label, text);
-}
-
 std::string matrix_text(const json& matrix, const char* of) {
   return fmt::format("{} non-zeros, {:.4g} % of {}", matrix["nonzeros"].get<long>(),
                      100.0 * matrix["fill"].get<double>(), of);
-}
-
-/// At most eight names.
-std::string listed(const json& names) {
-  constexpr std::size_t kMost = 8;
-  std::vector<std::string> first;
-  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) first.push_back(names[i]);
-  const std::string text = fmt::format("{}", fmt::join(first, ", "));
-  return names.size() > kMost ? fmt::format("{} and {} more", text, names.size() - kMost) : text;
 }
 
 std::string points_text(const json& d) {
@@ -91,7 +82,28 @@ std::string penalty_text(const json& window) {
                      window["upper_from"].get<std::string>(), step, rest);
 }
 
+std::string elimination_text(const json& found, int variables) {
+  if (found.is_null()) return "not computed, it is too much work";
+  const long nonzeros = found["factor_nonzeros"];
+  return fmt::format(
+      "{} non-zeros of L, {:.3g} a column, {} at most; {:.3g} operations; tree of height {}",
+      nonzeros, static_cast<double>(nonzeros) / variables, found["widest"].get<int>(),
+      found["flops"].get<double>(), found["height"].get<int>());
+}
+
 }  // namespace
+
+std::string text_line(const std::string& label, const std::string& text) {
+  return fmt::format("{:<22}{}\n", label, text);
+}
+
+std::string listed(const json& names) {
+  constexpr std::size_t kMost = 8;
+  std::vector<std::string> first;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) first.push_back(names[i]);
+  const std::string text = fmt::format("{}", fmt::join(first, ", "));
+  return names.size() > kMost ? fmt::format("{} and {} more", text, names.size() - kMost) : text;
+}
 
 std::string assembly_text(const json& assembly) {
   const double position = assembly["position_correction"];
@@ -107,28 +119,33 @@ std::string assembly_text(const json& assembly) {
   return changes.empty() ? "consistent as given" : fmt::format("{}", fmt::join(changes, ", "));
 }
 
-std::string describe_text(const Scene& scene, const StepSettings& settings) {
-  const json d = describe_json(scene, settings);
-  std::string text = line("scene", scene.name);
-  text += line("coordinates n", points_text(d));
-  text += line("constraints m", fmt::format("{}", d["constraints"].get<int>()));
-  text += line("degrees of freedom", freedom_text(d));
-  text += line("redundant", redundant_text(d));
-  text += line("start", start_text(d));
-  text += line("assembly", assembly_text(d["assembly"]));
-  text += line("terms present", term_list(d["terms"], true));
-  text += line("terms absent", term_list(d["terms"], false));
-  text += line("mass matrix M", matrix_text(d["mass"], "n^2"));
-  text += line("Jacobian", matrix_text(d["jacobian"], "m n"));
-  text += line("tangent", matrix_text(d["tangent"], "n^2"));
-  text += line("length l", length_text(d));
-  text += line("penalty factor", penalty_text(d["penalty_window"]));
-  for (const json& warning : d["warnings"]) text += line("warning", warning);
-  if (const auto& fill = scene.fill) {
-    text += line(
+std::string describe_text(const json& d) {
+  std::string text = text_line("scene", d["scene"]);
+  text += text_line("coordinates n", points_text(d));
+  text += text_line("constraints m", fmt::format("{}", d["constraints"].get<int>()));
+  text += text_line("degrees of freedom", freedom_text(d));
+  text += text_line("redundant", redundant_text(d));
+  text += text_line("start", start_text(d));
+  text += text_line("assembly", assembly_text(d["assembly"]));
+  text += text_line("terms present", term_list(d["terms"], true));
+  text += text_line("terms absent", term_list(d["terms"], false));
+  text += text_line("mass matrix M", matrix_text(d["mass"], "n^2"));
+  text += text_line("Jacobian", matrix_text(d["jacobian"], "m n"));
+  text += text_line("tangent", matrix_text(d["tangent"], "n^2"));
+  for (const auto& [label, ordering] :
+       {std::pair{"elimination, AMD", "AMD"}, std::pair{"  as given", "natural"}}) {
+    text +=
+        text_line(label, elimination_text(d["elimination"]["orderings"][ordering], d["variables"]));
+  }
+  text += text_line("length l", length_text(d));
+  text += text_line("penalty factor", penalty_text(d["penalty_window"]));
+  for (const json& warning : d["warnings"]) text += text_line("warning", warning);
+  if (const json& fill = d["artificial_fill"]; !fill.is_null()) {
+    const auto percent = [&fill](const char* key) { return 100.0 * fill[key].get<double>(); };
+    text += text_line(
         "artificial fill",
-        fmt::format("asked {:.4g} %, natural {:.4g} %, reached {:.4g} %, seed {}",
-                    100.0 * fill->asked, 100.0 * fill->natural, 100.0 * fill->reached, fill->seed));
+        fmt::format("asked {:.4g} %, natural {:.4g} %, reached {:.4g} %, seed {}", percent("asked"),
+                    percent("natural"), percent("reached"), fill["seed"].get<std::uint64_t>()));
   }
   return text;
 }

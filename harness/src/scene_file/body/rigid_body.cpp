@@ -9,7 +9,7 @@ namespace {
 
 /// Smallest share of the largest eigenvalue that counts as extent along an axis.
 constexpr double kFlattest = 1e-8;
-constexpr double kRounding = 1e-14;
+constexpr double kPoseRounding = 1e-14;
 
 /// S, kg m^2: the second moments about the centre.
 Eigen::Matrix3d second_moments(const Inertia& inertia, int dimension) {
@@ -111,7 +111,7 @@ BodyMass::Weights BodyMass::weights(const BodyPlace& place) const {
   for (Eigen::Index k = 0; k < w.size(); ++k) {
     const bool is_vector = basis_[static_cast<std::size_t>(k)].is_vector;
     const double scale = (place.is_vector ? 1.0 : size_) / (is_vector ? 1.0 : size_);
-    const auto clean = [&](double x) { return std::abs(x) > kRounding * scale ? x : 0.0; };
+    const auto clean = [&](double x) { return std::abs(x) > kPoseRounding * scale ? x : 0.0; };
     result.emplace_back(clean(w[k].real()), clean(w[k].imag()));
   }
   return result;
@@ -120,7 +120,7 @@ BodyMass::Weights BodyMass::weights(const BodyPlace& place) const {
 BodyMass::Weight BodyMass::mass(std::size_t i, std::size_t j) const {
   const auto row = static_cast<Eigen::Index>(i), col = static_cast<Eigen::Index>(j);
   const double scale = std::sqrt(std::abs(mass_(row, row)) * std::abs(mass_(col, col)));
-  const auto clean = [&](double x) { return std::abs(x) > kRounding * scale ? x : 0.0; };
+  const auto clean = [&](double x) { return std::abs(x) > kPoseRounding * scale ? x : 0.0; };
   return {clean(mass_(row, col).real()), row == col ? 0.0 : clean(mass_(row, col).imag())};
 }
 

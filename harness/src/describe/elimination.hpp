@@ -1,0 +1,55 @@
+// What factorizing the tangent (5) takes, from its pattern alone.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "mbs/model.hpp"
+
+namespace mbs {
+
+/// Counts stop at this many non-zeros of L: some tenths of a second.
+inline constexpr long kMostFactorNonzeros = 50'000'000;
+
+/// Where a symmetric matrix is non-zero beside its diagonal: the rows of column j are
+/// rows[start[j]] ... rows[start[j + 1] - 1], unsorted, above and below the diagonal.
+///
+/// Example: the 3 x 3 matrix with (1, 0) and (2, 0) has start {0, 2, 3, 4}, rows {1, 2, 0, 0}.
+struct SymmetricPattern {
+  /// Of `size` columns, from pairs (row, column) of different indices, each given once.
+  SymmetricPattern(int size, const std::vector<std::pair<int, int>>& pairs);
+
+  [[nodiscard]] int size() const { return static_cast<int>(start.size()) - 1; }
+
+  std::vector<int> start, rows;
+};
+
+/// Pattern of the tangent, as tangent_nonzeros() counts it.
+SymmetricPattern tangent_pattern(const Model& model);
+
+/// c_j is the number of non-zeros of column j of L, its diagonal included.
+struct Elimination {
+  long factor_nonzeros = 0;  ///< sum of c_j
+  double flops = 0.0;        ///< sum of c_j^2
+  int height = 0;            ///< of the elimination tree: columns on its longest path
+  int widest = 0;            ///< largest c_j
+};
+
+/// Of the pivots order[0], order[1], ...; none beyond kMostFactorNonzeros. Takes a time that is
+/// proportional to the non-zeros of pattern and L.
+std::optional<Elimination> eliminate(const SymmetricPattern& pattern,
+                                     const std::vector<int>& order);
+
+/// 0, 1, 2, ...
+std::vector<int> natural_order(const SymmetricPattern& pattern);
+/// Approximate minimum degree [Amestoy, Davis, Duff, 1996].
+std::vector<int> amd_order(const SymmetricPattern& pattern);
+
+/// Keys: ordering ("AMD"), whose factor_nonzeros, per_column (non-zeros of L a column), flops,
+/// height and widest follow, null if not computed; orderings {"natural", "AMD"}: {factor_nonzeros,
+/// flops, height, widest} each, or null.
+nlohmann::json elimination_json(const SymmetricPattern& pattern);
+
+}  // namespace mbs

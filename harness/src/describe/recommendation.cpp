@@ -1,0 +1,164 @@
+// The tree, the times and the nearest scene of a rule, asked about one scene.
+#include "describe/recommendation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+#include "describe/features.hpp"
+#include "registry/setting_names.hpp"
+
+namespace mbs {
+namespace {
+
+using nlohmann::json;
+
+const char* const kRepeated[] = {"one", "n2", "n3"};  // features that say nothing beside n
+
+struct Walk {
+  std::string leaf;
+  std::vector<std::string> path;
+};
+
+Walk walk(const RuleTree& tree, const Features& scene) {
+  Walk result;
+  const RuleTree* node = &tree;
+  while (node->take.empty()) {
+    const double value = scene.at(node->feature);
+    const bool is_below = value < node->below;
+    result.path.push_back(fmt::format("{} {:.4g} {} {:.4g}", feature_text(node->feature), value,
+                                      is_below ? "<" : ">=", node->below));
+    node = is_below ? node->yes.get() : node->no.get();
+  }
+  result.leaf = node->take;
+  return result;
+}
+
+double step_us(const StepTime& time, const Features& scene) {
+  double sum = 0.0;
+  for (const auto& [name, coefficient] : time.coefficients) sum += coefficient * scene.at(name);
+  return sum;
+}
+
+/// Why `variant` is not among those to choose from; empty if it is.
+std::string refusal(const TimedVariant& variant, Scheme scheme, const WhyNot& why_not) {
+  if (!variant.times.contains(scheme)) {
+    return fmt::format("its {} form was not measured", name_of(scheme));
+  }
+  return why_not(variant.name, scheme);
+}
+
+/// By layer, the leaf first, then by time.
+json ranked(const Rule& rule, Scheme scheme, const Features& scene, const WhyNot& why_not,
+            const std::string& leaf) {
+  std::vector<json> result;
+  for (const TimedVariant& variant : rule.variants) {
+    if (!refusal(variant, scheme, why_not).empty()) continue;
+    const StepTime& time = variant.times.at(scheme);
+    const double us = step_us(time, scene);
+    result.push_back({{"layer", variant.own ? "own" : "library"},
+                      {"implementation", variant.name},
+                      {"scheme", name_of(scheme)},
+                      {"step_us", us},
+                      {"low_us", us * time.low},
+                      {"high_us", us * time.high}});
+  }
+  const auto key = [&leaf](const json& one) {
+    return std::tuple(one["layer"] == "own", one["implementation"] != leaf,
+                      one["step_us"].get<double>());
+  };
+  std::ranges::stable_sort(result, {}, key);
+  return result;
+}
+
+json nearest(const std::vector<MeasuredScene>& scenes, const Features& scene) {
+  const auto distance = [&scene](const MeasuredScene& other) {
+    double sum = 0.0;
+    for (const char* name : kDistanceFeatures) {
+      sum += std::pow(std::log(scene.at(name) / other.features.at(name)), 2);
+    }
+    return std::sqrt(sum);
+  };
+  const MeasuredScene& found = *std::ranges::min_element(scenes, {}, distance);
+  return {{"scene", found.name},
+          {"distance", distance(found)},
+          {"fastest", found.fastest},
+          {"step_us", found.step_us}};
+}
+
+/// Features that are less than in every measured scene that has them, or more.
+json outside(const std::vector<MeasuredScene>& scenes, const Features& scene) {
+  json result = json::array();
+  for (const auto& [name, value] : scene) {
+    if (std::ranges::find(kRepeated, name) != std::end(kRepeated)) continue;
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const MeasuredScene& other : scenes) {
+      const auto found = other.features.find(name);
+      if (found == other.features.end()) continue;
+      least = std::min(least, found->second);
+      most = std::max(most, found->second);
+    }
+    if (least <= most && (value < least || value > most)) result.push_back(name);
+  }
+  return result;
+}
+
+json nothing(const std::string& reason) {
+  return {{"recommendation", json::array()},
+          {"no_recommendation", reason},
+          {"nearest", nullptr},
+          {"rule", nullptr}};
+}
+
+json held_json(const HeldOut& held) {
+  return {{"families", held.families},
+          {"scenes", held.scenes},
+          {"mean_loss", held.mean_loss},
+          {"worst_loss", held.worst_loss},
+          {"within", held.within}};
+}
+
+}  // namespace
+
+json recommendation_json(const std::optional<Rule>& rule, const json& description,
+                         const WhyNot& why_not) {
+  if (!rule) return nothing("no rule has been measured for this build");
+  if (description["precision"] != name_of(Precision::double_precision)) {
+    return nothing("steps were measured in double precision only");
+  }
+  Features scene;
+  for (const auto& [name, value] : description["features"].items()) {
+    if (value.is_null()) return nothing("the elimination was not computed, it is too much work");
+    scene[name] = value;
+  }
+  const bool is_penalty = description["scheme"]["take"] == name_of(Scheme::penalty);
+  const Scheme scheme = is_penalty ? Scheme::penalty : Scheme::saddle_point;
+  const Walk found = walk(rule->tree, scene);
+  const json list = ranked(*rule, scheme, scene, why_not, found.leaf);
+  json result = {{"recommendation", list},
+                 {"no_recommendation", nullptr},
+                 {"nearest", nearest(rule->scenes, scene)},
+                 {"rule",
+                  {{"set", rule->set},
+                   {"machine", rule->machine},
+                   {"commit", rule->commit},
+                   {"held", held_json(rule->held)},
+                   {"path", found.path},
+                   {"leaf", found.leaf},
+                   {"leaf_refused", nullptr},
+                   {"outside", outside(rule->scenes, scene)}}}};
+  const auto leaf = std::ranges::find(rule->variants, found.leaf, &TimedVariant::name);
+  const std::string refused = refusal(*leaf, scheme, why_not);
+  if (!refused.empty()) result["rule"]["leaf_refused"] = refused;
+  if (list.empty()) {
+    result["no_recommendation"] =
+        fmt::format("nothing that was measured can run this: {}: {}", found.leaf, refused);
+  }
+  return result;
+}
+
+}  // namespace mbs

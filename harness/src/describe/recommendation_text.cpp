@@ -1,0 +1,80 @@
+// The recommendation as text, printed from the JSON.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "describe/describe_text.hpp"
+#include "describe/features.hpp"
+#include "describe/recommendation.hpp"
+
+namespace mbs {
+namespace {
+
+using nlohmann::json;
+
+/// The best of a layer; null if it has none.
+json best_of(const json& list, const char* layer) {
+  const auto found =
+      std::ranges::find_if(list, [layer](const json& one) { return one["layer"] == layer; });
+  return found == list.end() ? json(nullptr) : *found;
+}
+
+std::string variant_text(const json& one) {
+  return fmt::format("{}, {} form: {:.3g} us a step ({:.3g} to {:.3g})",
+                     one["implementation"].get<std::string>(), one["scheme"].get<std::string>(),
+                     one["step_us"].get<double>(), one["low_us"].get<double>(),
+                     one["high_us"].get<double>());
+}
+
+std::string why_text(const json& d) {
+  const json& rule = d["rule"];
+  std::vector<std::string> reasons = rule["path"];
+  if (!rule["leaf_refused"].is_null()) {
+    reasons.push_back(fmt::format("that asks for {}, but {}: the next by time",
+                                  rule["leaf"].get<std::string>(),
+                                  rule["leaf_refused"].get<std::string>()));
+  }
+  reasons.push_back(d["scheme"]["reason"]);
+  return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
+std::string certainty_text(const json& rule) {
+  const json& held = rule["held"];
+  std::string text = fmt::format(
+      "{} families ({} scenes) left out in turn: {:.2g} % slower than their fastest in the mean, "
+      "{:.2g} % at worst; {:.0f} % of the times right to a factor of 1.5",
+      held["families"].get<int>(), held["scenes"].get<int>(),
+      100.0 * held["mean_loss"].get<double>(), 100.0 * held["worst_loss"].get<double>(),
+      100.0 * held["within"].get<double>());
+  json names = json::array();
+  for (const json& name : rule["outside"]) names.push_back(feature_text(name));
+  if (!names.empty())
+    text += fmt::format("; this scene is outside of all measured ones in {}", listed(names));
+  return text;
+}
+
+}  // namespace
+
+std::string recommendation_text(const json& d) {
+  const json& list = d["recommendation"];
+  if (list.empty()) return text_line("take this", d["no_recommendation"]);
+  const json &rule = d["rule"], &nearest = d["nearest"];
+  const json library = best_of(list, "library"), own = best_of(list, "own");
+  std::string text = text_line(
+      "take this", library.is_null() ? "nothing of a library that was measured"
+                                     : fmt::format("{}, measured on {}", variant_text(library),
+                                                   rule["machine"].get<std::string>()));
+  text += text_line("  why", why_text(d));
+  text += text_line("  how sure", certainty_text(rule));
+  text += text_line(
+      "  nearest measured",
+      fmt::format("{} (distance {:.2g}): {}, {:.3g} us", nearest["scene"].get<std::string>(),
+                  nearest["distance"].get<double>(), nearest["fastest"].get<std::string>(),
+                  nearest["step_us"].get<double>()));
+  if (!own.is_null()) text += text_line("  own code", variant_text(own));
+  return text;
+}
+
+}  // namespace mbs

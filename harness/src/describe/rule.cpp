@@ -1,0 +1,127 @@
+// Reads a rule and refuses one that does not fit.
+#include "describe/rule.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "describe/features.hpp"
+#include "registry/setting_names.hpp"
+
+namespace mbs {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kMostLeaves = 5;
+
+void require(bool holds, const std::string& wanted) {
+  if (!holds) throw std::runtime_error(wanted);
+}
+
+double read_number(const json& value, const char* what, double least) {
+  const double found = value.at(what);
+  require(std::isfinite(found) && found >= least,
+          fmt::format("{} is {}, allowed are numbers from {}", what, found, least));
+  return found;
+}
+
+std::string known_feature(const std::string& name) {
+  require(is_feature(name), fmt::format("'{}' is no feature", name));
+  return name;
+}
+
+Features read_features(const json& values) {
+  Features result;
+  for (const auto& [name, value] : values.items()) {
+    result[known_feature(name)] = read_number(values, name.c_str(), 0.0);
+  }
+  return result;
+}
+
+RuleTree read_tree(const json& node, int& leaves) {
+  RuleTree result;
+  if (node.contains("take")) {
+    result.take = node.at("take");
+    require(++leaves <= kMostLeaves, fmt::format("the tree has more than {} leaves", kMostLeaves));
+    return result;
+  }
+  result.feature = known_feature(node.at("feature"));
+  result.below = read_number(node, "below", 0.0);
+  result.yes = std::make_unique<RuleTree>(read_tree(node.at("then"), leaves));
+  result.no = std::make_unique<RuleTree>(read_tree(node.at("else"), leaves));
+  return result;
+}
+
+TimedVariant read_variant(const std::string& name, const json& value) {
+  const std::string layer = value.at("layer");
+  require(layer == "library" || layer == "own",
+          fmt::format("{}: the layer is '{}', allowed are library and own", name, layer));
+  TimedVariant result{name, layer == "own", {}};
+  for (const Scheme scheme : {Scheme::penalty, Scheme::saddle_point}) {
+    const auto found = value.find(name_of(scheme));
+    if (found == value.end() || found->is_null()) continue;
+    StepTime& time = result.times[scheme];
+    time = {read_features(found->at("coefficients")), read_number(*found, "low", 0.0),
+            read_number(*found, "high", 0.0)};
+    require(time.low <= time.high, fmt::format("{}: low is above high", name));
+  }
+  require(!result.times.empty(), fmt::format("{} has no times", name));
+  return result;
+}
+
+MeasuredScene read_scene(const json& value) {
+  MeasuredScene result{value.at("scene"), read_features(value.at("features")), value.at("fastest"),
+                       read_number(value, "step_us", 0.0)};
+  for (const char* name : kDistanceFeatures) {
+    require(result.features[name] > 0.0,
+            fmt::format("scene {}: the feature {} is missing or 0", result.name, name));
+  }
+  return result;
+}
+
+void require_leaves(const RuleTree& node, const std::vector<TimedVariant>& variants) {
+  if (!node.take.empty()) {
+    require(std::ranges::any_of(variants,
+                                [&](const auto& one) { return one.name == node.take && !one.own; }),
+            fmt::format("the leaf {} is not among the times of the library layer", node.take));
+    return;
+  }
+  require_leaves(*node.yes, variants);
+  require_leaves(*node.no, variants);
+}
+
+Rule read_rule(const json& value) {
+  Rule result{value.at("set"), value.at("machine"), value.at("commit"), {}, {}, {}, {}};
+  int leaves = 0;
+  result.tree = read_tree(value.at("tree"), leaves);
+  const json& held = value.at("held");
+  result.held = {held.at("families"), held.at("scenes"), read_number(held, "mean_loss", 0.0),
+                 read_number(held, "worst_loss", 0.0), read_number(held, "within", 0.0)};
+  for (const auto& [name, times] : value.at("times").items()) {
+    result.variants.push_back(read_variant(name, times));
+  }
+  for (const json& scene : value.at("scenes")) result.scenes.push_back(read_scene(scene));
+  require(!result.scenes.empty(), "there are no scenes");
+  require_leaves(result.tree, result.variants);
+  return result;
+}
+
+}  // namespace
+
+std::optional<Rule> parse_rule(const std::string& text) {
+  try {
+    const json value = json::parse(text);
+    require(value.is_object(), "it is no object");
+    if (value.empty()) return std::nullopt;
+    return read_rule(value);
+  } catch (const std::exception& error) {  // of JSON's too: a missing key, a wrong type
+    throw std::runtime_error(fmt::format("the rule of mbs describe: {}", error.what()));
+  }
+}
+
+}  // namespace mbs

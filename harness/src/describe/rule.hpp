@@ -1,0 +1,69 @@
+// Which implementation suits which scene: what was measured, as rule.json has it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mbs/simulation.hpp"
+
+namespace mbs {
+
+/// Features by name.
+using Features = std::map<std::string, double>;
+
+/// Time of a step in us: the sum of coefficient times feature, and factors of its range.
+struct StepTime {
+  Features coefficients;  ///< at least 0
+  double low = 1.0, high = 1.0;
+};
+
+struct TimedVariant {
+  std::string name;
+  bool own = false;  ///< of the own code, not of libraries
+  std::map<Scheme, StepTime> times;
+};
+
+/// A leaf, or the question whether a feature is below a number.
+struct RuleTree {
+  std::string take;  ///< a variant; empty: ask
+  std::string feature;
+  double below = 0.0;
+  std::unique_ptr<RuleTree> yes, no;
+};
+
+/// How the tree did on families of scenes that it was not fitted to.
+struct HeldOut {
+  int families = 0, scenes = 0;
+  double mean_loss = 0.0, worst_loss = 0.0;  ///< time over that of the fastest, less 1
+  double within = 0.0;                       ///< share of step times within a factor of 1.5
+};
+
+struct MeasuredScene {
+  std::string name;
+  Features features;
+  std::string fastest;
+  double step_us = 0.0;
+};
+
+struct Rule {
+  std::string set, machine, commit;
+  RuleTree tree;  ///< of the variants of libraries
+  HeldOut held;
+  std::vector<TimedVariant> variants;
+  std::vector<MeasuredScene> scenes;  ///< at least one
+};
+
+/// What a scene's distance to a measured one is taken in; every measured scene has them, above 0.
+inline constexpr const char* kDistanceFeatures[] = {"n", "per_column", "flops", "tangent"};
+
+/// None from an empty object, {}: no rule has been measured. Throws std::runtime_error, with the
+/// reason on one line, if `text` is no rule; README.md has the format.
+std::optional<Rule> parse_rule(const std::string& text);
+
+/// rule.json of this build.
+extern const char* const kRuleText;
+
+}  // namespace mbs

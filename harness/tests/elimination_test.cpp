@@ -1,0 +1,124 @@
+// Counts of eliminations worked by hand, and random ones done entry by entry.
+#include "describe/elimination.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace mbs {
+namespace {
+
+using Pairs = std::vector<std::pair<int, int>>;
+
+/// Row and column 0 are full.
+SymmetricPattern arrow(int size) {
+  Pairs pairs;
+  for (int i = 1; i < size; ++i) pairs.emplace_back(i, 0);
+  return {size, pairs};
+}
+
+SymmetricPattern band(int size, int width) {
+  Pairs pairs;
+  for (int j = 0; j < size; ++j) {
+    for (int i = j + 1; i <= std::min(j + width, size - 1); ++i) pairs.emplace_back(i, j);
+  }
+  return {size, pairs};
+}
+
+void expect_counts(const SymmetricPattern& pattern, const std::vector<int>& order, long nonzeros,
+                   double flops, int height, int widest) {
+  const auto found = eliminate(pattern, order);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->factor_nonzeros, nonzeros);
+  EXPECT_EQ(found->flops, flops);
+  EXPECT_EQ(found->height, height);
+  EXPECT_EQ(found->widest, widest);
+}
+
+TEST(Elimination, ArrowFillsUpAsGivenAndNotByMinimumDegree) {
+  const auto small = arrow(5);
+  expect_counts(small, natural_order(small), 5 + 4 + 3 + 2 + 1, 25 + 16 + 9 + 4 + 1, 5, 5);
+  for (const int size : {5, 40}) {  // Eigen's AMD puts the hub of the small one aside as dense
+    const auto pattern = arrow(size);
+    expect_counts(pattern, amd_order(pattern), 2 * size - 1, 4.0 * (size - 1) + 1.0, 2, 2);
+  }
+}
+
+TEST(Elimination, BandKeepsItsWidth) {
+  const auto three = band(6, 1), five = band(6, 2);
+  expect_counts(three, natural_order(three), 11, 5 * 4 + 1, 6, 2);
+  expect_counts(five, natural_order(five), 3 * 4 + 2 + 1, 9 * 4 + 4 + 1, 6, 3);
+  // From both ends to the middle the tree has two branches.
+  expect_counts(band(5, 1), {0, 4, 1, 3, 2}, 9, 4 * 4 + 1, 3, 2);
+}
+
+TEST(Elimination, DiagonalAndFullAndSmall) {
+  const auto diagonal = band(4, 0), full = band(7, 6), one = band(1, 0), none = band(0, 0);
+  expect_counts(diagonal, amd_order(diagonal), 4, 4, 1, 1);
+  expect_counts(full, amd_order(full), 28, 140, 7, 7);
+  expect_counts(one, amd_order(one), 1, 1, 1, 1);
+  expect_counts(none, natural_order(none), 0, 0, 0, 0);
+}
+
+TEST(Elimination, ALoopFills) {
+  const SymmetricPattern loop(4, {{1, 0}, {2, 1}, {3, 2}, {3, 0}});
+  expect_counts(loop, natural_order(loop), 3 + 3 + 2 + 1, 9 + 9 + 4 + 1, 4, 3);
+}
+
+TEST(Elimination, RandomPatternsAsEntryByEntry) {
+  std::mt19937 random(1);
+  for (int trial = 0; trial < 200; ++trial) {
+    const int size = 1 + static_cast<int>(random() % 15);
+    std::vector<int> order(static_cast<std::size_t>(size));
+    std::vector<std::vector<char>> full(order.size(), std::vector<char>(order.size(), false));
+    Pairs pairs;
+    for (int j = 0; j < size; ++j) {
+      for (int i = j + 1; i < size; ++i) {
+        if (random() % 4 == 0) pairs.emplace_back(i, j);
+      }
+    }
+    const SymmetricPattern pattern(size, pairs);
+    order = trial % 2 == 0 ? amd_order(pattern) : natural_order(pattern);
+    if (trial % 3 == 0) std::ranges::shuffle(order, random);
+    std::vector<int> sorted = order;
+    std::ranges::sort(sorted);
+    ASSERT_EQ(sorted, natural_order(pattern));  // a permutation
+
+    std::vector<int> place(order.size());
+    for (int k = 0; k < size; ++k) place[order[k]] = k;
+    for (const auto& [i, j] : pairs) full[place[i]][place[j]] = full[place[j]][place[i]] = true;
+    long nonzeros = 0;
+    double flops = 0.0;
+    int tallest = 0, widest = 0;
+    std::vector<int> height(order.size(), 1);
+    for (int k = 0; k < size; ++k) {
+      std::vector<int> below;
+      for (int i = k + 1; i < size; ++i) {
+        if (full[i][k]) below.push_back(i);
+      }
+      for (const int i : below) {
+        for (const int j : below) full[i][j] = true;
+      }
+      const int count = static_cast<int>(below.size()) + 1;
+      nonzeros += count;
+      flops += count * count;
+      widest = std::max(widest, count);
+      tallest = std::max(tallest, height[k]);
+      if (!below.empty()) height[below[0]] = std::max(height[below[0]], height[k] + 1);
+    }
+    expect_counts(pattern, order, nonzeros, flops, tallest, widest);
+  }
+}
+
+TEST(Elimination, TooManyAreNotCounted) {
+  const auto pattern = arrow(10'001);
+  EXPECT_EQ(eliminate(pattern, natural_order(pattern)), std::nullopt);
+  const auto json = elimination_json(pattern);
+  EXPECT_TRUE(json["orderings"]["natural"].is_null());
+  EXPECT_EQ(json["factor_nonzeros"], 2 * 10'001 - 1);
+  EXPECT_EQ(json["widest"], 2);
+}
+
+}  // namespace
+}  // namespace mbs

@@ -1,0 +1,221 @@
+// What a small rule with made-up numbers recommends.
+#include "describe/recommendation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "describe/describe.hpp"
+#include "scene_file/load_scene.hpp"
+#include "support/program.hpp"
+
+namespace mbs {
+namespace {
+
+using nlohmann::json;
+
+/// Below 100 variables "a/fast", else "b/large"; "c/third" is a library too, "d/own" is not. The
+/// times are one number for all but b's.
+json rule_json() {
+  const auto time = [](double us) {
+    return json{{"coefficients", {{"one", us}}}, {"low", 0.5}, {"high", 2.0}};
+  };
+  const auto scene = [](const char* name, int n, double step_us) {
+    return json{{"scene", name},
+                {"features", {{"n", n}, {"per_column", 3}, {"flops", 9 * n}, {"tangent", 5 * n}}},
+                {"fastest", "a/fast"},
+                {"step_us", step_us}};
+  };
+  return {
+      {"set", "made-up"},
+      {"machine", "a machine"},
+      {"commit", "abc"},
+      {"tree",
+       {{"feature", "n"},
+        {"below", 100},
+        {"then", {{"take", "a/fast"}}},
+        {"else", {{"take", "b/large"}}}}},
+      {"held",
+       {{"families", 3},
+        {"scenes", 10},
+        {"mean_loss", 0.02},
+        {"worst_loss", 0.2},
+        {"within", 0.93}}},
+      {"times",
+       {{"a/fast", {{"layer", "library"}, {"penalty", time(8)}}},
+        {"b/large",
+         {{"layer", "library"},
+          {"penalty", {{"coefficients", {{"one", 1.0}, {"n", 0.5}}}, {"low", 0.75}, {"high", 1.5}}},
+          {"saddle-point", time(30)}}},
+        {"c/third", {{"layer", "library"}, {"penalty", time(6)}}},
+        {"d/own", {{"layer", "own"}, {"penalty", time(5)}, {"saddle-point", nullptr}}}}},
+      {"scenes", json::array({scene("small", 6, 7.5), scene("middle", 50, 70.0)})}};
+}
+
+std::string anything(const std::string& /*variant*/, Scheme /*scheme*/) { return ""; }
+
+json described(const std::string& scene, const StepSettings& settings = {}) {
+  return describe_json(load_scene(scene), settings);
+}
+
+json recommended(const json& description, const WhyNot& why_not = anything) {
+  json result = description;
+  result.update(recommendation_json(parse_rule(rule_json().dump()), description, why_not));
+  return result;
+}
+
+std::vector<std::string> names(const json& d) {
+  std::vector<std::string> result;
+  for (const json& one : d["recommendation"]) result.push_back(one["implementation"]);
+  return result;
+}
+
+using Names = std::vector<std::string>;
+
+TEST(Recommendation, LeafFirstThenByTimeThenOwnCode) {
+  const json d = recommended(described("four-bar:2"));  // n = 6
+  EXPECT_EQ(names(d), (Names{"a/fast", "b/large", "c/third", "d/own"}));
+  EXPECT_EQ(d["recommendation"][1], json({{"layer", "library"},
+                                          {"implementation", "b/large"},
+                                          {"scheme", "penalty"},
+                                          {"step_us", 4.0},
+                                          {"low_us", 3.0},
+                                          {"high_us", 6.0}}));
+  EXPECT_EQ(d["recommendation"][3]["layer"], "own");
+  EXPECT_EQ(d["rule"]["path"], json::array({"variables 6 < 100"}));
+  EXPECT_EQ(d["rule"]["leaf"], "a/fast");
+  EXPECT_TRUE(d["rule"]["leaf_refused"].is_null());
+  EXPECT_EQ(d["rule"]["set"], "made-up");
+  EXPECT_EQ(d["rule"]["held"]["within"], 0.93);
+  EXPECT_TRUE(d["no_recommendation"].is_null());
+}
+
+TEST(Recommendation, NearestSceneAndWhatIsOutside) {
+  const json d = recommended(described("four-bar:2"));  // L has 17 non-zeros, 55 operations
+  EXPECT_EQ(d["nearest"]["scene"], "small");
+  EXPECT_EQ(d["nearest"]["fastest"], "a/fast");
+  EXPECT_EQ(d["nearest"]["step_us"], 7.5);
+  EXPECT_NEAR(d["nearest"]["distance"],
+              std::hypot(std::log(17.0 / 18.0), std::log(55.0 / 54.0), std::log(28.0 / 30.0)),
+              1e-12);
+  EXPECT_EQ(d["rule"]["outside"], json::array({"per_column", "tangent"}));
+}
+
+TEST(Recommendation, Text) {
+  const std::string text = recommendation_text(recommended(described("four-bar:2")));
+  EXPECT_EQ(text,
+            "take this             a/fast, penalty form: 8 us a step (4 to 16), measured on a "
+            "machine\n"
+            "  why                 variables 6 < 100; penalty form, as the automatic penalty "
+            "factor is expected to do at step 0.00125 s\n"
+            "  how sure            3 families (10 scenes) left out in turn: 2 % slower than their "
+            "fastest in the mean, 20 % at worst; 93 % of the times right to a factor of 1.5; this "
+            "scene is outside of all measured ones in non-zeros a column of L, non-zeros of the "
+            "tangent\n"
+            "  nearest measured    small (distance 0.091): a/fast, 7.5 us\n"
+            "  own code            d/own, penalty form: 5 us a step (2.5 to 10)\n");
+}
+
+TEST(Recommendation, OtherSideOfTheTree) {
+  const json d = recommended(described("four-bar:60"));  // n = 122
+  EXPECT_EQ(names(d), (Names{"b/large", "c/third", "a/fast", "d/own"}));
+  EXPECT_EQ(d["nearest"]["scene"], "middle");
+}
+
+TEST(Recommendation, ALeafThatDoesNotServeTheSceneGivesWayToTheNextByTime) {
+  const WhyNot without_a = [](const std::string& name, Scheme) -> std::string {
+    return name == "a/fast" ? "it does not serve springs" : "";
+  };
+  const json d = recommended(described("four-bar:2"), without_a);
+  EXPECT_EQ(names(d), (Names{"b/large", "c/third", "d/own"}));
+  EXPECT_EQ(d["rule"]["leaf_refused"], "it does not serve springs");
+  EXPECT_NE(recommendation_text(d).find(
+                "that asks for a/fast, but it does not serve springs: the next by time"),
+            std::string::npos);
+}
+
+TEST(Recommendation, SaddlePointFormOnlyWhereItWasMeasured) {
+  const json d = recommended(described("four-bar:40", {.step = 2e-2}));
+  EXPECT_EQ(names(d), (Names{"b/large"}));
+  EXPECT_EQ(d["recommendation"][0]["scheme"], "saddle-point");
+  EXPECT_EQ(d["recommendation"][0]["high_us"], 60.0);
+  EXPECT_EQ(d["rule"]["leaf_refused"], "its saddle-point form was not measured");
+  EXPECT_NE(recommendation_text(d).find("saddle-point form, as no penalty factor"),
+            std::string::npos);
+}
+
+TEST(Recommendation, NothingIsRecommendedWithoutARule) {
+  const json d = described("four-bar:2");
+  json result = recommendation_json(parse_rule("{}"), d, anything);
+  EXPECT_EQ(result["recommendation"], json::array());
+  EXPECT_TRUE(result["rule"].is_null());
+  EXPECT_TRUE(result["nearest"].is_null());
+  EXPECT_EQ(recommendation_text(result),
+            "take this             no rule has been measured for this build\n");
+  result = recommended(described("four-bar:2", {.precision = Precision::single_precision}));
+  EXPECT_EQ(result["no_recommendation"], "steps were measured in double precision only");
+  result = recommended(d, [](const std::string&, Scheme) { return "it is not in this build"; });
+  EXPECT_EQ(result["recommendation"], json::array());
+  EXPECT_EQ(result["no_recommendation"],
+            "nothing that was measured can run this: a/fast: it is not in this build");
+}
+
+/// `change` turns the rule into one that is refused for a reason with `part` in it.
+template <class Change>
+void expect_refused(const char* part, Change change) {
+  json rule = rule_json();
+  change(rule);
+  try {
+    static_cast<void>(parse_rule(rule.dump()));
+    ADD_FAILURE() << "not refused: " << part;
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+}
+
+TEST(Recommendation, RefusesWhatIsNoRule) {
+  EXPECT_THROW(static_cast<void>(parse_rule("")), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(parse_rule("[]")), std::runtime_error);
+  expect_refused("key 'tree' not found", [](json& rule) { rule.erase("tree"); });
+  expect_refused("key 'else' not found", [](json& rule) { rule["tree"].erase("else"); });
+  expect_refused("'colour' is no feature", [](json& rule) { rule["tree"]["feature"] = "colour"; });
+  expect_refused("the leaf d/own is not among",
+                 [](json& rule) { rule["tree"]["then"]["take"] = "d/own"; });
+  expect_refused("the leaf e/none is not among",
+                 [](json& rule) { rule["tree"]["else"]["take"] = "e/none"; });
+  expect_refused("more than 5 leaves", [](json& rule) {
+    for (int i = 0; i < 4; ++i) rule["tree"]["then"] = json(rule["tree"]);
+  });
+  expect_refused("the layer is 'other'",
+                 [](json& rule) { rule["times"]["a/fast"]["layer"] = "other"; });
+  expect_refused("n is -1, allowed",
+                 [](json& rule) { rule["times"]["a/fast"]["penalty"]["coefficients"]["n"] = -1; });
+  expect_refused("low is above high",
+                 [](json& rule) { rule["times"]["a/fast"]["penalty"]["low"] = 3; });
+  expect_refused("a/fast has no times",
+                 [](json& rule) { rule["times"]["a/fast"].erase("penalty"); });
+  expect_refused("must be string", [](json& rule) { rule["machine"] = 3; });
+  expect_refused("there are no scenes", [](json& rule) { rule["scenes"] = json::array(); });
+  expect_refused("feature flops is missing or 0",
+                 [](json& rule) { rule["scenes"][0]["features"].erase("flops"); });
+}
+
+TEST(Recommendation, TheRuleOfThisBuildIsOneOrNone) {
+  EXPECT_NO_THROW(static_cast<void>(parse_rule(kRuleText)));
+}
+
+TEST(Recommendation, TheProgramPrintsIt) {
+  const auto text = test::run_mbs("describe four-bar:2");
+  EXPECT_EQ(text.status, 0) << text.errors;
+  EXPECT_NE(text.output.find("\ntake this             "), std::string::npos) << text.output;
+  const auto found = test::run_mbs("describe four-bar:2 --json");
+  ASSERT_EQ(found.status, 0) << found.errors;
+  const json d = json::parse(found.output);
+  for (const char* key : {"elimination", "features", "nearest", "rule", "no_recommendation"}) {
+    EXPECT_TRUE(d.contains(key)) << key;
+  }
+  EXPECT_EQ(d["recommendation"].empty(), d["no_recommendation"].is_string());
+}
+
+}  // namespace
+}  // namespace mbs
