@@ -55,7 +55,10 @@ TEST(Describe, FourBar) {
       {"factor_nonzeros", 17}, {"flops", 55.0}, {"height", 6}, {"widest", 4}};
   EXPECT_EQ(d["elimination"]["orderings"]["natural"], counts);
   EXPECT_EQ(d["elimination"]["ordering"], "AMD");
-  for (const auto& [key, count] : counts.items()) EXPECT_EQ(d["elimination"][key], count) << key;
+  // AMD takes the ends first: the middle two are on every path.
+  for (const auto& [key, count] : counts.items()) {
+    EXPECT_EQ(d["elimination"][key], key == "height" ? 4 : count) << key;
+  }
   EXPECT_EQ(d["elimination"]["per_column"], 17.0 / 6.0);
   EXPECT_EQ(d["features"], nlohmann::json({{"one", 1},
                                            {"n", 6},
@@ -69,7 +72,7 @@ TEST(Describe, FourBar) {
                                            {"factor", 17},
                                            {"per_column", 17.0 / 6.0},
                                            {"flops", 55},
-                                           {"height", 6},
+                                           {"height", 4},
                                            {"widest", 4},
                                            {"dimension", 2},
                                            {"springs", 0}}));
@@ -102,7 +105,7 @@ TEST(Describe, Text) {
         "penalty factor        ", "(singular positions) to ", "for step 0.00125 s; automatic ",
         "14 non-zeros, 46.67 % of m n", "28 non-zeros, 77.78 % of n^2",
         "elimination, AMD      17 non-zeros of L, 2.83 a column, 4 at most; 55 operations; tree of "
-        "height 6\n"}) {
+        "height 4\n"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\nnot in\n" << text;
   }
   EXPECT_EQ(text.find("artificial"), std::string::npos);
@@ -116,8 +119,7 @@ TEST(Describe, ArtificialFill) {
   EXPECT_EQ(d["artificial_fill"]["reached"], 0.5);
   EXPECT_EQ(d["artificial_fill"]["seed"], kFillSeed);
   EXPECT_EQ(d["tangent"]["fill"], 0.5);
-  EXPECT_NE(describe_text(d)
-                .find("asked 50 %, natural 44.44 %, reached 50 %, seed 607615"),
+  EXPECT_NE(describe_text(d).find("asked 50 %, natural 44.44 %, reached 50 %, seed 607615"),
             std::string::npos);
 }
 
@@ -139,9 +141,8 @@ TEST(Describe, NamesRedundantConstraints) {
   EXPECT_NE(d["redundant_constraints"][0].get<std::string>().find("middle y"), std::string::npos)
       << d["redundant_constraints"];
   EXPECT_EQ(d["singular_start"], false);
-  EXPECT_NE(
-      describe_text(d).find("redundant             1, implied by those before"),
-      std::string::npos);
+  EXPECT_NE(describe_text(d).find("redundant             1, implied by those before"),
+            std::string::npos);
   // Redundancy does not stretch the window down to nothing.
   EXPECT_LT(d["penalty_window"]["lower"], d["penalty_window"]["upper"]);
 }
@@ -183,9 +184,8 @@ TEST(Describe, RankShowsDegreesOfFreedomThatCountingMisses) {
   EXPECT_EQ(d["degrees_of_freedom"], 2);
   EXPECT_EQ(d["terms"]["gravity"], false);
   EXPECT_EQ(d["terms"]["linear_constraints"], 3);
-  EXPECT_NE(
-      describe_text(d).find("terms absent          gravity or constant forces"),
-      std::string::npos);
+  EXPECT_NE(describe_text(d).find("terms absent          gravity or constant forces"),
+            std::string::npos);
 }
 
 TEST(Describe, SaysWhatAssemblyMoved) {
@@ -196,8 +196,7 @@ TEST(Describe, SaysWhatAssemblyMoved) {
   EXPECT_NEAR(d["assembly"]["position_correction"].get<double>(), 0.01, 1e-12);
   EXPECT_EQ(d["assembly"]["velocity_correction"], 0.0);
   EXPECT_EQ(d["assembly"]["point"], "B");
-  EXPECT_NE(describe_text(d).find("points moved by up to 0.01 m (B)\n"),
-            std::string::npos);
+  EXPECT_NE(describe_text(d).find("points moved by up to 0.01 m (B)\n"), std::string::npos);
 }
 
 TEST(Describe, TakesTheSaddlePointFormWhereNoPenaltyFactorSuitsTheStep) {
@@ -296,8 +295,7 @@ TEST(Describe, FreeFlightHasNoConstraints) {
   EXPECT_EQ(d["jacobian"]["fill"], 0.0);
   EXPECT_TRUE(d["penalty_window"].is_null());
   EXPECT_EQ(d["scheme"]["take"], "penalty");
-  EXPECT_NE(describe_text(d).find("any, there are no constraints"),
-            std::string::npos);
+  EXPECT_NE(describe_text(d).find("any, there are no constraints"), std::string::npos);
 }
 
 }  // namespace

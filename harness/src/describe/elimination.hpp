@@ -10,7 +10,7 @@
 
 namespace mbs {
 
-/// Counts stop at this many non-zeros of L: some tenths of a second.
+/// Counts stop at this many non-zeros of L, whose number their time is proportional to.
 inline constexpr long kMostFactorNonzeros = 50'000'000;
 
 /// Where a symmetric matrix is non-zero beside its diagonal: the rows of column j are
