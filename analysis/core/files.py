@@ -33,7 +33,11 @@ def read_object(path, **kinds):
 
 
 def write_json(path, data):
-    write_text(path, json.dumps(data, indent=1, ensure_ascii=False) + "\n")
+    write_text(path, as_json(data))
+
+
+def as_json(data):
+    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
 
 def write_text(path, text):

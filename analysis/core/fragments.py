@@ -4,12 +4,14 @@
 #   <!-- from SET: cases -->
 #   …
 #   <!-- end -->
+import json
 import re
 
 from analysis.core import site
 from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, write_text
+from analysis.core.files import ROOT, as_json, read_json, write_text
 
+RULE = ROOT / "harness" / "src" / "describe" / "rule.json"  # what `mbs describe` applies: that of the set it names
 MARKED = re.compile(r"(<!-- from (\S+): (\S+) -->\n)(.*?)(<!-- end -->)", re.S)
 
 
@@ -31,14 +33,20 @@ def fragment(name, what):
 
 
 def refresh():
-    """Fills all texts of the repository anew; the paths of those that changed."""
+    """Fills all texts of the repository anew, and the rule; the paths of those that changed."""
     changed = []
-    for path in texts():
+    for path, made in ((RULE, of_set), *((text, filled) for text in texts())):
         before = path.read_text(encoding="utf-8")
-        if filled(before) != before:
-            write_text(path, filled(before))
+        if made(before) != before:
+            write_text(path, made(before))
             changed.append(path)
     return changed
+
+
+def of_set(rule):
+    """The rule of the stored set that the text of one names; of none, {}, itself."""
+    name = json.loads(rule).get("set")
+    return as_json({"set": name} | read_json(ROOT / "results" / name / "families" / RULE.name)) if name else rule
 
 
 def texts():

@@ -35,6 +35,8 @@ def write_part(folder, part, started=lambda: None):
     said = _module(part, "sentences")
     write_json(folder / part / "answers.json", {
         "answers": said.answers(tables, view), "cases": said.cases(tables, view) if hasattr(said, "cases") else []})
+    for name, known in (said.files(tables, view) if hasattr(said, "files") else {}).items():
+        write_json(folder / part / name, known)
 
 
 def write_index(folder):

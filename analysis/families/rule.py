@@ -6,11 +6,11 @@
 import numpy
 import pandas
 
-SPLITS = ("n", "fill", "per_column", "flops", "height")  # features that a tree may ask for
+SPLITS = ("n", "fill", "per_column", "flops", "height", "saddle")  # what a tree may ask for; saddle: 1 in that form of the step, else 0
 LEAVES = 5
 LEAST = 2        # families on each side of a question, so that none is asked for one machine's sake
 WORTH = 0.003    # of the mean cost, that a further question must save
-MISSED = 9.0     # loss of who has no time: excluded as far behind, or of no use there
+MISSED = 3.0     # loss of who has no time: excluded as far behind, or of no use there
 SPARSE = ("one", "n", "jacobian", "tangent", "factor", "flops")  # features of a step's time
 DENSE = ("one", "n", "jacobian", "n2", "n3")
 FEWEST = 8       # scenes that the time of a step is fitted on
@@ -33,12 +33,13 @@ def alone(tables, registry):
     """A row for each feature: what trees lose on families left out that may ask for it alone. [Which number decides?]"""
     data, rows = _Data(tables, registry), []
     for feature in SPLITS if data.families >= 2 * LEAST else ():
-        losses = pandas.concat([one[one.index.map(data.family.get) == family].apply(
-            lambda row: row[leaf(tree, data.features.loc[row.name])], axis=1)
-            for family in dict.fromkeys(data.family.values()) for tree in [data.without(family).tree((feature,))]
-            for one in data.losses.values()])
-        rows.append({"feature": feature, "mean_loss": losses.mean(), "worst_loss": losses.max(), "scenes": len(losses),
-                     "record": " ".join(dict.fromkeys(data.records[scene] for scene in losses.index))})
+        losses = []
+        for family in dict.fromkeys(data.family.values()):
+            tree = data.without(family).tree((feature,))
+            losses += [row.get(leaf(tree, data.asked(scene, scheme)), MISSED) for scheme, one in data.losses.items()
+                       for scene, row in one.iterrows() if data.family[scene] == family]
+        rows.append({"feature": feature, "mean_loss": numpy.mean(losses), "worst_loss": max(losses), "scenes": len(losses),
+                     "record": " ".join(data.records[scene] for scene in data.features.index)})
     return pandas.DataFrame(rows)
 
 
@@ -53,10 +54,10 @@ def held(tables, registry):
             for scheme, losses in data.losses.items():
                 if scene not in losses.index:
                     continue
-                name = leaf(tree, data.features.loc[scene])
+                name = leaf(tree, data.asked(scene, scheme))
                 model, measured = models.get((scheme, name)), data.us[scheme].loc[scene].get(name, numpy.nan)
                 rows.append({"family": family, "scene": scene, "scheme": scheme, "variables": data.features.loc[scene, "n"],
-                             "chosen": name, "fastest": losses.loc[scene].idxmin(), "loss": losses.loc[scene, name],
+                             "chosen": name, "fastest": losses.loc[scene].idxmin(), "loss": losses.loc[scene].get(name, MISSED),
                              "step_us": measured, "predicted_us": _time(model, data.features.loc[scene]),
                              "record": data.records[scene]})
                 rows[-1]["models"] = {one: _time(models[scheme, one], data.features.loc[scene]) for at, one in models if at == scheme}
@@ -116,10 +117,15 @@ class _Data:
             **{name: {scheme: one[one.index.isin(keep)] for scheme, one in getattr(self, name).items()} for name in ("us", "losses")}}
         return found
 
+    def asked(self, scene, scheme):
+        """What a tree may ask of a scene in a form of the step."""
+        return {**self.features.loc[scene], "saddle": float(scheme == "saddle-point")}
+
     def tree(self, splits=SPLITS):
-        losses = pandas.concat(self.losses.values())
-        losses = losses.loc[:, (losses < MISSED).mean() > 0]
-        features = {name: self.features.loc[losses.index, name].to_numpy() for name in splits}
+        losses = pandas.concat(self.losses.values()).fillna(MISSED)
+        losses = losses.loc[:, (losses < MISSED).any()]
+        rows = [self.asked(scene, scheme) for scheme, one in self.losses.items() for scene in one.index]
+        features = {name: numpy.array([row[name] for row in rows]) for name in splits}
         families = numpy.array([self.family[scene] for scene in losses.index])
         counts = pandas.Series(families).value_counts()
         weights = numpy.array([1 / counts[one] for one in families]) / len(counts)  # a family counts once, whatever its sizes
@@ -157,7 +163,7 @@ class _Data:
         return found
 
 
-FEATURES = tuple(dict.fromkeys((*SPLITS, *SPARSE, *DENSE)))
+FEATURES = tuple(dict.fromkeys(name for name in (*SPLITS, *SPARSE, *DENSE) if name != "saddle"))  # of a scene
 
 
 def _times(rows, libraries):

@@ -41,6 +41,12 @@ def cases(tables, view):
                      f"most {number(others.to_rival.max())} times the fastest where it was timed ({len(others)})"}]
 
 
+def files(tables, view):
+    """rule.json, which `mbs describe` applies: harness/src/describe/README.md."""
+    found = rule(tables, view.registry)
+    return {"rule.json": {key: view.context[name] for key, name in (("machine", "cpu_model"), ("commit", "commit"))} | found} if found else {}
+
+
 def _real(rows):
     """Without the four-bar with artificial fill."""
     return rows[~rows.family.str.contains("filled")]

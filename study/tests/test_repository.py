@@ -40,6 +40,11 @@ def test_every_part_says_what_it_runs():
     assert [part for part in parts() if f"study/{part}/README.md" not in TRACKED] == []
 
 
+def test_the_rule_is_that_of_its_set():
+    text = fragments.RULE.read_text(encoding="utf-8")
+    assert fragments.of_set(text) == text, "study/store writes it anew"
+
+
 @pytest.mark.parametrize("path", fragments.texts(), ids=lambda path: str(path.relative_to(ROOT)))
 def test_numbers_in_texts_are_those_of_the_sets(path):
     text = path.read_text(encoding="utf-8")

@@ -29,7 +29,8 @@ constexpr Feature kFeatures[] = {{"one", "1"},
                                  {"height", "height of the elimination tree"},
                                  {"widest", "widest column of L"},
                                  {"dimension", "dimension"},
-                                 {"springs", "springs and laws"}};
+                                 {"springs", "springs and laws"},
+                                 {"saddle", "saddle-point form (1 or 0)"}};
 
 const Feature* find(const std::string& name) {
   const auto found = std::ranges::find(kFeatures, name, &Feature::name);
@@ -66,7 +67,8 @@ json features_json(const json& description) {
           {"height", elimination["height"]},
           {"widest", elimination["widest"]},
           {"dimension", description["dimension"]},
-          {"springs", springs}};
+          {"springs", springs},
+          {"saddle", description["scheme"]["take"] == "saddle-point" ? 1 : 0}};
 }
 
 }  // namespace mbs
