@@ -9,12 +9,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 
 #include "bench/batch_rows.hpp"
 #include "bench/bench_plan.hpp"
 #include "bench/operation_rows.hpp"
 #include "bench/reporters.hpp"
 #include "bench/scene_timing.hpp"
+#include "describe/warnings.hpp"
 #include "environment/environment.hpp"
 #include "mbs/bench_flags.hpp"
 #include "mbs/bench_output.hpp"
@@ -119,13 +121,29 @@ int run_benchmarks(const std::vector<PlannedCell>& cells, const BenchRequest& re
   return operations.failed() || batches.failed() ? 1 : 0;
 }
 
+/// What about the settings is likely to spoil the motion, once a scene.
+void warn(const std::vector<PlannedCell>& cells, PenaltyFrom from) {
+  const PlannedScene* last = nullptr;
+  for (const PlannedCell& cell : cells) {
+    if (std::exchange(last, cell.scene) == cell.scene) continue;
+    const std::string& name = last->scene.name;
+    show_doing(fmt::format("{}: looking at the settings", name));
+    const auto warnings = setting_warnings(last->scene.model, last->settings, from);
+    show_doing("");
+    for (const std::string& warning : warnings) {
+      fmt::print(stderr, "mbs: warning: {}: {}\n", name, warning);
+    }
+  }
+}
+
 int run_cells(const std::vector<PlannedCell>& cells, const BenchRequest& request,
-              const BenchFlags& flags) {
+              const BenchFlags& flags, PenaltyFrom from) {
   for (const std::string& scene : request.scenes) {
     require_not_scene("--benchmark_out", flags.out, scene);
   }
   BenchOutput output(flags.out);
   for (const auto& [key, value] : environment_record()) benchmark::AddCustomContext(key, value);
+  if (!request.operations) warn(cells, from);
   if (request.operations || request.batch) return run_benchmarks(cells, request, output);
   return time_steps(cells, request, flags, output);
 }
@@ -159,7 +177,8 @@ int bench_command(int argc, char** argv) {
     for (const PlannedCell& cell : cells) fmt::print("{}\n", cell.name);
     return 0;
   }
-  return run_cells(cells, request, flags);
+  return run_cells(cells, request, flags,
+                   step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user);
 }
 
 }  // namespace mbs

@@ -43,7 +43,7 @@ class StepReport {
   StepReport(const BenchRequest& request, const BenchFlags& flags, const std::string& path)
       : path_(path), summary_(request.summary), everyone_(request.implementations.empty()) {
     if (flags.format != "console") display_ = make_display_reporter(kStepCounters);
-    if (!display_) fmt::print("{}\n\n", origin());
+    if (!display_) fmt::print("{}\n", summary_ ? filled(origin()) : origin() + "\n");
     if (!path.empty()) stream_.open(path, std::ios::trunc);
     file_.SetOutputStream(&stream_);
     const benchmark::BenchmarkReporter::Context context;

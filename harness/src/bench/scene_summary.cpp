@@ -20,7 +20,8 @@ std::size_t columns(const std::string& text) {
       text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-/// Breaks `text` at blanks; lines after the first begin with four.
+}  // namespace
+
 std::string filled(const std::string& text) {
   constexpr std::size_t kColumns = 80;
   std::string result, line;
@@ -38,6 +39,8 @@ std::string filled(const std::string& text) {
   return result + line + "\n";
 }
 
+namespace {
+
 /// Names by what is said of them, in the order in which it is first said.
 class NamesByReason {
  public:
@@ -49,7 +52,8 @@ class NamesByReason {
   [[nodiscard]] std::string text(const std::string& title) const {
     if (groups_.empty()) return "";
     std::string result = title + "\n";
-    for (const auto& [reason, names] : groups_) result += filled("  " + reason + ": " + names);
+    for (const auto& [reason, names] : groups_)
+      result += filled(fmt::format("  {}: {}", reason, names));
     return result;
   }
 
@@ -184,10 +188,14 @@ std::string unavailable_summary() {
 }
 
 std::string summary_footer() {
-  return "To the fastest: median of the ratios of samples taken side by side, with its 95 %\n"
-         "interval (below 6 samples: the least and the largest); another process differs.\n"
-         "As fast: at most 5 % longer, by that interval. Own: own code, on no library.\n"
-         "Times are the processor's. Set-up and errors: --no-summary.\n";
+  return filled(fmt::format(
+             "To the fastest: median of the ratios of samples taken side by side, with its 95 % "
+             "interval (below 6 samples: the least and the largest); another process differs.")) +
+         filled(
+             fmt::format("As fast: at most {:g} % longer, by that interval. Own: own code, on no "
+                         "library.",
+                         100 * (kAsFast - 1))) +
+         "Times are the processor's. Set-up times and errors: --no-summary.\n";
 }
 
 }  // namespace mbs

@@ -7,6 +7,9 @@
 
 namespace mbs {
 
+/// `text` broken at blanks for 80 columns, lines after the first begin with four.
+std::string filled(const std::string& text);
+
 /// Who takes at most this much longer than the fastest, shown by the 95 % interval, is as fast.
 inline constexpr double kAsFast = 1.05;
 
