@@ -3,29 +3,38 @@
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 
 #include "bench/batch_rows.hpp"
 #include "bench/bench_plan.hpp"
 #include "bench/operation_rows.hpp"
 #include "bench/reporters.hpp"
 #include "bench/scene_timing.hpp"
+#include "describe/warnings.hpp"
 #include "environment/environment.hpp"
 #include "mbs/bench_flags.hpp"
 #include "mbs/bench_output.hpp"
 #include "mbs/commands.hpp"
 #include "mbs/file_names.hpp"
+#include "mbs/progress.hpp"
 #include "mbs/step_bench.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
 namespace {
 
-void add_options(CLI::App& app, BenchRequest& request, StepOptions& step) {
+/// What standard output shows, as typed.
+struct Shown {
+  bool summary = false, rows = false;
+};
+
+void add_options(CLI::App& app, BenchRequest& request, StepOptions& step, Shown& shown) {
   app.add_option("scenes", request.scenes, "scenes (default: four-bar:10 four-bar:40)");
   app.add_option("--implementation", request.implementations,
                  "folder or folder/variant, repeatable (default: all but examples, and the control "
@@ -41,6 +50,13 @@ void add_options(CLI::App& app, BenchRequest& request, StepOptions& step) {
                  "all)");
   app.add_option("--patience", request.patience,
                  "leave out whose first stretch takes longer than S seconds (default: wait)");
+  app.add_flag("--summary", shown.summary,
+               fmt::format("a short answer soon, for 80 columns: who is fastest, libraries and own "
+                           "code apart, and who was left out why; --slower-than is {:g} times the "
+                           "fastest of its layer, --patience {:g} s (default on a terminal)",
+                           kSummarySlowerThan, kSummaryPatience));
+  app.add_flag("--no-summary", shown.rows,
+               "all contenders with set-up times and errors (default elsewhere)");
   app.add_option("--seed", request.seed, "of the order of turns (default: 1)");
   app.add_flag("--phases", request.phases, "also give the share of time of each phase");
   app.add_flag("--operations", request.operations,
@@ -53,6 +69,19 @@ void add_options(CLI::App& app, BenchRequest& request, StepOptions& step) {
   app.add_option("--sets", request.sets,
                  "of --batch: parameter sets, spread evenly over a range of 28 % in masses and of "
                  "14 % in lengths (default: 64)");
+}
+
+/// Whether the summary is what to show. Throws UsageError for what does not go together.
+bool shows_summary(const Shown& shown, const BenchRequest& request, const BenchFlags& flags) {
+  if (shown.summary && shown.rows) {
+    throw UsageError("--summary and --no-summary do not go together");
+  }
+  if (shown.summary && flags.format_given) {
+    throw UsageError("--summary and --benchmark_format do not go together");
+  }
+  if (shown.summary) return true;
+  return ::isatty(STDOUT_FILENO) != 0 && !shown.rows && !flags.format_given && flags.out.empty() &&
+         !request.operations && !request.batch;
 }
 
 bool asks_for_help(int argc, char** argv) {
@@ -92,13 +121,29 @@ int run_benchmarks(const std::vector<PlannedCell>& cells, const BenchRequest& re
   return operations.failed() || batches.failed() ? 1 : 0;
 }
 
+/// What about the settings is likely to spoil the motion, once a scene.
+void warn(const std::vector<PlannedCell>& cells, PenaltyFrom from) {
+  const PlannedScene* last = nullptr;
+  for (const PlannedCell& cell : cells) {
+    if (std::exchange(last, cell.scene) == cell.scene) continue;
+    const std::string& name = last->scene.name;
+    show_doing(fmt::format("{}: looking at the settings", name));
+    const auto warnings = setting_warnings(last->scene.model, last->settings, from);
+    show_doing("");
+    for (const std::string& warning : warnings) {
+      fmt::print(stderr, "mbs: warning: {}: {}\n", name, warning);
+    }
+  }
+}
+
 int run_cells(const std::vector<PlannedCell>& cells, const BenchRequest& request,
-              const BenchFlags& flags) {
+              const BenchFlags& flags, PenaltyFrom from) {
   for (const std::string& scene : request.scenes) {
     require_not_scene("--benchmark_out", flags.out, scene);
   }
   BenchOutput output(flags.out);
   for (const auto& [key, value] : environment_record()) benchmark::AddCustomContext(key, value);
+  if (!request.operations) warn(cells, from);
   if (request.operations || request.batch) return run_benchmarks(cells, request, output);
   return time_steps(cells, request, flags, output);
 }
@@ -108,9 +153,10 @@ int run_cells(const std::vector<PlannedCell>& cells, const BenchRequest& request
 int bench_command(int argc, char** argv) {
   BenchRequest request;
   StepOptions step;
+  Shown shown;
   request.settings = [&step](const Model& model) { return step.resolve(model); };
   CLI::App app("Times implementations over a stretch of each scene's motion.", "mbs bench");
-  add_options(app, request, step);
+  add_options(app, request, step, shown);
   refuse_empty(app);
   if (asks_for_help(argc, argv)) {
     print_help(app);
@@ -122,13 +168,17 @@ int bench_command(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     throw UsageError(fmt::format("{} (mbs bench --help)", error.what()));
   }
+  request.summary = shows_summary(shown, request, flags);
+  request.watch = show_doing;
   const BenchPlan plan = plan_bench(request);
+  show_doing("");
   const std::vector<PlannedCell> cells = filter_cells(plan.cells, flags.filter);
   if (flags.list_tests) {
     for (const PlannedCell& cell : cells) fmt::print("{}\n", cell.name);
     return 0;
   }
-  return run_cells(cells, request, flags);
+  return run_cells(cells, request, flags,
+                   step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user);
 }
 
 }  // namespace mbs

@@ -59,6 +59,7 @@ BenchFlags take_benchmark_flags(int& argc, char** argv) {
   const bool min_time = is_given(argc, argv, "benchmark_min_time");
   const bool repetitions = is_given(argc, argv, "benchmark_repetitions");
   const bool out = is_given(argc, argv, "benchmark_out");
+  const bool format = is_given(argc, argv, "benchmark_format");
   benchmark::Initialize(&argc, argv, [] {
     // Help never comes here; for a wrong value the library prints its usage and exits with status
     // 0.
@@ -70,6 +71,7 @@ BenchFlags take_benchmark_flags(int& argc, char** argv) {
   flags.filter = benchmark::GetBenchmarkFilter();
   flags.out = benchmark::FLAGS_benchmark_out;
   flags.format = benchmark::FLAGS_benchmark_format;
+  flags.format_given = format;
   flags.list_tests = benchmark::FLAGS_benchmark_list_tests;
   if (min_time) flags.min_time = benchmark::FLAGS_benchmark_min_time;
   if (repetitions) flags.repetitions = benchmark::FLAGS_benchmark_repetitions;

@@ -8,7 +8,8 @@ namespace mbs {
 
 struct BenchFlags {
   std::string filter, out;
-  std::string format;  ///< console, json or csv
+  std::string format;         ///< console, json or csv
+  bool format_given = false;  ///< or else the default
   bool list_tests = false;
   std::optional<double> min_time;  ///< s, if given
   std::optional<int> repetitions;  ///< if given

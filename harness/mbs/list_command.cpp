@@ -108,7 +108,7 @@ void print_list() {
     }
     const Implementation& implementation = entry.implementation;
     for (const Variant& variant : implementation.variants) {
-      const std::string library = implementation.library == "none" || variant.own_code
+      const std::string library = is_own_code(implementation, variant)
                                       ? "no library"
                                       : fmt::format("{} {}, {}", implementation.library,
                                                     implementation.version, implementation.licence);

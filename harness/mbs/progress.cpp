@@ -27,4 +27,11 @@ void Progress::at(double done) {
   std::fflush(stderr);
 }
 
+void show_doing(const std::string& what) {
+  constexpr int kWidth = 78;
+  if (::isatty(STDERR_FILENO) == 0) return;
+  fmt::print(stderr, "\r{:{}.{}}\r{:.{}}", "", kWidth, kWidth, what, kWidth);
+  std::fflush(stderr);
+}
+
 }  // namespace mbs

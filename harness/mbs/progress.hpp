@@ -26,4 +26,8 @@ class Progress {
   int percent_ = -1;
 };
 
+/// A line of what is being done, over the one before; "" clears it. Nothing where standard error is
+/// no terminal.
+void show_doing(const std::string& what);
+
 }  // namespace mbs

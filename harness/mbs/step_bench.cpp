@@ -3,31 +3,25 @@
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <memory>
 
 #include "bench/bench_rows.hpp"
 #include "bench/reporters.hpp"
+#include "bench/scene_summary.hpp"
 #include "bench/scene_table.hpp"
 #include "bench/scene_timing.hpp"
 #include "bench/suspect.hpp"
 #include "environment/environment.hpp"
+#include "mbs/progress.hpp"
 
 namespace mbs {
 namespace {
-
-/// A line of what is being done, on a terminal; "" clears it.
-void show_progress(const std::string& what) {
-  constexpr int kWidth = 78;
-  if (::isatty(STDERR_FILENO) == 0) return;
-  fmt::print(stderr, "\r{:{}.{}}\r{:.{}}", "", kWidth, kWidth, what, kWidth);
-  std::fflush(stderr);
-}
 
 /// What was timed where, in a line.
 std::string origin() {
@@ -37,12 +31,19 @@ std::string origin() {
                      record["cpu_model"], record["blas"]);
 }
 
+/// Processes that want to run, the mean over the last minute; -1: the system does not tell.
+double machine_load() {
+  double load = -1.0;
+  return ::getloadavg(&load, 1) == 1 ? load : -1.0;
+}
+
 /// Where the rows of scenes go, while the run goes on.
 class StepReport {
  public:
-  StepReport(const BenchFlags& flags, const std::string& path) : path_(path) {
+  StepReport(const BenchRequest& request, const BenchFlags& flags, const std::string& path)
+      : path_(path), summary_(request.summary), everyone_(request.implementations.empty()) {
     if (flags.format != "console") display_ = make_display_reporter(kStepCounters);
-    if (!display_) fmt::print("{}\n\n", origin());
+    if (!display_) fmt::print("{}\n", summary_ ? filled(origin()) : origin() + "\n");
     if (!path.empty()) stream_.open(path, std::ios::trunc);
     file_.SetOutputStream(&stream_);
     const benchmark::BenchmarkReporter::Context context;
@@ -57,13 +58,19 @@ class StepReport {
       if (!path_.empty()) file_.ReportRuns(rows);
       failed_ = failed_ || contender.failed();
     }
-    if (!display_) fmt::print("{}", scene_table(scene));
+    if (!display_) {
+      fmt::print("{}", summary_ ? scene_summary(scene, machine_load()) : scene_table(scene));
+    }
     std::fflush(stdout);
   }
 
   /// Whether the file is complete.
   bool finish() {
-    if (!display_) fmt::print("{}", table_footer());
+    if (!display_ && summary_) {
+      fmt::print("{}{}", everyone_ ? unavailable_summary() : "", summary_footer());
+    } else if (!display_) {
+      fmt::print("{}", table_footer());
+    }
     if (display_) display_->Finalize();
     if (!path_.empty()) file_.Finalize();
     return path_.empty() || file_.complete();
@@ -73,7 +80,8 @@ class StepReport {
 
  private:
   std::string path_;
-  std::unique_ptr<benchmark::BenchmarkReporter> display_;  ///< none for the tables
+  bool summary_, everyone_;
+  std::unique_ptr<benchmark::BenchmarkReporter> display_;  ///< none for tables and summaries
   std::ofstream stream_;
   JsonReporter file_;
   int families_ = 0;
@@ -88,6 +96,10 @@ TimingWishes wishes_of(const BenchRequest& request, const BenchFlags& flags) {
   wishes.slower_than = request.slower_than;
   wishes.patience = request.patience;
   wishes.phases = request.phases;
+  if (!request.summary) return wishes;
+  wishes.by_layer = true;
+  wishes.slower_than = request.slower_than.value_or(kSummarySlowerThan);
+  wishes.patience = request.patience.value_or(kSummaryPatience);
   return wishes;
 }
 
@@ -98,13 +110,13 @@ int time_steps(const std::vector<PlannedCell>& cells, const BenchRequest& reques
   const TimingWishes wishes = wishes_of(request, flags);
   benchmark::AddCustomContext("seed", std::to_string(wishes.seed));
   benchmark::AddCustomContext("slice_seconds", fmt::format("{:g}", wishes.slice));
-  StepReport report(flags, output.path());
+  StepReport report(request, flags, output.path());
   const SuspectWatch suspects;
   for (auto begin = cells.begin(); begin != cells.end();) {
     const auto end = std::find_if(
         begin, cells.end(), [&](const PlannedCell& cell) { return cell.scene != begin->scene; });
-    const SceneResult scene = time_scene({begin, end}, wishes, show_progress);
-    show_progress("");
+    const SceneResult scene = time_scene({begin, end}, wishes, show_doing);
+    show_doing("");
     report.add(scene);
     begin = end;
   }

@@ -1,9 +1,13 @@
 // `mbs bench` from the outside: its JSON, its rows for failures, its errors.
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -110,7 +114,8 @@ TEST(BenchProgram, AgreesWithItselfOnWhatItTimed) {
 TEST(BenchProgram, KeepsTheRowOfACellThatFails) {
   if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
   const std::string name = all_variants().front().name;
-  const std::string only = " --implementation " + name + " --implementation null --start 0 --steps 700";
+  const std::string only =
+      " --implementation " + name + " --implementation null --start 0 --steps 700";
   // A penalty that constrains nothing: the rods fly apart, but the control runs.
   const std::string out = test::temporary_path("bench.json");
   const auto run = test::run_mbs(
@@ -240,7 +245,7 @@ TEST(BenchProgram, HelpShowsBothKindsOfOptions) {
     EXPECT_EQ(run.status, 0);
     for (const char* option :
          {"--implementation", "--penalty", "--phases", "--start", "--slower-than", "--patience",
-          "--seed", "--benchmark_filter", "--benchmark_out"}) {
+          "--seed", "--summary", "--no-summary", "--benchmark_filter", "--benchmark_out"}) {
       EXPECT_NE(run.output.find(option), std::string::npos) << option;
     }
   }
@@ -321,6 +326,12 @@ TEST(BenchProgram, RefusesBadInput) {
   expect_refusal("four-bar:1 --operations --phases", "--operations");
   expect_refusal("four-bar:1 --seed 99999999999999999999", "--seed is");
   expect_refusal("--implementation null no-scene", "no-scene");
+  expect_refusal("four-bar:1 --summary --no-summary", "--no-summary");
+  expect_refusal("four-bar:1 --summary --benchmark_format=console", "--benchmark_format");
+  expect_refusal("four-bar:1 --summary --benchmark_format=json", "--benchmark_format");
+  expect_refusal("four-bar:1 --summary --batch", "--summary");
+  expect_refusal("four-bar:1 --summary --operations", "--summary");
+  expect_refusal("four-bar:1 --summary=maybe", "--summary");
   expect_refusal("four-bar:1 --sets 8", "--batch");
   expect_refusal("four-bar:1 --batch --sets 1", "--sets is 1");
 }
@@ -348,6 +359,88 @@ TEST(BenchProgram, WritesToWhatIsOpenAlready) {
     EXPECT_EQ(run.status, 0) << run.errors;
     EXPECT_NE(run.output.find("benchmarks"), std::string::npos) << run.output;
   }
+}
+
+TEST(BenchProgram, WarnsOnceASceneAsSimulateDoes) {
+  const auto run = test::run_mbs(std::string("bench four-bar:1 four-bar:2 --penalty 1 "
+                                             "--implementation eigen_dense") +
+                                 kShort);
+  for (const char* scene : {"four-bar:1", "four-bar:2"}) {
+    const std::string start = fmt::format("mbs: warning: {}: ", scene);
+    const auto first = run.errors.find(start);
+    ASSERT_NE(first, std::string::npos) << run.errors;
+    EXPECT_EQ(run.errors.find(start, first + 1), std::string::npos) << run.errors;
+  }
+}
+
+TEST(BenchProgram, SummaryNamesTheFastestOfEitherLayer) {
+  const std::string out = test::temporary_path("bench.json");
+  const auto run = test::run_mbs(
+      "bench four-bar:1 four-bar:2 --summary --phases --implementation eigen_dense "
+      "--implementation hybrid_dense/panels --steps 20 --benchmark_out=" +
+      out);
+  EXPECT_EQ(run.status, 0) << run.errors;
+  EXPECT_EQ(run.errors, "");
+  for (const char* text :
+       {"four-bar:1: 4 variables", "four-bar:2: 6 variables", "fastest library:  eigen_dense/llt",
+        "fastest own code: hybrid_dense/panels", "shares of the time, %", "95 %"}) {
+    EXPECT_NE(run.output.find(text), std::string::npos) << text << " in\n" << run.output;
+  }
+  EXPECT_EQ(run.output.find("left out"), std::string::npos) << run.output;
+  EXPECT_EQ(json::parse(test::file_text(out))["benchmarks"].size() % 2, 0U);
+  fs::remove(out);
+}
+
+TEST(BenchProgram, SummaryTellsEqualReasonsOnce) {
+  const auto run = test::run_mbs(
+      "bench four-bar:1 --summary --steps 5 --benchmark_repetitions=1 --scheme saddle-point");
+  EXPECT_EQ(run.status, 0) << run.errors;
+  const std::string reason = "it does not offer --scheme saddle-point";
+  const auto found = run.output.find(reason);
+  ASSERT_NE(found, std::string::npos) << run.output;
+  EXPECT_EQ(run.output.find(reason, found + 1), std::string::npos) << run.output;
+  EXPECT_EQ(run.output.find("null/null"), std::string::npos) << run.output;
+}
+
+/// What `mbs bench` shows on a terminal; it must be short, for nobody reads while it is written.
+std::string on_terminal(const std::string& arguments) {
+  const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
+  EXPECT_GE(terminal, 0);
+  EXPECT_EQ(::grantpt(terminal) + ::unlockpt(terminal), 0);
+  const std::string name = ::ptsname(terminal);
+  const int other = ::open(name.c_str(), O_RDWR | O_NOCTTY);  // keeps what was written
+  const auto run = test::run_program(
+      "sh", "-c \"'" MBS_PROGRAM "' bench four-bar:1 --implementation eigen_dense " +
+                std::string(kShort) + arguments + " >" + name + "\"");
+  EXPECT_EQ(run.status, 0) << run.errors;
+  std::string text(1 << 16, '\0');
+  ::fcntl(terminal, F_SETFL, O_NONBLOCK);
+  std::size_t size = 0;
+  for (ssize_t count = 1; count > 0;
+       size += static_cast<std::size_t>(std::max(count, ssize_t{0}))) {
+    count = ::read(terminal, text.data() + size, text.size() - size);
+  }
+  ::close(other);
+  ::close(terminal);
+  return text.substr(0, size);
+}
+
+TEST(BenchProgram, SummaryIsForTerminals) {
+  const auto shows = [](const std::string& arguments, const char* what) {
+    const std::string text = on_terminal(arguments);
+    EXPECT_NE(text.find(what), std::string::npos) << arguments << " shows\n" << text;
+  };
+  const char* const summary = "fastest library:  eigen_dense/llt";
+  const char* const table = "set-up, ";
+  shows("", summary);
+  shows("--benchmark_filter=eigen", summary);
+  shows("--no-summary", table);
+  shows("--benchmark_format=console", table);
+  shows("--benchmark_out=/dev/null", table);
+  const auto piped =
+      test::run_mbs("bench four-bar:1 --implementation eigen_dense" + std::string(kShort));
+  EXPECT_NE(piped.output.find(table), std::string::npos) << piped.output;
+  EXPECT_EQ(piped.output.find(summary), std::string::npos) << piped.output;
 }
 
 TEST(BenchProgram, SaysSoWhenTheDiskIsFull) {

@@ -148,6 +148,47 @@ TEST_F(SceneTimingTest, LosesPatience) {
   EXPECT_TRUE(result.contenders[1].timed());
 }
 
+TEST_F(SceneTimingTest, LeavesOutTheSlowOfEachLayer) {
+  add("library", create_scripted<Script::still>);
+  add("slow_library", create_scripted<Script::slow>);
+  add("own", create_scripted<Script::slow>);
+  cells_[2].own_code = true;
+  wishes_.slower_than = 50;
+  wishes_.by_layer = true;
+  const SceneResult result = time();
+  EXPECT_TRUE(result.contenders[0].timed()) << result.contenders[0].failure;
+  EXPECT_TRUE(result.contenders[1].failure.starts_with(
+      "slower: at least 50 times the fastest of its layer (first look: "))
+      << result.contenders[1].failure;
+  EXPECT_TRUE(result.contenders[2].timed()) << "slower than a library only";
+}
+
+TEST_F(SceneTimingTest, DoesNotSetUpWhatItsOperationsRuleOut) {
+  const StepSettings settings{1e-7, 1e8, 1e-9, 20};
+  Scene scene = load_scene("four-bar:1000");
+  Stretch stretch = make_stretch(scene, settings.step, 10, 0.0);
+  const PlannedScene big{std::move(scene), settings, std::move(stretch), 1.0};
+  add("dense", create_scripted<Script::slow>);
+  add("sparse", create_scripted<Script::slow>);
+  variants_[0].dense = true;
+  for (PlannedCell& cell : cells_) {
+    cell.scene = &big;
+    cell.name = "scripted/" + cell.variant->name + "/four-bar:1000";
+  }
+  wishes_.slower_than = 10;
+  EXPECT_TRUE(time().contenders[0].timed()) << "only a summary leaves it out";
+  wishes_.by_layer = true;
+  Scripted::starts = 0;
+  std::vector<std::string> said;
+  const SceneResult result =
+      time_scene(cells_, wishes_, [&said](const std::string& what) { said.push_back(what); });
+  EXPECT_EQ(result.contenders[0].failure,
+            "slower: at least 10 times the fastest of its layer (by its number of operations)");
+  EXPECT_TRUE(result.contenders[1].timed()) << result.contenders[1].failure;
+  EXPECT_EQ(Scripted::starts, 5 + 1 + 4) << "of the sparse one alone";
+  EXPECT_EQ(said.front(), "four-bar:1000: set-up 1 of 2, scripted/sparse") << "the likely fast";
+}
+
 TEST_F(SceneTimingTest, RowsAreSamples) {
   add("a", create_scripted<Script::still>);
   const SceneResult result = time();

@@ -32,6 +32,9 @@ void check(const BenchRequest& request) {
   if (request.operations && request.phases) {
     throw UsageError("--phases are those of steps: they do not go with --operations");
   }
+  if (request.summary && (request.batch || request.operations)) {
+    throw UsageError("--summary is one of steps: it goes with neither --batch nor --operations");
+  }
   constexpr int kMostSets = 4096;
   if (request.sets && !request.batch) throw UsageError("--sets goes with --batch");
   if (request.sets && (*request.sets < 2 || *request.sets > kMostSets)) {
@@ -56,8 +59,7 @@ void check_timing(const BenchRequest& request) {
   // What overflows is read as the largest number that there is.
   constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max() - 1;
   if (request.seed && (*request.seed < 0 || *request.seed > kLargestSeed)) {
-    throw UsageError(
-        fmt::format("--seed is {}: it must be 0 to {}", *request.seed, kLargestSeed));
+    throw UsageError(fmt::format("--seed is {}: it must be 0 to {}", *request.seed, kLargestSeed));
   }
   constexpr double kMost = 1e9;
   if (request.slower_than && !(*request.slower_than >= 1.0 && *request.slower_than <= kMost)) {
@@ -80,12 +82,14 @@ PlannedScene plan_scene(const std::string& name, const BenchRequest& request) {
   return {std::move(scene), settings, std::move(stretch), fill};
 }
 
-/// The variants asked for; `control` becomes whether the null control is among them.
-std::vector<NamedVariant> choose_variants(std::vector<std::string> names, bool& control) {
+/// The variants asked for; `control` becomes whether the null control is among them, which a
+/// summary has only if it is named.
+std::vector<NamedVariant> choose_variants(std::vector<std::string> names, bool summary,
+                                          bool& control) {
   const bool everything = names.empty();
   const auto removed = std::erase_if(
       names, [](const std::string& name) { return name == "null" || name == kControl; });
-  control = everything || removed > 0;
+  control = (everything && !summary) || removed > 0;
   if (names.empty() && !everything) return {};
   auto chosen = select_variants(names);
   if (everything) {
@@ -97,6 +101,10 @@ std::vector<NamedVariant> choose_variants(std::vector<std::string> names, bool& 
 }
 
 }  // namespace
+
+std::string PlannedCell::variant_name() const {
+  return name.substr(0, name.size() - scene->scene.name.size() - 1);
+}
 
 int default_steps(const Scene& scene, double step) {
   const int most = most_steps(scene.model.variables());
@@ -112,7 +120,8 @@ BenchPlan plan_bench(const BenchRequest& request) {
   check(request);
   check_timing(request);
   bool control = false;
-  const std::vector<NamedVariant> variants = choose_variants(request.implementations, control);
+  const std::vector<NamedVariant> variants =
+      choose_variants(request.implementations, request.summary, control);
   std::vector<std::string> names = request.scenes;
   if (names.empty()) names = {"four-bar:10", "four-bar:40"};
   BenchPlan plan;
@@ -120,6 +129,7 @@ BenchPlan plan_bench(const BenchRequest& request) {
     if (std::ranges::count(names, name) > 1) {
       throw UsageError(fmt::format("scene '{}' is given twice", name));
     }
+    if (request.watch) request.watch(fmt::format("{}: reading the scene", name));
     const PlannedScene* scene = &plan.scenes.emplace_back(plan_scene(name, request));
     if (control && !request.operations && !request.batch) {
       plan.cells.push_back({fmt::format("{}/{}", kControl, name), scene, &null_variant(), true});
@@ -129,8 +139,9 @@ BenchPlan plan_bench(const BenchRequest& request) {
       const bool offers = (!request.operations || variant.variant->operations != nullptr) &&
                           (!request.batch || variant.variant->create_batch != nullptr);
       if (!offers && request.implementations.empty()) continue;
-      plan.cells.push_back(
-          {fmt::format("{}/{}", variant.name, name), scene, variant.variant, false});
+      plan.cells.push_back({fmt::format("{}/{}", variant.name, name), scene, variant.variant, false,
+                            variant.entry == nullptr ||
+                                is_own_code(variant.entry->implementation, *variant.variant)});
     }
   }
   if (plan.cells.empty()) {

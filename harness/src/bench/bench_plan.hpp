@@ -15,6 +15,9 @@ namespace mbs {
 
 inline constexpr int kSets = 64;
 
+/// What is being done, for a line of progress.
+using Watch = std::function<void(const std::string&)>;
+
 /// As given on the command line.
 struct BenchRequest {
   std::vector<std::string> scenes;           ///< empty: four-bar:10 and four-bar:40
@@ -26,7 +29,9 @@ struct BenchRequest {
   bool phases = false;
   bool operations = false;  ///< the operations of Table 2 instead of steps
   bool batch = false;       ///< many lanes at once, and alone, instead of single simulations
+  bool summary = false;     ///< steps, for a reader in a hurry: the control only if named
   std::optional<int> sets;  ///< of parameters, with batch; kSets if not given
+  Watch watch;              ///< if any
   // Not with operations or batch; scene_timing.hpp says what they mean.
   std::optional<std::int64_t> seed;  ///< at least 0
   std::optional<double> slower_than, patience;
@@ -45,6 +50,10 @@ struct PlannedCell {
   const PlannedScene* scene = nullptr;
   const Variant* variant = nullptr;
   bool control = false;
+  bool own_code = false;  ///< on no library
+
+  /// "folder/variant"
+  [[nodiscard]] std::string variant_name() const;
 };
 
 struct BenchPlan {

@@ -6,36 +6,13 @@
 #include <algorithm>
 #include <array>
 
-#include "bench/paired_ratio.hpp"
+#include "bench/scene_lines.hpp"
 
 namespace mbs {
 namespace {
 
 constexpr std::array<const char*, kPhaseCount> kPhaseNames{
     "evaluation", "assembly", "factorization", "solve", "projection", "other"};
-
-struct Line {
-  const ContenderResult* contender;
-  std::string name;           ///< without the scene's
-  std::vector<double> times;  ///< us a step, by sample
-  double middle = 0.0;
-};
-
-std::vector<Line> lines_of(const SceneResult& scene) {
-  std::vector<Line> lines;
-  for (const ContenderResult& contender : scene.contenders) {
-    const std::string& cell = contender.cell->name;
-    const std::size_t length = cell.size() - scene.scene->scene.name.size() - 1;
-    Line& line =
-        lines.emplace_back(Line{&contender, cell.substr(0, length), contender.step_times()});
-    if (!line.times.empty()) line.middle = median(line.times);
-  }
-  std::ranges::stable_sort(lines, [](const Line& a, const Line& b) {
-    if (a.times.empty() != b.times.empty()) return b.times.empty();
-    return a.middle < b.middle;
-  });
-  return lines;
-}
 
 std::string heading(const SceneResult& scene) {
   const PlannedScene& planned = *scene.scene;
@@ -53,17 +30,13 @@ std::string heading(const SceneResult& scene) {
                                               : "a turn each, of one or more stretches");
 }
 
-std::string ratio_text(const Line& line, const Line* fastest) {
+std::string ratio_text(const ContenderLine& line, const ContenderLine* fastest) {
   if (fastest == nullptr || line.contender->cell->control) return "-";
-  if (&line == fastest) return "1";
-  const PairedRatio ratio = paired_ratio(line.times, fastest->times);
-  const int digits = ratio.ratio < 10 ? 3 : ratio.ratio < 100 ? 2 : ratio.ratio < 1000 ? 1 : 0;
-  if (line.times.size() < 2) return fmt::format("{:.{}f}", ratio.ratio, digits);
-  return fmt::format("{:.{}f} ({:.{}f}..{:.{}f})", ratio.ratio, digits, ratio.low, digits,
-                     ratio.high, digits);
+  return &line == fastest ? "1" : paired_ratio_text(line, *fastest);
 }
 
-std::string timed_line(const Line& line, const Line* fastest, std::size_t width, int steps) {
+std::string timed_line(const ContenderLine& line, const ContenderLine* fastest, std::size_t width,
+                       int steps) {
   const CellFigures& figures = line.contender->figures;
   const bool control = line.contender->cell->control;
   return fmt::format(
@@ -74,22 +47,17 @@ std::string timed_line(const Line& line, const Line* fastest, std::size_t width,
 
 /// A remark if the machine had other things to do.
 std::string busy_line(const SceneResult& scene) {
-  constexpr double kCalm = 1.05;
-  Spent total;
-  for (const ContenderResult& contender : scene.contenders) {
-    if (contender.cell->control) continue;  // all of it is reading clocks
-    for (const Sample& sample : contender.samples) total += sample.spent;
-  }
-  if (total.seconds <= kCalm * total.cpu_seconds) return "";
+  const double factor = clock_factor(scene);
+  if (factor <= kCalm) return "";
   return fmt::format("(The machine is busy: by the clock, steps took {:.2f} times as long.)\n",
-                     total.seconds / total.cpu_seconds);
+                     factor);
 }
 
-std::string phase_table(const std::vector<Line>& lines, std::size_t width) {
+std::string phase_table(const std::vector<ContenderLine>& lines, std::size_t width) {
   std::string text = fmt::format("\n{:<{}}", "shares of the time, %", width);
   for (const char* phase : kPhaseNames) text += fmt::format(" {:>13}", phase);
   text += "\n";
-  for (const Line& line : lines) {
+  for (const ContenderLine& line : lines) {
     if (!line.contender->timed() || !line.contender->figures.phases) continue;
     text += fmt::format("{:<{}}", line.name, width);
     for (const double share : *line.contender->figures.phases) {
@@ -103,18 +71,16 @@ std::string phase_table(const std::vector<Line>& lines, std::size_t width) {
 }  // namespace
 
 std::string scene_table(const SceneResult& scene) {
-  const std::vector<Line> lines = lines_of(scene);
+  const std::vector<ContenderLine> lines = contender_lines(scene);
   std::size_t width = std::string_view("shares of the time, %").size();
-  for (const Line& line : lines) width = std::max(width, line.name.size());
-  const auto fastest = std::ranges::find_if(lines, [](const Line& line) {
-    return line.contender->timed() && !line.contender->cell->control;
-  });
-  const Line* base = fastest == lines.end() ? nullptr : &*fastest;
+  for (const ContenderLine& line : lines) width = std::max(width, line.name.size());
+  const auto fastest = std::ranges::find_if(lines, &ContenderLine::ranked);
+  const ContenderLine* base = fastest == lines.end() ? nullptr : &*fastest;
   std::string text = heading(scene);
   text += fmt::format("{:<{}} {:>10}  {:<24} {:>10} {:>7}  {}\n", "", width, "step, µs",
                       "to the fastest", "set-up, µs", "passes", "error, m");
   bool phases = false;
-  for (const Line& line : lines) {
+  for (const ContenderLine& line : lines) {
     const ContenderResult& contender = *line.contender;
     phases = phases || (contender.timed() && contender.figures.phases);
     text += contender.timed() ? timed_line(line, base, width, scene.scene->stretch.steps)

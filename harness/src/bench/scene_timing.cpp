@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "bench/paired_ratio.hpp"
 #include "bench/suspect.hpp"
@@ -49,14 +51,43 @@ class SceneTiming {
   const Watch& watch_;
   SceneResult result_;
   std::vector<Contender> contenders_;
-  double fastest_ = std::numeric_limits<double>::infinity();  ///< s a step
+
+  /// What the contender is compared with: 0 or 1.
+  [[nodiscard]] std::size_t layer(const Contender& contender) const {
+    return wishes_.by_layer && contender.result->cell->own_code ? 1 : 0;
+  }
+  /// s a step, from which on it is too slow.
+  [[nodiscard]] double slow(const Contender& contender) const {
+    return *wishes_.slower_than * fastest_[layer(contender)];
+  }
+  [[nodiscard]] std::string slower_text() const {
+    return fmt::format("slower: at least {:g} times the fastest{}", *wishes_.slower_than,
+                       wishes_.by_layer ? " of its layer" : "");
+  }
+
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+  std::array<double, 2> fastest_{kNever, kNever};  ///< s a step, of each layer
 };
+
+/// Processor time that no machine's core goes below in a step of a dense variant, s: one Cholesky
+/// factorization at 2 x 10^11 operations a second, more than two vector units of 512 bits at 5 GHz.
+double least_dense_step(const PlannedScene& planned) {
+  if (planned.settings.tangent != TangentReuse::none) return 0.0;
+  const double rate = planned.settings.precision == Precision::double_precision ? 2e11 : 4e11;
+  return std::pow(planned.scene.model.variables(), 3) / 3 / rate;
+}
 
 SceneTiming::SceneTiming(std::span<const PlannedCell> cells, const TimingWishes& wishes,
                          const Watch& watch)
     : wishes_(wishes), watch_(watch), result_{cells.front().scene, {}, 0, {}} {
   for (const PlannedCell& cell : cells) result_.contenders.emplace_back().cell = &cell;
   for (ContenderResult& result : result_.contenders) contenders_.emplace_back().result = &result;
+  if (!wishes.by_layer) return;
+  // The likely fast first.
+  std::ranges::stable_sort(contenders_, {}, [](const Contender& contender) {
+    const PlannedCell& cell = *contender.result->cell;
+    return std::pair(cell.variant->dense, !cell.own_code);
+  });
 }
 
 /// Does `work` in the contender's name; what it throws is the contender's failure.
@@ -84,6 +115,10 @@ void SceneTiming::fail(Contender& contender, std::string why) {
 void SceneTiming::look(Contender& contender) {
   const PlannedCell& cell = *contender.result->cell;
   const PlannedScene& planned = *cell.scene;
+  if (wishes_.by_layer && wishes_.slower_than && cell.variant->dense &&
+      least_dense_step(planned) > slow(contender)) {
+    throw CellFailure(slower_text() + " (by its number of operations)");
+  }
   contender.measurement = std::make_unique<Measurement>(
       MeasurementTask{planned.scene, *cell.variant, planned.stretch, planned.settings, cell.control,
                       wishes_.phases});
@@ -91,7 +126,8 @@ void SceneTiming::look(Contender& contender) {
   contender.warm_up =
       std::make_unique<WarmUp>(*contender.measurement, planned.stretch.steps, wishes_.patience);
   if (!wishes_.slower_than) return;
-  contender.warm_up->look(*wishes_.slower_than * fastest_);
+  constexpr double kHopeless = 10.0;  // times too slow
+  contender.warm_up->look(slow(contender), wishes_.by_layer ? kHopeless * slow(contender) : kNever);
   contender.step_seconds = contender.warm_up->step_seconds();
   contender.result->look_seconds = contender.step_seconds;
   // What does not compute must not be what others are slower than.
@@ -116,15 +152,15 @@ void SceneTiming::warm_up(Contender& contender) {
 
 void SceneTiming::leave_out_slow() {
   if (!wishes_.slower_than) return;
-  fastest_ = std::numeric_limits<double>::infinity();
+  fastest_ = {kNever, kNever};
   for (const Contender& contender : contenders_) {
-    if (contender.in_race()) fastest_ = std::min(fastest_, contender.step_seconds);
+    double& fastest = fastest_[layer(contender)];
+    if (contender.in_race()) fastest = std::min(fastest, contender.step_seconds);
   }
   for (Contender& contender : contenders_) {
-    if (!contender.in_race() || contender.step_seconds <= *wishes_.slower_than * fastest_) continue;
-    fail(contender, fmt::format("slower: at least {:g} times the fastest (first look: {:.4g} µs a "
-                                "step)",
-                                *wishes_.slower_than, 1e6 * *contender.result->look_seconds));
+    if (!contender.in_race() || contender.step_seconds <= slow(contender)) continue;
+    fail(contender, fmt::format("{} (first look: {:.4g} µs a step)", slower_text(),
+                                1e6 * *contender.result->look_seconds));
   }
 }
 
@@ -145,10 +181,11 @@ void SceneTiming::plan() {
   for (std::size_t i = 0; i < seconds.size(); ++i) {
     sample += seconds[i] * static_cast<double>(result_.turns.repeats[i]);
   }
-  result_.samples =
-      wishes_.samples > 0
-          ? wishes_.samples
-          : static_cast<int>(std::clamp<double>(kSceneTime / sample, kLeastSamples, kMostSamples));
+  result_.samples = wishes_.samples > 0
+                        ? wishes_.samples
+                        : static_cast<int>(std::clamp<double>(
+                              kSceneTime / sample, wishes_.by_layer ? kLeastByLayer : kLeastSamples,
+                              kMostSamples));
 }
 
 void SceneTiming::take_samples() {
@@ -184,14 +221,16 @@ void SceneTiming::end() {
 
 SceneResult SceneTiming::run() {
   const auto for_all = [this](const char* what, void (SceneTiming::*work)(Contender&)) {
+    int count = 0;
     for (Contender& contender : contenders_) {
-      say(fmt::format("{} {}", what, contender.result->cell->name));
+      say(fmt::format("{} {} of {}, {}", what, ++count, contenders_.size(),
+                      contender.result->cell->variant_name()));
       attempt(contender, [&] { (this->*work)(contender); });
       if (work == &SceneTiming::look) leave_out_slow();
     }
   };
-  for_all("set-up of", &SceneTiming::look);
-  for_all("warm-up of", &SceneTiming::warm_up);
+  for_all("set-up", &SceneTiming::look);
+  for_all("warm-up", &SceneTiming::warm_up);
   leave_out_slow();
   plan();
   take_samples();

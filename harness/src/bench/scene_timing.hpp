@@ -18,6 +18,7 @@ inline constexpr double kSlice = 0.005;  ///< s
 inline constexpr std::uint64_t kSeed = 1;
 inline constexpr double kSceneTime = 2.0;  ///< s of samples of one scene, unless a number is given
 inline constexpr int kLeastSamples = 3, kMostSamples = 100;  ///< that are chosen
+inline constexpr int kLeastByLayer = 6;  ///< as kLeastSamples: with fewer there is no 95 % interval
 
 struct TimingWishes {
   double slice = kSlice;              ///< s, see plan_turns()
@@ -25,6 +26,10 @@ struct TimingWishes {
   std::uint64_t seed = kSeed;         ///< of the orders
   std::optional<double> slower_than;  ///< times the fastest; whoever takes longer is not timed
   std::optional<double> patience;     ///< s for the steps of the first stretch
+  /// For an answer soon: `slower_than` is within a layer (libraries, own code), so that both have
+  /// a winner; the likely fast are looked at first; a dense variant whose factorization alone would
+  /// be too slow on any machine is not even set up.
+  bool by_layer = false;
   bool phases = false;
 };
 
@@ -58,9 +63,6 @@ struct SceneResult {
   int samples = 0;                          ///< asked of each contender
   std::vector<ContenderResult> contenders;  ///< in the order of the cells
 };
-
-/// What is being done, for a line of progress.
-using Watch = std::function<void(const std::string&)>;
 
 /// Sets all contenders up and warms them up one after the other; then takes samples, all of them
 /// by turns. A sample of a contender is its time over the whole stretch, from the same start. All

@@ -7,13 +7,13 @@
 
 namespace mbs {
 
-void WarmUp::look(double enough) {
+void WarmUp::look(double enough, double hopeless) {
   constexpr int kSteps = 16;
   constexpr double kSeconds = 1e-3;  // with fewer, the clock and cold caches decide
   constexpr double kLongest = 1.0;   // s
   while (done_ < steps_ && (done_ < kSteps || seconds() < kSeconds)) {
     advance();
-    if (done_ < 2) continue;
+    if (done_ < 2 && step_seconds_ <= hopeless) continue;
     if (seconds() > kLongest || (step_seconds_ > enough && seconds() > kSeconds)) break;
   }
 }

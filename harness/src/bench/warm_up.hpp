@@ -17,8 +17,9 @@ class WarmUp {
       : measurement_(&measurement), steps_(steps), patience_(patience) {}
 
   /// The first steps, from the start on: 16 and a millisecond, fewer if they take a second or more
-  /// than `enough` seconds each.
-  void look(double enough = std::numeric_limits<double>::infinity());
+  /// than `enough` seconds each; a single one if that takes more than `hopeless` seconds.
+  void look(double enough = std::numeric_limits<double>::infinity(),
+            double hopeless = std::numeric_limits<double>::infinity());
   /// The rest of the stretch.
   void finish();
 

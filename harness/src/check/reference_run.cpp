@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "model_math/kinematics.hpp"
+#include "run/settings.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -55,9 +56,12 @@ ReferenceRun run_reference(const Scene& scene, const StepSettings& settings) {
     if (!finite || result.outcomes.back().status == StepStatus::factorization_failed) {
       throw UsageError(fmt::format(
           "scene '{}': the reference fails at t = {:g} s with step {:g} s and penalty {:.3g}; "
-          "choose a shorter step, or let --penalty be auto",
+          "choose a shorter step{}",
           scene.name, result.stretch.start + (i + 1) * settings.step, settings.step,
-          settings.penalty));
+          settings.penalty,
+          settings.penalty == automatic_penalty(scene.model, settings)
+              ? ""
+              : ", or let --penalty be auto"));
     }
     result.positions.push_back(state.q);
     result.multipliers.push_back(state.lambda);

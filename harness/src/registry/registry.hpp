@@ -26,6 +26,11 @@ struct NamedVariant {
   const Variant* variant = nullptr;
 };
 
+/// Whether the linear algebra of a variant is this repository's own, on no library.
+inline bool is_own_code(const Implementation& implementation, const Variant& variant) {
+  return implementation.library == "none" || variant.own_code;
+}
+
 /// Every available variant, in order.
 std::vector<NamedVariant> all_variants();
 
