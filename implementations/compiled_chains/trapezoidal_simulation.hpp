@@ -91,4 +91,9 @@ class TrapezoidalSimulation final : public Simulation {
   int until_projection_ = 1;
 };
 
+template <template <class> class MassOf, class Rods>
+using PenaltySimulation = TrapezoidalSimulation<PenaltyForm, MassOf, Rods>;
+template <template <class> class MassOf, class Rods>
+using SaddlePointSimulation = TrapezoidalSimulation<SaddlePointForm, MassOf, Rods>;
+
 }  // namespace mbs::compiled_chains
