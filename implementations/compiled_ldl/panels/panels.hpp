@@ -375,13 +375,13 @@ void Panels<F>::subtract_below(const Panel& panel, const typename Short<F, lanes
   const F* below = matrix_.data() + kMargin + panel.columns + P;
   const int* rows = rows_.data() + panel.rows;
   for (int i = 0; i < panel.below; i += L) {
+    const int count = std::min(L, panel.below - i);
     W sum = load<F, L>(below + i) * z[0];
 #pragma GCC unroll 8
     for (int j = 1; j < P; ++j) sum += load<F, L>(below + j * panel.stride + i) * z[j];
     if (L > 4 && panel.contiguous) {
-      store<F, L>(y + rows[i], load<F, L>(y + rows[i]) - sum);
+      store<F, L>(y + rows[i], load<F, L>(y + rows[i]) - first_lanes<F, L>(sum, count));
     } else {
-      const int count = std::min(L, panel.below - i);
       for (int l = 0; l < count; ++l) y[rows[i + l]] -= sum[l];
     }
   }
