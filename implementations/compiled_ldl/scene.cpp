@@ -90,6 +90,28 @@ Rows::Rows(const Model& model, const Program& program)
   }
 }
 
+namespace {
+
+/// Sums at a point wait for each other. So pairs that share one are kept four places apart, where
+/// one of the next sixteen pairs can be taken instead.
+void keep_apart(const std::vector<Pair>& all, const Rows& rows, std::span<int> order) {
+  constexpr int kApart = 4, kAhead = 16;
+  std::vector<int> last(rows.extent, -kApart);
+  for (int k = 0; k < static_cast<int>(order.size()); ++k) {
+    int best = k, most = -1;
+    for (int i = k; i < std::min<int>(k + kAhead, order.size()) && most < kApart; ++i) {
+      const Pair& pair = all[order[i]];
+      int apart = k - last[pair.a];
+      if (rows.is_free(pair.b)) apart = std::min(apart, k - last[pair.b]);
+      if (apart > most) most = apart, best = i;
+    }
+    std::rotate(order.begin() + k, order.begin() + best, order.begin() + best + 1);
+    last[all[order[k]].a] = last[all[order[k]].b] = k;
+  }
+}
+
+}  // namespace
+
 Pairs make_pairs(const std::vector<std::array<int, 2>>& points, const Rows& rows,
                  std::vector<int>& order) {
   std::vector<Pair> all;
@@ -106,6 +128,8 @@ Pairs make_pairs(const std::vector<std::array<int, 2>>& points, const Rows& rows
     if (free(all[i]) != free(all[j])) return free(all[i]) > free(all[j]);
     return all[i].a < all[j].a;
   });
+  const auto two = std::count_if(all.begin(), all.end(), [&](const Pair& p) { return free(p) == 2; });
+  keep_apart(all, rows, std::span(order).first(two));
   Pairs pairs;
   for (const int k : order) pairs.list.push_back(all[k]);
   for (const Pair& pair : pairs.list) {

@@ -220,7 +220,9 @@ void Forces<S, D>::add_torsion(const S* q, const S* v, const S& factor, S* y, in
   const S angle =
       each(dot<D>(at_a, w), dot<D>(u, w), [](auto s, auto c) { return std::atan2(s, c); });
   const S turned = each(angle - spring.free, [](auto x) {
-    return std::remainder(x, static_cast<decltype(x)>(6.283185307179586476925286766559L));
+    using Number = decltype(x);
+    if (std::fabs(x) <= Number(3.14)) return x;  // remainder() takes long to find that
+    return std::remainder(x, static_cast<Number>(6.283185307179586476925286766559L));
   });
   const S inverse_u = S(1.0) / dot<D>(u, u), inverse_w = S(1.0) / dot<D>(w, w);
   S rate = S(0.0);

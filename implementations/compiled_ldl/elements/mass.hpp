@@ -4,12 +4,33 @@
 #include <map>
 #include <utility>
 
+#include "panels/vectors.hpp"
 #include "scene.hpp"
 
 namespace mbs::compiled_ldl {
 
+/// As many numbers as a register holds, or one number of every simulation.
+template <typename S>
+auto load_rows(const S* x) {
+  if constexpr (kLanesOf<S> == 1) {
+    return load<S, kWidest<S>>(x);
+  } else {
+    return *x;
+  }
+}
+template <typename S, typename V>
+void store_rows(S* x, const V& v) {
+  if constexpr (kLanesOf<S> == 1) {
+    store<S, kWidest<S>>(x, v);
+  } else {
+    *x = v;
+  }
+}
+
 /// Blocks that are multiples of the unit matrix, as rods and bodies in space have them, keep one
-/// number.
+/// number. All else is in strips of rows, as many as a register holds, that keep their columns
+/// where one of them is not zero: with two rows a strip, rows (1 2 0) and (2 5 0) are one strip with
+/// columns 0 and 1, values 1, 2 and 2, 5.
 template <typename S, int D>
 class Mass {
  public:
@@ -21,11 +42,11 @@ class Mass {
   }
   /// y = M x.
   void product(const S* x, S* y) const {
-    multiply(x, y, [](int /*row*/, const S& sum) { return sum; });
+    multiply(x, y, S(1.0), [](int /*row*/, const S& sum) { return sum; });
   }
   /// y = h (b − M x).
   void residual(const S* b, const S* x, const S& h, S* y) const {
-    multiply(x, y, [b, h](int row, const S& sum) { return h * (b[row] - sum); });
+    multiply(x, y, -h, [b, h](int row, const S& sum) { return h * (b[row] - sum); });
   }
 
  private:
@@ -34,7 +55,10 @@ class Mass {
     S value = {};
   };
   struct Row {
-    int row = 0, multiples_end = 0, blocks_end = 0;
+    int row = 0, multiples_end = 0;
+  };
+  struct Strip {
+    int row = 0, columns_end = 0;
   };
   using Values = std::array<S, D * D>;
   struct Block {
@@ -42,14 +66,20 @@ class Mass {
     Values values{};
   };
 
+  static constexpr int kRows = kLanesOf<S> == 1 ? kWidest<S> : 1;
+  /// By first row of a strip and column.
+  using StripValues = std::map<std::pair<int, int>, std::array<S, kRows>>;
+
   static bool is_multiple(const Block& block);
-  template <typename Finish>
-  void multiply(const S* x, S* y, Finish finish) const;
+  void add_strips(const StripValues& all);
+  template <typename First>
+  void multiply(const S* x, S* y, const S& factor, First first) const;
 
   std::vector<Entry> entries_;
   std::vector<Row> rows_;
-  std::vector<int> multiple_columns_, block_columns_;
-  Array<S> multiples_, blocks_;
+  std::vector<int> multiple_columns_, columns_;
+  Array<S> multiples_, values_;  // kRows of each column
+  std::vector<Strip> strips_;
 };
 
 template <typename S, int D>
@@ -74,6 +104,7 @@ Mass<S, D>::Mass(std::span<const Model* const> models, const Program& program, c
     put(i, j);
     if (i != j) put(j, i);
   }
+  StripValues others;
   for (const auto& [place, block] : blocks) {
     if (rows_.empty() || rows_.back().row != place.first) {
       Row row = rows_.empty() ? Row{} : rows_.back();
@@ -84,11 +115,25 @@ Mass<S, D>::Mass(std::span<const Model* const> models, const Program& program, c
       multiple_columns_.push_back(place.second);
       multiples_.push_back(block.values[0]);
       ++rows_.back().multiples_end;
-    } else {
-      block_columns_.push_back(place.second);
-      blocks_.insert(blocks_.end(), block.values.begin(), block.values.end());
-      ++rows_.back().blocks_end;
+      continue;
     }
+    for (int i = 0; i < D * D; ++i) {
+      if (!block.stored[i]) continue;
+      const int row = place.first + i / D, column = place.second + i % D;
+      auto& values = others[{row / kRows * kRows, column}];
+      values[row % kRows] = block.values[i];
+    }
+  }
+  add_strips(others);
+}
+
+template <typename S, int D>
+void Mass<S, D>::add_strips(const StripValues& all) {
+  for (const auto& [place, values] : all) {
+    if (strips_.empty() || strips_.back().row != place.first) strips_.push_back({place.first, 0});
+    columns_.push_back(place.second);
+    values_.insert(values_.end(), values.begin(), values.end());
+    strips_.back().columns_end = static_cast<int>(columns_.size());
   }
 }
 
@@ -105,10 +150,11 @@ bool Mass<S, D>::is_multiple(const Block& block) {
   return true;
 }
 
+/// y = first(row, M x of the multiples), then y += factor M x of the strips.
 template <typename S, int D>
-template <typename Finish>
-void Mass<S, D>::multiply(const S* x, S* y, Finish finish) const {
-  int multiple = 0, block = 0;
+template <typename First>
+void Mass<S, D>::multiply(const S* x, S* y, const S& factor, First first) const {
+  int multiple = 0;
   for (const Row& row : rows_) {
     S sum[D];
     for (int i = 0; i < D; ++i) sum[i] = S(0.0);
@@ -116,14 +162,19 @@ void Mass<S, D>::multiply(const S* x, S* y, Finish finish) const {
       const S* xj = x + multiple_columns_[multiple];
       for (int i = 0; i < D; ++i) sum[i] += multiples_[multiple] * xj[i];
     }
-    for (; block < row.blocks_end; ++block) {
-      const S* xj = x + block_columns_[block];
-      const S* m = blocks_.data() + block * D * D;
-      for (int j = 0; j < D; ++j) {
-        for (int i = 0; i < D; ++i) sum[i] += m[i * D + j] * xj[j];
-      }
+    for (int i = 0; i < D; ++i) y[row.row + i] = first(row.row + i, sum[i]);
+  }
+  int k = 0;
+  const auto term = [&](int at) { return load_rows(values_.data() + at * kRows) * x[columns_[at]]; };
+  for (const Strip& strip : strips_) {
+    auto sum = term(k++);
+    auto more = sum * S(0.0);
+    for (; k + 1 < strip.columns_end; k += 2) {
+      sum += term(k);
+      more += term(k + 1);
     }
-    for (int i = 0; i < D; ++i) y[row.row + i] = finish(row.row + i, sum[i]);
+    if (k < strip.columns_end) sum += term(k++);
+    store_rows(y + strip.row, load_rows(y + strip.row) + (sum + more) * factor);
   }
 }
 

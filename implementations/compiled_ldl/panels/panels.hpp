@@ -43,7 +43,17 @@ class Panels {
     int factors = 0;          // where M, Mᵀ, D⁻¹ and W are
     int rows = 0;             // where the list of its rows below is
     bool contiguous = false;  // these rows follow each other
-    int groups_begin = 0, groups_end = 0;
+    int strips_begin = 0, strips_end = 0;
+    bool is_two = false;  // the border: two rows that are neighbours also where they go
+  };
+  /// Rows of a front's border that follow each other also in the columns that they go to. Border
+  /// rows 4, 5 | 9 of which the target, columns 4-7, has 4, 5, 8, 9 in places 0-3: two groups of
+  /// columns, if 9 is another front's, and of the first group, columns 4 and 5, two strips, one of
+  /// two rows in place 0 and one of a row in place 3.
+  struct Strip {
+    int begin = 0, rows = 0;      // of the border
+    int column = 0, columns = 0;  // of the border: what is updated
+    int target = 0, stride = 0;   // storage of row `begin` in the first of these columns
   };
   /// Panels of the same shape that follow each other.
   struct Run {
@@ -54,6 +64,7 @@ class Panels {
   };
 
   void add_front(const Front& front);
+  void add_strips(const Front& front);
   void add_run(const PanelShape& shape);
   template <int P>
   void choose_kernels(Run& run, int lanes) const;
@@ -83,11 +94,12 @@ class Panels {
   template <int P>
   void update_inside(const Panel& panel);
   template <int P>
-  void update_two(const Panel& panel, const Group& group);
+  void update_two(const Panel& panel);
   template <int P, int L>
   void update_border(const Panel& panel);
   template <int P, int L>
-  void update_column(const Panel& panel, const Group& group, int k);
+  static void update_rows(const F* below, int stride, int rows, const F* g, int columns, F* target,
+                          int target_stride);
 
   const Program& program_;
   bool definite_;
@@ -97,7 +109,7 @@ class Panels {
   PanelShape last_shape_;  // while tables are made, as the next
   int next_factors_ = 0;
   std::vector<int> rows_;
-  Array<F> work_;
+  std::vector<Strip> strips_;
 };
 
 // Tables.
@@ -109,14 +121,14 @@ Panels<F>::Panels(const Program& program, bool definite)
       constants_(program.storage + 2 * kMargin, F(0)),
       matrix_(program.storage + 2 * kMargin, F(0)) {
   for (const Front& front : program.fronts) add_front(front);
-  int most = 0;
-  for (const Panel& panel : panels_) most = std::max(most, panel.below);
   factors_.resize(next_factors_ + kMargin, F(0));
-  work_.resize(most + 2 * kMargin, F(0));
 }
 
 template <typename F>
 void Panels<F>::add_front(const Front& front) {
+  const int strips_begin = static_cast<int>(strips_.size());
+  add_strips(front);
+  const int strips_end = static_cast<int>(strips_.size());
   for (int from = 0; from < front.pivots; from += kPanel) {
     const int pivots = std::min(kPanel, front.pivots - from);
     Panel panel;
@@ -126,8 +138,9 @@ void Panels<F>::add_front(const Front& front) {
     panel.inside = front.pivots - from - pivots;
     panel.below = panel.inside + front.border;
     panel.rows = static_cast<int>(rows_.size());
-    panel.groups_begin = front.groups_begin;
-    panel.groups_end = front.groups_end;
+    panel.strips_begin = strips_begin;
+    panel.strips_end = strips_end;
+    panel.is_two = front.border == 2 && strips_end - strips_begin == 1;
     for (int i = 0; i < panel.inside; ++i) rows_.push_back(panel.first + pivots + i);
     for (int i = 0; i < front.border; ++i) rows_.push_back(program_.border_rows[front.rows + i]);
     panel.contiguous = panel.below > 0 && rows_.back() - rows_[panel.rows] == panel.below - 1;
@@ -136,6 +149,29 @@ void Panels<F>::add_front(const Front& front) {
     next_factors_ = round_up(next_factors_, 8);
     panels_.push_back(panel);
     add_run(panel_shape(front, from));
+  }
+}
+
+template <typename F>
+void Panels<F>::add_strips(const Front& front) {
+  for (int g = front.groups_begin; g < front.groups_end; ++g) {
+    const Group& group = program_.groups[g];
+    const int* places = program_.positions.data() + group.positions - group.begin;
+    const int most = front.border <= 4 ? lanes_for(front.border) : kWidest<F>;
+    for (int i = group.begin; i < front.border;) {
+      Strip strip;
+      strip.begin = i;
+      while (i < front.border && i - strip.begin < most &&
+             places[i] - places[strip.begin] == i - strip.begin) {
+        ++i;
+      }
+      strip.rows = i - strip.begin;
+      strip.column = group.begin;
+      strip.columns = std::min(group.end, i) - group.begin;
+      strip.target = group.base + places[strip.begin];
+      strip.stride = group.stride;
+      strips_.push_back(strip);
+    }
   }
 }
 
@@ -339,63 +375,80 @@ void Panels<F>::subtract_below(const Panel& panel, const typename Short<F, lanes
   const F* below = matrix_.data() + kMargin + panel.columns + P;
   const int* rows = rows_.data() + panel.rows;
   for (int i = 0; i < panel.below; i += L) {
+    const int count = std::min(L, panel.below - i);
     W sum = load<F, L>(below + i) * z[0];
 #pragma GCC unroll 8
     for (int j = 1; j < P; ++j) sum += load<F, L>(below + j * panel.stride + i) * z[j];
     if (L > 4 && panel.contiguous) {
-      store<F, L>(y + rows[i], load<F, L>(y + rows[i]) - sum);
+      store<F, L>(y + rows[i], load<F, L>(y + rows[i]) - first_lanes<F, L>(sum, count));
     } else {
-      const int count = std::min(L, panel.below - i);
       for (int l = 0; l < count; ++l) y[rows[i + l]] -= sum[l];
     }
   }
 }
 
-/// Further columns of the front, two at a time.
+/// Columns from `target` on lose C D⁻¹ Cᵀ in `rows` rows, at most L, which lie at `below` in C and
+/// at `target` in the first column. The rows of W of these columns begin at g.
+template <typename F>
+template <int P, int L>
+void Panels<F>::update_rows(const F* below, int stride, int rows, const F* g, int columns,
+                            F* target, int target_stride) {
+  using W = typename Short<F, L>::Type;
+  constexpr int N = lanes_for(P);
+  W c[P];
+#pragma GCC unroll 8
+  for (int j = 0; j < P; ++j) c[j] = first_lanes<F, L>(load<F, L>(below + j * stride), rows);
+  for (int k = 0; k < columns; ++k) {
+    W s = load<F, L>(target);
+#pragma GCC unroll 8
+    for (int j = 0; j < P; ++j) s -= c[j] * g[j];
+    store<F, L>(target, s);
+    g += N;
+    target += target_stride;
+  }
+}
+
+/// Further columns of the front.
 template <typename F>
 template <int P>
 void Panels<F>::update_inside(const Panel& panel) {
-  using W = typename Short<F, 8>::Type;
-  constexpr int N = lanes_for(P);
+  constexpr int L = kWidest<F>;
   const F* below = matrix() + panel.columns + P;
-  const F* g = factors_.data() + panel.factors + (2 * P + 1) * N;
-  for (int k = 0; k < panel.inside; k += 2) {
-    const bool both = k + 1 < panel.inside;
-    F* one = matrix() + panel.columns + (P + k) * panel.stride + P;
-    F* other = both ? one + panel.stride : work_.data();
-    const F* g0 = g + k * N;
-    const F* g1 = both ? g0 + N : g0;
-    for (int i = k / 8 * 8; i < panel.below; i += 8) {
-      W s0 = load<F, 8>(one + i), s1 = load<F, 8>(other + i);
-#pragma GCC unroll 8
-      for (int j = 0; j < P; ++j) {
-        const W c = load<F, 8>(below + j * panel.stride + i);
-        s0 -= c * g0[j];
-        s1 -= c * g1[j];
-      }
-      store<F, 8>(one + i, s0);
-      store<F, 8>(other + i, s1);
-    }
+  const F* g = factors_.data() + panel.factors + (2 * P + 1) * lanes_for(P);
+  F* target = matrix() + panel.columns + P * panel.stride + P;
+  for (int i = 0; i < panel.below; i += L) {
+    update_rows<P, L>(below + i, panel.stride, L, g, std::min(panel.inside, i + L), target + i,
+                      panel.stride);
   }
 }
 
 template <typename F>
 template <int P, int L>
 void Panels<F>::update_border(const Panel& panel) {
-  for (int g = panel.groups_begin; g < panel.groups_end; ++g) {
-    const Group& group = program_.groups[g];
-    if (L == 2 && group.end == 2 && group.begin == 0) {
-      update_two<P>(panel, group);
-      continue;
+  if (L == 2 && panel.is_two) return update_two<P>(panel);
+  const F* below = matrix() + panel.columns + P + panel.inside;
+  const F* g = factors_.data() + panel.factors + (2 * P + 1 + panel.inside) * lanes_for(P);
+  for (int i = panel.strips_begin; i < panel.strips_end; ++i) {
+    const Strip& s = strips_[i];
+    const F* from = below + s.begin;
+    const F* of_columns = g + s.column * lanes_for(P);
+    F* target = matrix() + s.target;
+    if (L > 4 && s.rows > 4) {
+      update_rows<P, std::min(L, kWidest<F>)>(from, panel.stride, s.rows, of_columns, s.columns,
+                                              target, s.stride);
+    } else if (L > 2 && s.rows > 2) {
+      update_rows<P, std::min(L, 4)>(from, panel.stride, s.rows, of_columns, s.columns, target,
+                                     s.stride);
+    } else {
+      update_rows<P, 2>(from, panel.stride, s.rows, of_columns, s.columns, target, s.stride);
     }
-    for (int k = group.begin; k < group.end; ++k) update_column<P, L>(panel, group, k);
   }
 }
 
 /// The update of two border rows that are neighbours, in scalars.
 template <typename F>
 template <int P>
-void Panels<F>::update_two(const Panel& panel, const Group& group) {
+void Panels<F>::update_two(const Panel& panel) {
   constexpr int N = lanes_for(P);
   const F* below = matrix() + panel.columns + P;
   const F* g = factors_.data() + panel.factors + (2 * P + 1) * N;
@@ -407,44 +460,11 @@ void Panels<F>::update_two(const Panel& panel, const Group& group) {
     s10 += c[1] * g[j];
     s11 += c[1] * g[N + j];
   }
-  const int* places = program_.positions.data() + group.positions;
-  F* target = matrix() + group.base;
-  target[places[0]] -= s00;
-  target[places[1]] -= s10;
-  target[group.stride + places[1]] -= s11;
-}
-
-/// Border column k of the update, added to the column that it goes to.
-template <typename F>
-template <int P, int L>
-void Panels<F>::update_column(const Panel& panel, const Group& group, int k) {
-  using W = typename Short<F, L>::Type;
-  constexpr int N = lanes_for(P);
-  const int at = panel.inside + k;  // among the rows below
-  const F* below = matrix() + panel.columns + P;
-  const F* g = factors_.data() + panel.factors + (2 * P + 1 + at) * N;
-  const int* places = program_.positions.data() + group.positions - group.begin;
-  F* target = matrix() + group.base + (k - group.begin) * group.stride;
-  const int first = at / L * L;
-  for (int i = first; i < panel.below; i += L) {
-    W sum = load<F, L>(below + i) * g[0];
-#pragma GCC unroll 8
-    for (int j = 1; j < P; ++j) sum += load<F, L>(below + j * panel.stride + i) * g[j];
-    if (group.contiguous) {
-      if (i == first) {
-#pragma GCC unroll 8
-        for (int l = 0; l < L; ++l) sum[l] = i + l < at ? F(0) : sum[l];
-      }
-      F* to = target + places[k] + i - at;
-      store<F, L>(to, load<F, L>(to) - sum);
-    } else {
-      store<F, L>(work_.data() + i - first, sum);
-    }
-  }
-  if (group.contiguous) return;
-  const F* sums = work_.data() + at - first;
-  const int border = panel.below - panel.inside;
-  for (int i = k; i < border; ++i) target[places[i]] -= sums[i - k];
+  const Strip& strip = strips_[panel.strips_begin];
+  F* target = matrix() + strip.target;
+  target[0] -= s00;
+  target[1] -= s10;
+  target[strip.stride + 1] -= s11;
 }
 
 // Substitution with the factors there are.

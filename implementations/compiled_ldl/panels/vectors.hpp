@@ -1,6 +1,9 @@
 // Short vectors of a panel's width: loads, stores of a part, factorization of a diagonal block.
 #pragma once
 
+#include <algorithm>
+#include <type_traits>
+
 #include "scalar.hpp"
 
 namespace mbs::compiled_ldl {
@@ -22,6 +25,22 @@ void store(F* x, const typename Short<F, N>::Type& v) {
 
 /// Lanes of a vector for `columns` pivots, or for that many rows below them.
 constexpr int lanes_for(int count) { return count <= 2 ? 2 : count <= 4 ? 4 : 8; }
+
+/// Lanes of the longest vector that a register holds, at most 8.
+template <typename F>
+inline constexpr int kWidest =
+    std::min(8, kRegisterDoubles * static_cast<int>(sizeof(double) / sizeof(F)));
+
+/// v with zeros behind its first `count` lanes.
+template <typename F, int N>
+typename Short<F, N>::Type first_lanes(const typename Short<F, N>::Type& v, int count) {
+  using Index = std::conditional_t<sizeof(F) == 8, long long, int>;
+  using Lanes __attribute__((vector_size(N * sizeof(F)))) = Index;
+  Lanes lane;
+#pragma GCC unroll 8
+  for (int i = 0; i < N; ++i) lane[i] = i;
+  return lane < static_cast<Index>(count) ? v : typename Short<F, N>::Type{};
+}
 
 /// Stores the first P lanes only, in pieces that later loads can be forwarded from.
 template <int P, typename F, typename V>
