@@ -6,6 +6,6 @@ def context(tables, view):
     lost = {}
     for row in scenes[~scenes.status.isin(["ok", "slower"])].to_dict("records"):
         lost.setdefault((row["status"], row["reason"]), {}).setdefault(row["implementation"], []).append(row["scene"])
-    return {"settings": view.settings, "ranked": ranked, "order": list(dict.fromkeys(scenes.scene)),
+    return {"settings": view.settings, "ranked": ranked, "defaults": tables["defaults"].to_dict("records"), "order": list(dict.fromkeys(scenes.scene)),
             "times": {name: rows.to_dict("records") for name, rows in times.groupby("scene", sort=False)},
             "lost": [(*what, list(names.items())) for what, names in lost.items()]}

@@ -1,7 +1,8 @@
-# Rows of scenes and of winners, scene by scene.
+# Rows of scenes and of winners, scene by scene, and of other tools' defaults.
 import pandas
 
 from analysis.core import timing
+from analysis.families import defaults
 from analysis.limit.tables import agreed, by_scene, cells_of, looked, ratio_to, rival_of, verdicts_of
 
 COLUMNS = ("implementation", "status", "reason", "verdict", "processes", "step_us", "low_us", "high_us", "passes", "pass_us", "record")
@@ -27,7 +28,7 @@ def build(records, view):
                    | ratio_to("to_rival", rows, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
         winners += [known | {"layer": layer} | _winner(rows, cells, names) for layer, names in layers.items()]
     place = {scene: at for at, scene in enumerate(view.settings["scenes"])}
-    return {"scenes": _sorted(scenes, place), "winners": _sorted(winners, place)}
+    return {"scenes": _sorted(scenes, place), "winners": _sorted(winners, place), "defaults": defaults.table(scenes, winners)}
 
 
 def _winner(rows, cells, names):
