@@ -18,7 +18,7 @@ def context(tables, view):
             "times": {name: rows.to_dict("records") for name, rows in times.groupby(["scene", "scheme"], sort=False)},
             "lost": [(*what, list(names.items())) for what, names in lost.items()],
             "rule": rule(tables, view.registry), "by_family": [(family, summary(rows)) for family, rows in held.groupby("family", sort=False)],
-            "alone": tables["alone"].to_dict("records"), "growth": tables["growth"].to_dict("records"),
+            "alone": tables["alone"].to_dict("records"), "defaults": tables["defaults"].to_dict("records"), "growth": tables["growth"].to_dict("records"),
             "orderings": _wide(tables["orderings"])}
 
 

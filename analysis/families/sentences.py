@@ -24,7 +24,17 @@ def answers(tables, view):
         found.append({"anchor": "map", "text": f"{name}, which stands on no library, is shown to be faster than the fastest library on {len(ahead)} of "
                       f"{len(rows)} mechanisms that it serves, slower on {len(behind)} (time over the library's: {number(rows.to_rival.min())} to "
                       f"{number(rows.to_rival.max())})."})
-    return found
+    return found + _defaults(tables["defaults"])
+
+
+def _defaults(rows):
+    """What the defaults of other tools cost, the least and the largest mean."""
+    rows = rows[rows["mean"].notna()].sort_values("mean")
+    if rows.empty:
+        return []
+    told = lambda row: (f"{row['rule']}'s is {'about ' if row['rough'] else ''}{number(row['mean'])} times as slow as the fastest library on average, "
+                        f"{number(row['worst'])} at worst ({row['timed']:.0f} mechanisms)")
+    return [{"anchor": "defaults", "text": f"Of the defaults of other tools, {told(rows.iloc[0])}; {told(rows.iloc[-1])}."}]
 
 
 def cases(tables, view):

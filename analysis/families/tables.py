@@ -3,6 +3,7 @@ import pandas
 
 from analysis.core import timing
 from analysis.core.contest import agreed, by_scene, cells_of, contests, grouped, ratio_to, rival_of
+from analysis.families import defaults
 from analysis.families.growth import growth, orderings
 from analysis.families.rule import alone, held
 
@@ -31,7 +32,9 @@ def build(records, view):
                   | record.output.get("features", {}) | {"record": record.name} for scene, record in about.items()]
     tables = {name: pandas.DataFrame(sorted(rows, key=lambda row: place.get(row["scene"], len(place))))
               for name, rows in (("mechanisms", mechanisms), ("scenes", scenes), ("winners", winners))}
-    return tables | {"growth": growth(tables["scenes"], tables["mechanisms"]) if len(scenes) else pandas.DataFrame(),
+    fills, first = {row["scene"]: row.get("fill") for row in mechanisms}, SCHEMES[0]
+    filled = [row | {"fill": fills[row["scene"]]} for row in scenes if row["scheme"] == first and fills.get(row["scene"]) is not None]
+    return tables | {"defaults": defaults.table(filled, [row for row in winners if row["scheme"] == first and row["scene"] in fills]), "growth": growth(tables["scenes"], tables["mechanisms"]) if len(scenes) else pandas.DataFrame(),
                      "orderings": orderings(about), "alone": alone(tables, registry), "held": held(tables, registry).drop(columns="models", errors="ignore")}
 
 

@@ -1,5 +1,5 @@
 # Comparisons within a scene that figures and claims share, and what can be read off a series of them.
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy
 
@@ -19,10 +19,6 @@ class Versus:
     fill: float  # percent
     record: str
 
-    @property
-    def where(self):
-        return f"n = {self.size:g}, {self.slow} ÷ {self.fast}"
-
 
 def versus(results, scene, slow, fast):
     """Versus of two contenders; None if they cannot be compared."""
@@ -38,14 +34,6 @@ def versus(results, scene, slow, fast):
 def best(results, scene, slow, fast):
     """Versus of the fastest of the names `slow` and the fastest of the names `fast`."""
     return versus(results, scene, results.fastest(scene, slow), results.fastest(scene, fast))
-
-
-def extreme(found, pick):
-    """The Versus with the least (`pick` is min) or largest value (max), with the interval of the least or largest of all:
-    `pick` of all lower and of all upper ends."""
-    value, low, high = (pick(found, key=lambda one: getattr(one, end)) for end in ("value", "low", "high"))
-    return replace(value, low=low.low, high=high.high,
-                   record=" ".join(dict.fromkeys([value.record, low.record, high.record])))
 
 
 def over_sizes(results, slow, fast, low=0, high=float("inf")):

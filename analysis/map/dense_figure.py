@@ -12,7 +12,7 @@ DODGE = 0.6
 def series(results):
     """{name: {size: Versus of the starting dense version to it}} of the optimised dense ones on all pairs."""
     found = {}
-    for name in paper.dense(results, pairs=True):
+    for name in paper.dense(results):
         for size in results.sizes:
             one = versus(results, results.natural(size), paper.STARTING["dense"], name)
             if one:

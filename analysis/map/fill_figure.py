@@ -30,7 +30,7 @@ def crossings(results, size):
     """{sparse name: {"fill", "low", "high", "first", "last"}}: the tangent fill, %, from which the fastest dense of each
     fill is faster; -inf or inf if from before the first or not up to the last fill at which both are timed."""
     found = {}
-    for name in paper.sparse(results):
+    for name in paper.sparse(results, others=True):
         ratios = {fill: best(results, scene, paper.dense(results), [name]) for fill, scene in scenes(results, size).items()}
         series = {fill: ratio for fill, ratio in ratios.items() if ratio}
         if series:
@@ -58,14 +58,14 @@ def draw(results, look):
     below.set_xlabel("non-zeros of the tangent, % of n²")
     footnote(figure, ["lines: medians over processes; grey bars: fills at which both are timed, coloured: where the 95 % "
                       "interval of the ratio includes 1", "crossings are interpolated between measured fills, log ratio over "
-                      "fill", NOTE], 0.02)
+                      "fill", f"dense: the best one timed; pairs of BLAS and LAPACK: {paper.dense_pairs(results)}", NOTE], 0.02)
     return figure
 
 
 def _times(axes, results, size, look):
     places = scenes(results, size)
     times = {fill: results.medians(scene) for fill, scene in places.items()}
-    for name in paper.sparse(results):
+    for name in paper.sparse(results, others=True):
         mine = {fill: known[name] for fill, known in times.items() if name in known}
         if mine:
             axes.plot(list(mine), list(mine.values()), label=name, **look.line(name))
@@ -75,7 +75,7 @@ def _times(axes, results, size, look):
         who = "\n".join(dict.fromkeys(f"   {name}" for name in winners.values()))
         axes.plot(list(winners), [times[fill][name] for fill, name in winners.items()], label=f"fastest dense:\n{who}", **DENSE_LINE)
     rows = results.timing
-    draw_lost(axes, lost(rows[(rows.variables == size) & rows.implementation.isin(paper.sparse(results))]), look.line, "fill_percent")
+    draw_lost(axes, lost(rows[(rows.variables == size) & rows.implementation.isin(paper.sparse(results, others=True))]), look.line, "fill_percent")
     axes.set(yscale="log", ylabel="time per step, µs")
     number_axis(axes.yaxis)
     axes.grid(True, which="major")

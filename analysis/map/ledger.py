@@ -1,79 +1,125 @@
 # A row of the claims ledger: the paper's figure, ours with its interval, and the verdict by a rule.
 import math
+from dataclasses import dataclass
 
 from analysis.core.text import bounded, number, rough
 
-CONFIRMED, REFUTED, UNDECIDED, UNMEASURED = "confirmed", "refuted", "undecided", "not measured"
+CONFIRMED, EXCEEDED, REFUTED, UNDECIDED = "confirmed", "exceeded", "refuted", "undecided"
+MIXED, INCOMPARABLE, UNMEASURED = "mixed", "not comparable", "not measured"
+VERDICTS = (CONFIRMED, EXCEEDED, REFUTED, MIXED, UNDECIDED, INCOMPARABLE, UNMEASURED)  # in the order of texts
+FACTOR_BAND = 1.25  # around a factor of the paper: from it divided by this to it times this confirms
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What confirms lies between `low` and `high`; `beyond`: the verdict on what lies above."""
+    low: float = -math.inf
+    high: float = math.inf
+    beyond: str = REFUTED
+
+    def text(self, unit):
+        if math.isinf(self.high):
+            return f"at least {number(self.low)}{unit}"
+        if math.isinf(self.low):
+            return f"at most {number(self.high)}{unit}"
+        return f"{number(self.low)} to {number(self.high)}{unit}" + (", above it exceeded" if self.beyond == EXCEEDED else "")
 
 
 def at_least(bound):
-    return bound, math.inf
-
-
-def more_than(bound):
-    """As at_least, but the bound itself decides nothing."""
-    return bound, math.inf, bound
+    return Rule(low=bound)
 
 
 def at_most(bound):
-    return -math.inf, bound
+    return Rule(high=bound)
+
+
+def factor(low, high=None):
+    """The paper says that something is so many times faster or slower, or from `low` to `high` times."""
+    return Rule(low / FACTOR_BAND, (high or low) * FACTOR_BAND, EXCEEDED)
 
 
 def verdict(low, high, rule):
-    """Confirmed if the whole interval obeys the rule, refuted if none of it does; an interval that includes a bound of
-    the rule decides nothing, nor does the open bound of `more_than`."""
-    lowest, highest, *undecided = rule
-    if lowest <= low and high <= highest and low not in undecided:
+    """Confirmed if the whole interval obeys the rule, refuted or exceeded if none of it does; an interval that includes a
+    bound of the rule decides nothing."""
+    if rule.low <= low and high <= rule.high:
         return CONFIRMED
-    return REFUTED if high < lowest or low > highest else UNDECIDED
+    return REFUTED if high < rule.low else rule.beyond if low > rule.high else UNDECIDED
 
 
-def tested(head, measured, rule, where, why, unit="×", record=""):
-    """A row from what was measured. `head`: (id, claim, the paper's number); `measured`: (value, low, high) in `unit`;
-    `rule`: of at_least, more_than or at_most, or (lowest, highest), in the same unit; `why`: a sentence from this set's
-    numbers."""
-    value, low, high = measured
-    found, known = verdict(low, high, rule), bounded(low, high)
-    crossed = [number(bound) + unit for bound in rule[:2] if low <= bound <= high and math.isfinite(bound)]
-    reason = "" if found != UNDECIDED else "A single process has no interval." if not known else (
-        f"The interval includes {' and '.join(crossed)}.")
-    return _row(head) | {"ours": (number if known else rough)(value) + unit, "low": number(low) if known else "",
-                         "high": number(high) if known else "", "where": where, "verdict": found, "reason": reason,
-                         "rule": rule_text(rule, unit), "why": why, "record": record}
+def summed(verdicts):
+    """One verdict of several sizes or fills: theirs if it is one; mixed if they were decided differently; else open."""
+    decided = set(verdicts) & {CONFIRMED, EXCEEDED, REFUTED}
+    return next(iter(set(verdicts))) if len(set(verdicts)) == 1 else MIXED if len(decided) > 1 else UNDECIDED
 
 
-def compared(head, found, rule, why, where=None):
-    """A row of a compare.Versus."""
-    return tested(head, of(found), rule, where or found.where, why, record=found.record)
+def judged(head, cases, rule, where, why, unit="×"):
+    """A row from what was measured at one or several sizes or fills, each judged alone. `head`: (id, claim, the paper's
+    number); `cases`: [(place, (value, low, high) in `unit`, record)]; `where`: who was compared; `why`: a sentence from
+    this set's numbers."""
+    told = {}
+    for place, (_, low, high), _ in cases:
+        told.setdefault(verdict(low, high, rule), []).append(place)
+    known = [bounded(low, high) for _, (_, low, high), _ in cases]
+    values = sorted((value, (number if one else rough)(value)) for (_, (value, _, _), _), one in zip(cases, known))
+    ends = ["", ""] if not all(known) else [number(min(low for _, (_, low, _), _ in cases)), number(max(high for _, (_, _, high), _ in cases))]
+    return row(head, summed(told), _reason(cases, told, rule, unit), rule.text(unit), why) | {
+        "ours": " to ".join(dict.fromkeys([values[0][1], values[-1][1]])) + unit, "low": ends[0], "high": ends[1],
+        "where": f"{places([place for place, _, _ in cases])}, {where}", "record": " ".join(dict.fromkeys(one for _, _, one in cases))}
+
+
+def _reason(cases, told, rule, unit):
+    if len(cases) > 1 or UNDECIDED not in told:
+        return by_place(told) if len(told) > 1 or UNDECIDED in told else ""
+    _, (_, low, high), _ = cases[0]
+    crossed = [number(bound) + unit for bound in (rule.low, rule.high) if low <= bound <= high and math.isfinite(bound)]
+    return f"The interval includes {' and '.join(crossed)}." if bounded(low, high) else "A single process has no interval."
+
+
+def by_place(told):
+    """"confirmed at n = 22; undecided at n = 50, 82", of {verdict: places}."""
+    return "; ".join(f"{one} at {places(told[one])}" for one in VERDICTS if one in told)
+
+
+def places(names):
+    """"n = 22, 50" of "n = 22" and "n = 50"."""
+    heads = {name.partition("= ")[0] for name in names}
+    short = [name.partition("= ")[2] for name in names]
+    return f"{heads.pop()}= {', '.join(short)}" if len(heads) == 1 and all(short) else ", ".join(names)
+
+
+def compared(head, found, rule, why):
+    """A row of one compare.Versus or of several, at different sizes."""
+    found = found if isinstance(found, list) else [found]
+    return judged(head, [(f"n = {one.size:g}", of(one), one.record) for one in found], rule,
+                  ", ".join(dict.fromkeys(f"{one.slow} ÷ {one.fast}" for one in found)), why)
+
+
+def row(head, found, reason, rule="", why=""):
+    """A row without numbers: for what has no times, or says nothing of the claim."""
+    return dict(zip(("id", "claim", "paper"), head)) | {"ours": "", "low": "", "high": "", "where": "", "verdict": found,
+                                                        "reason": reason, "rule": rule, "why": why, "record": ""}
 
 
 def unmeasured(head, reason, rule, unit="×"):
-    """A row for what this set has no times of, with the reason."""
-    return _row(head) | {"ours": "", "low": "", "high": "", "where": "", "verdict": UNMEASURED, "reason": reason,
-                         "rule": rule_text(rule, unit), "why": "", "record": ""}
+    return row(head, UNMEASURED, reason, rule.text(unit))
 
 
-def undecided(head, reason, rule, why):
-    """A row for what was measured but says nothing of the claim."""
-    return unmeasured(head, reason, rule) | {"verdict": UNDECIDED, "why": why}
+def by_id(table):
+    """{id: (verdict, its rows' verdicts in words)}: that of all its measured rows, mixed where they differ."""
+    found = {}
+    for name, rows in table.groupby("id", sort=False):
+        kinds = [one for one in VERDICTS if one in set(rows.verdict)]
+        measured = [one for one in kinds if one != UNMEASURED]
+        found[name] = ((MIXED if len(measured) > 1 else kinds[0]), ", ".join(kinds) if len(kinds) > 1 else "")
+    return found
 
 
-def _row(head):
-    return dict(zip(("id", "claim", "paper"), head))
-
-
-def counted(table):
-    """"12 confirmed, 6 refuted, 14 undecided, 13 not measured"."""
-    return ", ".join(f"{(table.verdict == one).sum()} {one}" for one in (CONFIRMED, REFUTED, UNDECIDED, UNMEASURED))
-
-
-def rule_text(rule, unit):
-    lowest, highest, *undecided = rule
-    if math.isinf(highest):
-        return f"{'more than' if undecided else 'at least'} {number(lowest)}{unit}"
-    if math.isinf(lowest):
-        return f"at most {number(highest)}{unit}"
-    return f"{number(lowest)} to {number(highest)}{unit}"
+def told(table):
+    """"confirmed: F4, C4; mixed: T2": one verdict a claim."""
+    found = {}
+    for name, (one, _) in by_id(table).items():
+        found.setdefault(one, []).append(name)
+    return "; ".join(f"{one}: {', '.join(found[one])}" for one in VERDICTS if one in found)
 
 
 def of(ratio):

@@ -27,7 +27,7 @@ def draw(results, look, title, names, smallest=0, largest=float("inf")):
     draw_grid(axes, cells, lambda axes, x, y, height, cell: _cell(axes, x, y, height, cell, look))
     found = crossings(results, cells)
     _line(axes, found, list(columns(cells)))
-    _legend(axes, cells, look, names, found)
+    _legend(axes, cells, look, names, found, paper.dense_pairs(results))
     return figure
 
 
@@ -73,7 +73,7 @@ def crossings(results, cells):
     where that happens between the fills that were timed."""
     found = {}
     for size, mine in columns(cells).items():
-        ratios = [best(results, cell.scene, paper.dense(results), paper.sparse(results)) for cell in mine]
+        ratios = [best(results, cell.scene, paper.dense(results), paper.sparse(results, others=True)) for cell in mine]
         known = [(cell.fill_percent, ratio) for cell, ratio in zip(mine, ratios) if ratio]
         if len(known) > 1:
             fills = [fill for fill, _ in known]
@@ -91,7 +91,7 @@ def _line(axes, found, sizes):
                   path_effects=[effects.withStroke(linewidth=3, foreground="white")])
 
 
-def _legend(axes, cells, look, names, crossed):
+def _legend(axes, cells, look, names, crossed, pairs=""):
     wins = {name: [sum(cell.decided and cell.ranking.winner == name for cell in cells),
                    sum(not cell.decided and cell.settled and name in cell.winners for cell in cells),
                    sum(not cell.settled and not cell.decided and name in cell.winners for cell in cells)] for name in names}
@@ -102,7 +102,7 @@ def _legend(axes, cells, look, names, crossed):
                     label="open: two of those that may be the fastest")]
     shown += handles()
     if crossed:
-        shown.append(Line2D([], [], color=LINE, linewidth=1.6, label="best dense overtakes best sparse library; 95 % band"))
+        shown.append(Line2D([], [], color=LINE, linewidth=1.6, label=f"best dense (BLAS: {pairs}) overtakes\nbest sparse library; 95 % band"))
     shown += [Patch(facecolor="none", label=text) for text in ("1.32×: the second behind the winner", "= 2 more: as fast, within 5 %",
                                                               "? 2 more: may be as fast")]
     axes.legend(handles=shown, loc="upper left", bbox_to_anchor=(1.01, 1.01), fontsize=8)

@@ -1,7 +1,7 @@
 # What the page of the map says besides its figures.
 from analysis.core.text import interval
 from analysis.map import losses, paper, summary
-from analysis.map.ledger import counted
+from analysis.map.ledger import by_id
 from analysis.map.operations import table as table2
 from analysis.map.results import of
 
@@ -16,7 +16,7 @@ def context(tables, view):
             "settled": {layer: summary.settled(tables["cells"], layer) for layer in ("libraries", "all")},
             "dense_from": summary.dense_from(results), "prices": summary.prices(results, libraries),
             "times": losses.step_times(results), "overhead": losses.overhead(results), "centred": losses.LAST_CENTRED,
-            "ledger": ledger, "verdict_counts": counted(tables["claims"]), "title": paper.TITLE,
+            "ledger": ledger, "by_id": by_id(tables["claims"]), "subjects": paper.SUBJECTS, "dense_pairs": paper.dense_pairs(results), "title": paper.TITLE,
             "table2": [row | {"interval": interval(row["ratio"])} for row in table2(results)], "operations": paper.OPERATIONS,
             "pairs": [pair | {"used": _used(results, pair["name"])} for pair in view.registry.listed.get("blas", [])],
             "verdicts": losses.verdicts(results), "checks": losses.checks(results), "losses": losses.losses(results),

@@ -23,9 +23,13 @@ SYSTEMS = {"KLU": ("csc_klu/refactor",),
            "WSMP": ("csc_mumps", "csc_cholmod/supernodal"),
            "SuperLU": ("eigen_sparse/superlu",),
            "optimised dense": ("eigen_dense", "armadillo_dense")}
-OTHERS = ("csc_klu", "csc_umfpack", "eigen_sparse")  # sparse folders besides, that libraries stand behind
+OTHERS = ("csc_klu", "csc_ldl", "csc_umfpack", "eigen_sparse")  # sparse folders of libraries besides, in figures alone
 FULL_PIVOTING = "csc_klu/factor"
 GUARDED = "csc_klu/guarded"
+SUBJECTS = {"T1": "time by phase", "T2": "symbolic preprocessing", "F2": "dense versions", "F4": "sparse solvers",
+            "F5": "sparse against dense over fill", "F6": "regions, 10 to 100 variables", "F7": "regions, larger sizes",
+            "C1": "pivoting of KLU", "C2": "best against starting sparse version", "C3": "BLAS under sparse solvers",
+            "C4": "sparse against dense at small sizes", "C5": "compiler and operating system"}
 
 
 def members(results, system):
@@ -33,18 +37,28 @@ def members(results, system):
     return _named(results, SYSTEMS[system])
 
 
-def dense(results, pairs=False):
-    """The optimised dense ones; with `pairs` on all BLAS pairs that were timed, since the best dense version is the
-    best one measured."""
+def shared(results, system):
+    """Those of them that stand for another system too: such a one cannot tell the two apart."""
+    others = {name for other in SYSTEMS if other != system for name in members(results, other)}
+    return [name for name in members(results, system) if name in others]
+
+
+def dense(results):
+    """The optimised dense ones on all BLAS pairs that were timed: the best dense version is the best one measured."""
     names = members(results, "optimised dense")
-    return names + [one for name in names if pairs for one in results.alternatives(name).implementation.unique()
-                    if one not in names]
+    return names + [one for name in names for one in results.alternatives(name).implementation.unique() if one not in names]
 
 
-def sparse(results):
-    """The sparse solvers of libraries with optimised operations."""
-    return _named(results, [*(name for system, names in SYSTEMS.items() if system != "optimised dense" for name in names),
-                            *OTHERS])
+def dense_pairs(results):
+    """"openblas, reference": the pairs behind the best dense version."""
+    rows = results.timing[(results.timing.status == "ok") & results.timing.implementation.isin(dense(results))]
+    return ", ".join(sorted(rows.blas.unique())) or "none"
+
+
+def sparse(results, others=False):
+    """Sparse solvers that stand for one of the paper's; with `others` those of all libraries with optimised operations."""
+    names = [name for system, found in SYSTEMS.items() if system != "optimised dense" for name in found]
+    return _named(results, [*names, *OTHERS] if others else names)
 
 
 def _named(results, wanted):

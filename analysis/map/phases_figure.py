@@ -30,7 +30,7 @@ def table(results):
                 rows.append({"variables": size, "label": f"paper: starting {kind}",
                              "shares": shares, "paper": True})
             rows.append(_row(results, size, name, name))
-        name = results.fastest(results.natural(size), [*paper.dense(results), *paper.sparse(results)])
+        name = results.fastest(results.natural(size), [*paper.members(results, "optimised dense"), *paper.sparse(results, others=True)])
         rows.append(_row(results, size, name, f"fastest library today: {name}" if name else "fastest library"))
     return rows
 

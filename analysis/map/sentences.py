@@ -1,7 +1,7 @@
 # The answer to "Which implementation is fastest at which size and fill?", from the tables.
 from analysis.map import summary
 from analysis.map.cells import map_cells
-from analysis.map.ledger import counted
+from analysis.map.ledger import told
 from analysis.map.regret import regrets
 from analysis.map.results import of
 
@@ -21,7 +21,7 @@ def answers(tables, view):
         first = whole[0]
         found.append({"text": f"The safest single library is {first['implementation']}: {first['mean']:.2f} times the best on "
                               f"average over {first['of']} cells, {first['worst']:.3g} times at worst.", "anchor": "regret"})
-    found.append({"text": f"The paper's claims: {counted(tables['claims'])}.", "anchor": "claims"})
+    found.append({"text": f"The paper's claims: {told(tables['claims'])}.", "anchor": "claims"})
     return found
 
 

@@ -17,7 +17,7 @@ DODGE = 0.6      # width over which the contenders of a size are spread
 
 def ratios(results):
     """{name: {size: Versus to the one of least time}}; None for that one itself."""
-    found, names = {}, paper.sparse(results)
+    found, names = {}, paper.sparse(results, others=True)
     for size in results.sizes:
         scene = results.natural(size)
         best = results.fastest(scene, names)

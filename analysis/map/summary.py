@@ -44,9 +44,9 @@ def dense_from(results):
     at and above which the best dense library is faster than the best sparse one (None: at none), "last_sparse" the last
     fill with another outcome (None: at none), "between" the first and last fill at which dense is faster if it is not up
     to the last one (or None)."""
-    rows, cells = [], map_cells(results, [*paper.dense(results), *paper.sparse(results)])
+    rows, cells = [], map_cells(results, [*paper.dense(results), *paper.sparse(results, others=True)])
     for size in sorted({cell.variables for cell in cells if cell.fill_asked is not None}):
-        found = [(cell.fill_percent, best(results, cell.scene, paper.dense(results), paper.sparse(results)))
+        found = [(cell.fill_percent, best(results, cell.scene, paper.dense(results), paper.sparse(results, others=True)))
                  for cell in cells if cell.variables == size and cell.ranking]
         if not found:  # nobody was timed there
             continue

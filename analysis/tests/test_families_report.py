@@ -7,7 +7,7 @@ import pandas
 import pytest
 
 from analysis.core.schema import conform, of_part
-from analysis.families import bounds, figures, page, rule, sentences, tables
+from analysis.families import bounds, defaults, figures, page, rule, sentences, tables
 from analysis.tests.test_limit_report import REGISTRY, about, bench, gate
 
 SCENES = ["ladder:2", "grid:3x3"]
@@ -137,3 +137,41 @@ def test_bounds_say_what_does_not_hold_and_where():
     text, holds = rows["compiled code, up to n = 2000"]
     assert holds is False and "not on: beam:100 1.25" in text and "17 of 18" in text
     assert rows["compiled code, above n = 2000"] == ("none was timed", None)
+
+
+def chosen(scene, implementation, status="ok", variables=40, fill=19.0, **more):
+    return {"scene": scene, "implementation": implementation, "variables": variables, "fill": fill, "status": status,
+            "record": f"{scene}/{implementation}"} | more
+
+
+def won(scene, winner, step_us, layer="libraries"):
+    return {"scene": scene, "layer": layer, "winner": winner, "step_us": step_us}
+
+
+def test_a_default_is_held_against_the_fastest_library_where_both_have_times():
+    scenes = [chosen("a", "fast", to_rival=1.0), chosen("a", "slow", to_rival=2.0), chosen("b", "fast", to_rival=1.0),
+              chosen("b", "slow", "slower", step_us=24.0), chosen("c", "fast", to_rival=1.0), chosen("c", "slow", "disagrees"),
+              chosen("d", "slow", "ok", step_us=1.0)]
+    winners = [won("a", "fast", 1.0), won("b", "fast", 3.0), won("c", "fast", 1.0), won("d", "", None), won("d", "slow", 1.0, "all")]
+    rules = (defaults.Rule("R", "S", "slow", lambda n, fill: "slow"), defaults.Rule("Q", "S", "", lambda n, fill: "fast" if fill == 0.19 else "slow"))
+    always, never = defaults.table(scenes, winners, rules).to_dict("records")
+    assert (always["scenes"], always["timed"], always["rough"], always["chosen"]) == (3, 2, 1, "slow on 3")
+    assert (always["mean"], always["worst"], always["where"], always["record"]) == (pytest.approx(4), 8.0, "b", "b/slow")
+    assert (never["mean"], never["worst"], never["timed"], never["rough"]) == (1.0, 1.0, 3, 0)
+
+
+def test_a_default_without_any_time_has_no_loss():
+    row, *_ = defaults.table([chosen("a", "fast", to_rival=1.0)], [won("a", "fast", 1.0)]).to_dict("records")
+    assert (row["timed"], row["mean"], row["where"]) == (0, None, "")
+
+
+@pytest.mark.parametrize("rule, variables, fill, expected", [
+    ("OpenModelica, 2016", 4000, 0.1, defaults.DENSE), ("OpenModelica, 2016", 4001, 0.1, defaults.UMFPACK),
+    ("OpenModelica, linear systems", 40, 0.19, defaults.KLU), ("OpenModelica, linear systems", 40, 0.2, defaults.DENSE),
+    ("OpenModelica, linear systems", 1001, 0.5, defaults.KLU), ("OpenModelica, nonlinear systems", 40, 0.19, defaults.DENSE),
+    ("LinearSolve.jl, 2022", 10_000, 0.1, defaults.KLU), ("LinearSolve.jl, 2023", 10_000, 0.1, defaults.UMFPACK),
+    ("LinearSolve.jl, 2026", 1000, 0.1, defaults.KLU), ("LinearSolve.jl, 2026", 1001, 0.1, defaults.UMFPACK),
+    ("Dense below 50", 49, 0.1, defaults.DENSE), ("Dense below 50", 50, 0.1, defaults.KLU), ("The map of 2008", 901, 0.01, defaults.CHOLMOD),
+    ("The map of 2008", 40, 0.5, defaults.SUPERNODAL)])
+def test_rules_choose_as_their_sources_say(rule, variables, fill, expected):
+    assert next(one for one in defaults.RULES if one.name == rule).choose(variables, fill) == expected
