@@ -34,7 +34,7 @@ def build(records, view):
               for name, rows in (("mechanisms", mechanisms), ("scenes", scenes), ("winners", winners))}
     fills, first = {row["scene"]: row.get("fill") for row in mechanisms}, SCHEMES[0]
     filled = [row | {"fill": fills[row["scene"]]} for row in scenes if row["scheme"] == first and fills.get(row["scene"]) is not None]
-    return tables | {"defaults": defaults.table(filled, [row for row in winners if row["scheme"] == first and row["scene"] in fills]), "growth": growth(tables["scenes"], tables["mechanisms"]) if len(scenes) else pandas.DataFrame(),
+    return tables | {"defaults": defaults.table(filled, [row for row in winners if row["scheme"] == first and fills.get(row["scene"]) is not None]), "growth": growth(tables["scenes"], tables["mechanisms"]) if len(scenes) else pandas.DataFrame(),
                      "orderings": orderings(about), "alone": alone(tables, registry), "held": held(tables, registry).drop(columns="models", errors="ignore")}
 
 
