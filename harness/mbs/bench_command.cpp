@@ -37,9 +37,10 @@ struct Shown {
 void add_options(CLI::App& app, BenchRequest& request, StepOptions& step, Shown& shown) {
   app.add_option("scenes", request.scenes, "scenes (default: four-bar:10 four-bar:40)");
   app.add_option("--implementation", request.implementations,
-                 "folder or folder/variant, repeatable (default: all but examples, and the control "
+                 "folder or folder/variant, several by commas or repeated (default: all but examples, and the control "
                  "null/null that does nothing)")
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->delimiter(',');
   step.add_to(app);
   app.add_option("--steps", request.steps,
                  "steps of the stretch (default: 800, fewer above 400 variables or to be centred)");
