@@ -32,9 +32,10 @@ def _defaults(rows):
     rows = rows[rows["mean"].notna()].sort_values("mean")
     if rows.empty:
         return []
-    told = lambda row: (f"{row['rule']}'s is {'about ' if row['rough'] else ''}{number(row['mean'])} times as slow as the fastest library on average, "
-                        f"{number(row['worst'])} at worst ({row['timed']:.0f} mechanisms)")
-    return [{"anchor": "defaults", "text": f"Of the defaults of other tools, {told(rows.iloc[0])}; {told(rows.iloc[-1])}."}]
+    told = lambda row: (f"that of {row['rule']} ({'about ' if row['rough'] else ''}{number(row['mean'])} times the fastest library's time on "
+                        f"average, {number(row['worst'])} at worst)")
+    return [{"anchor": "defaults", "text": f"Of the defaults of other tools, followed on {number(rows.scenes.max())} mechanisms, the least costly is "
+             f"{told(rows.iloc[0])}, the most costly {told(rows.iloc[-1])}."}]
 
 
 def cases(tables, view):

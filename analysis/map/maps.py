@@ -102,7 +102,7 @@ def _legend(axes, cells, look, names, crossed, pairs=""):
                     label="open: two of those that may be the fastest")]
     shown += handles()
     if crossed:
-        shown.append(Line2D([], [], color=LINE, linewidth=1.6, label=f"best dense (BLAS: {pairs}) overtakes\nbest sparse library; 95 % band"))
+        shown.append(Line2D([], [], color=LINE, linewidth=1.6, label=f"best of the paper's dense kind (on {pairs})\novertakes best sparse library; 95 % band"))
     shown += [Patch(facecolor="none", label=text) for text in ("1.32×: the second behind the winner", "= 2 more: as fast, within 5 %",
                                                               "? 2 more: may be as fast")]
     axes.legend(handles=shown, loc="upper left", bbox_to_anchor=(1.01, 1.01), fontsize=8)
