@@ -67,8 +67,8 @@ def _row(rule, winners, rows):
         chosen[name] += 1
         if row.get("status") == "ok" and row.get("to_rival", 0) > 0:
             losses[scene] = row["to_rival"]
-        elif row.get("status") == "slower" and row["step_us"] > 0:
-            losses[scene] = row["step_us"] / winner["step_us"]
+        elif row.get("status") == "slower" and row["look_us"] > 0:
+            losses[scene] = row["look_us"] / about["look_us"]
             rough += 1
         records[scene] = row.get("record", "")
     where = max(losses, key=losses.get, default="")

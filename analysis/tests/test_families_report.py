@@ -149,8 +149,8 @@ def won(scene, winner, step_us, layer="libraries"):
 
 
 def test_a_default_is_held_against_the_fastest_library_where_both_have_times():
-    scenes = [chosen("a", "fast", to_rival=1.0), chosen("a", "slow", to_rival=2.0), chosen("b", "fast", to_rival=1.0),
-              chosen("b", "slow", "slower", step_us=24.0), chosen("c", "fast", to_rival=1.0), chosen("c", "slow", "disagrees"),
+    scenes = [chosen("a", "fast", to_rival=1.0), chosen("a", "slow", to_rival=2.0), chosen("b", "fast", to_rival=1.0, look_us=2.0),
+              chosen("b", "slow", "slower", step_us=16.0, look_us=16.0), chosen("c", "fast", to_rival=1.0), chosen("c", "slow", "disagrees"),
               chosen("d", "slow", "ok", step_us=1.0)]
     winners = [won("a", "fast", 1.0), won("b", "fast", 3.0), won("c", "fast", 1.0), won("d", "", None), won("d", "slow", 1.0, "all")]
     rules = (defaults.Rule("R", "S", "slow", lambda n, fill: "slow"), defaults.Rule("Q", "S", "", lambda n, fill: "fast" if fill == 0.19 else "slow"))
