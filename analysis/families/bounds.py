@@ -7,11 +7,15 @@ AHEAD = 1.5     # times faster than the fastest library: compiled code, up to ..
 LARGE = 2000    # ... so many variables
 BEHIND = 1.1    # times as slow at most: above
 COMPILED = "compiled_"
+HYBRID, DENSE, SUPERNODAL = "hybrid_dense", "eigen_dense/llt", "csc_cholmod/supernodal"
+FILLED = "four-bar:49,fill=0.50"  # n = 100
+FASTER = 1.9    # times, hybrid_dense there than ...
+SMALL, SLOWER = 22, 1.1  # up to so many variables at most so many times as slow as eigen_dense
 
 
 def bounds(tables, registry):
     """[(what, asked, found, whether it holds; None: not measured)]"""
-    return [*_rule(tables["held"]), *_agreement(tables["scenes"]), *_compiled(tables["scenes"], registry)]
+    return [*_rule(tables["held"]), *_agreement(tables["scenes"]), *_hybrid(tables["scenes"]), *_compiled(tables["scenes"], registry)]
 
 
 def _rule(held):
@@ -30,6 +34,29 @@ def _agreement(scenes):
     where = ", ".join(f"{row.implementation} on {row.scene} ({row.scheme})" for row in wrong.itertuples())
     return [("who is timed agrees with the reference, in both forms", "always", f"{len(asked) - len(wrong)} of {len(asked)} checks"
              + (f"; not: {where}" if where else ""), None if asked.empty else wrong.empty)]
+
+
+def _hybrid(scenes):
+    """The fastest variant of hybrid_dense, in the paper's form."""
+    found = {scene: rows.set_index("implementation") for scene, rows in scenes[scenes.scheme == "penalty"].groupby("scene", sort=False)}
+    for other in (DENSE, SUPERNODAL):
+        ratio = _over(found[FILLED], other) if FILLED in found else None
+        yield (f"hybrid_dense on {FILLED}, beside {other}", f"at least {FASTER:g} times as fast",
+               *((f"{ratio:.2f} times", ratio >= FASTER) if ratio else ("not measured", None)))
+    small = {scene: 1 / ratio for scene, rows in found.items() if rows.variables.iloc[0] <= SMALL and (ratio := _over(rows, DENSE))}
+    bad = ", ".join(f"{scene} {ratio:.2f}" for scene, ratio in small.items() if ratio > SLOWER)
+    yield (f"hybrid_dense, up to n = {SMALL}, beside {DENSE}", f"at most {SLOWER:g} times as slow",
+           *((f"at most {max(small.values()):.2f} times, on {len(small)} mechanisms" + (f"; not on: {bad}" if bad else ""), not bad)
+             if small else ("not measured", None)))
+
+
+def _over(rows, other):
+    """Time of `other` over that of the fastest hybrid_dense: timed in turns, where both were, else of the look; None if there is none."""
+    for column in ("to_rival", "look_us"):
+        mine = rows[rows.index.str.startswith(f"{HYBRID}/")][column].dropna()
+        if other in rows.index and len(mine) and rows[column][other] > 0:
+            return rows[column][other] / mine.min()
+    return None
 
 
 def _compiled(scenes, registry):

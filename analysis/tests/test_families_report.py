@@ -139,6 +139,16 @@ def test_bounds_say_what_does_not_hold_and_where():
     assert rows["compiled code, above n = 2000"] == ("none was timed", None)
 
 
+def test_hybrid_is_held_against_those_it_replaces_on_the_look_where_one_was_not_timed():
+    rows = [("hybrid_dense/llt", 1.0, 2.0), ("hybrid_dense/panels", None, 1.5), ("eigen_dense/llt", 1.5, 9.0), ("csc_cholmod/supernodal", None, 6.0)]
+    scenes = pandas.DataFrame([{"scene": scene, "scheme": "penalty", "variables": size, "implementation": name, "to_rival": ratio, "look_us": look}
+                               for scene, size in ((bounds.FILLED, 100), ("chain:3", 6)) for name, ratio, look in rows])
+    found = {what: (text, holds) for what, _, text, holds in bounds._hybrid(scenes)}
+    assert found[f"hybrid_dense on {bounds.FILLED}, beside eigen_dense/llt"] == ("1.50 times", False)
+    assert found[f"hybrid_dense on {bounds.FILLED}, beside csc_cholmod/supernodal"] == ("4.00 times", True)
+    assert found["hybrid_dense, up to n = 22, beside eigen_dense/llt"][1] is True
+
+
 def chosen(scene, implementation, status="ok", variables=40, fill=19.0, **more):
     return {"scene": scene, "implementation": implementation, "variables": variables, "fill": fill, "status": status,
             "record": f"{scene}/{implementation}"} | more
