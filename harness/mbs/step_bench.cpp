@@ -99,6 +99,7 @@ TimingWishes wishes_of(const BenchRequest& request, const BenchFlags& flags) {
   if (!request.summary) return wishes;
   wishes.by_layer = true;
   wishes.slower_than = request.slower_than.value_or(kSummarySlowerThan);
+  if (!request.slower_than) wishes.budget = kSummaryBudget;
   wishes.patience = request.patience.value_or(kSummaryPatience);
   return wishes;
 }

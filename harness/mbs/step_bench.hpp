@@ -10,8 +10,9 @@
 namespace mbs {
 
 /// What a summary leaves out unless the user says otherwise: times the fastest of its layer, and s
-/// for the first stretch.
-inline constexpr double kSummarySlowerThan = 10.0, kSummaryPatience = 5.0;
+/// for the first stretch; and where its samples would take longer than so many s, it leaves out
+/// more.
+inline constexpr double kSummarySlowerThan = 10.0, kSummaryPatience = 5.0, kSummaryBudget = 5.0;
 
 /// Times the cells, scene by scene, and reports as the request and the flags say: summaries,
 /// tables, or rows of JSON or CSV, on standard output; rows of JSON in the output file. Returns 1

@@ -163,6 +163,21 @@ TEST_F(SceneTimingTest, LeavesOutTheSlowOfEachLayer) {
   EXPECT_TRUE(result.contenders[2].timed()) << "slower than a library only";
 }
 
+TEST_F(SceneTimingTest, NarrowsWhatItLeavesOutToFitItsBudget) {
+  add("fast", create_scripted<Script::still>);
+  add("slow", create_scripted<Script::slow>);
+  wishes_.slower_than = 1e9;
+  wishes_.by_layer = true;
+  wishes_.budget = 100.0;
+  EXPECT_TRUE(time().contenders[1].timed());
+  wishes_.budget = 1e-6;
+  const SceneResult result = time();
+  EXPECT_TRUE(result.contenders[0].timed()) << "the fastest of its layer stays";
+  EXPECT_TRUE(result.contenders[1].failure.starts_with(
+      "slower: at least 5 times the fastest of its layer (first look: "))
+      << result.contenders[1].failure;
+}
+
 TEST_F(SceneTimingTest, DoesNotSetUpWhatItsOperationsRuleOut) {
   const StepSettings settings{1e-7, 1e8, 1e-9, 20};
   Scene scene = load_scene("four-bar:1000");

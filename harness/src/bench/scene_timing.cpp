@@ -40,6 +40,7 @@ class SceneTiming {
   void look(Contender& contender);
   void warm_up(Contender& contender);
   void leave_out_slow();
+  void narrow();
   void plan();
   void take_samples();
   void end();
@@ -58,14 +59,15 @@ class SceneTiming {
   }
   /// s a step, from which on it is too slow.
   [[nodiscard]] double slow(const Contender& contender) const {
-    return *wishes_.slower_than * fastest_[layer(contender)];
+    return slower_than_ * fastest_[layer(contender)];
   }
   [[nodiscard]] std::string slower_text() const {
-    return fmt::format("slower: at least {:g} times the fastest{}", *wishes_.slower_than,
+    return fmt::format("slower: at least {:g} times the fastest{}", slower_than_,
                        wishes_.by_layer ? " of its layer" : "");
   }
 
   static constexpr double kNever = std::numeric_limits<double>::infinity();
+  double slower_than_;                             ///< as wished or narrower; kNever without a wish
   std::array<double, 2> fastest_{kNever, kNever};  ///< s a step, of each layer
 };
 
@@ -79,7 +81,10 @@ double least_dense_step(const PlannedScene& planned) {
 
 SceneTiming::SceneTiming(std::span<const PlannedCell> cells, const TimingWishes& wishes,
                          const Watch& watch)
-    : wishes_(wishes), watch_(watch), result_{cells.front().scene, {}, 0, {}} {
+    : wishes_(wishes),
+      watch_(watch),
+      result_{cells.front().scene, {}, 0, {}},
+      slower_than_(wishes.slower_than.value_or(kNever)) {
   for (const PlannedCell& cell : cells) result_.contenders.emplace_back().cell = &cell;
   for (ContenderResult& result : result_.contenders) contenders_.emplace_back().result = &result;
   if (!wishes.by_layer) return;
@@ -164,6 +169,20 @@ void SceneTiming::leave_out_slow() {
   }
 }
 
+/// Until the warm-up and the least number of samples fit, as far as the first looks tell.
+void SceneTiming::narrow() {
+  if (!wishes_.budget) return;
+  for (const double narrower : {5.0, 3.0, 2.0}) {
+    double stretch = 0.0;
+    for (const Contender& contender : contenders_) {
+      if (contender.in_race()) stretch += contender.step_seconds * result_.scene->stretch.steps;
+    }
+    if (stretch * (1 + kLeastByLayer) <= *wishes_.budget) return;
+    slower_than_ = std::min(slower_than_, narrower);
+    leave_out_slow();
+  }
+}
+
 void SceneTiming::plan() {
   std::vector<double> seconds, typical;
   for (const Contender& contender : contenders_) {
@@ -230,6 +249,7 @@ SceneResult SceneTiming::run() {
     }
   };
   for_all("set-up", &SceneTiming::look);
+  narrow();
   for_all("warm-up", &SceneTiming::warm_up);
   leave_out_slow();
   plan();

@@ -30,6 +30,8 @@ struct TimingWishes {
   /// a winner; the likely fast are looked at first; a dense variant whose factorization alone would
   /// be too slow on any machine is not even set up.
   bool by_layer = false;
+  /// s of processor time: where what is left does not fit, `slower_than` narrows to 5, 3 and 2.
+  std::optional<double> budget;
   bool phases = false;
 };
 
