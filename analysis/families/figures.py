@@ -47,7 +47,7 @@ def real_map(tables, look, registry, machine):
                   markerfacecolor=look.colour(members[1] if len(members) > 1 else members[0]) if known else "white", linestyle="none")
     _scales(left, rows.n, rows[DECIDES], NAMED[DECIDES])
     left.set_title(f"Fastest library, by size and sparsity of the factor\n{machine}")
-    _lead(right, rows, winners, scenes, look, marks, registry)
+    _lead(right, rows, scenes, look, marks, registry)
     colours = [Patch(facecolor=colour, label=name) for name, colour in shown.items()]
     forms = [Line2D([], [], marker=mark, linestyle="none", color="#444444", label=family) for family, mark in marks.items()]
     empty = Line2D([], [], marker="o", linestyle="none", markerfacecolor="white", markeredgecolor="#444444", label="not decided")
@@ -57,10 +57,16 @@ def real_map(tables, look, registry, machine):
     return figure
 
 
-def _lead(axes, rows, winners, scenes, look, marks, registry):
-    """Times faster than the fastest library, by size: the fastest code of our own on each mechanism."""
+def fastest_own(scenes, registry):
+    """The row of the fastest code of our own on each mechanism, in the form that `best_form` takes."""
     own = scenes[scenes.implementation.isin(registry.own) & (scenes.status == "ok") & (scenes.verdict == "agrees") & scenes.to_rival.notna()]
-    fastest = own.merge(rows[["scene", "scheme", "n"]], on=["scene", "scheme"]).sort_values("to_rival").drop_duplicates("scene")
+    order = {scheme: place for place, scheme in enumerate(SCHEMES)}
+    return own.assign(place=own.scheme.map(order)).sort_values(["place", "to_rival"]).drop_duplicates("scene").drop(columns="place")
+
+
+def _lead(axes, rows, scenes, look, marks, registry):
+    """Times faster than the fastest library, by size: the fastest code of our own on each mechanism."""
+    fastest = fastest_own(scenes, registry).merge(rows[["scene", "scheme", "n"]], on=["scene", "scheme"])
     if fastest.empty:
         missing(axes, "no code of our own was timed")
         return

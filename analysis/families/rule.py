@@ -29,6 +29,27 @@ def rule(tables, registry):
                        for scene, (fastest, step) in data.fastest().items()]}
 
 
+def leaves(tables, registry):
+    """[(conditions, library, its losses where the tree ends there)] of the rule on all mechanisms; conditions: (feature, whether
+    below, number)."""
+    data = _Data(tables, registry)
+    if data.families < 2 * LEAST:
+        return []
+    tree, rows = data.tree(), [(data.asked(scene, scheme), losses) for scheme, one in data.losses.items() for scene, losses in one.iterrows()]
+    found = []
+
+    def walk(node, conditions):
+        if "take" in node:
+            here = [losses.get(node["take"], MISSED) for features, losses in rows
+                    if all((features[feature] < number) == below for feature, below, number in conditions)]
+            found.append((conditions, node["take"], here))
+        else:
+            walk(node["then"], [*conditions, (node["feature"], True, node["below"])])
+            walk(node["else"], [*conditions, (node["feature"], False, node["below"])])
+    walk(tree, [])
+    return found
+
+
 def alone(tables, registry):
     """A row for each feature: what trees lose on families left out that may ask for it alone. [Which number decides?]"""
     data, rows = _Data(tables, registry), []

@@ -1,7 +1,15 @@
 # The answer to "Which implementation is fastest on real mechanisms, at their own fill?", from the tables.
 from analysis.core.text import number
-from analysis.families.figures import best_form
-from analysis.families.rule import rule
+from analysis.families.figures import best_form, fastest_own
+from analysis.families.rule import leaves, rule
+
+NAMES = {  # of features: from a number on, below it
+    "fill": ("fill of the tangent {} % or more", "fill of the tangent below {} %"),
+    "n": ("{} variables or more", "fewer than {} variables"),
+    "per_column": ("{} or more non-zeros a column of the factor", "fewer than {} non-zeros a column of the factor"),
+    "flops": ("factorizations of {} operations or more", "factorizations of fewer than {} operations"),
+    "height": ("an elimination tree of height {} or more", "an elimination tree lower than {}"),
+    "saddle": ("saddle-point form", "penalty form")}
 
 
 def answers(tables, view):
@@ -39,17 +47,23 @@ def _defaults(rows):
 
 
 def cases(tables, view):
-    """Rows of the front page's table: the rule's leaves, with what each costs where it chooses, and who leads most mechanisms."""
-    mine, scenes = best_form(tables["winners"], "libraries"), tables["scenes"]
-    if mine.empty:
-        return []
-    real = _real(mine)
-    names = _led(real)
-    name = max(names, key=names.get)
-    others = scenes[(scenes.implementation == name) & (scenes.status == "ok") & scenes.scene.isin(real.scene) & (scenes.scheme == "penalty")]
-    return [{"case": f"Your mechanism is like one of {real.family.nunique()} families, at its own fill", "link": "families.html#map",
-             "take": f"{name}: in front among libraries, or as fast to 5 %, on {names[name]} of {len(real)} mechanisms ({_said(real)} decided); at "
-                     f"most {number(others.to_rival.max())} times the fastest where it was timed ({len(others)})"}]
+    """Rows of the front page's table: the ends of the rule, each with what it costs there."""
+    found = [{"case": _asked(conditions), "link": "families.html#rule",
+              "take": f"{name}: {100 * sum(losses) / len(losses):.1f} % longer than the fastest library on average, {100 * max(losses):.0f} % at worst ({len(losses)} cases)"}
+             for conditions, name, losses in leaves(tables, view.registry)]
+    ahead = fastest_own(tables["scenes"], view.registry)
+    if len(ahead):
+        names = ", ".join(f"{name} on {count}" for name, count in ahead.implementation.value_counts().items())
+        found.append({"case": "You may take code that is no library", "link": "families.html#map",
+                      "take": f"fastest: {names}; {number(1 / ahead.to_rival.max())} to {number(1 / ahead.to_rival.min())} times as fast as the fastest "
+                              f"library, {number(1 / ahead.to_rival.median())} in the middle"})
+    return found
+
+
+def _asked(conditions):
+    """"Fill below 30 %, 50 variables or more": of a leaf."""
+    said = [NAMES[feature][below].format(number(value)) for feature, below, value in conditions]
+    return ", ".join(said)[:1].upper() + ", ".join(said)[1:] if said else "Any mechanism"
 
 
 def files(tables, view):

@@ -11,19 +11,6 @@ def answers(tables, view):
     return found or [{"text": "Not measured: no implementation that could be timed took part.", "anchor": ""}]
 
 
-def cases(tables, view):
-    """Row of the front page's table: the code of our own that is shown to be faster on most scenes."""
-    rows = _of_scenes(tables["leads"])
-    if rows.empty:
-        return []
-    ahead = (rows.low > 1).groupby(rows.implementation).sum()
-    name = max(ahead.index, key=lambda name: (ahead[name], rows.lead[rows.implementation == name].median()))
-    mine = rows[rows.implementation == name]
-    return [{"case": "You may take code that is no library", "link": "limit.html#ahead",
-             "take": f"{name}: shown to be faster than the fastest library in {(mine.low > 1).sum()} of {len(mine)} scenes "
-                     f"({span(mine.lead)} times)"}]
-
-
 def _multiples(rows, view):
     """The fastest library and the fastest of our own, each over the sizes that it was timed at."""
     sides = {"the fastest library": rows[rows.implementation.isin(view.registry.libraries)],

@@ -66,8 +66,8 @@ def test_figure_page_and_sentences_of_a_small_set_and_of_none():
         assert all(one["text"].endswith(".") for one in sentences.answers(found, VIEW))
     texts = [one["text"] for one in sentences.answers(small(), VIEW)]
     assert "one/a on 2, one/b on 1" in texts[0] and "faster than the fastest library on 1 of 1" in texts[1]
-    [case] = sentences.cases(small(), VIEW)
-    assert case["take"].startswith("one/a: in front among libraries, or as fast to 5 %, on 2 of 2 mechanisms (2 decided)")
+    [case] = sentences.cases(small(), VIEW)  # too few mechanisms for a rule
+    assert case["take"] == "fastest: own/x on 1; 2 to 2 times as fast as the fastest library, 2 in the middle"
     assert sentences.cases(made(), VIEW) == []
 
 
@@ -108,6 +108,13 @@ def test_the_rule_finds_the_number_that_decides_and_holds_on_families_left_out()
     assert found["held"]["mean_loss"] == 0 and found["held"]["worst_loss"] == 0 and found["held"]["within"] == 1
     assert found["times"]["own/x"]["layer"] == "own" and found["times"]["one/a"]["penalty"]["low"] <= 1
     assert {row["scene"]: row["fastest"] for row in found["scenes"]}["beam:10"] == "one/b"
+
+
+def test_the_front_page_tells_each_end_of_the_rule_and_what_it_costs_there():
+    first, second, own = sentences.cases(mechanisms(), VIEW)
+    assert first["case"].startswith("Fewer than") and first["case"].endswith("non-zeros a column of the factor")
+    assert first["take"] == "one/a: 0.0 % longer than the fastest library on average, 0 % at worst (9 cases)" and "one/b" in second["take"]
+    assert own["take"].startswith("fastest: own/x on 18")
 
 
 def test_a_rule_is_judged_on_what_it_was_not_fitted_on():

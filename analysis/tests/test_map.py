@@ -188,15 +188,6 @@ def test_without_times_the_answer_says_so():
     assert "Nothing was timed" in answer["text"]
 
 
-def test_the_front_page_gets_a_case_for_sparse_and_one_for_filled_tangents():
-    rows = [row for size in (10, 22) for row in cell(A, size, 2.0, 2.0) + cell(B, size, 1.0, 1.0) + cell(OWN, size, 0.1, 0.1)]
-    rows += cell(A, 22, 1.0, 1.0, fill=0.75) + cell(B, 22, 3.0, 3.0, fill=0.75)
-    found = some(rows)
-    sparse, filled = sentences.cases({"tidy": found.tidy, "verification": found.verification}, found.view)
-    assert "10 to 22" in sparse["case"] and sparse["take"].startswith(f"{B}: 1.00 times")
-    assert filled["take"].startswith(f"{A}: 1.00 times") and filled["link"] == "map.html#regret"
-
-
 def test_a_scene_is_read_off_its_name():
     assert tidy.scene_of("four-bar:24,fill=0.35") == {"scene": "four-bar:24,fill=0.35", "variables": 50, "fill_asked": 0.35}
     assert tidy.scene_of("four-bar:4")["fill_asked"] is None
