@@ -90,8 +90,7 @@ class IdaEngine final : public Engine {
     set_tolerances(settings, mbs::extent(scene.model.points()), duration);
     need(IDASetLinearSolver(ida, solver_.get(), matrix_.get()), "IDASetLinearSolver");
     need(IDASetJacFn(ida, derivative), "IDASetJacFn");
-    const auto ordering = settings.choice("ordering", {"colamd", "amd"});
-    need(SUNLinSol_KLUSetOrdering(solver_.get(), ordering == 0 ? 1 : 0), "its ordering");
+    need(SUNLinSol_KLUSetOrdering(solver_.get(), 0), "its ordering");  // AMD
     need(IDASetMaxOrd(ida, static_cast<int>(settings.positive("order", 5))), "its order");
     need(IDASetNonlinConvCoef(ida, settings.positive("newton", 0.33)), "IDASetNonlinConvCoef");
     need(IDASetStopTime(ida, duration), "IDASetStopTime");
@@ -139,21 +138,18 @@ class IdaEngine final : public Engine {
   [[nodiscard]] N_Vector vector() const { return N_VNew_Serial(size(), context_.get()); }
 
   /// Absolute, in shares of the scene's size for q and of the size over the duration for v: where
-  /// the origin lies makes no difference. Multipliers are not controlled, and with `multipliers`
-  /// at free no more than solved for: Newton's method does not wait for them either.
+  /// the origin lies makes no difference. Multipliers are solved for, and decide nothing: neither a
+  /// step's length nor when Newton's method ends.
   void set_tolerances(Settings& settings, double length, double duration) {
     const double accuracy = settings.positive("accuracy", 1e-4);
-    const bool free = settings.choice("multipliers", {"free", "solved"}) == 0;
     const Owned<_generic_N_Vector> absolute(vector()), differential(vector());
     const std::size_t n = problem_.coordinates();
     for (std::size_t i = 0; i < problem_.size(); ++i) {
-      const double y = std::abs(NV_DATA_S(y_.get())[i]);
       NV_DATA_S(differential.get())[i] = i < 2 * n ? 1.0 : 0.0;
       NV_DATA_S(absolute.get())
       [i] = i < n       ? accuracy * length
             : i < 2 * n ? accuracy * length / duration
-            : free      ? 1e30
-                        : std::max(accuracy, y * accuracy);
+                        : 1e30;
     }
     need(IDASVtolerances(ida_.get(), 0.0, absolute.get()), "IDASVtolerances");
     need(IDASetId(ida_.get(), differential.get()), "IDASetId");

@@ -17,10 +17,7 @@ IdaProblem::IdaProblem(const mbs::Model& model, Settings& settings, double durat
       phi_(m_),
       rate_(m_),
       acceleration_(m_) {
-  if (!ggl_) {
-    w_ = settings.number("rate", 20.0) / duration;
-    e_ = settings.number("compliance", 0.0);
-  }
+  if (!ggl_) w_ = settings.number("rate", 20.0) / duration;
   std::ranges::copy(model.initial_velocity(), v_.begin());
   write(std::vector<double>(size()).data(), 1.0);
   matrix_.settle(size());
@@ -49,7 +46,7 @@ void IdaProblem::residual(const double* y, const double* y_rate, double* r) {
       rest[k] = phi_[k];
       rest[m_ + k] = rate_[k];
     } else {
-      rest[k] = acceleration_[k] + 2 * w_ * rate_[k] + w_ * w_ * phi_[k] - e_ * lambda[k];
+      rest[k] = acceleration_[k] + 2 * w_ * rate_[k] + w_ * w_ * phi_[k];
     }
   }
 }
@@ -85,14 +82,12 @@ void IdaProblem::write(const double* y, double c) {
   of_.write_jacobian(q, w_ * w_, {rest, 0}, matrix_);
   of_.write_jacobian(q, c + 2 * w_, {rest, n_}, matrix_);
   of_.write_jacobian_change(v_.data(), 2.0, {rest, n_}, matrix_);
-  for (std::size_t k = 0; k < m_; ++k) matrix_.add(rest + k, rest + k, -e_);
 }
 
 void IdaProblem::write_start(SparseWriter& to) const {
   of_.write_mass(1.0, {0, 0}, to);
   of_.write_jacobian(q_.data(), 1.0, {0, n_}, to, true);
   of_.write_jacobian(q_.data(), 1.0, {n_, 0}, to);
-  for (std::size_t k = 0; k < m_; ++k) to.add(n_ + k, n_ + k, -e_);
 }
 
 void IdaProblem::start(double* y, double* y_rate) {
@@ -101,7 +96,7 @@ void IdaProblem::start(double* y, double* y_rate) {
   std::copy_n(q_.begin(), n_, y);
   std::copy_n(v_.begin(), n_, y + n_);
   std::copy_n(v_.begin(), n_, y_rate);
-  // [M, Phi_q^T; Phi_q, -e] [a; lambda] = [Q; -(Phi_q)' v]; a is zero so far.
+  // [M, Phi_q^T; Phi_q, 0] [a; lambda] = [Q; -(Phi_q)' v]; a is zero so far.
   SparseWriter to;
   write_start(to);
   to.settle(n_ + m_);

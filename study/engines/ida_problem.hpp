@@ -9,8 +9,8 @@ namespace engines {
 /// The unknowns y are q, v, lambda and, in the first form, mu, one after the other:
 ///   ggl        q' = v - Phi_q^T mu,  M v' = Q - Phi_q^T lambda,  Phi = 0,  Phi_q v = 0
 ///              (index 2) [Gear, Leimkuhler, Gupta, 1985]
-///   baumgarte  q' = v,  M v' = Q - Phi_q^T lambda,  Phi'' + 2 w Phi' + w^2 Phi = e lambda
-///              (index 1) [Baumgarte, 1972]; with e > 0 it is regular where Phi_q loses rank
+///   baumgarte  q' = v,  M v' = Q - Phi_q^T lambda,  Phi'' + 2 w Phi' + w^2 Phi = 0
+///              (index 1) [Baumgarte, 1972]
 ///
 /// [Gear, Leimkuhler, Gupta, 1985] C. W. Gear, B. Leimkuhler, G. K. Gupta, Automatic integration of
 /// Euler-Lagrange equations with constraints, J. Comput. Appl. Math. 12-13, 77-90.
@@ -18,7 +18,7 @@ namespace engines {
 /// dynamical systems, Comput. Methods Appl. Mech. Eng. 1, 1-16.
 class IdaProblem {
  public:
-  /// Settings: form, rate (w in 1 / `duration`) and compliance (e, m^4/J).
+  /// Settings: form, and of the second its rate, w times `duration`.
   IdaProblem(const mbs::Model& model, Settings& settings, double duration);
 
   [[nodiscard]] std::size_t coordinates() const { return n_; }
@@ -39,7 +39,8 @@ class IdaProblem {
   const Equations of_;
   const bool ggl_;
   std::size_t n_, m_;
-  double w_ = 0.0, e_ = 0.0;
+  double w_ = 0.0;  // 1/s
+
   std::vector<double> q_, v_, a_, sum_;  // extended
   std::vector<double> phi_, rate_, acceleration_;
   SparseWriter matrix_;
