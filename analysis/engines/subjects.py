@@ -55,7 +55,7 @@ class Subject:
     @property
     def steps(self):
         """s, the longest and the shortest of ours."""
-        return (1e-4, 1e-7) if self.name == ANDREWS else (2e-2, 1e-5)
+        return (4e-4, 1e-7) if self.name == ANDREWS else (2e-2, 1e-5)
 
     @property
     def title(self):

@@ -9,7 +9,7 @@ namespace engines {
 namespace {
 
 void refuse(bool there, const char* what) {
-  if (there) throw UsageError(std::string("a solver of this kind is not given ") + what);
+  if (there) throw UsageError(std::string("no scene ") + what + " is given to a solver");
 }
 
 }  // namespace
@@ -17,10 +17,10 @@ void refuse(bool there, const char* what) {
 Equations::Equations(const mbs::Model& model)
     : n_(static_cast<std::size_t>(model.variables())),
       gravity_(model.force().begin(), model.force().end()) {
-  refuse(model.dimension() != 2, "scenes in three dimensions");
-  refuse(!model.torsion_springs().empty(), "torsion springs");
-  refuse(!model.force_laws().empty() || !model.torque_laws().empty(), "laws of force");
-  refuse(!model.driven_points().empty() || !model.driven_values().empty(), "drivers");
+  refuse(model.dimension() != 2, "in three dimensions");
+  refuse(!model.torsion_springs().empty(), "with torsion springs");
+  refuse(!model.force_laws().empty() || !model.torque_laws().empty(), "with laws of force");
+  refuse(!model.driven_points().empty() || !model.driven_values().empty(), "with drivers");
   start_.assign(model.initial_position().begin(), model.initial_position().end());
   std::vector<std::size_t> places;  // of each point's x in an extended vector
   for (const mbs::Point& point : model.points()) {
@@ -66,7 +66,7 @@ void Equations::take_constraints(const mbs::Model& model, const std::vector<std:
 
 void Equations::take_forces(const mbs::Model& model, const std::vector<std::size_t>& places) {
   for (const mbs::Spring& one : model.springs()) {
-    refuse(one.damping != 0.0, "dampers");
+    refuse(one.damping != 0.0, "with dampers");
     springs_.push_back({places[static_cast<std::size_t>(one.a)],
                         places[static_cast<std::size_t>(one.b)], one.stiffness, one.length});
   }
