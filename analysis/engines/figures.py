@@ -11,11 +11,12 @@ from analysis.engines.equal_error import SIDES, of_side
 from analysis.engines.runs import NATIVE
 from analysis.engines.subjects import Subject
 
-COLOURS = {"simbody": "#0072B2", "mujoco": "#D55E00", "ode": "#009E73", "bullet": "#CC79A7"}
-NAMES = {"simbody": "Simbody", "mujoco": "MuJoCo", "ode": "Open Dynamics Engine", "bullet": "Bullet"}
+COLOURS = {"simbody": "#0072B2", "mujoco": "#D55E00", "ode": "#009E73", "bullet": "#CC79A7", "dart": "#56B4E9", "ida": "#B8860B"}
+NAMES = {"simbody": "Simbody", "mujoco": "MuJoCo", "ode": "Open Dynamics Engine", "bullet": "Bullet", "dart": "DART",
+         "ida": "SUNDIALS IDA"}
 LINES = {"chains": {"color": "black", "linewidth": 2.2}, "fronts": {"color": "black", "linewidth": 1.4, "linestyle": (0, (4, 1.5))},
          "library": {"color": "#5B3A9E", "linewidth": 1.8}, "paper": {"color": "#8A8A00", "linewidth": 1.4, "linestyle": (0, (1, 1))}}
-HEADROOM = 0.13  # share of the height that runs which lost the motion have for themselves
+HEADROOM = 0.16  # share of the height that runs which lost the motion have for themselves
 NOT_MADE = ("unavailable", "not-reached", "dropped")
 
 
@@ -35,7 +36,7 @@ def panels(tables, subjects, own):
         missing(axes, "Not measured.")
         return figure
     engines, ours = tables["engines"], tables["ours"].rename(columns={"implementation": "name"})
-    columns = min(3, len(subjects))
+    columns = 2 if len(subjects) == 4 else min(3, len(subjects))
     lines = -(-len(subjects) // columns)
     figure, grid = plt.subplots(lines, columns, figsize=(5.2 * columns + 0.8, 4.1 * lines + 0.9), squeeze=False,
                                 sharex=True, sharey=True)
@@ -64,8 +65,8 @@ def panels(tables, subjects, own):
 
 
 def _panel(axes, engines, ours, own):
-    for place, (engine, rows) in enumerate(engines[~engines.engine.str.endswith(NATIVE)].groupby("engine", sort=False)):
-        colour, marker = look(engine, place)
+    for engine, rows in engines[~engines.engine.str.endswith(NATIVE)].groupby("engine", sort=False):
+        place, (colour, marker) = place_of(engine), look(engine)
         done = finished(rows)
         axes.plot(done.time, done.error, linestyle="none", marker=marker, markersize=3, color=colour, alpha=0.3,
                   markeredgewidth=0)
@@ -82,8 +83,13 @@ def _panel(axes, engines, ours, own):
         axes.plot(front.time, front.error, **line)
 
 
-def look(engine, place):
-    return COLOURS.get(engine, GREY), MARKERS[place % len(MARKERS)]
+def look(engine):
+    return COLOURS.get(engine, GREY), MARKERS[place_of(engine) % len(MARKERS)]
+
+
+def place_of(engine):
+    """The same in every panel, whoever takes part in it."""
+    return list(COLOURS).index(engine) if engine in COLOURS else len(COLOURS)
 
 
 def title(engine):
@@ -93,8 +99,8 @@ def title(engine):
 
 def _key(engines):
     entries = [Line2D([], [], label=f"ours: {SIDES[side]}", **line) for side, line in LINES.items()]
-    for place, engine in enumerate(sorted(one for one in engines if not one.endswith(NATIVE))):
-        colour, marker = look(engine, place)
+    for engine in sorted((one for one in engines if not one.endswith(NATIVE)), key=place_of):
+        colour, marker = look(engine)
         entries.append(Line2D([], [], color=colour, marker=marker, label=f"{title(engine)}: Pareto front"))
     return [*entries, Line2D([], [], color=GREY, marker="o", markersize=3, alpha=0.4, linestyle="none",
                              label="other runs of an engine"),

@@ -6,7 +6,7 @@ from analysis.core.text import bounded, ends, number, rough
 from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import NOT_MADE, title
 from analysis.engines.runs import NATIVE
-from analysis.engines.subjects import Subject
+from analysis.engines.subjects import ANDREWS, Subject
 
 
 def answers(tables, view):
@@ -15,6 +15,7 @@ def answers(tables, view):
         reasons = dict.fromkeys(tables["engines"].reason)
         return [{"text": f"Not measured: {'; '.join(one for one in reasons if one) or 'no engine took part'}.", "anchor": ""}]
     found = [{"text": text, "anchor": "equal"} for text in map(lambda side: of_side(table, side), SIDES) if text]
+    found += [{"text": text, "anchor": "equal"} for text in of_andrews(table)]
     flags = of_native(tables["native"])
     return found + ([{"text": flags, "anchor": "native"}] if flags else [])
 
@@ -36,6 +37,27 @@ def of_side(table, side):
     if len(timed) < len(rows):
         text += f"; it does not reach {len(rows) - len(timed)} of these errors"
     return text + "."
+
+
+def of_andrews(table):
+    """A sentence for each solver that simulated Andrews' mechanism: its time over that of each side of ours."""
+    for engine, rows in table[table.subject == ANDREWS].groupby("engine", sort=False):
+        compared = [text for side in SIDES for text in [_times(rows[rows.side == side], SIDES[side])] if text]
+        if compared:
+            errors = rows.engine_error
+            yield (f"{title(engine)} on Andrews' mechanism, at its errors from {number(errors.max(), 2)} to "
+                   f"{number(errors.min(), 2)} m, takes " + "; ".join(compared) + ".")
+
+
+def _times(rows, side):
+    """"0.4 to 2 times as long as SIDE, which does not reach 1 of 5 errors"; "" if SIDE reaches none."""
+    timed = rows[rows.ratio.notna()]
+    if timed.empty:
+        return ""
+    least, most = number(timed.ratio.min(), 2), number(timed.ratio.max(), 2)
+    text = f"{least} to {most} times as long as {side}" if least != most else f"{least} times as long as {side}"
+    missed = len(rows) - len(timed)
+    return text + (f", which does not reach {missed} of {len(rows)} of them" if missed else "")
 
 
 def of_native(native):

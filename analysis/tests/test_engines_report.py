@@ -8,7 +8,7 @@ import pytest
 from analysis.core.records import Record
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
-from analysis.engines import equal_error, figures, page, sentences, tables
+from analysis.engines import andrews, equal_error, figures, page, sentences, tables
 from analysis.engines.runs import row
 from analysis.engines.subjects import FLOOR, PENDULUM_S, Subject, positions
 
@@ -138,6 +138,26 @@ def test_figures_page_and_answers(found):
     assert "it does not reach 1 of these errors" in texts[0]
 
 
+def test_a_sentence_on_andrews_mechanism():
+    runs = [(theirs, ("ida", 1e-4, 4.0, 1e-3), {"subject": "andrews"}), (theirs, ("ida", 1e-5, 9.0, 1e-6), {"subject": "andrews"}),
+            (mine, ("lib/a", 1e-4, 2.0, 1e-4), {"subject": "andrews"}), (mine, (equal_error.FRONTS, 1e-4, 1.0, 1e-7), {"subject": "andrews"})]
+    motion = numpy.moveaxis(andrews.positions(numpy.array([0.0, 0.03])), 2, 0)  # time, point, axis
+    table = made(*(record for make, arguments, more in runs for record in [known(make(*arguments, **more), motion)]), *rounds(runs))
+    [text] = sentences.of_andrews(table["equal_error"])
+    assert text == ("SUNDIALS IDA on Andrews' mechanism, at its errors from 0.001 to 10⁻⁶ m, takes 4 to 9 times as long as our code "
+                    "for any scene; 2 times as long as the fastest library, which does not reach 1 of 2 of them.")
+
+
+def known(record, motion):
+    """The record of a run on Andrews' mechanism, whose error its points say."""
+    error = record.output["position_error_max"]
+    moved = motion + [[error, 0]] + numpy.zeros((1, 4, 1))
+    record.output["outputs"] = {"t": [0.0, 0.03], "points": moved.reshape(2, 8).tolist()}
+    record.series.update({"t": [0.0, 0.03]} | {f"{point}.{axis}": moved[:, place, at].tolist() for place, point in enumerate("EPSU")
+                                               for at, axis in enumerate("xy")})
+    return record
+
+
 def test_without_engines_the_page_says_what_is_missing():
     found = made(ABSENT)
     assert [one["text"] for one in sentences.answers(found, VIEW)] == [
@@ -178,7 +198,7 @@ def test_the_motion_of_the_double_pendulum():
 
 @pytest.mark.parametrize("name, loops, regular, duration, title", [
     ("four-bar-10", 10, False, 5.0, "N = 10"), ("four-bar-40-regular", 40, True, 0.6, "N = 40, first 0.6 s"),
-    ("double-pendulum", 0, True, 2.0, "double pendulum")])
+    ("double-pendulum", 0, True, 2.0, "double pendulum"), ("andrews", 0, True, 0.03, "Andrews' mechanism")])
 def test_subjects_are_known_by_their_column(name, loops, regular, duration, title):
     subject = Subject(name)
     assert (subject.loops, subject.regular, subject.duration, subject.title) == (loops, regular, duration, title)

@@ -186,8 +186,8 @@ def finish(studyset, part, column, names):
 
 
 def reopen(studyset, columns):
-    """Makes the workflow run columns again of which a record is missing, and draw pages that are missing or empty;
-    StudyError naming a record that was changed. `columns`: {part: names}."""
+    """Makes the workflow run columns again of which a record is missing, or says that a program is which is there now,
+    and draw pages that are missing or empty; StudyError naming a record that was changed. `columns`: {part: names}."""
     index = studyset.folder / "index.html"
     if _empty(index):
         index.unlink(missing_ok=True)
@@ -198,9 +198,22 @@ def reopen(studyset, columns):
                 path.unlink(missing_ok=True)
         for column in names:
             stamp = studyset.stamp(part, column)
-            if not stamp.exists() or _missing(studyset, stamp):
+            if not stamp.exists() or _missing(studyset, stamp) or _there_now(studyset, stamp):
                 for path in (stamp, studyset.page(part), page, index):
                     path.unlink(missing_ok=True)  # the workflow runs nothing whose results are all there
+
+
+def _there_now(studyset, stamp):
+    """Removes a column's records of programs that were not there, and are now; whether there were any."""
+    base, found = studyset.folder / "raw" / stamp.parent.name, []
+    for name in read_object(stamp):
+        record = records.read(base / name, name)
+        program = record.cell["program"]
+        if record.status == "unavailable" and program != "mbs" and (ROOT / program_of(program)).exists():
+            found.append(base / name)
+    for path in found:
+        path.unlink()
+    return bool(found)
 
 
 def _empty(page):

@@ -14,6 +14,7 @@
 namespace engines {
 
 constexpr double kJudged = 1e-2;  // s: errors are evaluated at these times, as study/accuracy does
+constexpr int kJudgedOfScene = 300;  // times that the points of a scene are read
 
 /// What a user can mend: a line, and exit status 2.
 struct UsageError : std::runtime_error {
@@ -47,6 +48,8 @@ class Engine {
   virtual double advance(double end) = 0;
   /// Writes the state of every rod.
   virtual void read(std::vector<RodState>& states) const = 0;
+  /// Writes x and y of the points that a scene's outputs name; of engines that take scenes.
+  virtual void read_points(std::vector<double>&) const {}
 };
 
 /// An engine that takes steps of one length.
@@ -77,6 +80,7 @@ void note_complaint(const std::string& text);
 struct Program {
   std::string engine, version;
   std::unique_ptr<Engine> (*create)(const Mechanism&, Settings&, double duration);
+  bool takes_scenes = false;  ///< any scene of the harness: it solves our equations
 };
 
 /// The whole of an engine's main().

@@ -42,6 +42,11 @@ Judge::Judge(const Mechanism& mechanism) : mechanism_(mechanism) {
   energy_scale_ = std::max(energy_scale_, 1e-3 * weight * size);
 }
 
+bool Judge::judge_points(const std::vector<double>& points) {
+  if (std::ranges::all_of(points, [](double one) { return std::isfinite(one); })) return true;
+  return lose("diverged", "the state is not finite");
+}
+
 bool Judge::judge(double t, const std::vector<RodState>& states) {
   for (const RodState& s : states) {
     if (!std::isfinite(s.x + s.y + s.cosine + s.sine + s.vx + s.vy + s.rate))
@@ -77,7 +82,7 @@ bool Judge::judge(double t, const std::vector<RodState>& states) {
 
 void Judge::conclude() {
   const auto add = [this](double value, double bound, const char* format) {
-    if (value <= bound) return;
+    if (!(value > bound)) return;  // a scene has no energy here: NaN
     status_ = "degraded";
     reason_ += (reason_.empty() ? "" : ", ") + text(format, value, bound);
   };

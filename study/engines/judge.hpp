@@ -26,6 +26,8 @@ class Judge {
 
   /// Judges the states at time t; false if the motion is lost: status() and reason() say how.
   bool judge(double t, const std::vector<RodState>& states);
+  /// The same of the points of a scene, of which nothing more is known here.
+  bool judge_points(const std::vector<double>& points);
 
   [[nodiscard]] std::string status() const { return status_; }
   [[nodiscard]] std::string reason() const { return reason_; }

@@ -7,7 +7,11 @@
 namespace engines {
 
 Mechanism four_bar(int loops) {
-  Mechanism made{.rods = {}, .loops = {}, .points = loops + 1, .four_bar_loops = loops};
+  Mechanism made{.scene = "four-bar:" + std::to_string(loops),
+                 .rods = {},
+                 .loops = {},
+                 .points = loops + 1,
+                 .four_bar_loops = loops};
   for (int i = 0; i <= loops; ++i) {
     made.rods.push_back({-1, static_cast<double>(i), 1.0, 1.0, std::numbers::pi / 2, -1.0});
   }
@@ -19,7 +23,8 @@ Mechanism four_bar(int loops) {
 }
 
 Mechanism double_pendulum() {
-  return {.rods = {{-1, 0.0, 1.0, 1.0, 0.0, 0.0}, {0, 0.0, 1.5, 1.5, 0.0, 2.0}},
+  return {.scene = "study/engines/double_pendulum.json",
+          .rods = {{-1, 0.0, 1.0, 1.0, 0.0, 0.0}, {0, 0.0, 1.5, 1.5, 0.0, 2.0}},
           .loops = {},
           .points = 2,
           .four_bar_loops = 0};

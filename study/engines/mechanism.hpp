@@ -29,15 +29,16 @@ struct Loop {
 /// Rods come after their parents. A four-bar of N = 2 has the rods 0, 1, 2 on the ground, the
 /// coupler 3 on rod 0 and 4 on rod 1, and the loops {3, 1}, {4, 2}.
 struct Mechanism {
-  std::vector<Rod> rods;
-  std::vector<Loop> loops;
+  std::string scene;      ///< what the harness calls it
+  std::vector<Rod> rods = {};  ///< none: it is known to the harness alone
+  std::vector<Loop> loops = {};
   int points = 0;          ///< the ends of so many first rods are compared with the known motion
   int four_bar_loops = 0;  ///< N of an N-four-bar, 0 of others
 };
 
 /// The N-four-bar mechanism of paper/README.md: a tree of depth two and a loop for each coupler.
 Mechanism four_bar(int loops);
-/// That of harness/scenes/double_pendulum.json.
+/// That of harness/scenes/double_pendulum.json, which study/engines/double_pendulum.json is too.
 Mechanism double_pendulum();
 
 /// Motion of a rod: its centre (m), the direction from its pin to its end, and velocities.

@@ -1,5 +1,5 @@
-# The N-four-bar and a double pendulum in the engines that people use, beside ours: curves of error against time, then
-# common rounds of what may be the fastest at some error.
+# The N-four-bar, a double pendulum and Andrews' mechanism in the engines and solvers that people use, beside ours: curves
+# of error against time, then common rounds of what may be the fastest at some error.
 import json
 import random
 from dataclasses import dataclass, replace
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from analysis.core.files import ROOT
 from analysis.engines.equal_error import candidates, least_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
-from analysis.engines.subjects import JUDGED_S, Subject
+from analysis.engines.subjects import Subject
 from analysis.engines.tables import frame
 from study.core.cell import Cell
 from study.core.setting import read_settings
@@ -21,7 +21,6 @@ SETTINGS = {"subjects": list,      # names: analysis/engines/subjects.py
             "octave": int,         # steps of ours from one to half of it
             "time_limit": float,   # s: a run that is predicted to take longer is not made
             "rounds": int}
-STEPS = 2e-2, 1e-5   # s, the longest and the shortest of ours
 CURVES = 0.3, 0.6    # of a column's budget, by when their curves and ours end; the rest is for the rounds
 SHORT = 0.02         # s of steps: a shorter run says more of the machine's interruptions than of itself
 REPEATS = 5          # of such a run in one process; the least time of each of its pieces counts
@@ -33,18 +32,21 @@ SET_UP = "study/setup --engines"
 
 
 def columns(settings, studyset):
-    return {name: settings["seconds"] / len(settings["subjects"]) for name in settings["subjects"]}
+    shares = {name: 1.0 if Subject(name).loops else 0.5 for name in settings["subjects"]}  # the others are small
+    return {name: settings["seconds"] * share / sum(shares.values()) for name, share in shares.items()}
 
 
 def run(lab, column):
     subject, missing = Subject(column), unavailable()
-    for engine in read_list():
+    asked = [engine for engine in read_list() if subject.asks(engine)]
+    for engine in asked:
         if missing[engine]:
             lab.skip(Cell("", program=f"{PROGRAMS}/engine_{engine}", role=ENGINE), "unavailable", missing[engine])
-    if all(missing.values()):
+    there = [engine for engine in asked if not missing[engine]]
+    if not there:
         return  # nothing to be beside
     bench = Bench(lab, subject)
-    engines = bench.engines([engine for engine in read_list() if not missing[engine]])
+    engines = bench.engines(there)
     ours = bench.ours(least_error(engines))
     bench.rounds(engines, ours)
 
@@ -84,9 +86,8 @@ class Bench:
             row(record) | {"cell": cell} for cell, record in zip(cells, self.lab.run(cells)))])
 
     def engine_cell(self, program, settings):
-        model = ("--loops", self.subject.loops) if self.subject.loops else ("--pendulum",)
         return Cell("", program=program, role=ENGINE, seconds=1.0 + 3 * self.lab.settings["time_limit"],
-                    settings=(*model, "--duration", f"{self.subject.duration:g}", *settings, "--json"))
+                    settings=(*self.subject.words, "--duration", f"{self.subject.duration:g}", *settings, "--json"))
 
     def ours(self, least):
         """Our curves, down to the `least` error that is asked for."""
@@ -99,18 +100,19 @@ class Bench:
 
     def steps(self):
         """A fixed ladder."""
-        octave, step, found = self.lab.settings["octave"], STEPS[0], []
-        while step > 0.99 * STEPS[1]:
+        octave, (longest, shortest), found = self.lab.settings["octave"], self.subject.steps, []
+        step = longest
+        while step > 0.99 * shortest:
             found.append(float(f"{step:.6g}"))
-            step = STEPS[0] / 2 ** (len(found) / octave)
+            step = longest / 2 ** (len(found) / octave)
         return found
 
     def our_cell(self, one, setting, step):
-        judged = ("--judge-every", max(1, int(JUDGED_S / step + 1e-3))) if self.subject.loops else ()
+        judged = ("--judge-every", max(1, int(self.subject.judged / step + 1e-3))) if self.subject.loops else ()
         cell = Cell("simulate", self.subject.scene, (one,), (
             *setting.words(), "--step", f"{step:g}", "--duration", f"{self.subject.duration:g}", *judged), OURS,
             seconds=1.0 + 3 * self.lab.settings["time_limit"])
-        return cell if judged else replace(cell, keep=("outputs",), every=max(1, round(JUDGED_S / step)))
+        return cell if judged else replace(cell, keep=("outputs",), every=max(1, round(self.subject.judged / step)))
 
     def rounds(self, engines, ours):
         """What may be the fastest at some error, theirs and ours in turn, in an order that is new in every round."""

@@ -19,6 +19,7 @@ using nlohmann::json;
 struct Options {
   int loops = 0, repeats = 1;
   bool pendulum = false, as_json = false;
+  std::string scene;
   double duration = 5.0;
   std::vector<std::string> settings;
 };
@@ -52,15 +53,14 @@ std::string in_a_line(const std::string& text) {
   return line.substr(0, 300);
 }
 
-void sample(Samples& samples, const Mechanism& mechanism, double t,
-            const std::vector<RodState>& states) {
-  samples.t.push_back(t);
-  samples.points.emplace_back();
+std::vector<double> points_of(const Mechanism& mechanism, const std::vector<RodState>& states) {
+  std::vector<double> points;
   for (std::size_t i = 0; i < static_cast<std::size_t>(mechanism.points); ++i) {
     const double half = mechanism.rods[i].length / 2;
-    samples.points.back().push_back(states[i].x + half * states[i].cosine);
-    samples.points.back().push_back(states[i].y + half * states[i].sine);
+    points.push_back(states[i].x + half * states[i].cosine);
+    points.push_back(states[i].y + half * states[i].sine);
   }
+  return points;
 }
 
 /// Advances once, and says in how many seconds.
@@ -74,11 +74,20 @@ double timed_advance(Engine& engine, double duration, double& reached) {
 /// judged while the clock stands still.
 void simulate(Engine& engine, const Mechanism& mechanism, double duration, Judge& judge, Run& run) {
   std::vector<RodState> states(mechanism.rods.size());
+  std::vector<double> points;
   while (run.reached < duration) {
     run.seconds.push_back(timed_advance(engine, duration, run.reached));
-    engine.read(states);
-    if (!judge.judge(run.reached, states)) return;
-    if (mechanism.four_bar_loops == 0) sample(run.samples, mechanism, run.reached, states);
+    if (states.empty()) {
+      engine.read_points(points);
+      if (!judge.judge_points(points)) return;
+    } else {
+      engine.read(states);
+      if (!judge.judge(run.reached, states)) return;
+      points = points_of(mechanism, states);
+    }
+    if (mechanism.four_bar_loops > 0) continue;  // the judge knows its motion
+    run.samples.t.push_back(run.reached);
+    run.samples.points.push_back(points);
   }
   judge.conclude();
 }
@@ -94,39 +103,42 @@ void repeat(Engine& engine, double duration, Run& run) {
 
 bool finished(const Judge& judge) { return judge.status() == "ok" || judge.status() == "degraded"; }
 
-json report(const Program& program, const Options& options, const Judge& judge, const Run& run) {
+json report(const Program& program, const Options& options, const Mechanism& mechanism,
+            const Judge& judge, const Run& run) {
   json settings = json::object();
   for (const std::string& word : options.settings)
     settings[word.substr(0, word.find('='))] = word.substr(word.find('=') + 1);
   const double seconds = std::accumulate(run.seconds.begin(), run.seconds.end(), 0.0);
-  json line{
-      {"engine", program.engine},
-      {"version", program.version},
-      {"setting", settings},
-      {"scene", options.pendulum ? "double-pendulum" : "four-bar:" + std::to_string(options.loops)},
-      {"loops", options.loops},
-      {"duration", options.duration},
-      {"status", judge.status()},
-      {"status_reason", judge.reason()},
-      {"failed_at", finished(judge) ? json(nullptr) : json(run.reached)},
-      {"position_error_max",
-       judge.position_error() ? finite_or_null(*judge.position_error()) : json(nullptr)},
-      {"energy_drift_max", finite_or_null(judge.energy_drift())},
-      {"joint_gap_max", finite_or_null(judge.gap())},
-      {"judged", run.seconds.size()},
-      {"setup_seconds", run.setup_seconds},
-      {"repeats", options.repeats},
-      {"seconds", seconds},
-      {"time", run.reached > 0.0 ? json(seconds / run.reached) : json(nullptr)},
-      {"complaints", complaints},
-      {"first_complaint", first_complaint},
-      {"compiler", "GCC " __VERSION__}};
-  if (options.pendulum) line["outputs"] = {{"t", run.samples.t}, {"points", run.samples.points}};
+  json line{{"engine", program.engine},
+            {"version", program.version},
+            {"setting", settings},
+            {"scene", mechanism.scene},
+            {"loops", options.loops},
+            {"duration", options.duration},
+            {"status", judge.status()},
+            {"status_reason", judge.reason()},
+            {"failed_at", finished(judge) ? json(nullptr) : json(run.reached)},
+            {"position_error_max",
+             judge.position_error() ? finite_or_null(*judge.position_error()) : json(nullptr)},
+            {"energy_drift_max", finite_or_null(judge.energy_drift())},
+            {"joint_gap_max", finite_or_null(judge.gap())},
+            {"judged", run.seconds.size()},
+            {"setup_seconds", run.setup_seconds},
+            {"repeats", options.repeats},
+            {"seconds", seconds},
+            {"time", run.reached > 0.0 ? json(seconds / run.reached) : json(nullptr)},
+            {"complaints", complaints},
+            {"first_complaint", first_complaint},
+            {"compiler", "GCC " __VERSION__}};
+  if (mechanism.four_bar_loops == 0)
+    line["outputs"] = {{"t", run.samples.t}, {"points", run.samples.points}};
   return line;
 }
 
 int run_it(const Program& program, const Options& options) {
-  const Mechanism mechanism = options.pendulum ? double_pendulum() : four_bar(options.loops);
+  const Mechanism mechanism = options.pendulum    ? double_pendulum()
+                              : options.loops > 0 ? four_bar(options.loops)
+                                                  : Mechanism{.scene = options.scene};
   Settings settings(options.settings);
   Judge judge(mechanism);
   Run run;
@@ -144,7 +156,7 @@ int run_it(const Program& program, const Options& options) {
   } catch (const std::exception& error) {
     judge.lose("diverged", "the engine gave up: " + in_a_line(error.what()));
   }
-  const json line = report(program, options, judge, run);
+  const json line = report(program, options, mechanism, judge, run);
   if (options.as_json) {
     std::cout << line.dump() << '\n';
   } else {
@@ -167,7 +179,13 @@ int run_program(const Program& program, int argc, char** argv) {
   Options options;
   auto* loops =
       app.add_option("--loops", options.loops, "N of the N-four-bar")->check(CLI::Range(1, 10000));
-  app.add_flag("--pendulum", options.pendulum, "the double pendulum instead")->excludes(loops);
+  auto* pendulum =
+      app.add_flag("--pendulum", options.pendulum, "the double pendulum instead")->excludes(loops);
+  if (program.takes_scenes) {
+    app.add_option("--scene", options.scene, "a scene in the plane, of the harness, instead")
+        ->excludes(loops)
+        ->excludes(pendulum);
+  }
   app.add_option("--duration", options.duration, "simulated time, s")->check(CLI::Range(1e-3, 1e4));
   app.add_option("--repeats", options.repeats,
                  "simulate R times; of each advance to a judged time the least counts")
@@ -176,8 +194,9 @@ int run_program(const Program& program, int argc, char** argv) {
   app.add_flag("--json", options.as_json, "one line of JSON");
   try {
     app.parse(argc, argv);
-    if (options.loops == 0 && !options.pendulum)
-      throw UsageError("--loops or --pendulum is required");
+    if (options.loops == 0 && !options.pendulum && options.scene.empty())
+      throw UsageError(program.takes_scenes ? "--loops, --pendulum or --scene is required"
+                                            : "--loops or --pendulum is required");
     return run_it(program, options);
   } catch (const CLI::CallForHelp&) {
     std::cout << app.help();

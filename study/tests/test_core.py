@@ -525,6 +525,21 @@ def test_a_column_is_opened_again_only_where_a_record_is_missing(tmp_path):
             check(known)
 
 
+def test_a_column_is_opened_again_where_a_program_was_missing_and_is_there_now(tmp_path, monkeypatch):
+    monkeypatch.setattr(studyset, "ROOT", tmp_path)
+    known, program = studyset.StudySet(tmp_path / "set"), tmp_path / "build" / "engine"
+    for name, status in (("absent", "unavailable"), ("other", "done")):
+        cell = FIELDS["cell"] | {"program": "engine"}
+        records.write(known.folder / "raw" / "part" / "a" / f"{name}.json", FIELDS | {"cell": cell, "status": status})
+    studyset.finish(known, "part", "a", ["a/absent.json", "a/other.json"])
+    studyset.reopen(known, {"part": ["a"]})
+    assert known.stamp("part", "a").exists()
+    write_text(program, "")
+    studyset.reopen(known, {"part": ["a"]})
+    assert not known.stamp("part", "a").exists()
+    assert [path.name for path in (known.folder / "raw" / "part" / "a").iterdir()] == ["other.json"]
+
+
 @pytest.mark.parametrize("damage", [Path.unlink, lambda path: path.write_text("")])
 def test_a_page_that_is_missing_or_empty_is_drawn_again(tmp_path, damage):
     known = studyset.StudySet(tmp_path)

@@ -3,14 +3,18 @@ import json
 import subprocess
 from types import SimpleNamespace
 
+import numpy
 import pytest
 
 from analysis.core.errors import StudyError
 from analysis.core.records import Record
+from analysis.engines import andrews
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
+from analysis.engines.subjects import SOLVERS
 from study.core.contender import Contender
 from study.engines import curves, plan, settings
 from study.engines.settings import EngineSetting, read_list
+from study.scenes.references import andrews_end
 from study.tests.conftest import ROOT
 
 VALUES = (1e-2, 5e-3, 2.5e-3)
@@ -92,7 +96,30 @@ def test_without_any_engine_nothing_is_run(monkeypatch):
     monkeypatch.setattr(plan, "unavailable", lambda: dict.fromkeys(read_list(), "libx is not installed"))
     lab = Lab()
     plan.run(lab, "four-bar-2")
-    assert not lab.asked and {status for _, status, _ in lab.skipped} == {"unavailable"} and len(lab.skipped) == 4
+    assert not lab.asked and {status for _, status, _ in lab.skipped} == {"unavailable"} and len(lab.skipped) == 6
+
+
+def test_a_scene_is_asked_of_solvers_alone(monkeypatch):
+    missing = dict.fromkeys(read_list(), "")
+    monkeypatch.setattr(plan, "unavailable", lambda: missing)
+    lab = Lab("andrews", settings=["default"], engine_settings=1)
+    monkeypatch.setattr(plan.Bench, "rounds", lambda *rest: None)
+    monkeypatch.setattr(plan, "follow", lambda lab, curves, *rest: lab.asked.extend(curves) or [])
+    plan.run(lab, "andrews")
+    theirs, ours = [dict(curve.cells) for curve in lab.asked]
+    assert {cell.program for cell in theirs.values()} == {"study/engines/engine_ida"}
+    assert theirs[1e-4].settings[:4] == ("--scene", "harness/scenes/problems/a03_andrews.json", "--duration", "0.03")
+    assert (ours[1e-4].scene, ours[1e-4].keep, ours[1e-4].every) == (theirs[1e-4].settings[1], ("outputs",), 1)
+    assert not lab.skipped
+    missing["ida"] = "libsundials-dev is not installed"
+    lab = Lab("andrews")
+    plan.run(lab, "andrews")
+    assert [cell.program for cell, _, _ in lab.skipped] == ["study/engines/engine_ida"] and not lab.asked
+
+
+def test_columns_share_the_budget_of_the_part():
+    found = plan.columns(SETTINGS | {"subjects": ["four-bar-10", "andrews"]}, None)
+    assert found == pytest.approx({"four-bar-10": 200 / 3, "andrews": 100 / 3})
 
 
 @pytest.mark.parametrize("built", [True, False])
@@ -127,8 +154,9 @@ def test_the_double_pendulum_is_sampled_for_its_error(fakes, monkeypatch):
 
 def test_the_ladder_of_our_steps_is_fixed():
     steps = plan.Bench(Lab(octave=2), plan.Subject("four-bar-2")).steps()
-    assert steps[0] == plan.STEPS[0] and steps[2] == plan.STEPS[0] / 2 and steps[-1] >= plan.STEPS[1]
+    assert steps[0] == 2e-2 and steps[2] == 1e-2 and steps[-1] >= 1e-5
     assert steps == sorted(steps, reverse=True) and len(steps) == 22
+    assert plan.Bench(Lab(), plan.Subject("andrews")).steps()[:2] == [4e-4, 2e-4]
 
 
 def one_curve(lab, limit=10.0, least=0.0, share=1.0, **options):
@@ -164,7 +192,7 @@ def test_finer_values_of_no_use():
 
 def test_settings_are_read_and_refused(tmp_path):
     listed = read_list()
-    assert list(listed) == ["simbody", "mujoco", "ode", "bullet"] and all(len(one) > 5 for one in listed.values())
+    assert list(listed) == ["simbody", "mujoco", "ode", "bullet", "dart", "ida"] and all(len(one) > 5 for one in listed.values())
     assert all(one[0].options == () for one in listed.values())  # an engine's own values are always there
     assert listed["ode"][1].words(2.5e-3) == ("--setting", "erp=1", "cfm=1e-14", "step=0.0025")
     for text, what in (("[{over: iterations}]", "must have over"), ("[{over: step, option: {}}]", "no more"),
@@ -184,6 +212,17 @@ def test_programs_that_are_not_built_are_said_so(tmp_path, monkeypatch):
     (tmp_path / "build/study/engines/engines.json").write_text('{"ode": "", "bullet": "libbullet-dev is not installed"}')
     found = plan.unavailable()
     assert found["ode"] == "" and found["bullet"] == "libbullet-dev is not installed" and "not built" in found["mujoco"]
+
+
+def test_the_motion_of_andrews_mechanism():
+    times = numpy.array([0.0, 0.015, andrews.DURATION_S])
+    found = andrews.positions(times)
+    known = andrews_end()  # published to 14 digits
+    ends = numpy.array([[known[f"{point}.{axis}"] for axis in "xy"] for point in "EPSU"])
+    assert numpy.abs(found[:, :, 2] - ends).max() < 2e-11
+    e, p, s, u = found.transpose(0, 2, 1)
+    for one, other, length in ((e, 0, 7e-3), (p, e, 28e-3), (s, p, 20e-3), (u, p, 20e-3)):
+        assert numpy.allclose(numpy.linalg.norm(one - other, axis=1), length, rtol=0, atol=1e-14)
 
 
 def program(engine):
@@ -208,8 +247,31 @@ def test_every_setting_means_something_to_its_program(engine):
 
 @pytest.mark.parametrize("engine", sorted({one.engine for one in REAL}))
 def test_programs_refuse_bad_input(engine):
-    for words, what in ((["--loops", "0"], "--loops"), (["--loops", "1", "--setting", "stp=1"], "stp means nothing"),
-                        (["--loops", "1", "--setting", "step=fast"], "must be a number"),
-                        (["--loops", "1", "--pendulum"], "excludes"), ([], "--loops or --pendulum")):
-        done = subprocess.run([program(engine), *words], capture_output=True, text=True)
+    over = read_list()[engine][0].over
+    bad = [(["--loops", "0"], "--loops"), (["--loops", "1", "--setting", "stp=1"], "stp means nothing"),
+           (["--loops", "1", "--setting", f"{over}=fast"], "must be a number"), (["--loops", "1", "--pendulum"], "excludes"),
+           ([], "is required")]
+    solver = [(["--scene", "none.json"], "none.json"), (["--scene", "harness/scenes/problems/a04_bricard.json"], "three dimensions"),
+              (["--scene", "harness/scenes/problems/half_car.json"], "drivers"), (["--scene", "x", "--pendulum"], "excludes")]
+    for words, what in bad + (solver if engine in SOLVERS else [(["--scene", "x"], "--scene")]):
+        done = subprocess.run([program(engine), *words], capture_output=True, text=True, cwd=ROOT)
         assert done.returncode == 2 and what in done.stderr and done.stderr.count("\n") == 1
+
+
+def error(name, form, accuracy):
+    """Of a run of IDA; its program reads scenes relative to the repository."""
+    subject = plan.Subject(name)
+    words = (*map(str, subject.words), "--duration", f"{subject.duration:g}", "--setting", f"form={form}",
+             f"accuracy={accuracy}", "--json")
+    done = subprocess.run([program("ida"), *words], capture_output=True, text=True, cwd=ROOT)
+    output = json.loads(done.stdout)
+    assert output["status"] in ("ok", "degraded"), output
+    return subject.engine_error(output)
+
+
+@pytest.mark.skipif(not program("ida").exists(), reason="engine_ida is not built")
+@pytest.mark.parametrize("form", ["ggl", "baumgarte"])
+@pytest.mark.parametrize("name, least", [("four-bar-4-regular", 1e-6), ("double-pendulum", 1e-5), ("andrews", 1e-6)])
+def test_the_error_of_ida_falls_with_its_accuracy(name, form, least):
+    errors = [error(name, form, accuracy) for accuracy in ("1e-3", "1e-5", "1e-8")]
+    assert errors[0] > 10 * errors[1] > 100 * errors[2] and errors[2] < least, errors
