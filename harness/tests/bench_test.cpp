@@ -66,8 +66,8 @@ TEST_F(MeasurementTest, KeepsSetUpOutOfTheStretch) {
   Measurement cell = measurement(create_scripted<Script::slow_setup>);
   cell.prepare();
   EXPECT_GE(cell.figures().setup_us, 8000.0);
-  double fastest = 1.0;
-  for (int i = 0; i < 5; ++i) fastest = std::min(fastest, cell.time_stretch());
+  double fastest = 1.0;  // another process may take its share: several tries
+  for (int i = 0; i < 100 && fastest >= 2e-3; ++i) fastest = std::min(fastest, cell.time_stretch());
   EXPECT_LT(fastest, 2e-3);
   EXPECT_GT(fastest, 0.0);
 }
@@ -75,12 +75,12 @@ TEST_F(MeasurementTest, KeepsSetUpOutOfTheStretch) {
 TEST_F(MeasurementTest, TimesTheStepsThemselves) {
   Measurement cell = measurement(create_scripted<Script::phases>);
   cell.prepare();
-  EXPECT_GE(cell.time_stretch(), 10 * 400e-6);
+  EXPECT_GE(cell.time_stretch(), 10 * 80e-6);
 }
 
 TEST_F(MeasurementTest, SharesTimeByPhase) {
-  // Three parts of four are spent on solving, but another process may take its share: several
-  // tries.
+  // Three parts of four are spent on solving, but another process may take its share: stretches far shorter
+  // than what it is given at a time, and several tries.
   bool as_scripted = false;
   for (int attempt = 0; attempt < 100 && !as_scripted; ++attempt) {
     Measurement cell = measurement(create_scripted<Script::phases>, true);

@@ -22,11 +22,10 @@ namespace {
 
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kSanitized = true;
-constexpr double kSeconds = 60.0;  // everything is ten times slower and more
 #else
 constexpr bool kSanitized = false;
-constexpr double kSeconds = 3.0;
 #endif
+constexpr double kSeconds = 60.0;  // of what ends by itself, however busy the machine is
 
 struct Expectation {
   std::string control;
@@ -191,13 +190,20 @@ TEST(ControlsProgram, GivesEachImplementationItsVerdict) {
 
 TEST(ControlsProgram, HangingAndHungryOnesDoNotStopTheOthers) {
   if (kSanitized) GTEST_SKIP() << "sanitizers reserve terabytes: no memory limit is set";
-  const auto run = test::run_program(
-      MBS_CONTROLS,
-      "check four-bar:10 --time-limit 4 --implementation control/hangs --implementation "
-      "control/allocates --implementation control/reference",
-      "ulimit -v 500000;");
+  // On a busy machine the others need more time than the one that hangs deserves: a second try.
+  test::ProgramResult run;
+  std::string limit;
+  for (const char* seconds : {"2", "20"}) {
+    limit = seconds;
+    run = test::run_program(
+        MBS_CONTROLS,
+        "check four-bar:10 --time-limit " + limit +
+            " --implementation control/hangs --implementation control/allocates --implementation control/reference",
+        "ulimit -v 500000;");
+    if (lines_with(run.output, "out-of-memory|agrees$") == 2) break;
+  }
   EXPECT_EQ(run.status, 1);
-  EXPECT_EQ(lines_with(run.output, "control/hangs +timeout: did not finish within 4 s$"), 1);
+  EXPECT_EQ(lines_with(run.output, "control/hangs +timeout: did not finish within " + limit + " s$"), 1) << run.output;
   EXPECT_EQ(
       lines_with(run.output,
                  "control/allocates +out-of-memory: needs more than the memory limit of 488 MiB$"),

@@ -92,10 +92,7 @@ TEST(SmallestConstraintEigenvalue, IsThatOfTheDenseMatrix) {
   for (const int loops : {1, 2, 5, 20, 40}) models.emplace_back(four_bar(loops));
   for (const Model& model : models) {
     const auto q = model.initial_position();
-    const Eigen::MatrixXd Phi_q = test::dense_jacobian(model, q);
-    const Eigen::MatrixXd S =
-        Phi_q * test::dense_mass(model).llt().solve(Eigen::MatrixXd(Phi_q.transpose()));
-    const double expected = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S).eigenvalues()[0];
+    const double expected = test::eigenvalues(test::dense_constraint_matrix(model, q))[0];
     EXPECT_NEAR(smallest_constraint_eigenvalue(model, q), expected, 0.05 * expected)
         << model.variables();
   }
@@ -104,10 +101,7 @@ TEST(SmallestConstraintEigenvalue, IsThatOfTheDenseMatrix) {
 TEST(SmallestConstraintEigenvalue, LeavesOutWhatDependsOnOthers) {
   const Model flat(four_bar(3));
   const std::vector<double> q{1.0, 0.0, 2.0, 0.0, 3.0, 0.0, 4.0, 0.0};
-  const Eigen::MatrixXd Phi_q = test::dense_jacobian(flat, q);
-  const Eigen::MatrixXd S =
-      Phi_q * test::dense_mass(flat).llt().solve(Eigen::MatrixXd(Phi_q.transpose()));
-  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S).eigenvalues();
+  const Eigen::VectorXd values = test::eigenvalues(test::dense_constraint_matrix(flat, q));
   EXPECT_LT(values[2], 1e-12);  // three of seven
   EXPECT_NEAR(smallest_constraint_eigenvalue(flat, q), values[3], 0.05 * values[3]);
 }

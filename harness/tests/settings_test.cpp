@@ -22,10 +22,8 @@ struct Spectrum {
 
 Spectrum spectrum_of(const Model& model) {
   const Eigen::MatrixXd Phi_q = test::dense_jacobian(model, model.initial_position());
-  const Eigen::MatrixXd M = test::dense_mass(model);
-  const Eigen::MatrixXd S = Phi_q * M.llt().solve(Eigen::MatrixXd(Phi_q.transpose()));
-  const Eigen::MatrixXd lumped = M.diagonal().asDiagonal().inverse();
-  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S).eigenvalues();
+  const Eigen::MatrixXd lumped = test::dense_mass(model).diagonal().asDiagonal().inverse();
+  const Eigen::VectorXd values = test::eigenvalues(test::dense_constraint_matrix(model, model.initial_position()));
   Eigen::Index first = 0;
   while (values[first] < 1e-12 * values.maxCoeff()) ++first;
   const Eigen::VectorXd rows = (Phi_q * lumped * Phi_q.transpose()).diagonal();

@@ -1,4 +1,4 @@
-# The study as a user starts it, on the real program; a whole run of the smoke profile that tests share.
+# The study as a user starts it, on the real program; runs that tests share; which tests stay together.
 import fcntl
 import os
 import subprocess
@@ -24,14 +24,40 @@ def study(*arguments, program=PROGRAM, seconds=300, **more):
                           text=True, env=environment(program, **more), timeout=seconds)
 
 
+def once(tmp_path_factory, worker_id, name, make):
+    """The path `name`, which `make(path)` makes once, also for several workers. Not to be changed."""
+    base = tmp_path_factory.getbasetemp()
+    path = (base if worker_id == "master" else base.parent) / name
+    made = path.with_name(f"{name}.made")
+    with open(path.with_name(f"{name}.lock"), "w", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not made.exists():
+            make(path)
+            made.touch()
+    return path
+
+
 @pytest.fixture(scope="session")
 def smoke(tmp_path_factory, worker_id):
-    """Results of the whole smoke profile; made once, also for several workers. Not to be changed."""
-    base = tmp_path_factory.getbasetemp()
-    folder = (base if worker_id == "master" else base.parent) / "smoke"
-    with open(folder.with_name("smoke.lock"), "w", encoding="utf-8") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not (folder / "index.html").exists():
-            done = study("run", "--profile", "smoke", "--results", folder, seconds=900)
-            assert done.returncode == 0, done.stderr + (folder / "run.log").read_text()[-3000:]
-    return folder
+    """Results of the whole smoke profile. Not to be changed."""
+    def make(folder):
+        done = study("run", "--profile", "smoke", "--results", folder, seconds=900)
+        assert done.returncode == 0, done.stderr + (folder / "run.log").read_text()[-3000:]
+    return once(tmp_path_factory, worker_id, "smoke", make)
+
+
+# What takes longest begins first, so that no worker is left alone with it in the end.
+LONGEST = ("smoke", "stored", "kills", "test_reliability.py", "test_advise.py", "test_store.py", "test_view_page.py")
+
+
+@pytest.hookimpl(tryfirst=True)  # before xdist reads the groups
+def pytest_collection_modifyitems(items):
+    """The tests of a file stay with one worker, but for those that are marked as a group of their own."""
+    for item in items:
+        if item.get_closest_marker("xdist_group") is None:
+            item.add_marker(pytest.mark.xdist_group(item.path.name))
+
+    def rank(item):
+        group = item.get_closest_marker("xdist_group").args[0].split()[0]
+        return LONGEST.index(group) if group in LONGEST else len(LONGEST)
+    items.sort(key=rank)

@@ -3,7 +3,7 @@ import pytest
 
 from analysis.core import schema
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("smoke")]
 
 
 def test_the_map_of_the_smoke_profile(smoke):

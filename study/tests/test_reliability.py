@@ -15,7 +15,7 @@ import pytest
 
 from analysis.core import records, schema
 from analysis.core.files import digest
-from study.tests.conftest import PROGRAM, ROOT, environment
+from study.tests.conftest import PROGRAM, ROOT, environment, once
 
 pytestmark = pytest.mark.slow
 PART = "stability"  # whose tables have no times: two runs give the same
@@ -26,22 +26,24 @@ SIGNALS = (signal.SIGKILL, signal.SIGHUP, signal.SIGINT, signal.SIGTERM)
 
 
 @pytest.fixture(scope="module")
-def program(tmp_path_factory):
+def program(tmp_path_factory, worker_id):
     """The real program, slower by a moment, so that kills find it at work."""
-    path = tmp_path_factory.mktemp("program") / "mbs"
-    path.write_text(f'#!/bin/bash\nsleep 0.03\nexec {PROGRAM} "$@"\n')
-    path.chmod(0o755)
-    return path
+    def make(path):
+        path.write_text(f'#!/bin/bash\nsleep 0.03\nexec {PROGRAM} "$@"\n')
+        path.chmod(0o755)
+    return once(tmp_path_factory, worker_id, "slower_mbs", make)
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory, program):
+def whole(tmp_path_factory, worker_id, program):
     """(results of a run that nothing disturbed, how long it took, s)"""
-    folder = tmp_path_factory.mktemp("whole") / "set"
-    begin = time.monotonic()
-    done = run(folder, program)
-    assert done.returncode == 0, done.stderr
-    return folder, time.monotonic() - begin
+    def make(path):
+        begin = time.monotonic()
+        done = run(path / "set", program)
+        assert done.returncode == 0, done.stderr
+        (path / "seconds").write_text(str(time.monotonic() - begin))
+    path = once(tmp_path_factory, worker_id, "whole", make)
+    return path / "set", float((path / "seconds").read_text())
 
 
 def run(folder, program, **more):
@@ -86,7 +88,8 @@ def kill(folder, program, after, sign, group):
     return process.returncode, errors, left
 
 
-@pytest.mark.parametrize("chain", range(CHAINS))
+@pytest.mark.parametrize("chain", [pytest.param(chain, marks=pytest.mark.xdist_group(f"kills {chain}"))
+                                   for chain in range(CHAINS)])
 def test_killed_at_any_moment_it_resumes_and_loses_nothing(whole, program, tmp_path, chain):
     reference, seconds = whole
     rng, folder = random.Random(SEED + chain), tmp_path / "set"

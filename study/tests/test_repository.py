@@ -80,6 +80,7 @@ def test_a_stored_set_has_all_parts_of_one_build(folder):
 
 
 @pytest.mark.slow
+@pytest.mark.xdist_group("stored")
 @pytest.mark.parametrize("folder", SETS, ids=lambda folder: folder.name)
 def test_a_stored_set_is_drawn_again_as_it_was(folder, tmp_path):
     copy = shutil.copytree(folder, tmp_path / folder.name)

@@ -4,7 +4,7 @@ import pytest
 from analysis.core.parts import parts
 from study.tests.browser import Browser
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("smoke")]
 PAGES = ["index", *parts()]
 
 LINKS = "[...document.querySelectorAll('a[href]')].map(one => one.getAttribute('href'))"

@@ -1,37 +1,26 @@
-// Dense matrices of a model through Eigen: the plain way to what the harness computes cleverly.
+// Dense matrices of a model through Eigen: the plain way to what the harness computes cleverly. Defined in a file of
+// their own, because Eigen's decompositions take many seconds to compile.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <span>
 
 #include "mbs/model.hpp"
 #include "mbs/simulation.hpp"
-#include "model_math/kinematics.hpp"
 
 namespace mbs::test {
 
-inline Eigen::MatrixXd dense_mass(const Model& model) {
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(model.variables(), model.variables());
-  for (const MassEntry& entry : model.mass()) {
-    M(entry.row, entry.col) = M(entry.col, entry.row) = entry.value;
-  }
-  return M;
-}
+Eigen::MatrixXd dense_mass(const Model& model);
 
-inline Eigen::MatrixXd dense_jacobian(const Model& model, std::span<const double> q) {
-  Eigen::MatrixXd Phi_q = Eigen::MatrixXd::Zero(model.constraints(), model.variables());
-  for (const JacobianEntry& entry : jacobian(model, 0.0, q)) {
-    Phi_q(entry.row, entry.col) += entry.value;
-  }
-  return Phi_q;
-}
+Eigen::MatrixXd dense_jacobian(const Model& model, std::span<const double> q);
 
 /// T of Eq. (5).
-inline Eigen::MatrixXd dense_tangent(const Model& model, std::span<const double> q,
-                                     const StepSettings& settings) {
-  const Eigen::MatrixXd Phi_q = dense_jacobian(model, q);
-  return dense_mass(model) +
-         settings.step * settings.step / 4 * settings.penalty * Phi_q.transpose() * Phi_q;
-}
+Eigen::MatrixXd dense_tangent(const Model& model, std::span<const double> q, const StepSettings& settings);
+
+/// Phi_q M^-1 Phi_q^T.
+Eigen::MatrixXd dense_constraint_matrix(const Model& model, std::span<const double> q);
+
+/// Of a symmetric matrix, the smallest first.
+Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& matrix);
 
 }  // namespace mbs::test

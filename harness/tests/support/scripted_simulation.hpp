@@ -69,9 +69,9 @@ class Scripted final : public Simulation {
     if (script_ == Script::at_limit && done_ % 2 == 0) return {StepStatus::pass_limit, 20};
     if (script_ == Script::phases) {
       phases_.enter(Phase::solve);
-      wait(microseconds(300));
+      wait(microseconds(60));
       phases_.enter(Phase::projection);
-      wait(microseconds(100));
+      wait(microseconds(20));
       phases_.enter(Phase::other);
     }
     return {StepStatus::converged, 2};
