@@ -151,10 +151,10 @@ json describe_json(const Scene& scene, const StepSettings& settings) {
       {"artificial_fill", fill_json(scene.fill)},
       {"elements", elements_json(scene)}};
   result["elimination"] = elimination_json(tangent_pattern(model));
-  result["features"] = features_json(result);
   add_points(result, scene);
   add_structure(result, model, structure);
   add_settings(result, model, structure, settings);
+  result["features"] = features_json(result);
   return result;
 }
 

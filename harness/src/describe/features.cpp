@@ -68,7 +68,7 @@ json features_json(const json& description) {
           {"widest", elimination["widest"]},
           {"dimension", description["dimension"]},
           {"springs", springs},
-          {"saddle", description["scheme"]["take"] == "saddle-point" ? 1 : 0}};
+          {"saddle", description.at("scheme").at("take") == "saddle-point" ? 1 : 0}};
 }
 
 }  // namespace mbs
