@@ -143,13 +143,12 @@ class IdaEngine final : public Engine {
   void set_tolerances(Settings& settings, double length, double duration) {
     const double accuracy = settings.positive("accuracy", 1e-4);
     const Owned<_generic_N_Vector> absolute(vector()), differential(vector());
+    N_VConst(1e30, absolute.get());
+    N_VConst(0.0, differential.get());
     const std::size_t n = problem_.coordinates();
-    for (std::size_t i = 0; i < problem_.size(); ++i) {
-      NV_DATA_S(differential.get())[i] = i < 2 * n ? 1.0 : 0.0;
-      NV_DATA_S(absolute.get())
-      [i] = i < n       ? accuracy * length
-            : i < 2 * n ? accuracy * length / duration
-                        : 1e30;
+    for (std::size_t i = 0; i < 2 * n; ++i) {
+      NV_DATA_S(differential.get())[i] = 1.0;
+      NV_DATA_S(absolute.get())[i] = accuracy * length / (i < n ? 1.0 : duration);
     }
     need(IDASVtolerances(ida_.get(), 0.0, absolute.get()), "IDASVtolerances");
     need(IDASetId(ida_.get(), differential.get()), "IDASetId");

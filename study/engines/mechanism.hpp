@@ -29,7 +29,7 @@ struct Loop {
 /// Rods come after their parents. A four-bar of N = 2 has the rods 0, 1, 2 on the ground, the
 /// coupler 3 on rod 0 and 4 on rod 1, and the loops {3, 1}, {4, 2}.
 struct Mechanism {
-  std::string scene;      ///< what the harness calls it
+  std::string scene;           ///< what the harness calls it
   std::vector<Rod> rods = {};  ///< none: it is known to the harness alone
   std::vector<Loop> loops = {};
   int points = 0;          ///< the ends of so many first rods are compared with the known motion
