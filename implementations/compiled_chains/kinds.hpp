@@ -1,4 +1,4 @@
-// Kernels are made for kinds of masses and rods; each scheme in a file of its own, compiled side by side.
+// Kernels for each kind of masses and rods: a file a scheme, compiled side by side.
 #pragma once
 
 #include <algorithm>
@@ -50,8 +50,8 @@ auto with_kind(std::span<const Topology> chains, const Make& make) {
   return make.template operator()<IsotropicMass, AtMostRods<1>>();
 }
 
-/// A simulation of that kind: `Kind<MassOf, Rods>`. Never a template of an unnamed namespace: GCC 12 makes
-/// `create_of_kind` of it a symbol that all files share, so that one file's kernels serve another's scheme.
+/// A simulation of that kind: `Kind<MassOf, Rods>`. Never a template of an unnamed namespace: with
+/// GCC 12 `create_of_kind` of two files is then one symbol, and one file makes the other's kernels.
 template <template <template <class> class, class> class Kind>
 std::unique_ptr<Simulation> create_of_kind(const Model& model, const StepSettings& settings,
                                            Topology topology) {

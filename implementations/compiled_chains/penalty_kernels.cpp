@@ -15,8 +15,7 @@ std::unique_ptr<BatchSimulation> create_penalty_batch(std::span<const Model* con
                                                       std::span<const StepSettings> settings,
                                                       std::vector<Topology> chains) {
   return with_kind(
-      chains,
-      [&]<template <class> class MassOf, class Rods>() -> std::unique_ptr<BatchSimulation> {
+      chains, [&]<template <class> class MassOf, class Rods>() -> std::unique_ptr<BatchSimulation> {
         using Batch = ChainBatch<PenaltyGroup<MassOf, Rods>>;
         return std::make_unique<Batch>(models, settings, std::move(chains));
       });

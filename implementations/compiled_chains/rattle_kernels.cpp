@@ -15,8 +15,7 @@ std::unique_ptr<BatchSimulation> create_rattle_batch(std::span<const Model* cons
                                                      std::span<const StepSettings> settings,
                                                      std::vector<Topology> chains) {
   return with_kind(
-      chains,
-      [&]<template <class> class MassOf, class Rods>() -> std::unique_ptr<BatchSimulation> {
+      chains, [&]<template <class> class MassOf, class Rods>() -> std::unique_ptr<BatchSimulation> {
         using Batch = ChainBatch<RattleGroup<MassOf, Rods>>;
         return std::make_unique<Batch>(models, settings, std::move(chains));
       });

@@ -1,4 +1,4 @@
-// Simulations of small scenes by their number of rows: fewer and more in a file each, compiled side by side.
+// Simulations of small scenes by their number of rows, in files compiled side by side.
 #pragma once
 
 #include <memory>
