@@ -27,7 +27,7 @@ FrontTime front_time(int pivots, int border, int nodes, int width) {
       time.work += 10.0;
       time.latency += 15.0;  // Panels::update_two(): a vector waits for stores of single numbers
     } else {
-      time.work += border * (17.5 + packs * (5.0 + 0.2 * panel));
+      time.work += border * (5.0 + packs * (2.0 + 0.5 * panel));
     }
   }
   return time;

@@ -56,17 +56,19 @@ Tree best_tree(const Pattern& pattern, const std::vector<int>& sizes, int width)
   return best;
 }
 
-/// Columns long enough for vectors of 2 or 4 numbers that begin below the pivots. Vectors of 8 may
-/// reach into what the next column keeps of its panel's pivots, which are in registers by then, or
-/// above its diagonal, and behind the last column into kBehind numbers.
+/// Columns long enough for vectors of 2, 4 or 8 numbers that begin below the pivots of a panel. In a
+/// front of one panel those of 8 may reach into what the next column keeps of the pivots, which are
+/// in registers by then, and behind the last column into kBehind numbers.
 int stride_of(const Front& front, int width) {
   const int rows = front.pivots + front.border;
   if (width == 1) return rows;
   int stride = std::max(lanes_for(front.pivots), rows);
   if (front.border > 0) {
     const int lanes = lanes_for(front.border), rounded = round_up(front.border, lanes);
-    stride = lanes < 8 ? front.pivots + rounded : std::max(rows, rounded);
+    const bool may_reach = lanes == 8 && front.pivots <= kPanel;
+    stride = std::max(rows, may_reach ? rounded : front.pivots + rounded);
   }
+  if (front.pivots > kPanel) stride = std::max(stride, round_up(rows, width));
   return stride <= 4 ? stride : round_up(stride, 4);
 }
 constexpr int kBehind = 8;
@@ -85,7 +87,7 @@ void place_rows(const Tree& tree, const std::vector<int>& sizes, Program& progra
     front.pivots = program.size - front.first;
     front.stride = stride_of(front, program.width);
     program.storage += front.pivots * front.stride;
-    if (program.width > 1 && (front.border > 4 || front.pivots > kPanel)) program.storage += kBehind;
+    if (program.width > 1 && front.border > 4) program.storage += kBehind;
     program.storage = round_up(program.storage, program.width);
     program.front_of_row.resize(program.size, static_cast<int>(program.fronts.size()));
     program.fronts.push_back(front);

@@ -26,7 +26,9 @@ class Panels {
   F* constants() { return constants_.data() + kMargin; }
   /// The matrix, valid from start() until factorize_and_solve().
   F* matrix() { return matrix_.data() + kMargin; }
-  void start() { std::copy(constants_.begin(), constants_.end(), matrix_.begin()); }
+  void start() {
+    for (const Copied& c : copied_) std::copy_n(constants() + c.begin, c.count, matrix() + c.begin);
+  }
 
   /// Factorizes and solves for y, which is padded; false if a pivot is not accepted.
   bool factorize_and_solve(F* y);
@@ -34,6 +36,11 @@ class Panels {
 
  private:
   static constexpr int kMargin = 16;  // numbers before and behind, which vectors may touch
+  /// What start() copies: fronts, of large ones the columns from their panel's diagonal on. What
+  /// lies between, if it is short, is copied along.
+  struct Copied {
+    int begin = 0, count = 0;
+  };
   struct Panel {
     int first = 0;    // row of the first pivot
     int columns = 0;  // storage of its diagonal block
@@ -47,9 +54,9 @@ class Panels {
     bool is_two = false;  // the border: two rows that are neighbours also where they go
   };
   /// Rows of a front's border that follow each other also in the columns that they go to. Border
-  /// rows 4, 5 | 9 of which the target, columns 4-7, has 4, 5, 8, 9 in places 0-3: two groups of
-  /// columns, if 9 is another front's, and of the first group, columns 4 and 5, two strips, one of
-  /// two rows in place 0 and one of a row in place 3.
+  /// rows 4, 5 and 9, of which a front with pivots 4, 5 and border 8, 9 owns columns 4 and 5 and has
+  /// the rows in places 0, 1 and 3: two strips for it, of two rows and of one. Column 9 is another
+  /// front's, with one strip.
   struct Strip {
     int begin = 0, rows = 0;      // of the border
     int column = 0, columns = 0;  // of the border: what is updated
@@ -65,6 +72,7 @@ class Panels {
 
   void add_front(const Front& front);
   void add_strips(const Front& front);
+  void add_copied(const Front& front);
   void add_run(const PanelShape& shape);
   template <int P>
   void choose_kernels(Run& run, int lanes) const;
@@ -110,6 +118,7 @@ class Panels {
   int next_factors_ = 0;
   std::vector<int> rows_;
   std::vector<Strip> strips_;
+  std::vector<Copied> copied_;
 };
 
 // Tables.
@@ -128,6 +137,7 @@ template <typename F>
 void Panels<F>::add_front(const Front& front) {
   const int strips_begin = static_cast<int>(strips_.size());
   add_strips(front);
+  add_copied(front);
   const int strips_end = static_cast<int>(strips_.size());
   for (int from = 0; from < front.pivots; from += kPanel) {
     const int pivots = std::min(kPanel, front.pivots - from);
@@ -171,6 +181,20 @@ void Panels<F>::add_strips(const Front& front) {
       strip.target = group.base + places[strip.begin];
       strip.stride = group.stride;
       strips_.push_back(strip);
+    }
+  }
+}
+
+template <typename F>
+void Panels<F>::add_copied(const Front& front) {
+  constexpr int kWhole = 4 * kPanel;  // columns; of few rows, parts take longer than all
+  for (int j = 0; j < front.pivots; ++j) {
+    const int above = j < kWhole ? 0 : j / kPanel * kPanel;
+    const int begin = front.base + j * front.stride + above, count = front.stride - above;
+    if (!copied_.empty() && begin - (copied_.back().begin + copied_.back().count) <= kMargin) {
+      copied_.back().count = begin + count - copied_.back().begin;
+    } else {
+      copied_.push_back({begin, count});
     }
   }
 }

@@ -82,13 +82,15 @@ inline Lanes determinant(const Lanes& x, const Lanes& y, const Lanes& w) {
 
 /// L D Lᵀ of a symmetric block, columns in registers, of which the lower halves count: a becomes L
 /// D, l becomes L, `inverse` that of D; lanes from P on are rows below. Two pivots at a time: both
-/// inverses, 1/x and x/det, are under way together. False if a pivot is not accepted.
+/// inverses, 1/x and x/det, are under way together. The next two pivots x, w and c between them are
+/// found in scalars, since what becomes of the columns is there much later. False if a pivot is not
+/// accepted.
 template <typename F, int P, bool kDefinite, typename V>
 inline bool decompose(V (&a)[P], V (&l)[P], F (&inverse)[P]) {
   bool accepted = true;
+  F x = a[0][0], c = P > 1 ? a[0][1] : F(0), w = P > 1 ? a[P > 1 ? 1 : 0][1] : F(0);
 #pragma GCC unroll 4
   for (int k = 0; k < P; k += 2) {
-    const F x = a[k][k];
     inverse[k] = F(1) / x;
     if (kDefinite) accepted &= x > F(0);
     l[k] = a[k] * inverse[k];
@@ -96,11 +98,21 @@ inline bool decompose(V (&a)[P], V (&l)[P], F (&inverse)[P]) {
       accepted &= inverse[k] - inverse[k] == F(0);
       break;
     }
-    const F of_pair = F(1) / determinant(x, a[k][k + 1], a[k + 1][k + 1]);
+    const F of_pair = F(1) / determinant(x, c, w);
     inverse[k + 1] = x * of_pair;
     if (kDefinite) accepted &= of_pair > F(0);
     accepted &= of_pair - of_pair == F(0) && inverse[k + 1] != F(0);
-    a[k + 1] -= a[k] * l[k][k + 1];
+    const F l_pair = c * inverse[k];
+    if (k + 2 < P) {
+      const F p = a[k][k + 2], p2 = a[k + 1][k + 2] - p * l_pair;
+      x = (a[k + 2][k + 2] - p * (p * inverse[k])) - p2 * p2 * inverse[k + 1];
+      if (k + 3 < P) {
+        const F r = a[k][k + 3], r2 = a[k + 1][k + 3] - r * l_pair;
+        c = (a[k + 2][k + 3] - p * (r * inverse[k])) - p2 * r2 * inverse[k + 1];
+        w = (a[k + 3][k + 3] - r * (r * inverse[k])) - r2 * r2 * inverse[k + 1];
+      }
+    }
+    a[k + 1] -= a[k] * l_pair;
     l[k + 1] = a[k + 1] * inverse[k + 1];
 #pragma GCC unroll 8
     for (int j = k + 2; j < P; ++j) a[j] = (a[j] - a[k] * l[k][j]) - a[k + 1] * l[k + 1][j];
