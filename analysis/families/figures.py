@@ -10,6 +10,7 @@ from analysis.families.rule import SPLITS, WITHIN
 from analysis.families.tables import SCHEMES
 
 DECIDES = "per_column"  # beside n, the number that tells mechanisms apart; the page shows what each tells alone
+FORMS = (*MARKERS, "H", "8")  # of families
 NAMED = {"per_column": "non-zeros a column of the factor L (AMD's order)"}
 
 
@@ -37,7 +38,7 @@ def real_map(tables, look, registry, machine):
         return figure
     rows = rows.merge(mechanisms[["scene", "n", DECIDES]], on="scene")
     families = list(dict.fromkeys(rows.family))
-    marks = {family: MARKERS[place % len(MARKERS)] for place, family in enumerate(families)}
+    marks = {family: FORMS[place % len(FORMS)] for place, family in enumerate(families)}
     shown = {}
     for row in rows.itertuples():
         members = row.equivalent.split()
