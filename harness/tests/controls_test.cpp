@@ -121,7 +121,7 @@ TEST_P(Control, GetsItsVerdict) {
   EXPECT_EQ(verdict.reason.find('\n'), std::string::npos);
   EXPECT_EQ(verdict.scene, "four-bar:10");
   EXPECT_EQ(verdict.implementation, "control/" + expected.control);
-  EXPECT_LT(spent.count(), limits.seconds + 5.0);
+  EXPECT_LT(spent.count(), limits.seconds + 20.0);
   const bool compared = expected.verdict == "agrees" || expected.verdict == "disagrees";
   EXPECT_EQ(verdict.checks.empty(), !compared);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "exact/four_bar_exact.hpp"
+#include "model_math/kinematics.hpp"
 #include "scene/scene.hpp"
 #include "scene_file/load_scene.hpp"
 #include "support/dense.hpp"

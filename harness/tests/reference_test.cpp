@@ -8,6 +8,7 @@
 #include <random>
 
 #include "exact/four_bar_exact.hpp"
+#include "model_math/kinematics.hpp"
 #include "reference/reference_simulation.hpp"
 #include "run/initial_state.hpp"
 #include "run/settings.hpp"
