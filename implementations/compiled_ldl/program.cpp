@@ -56,9 +56,9 @@ Tree best_tree(const Pattern& pattern, const std::vector<int>& sizes, int width)
   return best;
 }
 
-/// Columns long enough for vectors of 2, 4 or 8 numbers that begin below the pivots of a panel. In a
-/// front of one panel those of 8 may reach into what the next column keeps of the pivots, which are
-/// in registers by then, and behind the last column into kBehind numbers.
+/// Columns long enough for vectors of 2, 4 or 8 numbers that begin below the pivots of a panel. In
+/// a front of one panel those of 8 may reach into what the next column keeps of the pivots, which
+/// are in registers by then, and behind the last column into kBehind numbers.
 int stride_of(const Front& front, int width) {
   const int rows = front.pivots + front.border;
   if (width == 1) return rows;

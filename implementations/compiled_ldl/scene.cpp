@@ -128,7 +128,8 @@ Pairs make_pairs(const std::vector<std::array<int, 2>>& points, const Rows& rows
     if (free(all[i]) != free(all[j])) return free(all[i]) > free(all[j]);
     return all[i].a < all[j].a;
   });
-  const auto two = std::count_if(all.begin(), all.end(), [&](const Pair& p) { return free(p) == 2; });
+  const auto two =
+      std::count_if(all.begin(), all.end(), [&](const Pair& p) { return free(p) == 2; });
   keep_apart(all, rows, std::span(order).first(two));
   Pairs pairs;
   for (const int k : order) pairs.list.push_back(all[k]);

@@ -29,8 +29,8 @@ void store_rows(S* x, const V& v) {
 
 /// Blocks that are multiples of the unit matrix, as rods and bodies in space have them, keep one
 /// number. All else is in strips of rows, as many as a register holds, that keep their columns
-/// where one of them is not zero: with two rows a strip, rows (1 2 0) and (2 5 0) are one strip with
-/// columns 0 and 1, values 1, 2 and 2, 5.
+/// where one of them is not zero: with two rows a strip, rows (1 2 0) and (2 5 0) are one strip
+/// with columns 0 and 1, values 1, 2 and 2, 5.
 template <typename S, int D>
 class Mass {
  public:
@@ -165,7 +165,9 @@ void Mass<S, D>::multiply(const S* x, S* y, const S& factor, First first) const 
     for (int i = 0; i < D; ++i) y[row.row + i] = first(row.row + i, sum[i]);
   }
   int k = 0;
-  const auto term = [&](int at) { return load_rows(values_.data() + at * kRows) * x[columns_[at]]; };
+  const auto term = [&](int at) {
+    return load_rows(values_.data() + at * kRows) * x[columns_[at]];
+  };
   for (const Strip& strip : strips_) {
     auto sum = term(k++);
     auto more = sum * S(0.0);

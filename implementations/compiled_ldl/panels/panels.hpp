@@ -54,9 +54,9 @@ class Panels {
     bool is_two = false;  // the border: two rows that are neighbours also where they go
   };
   /// Rows of a front's border that follow each other also in the columns that they go to. Border
-  /// rows 4, 5 and 9, of which a front with pivots 4, 5 and border 8, 9 owns columns 4 and 5 and has
-  /// the rows in places 0, 1 and 3: two strips for it, of two rows and of one. Column 9 is another
-  /// front's, with one strip.
+  /// rows 4, 5 and 9, of which a front with pivots 4, 5 and border 8, 9 owns columns 4 and 5 and
+  /// has the rows in places 0, 1 and 3: two strips for it, of two rows and of one. Column 9 is
+  /// another front's, with one strip.
   struct Strip {
     int begin = 0, rows = 0;      // of the border
     int column = 0, columns = 0;  // of the border: what is updated

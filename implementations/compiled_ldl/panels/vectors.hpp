@@ -28,8 +28,7 @@ constexpr int lanes_for(int count) { return count <= 2 ? 2 : count <= 4 ? 4 : 8;
 
 /// Lanes of the longest vector that a register holds, at most 8.
 template <typename F>
-inline constexpr int kWidest =
-    std::min(8, kRegisterDoubles * static_cast<int>(sizeof(double) / sizeof(F)));
+inline constexpr int kWidest = std::min<int>(8, 8 * kRegisterDoubles / sizeof(F));
 
 /// v with zeros behind its first `count` lanes.
 template <typename F, int N>
