@@ -25,6 +25,13 @@ function(mbs_unavailable reason)
   message(WARNING "implementation ${name} is unavailable: ${reason}")
 endfunction()
 
+# Keeps a variant that this build lacks visible, with the reason; the folder itself is available.
+function(mbs_lacking variant reason)
+  get_filename_component(name ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+  set_property(GLOBAL APPEND_STRING PROPERTY MBS_LACKING_${name}
+    ", {\"${variant}\", R\"reason(${reason})reason\"}")
+endfunction()
+
 # Adds every folder of the list and generates registry.cpp for them.
 function(mbs_registry)
   set(declarations "")
@@ -44,7 +51,10 @@ function(mbs_registry)
     get_property(reason GLOBAL PROPERTY MBS_UNAVAILABLE_${name})
     if(name IN_LIST available)
       string(APPEND declarations "namespace mbs::${name} { Implementation implementation(); }\n")
-      string(APPEND entries "      available(\"${name}\", mbs::${name}::implementation()),\n")
+      get_property(lacking GLOBAL PROPERTY MBS_LACKING_${name})
+      string(REGEX REPLACE "^, " "" lacking "${lacking}")
+      string(APPEND entries
+             "      available(\"${name}\", mbs::${name}::implementation(), {${lacking}}),\n")
       list(APPEND libraries implementation_${name})
     elseif(reason)
       string(APPEND entries "      unavailable(\"${name}\", R\"reason(${reason})reason\"),\n")

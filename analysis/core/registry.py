@@ -18,9 +18,17 @@ class Registry:
 
     @cached_property
     def variants(self):
-        """{name: what is said of it and of its folder} of those that are available."""
-        return {variant["name"]: entry | variant for entry in self.entries if entry["available"]
-                for variant in entry["variants"]}
+        """{name: what is said of it and of its folder} of those that are available and stand for themselves."""
+        return {name: one for name, one in self._available.items() if not one.get("tried_for")}
+
+    @cached_property
+    def tried(self):
+        """The same of those that are another variant with a setting that was tried; "tried_for" is its name."""
+        return {name: one for name, one in self._available.items() if one.get("tried_for")}
+
+    @cached_property
+    def _available(self):
+        return {variant["name"]: entry | variant for entry in self.entries if entry["available"] for variant in entry["variants"]}
 
     @cached_property
     def examples(self):

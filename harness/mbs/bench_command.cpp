@@ -37,7 +37,8 @@ struct Shown {
 void add_options(CLI::App& app, BenchRequest& request, StepOptions& step, Shown& shown) {
   app.add_option("scenes", request.scenes, "scenes (default: four-bar:10 four-bar:40)");
   app.add_option("--implementation", request.implementations,
-                 "folder or folder/variant, several by commas or repeated (default: all but examples, and the control "
+                 "folder or folder/variant, several by commas or repeated (default: all but examples and what was "
+                 "tried, and the control "
                  "null/null that does nothing)")
       ->allow_extra_args(false)
       ->delimiter(',');

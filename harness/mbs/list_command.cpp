@@ -57,7 +57,12 @@ nlohmann::json list_json() {
                           {"settings", served_settings(variant.serves)},
                           {"terms", served_terms(variant.serves.terms)}});
       if (variant.own_code) variants.back()["library"] = "none";
+      if (!variant.tried_for.empty()) {
+        variants.back()["tried_for"] = entry.folder + "/" + variant.tried_for;
+      }
     }
+    nlohmann::json lacking = nlohmann::json::object();
+    for (const auto& [variant, reason] : entry.lacking) lacking[entry.folder + "/" + variant] = reason;
     implementations.push_back({{"folder", entry.folder},
                                {"description", implementation.description},
                                {"library", implementation.library},
@@ -66,7 +71,8 @@ nlohmann::json list_json() {
                                {"role", role_name(implementation.role)},
                                {"available", entry.unavailable.empty()},
                                {"reason", entry.unavailable},
-                               {"variants", variants}});
+                               {"variants", variants},
+                               {"lacking", lacking}});
   }
   return {
       {"implementations", implementations},
@@ -108,6 +114,7 @@ void print_list() {
     }
     const Implementation& implementation = entry.implementation;
     for (const Variant& variant : implementation.variants) {
+      if (!variant.tried_for.empty()) continue;
       const std::string library = is_own_code(implementation, variant)
                                       ? "no library"
                                       : fmt::format("{} {}, {}", implementation.library,
@@ -115,8 +122,15 @@ void print_list() {
       fmt::print("{:<24} {}; {} ({})\n", entry.folder + "/" + variant.name,
                  implementation.description, variant.description, library);
     }
+    for (const auto& [variant, reason] : entry.lacking) {
+      fmt::print("{:<24} unavailable: {}\n", entry.folder + "/" + variant, reason);
+    }
   }
   print_coverage();
+  fmt::print("\nTried and not taken, only if named in full:\n");
+  for (const NamedVariant& one : tried_variants()) {
+    fmt::print("{:<24} for {}: {}\n", one.name, one.variant->tried_for, one.variant->description);
+  }
   fmt::print("\nReference line, only if named:\n{:<24} {}\n", limit::kName,
              limit::variant().description);
   fmt::print("\nBLAS and LAPACK (--blas NAME):\n");

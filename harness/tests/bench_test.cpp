@@ -182,6 +182,21 @@ TEST(BenchPlan, DefaultsToTwoScenesAllVariantsAndTheControl) {
   }
 }
 
+TEST(BenchPlan, TakesWhatWasTriedOnlyByItsFullName) {
+  if (tried_variants().empty()) GTEST_SKIP() << "no variant was tried for another";
+  const NamedVariant tried = tried_variants().front();
+  BenchRequest named = request();
+  named.scenes = {"four-bar:1"};
+  named.implementations = {tried.name};
+  ASSERT_EQ(plan_bench(named).cells.size(), 1U);
+  EXPECT_EQ(plan_bench(named).cells.front().variant, tried.variant);
+  named.implementations = {tried.entry->folder};
+  const BenchPlan folder = plan_bench(named);
+  EXPECT_TRUE(std::ranges::none_of(folder.cells, [&](const PlannedCell& cell) {
+    return cell.variant == tried.variant;
+  }));
+}
+
 TEST(BenchPlan, CentresTheStretchOnTheSingularPosition) {
   for (const int loops : {1, 10, 40, kMostLoopsToCross}) {
     BenchRequest one = request();

@@ -16,6 +16,21 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+TEST(CheckProgram, WhatWasTriedAgreesAndBelongsToAVariant) {
+  if (tried_variants().empty()) GTEST_SKIP() << "no variant was tried for another";
+  std::string names;
+  for (const NamedVariant& one : tried_variants()) {
+    names += " --implementation " + one.name;
+    const std::string base = one.entry->folder + "/" + one.variant->tried_for;
+    EXPECT_TRUE(std::ranges::any_of(all_variants(), [&](const NamedVariant& other) {
+      return other.name == base;
+    })) << base;
+  }
+  const std::string scenes = MBS_SANITIZE ? "four-bar:3 grid:2x2" : "four-bar:10 four-bar:20,fill=0.5 grid:4x4";
+  const auto run = test::run_mbs("check " + scenes + " --time-limit 2000" + names);
+  EXPECT_EQ(run.status, 0) << run.output << run.errors;
+}
+
 TEST(CheckProgram, AllImplementationsAgree) {
   if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
   const std::string file = test::temporary_path("verdicts.json");

@@ -62,7 +62,7 @@ void JacobianMatrix::refresh(const double* __restrict values) {
 CscOperations::CscOperations(const Model& model) : CscOperations(model, tangent_pattern(model)) {}
 
 CscOperations::CscOperations(const Model& model, const HalfPattern& pattern)
-    : coordinates_(model, fill_reducing_order(pattern, Factorization::simplicial)),
+    : coordinates_(model, fill_reducing_order(pattern, {Factorization::simplicial})),
       lowered_(model, coordinates_),
       pattern_(
           pattern.renumbered(preferred_half(Factorization::simplicial), coordinates_.number())),

@@ -19,21 +19,21 @@ std::vector<double> constants(const Model& model, const std::vector<int>& number
 }  // namespace
 
 PenaltyForm::PenaltyForm(const Model& model, const StepSettings& settings,
-                         Factorization factorization)
-    : PenaltyForm(model, settings, tangent_pattern(model), factorization) {}
+                         Method method)
+    : PenaltyForm(model, settings, tangent_pattern(model), method) {}
 
 PenaltyForm::PenaltyForm(const Model& model, const StepSettings& settings,
-                         const HalfPattern& pattern, Factorization factorization)
-    : Assembly(model, settings, fill_reducing_order(pattern, factorization),
-               preferred_half(factorization)),
+                         const HalfPattern& pattern, Method method)
+    : Assembly(model, settings, fill_reducing_order(pattern, method),
+               preferred_half(method.factorization)),
       penalty_(settings.penalty),
-      pattern_(pattern.renumbered(preferred_half(factorization), coordinates_.number())),
+      pattern_(pattern.renumbered(preferred_half(method.factorization), coordinates_.number())),
       schedule_(tangent_contributions(lowered_, lowered_forces_, pattern_)),
       constant_(
           constants(model, coordinates_.number(), lowered_.linear, pattern_, quarter_ * penalty_)),
       tangent_(constant_),
       products_(2 * (lowered_.products() + lowered_forces_.products())),
-      solver_(factorization, pattern_, tangent_.data()) {}
+      solver_(method, pattern_, tangent_.data()) {}
 
 void PenaltyForm::residual(const double* q, const double* u, const double* s, const double* lambda,
                            double* right) {

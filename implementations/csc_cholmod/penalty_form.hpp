@@ -12,7 +12,7 @@ namespace mbs::csc_cholmod {
 /// factorized too.
 class PenaltyForm : public Assembly {
  public:
-  PenaltyForm(const Model& model, const StepSettings& settings, Factorization factorization);
+  PenaltyForm(const Model& model, const StepSettings& settings, Method method);
 
   /// Length of a right-hand side.
   [[nodiscard]] int size() const { return coordinates_.unknowns(); }
@@ -38,7 +38,7 @@ class PenaltyForm : public Assembly {
 
  private:
   PenaltyForm(const Model& model, const StepSettings& settings, const HalfPattern& pattern,
-              Factorization factorization);
+              Method method);
   void subtract_rates(const double* q, double* velocity);
 
   double penalty_;                ///< alpha

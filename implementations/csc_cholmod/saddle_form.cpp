@@ -10,23 +10,21 @@
 
 namespace mbs::csc_cholmod {
 
-SaddleForm::SaddleForm(const Model& model, const StepSettings& settings,
-                       Factorization factorization)
-    : SaddleForm(model, settings, factorization,
-                 fill_reducing_order(tangent_pattern(model), factorization)) {}
+SaddleForm::SaddleForm(const Model& model, const StepSettings& settings, Method method)
+    : SaddleForm(model, settings, method, fill_reducing_order(tangent_pattern(model), method)) {}
 
-SaddleForm::SaddleForm(const Model& model, const StepSettings& settings,
-                       Factorization factorization, std::vector<int> number)
-    : Assembly(model, settings, std::move(number), preferred_half(factorization)),
+SaddleForm::SaddleForm(const Model& model, const StepSettings& settings, Method method,
+                       std::vector<int> number)
+    : Assembly(model, settings, std::move(number), preferred_half(method.factorization)),
       place_(saddle_places(lowered_, coordinates_.unknowns())),
       pattern_(saddle_pattern(model, coordinates_, lowered_, lowered_forces_, place_,
-                              preferred_half(factorization))),
+                              preferred_half(method.factorization))),
       schedule_(saddle_contributions(lowered_, lowered_forces_, place_, pattern_)),
       constant_(saddle_constants(model, settings, coordinates_, lowered_, place_, pattern_)),
       matrix_(constant_),
       summands_(2 * (lowered_.values() + lowered_forces_.products())),
       solution_(place_.size()),
-      solver_(factorization, pattern_, matrix_.data(),
+      solver_(method, pattern_, matrix_.data(),
               {place_.begin() + coordinates_.unknowns(), place_.end()}) {}
 
 void SaddleForm::residual(const double* q, const double* u, const double* s, const double* lambda,

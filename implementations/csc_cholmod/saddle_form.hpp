@@ -13,7 +13,7 @@ namespace mbs::csc_cholmod {
 class SaddleForm : public Assembly {
  public:
   /// `factorization` must be one without square roots: the matrix has negative pivots.
-  SaddleForm(const Model& model, const StepSettings& settings, Factorization factorization);
+  SaddleForm(const Model& model, const StepSettings& settings, Method method);
 
   /// Length of a right-hand side.
   [[nodiscard]] int size() const { return static_cast<int>(place_.size()); }
@@ -38,7 +38,7 @@ class SaddleForm : public Assembly {
   void complete_acceleration(const double* q, const double* u, double* acceleration);
 
  private:
-  SaddleForm(const Model& model, const StepSettings& settings, Factorization factorization,
+  SaddleForm(const Model& model, const StepSettings& settings, Method method,
              std::vector<int> number);
   void set_rates(const double* q, double* velocity);
 

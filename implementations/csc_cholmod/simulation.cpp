@@ -11,10 +11,10 @@ namespace mbs::csc_cholmod {
 
 template <typename Form>
 CholmodSimulation<Form>::CholmodSimulation(const Model& model, const StepSettings& settings,
-                                           Factorization factorization)
+                                           Method method)
     : Simulation(model, settings),
       settings_(settings),
-      form_(model, settings, factorization),
+      form_(model, settings, method),
       q_(form_.coordinates().all()),
       v_(model.variables()),
       a_(model.variables()),

@@ -17,7 +17,7 @@ namespace mbs::csc_cholmod {
 template <typename Form>
 class CholmodSimulation final : public Simulation {
  public:
-  CholmodSimulation(const Model& model, const StepSettings& settings, Factorization factorization);
+  CholmodSimulation(const Model& model, const StepSettings& settings, Method method);
 
  protected:
   void do_set_state(const State& state) override;

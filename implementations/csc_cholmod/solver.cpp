@@ -4,6 +4,8 @@
 #include <cholmod.h>
 #include <dlfcn.h>
 
+#include <algorithm>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -17,6 +19,13 @@ namespace {
 
 /// LDL' saves the square roots; its factorization and solves together are the quicker ones.
 constexpr int kSimplicialLl = 0;
+
+/// Supernodes are merged up to so many columns whatever the zeros (README.md): few for mechanisms
+/// with little fill, a whole small matrix where it fills.
+constexpr std::size_t kMergedColumns[] = {32, 128};
+// What a supernode and an operation cost, us; only their ratio matters.
+constexpr double kSupernodeTime = 4.0;
+constexpr double kOperationTime = 2.5e-4;
 
 /// A quiet cholmod_common for one job at a time.
 struct Common : cholmod_common {
@@ -118,22 +127,61 @@ std::vector<Position> below_diagonal(const cholmod_factor& factor) {
   return result;
 }
 
+/// What a supernodal factorization should take, us.
+double expected_time(const cholmod_factor& factor) {
+  const int* column = static_cast<const int*>(factor.super);
+  const int* row = static_cast<const int*>(factor.pi);
+  double operations = 0.0;
+  for (std::size_t s = 0; s < factor.nsuper; ++s) {
+    const double columns = column[s + 1] - column[s], below = row[s + 1] - row[s] - columns;
+    operations += columns * (columns * (columns / 3.0 + below) + below * below);
+  }
+  return kSupernodeTime * static_cast<double>(factor.nsuper) + kOperationTime * operations;
+}
+
+/// A supernodal analysis that merges supernodes up to so many columns, whatever zeros this stores.
+cholmod_factor* analyze_merging(cholmod_sparse& matrix, std::size_t columns, Common& common) {
+  std::ranges::fill(common.nrelax, columns);
+  return analyze(matrix, common);
+}
+
+/// expected_time() of an ordering, by the better of the numbers of columns to merge up to.
+double least_time(const HalfPattern& pattern, int ordering) {
+  Common common;
+  common.supernodal = CHOLMOD_SUPERNODAL;
+  common.method[0].ordering = ordering;
+  cholmod_sparse matrix = view(pattern, nullptr);
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::size_t columns : kMergedColumns) {
+    cholmod_factor* factor = analyze_merging(matrix, columns, common);
+    least = std::min(least, expected_time(*factor));
+    cholmod_free_factor(&factor, &common);
+  }
+  return least;
+}
+
 }  // namespace
 
 Half preferred_half(Factorization factorization) {
   return factorization == Factorization::simplicial ? Half::upper : Half::lower;
 }
 
-std::vector<int> fill_reducing_order(const HalfPattern& pattern, Factorization factorization) {
+std::vector<int> fill_reducing_order(const HalfPattern& pattern, Method method) {
+  const bool supernodal = method.factorization == Factorization::supernodal;
+  int ordering = method.tuning == Tuning::metis ? CHOLMOD_METIS : CHOLMOD_AMD;
+  if (supernodal && method.tuning == Tuning::own &&
+      least_time(pattern, CHOLMOD_NATURAL) < least_time(pattern, CHOLMOD_AMD)) {
+    ordering = CHOLMOD_NATURAL;
+  }
   Common common;
   common.supernodal = CHOLMOD_SIMPLICIAL;
-  common.method[0].ordering = CHOLMOD_AMD;
+  common.method[0].ordering = ordering;
   const std::vector<double> identity = identity_values(pattern);
   cholmod_sparse matrix = view(pattern, identity.data());
   cholmod_factor* factor = analyze(matrix, common);
-  std::vector<int> place(pattern.size());  // of what comes k-th in AMD's order
+  std::vector<int> place(pattern.size());  // of what comes k-th in CHOLMOD's order
   std::iota(place.begin(), place.end(), 0);
-  if (factorization == Factorization::simplicial) {
+  if (!supernodal && method.tuning == Tuning::own) {
     cholmod_factorize(&matrix, factor, &common);  // the pattern of L comes with its values
     place = outside_in_order(pattern.size(), below_diagonal(*factor));
   }
@@ -145,7 +193,7 @@ std::vector<int> fill_reducing_order(const HalfPattern& pattern, Factorization f
 }
 
 struct Solver::Cholmod {
-  Cholmod(Factorization factorization, const HalfPattern& pattern, const double* values,
+  Cholmod(Method method, const HalfPattern& pattern, const double* values,
           const std::vector<int>& negative)
       : matrix(view(pattern, values)) {
     common.method[0].ordering = CHOLMOD_NATURAL;
@@ -154,11 +202,12 @@ struct Solver::Cholmod {
     common.final_ll = kSimplicialLl;
     common.grow0 = common.grow1 = 0.0;  // columns of L never outgrow their exact space
     common.grow2 = 0;
-    const bool supernodal = factorization == Factorization::supernodal;
-    // Supernodes of up to 32 columns whatever the zeros: fewer calls of the BLAS (README.md).
-    common.nrelax[0] = common.nrelax[1] = common.nrelax[2] = 32;
+    const bool supernodal = method.factorization == Factorization::supernodal;
     common.supernodal = supernodal ? CHOLMOD_SUPERNODAL : CHOLMOD_SIMPLICIAL;
-    factor = analyze(matrix, common);
+    factor = method.tuning == Tuning::defaults || !supernodal
+                 ? analyze(matrix, common)
+                 : analyze_merging(matrix, kMergedColumns[0], common);
+    if (supernodal && method.tuning == Tuning::own) merge_more();
     // Numeric space at once, so that no step pays for it: with to_packed = 0 a simplicial column
     // gets its exact size (by grow2), with 1 only its diagonal, and would move as it grows.
     if (!cholmod_change_factor(CHOLMOD_REAL, supernodal ? 1 : common.final_ll, supernodal, 0, 1,
@@ -176,6 +225,13 @@ struct Solver::Cholmod {
   }
   Cholmod(const Cholmod&) = delete;
   Cholmod& operator=(const Cholmod&) = delete;
+
+  /// Takes larger supernodes where they should be faster.
+  void merge_more() {
+    cholmod_factor* larger = analyze_merging(matrix, kMergedColumns[1], common);
+    if (expected_time(*larger) < expected_time(*factor)) std::swap(factor, larger);
+    cholmod_free_factor(&larger, &common);
+  }
 
   void find_diagonal() {
     if (!factor->is_super) {
@@ -209,9 +265,9 @@ struct Solver::Cholmod {
   cholmod_dense* e = nullptr;
 };
 
-Solver::Solver(Factorization factorization, const HalfPattern& pattern, const double* values,
+Solver::Solver(Method method, const HalfPattern& pattern, const double* values,
                const std::vector<int>& negative)
-    : cholmod_(std::make_unique<Cholmod>(factorization, pattern, values, negative)) {}
+    : cholmod_(std::make_unique<Cholmod>(method, pattern, values, negative)) {}
 
 Solver::~Solver() = default;
 

@@ -14,23 +14,37 @@ enum class Factorization {
   supernodal,  ///< blocks of columns, left-looking, BLAS and LAPACK
 };
 
+/// How CHOLMOD is asked for it.
+enum class Tuning {
+  own,       ///< what was fastest here: README.md, "CHOLMOD's settings"
+  amd,       ///< the same in AMD's order, supernodes of up to 32 columns
+  metis,     ///< the same in that of METIS
+  defaults,  ///< in AMD's order, supernodes as CHOLMOD merges them by itself
+};
+
+struct Method {
+  Factorization factorization;
+  Tuning tuning = Tuning::own;
+};
+
 /// The half that `factorization` reads without transposing it first.
 Half preferred_half(Factorization factorization);
 
 /// Fill-reducing order: unknown i becomes `result[i]`. AMD with a postorder of the elimination
 /// tree; for the simplicial code the same fill from the outside in, so that a column seldom waits
-/// for the one before it.
-std::vector<int> fill_reducing_order(const HalfPattern& pattern, Factorization factorization);
+/// for the one before it; for the supernodal code the model's own order where that should be
+/// faster. Otherwise as tuned.
+std::vector<int> fill_reducing_order(const HalfPattern& pattern, Method method);
 
 /// Cholesky factorization of one symmetric matrix after the other, positive definite or (LDL')
 /// quasi-definite, all of one pattern, which is expected in fill-reducing order already: CHOLMOD
 /// then neither permutes nor copies the matrix.
 class Solver {
  public:
-  /// Analyses `pattern`, the preferred half of `factorization`. `pattern` and `values` (which may
+  /// Analyses `pattern`, the preferred half of its factorization. `pattern` and `values` (which may
   /// change) must outlive this. `negative` lists the unknowns of the negative definite block.
   /// Throws std::runtime_error if CHOLMOD cannot hold the factor.
-  Solver(Factorization factorization, const HalfPattern& pattern, const double* values,
+  Solver(Method method, const HalfPattern& pattern, const double* values,
          const std::vector<int>& negative = {});
   ~Solver();
 

@@ -53,7 +53,13 @@ Implementation implementation() {
                     .description = "refactorized until a solution's backward error asks for pivots",
                     .create = create_simulation<GuardedRefactorization>,
                     .unsymmetric = true,
-                    .serves = with_geometric_stiffness(kServes)}},
+                    .serves = with_geometric_stiffness(kServes)},
+                   {.name = "amd",
+                    .description = "in AMD's order as it is",
+                    .create = create_newton<AmdRefactorization>,
+                    .unsymmetric = true,
+                    .serves = {.terms = kTerms},
+                    .tried_for = "refactor"}},
       .role = Role::paper,
   };
 }

@@ -132,10 +132,17 @@ std::unique_ptr<Simulation> create_simulation(const Model& model, const StepSett
   if (settings.scheme == Scheme::multistep6) return create_multistep<Solver>(model, settings);
   if (!is_trapezoidal(settings)) return create_rattle<Solver>(model, settings);
   if (!is_default(settings)) return create_trapezoidal<Solver>(model, settings);
+  return create_newton<Solver>(model, settings);
+}
+
+template <TangentSolver Solver>
+std::unique_ptr<Simulation> create_newton(const Model& model, const StepSettings& settings) {
   if (model.dimension() == 2) return std::make_unique<NewtonSimulation<2, Solver>>(model, settings);
   return std::make_unique<NewtonSimulation<3, Solver>>(model, settings);
 }
 
+template std::unique_ptr<Simulation> create_newton<AmdRefactorization>(const Model&,
+                                                                       const StepSettings&);
 template std::unique_ptr<Simulation> create_simulation<Refactorization>(const Model&,
                                                                         const StepSettings&);
 template std::unique_ptr<Simulation> create_simulation<Factorization>(const Model&,

@@ -14,6 +14,13 @@ template <TangentSolver Solver>
 [[nodiscard]] std::unique_ptr<Simulation> create_simulation(const Model& model,
                                                             const StepSettings& settings);
 
+/// The same, of "The step" with no setting of its own.
+template <TangentSolver Solver>
+[[nodiscard]] std::unique_ptr<Simulation> create_newton(const Model& model,
+                                                        const StepSettings& settings);
+
+extern template std::unique_ptr<Simulation> create_newton<AmdRefactorization>(const Model&,
+                                                                              const StepSettings&);
 extern template std::unique_ptr<Simulation> create_simulation<Refactorization>(const Model&,
                                                                                const StepSettings&);
 extern template std::unique_ptr<Simulation> create_simulation<Factorization>(const Model&,

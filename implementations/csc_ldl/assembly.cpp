@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "ordering.hpp"
-
 namespace mbs::csc_ldl {
 
-Numbering number_unknowns(const Model& model, bool saddle_point) {
+Numbering number_unknowns(const Model& model, bool saddle_point, Order kind) {
   const int n = model.variables();
   Numbering numbering;
   numbering.state.resize(n);
@@ -32,7 +30,7 @@ Numbering number_unknowns(const Model& model, bool saddle_point) {
     constraints.visit_linear([&](int i, int j, double) { couple(i, j); });
   }
 
-  const std::vector<int> order = elimination_order(problem);
+  const std::vector<int> order = elimination_order(problem, kind);
   numbering.row.resize(problem.rows);
   for (int place = 0; place < n + problem.rows; ++place) {
     if (order[place] < n) {

@@ -7,6 +7,7 @@
 #include "constraints.hpp"
 #include "elements.hpp"
 #include "mbs/simulation.hpp"
+#include "ordering.hpp"
 #include "solver.hpp"
 #include "sums.hpp"
 
@@ -19,7 +20,7 @@ struct Numbering {
   std::vector<int> variable;  ///< of one of the state: its place in the system
   std::vector<int> row;       ///< saddle-point form, of a row of Constraints: the same
 };
-Numbering number_unknowns(const Model& model, bool saddle_point);
+Numbering number_unknowns(const Model& model, bool saddle_point, Order order);
 
 /// Entries are constants and sums of parts: of products of Phi_q's entries or, in saddle-point
 /// form, of these themselves, and of what springs and laws give.

@@ -5,6 +5,14 @@
 #include "solver.hpp"
 
 namespace mbs::csc_ldl {
+namespace {
+
+template <Order kOrder>
+std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
+  return std::make_unique<LdlSimulation>(model, settings, kOrder);
+}
+
+}  // namespace
 
 Implementation implementation() {
   const Serves serves{
@@ -18,11 +26,13 @@ Implementation implementation() {
           .licence = "LGPL-2.1-or-later",
           .variants = {{.name = "uplooking",
                         .description = "LDL's up-looking LDL', AMD order, tree lowered, own solves",
-                        .create = [](const Model& model,
-                                     const StepSettings& settings) -> std::unique_ptr<Simulation> {
-                          return std::make_unique<LdlSimulation>(model, settings);
-                        },
-                        .serves = serves}}};
+                        .create = create<Order::lowest_tree>,
+                        .serves = serves},
+                       {.name = "amd",
+                        .description = "in AMD's order as it is",
+                        .create = create<Order::amd>,
+                        .serves = serves,
+                        .tried_for = "uplooking"}}};
 }
 
 }  // namespace mbs::csc_ldl

@@ -153,9 +153,10 @@ std::vector<int> lowest_tree(const std::vector<int>& first_order, const Lists& l
 
 }  // namespace
 
-std::vector<int> elimination_order(const EliminationProblem& problem) {
+std::vector<int> elimination_order(const EliminationProblem& problem, Order kind) {
   const Lists adjacent = neighbours(problem);
   const std::vector<int> order = held_back(amd(adjacent), adjacent, problem.variables);
+  if (kind == Order::amd) return order;
   return lowest_tree(order, filled(adjacent, order), adjacent, problem.variables);
 }
 

@@ -13,7 +13,12 @@ struct EliminationProblem {
   std::vector<std::pair<int, int>> entries;  ///< off the diagonal, either half, any order, repeats
 };
 
+enum class Order {
+  lowest_tree,  ///< AMD's fill, with the lowest elimination tree
+  amd,          ///< AMD's order as it is
+};
+
 /// The unknowns in the order of elimination.
-std::vector<int> elimination_order(const EliminationProblem& problem);
+std::vector<int> elimination_order(const EliminationProblem& problem, Order kind);
 
 }  // namespace mbs::csc_ldl

@@ -15,11 +15,11 @@ bool has_factors_of_time(const Model& model) {
 
 }  // namespace
 
-LdlSimulation::LdlSimulation(const Model& model, const StepSettings& settings)
+LdlSimulation::LdlSimulation(const Model& model, const StepSettings& settings, Order order)
     : Simulation(model, settings),
       model_(model),
       settings_(settings),
-      numbering_(number_unknowns(model, saddle_point_)),
+      numbering_(number_unknowns(model, saddle_point_, order)),
       at_(model, numbering_.state),
       mass_(model.mass(), numbering_.state),
       constraints_(model, at_),

@@ -16,7 +16,7 @@ using Vector = std::vector<double>;
 /// Constraints; all storage is made here.
 class LdlSimulation final : public Simulation {
  public:
-  LdlSimulation(const Model& model, const StepSettings& settings);
+  LdlSimulation(const Model& model, const StepSettings& settings, Order order);
 
  private:
   StepOutcome do_step() override;

@@ -1,6 +1,8 @@
 // Registers compressed sparse columns with the multifrontal solver MUMPS.
 #include "mbs/implementation.hpp"
 
+#include <memory>
+
 #include "simulation.hpp"
 #include "solver.hpp"
 
@@ -11,6 +13,24 @@ constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
                        Term::springs,     Term::torsion_springs, Term::dampers,
                        Term::couples,     Term::drivers,         Term::mass_across_axes,
                        Term::spatial};
+
+constexpr const char* kAllocates = "MUMPS allocates its workspaces anew in every call";
+
+template <Tuning kTuning>
+std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
+  return make_simulation(model, settings, kTuning);
+}
+
+/// The penalty form alone: the order of the saddle-point matrix is given.
+template <Tuning kTuning>
+Variant tried(const char* name, const char* description) {
+  return {.name = name,
+          .description = description,
+          .create = create<kTuning>,
+          .allocates = kAllocates,
+          .serves = {.terms = kTerms},
+          .tried_for = "spd"};
+}
 
 }  // namespace
 
@@ -23,10 +43,14 @@ Implementation implementation() {
   self.variants.push_back(
       {.name = "spd",
        .description =
-           "SYM = 1: no pivoting, AMD ordering, analysis once (saddle-point form: SYM = 2)",
-       .create = make_simulation,
-       .allocates = "MUMPS allocates its workspaces anew in every call",
+           "SYM = 1: no pivoting, AMD or AMF, analysis once (saddle-point form: SYM = 2)",
+       .create = create<Tuning::own>,
+       .allocates = kAllocates,
        .serves = {.terms = kTerms, .saddle_point = true}});
+  self.variants.push_back(tried<Tuning::amd>("amd", "always in an order of minimum degree"));
+  self.variants.push_back(tried<Tuning::metis>("metis", "in the order of METIS"));
+  self.variants.push_back(
+      tried<Tuning::defaults>("defaults", "order, amalgamation and scaling as MUMPS has them"));
   self.role = Role::paper;
   return self;
 }

@@ -29,7 +29,8 @@ struct MultifrontalSolver::Mumps {
     kSlack = 14,  // percent of memory more than the analysis expects
   };
   enum Kind { kPositiveDefinite = 1, kGeneralSymmetric = 2 };
-  enum Ordering { kMinimumDegree = 0, kGivenOrder = 1 };
+  enum Ordering { kMinimumDegree = 0, kGivenOrder = 1, kMinimumFill = 2, kMetis = 5 };
+  static constexpr int kAutomaticScaling = 77;
   static constexpr int kAllProcesses = -987654;  // the communicator; here, one process
 
   DMUMPS_STRUC_C structure{};

@@ -15,11 +15,12 @@ Triplets triplets_of(const ColumnPattern& pattern) {
 
 }  // namespace
 
-PenaltySimulation::PenaltySimulation(const Model& model, const StepSettings& settings)
+PenaltySimulation::PenaltySimulation(const Model& model, const StepSettings& settings,
+                                     Tuning tuning)
     : CscMumpsSimulation(model, settings, model.variables()),
       reaction_factor_(settings.step * settings.step / 4.0 * settings.penalty),
       tangent_(model, assembly_, settings),
-      solver_(triplets_of(tangent_.pattern()), tangent_.values()),
+      solver_(triplets_of(tangent_.pattern()), tangent_.values(), tuning),
       weights_(model.constraints(), 0.0) {}
 
 bool PenaltySimulation::solve_newton() {

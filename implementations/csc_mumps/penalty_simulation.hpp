@@ -11,7 +11,7 @@ namespace mbs::csc_mumps {
 
 class PenaltySimulation : public CscMumpsSimulation {
  public:
-  PenaltySimulation(const Model& model, const StepSettings& settings);
+  PenaltySimulation(const Model& model, const StepSettings& settings, Tuning tuning);
 
  protected:
   bool solve_newton() override;

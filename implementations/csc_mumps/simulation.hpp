@@ -6,11 +6,13 @@
 
 #include "assembly.hpp"
 #include "mbs/simulation.hpp"
+#include "solver.hpp"
 
 namespace mbs::csc_mumps {
 
-/// The factory of the registry. Throws Unsupported if MUMPS cannot be set up for `model`.
-std::unique_ptr<Simulation> make_simulation(const Model& model, const StepSettings& settings);
+/// A simulation in the form that `settings` ask for; `tuning` is for the penalty form alone. Throws Unsupported if MUMPS cannot be set up for `model`.
+std::unique_ptr<Simulation> make_simulation(const Model& model, const StepSettings& settings,
+                                            Tuning tuning);
 
 /// Prediction, the loop of passes, the correction. What a pass solves is up to the form.
 class CscMumpsSimulation : public Simulation {

@@ -1,6 +1,7 @@
 // The calls of MUMPS behind MultifrontalSolver.
 #include "solver.hpp"
 
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -26,11 +27,24 @@ void MultifrontalSolver::EndMumps::operator()(Mumps* mumps) const {
   delete mumps;
 }
 
-MultifrontalSolver::MultifrontalSolver(Triplets pattern, std::span<double> values)
+MultifrontalSolver::MultifrontalSolver(Triplets pattern, std::span<double> values, Tuning tuning)
     : pattern_(std::move(pattern)), mumps_(Mumps::start(Mumps::kPositiveDefinite)) {
-  mumps_->set(Mumps::kOrdering, Mumps::kMinimumDegree);
   share(values);
-  analyse();
+  switch (tuning) {
+    case Tuning::own:
+      analyse(std::array<int, 2>{Mumps::kMinimumDegree, Mumps::kMinimumFill});
+      break;
+    case Tuning::amd:
+      analyse(std::array<int, 1>{Mumps::kMinimumDegree});
+      break;
+    case Tuning::metis:
+      analyse(std::array<int, 1>{Mumps::kMetis});
+      break;
+    case Tuning::defaults:
+      mumps_->set(Mumps::kScaling, Mumps::kAutomaticScaling);
+      mumps_->analyse();
+      break;
+  }
 }
 
 MultifrontalSolver::MultifrontalSolver(Triplets pattern, std::span<double> values,
@@ -38,13 +52,12 @@ MultifrontalSolver::MultifrontalSolver(Triplets pattern, std::span<double> value
     : pattern_(std::move(pattern)),
       position_(std::move(position)),
       mumps_(Mumps::start(Mumps::kGeneralSymmetric)) {
-  mumps_->set(Mumps::kOrdering, Mumps::kGivenOrder);
   mumps_->set(Mumps::kTransversal, 0);        // rows stay where they are
   mumps_->set(Mumps::kSymmetricStrategy, 1);  // the order is that of single variables
   mumps_->threshold() = kPivotThreshold;
   mumps_->structure.perm_in = position_.data();
   share(values);
-  analyse();
+  analyse(std::array<int, 1>{Mumps::kGivenOrder});
 }
 
 void MultifrontalSolver::share(std::span<double> values) {
@@ -59,18 +72,24 @@ void MultifrontalSolver::share(std::span<double> values) {
 
 /// Leaves the analysis whose factorization should be the fastest: few fronts against few
 /// operations.
-void MultifrontalSolver::analyse() {
-  int best = kAmalgamations[0];
+void MultifrontalSolver::analyse(std::span<const int> orderings) {
+  std::pair best(orderings[0], kAmalgamations[0]);
   double least = std::numeric_limits<double>::infinity();
-  for (int candidate : kAmalgamations) {
-    mumps_->amalgamation() = candidate;
-    if (!mumps_->call(Mumps::kAnalyse)) continue;
-    const double cost = kFrontTime * mumps_->fronts() + kOperationTime * mumps_->operations();
-    if (cost >= least) continue;
-    best = candidate;
-    least = cost;
+  const auto choose = [this](int ordering, int amalgamation) {
+    mumps_->set(Mumps::kOrdering, ordering);
+    mumps_->amalgamation() = amalgamation;
+  };
+  for (const int ordering : orderings) {
+    for (const int amalgamation : kAmalgamations) {
+      choose(ordering, amalgamation);
+      if (!mumps_->call(Mumps::kAnalyse)) continue;
+      const double cost = kFrontTime * mumps_->fronts() + kOperationTime * mumps_->operations();
+      if (cost >= least) continue;
+      best = {ordering, amalgamation};
+      least = cost;
+    }
   }
-  mumps_->amalgamation() = best;
+  choose(best.first, best.second);
   mumps_->analyse();
 }
 

@@ -10,13 +10,21 @@
 
 namespace mbs::csc_mumps {
 
+/// What is asked of MUMPS for positive definite matrices.
+enum class Tuning {
+  own,       ///< what was fastest here: README.md, "MUMPS here"
+  amd,       ///< the same, always in an order of approximate minimum degree
+  metis,     ///< the same, always in that of METIS
+  defaults,  ///< order, amalgamation and scaling as MUMPS chooses them
+};
+
 /// Keeps the analysis of one pattern and the factors of one matrix at a time. `values` (one an
 /// entry of the pattern) is shared with MUMPS: it must stay where it is and is read by every
 /// factorization. Constructors throw Unsupported if MUMPS cannot go on.
 class MultifrontalSolver {
  public:
-  /// Of positive definite matrices: without pivoting, in an order of minimum degree.
-  MultifrontalSolver(Triplets pattern, std::span<double> values);
+  /// Of positive definite matrices: without pivoting, in a fill-reducing order.
+  MultifrontalSolver(Triplets pattern, std::span<double> values, Tuning tuning);
   /// Of quasi-definite ones: variable i is eliminated as number position[i], from 1, as far as
   /// pivots allow it.
   MultifrontalSolver(Triplets pattern, std::span<double> values, std::vector<int> position);
@@ -40,7 +48,7 @@ class MultifrontalSolver {
     void operator()(Mumps* mumps) const;
   };
   void share(std::span<double> values);
-  void analyse();
+  void analyse(std::span<const int> orderings);
 
   Triplets pattern_;
   std::vector<int> position_;  // of quasi-definite matrices

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "penalty_system.hpp"
 #include "saddle_point_system.hpp"
@@ -19,14 +20,30 @@ constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
                        Term::spatial};
 
 template <template <int> class System>
-std::unique_ptr<Simulation> create_with(const Model& model, const StepSettings& settings) {
-  if (model.dimension() == 2) return std::make_unique<CscUmfpack<2, System>>(model, settings);
-  return std::make_unique<CscUmfpack<3, System>>(model, settings);
+std::unique_ptr<Simulation> create_with(const Model& model, const StepSettings& settings,
+                                        Tuning tuning) {
+  if (model.dimension() == 2) {
+    return std::make_unique<CscUmfpack<2, System>>(model, settings, tuning);
+  }
+  return std::make_unique<CscUmfpack<3, System>>(model, settings, tuning);
 }
 
+template <Tuning kTuning>
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
-  return settings.scheme == Scheme::saddle_point ? create_with<SaddlePointSystem>(model, settings)
-                                                 : create_with<PenaltySystem>(model, settings);
+  return settings.scheme == Scheme::saddle_point
+             ? create_with<SaddlePointSystem>(model, settings, kTuning)
+             : create_with<PenaltySystem>(model, settings, kTuning);
+}
+
+/// The penalty form alone: the order of the saddle-point matrix leaves no choice.
+template <Tuning kTuning>
+Variant tried(std::string name, std::string description) {
+  return {.name = std::move(name),
+          .description = std::move(description),
+          .create = create<kTuning>,
+          .unsymmetric = true,
+          .serves = {.terms = kTerms},
+          .tried_for = "symmetric"};
 }
 
 std::string version() {
@@ -45,11 +62,14 @@ Implementation implementation() {
       .version = version(),
       .licence = "GPL-2.0-or-later",
       .variants = {{.name = "symmetric",
-                    .description = "one symbolic analysis (symmetric strategy, AMD), no scaling, "
-                                   "diagonal pivots, a numeric factorization every pass",
-                    .create = create,
+                    .description = "one symbolic analysis (symmetric strategy, AMD or model's order), "
+                                   "no scaling, diagonal pivots, numeric factorization every pass",
+                    .create = create<Tuning::own>,
                     .unsymmetric = true,
-                    .serves = {.terms = kTerms, .saddle_point = true}}},
+                    .serves = {.terms = kTerms, .saddle_point = true}},
+                   tried<Tuning::amd>("amd", "always in AMD's order"),
+                   tried<Tuning::metis>("metis", "in the order of METIS"),
+                   tried<Tuning::defaults>("defaults", "UMFPACK's defaults, refinement too")},
   };
 }
 

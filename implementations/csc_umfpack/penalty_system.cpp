@@ -5,14 +5,14 @@ namespace mbs::csc_umfpack {
 
 template <int D>
 PenaltySystem<D>::PenaltySystem(const MassMatrix& mass, const Jacobian<D>& jacobian,
-                                const Forces<D>& forces, const StepSettings& settings)
+                                const Forces<D>& forces, const StepSettings& settings, Tuning tuning)
     : jacobian_(jacobian),
       forces_(forces),
       penalty_(settings.penalty),
       quarter_(settings.step * settings.step / 4.0),
       factor_(quarter_ * settings.penalty),
       tangent_(mass, jacobian.layout(), forces.layout(), factor_),
-      solver_(tangent_.pattern()),
+      solver_(tangent_.pattern(), tuning),
       row_factors_(jacobian.layout().rows()) {}
 
 template <int D>

@@ -18,7 +18,7 @@ template <int D>
 class PenaltySystem {
  public:
   PenaltySystem(const MassMatrix& mass, const Jacobian<D>& jacobian, const Forces<D>& forces,
-                const StepSettings& settings);
+                const StepSettings& settings, Tuning tuning);
 
   /// Length of right-hand sides; the first n numbers are those of the coordinates.
   [[nodiscard]] int size() const { return tangent_.pattern().variables(); }

@@ -7,14 +7,14 @@ namespace mbs::csc_umfpack {
 
 template <int D>
 SaddlePointSystem<D>::SaddlePointSystem(const MassMatrix& mass, const Jacobian<D>& jacobian,
-                                        const Forces<D>& forces, const StepSettings& settings)
+                                        const Forces<D>& forces, const StepSettings& settings, Tuning tuning)
     : jacobian_(jacobian),
       forces_(forces),
       n_(mass.pattern().variables()),
       m_(jacobian.layout().rows()),
       quarter_(settings.step * settings.step / 4.0),
       matrix_(mass, jacobian.layout(), forces.layout(), 1.0 / (quarter_ * settings.penalty)),
-      solver_(matrix_.pattern(), matrix_.order()),
+      solver_(matrix_.pattern(), tuning, matrix_.order()),
       row_factors_(m_),
       solution_(n_ + m_) {}
 

@@ -18,7 +18,7 @@ template <int D>
 class SaddlePointSystem {
  public:
   SaddlePointSystem(const MassMatrix& mass, const Jacobian<D>& jacobian, const Forces<D>& forces,
-                    const StepSettings& settings);
+                    const StepSettings& settings, Tuning tuning);
 
   [[nodiscard]] int size() const { return matrix_.pattern().variables(); }
 

@@ -11,7 +11,8 @@
 namespace mbs::csc_umfpack {
 
 template <int D, template <int> class System>
-CscUmfpack<D, System>::CscUmfpack(const Model& model, const StepSettings& settings)
+CscUmfpack<D, System>::CscUmfpack(const Model& model, const StepSettings& settings,
+                                  Tuning tuning)
     : Simulation(model, settings),
       settings_(settings),
       n_(model.variables()),
@@ -21,7 +22,7 @@ CscUmfpack<D, System>::CscUmfpack(const Model& model, const StepSettings& settin
       mass_(model),
       jacobian_(model, points_),
       forces_(model, points_, settings.step),
-      system_(mass_, jacobian_, forces_, settings),
+      system_(mass_, jacobian_, forces_, settings, tuning),
       drivers_(model, points_, jacobian_.layout()),
       force_(model.force().begin(), model.force().end()),
       q_(n_ + points_.fixed.size(), 0.0),

@@ -9,6 +9,7 @@
 #include "forces.hpp"
 #include "jacobian.hpp"
 #include "mbs/simulation.hpp"
+#include "solver.hpp"
 
 namespace mbs::csc_umfpack {
 
@@ -16,7 +17,7 @@ namespace mbs::csc_umfpack {
 template <int D, template <int> class System>
 class CscUmfpack final : public Simulation {
  public:
-  CscUmfpack(const Model& model, const StepSettings& settings);
+  CscUmfpack(const Model& model, const StepSettings& settings, Tuning tuning);
 
  private:
   void do_set_state(const State& state) override;

@@ -18,26 +18,44 @@ void Solver::FreeNumeric::operator()(void* numeric) const {
   umfpack_di_free_numeric(&numeric);
 }
 
-Solver::Solver(const SparsityPattern& pattern, const std::vector<int>& order)
-    : pattern_(pattern), integers_(pattern.variables()), reals_(pattern.variables()) {
+Solver::Solver(const SparsityPattern& pattern, Tuning tuning, const std::vector<int>& order)
+    : pattern_(pattern), integers_(pattern.variables()), reals_(5 * pattern.variables()) {
+  tune(tuning);
+  if (!order.empty()) {
+    analyse(UMFPACK_ORDERING_GIVEN, order.data());
+    return;
+  }
+  analyse(tuning == Tuning::metis ? UMFPACK_ORDERING_METIS : UMFPACK_ORDERING_AMD, nullptr);
+  if (tuning != Tuning::own) return;
+  // The model's order, from one end of a mechanism to the other, where that saves operations.
+  const double operations = info_[UMFPACK_FLOPS_ESTIMATE];
+  analyse(UMFPACK_ORDERING_NONE, nullptr);
+  if (info_[UMFPACK_FLOPS_ESTIMATE] >= operations) analyse(UMFPACK_ORDERING_AMD, nullptr);
+}
+
+void Solver::tune(Tuning tuning) {
   umfpack_di_defaults(control_.data());
   control_[UMFPACK_PRL] = 0;
+  if (tuning == Tuning::defaults) return;
   control_[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
-  control_[UMFPACK_ORDERING] = UMFPACK_ORDERING_AMD;
   // The diagonal will do as pivots, whatever the scale of rows.
   control_[UMFPACK_SYM_PIVOT_TOLERANCE] = 0.0;
   control_[UMFPACK_SCALE] = UMFPACK_SCALE_NONE;
   control_[UMFPACK_BLOCK_SIZE] = 16;  // columns of a front that are put off; fronts are small here
   control_[UMFPACK_IRSTEP] = 0;
   control_[UMFPACK_ALLOC_INIT] = 1.0;  // less makes the saddle-point matrix reallocate every pass
+}
 
-  const int n = pattern.variables();
+void Solver::analyse(int ordering, const int* given) {
+  control_[UMFPACK_ORDERING] = ordering;
+  const int n = pattern_.variables();
   void* symbolic = nullptr;
-  const int *starts = pattern.starts.data(), *rows = pattern.rows.data();
-  const int status = order.empty() ? umfpack_di_symbolic(n, n, starts, rows, nullptr, &symbolic,
-                                                         control_.data(), info_.data())
-                                   : umfpack_di_qsymbolic(n, n, starts, rows, nullptr, order.data(),
-                                                          &symbolic, control_.data(), info_.data());
+  const int *starts = pattern_.starts.data(), *rows = pattern_.rows.data();
+  const int status = given == nullptr ? umfpack_di_symbolic(n, n, starts, rows, nullptr, &symbolic,
+                                                            control_.data(), info_.data())
+                                      : umfpack_di_qsymbolic(n, n, starts, rows, nullptr, given,
+                                                             &symbolic, control_.data(),
+                                                             info_.data());
   symbolic_.reset(symbolic);
   if (status != UMFPACK_OK) {
     throw Unsupported("UMFPACK refuses to analyse the matrix, status " + std::to_string(status));
@@ -45,6 +63,7 @@ Solver::Solver(const SparsityPattern& pattern, const std::vector<int>& order)
 }
 
 bool Solver::factorize(const double* A) {
+  values_ = A;
   numeric_.reset();
   memory_.reset();
   const NumericMemory::Use use(memory_);
@@ -56,9 +75,10 @@ bool Solver::factorize(const double* A) {
 }
 
 void Solver::solve(const double* b, double* x) {
-  // Without refinement UMFPACK does not look at the matrix again.
-  umfpack_di_wsolve(UMFPACK_A, nullptr, nullptr, nullptr, x, b, numeric_.get(), control_.data(),
-                    info_.data(), integers_.data(), reals_.data());
+  // The matrix is for refinement, where there is any.
+  umfpack_di_wsolve(UMFPACK_A, pattern_.starts.data(), pattern_.rows.data(), values_, x, b,
+                    numeric_.get(), control_.data(), info_.data(), integers_.data(),
+                    reals_.data());
 }
 
 }  // namespace mbs::csc_umfpack

@@ -10,22 +10,34 @@
 
 namespace mbs::csc_umfpack {
 
+/// What is asked of UMFPACK.
+enum class Tuning {
+  own,       ///< what was fastest here: README.md, "Choices in UMFPACK"
+  amd,       ///< the same, always in AMD's order
+  metis,     ///< the same, always in that of METIS
+  defaults,  ///< UMFPACK's: strategy of its choice, scaling, thresholds, refinement
+};
+
 /// Solves A x = b, where A is symmetric and has the pattern that the solver was made from, which
 /// must outlive it. Pivots are taken from the diagonal: A is positive definite, or quasi-definite
 /// and given with an order in which its diagonal will do.
 class Solver {
  public:
-  /// Analyses the pattern. `order` lists what to eliminate from first to last; empty: AMD's order.
+  /// Analyses the pattern. `order` lists what to eliminate from first to last; empty: as tuned.
   /// Throws Unsupported if UMFPACK refuses the pattern.
-  explicit Solver(const SparsityPattern& pattern, const std::vector<int>& order = {});
+  Solver(const SparsityPattern& pattern, Tuning tuning, const std::vector<int>& order = {});
 
   /// `A` are values in the order of the pattern. False if A is singular or not finite, or if memory
   /// runs out; solve() must not be called then.
   [[nodiscard]] bool factorize(const double* A);
-  /// x = A^-1 b with the last factorization; x and b (n) do not overlap.
+  /// x = A^-1 b with the last factorization, whose values are still there; x and b (n) do not
+  /// overlap.
   void solve(const double* b, double* x);
 
  private:
+  void tune(Tuning tuning);
+  void analyse(int ordering, const int* given);
+
   struct FreeSymbolic {
     void operator()(void* symbolic) const;
   };
@@ -38,7 +50,8 @@ class Solver {
   std::array<double, 20> control_{};  ///< UMFPACK_CONTROL
   std::array<double, 90> info_{};     ///< UMFPACK_INFO
   std::vector<int> integers_;         ///< n, workspace of solve()
-  std::vector<double> reals_;         ///< n, workspace of solve()
+  std::vector<double> reals_;         ///< 5 n, the same
+  const double* values_ = nullptr;    ///< of the last factorization
   std::unique_ptr<void, FreeSymbolic> symbolic_;
   NumericMemory memory_;
   std::unique_ptr<void, FreeNumeric> numeric_{nullptr, {&memory_}};

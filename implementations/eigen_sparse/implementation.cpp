@@ -60,26 +60,60 @@ constexpr Serves kServes{.terms = kTerms,
                          .projections_every = true,
                          .mixed_precision = true};
 
+/// The step as it is where nothing else is asked for, in the penalty form.
+template <class Solver>
+std::unique_ptr<Simulation> create_default(const Model& model, const StepSettings& settings) {
+  return std::make_unique<SparseSimulation<PenaltyForm<Solver>>>(model, settings);
+}
+
+/// `Solver` with a setting that was tried for `base`.
+template <class Solver>
+Variant tried(const char* name, const char* description, const Variant& base) {
+  return {.name = name,
+          .description = description,
+          .create = create_default<Solver>,
+          .allocates = base.allocates,
+          .unsymmetric = base.unsymmetric,
+          .serves = {.terms = kTerms},
+          .tried_for = base.name};
+}
+
 }  // namespace
 
 Implementation implementation() {
+  const Variant superlu{
+      .name = "superlu",
+      .description = "supernodal LU with diagonal pivots; ordering, tree and storage reused",
+      .create = create<SuperluSolver>,
+      .allocates = "SuperLU's dgstrf and sp_dtrsv allocate their work space in every call",
+      .unsymmetric = true,
+      .serves = kServes};
+  const Variant ldlt{.name = "ldlt",
+                     .description = "Eigen's up-looking LDL^T; AMD ordering, tree lowered",
+                     .create = create<SimplicialSolver>,
+                     .serves = kServes};
   return {
       .description =
           "Eigen's sparse matrices, values refreshed in place; SuperLU or simplicial LDL^T",
       .library = "Eigen, SuperLU",
       .version = versions(),
       .licence = "MPL-2.0 AND BSD-3-Clause",
-      .variants = {
-          {.name = "superlu",
-           .description = "supernodal LU with diagonal pivots; ordering, tree and storage reused",
-           .create = create<SuperluSolver>,
-           .allocates = "SuperLU's dgstrf and sp_dtrsv allocate their work space in every call",
-           .unsymmetric = true,
-           .serves = kServes},
-          {.name = "ldlt",
-           .description = "Eigen's up-looking LDL^T; AMD ordering, tree lowered",
-           .create = create<SimplicialSolver>,
-           .serves = kServes}},
+      .variants = {superlu, ldlt,
+#ifdef MBS_PARDISO
+                   {.name = "pardiso",
+                    .description = "MKL's PARDISO, LL^T, in its own order (ISSL)",
+                    .create = create_default<PardisoSolver>,
+                    .allocates = "Eigen copies the matrix and right-hand sides for PARDISO",
+                    .serves = {.terms = kTerms}},
+#endif
+                   tried<TunedSuperlu<double, Tuning::amd>>("superlu_amd", "AMD's order", superlu),
+                   tried<TunedSuperlu<double, Tuning::colamd>>(
+                       "superlu_colamd", "order of COLAMD, the library's default", superlu),
+                   tried<TunedSuperlu<double, Tuning::panels>>(
+                       "superlu_panels", "panels and relaxed supernodes of the library's sizes",
+                       superlu),
+                   tried<TunedSimplicial<double, Tuning::amd>>("ldlt_amd",
+                                                               "in AMD's order as it is", ldlt)},
       .role = Role::paper};
 }
 

@@ -75,29 +75,32 @@ std::vector<int> positions_by_rounds(const SparseMatrix& L) {
 
 }  // namespace
 
-template <class Scalar>
-std::vector<int> SimplicialSolver<Scalar>::elimination_order(const SparseMatrix& pattern) {
+template <class Scalar, Tuning kTuning>
+std::vector<int> TunedSimplicial<Scalar, kTuning>::elimination_order(const SparseMatrix& pattern) {
   SparseMatrix dominant = pattern;
   dominant.coeffs().setOnes();
   dominant.diagonal().setConstant(static_cast<double>(pattern.cols()));
   const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper> factors(dominant);  // AMD
-  const std::vector<int> positions = positions_by_rounds(factors.matrixL().nestedExpression());
   const auto& amd = factors.permutationP().indices();
+  if (kTuning == Tuning::amd) return {amd.begin(), amd.end()};
+  const std::vector<int> positions = positions_by_rounds(factors.matrixL().nestedExpression());
   std::vector<int> position(pattern.cols());
   for (int i = 0; i < pattern.cols(); ++i) position[i] = positions[amd[i]];
   return position;
 }
 
-template <class Scalar>
-std::vector<int> SimplicialSolver<Scalar>::equivalent_order(const SparseMatrix& pattern) {
+template <class Scalar, Tuning kTuning>
+std::vector<int> TunedSimplicial<Scalar, kTuning>::equivalent_order(const SparseMatrix& pattern) {
   std::vector<int> identity(pattern.cols());
   std::iota(identity.begin(), identity.end(), 0);
   return identity;
 }
 
-template std::vector<int> SimplicialSolver<double>::elimination_order(const SparseMatrix&);
-template std::vector<int> SimplicialSolver<double>::equivalent_order(const SparseMatrix&);
-template std::vector<int> SimplicialSolver<float>::elimination_order(const SparseMatrix&);
-template std::vector<int> SimplicialSolver<float>::equivalent_order(const SparseMatrix&);
+template std::vector<int> TunedSimplicial<double, Tuning::own>::elimination_order(const SparseMatrix&);
+template std::vector<int> TunedSimplicial<double, Tuning::amd>::elimination_order(const SparseMatrix&);
+template std::vector<int> TunedSimplicial<double, Tuning::own>::equivalent_order(const SparseMatrix&);
+template std::vector<int> TunedSimplicial<double, Tuning::amd>::equivalent_order(const SparseMatrix&);
+template std::vector<int> TunedSimplicial<float, Tuning::own>::elimination_order(const SparseMatrix&);
+template std::vector<int> TunedSimplicial<float, Tuning::own>::equivalent_order(const SparseMatrix&);
 
 }  // namespace mbs::eigen_sparse

@@ -91,6 +91,13 @@ void SparseSimulation<Form>::project_accelerations() {
 
 template class SparseSimulation<PenaltyForm<SimplicialSolver<double>>>;
 template class SparseSimulation<PenaltyForm<SuperluSolver<double>>>;
+template class SparseSimulation<PenaltyForm<TunedSimplicial<double, Tuning::amd>>>;
+template class SparseSimulation<PenaltyForm<TunedSuperlu<double, Tuning::amd>>>;
+template class SparseSimulation<PenaltyForm<TunedSuperlu<double, Tuning::colamd>>>;
+template class SparseSimulation<PenaltyForm<TunedSuperlu<double, Tuning::panels>>>;
+#ifdef MBS_PARDISO
+template class SparseSimulation<PenaltyForm<PardisoSolver>>;
+#endif
 template class SparseSimulation<SaddleForm<SimplicialSolver<double>>>;
 template class SparseSimulation<SaddleForm<SuperluSolver<double>>>;
 template class SparseSimulation<PenaltyForm<RoundedSolver<SimplicialSolver>>>;

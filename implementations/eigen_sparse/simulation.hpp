@@ -4,6 +4,9 @@
 #include "mbs/simulation.hpp"
 #include "mechanism.hpp"
 #include "penalty_form.hpp"
+#ifdef MBS_PARDISO
+#include "pardiso_solver.hpp"
+#endif
 #include "rounded_solver.hpp"
 #include "saddle_form.hpp"
 #include "solver.hpp"
@@ -37,6 +40,13 @@ class SparseSimulation : public Simulation {
 
 extern template class SparseSimulation<PenaltyForm<SimplicialSolver<double>>>;
 extern template class SparseSimulation<PenaltyForm<SuperluSolver<double>>>;
+extern template class SparseSimulation<PenaltyForm<TunedSimplicial<double, Tuning::amd>>>;
+extern template class SparseSimulation<PenaltyForm<TunedSuperlu<double, Tuning::amd>>>;
+extern template class SparseSimulation<PenaltyForm<TunedSuperlu<double, Tuning::colamd>>>;
+extern template class SparseSimulation<PenaltyForm<TunedSuperlu<double, Tuning::panels>>>;
+#ifdef MBS_PARDISO
+extern template class SparseSimulation<PenaltyForm<PardisoSolver>>;
+#endif
 extern template class SparseSimulation<SaddleForm<SimplicialSolver<double>>>;
 extern template class SparseSimulation<SaddleForm<SuperluSolver<double>>>;
 extern template class SparseSimulation<PenaltyForm<RoundedSolver<SimplicialSolver>>>;

@@ -35,17 +35,20 @@ superlu_options_t options_for_diagonal_pivots() {
   return options;
 }
 
-template <class Scalar>
-std::vector<int> SuperluSolver<Scalar>::elimination_order(const SparseMatrix& pattern) {
+template <class Scalar, Tuning kTuning>
+std::vector<int> TunedSuperlu<Scalar, kTuning>::elimination_order(const SparseMatrix& pattern) {
+  if (kTuning == Tuning::amd) {
+    return postordered(pattern, TunedSimplicial<double, Tuning::amd>::elimination_order(pattern));
+  }
   NCformat columns = columns_of(pattern);
   SuperMatrix view = described(SLU_NC, pattern, &columns);
   std::vector<int> perm_c(pattern.cols());
-  get_perm_c(MMD_AT_PLUS_A, &view, perm_c.data());
+  get_perm_c(kTuning == Tuning::colamd ? COLAMD : MMD_AT_PLUS_A, &view, perm_c.data());
   return postordered(pattern, std::move(perm_c));
 }
 
-template <class Scalar>
-std::vector<int> SuperluSolver<Scalar>::equivalent_order(const SparseMatrix& pattern) {
+template <class Scalar, Tuning kTuning>
+std::vector<int> TunedSuperlu<Scalar, kTuning>::equivalent_order(const SparseMatrix& pattern) {
   std::vector<int> identity(pattern.cols());
   std::iota(identity.begin(), identity.end(), 0);
   return postordered(pattern, std::move(identity));
@@ -56,9 +59,15 @@ std::string superlu_version() {
          std::to_string(SUPERLU_PATCH_VERSION);
 }
 
-template std::vector<int> SuperluSolver<double>::elimination_order(const SparseMatrix&);
-template std::vector<int> SuperluSolver<double>::equivalent_order(const SparseMatrix&);
-template std::vector<int> SuperluSolver<float>::elimination_order(const SparseMatrix&);
-template std::vector<int> SuperluSolver<float>::equivalent_order(const SparseMatrix&);
+template std::vector<int> TunedSuperlu<double, Tuning::own>::elimination_order(const SparseMatrix&);
+template std::vector<int> TunedSuperlu<double, Tuning::amd>::elimination_order(const SparseMatrix&);
+template std::vector<int> TunedSuperlu<double, Tuning::colamd>::elimination_order(const SparseMatrix&);
+template std::vector<int> TunedSuperlu<double, Tuning::panels>::elimination_order(const SparseMatrix&);
+template std::vector<int> TunedSuperlu<double, Tuning::own>::equivalent_order(const SparseMatrix&);
+template std::vector<int> TunedSuperlu<double, Tuning::amd>::equivalent_order(const SparseMatrix&);
+template std::vector<int> TunedSuperlu<double, Tuning::colamd>::equivalent_order(const SparseMatrix&);
+template std::vector<int> TunedSuperlu<double, Tuning::panels>::equivalent_order(const SparseMatrix&);
+template std::vector<int> TunedSuperlu<float, Tuning::own>::elimination_order(const SparseMatrix&);
+template std::vector<int> TunedSuperlu<float, Tuning::own>::equivalent_order(const SparseMatrix&);
 
 }  // namespace mbs::eigen_sparse

@@ -17,8 +17,8 @@ constexpr int kRelaxedColumns = 6;
 }  // namespace
 
 /// SuperLU's view of the matrix (nothing is copied, and SuperLU only reads it) and its factors.
-template <class Scalar>
-struct SuperluSolver<Scalar>::Handle {
+template <class Scalar, Tuning kTuning>
+struct TunedSuperlu<Scalar, kTuning>::Handle {
   Handle(const Values& values, Definiteness kind);
   ~Handle();
   Handle(const Handle&) = delete;
@@ -32,6 +32,9 @@ struct SuperluSolver<Scalar>::Handle {
 
   const Values& matrix;
   Definiteness definiteness;
+  // Larger ones are SuperLU's own; only `panels` has them.
+  int panel = kTuning == Tuning::panels ? sp_ienv(1) : kPanelColumns;
+  int relaxed = kTuning == Tuning::panels ? sp_ienv(2) : kRelaxedColumns;
   superlu_options_t options = options_for_diagonal_pivots();
   std::vector<int> identity, perm_r, etree;  // of columns, of rows; column elimination tree
   std::vector<int> diagonal;                 // where the diagonal of the matrix is stored
@@ -41,8 +44,8 @@ struct SuperluSolver<Scalar>::Handle {
   SuperLUStat_t statistics{};
 };
 
-template <class Scalar>
-SuperluSolver<Scalar>::Handle::Handle(const Values& values, Definiteness kind)
+template <class Scalar, Tuning kTuning>
+TunedSuperlu<Scalar, kTuning>::Handle::Handle(const Values& values, Definiteness kind)
     : matrix(values),
       definiteness(kind),
       identity(values.cols()),
@@ -62,14 +65,14 @@ SuperluSolver<Scalar>::Handle::Handle(const Values& values, Definiteness kind)
   StatInit(&statistics);
 }
 
-template <class Scalar>
-SuperluSolver<Scalar>::Handle::~Handle() {
+template <class Scalar, Tuning kTuning>
+TunedSuperlu<Scalar, kTuning>::Handle::~Handle() {
   drop_factors();
   StatFree(&statistics);
 }
 
-template <class Scalar>
-void SuperluSolver<Scalar>::Handle::drop_factors() {
+template <class Scalar, Tuning kTuning>
+void TunedSuperlu<Scalar, kTuning>::Handle::drop_factors() {
   if (lower.Store == nullptr) return;
   Destroy_SuperNode_Matrix(&lower);
   Destroy_CompCol_Matrix(&upper);
@@ -78,8 +81,8 @@ void SuperluSolver<Scalar>::Handle::drop_factors() {
 
 /// Whether all numbers are finite: a wrong one in Phi_q reaches the diagonal of Phi_q^T Phi_q. In
 /// a saddle-point matrix it does not, and products of entries appear in the factorization alone.
-template <class Scalar>
-bool SuperluSolver<Scalar>::Handle::finite() const {
+template <class Scalar, Tuning kTuning>
+bool TunedSuperlu<Scalar, kTuning>::Handle::finite() const {
   if (definiteness == Definiteness::quasi) {
     return std::isfinite(
         Eigen::Map<const Side>(matrix.valuePtr(), matrix.nonZeros()).squaredNorm());
@@ -90,9 +93,9 @@ bool SuperluSolver<Scalar>::Handle::finite() const {
 }
 
 /// Whether all pivots are right and on the diagonal.
-template <class Scalar>
+template <class Scalar, Tuning kTuning>
 template <class Predicate>
-bool SuperluSolver<Scalar>::Handle::diagonal_pivots(Predicate is_right) const {
+bool TunedSuperlu<Scalar, kTuning>::Handle::diagonal_pivots(Predicate is_right) const {
   const auto& store = *static_cast<const SCformat*>(lower.Store);
   const auto* values = static_cast<const Scalar*>(store.nzval);
   bool right = true;
@@ -103,31 +106,30 @@ bool SuperluSolver<Scalar>::Handle::diagonal_pivots(Predicate is_right) const {
   return right;
 }
 
-template <class Scalar>
-bool SuperluSolver<Scalar>::Handle::pivots_right() const {
+template <class Scalar, Tuning kTuning>
+bool TunedSuperlu<Scalar, kTuning>::Handle::pivots_right() const {
   return definiteness == Definiteness::positive
              ? diagonal_pivots([](Scalar pivot) { return pivot > 0; })
              : diagonal_pivots([](Scalar pivot) { return std::abs(pivot) > 0; });
 }
 
-template <class Scalar>
-SuperluSolver<Scalar>::SuperluSolver(const Values& matrix, Definiteness definiteness)
+template <class Scalar, Tuning kTuning>
+TunedSuperlu<Scalar, kTuning>::TunedSuperlu(const Values& matrix, Definiteness definiteness)
     : handle_(std::make_unique<Handle>(matrix, definiteness)) {
   (void)factorize();
 }
 
-template <class Scalar>
-SuperluSolver<Scalar>::~SuperluSolver() = default;
+template <class Scalar, Tuning kTuning>
+TunedSuperlu<Scalar, kTuning>::~TunedSuperlu() = default;
 
-template <class Scalar>
-bool SuperluSolver<Scalar>::factorize() {
+template <class Scalar, Tuning kTuning>
+bool TunedSuperlu<Scalar, kTuning>::factorize() {
   Handle& h = *handle_;
   // Pivoting past a NaN would leave the pattern that L and U have room for.
   if (!h.finite()) return false;
   h.options.Fact = h.lower.Store == nullptr ? DOFACT : SamePattern_SameRowPerm;
   int info = 0;
-  SuperluCalls<Scalar>::factorize(&h.options, &h.view, kRelaxedColumns, kPanelColumns,
-                                  h.etree.data(), nullptr, 0, h.identity.data(), h.perm_r.data(),
+  SuperluCalls<Scalar>::factorize(&h.options, &h.view, h.relaxed, h.panel, h.etree.data(), nullptr, 0, h.identity.data(), h.perm_r.data(),
                                   &h.lower, &h.upper, &h.memory, &h.statistics, &info);
   if (info > h.view.ncol) {  // out of memory: what the factors point to is not known
     h.lower.Store = h.upper.Store = nullptr;
@@ -139,8 +141,8 @@ bool SuperluSolver<Scalar>::factorize() {
 }
 
 /// The matrix is symmetric: U^T y = b and L^T x = y gather along columns and are faster than L, U.
-template <class Scalar>
-void SuperluSolver<Scalar>::solve(Side& x) {
+template <class Scalar, Tuning kTuning>
+void TunedSuperlu<Scalar, kTuning>::solve(Side& x) {
   Handle& h = *handle_;
   constexpr auto solve_triangular = SuperluCalls<Scalar>::solve_triangular;
   char lower[] = "L", upper[] = "U", transposed[] = "T", unit[] = "U", stored[] = "N";
@@ -149,7 +151,10 @@ void SuperluSolver<Scalar>::solve(Side& x) {
   solve_triangular(lower, transposed, unit, &h.lower, &h.upper, x.data(), &h.statistics, &info);
 }
 
-template class SuperluSolver<double>;
-template class SuperluSolver<float>;
+template class TunedSuperlu<double, Tuning::own>;
+template class TunedSuperlu<double, Tuning::amd>;
+template class TunedSuperlu<double, Tuning::colamd>;
+template class TunedSuperlu<double, Tuning::panels>;
+template class TunedSuperlu<float, Tuning::own>;
 
 }  // namespace mbs::eigen_sparse

@@ -132,7 +132,8 @@ def list_choices():
     print("implementations:")
     for entry in listed().entries:
         for variant in entry["variants"] if entry["available"] else []:
-            print(f"  {variant['name']:28} {variant['description']}")
+            if not variant.get("tried_for"):
+                print(f"  {variant['name']:28} {variant['description']}")
         if not entry["available"]:
             print(f"  {entry['folder']:28} unavailable: {entry['reason']}")
     return 0

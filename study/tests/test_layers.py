@@ -7,7 +7,8 @@ from analysis.core.parts import parts
 
 BUILDS_UPON = {("accuracy", "scenes"),  # standard problems with their references
                ("limit", "scenes"),     # the same scenes
-               ("families", "limit")}   # looks, gates and times of a scene
+               ("families", "limit"),   # looks, gates and times of a scene
+               ("tuning", "limit")}     # cells and verdicts of a scene
 PATHS = [path for path in subprocess.run(["git", "ls-files", "study/*.py", "analysis/*.py"], cwd=ROOT, capture_output=True,
                                          text=True, check=True).stdout.split("\n")[:-1] if (ROOT / path).exists()]
 

@@ -52,6 +52,9 @@ struct Variant {
       std::span<const Model* const> models, std::span<const StepSettings> settings) = nullptr;
   int batch_lanes = 0;  ///< with create_batch: the number of lanes that it is best given
   bool own_code = false;  ///< stands on no library, though others of its folder do
+  /// The variant of this folder that this one is, with a setting that was tried and not taken:
+  /// listed, and timed and gated only where it is named in full. Empty: it stands for itself.
+  std::string tried_for = "";
 };
 
 /// What an implementation is for.

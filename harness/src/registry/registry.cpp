@@ -14,21 +14,29 @@ namespace {
 
 bool is_limit(const std::string& name) { return name == "limit" || name == limit::kName; }
 
-}  // namespace
-
-std::vector<NamedVariant> all_variants() {
+std::vector<NamedVariant> variants_where(bool tried) {
   std::vector<NamedVariant> result;
   for (const RegistryEntry& entry : registry()) {
     for (const Variant& variant : entry.implementation.variants) {
+      if (variant.tried_for.empty() == tried) continue;
       result.push_back({entry.folder + "/" + variant.name, &entry, &variant});
     }
   }
   return result;
 }
 
+}  // namespace
+
+std::vector<NamedVariant> all_variants() { return variants_where(false); }
+
+std::vector<NamedVariant> tried_variants() { return variants_where(true); }
+
 std::vector<NamedVariant> select_variants(const std::vector<std::string>& names) {
-  const std::vector<NamedVariant> all = all_variants();
+  std::vector<NamedVariant> all = all_variants();
   if (names.empty()) return all;
+  for (const NamedVariant& one : tried_variants()) {
+    if (std::ranges::find(names, one.name) != names.end()) all.push_back(one);
+  }
   std::vector<NamedVariant> result;
   for (const std::string& name : names) {
     if (is_limit(name)) continue;
@@ -37,13 +45,17 @@ std::vector<NamedVariant> select_variants(const std::vector<std::string>& names)
         throw UsageError(
             fmt::format("implementation '{}' is unavailable: {}", name, entry.unavailable));
       }
+      for (const auto& [variant, reason] : entry.lacking) {
+        if (entry.folder + "/" + variant != name) continue;
+        throw UsageError(fmt::format("implementation '{}' is unavailable: {}", name, reason));
+      }
     }
     const auto selected = [&name](const NamedVariant& variant) {
       return variant.name == name || variant.entry->folder == name;
     };
     if (std::ranges::none_of(all, selected)) {
       std::vector<std::string> known;
-      for (const NamedVariant& variant : all) known.push_back(variant.name);
+      for (const NamedVariant& variant : all_variants()) known.push_back(variant.name);
       throw UsageError(
           fmt::format("unknown implementation '{}': there are {}", name, fmt::join(known, ", ")));
     }

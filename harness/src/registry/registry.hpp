@@ -14,6 +14,8 @@ struct RegistryEntry {
   std::string folder;
   Implementation implementation;  ///< empty if unavailable
   std::string unavailable;        ///< the reason, empty if available
+  /// Variants that this build lacks, with the reason.
+  std::vector<std::pair<std::string, std::string>> lacking = {};
 };
 
 /// All entries in the order of the list. Defined by the generated registry.cpp, or by a test's own.
@@ -31,17 +33,21 @@ inline bool is_own_code(const Implementation& implementation, const Variant& var
   return implementation.library == "none" || variant.own_code;
 }
 
-/// Every available variant, in order.
+/// Every available variant that stands for itself, in order.
 std::vector<NamedVariant> all_variants();
 
+/// Those that were tried for another one (Variant::tried_for), in order.
+std::vector<NamedVariant> tried_variants();
+
 /// The variants that `names` select, in order: "folder/variant", or "folder" for all of its
-/// variants; an empty list selects everything available. Throws UsageError with the known names if
+/// variants that stand for themselves; an empty list selects all of these. Throws UsageError with the known names if
 /// one is unknown, or with the reason if it is unavailable. "limit" or "limit/limit" adds the code
 /// of limit/, which an empty list never does.
 std::vector<NamedVariant> select_variants(const std::vector<std::string>& names);
 
-inline RegistryEntry available(std::string folder, Implementation implementation) {
-  return {std::move(folder), std::move(implementation), ""};
+inline RegistryEntry available(std::string folder, Implementation implementation,
+                               std::vector<std::pair<std::string, std::string>> lacking = {}) {
+  return {std::move(folder), std::move(implementation), "", std::move(lacking)};
 }
 inline RegistryEntry unavailable(std::string folder, std::string reason) {
   return {std::move(folder), {}, std::move(reason)};

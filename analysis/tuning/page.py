@@ -1,0 +1,8 @@
+# What page.html.j2 shows of settings that were tried.
+def context(tables, view):
+    rows = tables["alternatives"]
+    groups = {}
+    for row in rows.to_dict("records"):
+        groups.setdefault(row["base"], {}).setdefault((row["alternative"], row["description"]), {})[row["scene"]] = row
+    return {"settings": view.settings, "groups": groups, "scenes": list(dict.fromkeys(rows.scene)),
+            "lost": rows[rows.status != "ok"].to_dict("records")}

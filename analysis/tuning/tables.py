@@ -1,0 +1,41 @@
+# Rows of what was tried, by variant and scene.
+import pandas
+
+from analysis.core import timing
+from analysis.limit.tables import cells_of, verdicts_of
+
+
+def build(records, view):
+    gate = [one for one in records if one.role == "gate"]
+    said = verdicts_of(gate)
+    rows = timing.processes(timing.counted([one for one in records if one.role != "gate"]))
+    found = []
+    for scene in view.settings["scenes"]:
+        here = rows[rows.scene == scene]
+        cells = cells_of(here, scene, said) if len(here) else {}
+        for name, one in view.registry.tried.items():
+            known = {"scene": scene, "base": one["tried_for"], "alternative": name, "description": one["description"]}
+            row = _row(here, cells, name, one["tried_for"]) or _unasked(gate, scene, name)
+            found += [known | row] if row else []
+    return {"alternatives": pandas.DataFrame(found)}
+
+
+def _row(rows, cells, name, base):
+    lost = next((cells[one] for one in (base, name) if one in cells and cells[one]["status"] != "ok"), None)
+    if lost is not None or not {name, base} <= cells.keys():
+        return {key: lost[key] for key in ("status", "reason", "record")} if lost else None
+    ratio = timing.ratio(rows, name, base)
+    return {"status": "ok", "reason": "", "processes": cells[name]["processes"], "base_us": cells[base]["step_us"],
+            "step_us": cells[name]["step_us"], "ratio": ratio.value, "low": ratio.low, "high": ratio.high,
+            "record": cells[name]["record"]}
+
+
+def _unasked(gate, scene, name):
+    """Of one that was not timed: what the gate said of it, or how the gate ended. None: it took no part."""
+    for record in gate:
+        if record.cell["scene"] == scene and name in record.cell["contenders"]:
+            status, reason = record.verdicts.get(name, (record.status, record.reason))
+            agrees = status == "agrees"  # then its own variant did not, or the budget was spent
+            return {"status": "dropped" if agrees else status, "record": record.name,
+                    "reason": "not timed, or not beside the variant itself" if agrees else reason}
+    return None

@@ -1,0 +1,73 @@
+# Tuning: who is asked, of whom only those that the gate agrees with are timed, and what the table says of each.
+from types import SimpleNamespace
+
+import pandas
+import pytest
+
+from analysis.core.records import Record
+from analysis.core.registry import Registry
+from analysis.core.schema import conform, of_part
+from analysis.tuning import figures, page, sentences, tables
+from study.core.contender import Contender
+from study.tuning import plan
+
+REGISTRY = Registry({"implementations": [{"folder": "one", "available": True, "library": "L", "variants": [
+    {"name": "one/a"}, {"name": "one/b"}, {"name": "one/a_metis", "tried_for": "one/a", "description": "METIS"},
+    {"name": "one/a_wrong", "tried_for": "one/a", "description": "wrong"}]}]})
+SCENE = "four-bar:10"
+SETTINGS = {"scenes": [SCENE], "steps": 20, "processes": 3, "samples": 2}
+VIEW = SimpleNamespace(registry=REGISTRY, settings=SETTINGS)
+VERDICTS = {"one/a": "agrees", "one/a_metis": "agrees", "one/a_wrong": "disagrees"}
+
+
+def gate(status="done", **changes):
+    rows = [{"scene": SCENE, "implementation": name, "verdict": verdict, "reason": "why"} for name, verdict in (VERDICTS | changes).items()]
+    return Record("gate", {"scene": SCENE, "contenders": list(VERDICTS), "role": "gate"}, status, "slow", 1.0, [], {},
+                  {"rows": rows} if status == "done" else {})
+
+
+def bench(number, **times):
+    found = {f"one/{name}/{SCENE}": {"stretch_us": [20 * time] * 2, "cpu_us": [20 * time] * 2, "steps": 20, "passes": 40, "setup_us": 1.0,
+                                     "memory_bytes": 9.0, "variables": 22} for name, time in times.items()}
+    cell = {"scene": SCENE, "contenders": [f"one/{name}" for name in times], "environment": "own|x", "number": number, "role": "time", "settings": []}
+    return Record(f"time/{number}", cell, "done", "", 1.0, [], {}, {"rows": found})
+
+
+def made(*records):
+    schema = of_part("tuning")["alternatives"]
+    frame = tables.build(list(records), VIEW)["alternatives"]
+    return {"alternatives": conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(schema)), schema, "alternatives")}
+
+
+def test_what_was_tried_stands_apart_from_what_takes_part():
+    assert list(REGISTRY.variants) == ["one/a", "one/b"] and list(REGISTRY.tried) == ["one/a_metis", "one/a_wrong"]
+
+
+@pytest.mark.parametrize("names, expected", [(("one/a", "one/b"), list(VERDICTS)), (("one/b",), [])])
+def test_only_those_that_the_gate_agrees_with_are_timed(monkeypatch, names, expected):
+    cells, timed = [], []
+
+    def run(asked, drop):
+        cells.extend(asked)
+        return [gate()]
+    monkeypatch.setattr(plan, "measure", lambda lab, scene, good, **more: timed.extend(one.name for one in good))
+    lab = SimpleNamespace(contenders=[Contender(name, name, "x") for name in names], registry=REGISTRY, settings=SETTINGS, run=run)
+    plan.run(lab, "alternatives")
+    assert [one.name for cell in cells for one in cell.contenders] == expected
+    assert timed == [name for name in expected if VERDICTS[name] == "agrees"]
+
+
+def test_ratios_and_reasons():
+    rows = made(gate(), *(bench(number, a=10.0, a_metis=12.0 + 0.01 * number) for number in (1, 2, 3)))["alternatives"].set_index("alternative")
+    assert rows.ratio["one/a_metis"] == pytest.approx(1.202) and rows.low["one/a_metis"] > 1 and rows.base["one/a_metis"] == "one/a"
+    assert (rows.status["one/a_wrong"], rows.reason["one/a_wrong"]) == ("disagrees", "why")
+    late = made(gate("dropped"))["alternatives"]
+    assert set(late.status) == {"dropped"} and all(reason.endswith("slow") for reason in late.reason)
+
+
+def test_page_and_sentences():
+    full = made(gate(), *(bench(number, a=10.0, a_metis=12.0 + 0.01 * number) for number in (1, 2, 3)))
+    known = page.context(full, VIEW)
+    assert known["scenes"] == [SCENE] and len(known["groups"]["one/a"]) == 2 and len(known["lost"]) == 1
+    assert "1 are shown to be slower, 0 faster" in sentences.answers(full, VIEW)[0]["text"] and figures.draw(full, VIEW) == {}
+    assert "Not measured" in sentences.answers(made(gate("dropped")), VIEW)[0]["text"] and page.context(made(), VIEW)["groups"] == {}
