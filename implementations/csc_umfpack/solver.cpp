@@ -3,11 +3,16 @@
 
 #include <umfpack.h>
 
+#include <limits>
 #include <string>
 
 #include "mbs/simulation.hpp"
 
 namespace mbs::csc_umfpack {
+
+/// In the model's order the fronts of a mechanism follow each other on a path, which pays as long as
+/// it takes at most so many times the operations of AMD's order (README.md).
+constexpr double kWorthOfPath = 2.0;
 
 static_assert(UMFPACK_CONTROL == 20 && UMFPACK_INFO == 90, "sizes of the arrays in solver.hpp");
 
@@ -27,10 +32,21 @@ Solver::Solver(const SparsityPattern& pattern, Tuning tuning, const std::vector<
   }
   analyse(tuning == Tuning::metis ? UMFPACK_ORDERING_METIS : UMFPACK_ORDERING_AMD, nullptr);
   if (tuning != Tuning::own) return;
-  // The model's order, from one end of a mechanism to the other, where that saves operations.
-  const double operations = info_[UMFPACK_FLOPS_ESTIMATE];
+  const double operations = count_operations();
   analyse(UMFPACK_ORDERING_NONE, nullptr);
-  if (info_[UMFPACK_FLOPS_ESTIMATE] >= operations) analyse(UMFPACK_ORDERING_AMD, nullptr);
+  if (count_operations() > kWorthOfPath * operations) analyse(UMFPACK_ORDERING_AMD, nullptr);
+}
+
+double Solver::count_operations() {
+  std::vector<double> dominant(pattern_.rows.size(), 1.0);
+  for (int column = 0; column < pattern_.variables(); ++column) {
+    for (int k = pattern_.starts[column]; k < pattern_.starts[column + 1]; ++k) {
+      if (pattern_.rows[k] == column) dominant[k] = pattern_.variables();
+    }
+  }
+  const bool done = factorize(dominant.data());
+  numeric_.reset();
+  return done ? info_[UMFPACK_FLOPS] : std::numeric_limits<double>::infinity();
 }
 
 void Solver::tune(Tuning tuning) {
