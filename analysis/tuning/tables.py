@@ -2,7 +2,7 @@
 import pandas
 
 from analysis.core import timing
-from analysis.limit.tables import cells_of, verdicts_of
+from analysis.core.contest import cells_of, verdicts_of
 
 
 def build(records, view):
