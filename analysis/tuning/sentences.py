@@ -10,12 +10,12 @@ def answers(tables, view):
     found = []
     for base, group in rows.groupby("base", sort=False):
         slower, faster = group[group.low > 1], group[group.high < 1]
-        text = (f"{base}: of {len(group)} measurements of {group.alternative.nunique()} other settings on {group.scene.nunique()} scenes, {len(slower)} "
-                f"are shown to be slower, {len(faster)} faster")
+        text = (f"{base}: of {len(group)} times with other settings ({group.alternative.nunique()} on {group.scene.nunique()} scenes) {len(slower)} "
+                f"are shown to be longer, {len(faster)} shorter")
         most = group.loc[group.ratio.idxmax()]
-        text += f"; the dearest is {most.alternative} on {most.scene}, {number(most.ratio)} times the time"
+        text += f"; the longest is {most.alternative} on {most.scene}, {number(most.ratio)} times the time"
         if len(faster):
             least = faster.loc[faster.ratio.idxmin()]
-            text += f"; the largest gain that was left is {least.alternative} on {least.scene}, {number(least.ratio)} times"
+            text += f"; the shortest is {least.alternative} on {least.scene}, {number(least.ratio)} times"
         found.append({"anchor": base.replace("/", "-"), "text": text + "."})
     return found
