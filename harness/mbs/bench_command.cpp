@@ -28,7 +28,8 @@ namespace {
 void add_options(CLI::App& app, BenchRequest& request, StepOptions& step) {
   app.add_option("scenes", request.scenes, "scenes (default: four-bar:10 four-bar:40)");
   app.add_option("--implementation", request.implementations,
-                 "folder or folder/variant, repeatable (default: all but examples and what was tried, and the control "
+                 "folder or folder/variant, repeatable (default: all but examples and what was "
+                 "tried, and the control "
                  "null/null that does nothing)")
       ->allow_extra_args(false);
   step.add_to(app);
