@@ -7,15 +7,12 @@ def answers(tables, view):
     rows = rows[rows.status == "ok"]
     if rows.empty:
         return [{"text": "Not measured: nothing that was tried was timed.", "anchor": ""}]
-    found = []
-    for base, group in rows.groupby("base", sort=False):
-        slower, faster = group[group.low > 1], group[group.high < 1]
-        text = (f"{base}: of {len(group)} times with other settings ({group.alternative.nunique()} on {group.scene.nunique()} scenes) {len(slower)} "
-                f"are shown to be longer, {len(faster)} shorter")
-        most = group.loc[group.ratio.idxmax()]
-        text += f"; the longest is {most.alternative} on {most.scene}, {number(most.ratio)} times the time"
-        if len(faster):
-            least = faster.loc[faster.ratio.idxmin()]
-            text += f"; the shortest is {least.alternative} on {least.scene}, {number(least.ratio)} times"
-        found.append({"anchor": base.replace("/", "-"), "text": text + "."})
-    return found
+    slower, faster = rows[rows.low > 1], rows[rows.high < 1]
+    most = rows.loc[rows.ratio.idxmax()]
+    text = (f"Of {len(rows)} times with other settings ({rows.alternative.nunique()} settings of {rows.base.nunique()} variants on {rows.scene.nunique()} scenes) "
+            f"{len(slower)} are shown to be longer than with the variant's own, {len(faster)} shorter; the longest is {most.alternative} on {most.scene}, "
+            f"{number(most.ratio)} times the time")
+    if len(faster):
+        least = faster.loc[faster.ratio.idxmin()]
+        text += f"; the shortest is {least.alternative} on {least.scene}, {number(least.ratio)} times"
+    return [{"anchor": "", "text": text + "."}]

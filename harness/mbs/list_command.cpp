@@ -129,7 +129,7 @@ void print_list() {
   print_coverage();
   fmt::print("\nTried and not taken, only if named in full:\n");
   for (const NamedVariant& one : tried_variants()) {
-    fmt::print("{:<24} for {}: {}\n", one.name, one.variant->tried_for, one.variant->description);
+    fmt::print("{:<32} for {}: {}\n", one.name, one.variant->tried_for, one.variant->description);
   }
   fmt::print("\nReference line, only if named:\n{:<24} {}\n", limit::kName,
              limit::variant().description);

@@ -192,9 +192,8 @@ TEST(BenchPlan, TakesWhatWasTriedOnlyByItsFullName) {
   EXPECT_EQ(plan_bench(named).cells.front().variant, tried.variant);
   named.implementations = {tried.entry->folder};
   const BenchPlan folder = plan_bench(named);
-  EXPECT_TRUE(std::ranges::none_of(folder.cells, [&](const PlannedCell& cell) {
-    return cell.variant == tried.variant;
-  }));
+  EXPECT_TRUE(std::ranges::none_of(
+      folder.cells, [&](const PlannedCell& cell) { return cell.variant == tried.variant; }));
 }
 
 TEST(BenchPlan, CentresTheStretchOnTheSingularPosition) {

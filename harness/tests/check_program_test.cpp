@@ -26,7 +26,8 @@ TEST(CheckProgram, WhatWasTriedAgreesAndBelongsToAVariant) {
       return other.name == base;
     })) << base;
   }
-  const std::string scenes = MBS_SANITIZE ? "four-bar:3 grid:2x2" : "four-bar:10 four-bar:20,fill=0.5 grid:4x4";
+  const std::string scenes =
+      MBS_SANITIZE ? "four-bar:3 grid:2x2" : "four-bar:10 four-bar:20,fill=0.5 grid:4x4";
   const auto run = test::run_mbs("check " + scenes + " --time-limit 2000" + names);
   EXPECT_EQ(run.status, 0) << run.output << run.errors;
 }

@@ -76,7 +76,8 @@ TEST(Describe, FourBar) {
                                            {"height", 4},
                                            {"widest", 4},
                                            {"dimension", 2},
-                                           {"springs", 0}}));
+                                           {"springs", 0},
+                                           {"saddle", 0}}));
   EXPECT_EQ(d["scheme"]["take"], "penalty");
   EXPECT_EQ(d["precision"], "double");
   EXPECT_EQ(d["terms"]["gravity"], true);

@@ -12,8 +12,7 @@
 namespace mbs::csc_cholmod {
 namespace {
 
-constexpr const char* kAllocates =
-    "cholmod_super_numeric allocates its workspace in every call";
+constexpr const char* kAllocates = "cholmod_super_numeric allocates its workspace in every call";
 
 constexpr Terms kTerms{
     Term::dots,    Term::bilinear, Term::linear,     Term::springs, Term::torsion_springs,
@@ -70,10 +69,10 @@ Implementation implementation() {
                     .tried_for = "simplicial"},
                    tried_supernodal<Tuning::amd>("supernodal_amd",
                                                  "AMD's order, supernodes of up to 32 columns"),
-                   tried_supernodal<Tuning::metis>("supernodal_metis",
-                                                   "order of METIS, supernodes of up to 32 columns"),
-                   tried_supernodal<Tuning::defaults>("supernodal_defaults",
-                                                      "AMD's order, supernodes as CHOLMOD has them")},
+                   tried_supernodal<Tuning::metis>(
+                       "supernodal_metis", "order of METIS, supernodes of up to 32 columns"),
+                   tried_supernodal<Tuning::defaults>(
+                       "supernodal_defaults", "AMD's order, supernodes as CHOLMOD has them")},
       .role = Role::paper,
   };
 }

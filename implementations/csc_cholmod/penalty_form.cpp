@@ -18,8 +18,7 @@ std::vector<double> constants(const Model& model, const std::vector<int>& number
 
 }  // namespace
 
-PenaltyForm::PenaltyForm(const Model& model, const StepSettings& settings,
-                         Method method)
+PenaltyForm::PenaltyForm(const Model& model, const StepSettings& settings, Method method)
     : PenaltyForm(model, settings, tangent_pattern(model), method) {}
 
 PenaltyForm::PenaltyForm(const Model& model, const StepSettings& settings,

@@ -14,10 +14,9 @@
 namespace mbs::csc_umfpack {
 namespace {
 
-constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
-                       Term::springs,     Term::torsion_springs, Term::dampers,
-                       Term::couples,     Term::drivers,         Term::mass_across_axes,
-                       Term::spatial};
+constexpr Terms kTerms{
+    Term::dots,    Term::bilinear, Term::linear,  Term::springs,          Term::torsion_springs,
+    Term::dampers, Term::couples,  Term::drivers, Term::mass_across_axes, Term::spatial};
 
 template <template <int> class System>
 std::unique_ptr<Simulation> create_with(const Model& model, const StepSettings& settings,
@@ -62,8 +61,9 @@ Implementation implementation() {
       .version = version(),
       .licence = "GPL-2.0-or-later",
       .variants = {{.name = "symmetric",
-                    .description = "one symbolic analysis (symmetric strategy, AMD or model's order), "
-                                   "no scaling, diagonal pivots, numeric factorization every pass",
+                    .description =
+                        "one symbolic analysis (symmetric strategy, AMD or model's order), "
+                        "no scaling, diagonal pivots, numeric factorization every pass",
                     .create = create<Tuning::own>,
                     .unsymmetric = true,
                     .serves = {.terms = kTerms, .saddle_point = true}},

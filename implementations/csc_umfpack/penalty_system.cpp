@@ -5,7 +5,8 @@ namespace mbs::csc_umfpack {
 
 template <int D>
 PenaltySystem<D>::PenaltySystem(const MassMatrix& mass, const Jacobian<D>& jacobian,
-                                const Forces<D>& forces, const StepSettings& settings, Tuning tuning)
+                                const Forces<D>& forces, const StepSettings& settings,
+                                Tuning tuning)
     : jacobian_(jacobian),
       forces_(forces),
       penalty_(settings.penalty),

@@ -7,7 +7,8 @@ namespace mbs::csc_umfpack {
 
 template <int D>
 SaddlePointSystem<D>::SaddlePointSystem(const MassMatrix& mass, const Jacobian<D>& jacobian,
-                                        const Forces<D>& forces, const StepSettings& settings, Tuning tuning)
+                                        const Forces<D>& forces, const StepSettings& settings,
+                                        Tuning tuning)
     : jacobian_(jacobian),
       forces_(forces),
       n_(mass.pattern().variables()),

@@ -11,8 +11,7 @@
 namespace mbs::csc_umfpack {
 
 template <int D, template <int> class System>
-CscUmfpack<D, System>::CscUmfpack(const Model& model, const StepSettings& settings,
-                                  Tuning tuning)
+CscUmfpack<D, System>::CscUmfpack(const Model& model, const StepSettings& settings, Tuning tuning)
     : Simulation(model, settings),
       settings_(settings),
       n_(model.variables()),

@@ -10,8 +10,8 @@
 
 namespace mbs::csc_umfpack {
 
-/// In the model's order the fronts of a mechanism follow each other on a path, which pays as long as
-/// it takes at most so many times the operations of AMD's order (README.md).
+/// In the model's order the fronts of a mechanism follow each other on a path, which pays as long
+/// as it takes at most so many times the operations of AMD's order (README.md).
 constexpr double kWorthOfPath = 2.0;
 
 static_assert(UMFPACK_CONTROL == 20 && UMFPACK_INFO == 90, "sizes of the arrays in solver.hpp");
@@ -67,11 +67,11 @@ void Solver::analyse(int ordering, const int* given) {
   const int n = pattern_.variables();
   void* symbolic = nullptr;
   const int *starts = pattern_.starts.data(), *rows = pattern_.rows.data();
-  const int status = given == nullptr ? umfpack_di_symbolic(n, n, starts, rows, nullptr, &symbolic,
-                                                            control_.data(), info_.data())
-                                      : umfpack_di_qsymbolic(n, n, starts, rows, nullptr, given,
-                                                             &symbolic, control_.data(),
-                                                             info_.data());
+  const int status = given == nullptr
+                         ? umfpack_di_symbolic(n, n, starts, rows, nullptr, &symbolic,
+                                               control_.data(), info_.data())
+                         : umfpack_di_qsymbolic(n, n, starts, rows, nullptr, given, &symbolic,
+                                                control_.data(), info_.data());
   symbolic_.reset(symbolic);
   if (status != UMFPACK_OK) {
     throw Unsupported("UMFPACK refuses to analyse the matrix, status " + std::to_string(status));
@@ -93,8 +93,7 @@ bool Solver::factorize(const double* A) {
 void Solver::solve(const double* b, double* x) {
   // The matrix is for refinement, where there is any.
   umfpack_di_wsolve(UMFPACK_A, pattern_.starts.data(), pattern_.rows.data(), values_, x, b,
-                    numeric_.get(), control_.data(), info_.data(), integers_.data(),
-                    reals_.data());
+                    numeric_.get(), control_.data(), info_.data(), integers_.data(), reals_.data());
 }
 
 }  // namespace mbs::csc_umfpack

@@ -47,10 +47,9 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
   throw Unsupported("multistep6 is not served");
 }
 
-constexpr Terms kTerms{Term::dots,        Term::bilinear,        Term::linear,
-                       Term::springs,     Term::torsion_springs, Term::dampers,
-                       Term::couples,     Term::drivers,         Term::mass_across_axes,
-                       Term::spatial};
+constexpr Terms kTerms{
+    Term::dots,    Term::bilinear, Term::linear,  Term::springs,          Term::torsion_springs,
+    Term::dampers, Term::couples,  Term::drivers, Term::mass_across_axes, Term::spatial};
 
 constexpr Serves kServes{.terms = kTerms,
                          .saddle_point = true,
@@ -98,7 +97,8 @@ Implementation implementation() {
       .library = "Eigen, SuperLU",
       .version = versions(),
       .licence = "MPL-2.0 AND BSD-3-Clause",
-      .variants = {superlu, ldlt,
+      .variants = {superlu,
+                   ldlt,
 #ifdef MBS_PARDISO
                    {.name = "pardiso",
                     .description = "MKL's PARDISO, LL^T, in its own order (ISSL)",

@@ -96,11 +96,17 @@ std::vector<int> TunedSimplicial<Scalar, kTuning>::equivalent_order(const Sparse
   return identity;
 }
 
-template std::vector<int> TunedSimplicial<double, Tuning::own>::elimination_order(const SparseMatrix&);
-template std::vector<int> TunedSimplicial<double, Tuning::amd>::elimination_order(const SparseMatrix&);
-template std::vector<int> TunedSimplicial<double, Tuning::own>::equivalent_order(const SparseMatrix&);
-template std::vector<int> TunedSimplicial<double, Tuning::amd>::equivalent_order(const SparseMatrix&);
-template std::vector<int> TunedSimplicial<float, Tuning::own>::elimination_order(const SparseMatrix&);
-template std::vector<int> TunedSimplicial<float, Tuning::own>::equivalent_order(const SparseMatrix&);
+template std::vector<int> TunedSimplicial<double, Tuning::own>::elimination_order(
+    const SparseMatrix&);
+template std::vector<int> TunedSimplicial<double, Tuning::amd>::elimination_order(
+    const SparseMatrix&);
+template std::vector<int> TunedSimplicial<double, Tuning::own>::equivalent_order(
+    const SparseMatrix&);
+template std::vector<int> TunedSimplicial<double, Tuning::amd>::equivalent_order(
+    const SparseMatrix&);
+template std::vector<int> TunedSimplicial<float, Tuning::own>::elimination_order(
+    const SparseMatrix&);
+template std::vector<int> TunedSimplicial<float, Tuning::own>::equivalent_order(
+    const SparseMatrix&);
 
 }  // namespace mbs::eigen_sparse

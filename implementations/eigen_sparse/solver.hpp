@@ -37,8 +37,8 @@ class TunedSimplicial {
   using Values = Eigen::SparseMatrix<Scalar>;
   using Side = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
   static constexpr Triangle kTriangle = Triangle::upper;
-  /// AMD's fill, eliminated by rounds unless tuned otherwise: position[i] is where unknown i of `pattern` (n x n, both
-  /// triangles) is eliminated.
+  /// AMD's fill, eliminated by rounds unless tuned otherwise: position[i] is where unknown i of
+  /// `pattern` (n x n, both triangles) is eliminated.
   [[nodiscard]] static std::vector<int> elimination_order(const SparseMatrix& pattern);
   /// An order of the same fill as the present one, in the form that this solver wants.
   [[nodiscard]] static std::vector<int> equivalent_order(const SparseMatrix& pattern);

@@ -61,12 +61,16 @@ std::string superlu_version() {
 
 template std::vector<int> TunedSuperlu<double, Tuning::own>::elimination_order(const SparseMatrix&);
 template std::vector<int> TunedSuperlu<double, Tuning::amd>::elimination_order(const SparseMatrix&);
-template std::vector<int> TunedSuperlu<double, Tuning::colamd>::elimination_order(const SparseMatrix&);
-template std::vector<int> TunedSuperlu<double, Tuning::panels>::elimination_order(const SparseMatrix&);
+template std::vector<int> TunedSuperlu<double, Tuning::colamd>::elimination_order(
+    const SparseMatrix&);
+template std::vector<int> TunedSuperlu<double, Tuning::panels>::elimination_order(
+    const SparseMatrix&);
 template std::vector<int> TunedSuperlu<double, Tuning::own>::equivalent_order(const SparseMatrix&);
 template std::vector<int> TunedSuperlu<double, Tuning::amd>::equivalent_order(const SparseMatrix&);
-template std::vector<int> TunedSuperlu<double, Tuning::colamd>::equivalent_order(const SparseMatrix&);
-template std::vector<int> TunedSuperlu<double, Tuning::panels>::equivalent_order(const SparseMatrix&);
+template std::vector<int> TunedSuperlu<double, Tuning::colamd>::equivalent_order(
+    const SparseMatrix&);
+template std::vector<int> TunedSuperlu<double, Tuning::panels>::equivalent_order(
+    const SparseMatrix&);
 template std::vector<int> TunedSuperlu<float, Tuning::own>::elimination_order(const SparseMatrix&);
 template std::vector<int> TunedSuperlu<float, Tuning::own>::equivalent_order(const SparseMatrix&);
 

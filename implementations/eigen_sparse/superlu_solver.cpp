@@ -129,8 +129,9 @@ bool TunedSuperlu<Scalar, kTuning>::factorize() {
   if (!h.finite()) return false;
   h.options.Fact = h.lower.Store == nullptr ? DOFACT : SamePattern_SameRowPerm;
   int info = 0;
-  SuperluCalls<Scalar>::factorize(&h.options, &h.view, h.relaxed, h.panel, h.etree.data(), nullptr, 0, h.identity.data(), h.perm_r.data(),
-                                  &h.lower, &h.upper, &h.memory, &h.statistics, &info);
+  SuperluCalls<Scalar>::factorize(&h.options, &h.view, h.relaxed, h.panel, h.etree.data(), nullptr,
+                                  0, h.identity.data(), h.perm_r.data(), &h.lower, &h.upper,
+                                  &h.memory, &h.statistics, &info);
   if (info > h.view.ncol) {  // out of memory: what the factors point to is not known
     h.lower.Store = h.upper.Store = nullptr;
     return false;

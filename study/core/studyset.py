@@ -172,6 +172,8 @@ def select(registry, only, option="--only: "):
         entry = folders.get(name.split("/")[0])
         if entry and not entry["available"]:
             raise StudyError(f"{option}{name} is unavailable: {entry['reason']}")
+        if entry and name in entry.get("lacking", {}):
+            raise StudyError(f"{option}{name} is unavailable: {entry['lacking'][name]}")
         if name not in folders and name not in registry.variants:
             raise StudyError(f"{option}unknown implementation '{name}'; known: "
                              f"{', '.join([*folders, *registry.variants])}")

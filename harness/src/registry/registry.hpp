@@ -40,9 +40,9 @@ std::vector<NamedVariant> all_variants();
 std::vector<NamedVariant> tried_variants();
 
 /// The variants that `names` select, in order: "folder/variant", or "folder" for all of its
-/// variants that stand for themselves; an empty list selects all of these. Throws UsageError with the known names if
-/// one is unknown, or with the reason if it is unavailable. "limit" or "limit/limit" adds the code
-/// of limit/, which an empty list never does.
+/// variants that stand for themselves; an empty list selects all of these. Throws UsageError with
+/// the known names if one is unknown, or with the reason if it is unavailable. "limit" or
+/// "limit/limit" adds the code of limit/, which an empty list never does.
 std::vector<NamedVariant> select_variants(const std::vector<std::string>& names);
 
 inline RegistryEntry available(std::string folder, Implementation implementation,
