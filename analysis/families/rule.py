@@ -1,18 +1,20 @@
 # A rule that predicts: which library is fastest, and how long a step takes, from numbers that need no factorization.
 #
-# The choice is a tree of at most LEAVES questions' ends, grown where it saves most time; a step's time is a sum of features
-# with coefficients that are not negative (least squares of relative errors). Both are judged on families left out: each family
-# is predicted by what was fitted on all others.
+# The choice is a tree of few ends for each form of the step, grown where it saves most time; a step's time is a sum of
+# features with coefficients that are not negative (least squares of relative errors). Both are judged on families left out:
+# each family is predicted by what was fitted on all others.
 import numpy
 import pandas
 
-SPLITS = ("n", "fill", "per_column", "flops", "height", "saddle")  # what a tree may ask for; saddle: 1 in that form of the step, else 0
-LEAVES = 5
+SPLITS = ("n", "fill", "per_column", "flops", "height")  # features that a tree may ask for
+LEAVES = {"penalty": 3, "saddle-point": 2}  # of the two forms of the step: five ends in all
 LEAST = 2        # families on each side of a question, so that none is asked for one machine's sake
 WORTH = 0.003    # of the mean cost, that a further question must save
+SADDLE = "saddle"  # the feature that is 1 in the saddle-point form, 0 in the penalty form
 MISSED = 3.0     # loss of who has no time: excluded as far behind, or of no use there
 SPARSE = ("one", "n", "jacobian", "tangent", "factor", "flops")  # features of a step's time
 DENSE = ("one", "n", "jacobian", "n2", "n3")
+USUAL = 1.5      # times the passes of the mechanism in the middle: who takes more, at a singular position, is no guide to times
 FEWEST = 8       # scenes that the time of a step is fitted on
 WITHIN = 1.5     # a predicted time is good within this factor
 RANGE = 5, 95    # percentiles of measured over predicted time
@@ -24,7 +26,7 @@ def rule(tables, registry):
     if data.families < 2 * LEAST:
         return None
     judged = held(tables, registry)
-    return {"tree": data.tree(), "times": data.times(judged), "held": summary(judged),
+    return {"tree": data.both(), "times": data.times(judged), "held": summary(judged),
             "scenes": [{"scene": scene, "features": data.features.loc[scene].to_dict(), "fastest": fastest, "step_us": float(step)}
                        for scene, (fastest, step) in data.fastest().items()]}
 
@@ -35,8 +37,7 @@ def leaves(tables, registry):
     data = _Data(tables, registry)
     if data.families < 2 * LEAST:
         return []
-    tree, rows = data.tree(), [(data.asked(scene, scheme), losses) for scheme, one in data.losses.items() for scene, losses in one.iterrows()]
-    found = []
+    found, rows = [], []
 
     def walk(node, conditions):
         if "take" in node:
@@ -46,7 +47,9 @@ def leaves(tables, registry):
         else:
             walk(node["then"], [*conditions, (node["feature"], True, node["below"])])
             walk(node["else"], [*conditions, (node["feature"], False, node["below"])])
-    walk(tree, [])
+    for scheme, losses in data.losses.items():
+        rows[:] = [({**data.features.loc[scene], SADDLE: float(scheme == "saddle-point")}, one) for scene, one in losses.iterrows()]
+        walk(data.tree(scheme), [(SADDLE, scheme == "penalty", 0.5)])
     return found
 
 
@@ -56,8 +59,8 @@ def alone(tables, registry):
     for feature in SPLITS if data.families >= 2 * LEAST else ():
         losses = []
         for family in dict.fromkeys(data.family.values()):
-            tree = data.without(family).tree((feature,))
-            losses += [row.get(leaf(tree, data.asked(scene, scheme)), MISSED) for scheme, one in data.losses.items()
+            rest = data.without(family)
+            losses += [row.get(leaf(rest.tree(scheme, (feature,)), data.features.loc[scene]), MISSED) for scheme, one in data.losses.items()
                        for scene, row in one.iterrows() if data.family[scene] == family]
         rows.append({"feature": feature, "mean_loss": numpy.mean(losses), "worst_loss": max(losses), "scenes": len(losses),
                      "record": " ".join(data.records[scene] for scene in data.features.index)})
@@ -70,18 +73,18 @@ def held(tables, registry):
     rows = []
     for family in dict.fromkeys(data.family.values()) if data.families >= 2 * LEAST else ():
         rest = data.without(family)
-        tree, models = rest.tree(), {(scheme, name): rest.model(scheme, name) for scheme, name in data.timed}
+        trees, models = {scheme: rest.tree(scheme) for scheme in data.losses}, {(scheme, name): rest.model(scheme, name) for scheme, name in data.timed}
         for scene in [one for one in data.features.index if data.family[one] == family]:
             for scheme, losses in data.losses.items():
                 if scene not in losses.index:
                     continue
-                name = leaf(tree, data.asked(scene, scheme))
-                model, measured = models.get((scheme, name)), data.us[scheme].loc[scene].get(name, numpy.nan)
+                predicted = {one: _time(models[scheme, one], data.features.loc[scene]) for at, one in models if at == scheme}
+                name = leaf(trees[scheme], data.features.loc[scene])
+                measured = data.us[scheme].loc[scene].get(name, numpy.nan) if data.usual[scheme][scene] else numpy.nan
                 rows.append({"family": family, "scene": scene, "scheme": scheme, "variables": data.features.loc[scene, "n"],
                              "chosen": name, "fastest": losses.loc[scene].idxmin(), "loss": losses.loc[scene].get(name, MISSED),
-                             "step_us": measured, "predicted_us": _time(model, data.features.loc[scene]),
-                             "record": data.records[scene]})
-                rows[-1]["models"] = {one: _time(models[scheme, one], data.features.loc[scene]) for at, one in models if at == scheme}
+                             "step_us": measured, "predicted_us": predicted.get(name, numpy.nan),
+                             "record": data.records[scene], "models": predicted})
     return pandas.DataFrame(rows)
 
 
@@ -112,13 +115,15 @@ class _Data:
         known = known.set_index("scene") if set(FEATURES) < set(known) else pandas.DataFrame(columns=[*FEATURES, "family", "record"])
         self.family, self.records = known.family.to_dict(), known.record.to_dict()
         self.features = known[list(FEATURES)].astype(float).dropna()
-        self.us, self.losses = {}, {}
+        self.us, self.losses, self.usual = {}, {}, {}
         for scheme, rows in tables["scenes"].groupby("scheme", sort=False) if len(self.features) else ():
             us = pandas.DataFrame({scene: _times(one, registry.libraries) for scene, one in rows.groupby("scene", sort=False)
                                    if scene in self.features.index}).T
             best = us[[name for name in registry.libraries if name in us]]
             best = best[best.notna().any(axis=1)]
             self.us[scheme] = us.loc[best.index]
+            passes = rows[rows.passes.notna()].groupby("scene").passes.median().reindex(best.index)
+            self.usual[scheme] = ~(passes > USUAL * passes.median())
             self.losses[scheme] = best.div(best.min(axis=1), axis=0).sub(1.0).fillna(MISSED).clip(upper=MISSED)
 
     @property
@@ -138,24 +143,26 @@ class _Data:
             **{name: {scheme: one[one.index.isin(keep)] for scheme, one in getattr(self, name).items()} for name in ("us", "losses")}}
         return found
 
-    def asked(self, scene, scheme):
-        """What a tree may ask of a scene in a form of the step."""
-        return {**self.features.loc[scene], "saddle": float(scheme == "saddle-point")}
-
-    def tree(self, splits=SPLITS):
-        losses = pandas.concat(self.losses.values()).fillna(MISSED)
+    def tree(self, scheme, splits=SPLITS):
+        losses = self.losses[scheme]
         losses = losses.loc[:, (losses < MISSED).any()]
-        rows = [self.asked(scene, scheme) for scheme, one in self.losses.items() for scene in one.index]
-        features = {name: numpy.array([row[name] for row in rows]) for name in splits}
+        features = {name: self.features.loc[losses.index, name].to_numpy() for name in splits}
         families = numpy.array([self.family[scene] for scene in losses.index])
         counts = pandas.Series(families).value_counts()
         weights = numpy.array([1 / counts[one] for one in families]) / len(counts)  # a family counts once, whatever its sizes
         costs = losses * (1 + 4 * losses)  # one loss of a fifth is worse than four of a twentieth
-        return _grow(costs.mul(weights, axis=0), features, families, splits)
+        return _grow(costs.mul(weights, axis=0), features, families, splits, LEAVES[scheme])
+
+    def both(self):
+        """The trees of both forms as one, which asks for the form first."""
+        trees = {scheme: self.tree(scheme) for scheme in self.losses}
+        first, *others = trees.values()
+        return {"feature": SADDLE, "below": 0.5, "then": first, "else": others[0]} if others else first
 
     def model(self, scheme, name):
         """{feature: µs}; None of too few scenes."""
-        times = self.us[scheme][name].dropna() if name in self.us.get(scheme, ()) else []
+        times = self.us[scheme][name].dropna() if name in self.us.get(scheme, ()) else pandas.Series(dtype=float)
+        times = times[self.usual[scheme][times.index]] if len(times) else times
         if len(times) < FEWEST:
             return None
         from scipy.optimize import nnls
@@ -184,7 +191,7 @@ class _Data:
         return found
 
 
-FEATURES = tuple(dict.fromkeys(name for name in (*SPLITS, *SPARSE, *DENSE) if name != "saddle"))  # of a scene
+FEATURES = tuple(dict.fromkeys((*SPLITS, *SPARSE, *DENSE)))
 
 
 def _times(rows, libraries):
@@ -201,12 +208,12 @@ def _times(rows, libraries):
     return found.astype(float)
 
 
-def _grow(costs, features, families, splits):
-    """A tree of at most LEAVES leaves: the question that saves most is asked first. `costs`: scenes by libraries, a data frame."""
+def _grow(costs, features, families, splits, most):
+    """A tree of at most `most` leaves: the question that saves most is asked first. `costs`: scenes by libraries, a data frame."""
     names, costs = list(costs.columns), costs.to_numpy()
     root = _node(numpy.ones(len(costs), bool), names, costs)
     leaves = [root]
-    while len(leaves) < LEAVES:
+    while len(leaves) < most:
         options = [(saved, number, question) for number, one in enumerate(leaves)
                    for saved, question in _questions(one, costs, features, families, splits)]
         saved, number, (feature, below) = max(options, key=lambda one: one[0], default=(0.0, 0, ("", 0.0)))
