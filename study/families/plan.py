@@ -9,7 +9,7 @@ SETTINGS = {"scenes": list,     # families with their sizes, as the program take
             "processes": dict,  # of a scene, by scheme
             "samples": int}     # of a process and contender
 FAR = 8.0  # times the fastest library
-STEPS = 100  # of the stretch that is timed: these motions take about the same passes all along, so that size gets the time
+STEPS = 100  # of the stretch that is timed, but on the four-bar: others take about the same passes all along
 
 
 def columns(settings, studyset):
@@ -31,7 +31,7 @@ def run(lab, column):
             for one in behind:
                 lab.skip(Cell("bench", scene, (one,), role=f"{scheme}-look-left-out"), "excluded",
                          f"on smaller ones of the family more than {FAR:g} times as slow as the fastest library, and more so with size")
-            rows = contest(lab, scene, [one for one in chosen if one not in behind], scheme, setting.words(), stretch=("--steps", STEPS),
+            rows = contest(lab, scene, [one for one in chosen if one not in behind], scheme, setting.words(), stretch=() if scene.startswith("four-bar:") else ("--steps", STEPS),
                            own=lab.registry.own, processes=lab.settings["processes"][scheme], samples=lab.settings["samples"])
             before.append(multiples(rows, lab.registry.libraries))
 

@@ -30,8 +30,10 @@ Walk walk(const RuleTree& tree, const Features& scene) {
   while (node->take.empty()) {
     const double value = scene.at(node->feature);
     const bool is_below = value < node->below;
-    result.path.push_back(fmt::format("{} {:.4g} {} {:.4g}", feature_text(node->feature), value,
-                                      is_below ? "<" : ">=", node->below));
+    if (node->feature != "saddle") {  // which form is taken stands beside the path
+      result.path.push_back(fmt::format("{} {:.4g} {} {:.4g}", feature_text(node->feature), value,
+                                        is_below ? "<" : ">=", node->below));
+    }
     node = is_below ? node->yes.get() : node->no.get();
   }
   result.leaf = node->take;

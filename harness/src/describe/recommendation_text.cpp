@@ -43,8 +43,8 @@ std::string why_text(const json& d) {
 std::string certainty_text(const json& rule) {
   const json& held = rule["held"];
   std::string text = fmt::format(
-      "{} families ({} scenes) left out in turn: {:.2g} % slower than their fastest in the mean, "
-      "{:.2g} % at worst; {:.0f} % of the times right to a factor of 1.5",
+      "{} families ({} scenes) left out in turn: {:.0f} % slower than their fastest in the mean, "
+      "{:.0f} % at worst; {:.0f} % of the times right to a factor of 1.5",
       held["families"].get<int>(), held["scenes"].get<int>(),
       100.0 * held["mean_loss"].get<double>(), 100.0 * held["worst_loss"].get<double>(),
       100.0 * held["within"].get<double>());
