@@ -1,12 +1,11 @@
 # The map of real mechanisms, libraries first and code of our own beside; the rule on families that were left out.
 import matplotlib.pyplot as plt
-import numpy
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from analysis.core.style import GREY, MARKERS, Look, missing, number_axis
 from analysis.core.text import number
-from analysis.families.rule import SPLITS, WITHIN
+from analysis.families.rule import WITHIN
 from analysis.families.tables import SCHEMES
 
 DECIDES = "per_column"  # beside n, the number that tells mechanisms apart; the page shows what each tells alone

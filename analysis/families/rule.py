@@ -37,19 +37,19 @@ def leaves(tables, registry):
     data = _Data(tables, registry)
     if data.families < 2 * LEAST:
         return []
-    found, rows = [], []
+    found = []
 
-    def walk(node, conditions):
+    def walk(node, conditions, rows):
         if "take" in node:
             here = [losses.get(node["take"], MISSED) for features, losses in rows
                     if all((features[feature] < number) == below for feature, below, number in conditions)]
             found.append((conditions, node["take"], here))
         else:
-            walk(node["then"], [*conditions, (node["feature"], True, node["below"])])
-            walk(node["else"], [*conditions, (node["feature"], False, node["below"])])
+            walk(node["then"], [*conditions, (node["feature"], True, node["below"])], rows)
+            walk(node["else"], [*conditions, (node["feature"], False, node["below"])], rows)
     for scheme, losses in data.losses.items():
-        rows[:] = [({**data.features.loc[scene], SADDLE: float(scheme == "saddle-point")}, one) for scene, one in losses.iterrows()]
-        walk(data.tree(scheme), [(SADDLE, scheme == "penalty", 0.5)])
+        rows = [({**data.features.loc[scene], SADDLE: float(scheme == "saddle-point")}, one) for scene, one in losses.iterrows()]
+        walk(data.tree(scheme), [(SADDLE, scheme == "penalty", 0.5)], rows)
     return found
 
 
@@ -60,7 +60,8 @@ def alone(tables, registry):
         losses = []
         for family in dict.fromkeys(data.family.values()):
             rest = data.without(family)
-            losses += [row.get(leaf(rest.tree(scheme, (feature,)), data.features.loc[scene]), MISSED) for scheme, one in data.losses.items()
+            trees = {scheme: rest.tree(scheme, (feature,)) for scheme in data.losses}
+            losses += [row.get(leaf(trees[scheme], data.features.loc[scene]), MISSED) for scheme, one in data.losses.items()
                        for scene, row in one.iterrows() if data.family[scene] == family]
         rows.append({"feature": feature, "mean_loss": numpy.mean(losses), "worst_loss": max(losses), "scenes": len(losses),
                      "record": " ".join(data.records[scene] for scene in data.features.index)})

@@ -1,5 +1,6 @@
 # Families of real mechanisms at their own fill: who is fastest on each, by size, in both forms of the step.
 from analysis.core.errors import StudyError
+from analysis.core.timing import LEFT_OUT
 from analysis.families.tables import SCHEMES
 from study.core.cell import Cell
 from study.core.contest import about, contest, elsewhere, usual
@@ -29,7 +30,7 @@ def run(lab, column):
             chosen = [one for one in here if lab.registry.serves(one.variant, *setting.needs)]
             behind = [one for one in chosen if falling(one.name, before)]
             for one in behind:
-                lab.skip(Cell("bench", scene, (one,), role=f"{scheme}-look-left-out"), "excluded",
+                lab.skip(Cell("bench", scene, (one,), role=f"{scheme}-look{LEFT_OUT}"), "excluded",
                          f"on smaller ones of the family more than {FAR:g} times as slow as the fastest library, and more so with size")
             rows = contest(lab, scene, [one for one in chosen if one not in behind], scheme, setting.words(), stretch=() if scene.startswith("four-bar:") else ("--steps", STEPS),
                            own=lab.registry.own, processes=lab.settings["processes"][scheme], samples=lab.settings["samples"])
