@@ -6,6 +6,10 @@
 #include <algorithm>
 
 #include "describe/structure.hpp"
+#include "reference/reference_simulation.hpp"
+#include "registry/setting_names.hpp"
+#include "run/initial_state.hpp"
+#include "run/settings.hpp"
 #include "scene_file/load_scene.hpp"
 #include "support/sample_models.hpp"
 
@@ -80,6 +84,8 @@ TEST(Describe, FourBar) {
                             {"block", 6.0 / d["elimination"]["supernodes"].get<int>()},
                             {"saddle_factor", rows["factor_nonzeros"]},
                             {"saddle_flops", rows["flops"]},
+                            {"passes", d["passes"]["penalty"]},
+                            {"saddle_passes", d["passes"]["saddle-point"]},
                             {"dimension", 2},
                             {"springs", 0},
                             {"stiff", 0},
@@ -95,6 +101,30 @@ TEST(Describe, FourBar) {
   EXPECT_EQ(d["assembly"]["position_correction"], 0.0);
   EXPECT_EQ(d["judged_length"], 1.0);
   EXPECT_TRUE(d["artificial_fill"].is_null());
+}
+
+double counted_passes(const Scene& scene, Scheme scheme) {
+  StepSettings settings = kSettings;
+  settings.scheme = scheme;
+  settings.penalty = automatic_penalty(scene.model, settings);
+  settings.tolerance = automatic_tolerance(scene.model, settings);
+  ReferenceSimulation simulation(scene.model, settings);
+  simulation.set_state(initial_state(scene.model));
+  constexpr int kSteps = 100;
+  int passes = 0;
+  for (int step = 0; step < kSteps; ++step) passes += simulation.step().passes;
+  return static_cast<double>(passes) / kSteps;
+}
+
+TEST(Describe, PassesAreThoseThatStepsTake) {
+  for (const char* name : {"chain:3", "ladder:2", "truss:2", "vehicle:2", "star:3", "clusters:2"}) {
+    const Scene scene = load_scene(name);
+    const auto d = describe_json(scene, kSettings);
+    for (const Scheme scheme : {Scheme::penalty, Scheme::saddle_point}) {
+      EXPECT_NEAR(d["passes"][name_of(scheme)], counted_passes(scene, scheme), 0.1)
+          << name << ' ' << name_of(scheme);
+    }
+  }
 }
 
 TEST(Describe, Text) {

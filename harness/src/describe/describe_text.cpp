@@ -138,6 +138,9 @@ std::string describe_text(const json& d) {
         std::pair{"  saddle-point matrix", "saddle-point"}}) {
     text += text_line(label, elimination_text(d["elimination"]["orderings"][ordering]));
   }
+  text += text_line("passes a step", fmt::format("about {:.3g}, {:.3g} in the saddle-point form",
+                                                 d["passes"]["penalty"].get<double>(),
+                                                 d["passes"]["saddle-point"].get<double>()));
   text += text_line("length l", length_text(d));
   text += text_line("penalty factor", penalty_text(d["penalty_window"]));
   for (const json& warning : d["warnings"]) text += text_line("warning", warning);
