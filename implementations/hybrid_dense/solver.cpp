@@ -5,6 +5,11 @@
 extern "C" {
 void ilaver_(int* major, int* minor, int* patch);
 void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
+void dtrsm_(const char* side, const char* uplo, const char* trans, const char* diag, const int* m,
+            const int* n, const double* alpha, const double* a, const int* lda, double* b,
+            const int* ldb);
+void dsyrk_(const char* uplo, const char* trans, const int* n, const int* k, const double* alpha,
+            const double* a, const int* lda, const double* beta, double* c, const int* ldc);
 void dpotrs_(const char* uplo, const int* n, const int* nrhs, const double* a, const int* lda,
              double* b, const int* ldb, int* info);
 }
@@ -67,12 +72,31 @@ void LltSolver::solve(double* x, long count, long stride) const {
   L.triangularView<Eigen::Lower>().adjoint().solveInPlace(solutions);
 }
 
+void LltSolver::multiply(double* x, long count, long stride, LltSolver& products) const {
+  const Columns<const Eigen::MatrixXd> L(L_.data(), n_, n_, Eigen::OuterStride<>(rows_));
+  Columns<Eigen::MatrixXd> columns(x, n_, count, Eigen::OuterStride<>(stride));
+  Columns<Eigen::MatrixXd> A(products.A_.data(), count, count,
+                             Eigen::OuterStride<>(products.rows_));
+  L.triangularView<Eigen::Lower>().solveInPlace(columns);
+  A.triangularView<Eigen::Lower>().setZero();
+  A.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
+}
+
 bool PotrfSolver::factorize() {
   copy();
   const int n = static_cast<int>(n_), rows = static_cast<int>(rows_);
   int info = 0;
   dpotrf_("L", &n, L_.data(), &rows, &info);
   return info == 0;
+}
+
+void PotrfSolver::multiply(double* x, long count, long stride, PotrfSolver& products) const {
+  const int n = static_cast<int>(n_), rows = static_cast<int>(rows_);
+  const int columns = static_cast<int>(count), apart = static_cast<int>(stride);
+  const int below = static_cast<int>(products.rows_);
+  const double one = 1.0, zero = 0.0;
+  dtrsm_("L", "L", "N", "N", &n, &columns, &one, L_.data(), &rows, x, &apart);
+  dsyrk_("L", "T", &columns, &n, &one, x, &apart, &zero, products.A_.data(), &below);
 }
 
 void PotrfSolver::solve(double* x, long count, long stride) const {

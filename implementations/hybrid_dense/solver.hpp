@@ -15,6 +15,7 @@ std::string library_versions();
 /// Own kernels, in panels.
 class PanelsSolver {
  public:
+  static constexpr bool kProducts = false;  // whether it has multiply()
   explicit PanelsSolver(long n) : panels_(n), A_(panels_.size()), Z_(panels_.size()) {
     for (long i = n; i < padded(n); ++i) A_[Panels::position(i, i)] = 1.0;
   }
@@ -39,6 +40,7 @@ class PanelsSolver {
 /// Columns one behind the other, as libraries take them.
 class ColumnsSolver {
  public:
+  static constexpr bool kProducts = true;
   explicit ColumnsSolver(long n)
       : n_(n), rows_(std::max<long>(padded(n), kWidth)), A_(n * rows_), L_(n * rows_) {}
   double* matrix() { return A_.data(); }
@@ -61,6 +63,9 @@ class LltSolver : public ColumnsSolver {
  public:
   using ColumnsSolver::ColumnsSolver;
   [[nodiscard]] bool factorize();
+  /// x = L^-1 x for `count` vectors, each `stride` behind the one before; then their products with
+  /// each other into the lower half of the matrix of `products`.
+  void multiply(double* x, long count, long stride, LltSolver& products) const;
   void solve(double* x) const;
   void solve(double* x, long count, long stride) const;
 };
@@ -70,6 +75,7 @@ class PotrfSolver : public ColumnsSolver {
  public:
   using ColumnsSolver::ColumnsSolver;
   [[nodiscard]] bool factorize();
+  void multiply(double* x, long count, long stride, PotrfSolver& products) const;
   void solve(double* x) const { solve(x, 1, rows_); }
   void solve(double* x, long count, long stride) const;
 };

@@ -68,7 +68,13 @@ void SaddleSystem<D, Solver>::solve_rows() {
     }
   }
   regular_ = T_0_.factorize();
-  if (regular_) T_0_.solve(inverse_.data(), m_, padded(n_));
+  if (!regular_) return;
+  if constexpr (Solver::kProducts) {
+    T_0_.multiply(inverse_.data(), m_, padded(n_), S_);
+  } else {
+    T_0_.solve(inverse_.data(), m_, padded(n_));
+    multiply_rows();
+  }
 }
 
 template <int D, class Solver>
@@ -80,6 +86,12 @@ void SaddleSystem<D, Solver>::assemble(const double* Phi_q) {
     solve_rows();
   }
   if (!regular_) return;
+  if (!forces_.in_tangent()) multiply_rows();
+  for (long k = 0; k < m_; ++k) S_.matrix()[S_.position(k, k)] += epsilon_;
+}
+
+template <int D, class Solver>
+void SaddleSystem<D, Solver>::multiply_rows() {
   const auto first = constraints_.firsts();
   const auto slots = constraints_.slots();
   const long columns = padded(n_);
@@ -94,7 +106,7 @@ void SaddleSystem<D, Solver>::assemble(const double* Phi_q) {
           continue;
         }
         for (int e = first[p + r]; e < first[p + r + 1]; ++e) {
-          sums[r] += broadcast(Phi_q[e]) * load(inverse_.data() + slots[e] * columns + j);
+          sums[r] += broadcast(Phi_q_[e]) * load(inverse_.data() + slots[e] * columns + j);
         }
       }
       transpose(sums);
@@ -103,12 +115,11 @@ void SaddleSystem<D, Solver>::assemble(const double* Phi_q) {
     for (long l = 0; l < p + rows; ++l) {
       Vec sum = {};
       for (int e = first[l]; e < first[l + 1]; ++e) {
-        sum += broadcast(Phi_q[e]) * load(product + slots[e] * kWidth);
+        sum += broadcast(Phi_q_[e]) * load(product + slots[e] * kWidth);
       }
       store(S_.matrix() + S_.position(p, l), sum);
     }
   }
-  for (long k = 0; k < m_; ++k) S_.matrix()[S_.position(k, k)] += epsilon_;
 }
 
 template <int D, class Solver>

@@ -72,6 +72,7 @@ class SaddleSystem {
  private:
   void invert();
   void solve_rows();
+  void multiply_rows();
 
   const Constraints<D>& constraints_;
   const Forces<D>& forces_;
@@ -81,7 +82,8 @@ class SaddleSystem {
   Schedule schedule_;
   bool regular_ = true;
   Array Phi_q_;
-  // T_0^-1, row by row; rows of fixed points are zero. With springs only Phi_q T_0^-1.
+  // T_0^-1, row by row; rows of fixed points are zero. With springs only Phi_q T_0^-1,
+  // or Phi_q L^-T of T_0 = L L^T.
   Array inverse_;
   Array product_;  // Phi_q T_0^-1: kWidth rows at a time, column by column
   Array z_, z_y_;
