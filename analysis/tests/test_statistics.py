@@ -8,7 +8,9 @@ import pytest
 from analysis.core.records import Record
 from analysis.core.statistics import median, phase_shares, power_law_exponent
 from analysis.core.timing import counted, rank, ratio
+from analysis.map import carry
 from analysis.map.tidy import PHASES
+from analysis.map.timed import AFTER
 
 
 def rows(name, processes, environment="own", status="ok"):
@@ -54,6 +56,50 @@ def test_the_interval_covers_the_truth_as_often_as_it_says(processes):
         found = ratio(table, "a", "b")
         covered += found.low <= 1.2 <= found.high
     assert 0.91 <= covered / 300 <= 0.99
+
+
+def in_layouts(random, level, layouts, each, between, inside):
+    """Rows of two contenders in `each` processes of each layout, which shifts their ratio."""
+    found = []
+    for number in range(layouts * each):
+        if number < layouts:
+            in_layouts.shift[number] = between * random.standard_normal()
+        ratio_here = level * math.exp(in_layouts.shift[number % layouts] + inside * random.standard_normal())
+        found += [row | {"layout": f"layouts/mbs-{number % layouts + 1}", "record": "r", "scene": "s"} for row in
+                  rows("a", {AFTER + 1 + number: (ratio_here,) * 4}) + rows("b", {AFTER + 1 + number: (1.0,) * 4})]
+    return pandas.DataFrame(found)
+
+
+in_layouts.shift = {}
+
+
+def test_the_interval_is_that_for_a_new_layout_however_many_processes_each_has():
+    random, covered = numpy.random.default_rng(8), 0
+    for _ in range(200):
+        found = ratio(in_layouts(random, 1.2, 8, 3, 0.04, 0.005), "a", "b")
+        covered += found.low <= 1.2 <= found.high
+    assert 0.90 <= covered / 200 <= 0.99
+
+
+def test_the_spread_is_told_by_its_sources():
+    random = numpy.random.default_rng(9)
+    found = [carry.components(in_layouts(random, 1.2, 8, 3, 0.04, 0.01), pandas.DataFrame(columns=["status", "variables", "fill_asked"])) for _ in range(60)]
+    mean = {source: numpy.sqrt(numpy.mean([one.set_index("source").percent[source] ** 2 for one in found]))
+            for source in ("process", "layout")}
+    assert mean["process"] == pytest.approx(1.0, rel=0.1) and mean["layout"] == pytest.approx(4.0, rel=0.15)
+
+
+def test_controls_count_what_is_decided_though_nothing_differs():
+    random = numpy.random.default_rng(10)
+
+    def table(shift, scenes):
+        return pandas.concat([pandas.DataFrame(
+            rows("a", {AFTER + n: (1.0,) for n in range(1, 9)}) +
+            rows("a+twin", {AFTER + n: (shift * math.exp(0.01 * random.standard_normal()),) for n in range(1, 9)})
+        ).assign(scene=f"four-bar:{scene}", record="r") for scene in range(1, scenes + 1)])
+    sound, unsound = (carry.judged(carry.controls(table(shift, 40))) for shift in (1.0, 1.02))
+    assert sound["pairs"] == 40 and sound["false"] <= 6 and sound["sound"]
+    assert unsound["false"] > 30 and not unsound["sound"] and unsound["widest"] > 1.01
 
 
 def test_clear_difference_is_decided_and_the_same_is_not():
