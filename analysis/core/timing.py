@@ -71,7 +71,7 @@ def _rows(record):
     cell = record.cell
     for name in cell["contenders"]:
         row = {"scene": cell["scene"], "implementation": name, "environment": cell["environment"],
-               "process": cell["number"], "layout": cell["program"], "status": record.status, "reason": record.reason,
+               "process": cell["number"], "layout": cell.get("program", ""), "status": record.status, "reason": record.reason,
                "record": record.name}
         given = record.output.get("rows", {})
         found = given.get(f"{name if name.endswith(TWIN) else name.partition('+')[0]}/{cell['scene']}")

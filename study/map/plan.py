@@ -58,12 +58,12 @@ def run(lab, column):
         one.time(lab.settings["processes"])
     for one in timed:
         one.again(lab.settings["again"])
-    _seeds(lab, timed)
     _phases(lab, timed[0])
     _operations(lab, natural)
     _builds(lab, natural, costs)
     for _ in range(lab.settings["between"]):
         _add_between(lab, timed)
+    _seeds(lab, timed)
 
 
 def _unavailable(lab, scene):
