@@ -37,8 +37,8 @@ def counted(records):
     """The records of timed cells that count. Who ended a process or differed was left out, and the others were measured
     again. So a process that failed speaks for nobody who has a record of being left out of it or was measured beside
     one; a process that ended well gives way to the one of the same number without those who were left out. Trials of
-    one alone do not count. Roles come without "-left-out"."""
-    records = [one for one in records if not one.role.endswith(ALONE)]
+    one alone do not count, nor do disturbed processes where most of their kind are not. Roles come without "-left-out"."""
+    records = _calm([one for one in records if not one.role.endswith(ALONE)])
     out, groups = {}, {}
     for one in records:
         chosen = out if one.role.endswith(LEFT_OUT) else groups
@@ -51,6 +51,21 @@ def counted(records):
         elif not _replaced(one, groups[_asked(one)], lost):
             found.append(one)
     return found
+
+
+def _calm(records):
+    """Without disturbed processes, where most of the same question were calm."""
+    kinds = {}
+    for one in records:
+        kinds.setdefault((*_asked(one), one.role, *one.cell["contenders"]), []).append((disturbed(one), one))
+    lost = {id(one) for group in kinds.values() if 2 * sum(found for found, _ in group) < len(group) for found, one in group if found}
+    return [one for one in records if id(one) not in lost]
+
+
+def disturbed(record):
+    """Whether others ran on its processor: by the clock its turns took clearly longer than by the processor's time."""
+    rows = [row for row in record.output.get("rows", {}).values() if row.get("cpu_us") and row.get("stretch_us")]
+    return bool(rows) and sum(sum(row["stretch_us"]) for row in rows) > DISTURBED * sum(sum(row["cpu_us"]) for row in rows)
 
 
 def _asked(record):

@@ -105,8 +105,8 @@ def _rounds(paired, first, second):
     return tuple(map(float, numpy.mean(found, axis=0))) if found else (0.0, 0.0)
 
 
-def disturbance(timed):
-    """{"processes", "disturbed", "worst"}: in how many the clock went DISTURBED times the processor's time or more."""
-    rows = timed[timed.status == "ok"]
-    factor = (rows.clock_us / rows.step_us).groupby(rows.record).median()
-    return {"processes": len(factor), "disturbed": int((factor > timing.DISTURBED).sum()), "worst": float(factor.max()) if len(factor) else math.nan}
+def disturbance(records):
+    """One row: how many timed processes there were, and in how many others ran on their processor."""
+    timed = [one for one in records if one.cell.get("timed") and one.cell["kind"] == "bench" and one.done]
+    found = [one for one in timed if timing.disturbed(one)]
+    return pandas.DataFrame([{"processes": len(timed), "disturbed": len(found), "record": " ".join(one.name for one in found)}])

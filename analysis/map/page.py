@@ -24,7 +24,7 @@ def context(tables, view):
             "coverage": view.registry.coverage, "variants": list(view.registry.variants),
             "controls": carry.judged(tables["controls"]), "twins": tables["controls"].to_dict("records"), "spread": [
                 row | {"of": carry.SOURCES[row["source"]]} for row in tables["spread"].to_dict("records")],
-            "disturbance": carry.disturbance(results.timing),
+            "disturbance": tables["disturbance"].to_dict("records")[0],
             "processes": results.timing[results.timing.status == "ok"].record.nunique()}
 
 

@@ -16,4 +16,5 @@ def build(records, view):
     results = Results(found, view)
     seeds = results.tidy[results.tidy.kind == "seeds"]
     return found | {"cells": cells(results), "claims": pandas.DataFrame(claims(results)), "controls": carry.controls(results.timing),
-                    "spread": carry.components(results.timing, with_samples(seeds))}
+                    "spread": carry.components(results.timing, with_samples(seeds)),
+                    "disturbance": carry.disturbance(records)}

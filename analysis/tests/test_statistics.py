@@ -125,7 +125,7 @@ def test_who_failed_once_is_not_ranked():
 
 def asked(names, number, status="done", role="look/default", step="1e-3", environment="own"):
     return Record(f"{role}/{names}-{number}-{step}", {"scene": "s", "contenders": list(names), "environment": environment, "role": role,
-                                               "number": number, "settings": ["--step", step, "--seed", number]}, status, "", 1.0, [], {})
+                                               "number": number, "settings": ["--step", step, "--seed", number]}, status, "", 1.0, [], {}, {})
 
 
 def test_a_process_that_was_measured_again_without_who_ended_it_does_not_count():
@@ -141,6 +141,16 @@ def test_a_process_that_was_measured_again_without_who_ended_it_does_not_count()
     assert [(one.cell["contenders"], one.status) for one in spent] == [
         (list("abc"), "done"), (["c"], "crashed"), (list("ab"), "dropped")]
     assert [one.status for one in counted([asked("ab", 1, "crashed")])] == ["crashed"]  # nobody knows yet who did it
+
+
+def test_a_process_in_which_others_ran_does_not_count_where_most_were_calm():
+    def timed(number, clock):
+        found = asked("ab", number)
+        found.output["rows"] = {"a/s": {"cpu_us": [10.0, 10.0], "stretch_us": [10.0 * clock, 10.0 * clock]}}
+        return found
+    calm, busy = [timed(number, 1.02) for number in (1, 2, 3)], timed(4, 1.5)
+    assert counted([*calm, busy]) == calm
+    assert len(counted([calm[0], busy])) == 2  # half of them: nobody knows which is the rule
 
 
 def test_power_law_exponent():

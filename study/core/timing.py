@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from analysis.core.registry import ANCHOR
+from analysis.core.timing import disturbed
 from study.core.cell import LAYOUT, Cell
 from study.core.contender import by_environment
 
@@ -33,8 +34,9 @@ def _environment(lab, cell, processes, drop):
     """All processes of one environment, without those who end them."""
     lost = []
     while cell.contenders:
-        found = []
-        for number in range(1, processes + 1):
+        found, number = [], 0
+        while number < processes or _again(found, processes):
+            number += 1
             program = cell.program if cell.contenders[0].build else f"{LAYOUT}{(number - 1) % LAYOUTS + 1}"
             record = lab.run([replace(cell, number=number, program=program,
                                       settings=(*cell.settings, "--seed", number))], drop)[0]
@@ -51,6 +53,11 @@ def _environment(lab, cell, processes, drop):
         names = {one.name for one, _, _ in culprits}
         cell = replace(cell, contenders=tuple(one for one in cell.contenders if one.name not in names))
     return lost
+
+
+def _again(found, processes):
+    """Whether a further process is asked for, in place of one in which others ran: at most a quarter more in all."""
+    return len(found) < processes + processes // 4 and len(found) - sum(map(disturbed, found)) < processes
 
 
 def _culprits(lab, cell, record):
