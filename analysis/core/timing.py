@@ -119,6 +119,7 @@ class Ratio:
     value: float
     low: float
     high: float
+    chance: float = math.nan  # to find so large a ratio, or a larger one, where it is 1 (Student's, one-sided)
 
 
 NONE = Ratio(math.nan, math.nan, math.nan)
@@ -166,8 +167,10 @@ def of_logs(logs):
     if len(logs) == 1:
         return Ratio(math.exp(middle), 0.0, math.inf)
     from scipy import stats
-    half = stats.t.ppf((1 + CONFIDENCE) / 2, len(logs) - 1) * float(numpy.std(logs, ddof=1)) / math.sqrt(len(logs))
-    return Ratio(*(math.exp(middle + shift) for shift in (0.0, -half, half)))
+    error = float(numpy.std(logs, ddof=1)) / math.sqrt(len(logs))
+    half = stats.t.ppf((1 + CONFIDENCE) / 2, len(logs) - 1) * error
+    chance = float(stats.t.sf(middle / error, len(logs) - 1)) if error else float(middle <= 0)
+    return Ratio(*(math.exp(middle + shift) for shift in (0.0, -half, half)), chance)
 
 
 def log_ratios(rows, first, second):
@@ -223,6 +226,11 @@ class Ranking:
     def decided(self):
         """Whether the winner is shown to be faster than each other one."""
         return all(one.low > 1 for name, one in self.ratios.items() if name != self.winner)
+
+    @property
+    def chance(self):
+        """To find the winner so far ahead where one of the others is as fast; NaN if there is no other."""
+        return max((one.chance for name, one in self.ratios.items() if name != self.winner), default=math.nan)
 
     @property
     def equivalent(self):
