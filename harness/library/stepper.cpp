@@ -91,9 +91,9 @@ StepOutcome Stepper::step() {
 StepOutcome Stepper::step(long steps) {
   content_->is_current = false;
   StepOutcome sum{StepStatus::converged, 0, 0};
-  for (long i = 0; i < steps && sum.status == StepStatus::converged; ++i) {
+  for (long i = 0; i < steps && sum.status != StepStatus::factorization_failed; ++i) {
     const StepOutcome one = content_->simulation->step();
-    sum.status = one.status;
+    sum.status = std::max(sum.status, one.status);
     sum.passes += one.passes;
     sum.factorizations += one.factorizations < 0 ? one.passes : one.factorizations;
   }

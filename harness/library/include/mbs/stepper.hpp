@@ -112,8 +112,8 @@ class Stepper {
 
   /// Delta t further.
   [[nodiscard]] StepOutcome step();
-  /// At most `steps` steps; ends after the first that did not converge, whose outcome it returns.
-  /// passes and factorizations are sums.
+  /// At most `steps` steps, fewer where a factorization fails. The status is the worst of them, passes
+  /// and factorizations are sums.
   [[nodiscard]] StepOutcome step(long steps);
 
   /// q, v, a, lambda and t now; valid until the next step or restore(). The same buffers every time.
