@@ -1,4 +1,4 @@
-// How far a car's springs travel if nobody knows them well: ./monte_carlo car.json [RUNS] [THREADS] [IMPLEMENTATION]
+// How high a car rises from its start if nobody knows its springs well: ./monte_carlo car.json [RUNS] [THREADS] [IMPLEMENTATION]
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -16,8 +16,8 @@ struct Task {
   mbs::StepperOptions options;
 };
 
-/// The deepest that the body sinks in two seconds, m, with the springs and dampers of this run.
-double deepest(const Task& task, unsigned run) {
+/// The highest that the body gets in two seconds, m, with the springs and dampers of this run.
+double highest(const Task& task, unsigned run) {
   mbs::SceneDocument scene = task.scene;
   std::mt19937 random(run);  // of the run, not of the thread: results do not depend on who ran it
   std::normal_distribution<double> factor(1.0, 0.1);
@@ -28,12 +28,12 @@ double deepest(const Task& task, unsigned run) {
   mbs::Stepper car(scene, task.options);
   car.set_input(car.input("front stiffness"), 25000.0 * std::max(0.1, factor(random)));
   const int body = car.output("body.z");
-  double least = car.outputs()[body];
+  double most = car.outputs()[body];
   for (int step = 0; step < 2000; ++step) {
     if (car.step().status == mbs::StepStatus::factorization_failed) return std::nan("");
-    least = std::min(least, car.outputs()[body]);
+    most = std::max(most, car.outputs()[body]);
   }
-  return least;
+  return most;
 }
 
 }  // namespace
@@ -50,14 +50,14 @@ int main(int argc, char** argv) try {
     std::vector<std::jthread> pool;
     for (unsigned i = 0; i < std::max(1u, threads); ++i) {
       pool.emplace_back([&] {
-        for (unsigned run = next++; run < runs; run = next++) results[run] = deepest(task, run);
+        for (unsigned run = next++; run < runs; run = next++) results[run] = highest(task, run);
       });
     }
   }
   double mean = 0.0, square = 0.0;
   for (const double result : results) mean += result / runs;
   for (const double result : results) square += (result - mean) * (result - mean) / runs;
-  std::printf("%u runs on %u threads: lowest body %.5f m on average, standard deviation %.5f m\n", runs, threads, mean,
+  std::printf("%u runs on %u threads: highest body %.5f m on average, standard deviation %.5f m\n", runs, threads, mean,
               std::sqrt(square));
 } catch (const std::exception& error) {
   std::fprintf(stderr, "monte_carlo: %s\n", error.what());
