@@ -12,6 +12,8 @@
 namespace mbs {
 namespace {
 
+using Vector = Eigen::VectorXd;
+using Matrix = Eigen::MatrixXd;
 
 constexpr double kExactCrossing = 3e-9;  // |Phi| over length^2 between two branches that meet
 constexpr double kCrossingWidth = 5e-3;  // of a length: cubics between points are exact to 1e-11
@@ -45,19 +47,19 @@ class PartCurve {
   }
   [[nodiscard]] double time_per_length() const { return 1.0 / speed_; }
 
-  [[nodiscard]] Eigen::VectorXd coordinates(const CurveEnd& end) const {
-    Eigen::VectorXd x = take(*end.q);
+  [[nodiscard]] Vector coordinates(const CurveEnd& end) const {
+    Vector x = take(*end.q);
     if (is_driven()) x[size() - 1] = speed_ * (end.t - t_);
     return x;
   }
-  [[nodiscard]] Eigen::VectorXd direction(const CurveEnd& end) const {
-    Eigen::VectorXd x = take(*end.v);
+  [[nodiscard]] Vector direction(const CurveEnd& end) const {
+    Vector x = take(*end.v);
     if (is_driven()) x[size() - 1] = speed_;
     return x;
   }
 
   /// Phi of the rows and its derivative by x.
-  void evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& phi, Eigen::MatrixXd& J) {
+  void evaluate(const Vector& x, Vector& phi, Matrix& J) {
     for (std::size_t i = 0; i < part_.cols.size(); ++i) {
       q_[at(part_.cols[i])] = x[static_cast<Eigen::Index>(i)];
     }
@@ -75,17 +77,17 @@ class PartCurve {
   }
 
   /// The determinants whose signs stay: of the blocks, or of J above its tangent.
-  [[nodiscard]] Eigen::VectorXd determinants(const Eigen::MatrixXd& J, const Eigen::VectorXd& tangent) const {
+  [[nodiscard]] Vector determinants(const Matrix& J, const Vector& tangent) const {
     if (!is_driven()) {
-      Eigen::MatrixXd square(size(), size());
+      Matrix square(size(), size());
       square << J, tangent.transpose();
-      return Eigen::VectorXd::Constant(1, square.determinant());
+      return Vector::Constant(1, square.determinant());
     }
-    Eigen::VectorXd result(static_cast<Eigen::Index>(blocks_.size()));
+    Vector result(static_cast<Eigen::Index>(blocks_.size()));
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const ConstraintBlock& block = blocks_[b];
       const auto k = static_cast<Eigen::Index>(block.rows.size());
-      Eigen::MatrixXd square(k, k);
+      Matrix square(k, k);
       for (Eigen::Index i = 0; i < k; ++i) {
         for (Eigen::Index j = 0; j < k; ++j) {
           square(i, j) = J(row_[at(block.rows[static_cast<std::size_t>(i)])],
@@ -99,15 +101,15 @@ class PartCurve {
 
  private:
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
-  [[nodiscard]] Eigen::VectorXd take(const std::vector<double>& values) const {
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
+  [[nodiscard]] Vector take(const std::vector<double>& values) const {
+    Vector x = Vector::Zero(size());
     for (std::size_t i = 0; i < part_.cols.size(); ++i) {
       x[static_cast<Eigen::Index>(i)] = values[at(part_.cols[i])];
     }
     return x;
   }
-  [[nodiscard]] Eigen::VectorXd rows_of(const std::vector<double>& values) const {
-    Eigen::VectorXd result(static_cast<Eigen::Index>(part_.rows.size()));
+  [[nodiscard]] Vector rows_of(const std::vector<double>& values) const {
+    Vector result(static_cast<Eigen::Index>(part_.rows.size()));
     for (std::size_t i = 0; i < part_.rows.size(); ++i) {
       result[static_cast<Eigen::Index>(i)] = values[at(part_.rows[i])];
     }
@@ -129,27 +131,27 @@ class Follower {
   Follower(PartCurve& curve, double length) : curve_(curve), length_(length) {}
 
   struct Place {
-    Eigen::VectorXd x, tangent, determinants;
+    Vector x, tangent, determinants;
   };
 
   /// The point of the curve in the plane through x across `border`. None if Newton does not get
   /// there, or if the tangent is not unique.
-  std::optional<Place> find(Eigen::VectorXd x, const Eigen::VectorXd& border) {
+  std::optional<Place> find(Vector x, const Vector& border) {
     constexpr int kMostPasses = 8;
     for (int pass = 0; pass < kMostPasses; ++pass) {
       curve_.evaluate(x, phi_, J_);
-      Eigen::MatrixXd square(curve_.size(), curve_.size());
+      Matrix square(curve_.size(), curve_.size());
       square << J_, border.transpose();
-      const Eigen::PartialPivLU<Eigen::MatrixXd> lu(square);
-      Eigen::VectorXd right = Eigen::VectorXd::Zero(curve_.size());
+      const Eigen::PartialPivLU<Matrix> lu(square);
+      Vector right = Vector::Zero(curve_.size());
       right.head(phi_.size()) = -phi_;
-      const Eigen::VectorXd dx = lu.solve(right);
+      const Vector dx = lu.solve(right);
       if (!dx.allFinite()) return std::nullopt;
       x += dx;
       if (dx.cwiseAbs().maxCoeff() > 1e-11 * length_) continue;
       right.setZero();
       right[curve_.size() - 1] = 1.0;
-      Eigen::VectorXd tangent = lu.solve(right);
+      Vector tangent = lu.solve(right);
       if (!tangent.allFinite()) return std::nullopt;
       tangent.normalize();
       return Place{x, tangent, curve_.determinants(J_, tangent)};
@@ -168,7 +170,7 @@ class Follower {
       const double s = a / (a - b);
       const double h00 = (1 + 2 * s) * (1 - s) * (1 - s), h10 = s * (1 - s) * (1 - s);
       const double h01 = s * s * (3 - 2 * s), h11 = s * s * (s - 1);
-      const Eigen::VectorXd between = h00 * from.x + h01 * to.x + chord * (h10 * from.tangent + h11 * to.tangent);
+      const Vector between = h00 * from.x + h01 * to.x + chord * (h10 * from.tangent + h11 * to.tangent);
       curve_.evaluate(between, phi_, J_);
       if (!(phi_.cwiseAbs().maxCoeff() <= kExactCrossing * length_ * length_)) return false;
     }
@@ -187,11 +189,11 @@ class Follower {
  private:
   PartCurve& curve_;
   double length_;
-  Eigen::VectorXd phi_;
-  Eigen::MatrixXd J_;
+  Vector phi_;
+  Matrix J_;
 };
 
-double largest(const Eigen::VectorXd& x, const Eigen::VectorXd& y, Eigen::Index size) {
+double largest(const Vector& x, const Vector& y, Eigen::Index size) {
   return (x - y).head(size).cwiseAbs().maxCoeff();
 }
 
@@ -202,7 +204,7 @@ FollowedCurve follow(PartCurve& curve, const CurveEnd& from, const CurveEnd& to,
   result.distance = std::numeric_limits<double>::infinity();
   result.least_time = std::numeric_limits<double>::infinity();
   Follower follower(curve, length);
-  const Eigen::VectorXd target = curve.coordinates(to);
+  const Vector target = curve.coordinates(to);
   const Eigen::Index last = curve.size() - 1;
   const Eigen::Index points = curve.is_driven() ? last : curve.size();
   auto place = follower.find(curve.coordinates(from), sign * curve.direction(from).normalized());
@@ -216,9 +218,9 @@ FollowedCurve follow(PartCurve& curve, const CurveEnd& from, const CurveEnd& to,
                             : (target - place->x).dot(place->tangent);
     const bool lands = left >= 0.0 && left <= ds;
     const double now = lands ? left : ds;
-    Eigen::VectorXd border = place->tangent;
-    if (lands && curve.is_driven()) border = Eigen::VectorXd::Unit(curve.size(), last);
-    Eigen::VectorXd ahead = place->x + now * place->tangent;
+    Vector border = place->tangent;
+    if (lands && curve.is_driven()) border = Vector::Unit(curve.size(), last);
+    Vector ahead = place->x + now * place->tangent;
     if (lands && curve.is_driven()) ahead[last] = target[last];
     const auto next = follower.find(ahead, border);
     const auto advance = next ? follower.judge(*place, *next, std::max(now, 1e-9 * length))
