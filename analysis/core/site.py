@@ -40,10 +40,11 @@ def write_part(folder, part, started=lambda: None):
 
 
 def write_index(folder):
-    """index.html: the answers of the parts that are done; and a page for each of the others."""
+    """index.html: the answers of the parts that are done; explore.html; and a page for each of the other parts."""
     frame = _frame(folder, "index")
-    answers = answers_of(folder)
-    _write(folder, "index", _template(HERE / "index.html.j2").render(**frame, answers=answers))
+    answers, known = answers_of(folder), _module("explorer", "page").context(folder)
+    _write(folder, "explore", _template(ROOT / "analysis" / "explorer" / "page.html.j2").render(**_frame(folder, "explore"), **known))
+    _write(folder, "index", _template(HERE / "index.html.j2").render(**frame, answers=answers, examples=known["examples"]))
     for part, known in answers.items():
         if known is None:
             _write(folder, part, _template(HERE / "pending.html.j2").render(
