@@ -11,6 +11,7 @@ from analysis.core import site
 from analysis.core.files import ROOT, read_json, write_json
 from analysis.explorer import data
 from study.tests.browser import Browser
+from study.tests.test_site import BEYOND, HIDDEN
 
 STORED = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))[0]
 QUESTIONS = 200
@@ -98,7 +99,7 @@ def test_winners_are_those_of_python(page, found):
     contests = {(one.part, one.scene, one.form): one for part in ("families", "map") for one in found[part]}
     draw, questions = random.Random(1), []
     for _ in range(QUESTIONS):
-        asked = {"no": draw.sample([*WITHOUT, "penalty", "saddle"], draw.randint(0, 3)), "without": draw.sample(sorted(everyone), draw.randint(0, 8)),
+        asked = {"no": draw.sample(WITHOUT, draw.randint(0, 2)) + draw.choice([[], [], ["penalty"], ["saddle"]]), "without": draw.sample(sorted(everyone), draw.randint(0, 8)),
                  "error": 10 ** draw.uniform(-5, -1), "scene": "", "family": ""}
         if draw.random() < 0.7:
             asked["scene"] = draw.choice(list(contests))[1]
@@ -111,11 +112,12 @@ def test_winners_are_those_of_python(page, found):
         settled: found.error.ranking.settled, equal: found.error.ranking.equivalent.map((one) => one.name)}}}}; }})""")
     ranked = 0
     for asked, answer in zip(questions, answers):
-        names = {name for name, one in everyone.items() if name not in asked["without"] and not any(getattr(one, word) for word in WITHOUT if word in asked["no"])}
-        if not {"penalty", "saddle"} <= set(asked["no"]) and asked["scene"]:
-            there = [key for key, one in contests.items() if key[1] == asked["scene"] and set(one.able) & names
-                     and (key[2] == "penalty" or "saddle" not in asked["no"]) and (key[2] != "penalty" or "penalty" not in asked["no"])]
-            assert not there or answer["near"][0]["key"][1:] in [list(key[1:]) for key in there]
+        names = {name for name, one in everyone.items() if "+" not in name and name not in asked["without"] and not any(getattr(one, word) for word in WITHOUT if word in asked["no"])}
+        there = [key for key, one in contests.items() if (key[1] == asked["scene"] if asked["scene"] else asked["family"] in ("", one.family))
+                 and set(one.able) & names and key[2].split("-")[0] not in asked["no"]]
+        assert answer["near"] or not there
+        if asked["scene"] and there:
+            assert tuple(answer["near"][0]["key"]) in there
         for one in answer["near"]:
             _same(one, contests[tuple(one["key"])], names)
             ranked += 1
@@ -265,6 +267,16 @@ def test_rows_marks_and_files(page):
     assert browser.value("explorer.state.scene") == browser.value("document.querySelectorAll('#map .mark title')[3].textContent.split(': ')[0]")
 
 
+def test_a_set_without_contests_has_a_page(browser, folder, tmp_path):
+    for name in ("set.json", "registry.json"):
+        shutil.copyfile(folder / name, tmp_path / name)
+    site.write_index(tmp_path)
+    browser.complaints.clear()
+    browser.open(tmp_path / "explore.html")
+    browser.wait("!!window.explorer")
+    assert "Nobody" in said(browser) and browser.complaints == []
+
+
 def test_keys_width_and_speed(page):
     browser = page("scene=ladder:10")
     browser.value("document.getElementById('own').focus()")
@@ -274,8 +286,11 @@ def test_keys_width_and_speed(page):
       !one.labels?.length && !one.getAttribute('aria-label') && !one.textContent.trim()).map((one) => one.outerHTML)""")
     assert unnamed == []
     assert browser.value("[...document.querySelectorAll('svg')].every((one) => one.getAttribute('role') === 'img' && one.getAttribute('aria-label'))")
-    browser.resize(360, 800)
-    browser.value("new Promise((done) => setTimeout(done, 400))")
-    assert browser.value("document.documentElement.scrollWidth - document.documentElement.clientWidth") <= 0
+    for width in (360, 1300, 1600):
+        browser.resize(width, 800)
+        browser.value("new Promise((done) => setTimeout(done, 400))")
+        browser.value("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
+        assert browser.value(BEYOND) <= 0
+        assert width == 360 or browser.value(HIDDEN) == []
     browser.resize(1200, 760)
     assert min(browser.value("(() => { change({n: 90 + Math.random()}); return explorer.took; })()") for _ in range(5)) < 100  # ms
