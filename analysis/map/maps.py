@@ -20,7 +20,7 @@ def draw(results, look, title, names, smallest=0, largest=float("inf")):
     cells = [cell for cell in map_cells(results, names) if smallest <= cell.variables <= largest]
     count = len(columns(cells))
     figure, axes = plt.subplots(figsize=(max(5.0, 0.9 + 1.02 * count), 7.4))
-    axes.set_title(f"{title}\n{results.view.context.get('cpu_model', '')}")
+    axes.set_title(title)
     if not any(cell.ranking for cell in cells):
         missing(axes, "nobody of these was timed")
         return figure
@@ -122,7 +122,7 @@ def draw_families(results, look):
     count = max(len(columns(mine)) for mine in cells.values()) or 1
     figure, panels = plt.subplots(len(groups), 1, figsize=(max(6.0, 0.9 + 1.02 * count) + LEGEND, 6.2 * len(groups)), layout="constrained")
     for axes, (title, names) in zip(panels, groups.items()):
-        axes.set_title(f"Fastest library {title} ({len(names)}), {results.view.context.get('cpu_model', '')}")
+        axes.set_title(f"Fastest library {title} ({len(names)})")
         if any(cell.ranking for cell in cells[title]):
             draw_grid(axes, cells[title], lambda axes, x, y, height, cell: _cell(axes, x, y, height, cell, look))
             _legend(axes, cells[title], look, names, {})
