@@ -12,9 +12,9 @@ from analysis.accuracy import points as accuracy
 from analysis.accuracy.columns import columns
 from analysis.accuracy.winners import meeting
 from analysis.core import records, schema, timing
-from analysis.core.contest import agreed, contests, grouped
+from analysis.core.contest import by_scene, grouped
 from analysis.core.files import read_object
-from analysis.core.view import View
+from analysis.core.view import View, facts_of, registry_of
 from analysis.families.rule import FEATURES
 from analysis.families.tables import SCHEMES, family_of
 from analysis.map.results import FAILURES, Results
@@ -48,20 +48,20 @@ class Contest:
 
 def of_families(folder):
     """Contests on mechanisms, in both forms."""
-    view = View(folder, "families")
-    about = schema.read_table(folder, "families", "mechanisms").set_index("scene")
-    table = schema.read_table(folder, "families", "scenes").set_index(["scheme", "scene"])
+    about, table = (schema.read_table(folder, "families", name) for name in ("mechanisms", "scenes"))
+    about, table = about.set_index("scene"), table[~table.implementation.isin(registry_of(folder).examples)]
     by_role, found = grouped(records.read_part(folder, "families")), []
     for form in SCHEMES:
-        for scene, rows, cells in contests(by_role, form):
-            rows, able = rows[rows.status == "ok"], agreed(cells, [name for name in view.registry.variants if name not in view.registry.examples])
-            if not able or rows.empty or scene not in about.index:
-                continue
-            known = about.loc[scene]
-            look = table.loc[[(form, scene)]].set_index("implementation").look_us.dropna().to_dict()
-            found.append(Contest("families", scene, form, known.n, known.fill, rows, able,
-                                 {name: (one["status"], one["reason"]) for name, one in cells.items() if name not in able}, [], look,
-                                 lambda names, rows=rows, able=able: timing.rank(rows, [name for name in able if name in names])))
+        timed = dict(by_scene(by_role.get(form, [])))
+        for scene, cells in table[(table.scheme == form) & table.scene.isin(timed)].groupby("scene", sort=False):
+            rows = timed[scene][timed[scene].status == "ok"]
+            good = (cells.status == "ok") & (cells.verdict == "agrees")
+            able = list(cells.implementation[good])
+            if able:
+                found.append(Contest("families", scene, form, about.n[scene], about.fill[scene], rows, able,
+                                     {row.implementation: (row.status, row.reason) for row in cells[~good].itertuples()}, [],
+                                     cells.set_index("implementation").look_us.dropna().to_dict(),
+                                     lambda names, rows=rows, able=able: timing.rank(rows, [name for name in able if name in names])))
     return found
 
 
@@ -121,7 +121,7 @@ def read(folder):
 
 def as_json(folder, found, number):
     """A set as the page has it. `number`: {name: its place in the page's list of names}."""
-    facts, rule = View(folder, "families").facts, folder / "families" / "rule.json"
+    facts, rule = facts_of(folder), folder / "families" / "rule.json"
     times = read_object(rule, times=dict)["times"] if rule.exists() else {}
     path = folder / "families" / schema.DIGESTS
     about = schema.read_table(folder, "families", "mechanisms").set_index("scene") if path.exists() else pandas.DataFrame()

@@ -8,11 +8,11 @@ from analysis.accuracy.winners import NEAR
 from analysis.core import timing
 from analysis.core.files import ROOT
 from analysis.core.style import Look
-from analysis.core.view import View, facts_of
+from analysis.core.view import facts_of, registry_of
 from analysis.explorer import data
 
 SETTINGS = ROOT / "study" / "settings.yaml"
-MOST = 60  # processes of an interval
+MOST = 200  # processes of an interval
 
 
 def context(folder):
@@ -27,15 +27,16 @@ def context(folder):
              "settings": _settings(), "equivalent": timing.EQUIVALENT, "near": NEAR,
              "quantiles": [float(stats.t.ppf((1 + timing.CONFIDENCE) / 2, freedom)) for freedom in range(1, MOST)]}
     text = json.dumps(known, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    return {"data": text.replace("<", "\\u003c"), "examples": examples(contests, View(folder, "explore").registry)}
+    return {"data": text.replace("<", "\\u003c"), "examples": examples(contests, registry_of(folder))}
 
 
 def _others(folder):
     """Stored sets beside this one, of other processors."""
     known = {facts_of(folder)["context"].get("cpu_model")}
     for path in sorted(folder.parent.glob("*/set.json")):
-        model = facts_of(path.parent)["context"].get("cpu_model")
-        if model not in known and any((path.parent / "raw").glob("*.tar.xz")):
+        stored = any((path.parent / "raw").glob("*.tar.xz"))
+        model = facts_of(path.parent)["context"].get("cpu_model") if stored else None
+        if model and model not in known:
             known.add(model)
             yield path.parent
 
@@ -43,7 +44,7 @@ def _others(folder):
 def _about(name, sets):
     """What can be asked of a name: whether it is own code, dense, under the GPL; its licence and colour."""
     for folder in sets:
-        registry = View(folder, "explore").registry
+        registry = registry_of(folder)
         plain = name.partition("+")[0]
         if plain in registry.variants:
             return {"name": name, "own": plain in registry.own, "dense": plain in registry.dense, "gpl": registry.gpl(plain),
