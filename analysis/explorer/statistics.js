@@ -65,7 +65,7 @@ class Paired {
       tried.add(winner);
       const faster = ratios.filter(([name, one]) => !tried.has(name) && one.value < 1).sort((a, b) => a[1].value - b[1].value)[0];
       if (!faster)
-        return ranking(winner, ratios.sort((a, b) => (a[0] !== winner) - (b[0] !== winner) || a[1].value - b[1].value));
+        return ranking(winner, ratios);
       winner = faster[0];
     }
   }
@@ -88,6 +88,8 @@ function interval(logs) {
 }
 
 function ranking(winner, ratios) {
+  const place = ([name, one]) => name === winner ? 0 : one.value > 0 ? one.value : Infinity;
+  ratios = [...ratios].sort((a, b) => (a[0] !== winner) - (b[0] !== winner) || place(a) - place(b));
   const others = ratios.filter(([name]) => name !== winner), names = (rows) => rows.map(([name]) => name);
   const open = names(others.filter(([, one]) => one.low <= 1 && one.high > DATA.equivalent));
   return {winner, ratios, second: others.length ? others[0][0] : null, margin: others.length ? others[0][1] : null,
