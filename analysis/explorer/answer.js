@@ -42,8 +42,8 @@ function fillRanking(target, id, title, note, rows, axis, columns, mark, beside 
   const buttons = new Map(), body = element("tbody"), details = element("details", {}, element("summary", {}, "table, and the raw rows behind every bar"));
   const open = (name) => { details.open = true; buttons.get(name).click(); buttons.get(name).focus(); };
   const whole = target.clientWidth, width = Math.max(280, Math.min(760, beside > 1 && whole > 1100 ? whole / 2 - 16 : whole));
-  const figure = element("figure", {}, drawRanking(rows.map((row) => ({...row, colour: row.colour ?? colourOf(row.name), title: `${row.name}: ${row.text}`, onclick: () => open(row.name)})),
-                                                   axis, width, `${title}: ${rows.map((row) => `${row.name} ${row.text}`).join("; ")}`, mark));
+  const drawn = rows.map((row) => ({...row, colour: row.colour ?? colourOf(row.name), title: `${row.name}: ${row.text}`, onclick: () => open(row.name)}));
+  const figure = element("figure", {}, drawRanking(drawn, axis, width, `${title}: ${drawn.map((row) => row.title).join("; ")}`, mark));
   for (const row of rows) {
     const raw = element("tr", {class: "raw", hidden: true}), all = columns.length + 1;
     const button = element("button", {type: "button", "aria-expanded": "false", onclick: () => {
@@ -69,11 +69,11 @@ function fillNear(found, mine) {
     const rows = found.rows[i].map((row) => ({...row, text: row.hollow ? `about ${short(row.value, 2)}× (a look)` : times(row)}));
     const failed = contest.lost.filter((one) => found.names.has(one.name) && !["slower", "excluded", "dropped"].includes(one.status));
     const note = (exact ? "Measured at this very case. " : found.near.length > 1 ? "Measured beside the case. " : "The nearest that was measured. ")
-      + (ranking.decided ? "Decided." : ranking.settled ? "Several are as fast, to 5 %." : "Not decided: this run does not tell who of the open ones is fastest.")
+      + (ranking.decided ? "Decided." : ranking.settled ? "Several are as fast, to 5 %." : "Not decided: this run does not tell which of the open ones is fastest.")
       + (failed.length ? ` Not ranked: ${failed.map((one) => `${one.name} (${one.status})`).join(", ")}.` : "");
     fillRanking(target, `near-${i}`, about(contest), note, rows, "time ÷ that of the fastest; lines: 95 % intervals" + (mine?.own.length ? "; diamonds: yours" : ""),
                 [["contender", (row) => row.name], ["", (row) => GROUPS[row.group]], ["time ÷ the fastest's", (row) => row.text], ["µs a step", (row) => short(row.step)],
-                 ...(mine?.own.length ? [["yours, µs", (row) => row.own ? short(row.own.us) : "–"]] : [])], null, found.near.length);
+                 ...yours(mine)], null, found.near.length);
   });
   if (!found.near.length) target.append(element("p", {}, "Nobody of those that are left was measured on such a mechanism."));
 }
@@ -85,64 +85,73 @@ function fillPredicted(found, state) {
     target.append(element("p", {}, "No prediction: this set has no rule for those that are left, or the case has no numbers."));
     return;
   }
-  const rows = found.predicted.map((one) => ({...one, group: fits(one, state.deadline), hollow: true, own: own.has(one.name) ? {us: own.get(one.name), value: own.get(one.name)} : null,
-    text: `${short(one.value)} µs (${short(one.low)} to ${short(one.high)})`,
+  const rows = found.predicted.map((one) => ({...one, group: fits(one, state.deadline), hollow: true,
+    own: own.has(one.name) ? {us: own.get(one.name), value: own.get(one.name)} : null, text: `${short(one.value)} µs (${range(one)})`,
     raw: () => [["feature", "amount", "µs each", "µs"], ...one.terms.map((term) => [term.feature, short(term.amount, 5), short(term.us), short(term.product)])]}));
   fillRanking(target, "model-0", `µs a step at n = ${short(found.asked.n, 5)}, fill ${short(found.features.fill)} %, ${found.form} form`,
-              `Interpolated: sums of the case's numbers, fitted on all mechanisms of the set; as `
-              + `mbs describe does it. Lines: where nine of ten times lie, judged on families left out. `
-              + (state.mine?.features ? "Its numbers are those that you gave." : "The numbers of the case are those of the nearest mechanisms, scaled to it."), rows, "µs a step, interpolated",
-              [["contender", (row) => row.name], ["µs a step", (row) => short(row.value)], ["range", (row) => `${short(row.low)} to ${short(row.high)}`],
-               ...(state.deadline ? [["deadline", (row) => row.group]] : []), ...(own.size ? [["yours, µs", (row) => row.own ? short(row.own.us) : "–"]] : [])],
+              "Interpolated: sums of the case's numbers, fitted on all mechanisms of the set, as mbs describe does it. Lines: where nine of "
+              + "ten times lie, judged on families left out. " + (found.asked.features?.n > 0 ? "The numbers are those of the scene itself." :
+                "The numbers of the case are those of the nearest mechanisms, scaled to it."), rows, "µs a step, interpolated",
+              [["contender", (row) => row.name], ["µs a step", (row) => short(row.value)], ["range", range],
+               ...(state.deadline ? [["deadline", (row) => row.group]] : []), ...yours(state.mine)],
               state.deadline ? {value: state.deadline, text: "deadline"} : null);
 }
 
+const range = (one) => `${short(one.low)} to ${short(one.high)}`;
+const yours = (mine) => mine?.own.length ? [["yours, µs", (row) => row.own ? short(row.own.us) : "–"]] : [];
 const fits = (one, deadline) => !deadline ? "" : one.high <= deadline ? "kept" : one.low > deadline ? "missed" : "not said";
 
 function fillError(found, state) {
   const target = place("points");
   target.replaceChildren();
   if (!state.error) return void target.append(element("p", {}, "No error was asked for: it decides step and setting."));
-  if (!found.error?.ranking) return void target.append(element("p", {}, found.error ? `Nobody of those that are left was seen to reach ${short(state.error)} m.` : "No errors were measured in this set."));
+  if (!found.error?.ranking)
+    return void target.append(element("p", {}, found.error ? `Nobody of those that are left was seen to reach ${short(state.error)} m.`
+                                                           : "No errors were measured in this set."));
   const {curve, ranking} = found.error, name = (point) => `${point.name}, ${point.setting}, step ${short(1e3 * point.step)} ms`;
-  const shown = ranking.ratios.length ? ranking.ratios : [[ranking.winner, ONE]];
-  const equal = new Set(ranking.equivalent);
-  const rows = shown.map(([point, one]) => ({...one, point, name: name(point), colour: colourOf(point.name), group: point === ranking.winner ? "fastest" : equal.has(point) ? "as fast" : "slower",
-    text: times(one), raw: () => [["process", "s a simulated second", "record"], ...curve.rounds.filter((row) => row.point === point && row.seconds !== null).map((row) => [String(row.process), short(row.seconds, 5), ""]),
-                                  ["–", `${short(point.time, 5)} (${point.from})`, point.record.split(" ").map((one) => `raw/accuracy/${one}`).join("\n")]]}));
+  const equal = new Set(ranking.equivalent), group = (point) => point === ranking.winner ? "fastest" : equal.has(point) ? "as fast" : "slower";
+  const raw = (point) => [["process", "s a simulated second", "record"],
+    ...curve.rounds.filter((row) => row.point === point && row.seconds !== null).map((row) => [String(row.process), short(row.seconds, 5), ""]),
+    ["–", `${short(point.time, 5)} (${point.from})`, point.record.split(" ").map((one) => `raw/accuracy/${one}`).join("\n")]];
+  const rows = (ranking.ratios.length ? ranking.ratios : [[ranking.winner, ONE]]).map(([point, one]) => ({
+    ...one, point, name: name(point), colour: colourOf(point.name), group: group(point), text: times(one), raw: () => raw(point)}));
   found.errorRows = rows;
   fillRanking(target, "points-0", `An error of at most ${short(state.error)} m on ${curve.title} (n = ${short(curve.n)}, fill ${short(curve.fill)} %)`,
-              `The nearest motion whose error is known. ${ranking.settled ? "" : "Not decided. "}${ranking.candidates} points reach it. study/advise finds step and setting for your scene.`, rows,
+              `The nearest motion whose error is known. ${ranking.settled ? "" : "Not decided. "}${ranking.candidates} points reach it. `
+              + "study/advise finds step and setting for your scene.", rows,
               "time of a simulated second ÷ that of the fastest; lines: 95 % intervals",
               [["contender, setting, step", (row) => row.name], ["", (row) => GROUPS[row.group]], ["time ÷ the fastest's", (row) => row.text],
                ["error, m", (row) => short(row.point.error)], ["s a simulated second", (row) => short(row.point.time)]]);
 }
 
 function fillAnswer(found, state) {
-  const lines = [], [first, second] = found.near, bold = (name) => element("b", {}, name);
+  const lines = [], [first, second] = found.near, bold = (name) => element("b", {}, name), [best] = found.predicted, point = found.error?.ranking?.winner;
   if (!first) lines.push(["Nobody of those that are left was measured on such a mechanism."]);
   for (const {contest, ranking} of found.near) {
-    const others = ranking.equivalent.filter((name) => name !== ranking.winner);
-    lines.push([bold(ranking.winner), ` ${ranking.decided || others.length && ranking.settled ? "is fastest" : "leads, not decided,"} on ${about(contest)}, measured: ${short(stepOf(contest, ranking.winner))} µs a step`,
-                others.length ? `; as fast: ${others.join(", ")}` : "", ranking.open.length ? `; open: ${ranking.open.join(", ")}` : "",
-                ranking.second ? `. Next is ${ranking.second}: ${times(ranking.margin)}.` : "."]);
+    const others = ranking.equivalent.filter((name) => name !== ranking.winner), known = ranking.decided || others.length && ranking.settled;
+    lines.push([bold(ranking.winner), ` ${known ? "is fastest" : "leads, not decided,"} on ${about(contest)}, measured: `
+                + `${short(stepOf(contest, ranking.winner))} µs a step`, others.length ? `; as fast: ${others.join(", ")}` : "",
+                ranking.open.length ? `; open: ${ranking.open.join(", ")}` : "", ranking.second ? `. Next is ${ranking.second}: ${times(ranking.margin)}.` : "."]);
   }
-  if (first && !first.exact) lines.push([second ? (first.ranking.winner === second.ranking.winner ? "Your case lies between these; on both the same one leads." : "Your case lies between these, where another one leads on each: measure it.") : "This is the nearest that was measured."]);
-  if (found.predicted.length) lines.push(["Predicted for the case: ", bold(found.predicted[0].name), ` ${short(found.predicted[0].value)} µs a step (${short(found.predicted[0].low)} to ${short(found.predicted[0].high)}).`]);
-  if (state.deadline && first) {
-    const step = first.exact ? stepOf(first.contest, first.ranking.winner) : found.predicted[0]?.value;
-    if (step) lines.push([`A deadline of ${short(state.deadline)} µs is ${short(state.deadline / step)} times the mean step of the fastest${state.deadline > step ? "; single steps take several times the mean" : ": too short"} (`,
-                          element("a", {href: "realtime.html"}, "distribution"), ")."]);
-  }
-  if (found.error?.ranking) lines.push([`For ${short(state.error)} m on ${found.error.curve.scene}: `, bold(found.error.ranking.winner.name), `, ${found.error.ranking.winner.setting}, step ${short(1e3 * found.error.ranking.winner.step)} ms.`]);
-  place("answer").replaceChildren(...lines.map((line) => element("p", {}, ...line)), ...found.warnings.map((one) => element("p", {class: "warn"}, `Outside: ${one}`)));
+  if (first && !first.exact)
+    lines.push([!second ? "This is the nearest that was measured." : first.ranking.winner === second.ranking.winner ?
+      "Your case lies between these; on both the same one leads." : "Your case lies between these, where another one leads on each: measure it."]);
+  if (best) lines.push(["Predicted for the case: ", bold(best.name), ` ${short(best.value)} µs a step (${range(best)}).`]);
+  const step = first?.exact ? stepOf(first.contest, first.ranking.winner) : best?.value;
+  if (state.deadline && step)
+    lines.push([`A deadline of ${short(state.deadline)} µs is ${short(state.deadline / step)} times the mean step of the fastest`
+                + `${state.deadline > step ? "; single steps take several times the mean" : ": too short"} (`,
+                element("a", {href: "realtime.html"}, "distribution"), ")."]);
+  if (point) lines.push([`For ${short(state.error)} m on ${found.error.curve.scene}: `, bold(point.name), `, ${point.setting}, step ${short(1e3 * point.step)} ms.`]);
+  place("answer").replaceChildren(...lines.map((line) => element("p", {}, ...line)), ...found.warnings.map((one) => element("p", {class: "warn"}, one)));
 }
 
 // The scene as the program takes it: the case itself if its size is one of a family, else the nearest that was measured.
 function sceneOf(found) {
   const {asked, near} = found;
   if (asked.scene) return {scene: asked.scene};
-  const [kind, filled] = asked.family.split(", "), line = DATA.sizes.find(([name, more]) => name === kind && (!more || near[0]?.contest.scene.endsWith(more)));
+  const [kind, filled] = asked.family.split(", ");
+  const line = DATA.sizes.find(([name, more]) => name === kind && (!more || near[0]?.contest.scene.endsWith(more)));
   const size = line ? Math.round((asked.n - line[3]) / line[2]) : 0;
   if (size > 0 && (!filled || asked.fill)) return {scene: `${kind}:${size}${line[1]}${filled ? `,fill=${short(asked.fill / 100)}` : ""}`};
   return {scene: near[0]?.contest.scene ?? "scene.json", nearest: true};

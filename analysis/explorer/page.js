@@ -1,7 +1,7 @@
 // The controls: the question stands in the address, the page shows its answer.
 "use strict";
 
-const BOXES = ["own", "gpl", "dense", "penalty", "saddle"], NUMBERS = ["n", "fill", "error", "deadline"];
+const BOXES = [...KINDS, "penalty", "saddle"], NUMBERS = ["n", "fill", "error", "deadline"];
 let state = {...START}, shown = null;
 
 function readAddress() {
@@ -10,7 +10,7 @@ function readAddress() {
   for (const key of NUMBERS) if (given.has(key)) found[key] = positive(given.get(key)) ?? (key === "n" ? START.n : null);
   if (DATA.sets.some((one) => one.name === given.get("machine"))) found.machine = given.get("machine");
   const set = setOf(found);
-  found.family = given.has("family") && ["", ...familiesOf(set)].includes(given.get("family")) ? given.get("family") : familiesOf(set).includes(START.family) ? START.family : "";
+  found.family = [given.get("family"), START.family].find((one) => one !== null && ["", ...familiesOf(set)].includes(one)) ?? "";
   if (set.contests.some((one) => one.scene === given.get("scene"))) found.scene = given.get("scene");
   found.no = listed("no").filter((one) => BOXES.includes(one));
   found.without = listed("without").filter((one) => ABOUT.has(one));
@@ -62,14 +62,14 @@ function fillControls() {
   const inside = new Set(set.contests.flatMap((one) => one.able));
   if (!place("contenders").children.length || place("contenders").dataset.set !== set.name) {
     place("contenders").dataset.set = set.name;
+    const toggle = (name, on) => change({without: on ? state.without.filter((one) => one !== name) : [...state.without, name]});
     place("contenders").replaceChildren(...DATA.names.filter((one) => inside.has(one.name)).map((one) => element("label", {class: "box"},
-      element("input", {type: "checkbox", value: one.name, onchange: (event) => change({without: event.target.checked ? state.without.filter((name) => name !== one.name)
-        : [...state.without, one.name]})}), ` ${one.name}`, one.licence ? element("span", {class: "soft"}, ` ${one.licence}`) : "")));
+      element("input", {type: "checkbox", value: one.name, onchange: (event) => toggle(one.name, event.target.checked)}), ` ${one.name}`,
+      one.licence ? element("span", {class: "soft"}, ` ${one.licence}`) : "")));
   }
   for (const box of place("contenders").querySelectorAll("input")) {
-    const about = ABOUT.get(box.value);
-    box.checked = !state.without.includes(box.value) && !["own", "gpl", "dense"].some((word) => about[word] && state.no.includes(word));
-    box.disabled = ["own", "gpl", "dense"].some((word) => about[word] && state.no.includes(word));
+    box.disabled = KINDS.some((word) => ABOUT.get(box.value)[word] && state.no.includes(word));
+    box.checked = !state.without.includes(box.value) && !box.disabled;
   }
 }
 
@@ -80,22 +80,26 @@ function fillMap(found) {
     if (!ranking) continue;
     const open = !(ranking.decided || ranking.settled), others = ranking.equivalent.filter((name) => name !== ranking.winner);
     for (const name of [ranking.winner, ...others]) wins.set(name, (wins.get(name) ?? 0) + 1);
-    marks.push({n: contest.n, fill: contest.fill, colour: colourOf(ranking.winner), inner: others.length ? colourOf(others[0]) : null, open, square: contest.part === "map",
-                title: `${contest.scene}: ${ranking.winner}${open ? " (not decided)" : ""}${others.length ? `; as fast: ${others.join(", ")}` : ""}`,
-                onclick: () => change({scene: contest.scene, mine: null})});
+    const title = `${contest.scene}: ${ranking.winner}${open ? " (not decided)" : ""}${others.length ? `; as fast: ${others.join(", ")}` : ""}`;
+    marks.push({n: contest.n, fill: contest.fill, colour: colourOf(ranking.winner), inner: others.length ? colourOf(others[0]) : null, open, title,
+                square: contest.part === "map", onclick: () => change({scene: contest.scene, mine: null})});
   }
   const here = {n: found.asked.n, fill: found.asked.fill ?? found.features?.fill ?? found.near[0]?.contest.fill};
   const width = Math.max(280, Math.min(900, place("map").clientWidth)), list = [...wins].sort((a, b) => b[1] - a[1]);
-  place("map").replaceChildren(...(marks.length ? [drawMap(marks, here, width, `Map of the fastest of those that are left over n and fill: ${list.map(([name, count]) => `${name} on ${count}`).join(", ")}`),
-    element("figcaption", {}, `A circle is a mechanism, a square the four-bar with its own or artificial fill; inside: another that is as fast; empty: not decided. ${found.form} form, ${found.set.machine}, ${found.set.date.slice(0, 10)}. A click takes a mark as the case.`)] : []));
-  place("winners").replaceChildren(element("ul", {}, ...list.map(([name, count]) => element("li", {}, element("span", {class: "swatch", style: `background:${colourOf(name)}`}),
-    `${name}: in front, or as fast, on ${count} of ${marks.length}`))));
+  const label = `Map of the fastest of those that are left, over n and fill: ${list.map(([name, count]) => `${name} on ${count}`).join(", ")}`;
+  const caption = "A circle is a mechanism, a square the four-bar with its own or artificial fill; inside: another that is as fast; empty: not decided. "
+    + `${found.form} form, ${found.set.machine}, ${found.set.date.slice(0, 10)}. A click takes a mark as the case.`;
+  place("map").replaceChildren(...(marks.length ? [drawMap(marks, here, width, label), element("figcaption", {}, caption)] : []));
+  place("winners").replaceChildren(element("ul", {}, ...list.map(([name, count]) => element("li", {},
+    element("span", {class: "swatch", style: `background:${colourOf(name)}`}), `${name}: in front, or as fast, on ${count} of ${marks.length}`))));
 }
 
 function fillCommands(found) {
   const {lines, nearest} = commandsOf(found, state);
-  place("copy").replaceChildren(nearest && lines.length ? element("p", {class: "soft"}, "The case has no name that mbs knows; the commands are those of the nearest scene. Put your own in its place.") : "",
-    ...lines.map((line) => element("div", {class: "command"}, element("pre", {tabindex: 0}, line), element("button", {type: "button", "aria-label": `copy: ${line}`, onclick: (event) => copy(line, event.target)}, "copy"))));
+  const note = "The case has no name that mbs knows; the commands are those of the nearest scene. Put your own in its place.";
+  place("copy").replaceChildren(nearest && lines.length ? element("p", {class: "soft"}, note) : "", ...lines.map((line) => element("div", {class: "command"},
+    element("pre", {tabindex: 0}, line),
+    element("button", {type: "button", "aria-label": `copy: ${line}`, onclick: (event) => copy(line, event.target)}, "copy"))));
 }
 
 async function copy(text, button) {
@@ -145,11 +149,14 @@ const cell = (value) => {
 };
 
 function asCsv() {
-  const {set, near, rows, predicted, form, asked} = shown, lines = [["kind", "machine", "commit", "scene", "form", "n", "contender", "group", "ratio", "low", "high", "step_us", "yours_us"]];
-  const common = [set.machine, set.commit];
-  near.forEach(({contest}, i) => rows[i].forEach((row) => lines.push(["measured", ...common, contest.scene, contest.form, contest.n, row.name, row.group, row.value, row.low, row.high, row.step, row.own?.us])));
-  for (const row of predicted) lines.push(["interpolated", ...common, asked.scene, form, asked.n, row.name, "", "", row.low, row.high, row.value, ""]);
-  for (const row of shown.errorRows ?? []) lines.push(["error", ...common, shown.error.curve.scene, row.point.setting, shown.error.curve.n, row.point.name, row.group, row.value, row.low, row.high, 1e6 * row.point.time * row.point.step, ""]);
+  const {set, near, rows, predicted, form, asked, error, errorRows} = shown, common = [set.machine, set.commit];
+  const lines = [["kind", "machine", "commit", "scene", "form", "n", "contender", "group", "ratio", "low", "high", "step_us", "yours_us"]];
+  near.forEach(({contest}, i) => rows[i].forEach((row) => lines.push(["measured", ...common, contest.scene, contest.form, contest.n, row.name, row.group,
+                                                                       row.value, row.low, row.high, row.step, row.own?.us])));
+  for (const row of predicted)  // ratios are of no use there: low and high are of the time
+    lines.push(["interpolated", ...common, asked.scene, form, asked.n, row.name, "", "", row.low, row.high, row.value, ""]);
+  for (const {point, group, value, low, high} of errorRows ?? [])
+    lines.push(["error", ...common, error.curve.scene, point.setting, error.curve.n, point.name, group, value, low, high, 1e6 * point.time * point.step, ""]);
   return lines.map((row) => row.map((one) => cell(Number.isNaN(one) ? "" : one)).join(",")).join("\n") + "\n";
 }
 
@@ -161,7 +168,8 @@ function save(name, kind, text) {
 
 place("machine").addEventListener("change", (event) => change({machine: event.target.value, scene: ""}));
 place("scene").addEventListener("change", (event) => change({scene: event.target.value, mine: null}));
-place("family").addEventListener("change", (event) => change({...numbers(), family: event.target.value, fill: event.target.value.includes("filled") ? 50 : null, scene: "", mine: null}));
+place("family").addEventListener("change", (event) =>
+  change({...numbers(), family: event.target.value, fill: event.target.value.includes("filled") ? 50 : null, scene: "", mine: null}));
 for (const key of NUMBERS)
   place(key).addEventListener("input", (event) => {
     const value = positive(event.target.value);
@@ -170,10 +178,16 @@ for (const key of NUMBERS)
   });
 for (const key of BOXES)
   place(key).addEventListener("change", (event) => change({no: event.target.checked ? state.no.filter((one) => one !== key) : [...state.no, key]}));
-// What the fields show, where a scene has been left for numbers of one's own. The fill stays with the mechanism unless it was given.
-const numbers = () => ({n: Number(caseOf(state).n), fill: state.scene || state.mine ? (caseOf(state).family.includes("filled") || !caseOf(state).family ? caseOf(state).fill : null) : state.fill});
+// What the fields show, where a scene has been left for numbers of one's own. The fill of a mechanism goes with its size.
+function numbers() {
+  const {n, fill, family} = caseOf(state), kept = !state.scene && !state.mine || !family || family.includes("filled");
+  return {n, fill: kept ? fill : null};
+}
 
-place("reset").addEventListener("click", () => { location.hash = ""; place("mine").value = place("mine-said").textContent = ""; state = readAddress(); writeAddress(); show(); });
+place("reset").addEventListener("click", () => {
+  place("mine").value = place("mine-said").textContent = "";
+  change({...START, machine: DATA.sets[0].name, family: familiesOf(DATA.sets[0]).includes(START.family) ? START.family : ""});
+});
 place("link").addEventListener("click", (event) => copy(location.href, event.target));
 place("use").addEventListener("click", () => useText(place("mine").value));
 place("forget").addEventListener("click", () => { place("mine").value = place("mine-said").textContent = ""; change({mine: null}); });

@@ -3,7 +3,7 @@
 "use strict";
 
 const DATA = JSON.parse(document.getElementById("data").textContent);
-const FORMS = ["penalty", "saddle-point"], NEAREST = ["n", "per_column", "flops", "tangent"];
+const FORMS = ["penalty", "saddle-point"], KINDS = ["own", "gpl", "dense"], NEAREST = ["n", "per_column", "flops", "tangent"];
 const SAME = 0.01;  // of the logarithms: a case is that of a mechanism
 
 // Numbers of names become names; rows of raw times become objects.
@@ -35,7 +35,7 @@ const logarithm = (a, b) => Math.log(a / b);
 
 // Names that are left by the boxes.
 function chosen(state) {
-  const out = (one) => ["own", "gpl", "dense"].some((word) => one[word] && state.no.includes(word)) || state.without.includes(one.name);
+  const out = (one) => KINDS.some((word) => one[word] && state.no.includes(word)) || state.without.includes(one.name);
   return new Set(DATA.names.filter((one) => !out(one)).map((one) => one.name));
 }
 
@@ -146,8 +146,8 @@ function warnings(state, asked, features, contests) {
 
 // Which point reaches an error in the least time, on the judged four-bar nearest to the case.
 function answerError(state, set, names, asked) {
-  const curve = set.curves.filter((one) => one.unit === "m").map((one) => ({one, far: distance({...one, features: {}}, {n: asked.n, fill: asked.fill, features: null})}))
-    .sort((a, b) => a.far - b.far)[0]?.one;
+  const far = (one) => distance({...one, features: {}}, {...asked, features: null});
+  const [curve] = set.curves.filter((one) => one.unit === "m").sort((a, b) => far(a) - far(b));
   return curve ? {curve, ranking: rankPoints(curve, pointsOf(state, curve, names))} : null;
 }
 
