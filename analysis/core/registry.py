@@ -5,7 +5,6 @@ from functools import cached_property
 
 NULL = "null/null"  # the harness's control: a simulation that does nothing
 ANCHOR = "csc_klu/refactor"  # stands on no BLAS: in common to the processes of all pairs and builds
-LICENCES = {"csc_cholmod/simplicial": "LGPL-2.1-or-later", "csc_cholmod/supernodal": "GPL-2.0-or-later"}  # where that of the folder says less
 
 
 @dataclass(frozen=True)
@@ -50,13 +49,9 @@ class Registry:
     def dense(self):
         return frozenset(name for name, one in self.variants.items() if one.get("dense"))
 
-    def licence(self, name):
-        """Of what a variant links; empty of own code."""
-        return LICENCES.get(name, self.variants[name].get("licence", ""))
-
     def gpl(self, name):
-        """Whether a program with this variant may be distributed under the GPL alone."""
-        return re.search(r"(?<!L)GPL", self.licence(name)) is not None
+        """Whether a program with the library of this variant may be distributed under the GPL alone."""
+        return re.search(r"(?<!L)GPL", self.variants[name]["licence"]) is not None
 
     @property
     def pairs(self):

@@ -15,13 +15,11 @@ from analysis.core import records, schema, timing
 from analysis.core.contest import by_scene, grouped
 from analysis.core.files import read_object
 from analysis.core.view import View, facts_of, registry_of
-from analysis.families.rule import FEATURES
 from analysis.families.tables import SCHEMES, family_of
 from analysis.map.results import FAILURES, Results
 from analysis.map.timed import AFTER
 
 DIGITS = 7  # of samples
-KNOWN = (*FEATURES, "m")  # of `mbs describe`
 
 
 @dataclass(frozen=True)
@@ -123,12 +121,18 @@ def as_json(folder, found, number):
     """A set as the page has it. `number`: {name: its place in the page's list of names}."""
     facts, rule = facts_of(folder), folder / "families" / "rule.json"
     times = read_object(rule, times=dict)["times"] if rule.exists() else {}
-    path = folder / "families" / schema.DIGESTS
-    about = schema.read_table(folder, "families", "mechanisms").set_index("scene") if path.exists() else pandas.DataFrame()
     return {"name": folder.name, "machine": facts["context"].get("cpu_model", ""), "date": facts["date"], "commit": facts["context"]["commit"],
             "profile": facts["profile"], "times": times,
-            "mechanisms": {scene: {key: row[key] for key in ("family", *KNOWN) if pandas.notna(row[key])} for scene, row in about.iterrows()}, "contests": [_contest(one, number) for part in ("families", "map") for one in found[part]],
+            "mechanisms": _mechanisms(folder) if found["families"] else {},
+            "contests": [_contest(one, number) for part in ("families", "map") for one in found[part]],
             "curves": [_curve(one, number) for one in found["accuracy"]]}
+
+
+def _mechanisms(folder):
+    """{scene: its family and numbers}"""
+    numbers = [name for name, (kind, _, _) in schema.of_part("families")["mechanisms"].items() if kind == "number"]
+    rows = schema.read_table(folder, "families", "mechanisms").to_dict("records")
+    return {row["scene"]: {"family": row["family"]} | {name: row[name] for name in numbers if pandas.notna(row[name])} for row in rows}
 
 
 def names_of(found):
@@ -139,11 +143,13 @@ def names_of(found):
 
 def _contest(one, number):
     keys = list(dict.fromkeys(zip(one.rows.environment, one.rows.process, one.rows.record)))
+    layouts = timing.Paired(one.rows).layouts
     return {"part": one.part, "scene": one.scene, "form": one.form, "family": one.family, "n": one.n, "fill": _short(one.fill),
             "able": [number[name] for name in one.able], "failed": [number[name] for name in one.failed],
             "lost": [[number[name], *why] for name, why in one.lost.items()],
             "look": [[number[name], _short(us)] for name, us in one.look.items()],
-            "processes": [[environment, int(process), bool(one.part == "map" and process > AFTER), record] for environment, process, record in keys],
+            "processes": [[environment, int(process), bool(one.part == "map" and process > AFTER), record, layouts.get(process, "")]
+                          for environment, process, record in keys],
             "rows": [[number[row.implementation], keys.index((row.environment, row.process, row.record)), [_short(value) for value in row.samples]]
                      for row in one.rows.itertuples()]}
 

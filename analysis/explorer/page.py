@@ -48,7 +48,7 @@ def _about(name, sets):
         plain = name.partition("+")[0]
         if plain in registry.variants:
             return {"name": name, "own": plain in registry.own, "dense": plain in registry.dense, "gpl": registry.gpl(plain),
-                    "licence": registry.licence(plain), "colour": Look(registry).colour(plain)}
+                    "licence": registry.variants[plain]["licence"], "colour": Look(registry).colour(plain)}
     return {"name": name, "own": False, "dense": False, "gpl": False, "licence": "", "colour": "#777777"}
 
 

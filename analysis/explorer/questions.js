@@ -16,7 +16,7 @@ for (const set of DATA.sets) {
     one.failed = one.failed.map(name);
     one.lost = one.lost.map(([place, status, reason]) => ({name: name(place), status, reason}));
     one.look = new Map(one.look.map(([place, us]) => [name(place), us]));
-    one.processes = one.processes.map(([environment, number, again, record]) => ({environment, number, again, record}));
+    one.processes = one.processes.map(([environment, number, again, record, layout]) => ({environment, number, again, record, layout}));
     one.rows = one.rows.map(([place, process, samples]) => [name(place), one.processes[process], samples]);
   }
   for (const one of set.curves) {
@@ -85,6 +85,8 @@ function answer(state) {
   return found;
 }
 
+const WITH_SIZE = ["m", "jacobian", "mass", "tangent", "factor", "height", "supernodes", "springs"];  // grow with n, at one density
+
 // Features of the case: its own; else between the two sizes of its family that enclose it, on logarithms; else those of the
 // nearest mechanism, scaled.
 function featuresOf(asked, set) {
@@ -101,11 +103,14 @@ function featuresOf(asked, set) {
       found[name] = first[name] > 0 && second[name] > 0 ? first[name] * (second[name] / first[name]) ** share : first[name];
   } else {
     const larger = asked.n / first.n;
-    for (const name of names) found[name] = first[name] * larger;
-    const filled = asked.fill ? asked.fill / (100 * found.tangent / asked.n ** 2) : 1;
-    Object.assign(found, {tangent: found.tangent * filled, factor: Math.min(found.factor * filled, asked.n * (asked.n + 1) / 2), widest: first.widest});
+    for (const name of names) found[name] = first[name] * (WITH_SIZE.includes(name) ? larger : 1);
+    const filled = asked.fill ? asked.fill / (100 * found.tangent / asked.n ** 2) : 1, most = asked.n * (asked.n + 1) / 2;
+    Object.assign(found, {tangent: found.tangent * filled, factor: Math.min(found.factor * filled, most)});
     found.per_column = found.factor / asked.n;
-    found.flops = first.flops * larger * (found.per_column / first.per_column) ** 2;
+    const denser = found.per_column / first.per_column;
+    found.flops = first.flops * larger * denser ** 2;
+    if (first.saddle_flops) Object.assign(found, {saddle_factor: first.saddle_factor * larger * denser, saddle_flops: first.saddle_flops * larger * denser ** 2});
+    if (first.dense) found.dense = Math.min(first.dense * denser ** 2 / larger ** 2, 100);
   }
   return {...found, one: 1, n: asked.n, n2: asked.n ** 2, n3: asked.n ** 3, fill: 100 * found.tangent / asked.n ** 2};
 }
@@ -117,12 +122,16 @@ function predicted(set, features, form, names) {
   for (const [name, times] of Object.entries(set.times)) {
     const model = times[form];
     if (!names.has(name) || !model?.coefficients) continue;
-    const terms = Object.entries(model.coefficients).map(([feature, us]) => ({feature, us, amount: features[feature], product: us * features[feature]}));
+    const terms = Object.entries(model.coefficients).map(([feature, us]) => ({feature, us, amount: amountOf(feature, features)}))
+      .map((one) => ({...one, product: one.us * one.amount}));
     const value = terms.reduce((sum, one) => sum + one.product, 0);
     if (value > 0) found.push({name, value, low: value * model.low, high: value * model.high, terms});
   }
   return found.sort((a, b) => a.value - b.value);
 }
+
+// Of a product of features, such as "n*n", "passes*flops" or "1".
+const amountOf = (product, features) => product.split("*").reduce((amount, one) => amount * (features[one] ?? Number(one)), 1);
 
 const PLAIN = {n: "n", fill: "fill of the tangent", per_column: "non-zeros a column of the factor", flops: "operations of a factorization",
                tangent: "non-zeros of the tangent"};

@@ -9,10 +9,11 @@ function median(values) {
 
 const mean = (values) => values.reduce((sum, one) => sum + one, 0) / values.length;
 
-// Samples of one contest by contender and process. `rows`: [name, process, samples], a process being {environment, number}.
+// Samples of one contest by contender and process. `rows`: [name, process, samples], a process being {environment, number, layout}.
 class Paired {
   constructor(rows) {
     this.logs = new Map();
+    this.layouts = new Map(rows.filter(([, process]) => process.layout).map(([, process]) => [process.number, process.layout]));
     this.known = new Map();
     for (const [name, process, samples] of rows) {
       if (!this.logs.has(name)) this.logs.set(name, new Map());
@@ -20,25 +21,37 @@ class Paired {
     }
   }
 
-  // Time of `first` over that of `second`; NaN where they share no process. Of one process there is no interval.
+  // Time of `first` over that of `second`; NaN where they share no process. Of one layout, or process, there is no interval.
   ratio(first, second) {
     const key = `${first}\n${second}`;
-    if (!this.known.has(key)) this.known.set(key, interval(this.logRatios(first, second)));
+    if (!this.known.has(key)) this.known.set(key, interval(this.byLayout(this.logRatios(first, second))));
     return this.known.get(key);
   }
 
+  // Means over the processes of each layout; without layouts each process stands for itself.
+  byLayout(logs) {
+    const found = new Map();
+    for (const [number, value] of logs) {
+      const key = this.layouts.get(number) ?? number;
+      found.set(key, [...(found.get(key) ?? []), value]);
+    }
+    return [...found.values()].map(mean);
+  }
+
+  // By number of the process.
   logRatios(first, second) {
     const mine = this.logs.get(first) ?? new Map(), other = this.logs.get(second) ?? new Map();
-    const direct = [...mine.keys()].filter((key) => other.has(key)).map((key) => difference(mine.get(key), other.get(key)));
-    if (direct.length || !mine.size || !other.size) return direct;
+    const direct = new Map([...mine.keys()].filter((key) => other.has(key)).sort()
+      .map((key) => [mine.get(key).number, difference(mine.get(key), other.get(key))]));
+    if (direct.size || !mine.size || !other.size) return direct;
     const environments = [mine, other].map((one) => one.values().next().value.environment);
     const anchors = this.common(environments);
-    if (!anchors) return [];
-    const found = [];
+    const found = new Map();
+    if (!anchors) return found;
     for (const one of mine.values()) {
       const keys = environments.map((environment) => `${environment}\n${one.number}`);
       if (keys.every((key, i) => anchors[i].has(key)) && mine.has(keys[0]) && other.has(keys[1]))
-        found.push(difference(mine.get(keys[0]), anchors[0].get(keys[0])) - difference(other.get(keys[1]), anchors[1].get(keys[1])));
+        found.set(one.number, difference(mine.get(keys[0]), anchors[0].get(keys[0])) - difference(other.get(keys[1]), anchors[1].get(keys[1])));
     }
     return found;
   }

@@ -4,10 +4,11 @@ import math
 import random
 import shutil
 
+import pandas
 import pytest
 
 from analysis.accuracy.winners import fastest, meeting
-from analysis.core import site
+from analysis.core import site, timing
 from analysis.core.files import ROOT, read_json, write_json
 from analysis.explorer import data
 from study.tests.browser import Browser
@@ -123,6 +124,17 @@ def test_winners_are_those_of_python(page, found):
             ranked += 1
         _same_point(asked, answer, found["accuracy"], names)
     assert ranked > QUESTIONS and sum(1 for answer in answers if answer["point"]) > QUESTIONS / 4
+
+
+def test_layouts_of_the_program_count_as_one_each(page):
+    draw, rows = random.Random(2), []
+    for number in range(1, 10):
+        for name in ("a", "b"):
+            rows.append({"implementation": name, "environment": "own", "process": number, "layout": f"layouts/mbs-{number % 3}", "status": "ok",
+                         "samples": tuple(draw.uniform(1, 2) for _ in range(4))})
+    found = timing.ratio(pandas.DataFrame(rows), "a", "b")
+    asked = [[row["implementation"], {"environment": "own", "number": row["process"], "layout": row["layout"]}, row["samples"]] for row in rows]
+    assert page().value(f"Object.values(new Paired({json.dumps(asked)}).ratio('a', 'b'))") == pytest.approx([found.value, found.low, found.high])
 
 
 class _about(list):
