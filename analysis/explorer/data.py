@@ -47,7 +47,8 @@ class Contest:
 def of_families(folder):
     """Contests on mechanisms, in both forms."""
     about, table = (schema.read_table(folder, "families", name) for name in ("mechanisms", "scenes"))
-    about, table = about.set_index("scene"), table[~table.implementation.isin(registry_of(folder).examples)]
+    about = about[about.n.notna() & about.fill.notna()].set_index("scene")
+    table = table[table.scene.isin(about.index) & ~table.implementation.isin(registry_of(folder).examples)]
     by_role, found = grouped(records.read_part(folder, "families")), []
     for form in SCHEMES:
         timed = dict(by_scene(by_role.get(form, [])))
@@ -67,7 +68,7 @@ def of_map(folder):
     """Contests on the four-bar over size and artificial fill, in the penalty form."""
     results = Results({name: schema.read_table(folder, "map", name) for name in ("tidy", "verification")}, View(folder, "map"))
     names, found = results.layer("all"), []
-    for scene in results.samples().scene.unique():
+    for scene in results.samples()[results.samples().fill_percent.notna()].scene.unique():
         rows = results.rows(scene)
         good = rows[rows.status == "ok"]
         lost = rows[~rows.status.isin(["ok", "dropped"])].drop_duplicates("implementation").set_index("implementation")

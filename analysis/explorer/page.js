@@ -115,6 +115,7 @@ async function copy(text, button) {
 
 function show() {
   const begun = performance.now();
+  show.width = innerWidth;
   shown = answer(state);
   if (state.mine?.machine && state.mine.machine !== shown.set.machine) shown.warnings.push(`yours was measured on ${state.mine.machine}: compare ratios, not times`);
   fillControls();
@@ -207,6 +208,9 @@ place("svg-map").addEventListener("click", () => save("map.svg", "image/svg+xml"
 place("svg-ranking").addEventListener("click", () => save("ranking.svg", "image/svg+xml", standalone(place("near").querySelector("svg"))));
 place("question").addEventListener("submit", (event) => event.preventDefault());
 window.addEventListener("hashchange", () => { state = readAddress(); show(); });
-window.addEventListener("resize", () => { clearTimeout(show.later); show.later = setTimeout(show, 150); });
+window.addEventListener("resize", () => {  // of the width: a keyboard on the screen changes the height
+  clearTimeout(show.later);
+  if (innerWidth !== show.width) show.later = setTimeout(show, 150);
+});
 state = readAddress();
 show();

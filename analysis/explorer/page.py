@@ -66,10 +66,13 @@ ASKED = (  # of the examples: the least fill of the mechanism, %, and who is lef
 
 def examples(contests, registry):
     """[{"case", "state", "take"}]: each on the largest mechanism of its kind, of another family."""
-    found, used = [], set()
+    found, used, known = [], set(), {}
+    for one in contests:  # of a scene and form the one with most samples, as the page takes it
+        if (one.scene, one.form) not in known or len(one.rows) > len(known[one.scene, one.form].rows):
+            known[one.scene, one.form] = one
     for low, high, without, words in ASKED:
         names = [name for name in registry.variants if not ("own" in without and name in registry.own or "gpl" in without and registry.gpl(name))]
-        ranked = [(one, ranking) for one in contests if one.part == "families" and one.family not in used and low <= one.fill < high
+        ranked = [(one, ranking) for one in known.values() if one.family not in used and low <= one.fill < high
                   and one.form == ("saddle-point" if "penalty" in without else "penalty") for ranking in [one.rank(names)] if ranking]
         if ranked:
             one, ranking = max(ranked, key=lambda pair: pair[0].n)

@@ -39,9 +39,11 @@ function chosen(state) {
   return new Set(DATA.names.filter((one) => !out(one)).map((one) => one.name));
 }
 
+// Forms of the step that are left, the first one in which the case was measured before the other.
 const forms = (state) => {
   const order = state.mine?.form === "saddle-point" ? [...FORMS].reverse() : FORMS;
-  return order.filter((form) => !state.no.includes(form === "penalty" ? "penalty" : "saddle"));
+  const measured = (form) => setOf(state).contests.some((one) => one.scene === state.scene && one.form === form);
+  return order.filter((form) => !state.no.includes(form === "penalty" ? "penalty" : "saddle")).sort((a, b) => measured(b) - measured(a));
 };
 
 // The case in numbers: n, fill and, of one's own scene or a measured one, its features.
@@ -55,8 +57,8 @@ function caseOf(state) {
 }
 
 function distance(one, asked) {
-  if (asked.features && NEAREST.every((name) => asked.features[name] > 0 && one.features[name] > 0))
-    return Math.hypot(...NEAREST.map((name) => logarithm(one.features[name], asked.features[name])));
+  if (asked.features?.n > 0)  // which those of the map alone lack
+    return one.features.n > 0 ? Math.hypot(...NEAREST.map((name) => logarithm(one.features[name], asked.features[name]))) : Infinity;
   return Math.hypot(logarithm(one.n, asked.n), asked.fill ? logarithm(one.fill, asked.fill) : 0);
 }
 
@@ -69,7 +71,7 @@ function answer(state) {
     const ranked = set.contests.filter((one) => one.form === form && (!asked.family || one.family === asked.family))
       .map((contest) => ({contest, far: contest.scene === asked.scene ? 0 : distance(contest, asked), samples: contest.rows.length}))
       .filter((one) => one.contest.able.some((name) => names.has(name)))
-      .sort((a, b) => a.far - b.far || b.samples - a.samples);
+      .sort((a, b) => a.far === b.far ? b.samples - a.samples : a.far - b.far);
     if (!ranked.length) continue;
     const first = ranked[0], exact = first.far < SAME;
     const other = exact ? null : ranked.find((one) => asked.family ? (one.contest.n - asked.n) * (first.contest.n - asked.n) < 0
@@ -92,7 +94,7 @@ const WITH_SIZE = ["m", "jacobian", "mass", "tangent", "factor", "height", "supe
 function featuresOf(asked, set) {
   if (asked.features?.n > 0) return {...asked.features};
   const known = Object.values(set.mechanisms).filter((one) => !asked.family || one.family === asked.family)
-    .map((features) => ({features, far: distance({...features, features: {}}, {...asked, features: null})})).sort((a, b) => a.far - b.far).map((one) => one.features);
+    .sort((a, b) => distance(a, {...asked, features: null}) - distance(b, {...asked, features: null}));
   if (!known.length) return null;
   const first = known[0], below = (one) => one.n <= asked.n;
   const second = asked.family && !asked.fill && first.n !== asked.n ? known.find((one) => below(one) !== below(first)) : null;
@@ -109,7 +111,8 @@ function featuresOf(asked, set) {
     found.per_column = found.factor / asked.n;
     const denser = found.per_column / first.per_column;
     found.flops = first.flops * larger * denser ** 2;
-    if (first.saddle_flops) Object.assign(found, {saddle_factor: first.saddle_factor * larger * denser, saddle_flops: first.saddle_flops * larger * denser ** 2});
+    if (first.saddle_flops)
+      Object.assign(found, {saddle_factor: first.saddle_factor * larger * denser, saddle_flops: first.saddle_flops * larger * denser ** 2});
     if (first.dense) found.dense = Math.min(first.dense * denser ** 2 / larger ** 2, 100);
   }
   return {...found, one: 1, n: asked.n, n2: asked.n ** 2, n3: asked.n ** 3, fill: 100 * found.tangent / asked.n ** 2};
@@ -138,7 +141,7 @@ const PLAIN = {n: "n", fill: "fill of the tangent", per_column: "non-zeros a col
 
 function warnings(state, asked, features, contests) {
   const found = [...(state.mine?.warnings ?? [])];
-  for (const name of features && Object.keys(contests[0]?.features ?? {}).length ? Object.keys(PLAIN) : ["n", "fill"]) {
+  for (const name of features && contests.some((one) => one.features.n > 0) ? Object.keys(PLAIN) : ["n", "fill"]) {
     const value = features?.[name] ?? asked[name];
     const known = contests.map((one) => one.features[name] ?? one[name]).filter((one) => one > 0);
     const [low, high] = [Math.min(...known), Math.max(...known)];
@@ -155,7 +158,7 @@ function warnings(state, asked, features, contests) {
 
 // Which point reaches an error in the least time, on the judged four-bar nearest to the case.
 function answerError(state, set, names, asked) {
-  const far = (one) => distance({...one, features: {}}, {...asked, features: null});
+  const far = (one) => distance(one, {...asked, features: null});
   const [curve] = set.curves.filter((one) => one.unit === "m").sort((a, b) => far(a) - far(b));
   return curve ? {curve, ranking: rankPoints(curve, pointsOf(state, curve, names))} : null;
 }
