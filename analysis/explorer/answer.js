@@ -5,7 +5,15 @@ const GROUPS = {fastest: "fastest", "as fast": "as fast", open: "open", slower: 
 const place = (id) => document.getElementById(id);
 const times = (one) => `${short(one.value)}×` + (one.low < one.high && one.high < Infinity ? ` (${short(one.low)} to ${short(one.high)})` : one.value === 1 ? "" : " (not bounded)");
 const about = (contest) => `${contest.scene} (n = ${short(contest.n, 5)}, fill ${short(contest.fill)} %, ${contest.form} form)`;
-const colourOf = (name) => ABOUT.get(name)?.colour ?? "#777777";
+const DARK = matchMedia("(prefers-color-scheme: dark)");
+
+// The colour of a name in all figures; on a dark page the dark ones are lightened.
+function colourOf(name) {
+  const parts = (ABOUT.get(name)?.colour ?? "#777777").match(/[0-9a-f]{2}/gi).map((one) => parseInt(one, 16));
+  const dim = DARK.matches && 0.3 * parts[0] + 0.59 * parts[1] + 0.11 * parts[2] < 110;
+  return `rgb(${parts.map((one) => Math.round(dim ? one + 0.45 * (255 - one) : one)).join(",")})`;
+}
+
 
 function groupOf(ranking, name) {
   return name === ranking.winner ? "fastest" : ranking.equivalent.includes(name) ? "as fast" : ranking.open.includes(name) ? "open" : "slower";

@@ -207,6 +207,7 @@ place("csv").addEventListener("click", () => save("ranking.csv", "text/csv", asC
 place("svg-map").addEventListener("click", () => save("map.svg", "image/svg+xml", standalone(place("map").querySelector("svg"))));
 place("svg-ranking").addEventListener("click", () => save("ranking.svg", "image/svg+xml", standalone(place("near").querySelector("svg"))));
 place("question").addEventListener("submit", (event) => event.preventDefault());
+DARK.addEventListener("change", () => show());
 window.addEventListener("hashchange", () => { state = readAddress(); show(); });
 window.addEventListener("resize", () => {  // of the width: a keyboard on the screen changes the height
   clearTimeout(show.later);
