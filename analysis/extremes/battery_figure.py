@@ -35,14 +35,16 @@ def figures(table):
 def draw(table, what):
     """The figure of rows of battery.csv; `what` they are."""
     columns = [(setting, names, rows) for setting, found in groups(table).items() for names, rows in found]
-    letters = {names: LETTERS[place] for place, names in enumerate(dict.fromkeys(names for _, names, _ in columns))}
+    several = [names for names in dict.fromkeys(names for _, names, _ in columns) if len(names) > 1]
+    labels = {names: f"{LETTERS[several.index(names)]}: {len(names)} alike" if names in several else names[0] for _, names, _ in columns}
     blocks = _blocks(list(dict.fromkeys(zip(table.axis, table.value))), 2 if len(columns) <= FEW else 1)
     settings = [setting for setting, _, _ in columns]
     upright = [setting for setting in settings if not _level(setting, settings)]
     wide, high = LEFT + WIDE * len(columns) + 0.2, HIGH * max(max(block.values()) + 1 for block in blocks)
-    key = [line for names, letter in letters.items() for line in
-           wrap(f"{letter}  {', '.join(names)}", round(wide * len(blocks) * 12), subsequent_indent="    ")]
-    above, below = 0.9 + 0.075 * max(map(len, upright), default=0), 0.16 * len(key) + 0.9
+    key = [line for names in several for line in
+           wrap(f"{labels[names]}: {', '.join(names)}", round(wide * len(blocks) * 12), subsequent_indent="    ")]
+    head = 0.075 * max(map(len, labels.values()), default=0)  # inches
+    above, below = 0.8 + head + 0.075 * max(map(len, upright), default=0), 0.16 * len(key) + 0.9
     figure = plt.figure(figsize=(wide * len(blocks), high + above + below))
     used, across, up = set(), figure.get_figwidth(), figure.get_figheight()
     for number, block in enumerate(blocks):
@@ -51,7 +53,7 @@ def draw(table, what):
                                 WIDE * len(columns) / across, HIGH * tall / up))
         used |= {_square(axes, x, y, worst([found[cell] for found in rows]))
                  for x, (_, _, rows) in enumerate(columns) for cell, y in block.items() if cell in rows[0]}
-        _frame(axes, [letters[names] for _, names, _ in columns], settings, block)
+        _frame(axes, [labels[names] for _, names, _ in columns], settings, block, head)
     figure.text(0.1 / across, 1 - 0.1 / up, f"{what}: {title(table)}", fontsize=13, va="top", color=SILENT if table.silent.any() else "black")
     figure.text(0.1 / across, (0.16 * len(key) + 0.1) / up, "\n".join(key), fontsize=8, va="top", linespacing=1.4)
     figure.legend(handles=[Patch(facecolor=colour, hatch=hatch, edgecolor=GREY, label=words or name)
@@ -109,10 +111,10 @@ def _power(error):
     return math.floor(math.log10(max(error, 1e-17))) if error < 1e99 else 99
 
 
-def _frame(axes, letters, settings, block):
-    axes.set_xlim(0, len(letters))
+def _frame(axes, labels, settings, block, head):
+    axes.set_xlim(0, len(labels))
     axes.set_ylim(max(block.values()) + 1, 0)
-    axes.set_xticks([x + 0.5 for x in range(len(letters))], letters, fontsize=8)
+    axes.set_xticks([x + 0.5 for x in range(len(labels))], labels, fontsize=8, rotation=90)
     axes.xaxis.tick_top()
     axes.set_yticks([y + 0.5 for y in block.values()], [value for _, value in block], fontsize=8)
     axes.tick_params(length=0)
@@ -120,7 +122,7 @@ def _frame(axes, letters, settings, block):
         spine.set_visible(False)
     for setting in dict.fromkeys(settings):
         first, level = settings.index(setting), _level(setting, settings)
-        axes.annotate(setting, (first + (0.1 if level else settings.count(setting) / 2), 0), xytext=(0, 20),
+        axes.annotate(setting, (first + (0.1 if level else settings.count(setting) / 2), 0), xytext=(0, 72 * head + 8),
                       textcoords="offset points", va="bottom", ha="left" if level else "center", fontsize=9,
                       rotation=0 if level else 90, annotation_clip=False)
         axes.axvline(first, color="black", linewidth=0.8)

@@ -10,6 +10,7 @@ from analysis.map.compare import group_shares, profiled
 from analysis.map.tidy import PHASES
 
 SIZES = (22, 82)
+WHOLE = 0.99  # of a step in "other": it has no phases
 GROUP_FILLS = dict(zip(paper.GROUPS, ("#6baed6", "#f6dcae", "#08519c", "#e4e4e4")))
 # Light to dark and back, so that neighbours stay apart in black and white.
 FILLS = {"evaluation": "#cfe3f2", "assembly": "#6baed6", "factorization": "#08519c",
@@ -98,8 +99,11 @@ def _all_panel(axes, results, size, names, first):
     for place, name in enumerate(names):
         rows = profiled(results, name, size)
         shares = phase_shares(rows, PHASES) if len(rows) else {}
-        _bar(axes, place, [(phase, 100 * share) for phase, share in shares.items()], FILLS, False)
-        if not shares:
+        whole = shares.get("other", 0) > WHOLE
+        _bar(axes, place, [(phase, 100 * share) for phase, share in shares.items() if not whole], FILLS, False)
+        if whole:
+            axes.text(1, place, "all in the same sweeps", va="center", fontsize=7.5)
+        elif not shares:
             axes.text(1, place, why_not(results, name, size), va="center", fontsize=7.5,
                       color=GREY)
     axes.set_yticks(range(len(names)), names, fontsize=8.5)

@@ -32,7 +32,7 @@ def draw(results, look):
     found, sizes = ratios(results), results.sizes
     figure, panels = plt.subplots(2, 1, figsize=(max(8.0, 1.1 * len(sizes)), 8.4), sharex=True,
                                   gridspec_kw={"hspace": 0.08, "height_ratios": [1.2, 1]})
-    panels[0].set_title(f"Figure 4: sparse solvers of libraries at the four-bar's own fill, {results.view.context.get('cpu_model', '')}")
+    panels[0].set_title("Figure 4: sparse solvers of libraries at the four-bar's own fill")
     if not found:
         for axes in panels:
             missing(axes, "no sparse library was timed at its own fill")
