@@ -1,0 +1,136 @@
+# The paper's tables, as LaTeX, from tables of the set.
+import math
+import re
+
+import pandas
+
+from analysis.core.text import between, bounded, ends, number
+from analysis.families import bounds
+from analysis.families.figures import fastest_own
+from analysis.families.sentences import cases
+from analysis.map import summary
+from analysis.map.results import of
+from study.tools.paper.numbers import led, losses, mean, real_mechanisms
+
+ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}",
+           "^": r"\textasciicircum{}", "$": r"\$", "<": r"\textless{}", ">": r"\textgreater{}", "÷": r"\(\div\)", "/": r"/\allowbreak{}"}
+
+
+def tex(text):
+    """A text as LaTeX prints it."""
+    return re.sub("|".join(map(re.escape, ESCAPED)), lambda one: ESCAPED[one[0]], str(text))
+
+
+def tables(known):
+    """{name: LaTeX}"""
+    return {one.__name__: one(known) for one in (contenders, decided, ranking, claims, prices, leaves, defaults, largest, mechanisms)}
+
+
+def table(rows, columns, long=False, nothing="Not measured in this set."):
+    """Rows, dicts by the heads of `columns`, {head: LaTeX column}. `long`: over several pages."""
+    if not rows:
+        return tex(nothing)
+    frame = pandas.DataFrame(rows, columns=list(columns))
+    style = frame.style.hide(axis="index").format(tex).format_index(tex, axis=1)
+    return style.to_latex(column_format="".join(columns.values()), hrules=True, environment="longtable" if long else None)
+
+
+def contenders(known):
+    """Who takes part, and what was tried for each."""
+    registry, tried = known.registry, known.tables("tuning")["alternatives"]
+    tried = tried[tried.status == "ok"]
+    rows = []
+    for name, one in registry.variants.items():
+        if name not in registry.examples:
+            mine = tried[tried.base == name]
+            rows.append({"variant": name, "library": f"{one['library']}" if name not in registry.own else "none: own", "form": one["description"],
+                         "2008": "yes" if one.get("role") == "paper" else "no", "tried": str(mine.alternative.nunique()),
+                         "longer / shorter": f"{(mine.low > 1).sum()} / {(mine.high < 1).sum()} of {len(mine)}" if len(mine) else "–"})
+    return table(rows, {"variant": r"p{32mm}", "library": r"p{24mm}", "form": r"p{56mm}", "2008": "l", "tried": "r", "longer / shorter": "l"})
+
+
+def decided(known):
+    """What the mechanisms were held to, and what was found."""
+    rows = [{"what": what, "asked": asked, "found": found, "holds": {True: "yes", False: "no", None: "–"}[holds]}
+            for what, asked, found, holds in bounds.bounds(known.tables("families"), known.registry)]
+    held = known.tables("limit")["held"]
+    rows += [{"what": row.what, "asked": f"{row.sign} {number(row.bound)}", "found": between(row.worst, row.low, row.high) if row.worst == row.worst
+              else "not measured", "holds": {"held": "yes", "not held": "no"}.get(row.verdict, row.verdict)} for row in held.itertuples() if row.worst == row.worst]
+    return table(rows, {"what": r"p{62mm}", "asked": r"p{27mm}", "found": r"p{52mm}", "holds": r"p{18mm}"})
+
+
+def ranking(known):
+    """Libraries over the mechanisms at their own fill."""
+    mine, lost = led(real_mechanisms(known)), losses(known)
+    rows = [{"library": name, "first or as fast": str(mine.get(name, 0)), "timed on": str(len(one)), "mean": number(mean(one)),
+             "worst": number(one.max()), "where": one.idxmax()} for name, one in lost.items()]
+    return table(rows, {"library": "l", "first or as fast": "r", "timed on": "r", "mean": "r", "worst": "r", "where": "l"})
+
+
+def claims(known):
+    """The claims of 2008, each with theirs, ours on each machine and the verdict."""
+    sets = [known, *known.others]
+    others = [one.tables("map")["claims"].set_index(["id", "claim"]) for one in sets[1:]]
+    rows = []
+    for row in known.tables("map")["claims"].itertuples():
+        mine = {"": row.id, "claim": row.claim, "2008": row.paper, sets[0].context["cpu_model"]: _ours(row)}
+        for one, its in zip(sets[1:], others):
+            mine[one.context["cpu_model"]] = _ours(its.loc[(row.id, row.claim)]) if (row.id, row.claim) in its.index else "–"
+        rows.append(mine | {"verdict": row.verdict})
+    width = 44 / len(sets)
+    heads = {head: r"p{%.0fmm}" % width for head in rows[0] if head not in ("", "claim", "2008", "verdict")} if rows else {}
+    return table(rows, {"": "l", "claim": r"p{61mm}", "2008": r"p{18mm}"} | heads | {"verdict": r"p{21mm}"}, long=True)
+
+
+def _ours(row):
+    return "–" if not row.ours else row.ours + (f" ({row.low} to {row.high})" if row.low else "")
+
+
+def prices(known):
+    """What it costs to take one library always, over the cells of the map."""
+    results = of(known.tables("map"), known.view("map"))
+    rows = [{"library": row["implementation"], "mean": number(row["mean"]), "worst": number(row["worst"]), "where": row["where"],
+             "cells": f"{row['cells']} of {row['of']}", "by pilot": str(row["rough"])} for row in summary.prices(results, results.layer("libraries"))]
+    return table(rows, {"library": "l", "mean": "r", "worst": "r", "where": "l", "cells": "l", "by pilot": "r"})
+
+
+def leaves(known):
+    """The ends of the rule."""
+    rows = [{"case": row["case"], "take": row["take"]} for row in cases(known.tables("families"), known.view("families"))]
+    return table(rows, {"case": r"p{75mm}", "take": r"p{88mm}"})
+
+
+def defaults(known):
+    """Defaults of other tools, as rules for our contenders."""
+    rows = [{"default": row["rule"], "chooses": row["chooses"], "mean": ("about " if row["rough"] else "") + number(row["mean"]), "worst": number(row["worst"])}
+            for row in known.tables("families")["defaults"].sort_values("mean").to_dict("records") if row["mean"] == row["mean"]]
+    return table(rows, {"default": r"p{40mm}", "chooses": r"p{92mm}", "mean": "r", "worst": "r"})
+
+
+def largest(known):
+    """Who keeps up with which size."""
+    rows = []
+    for row in known.tables("realtime")["largest"].itertuples():
+        if row.largest == row.largest:
+            rows.append({"implementation": row.implementation, "form": row.scheme, "deadline": f"{1e3 * row.step:g} ms", "largest N": number(row.largest, 5),
+                         "missed": f"{row.missed} of {row.steps}", "longest": f"{number(row.max_us)} µs",
+                         "next N": number(row.next, 5), "missed there": row.next_reason.split(":")[0] if row.next_reason else "–"})
+    return table(rows, {"implementation": "l", "form": "l", "deadline": "r", "largest N": "r", "missed": "r", "longest": "r", "next N": "r",
+                        "missed there": r"p{48mm}"})
+
+
+def mechanisms(known):
+    """Each mechanism and form: the fastest library, how far the next is behind, who is as fast, and our own code."""
+    tables_, own = known.tables("families"), fastest_own(known.tables("families")["scenes"], known.registry).set_index("scene")
+    about = tables_["mechanisms"].set_index("scene")
+    rows = []
+    for row in tables_["winners"][(tables_["winners"].layer == "libraries") & (tables_["winners"].winner != "")].sort_values(["scheme", "variables"]).itertuples():
+        others = [name for name in row.equivalent.split() if name != row.winner]
+        mine = own.loc[row.scene] if row.scene in own.index and own.scheme[row.scene] == row.scheme else None
+        rows.append({"mechanism": row.scene, "form": row.scheme, "n": number(row.variables, 5), "nz/col": number(about.per_column.get(row.scene, math.nan), 2),
+                     "fastest library": row.winner, "step, µs": number(row.step_us), "next ÷ it": between(row.margin, row.low, row.high),
+                     "as fast": ", ".join(others) or ("" if row.decided else "open"),
+                     "own": "" if mine is None else f"{number(1 / mine.to_rival)}" + (f" ({ends(1 / mine.to_rival_high, 1 / mine.to_rival_low)})"
+                                                                                     if bounded(mine.to_rival_low, mine.to_rival_high) else "")})
+    return table(rows, {"mechanism": r"p{30mm}", "form": r"p{16mm}", "n": "r", "nz/col": "r", "fastest library": r"p{25mm}", "step, µs": "r",
+                        "next ÷ it": r"p{22mm}", "as fast": r"p{25mm}", "own": r"p{19mm}"}, long=True)
