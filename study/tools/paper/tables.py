@@ -1,6 +1,7 @@
 # The paper's tables, as LaTeX, from tables of the set.
 import math
 import re
+from textwrap import shorten
 
 import pandas
 
@@ -13,7 +14,9 @@ from analysis.map.results import of
 from study.tools.paper.numbers import led, losses, mean, real_mechanisms
 
 ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}",
-           "^": r"\textasciicircum{}", "$": r"\$", "<": r"\textless{}", ">": r"\textgreater{}", "÷": r"\(\div\)", "/": r"/\allowbreak{}"}
+           "^": r"\textasciicircum{}", "$": r"\$", "<": r"\textless{}", ">": r"\textgreater{}", "/": r"/\allowbreak{}", ":": r":\allowbreak{}", "@": r"@\allowbreak{}", "µ": r"\textmu{}", "÷": r"\(\div\)", "×": r"\(\times\)", "≥": r"\(\ge\)",
+           "≤": r"\(\le\)", "→": r"\(\to\)", "≈": r"\(\approx\)", "α": r"\(\alpha\)", "Δ": r"\(\Delta\)", "Φ": r"\(\Phi\)", "λ": r"\(\lambda\)", "·": r"\(\cdot\)",
+           "⁻": r"\textsuperscript{\(-\)}"} | {raised: rf"\textsuperscript{{{digit}}}" for digit, raised in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")}
 
 
 def tex(text):
@@ -21,9 +24,24 @@ def tex(text):
     return re.sub("|".join(map(re.escape, ESCAPED)), lambda one: ESCAPED[one[0]], str(text))
 
 
+TABLES = ("contenders", "decided", "ranking", "claims", "prices", "leaves", "defaults", "largest", "mechanisms")
+
+
 def tables(known):
     """{name: LaTeX}"""
-    return {one.__name__: one(known) for one in (contenders, decided, ranking, claims, prices, leaves, defaults, largest, mechanisms)}
+    return {name: globals()[name](known) for name in TABLES}
+
+
+def of_numbers(found):
+    """The appendix: a line a number, to which its uses link."""
+    rows = "".join(rf"\hypertarget{{where:{name}}}{{{tex(name)}}} & {tex(shorten(one.text, 60, placeholder=' …'))} & {tex(one.table)} & {tex(_records(one))} \\" + "\n"
+                   for name, one in found.items())
+    return (r"\begin{longtable}{p{32mm}p{38mm}p{34mm}p{58mm}}\toprule number & value & table & record \\\midrule\endhead\bottomrule\endfoot" + "\n"
+            + rows + r"\end{longtable}" + "\n")
+
+
+def _records(one):
+    return "" if not one.records else one.records[0] + (f", and {len(one.records) - 1} more" if len(one.records) > 1 else "")
 
 
 def table(rows, columns, long=False, nothing="Not measured in this set."):
