@@ -1,6 +1,7 @@
 # The paper's figures: the study's own, at print size; and one of its own, real mechanisms with intervals.
 import importlib
 
+import matplotlib
 import matplotlib.pyplot as plt
 from matplotlib.gridspec import GridSpec
 from matplotlib.text import Text
@@ -25,9 +26,10 @@ MARKS = ("o", "s", "^", "D", "v")
 
 def figures(known):
     """{name: figure}, each as wide as the paper's text"""
+    matplotlib.rcParams["figure.max_open_warning"] = 0  # all of some parts, of which few are taken
     drawn = {part: draw(known, part) for part in ("families", "map", "stability", "realtime", "engines")}
-    found = {"mechanisms": (mechanisms(known), None), "held": (drawn["families"]["held"], 2.4), "own_fill": (lower_notes(drawn["map"]["f4_sparse_solvers"]), 4.9),
-             "map": (drawn["map"]["f7_map"], 5.0), "phases": (phases(known), None), "work": (work(known), 4.3),
+    found = {"mechanisms": (mechanisms(known), None), "held": (drawn["families"]["held"], 2.4), "own_fill": (lower_notes(drawn["map"]["f4_sparse_solvers"]), 4.5),
+             "map": (drawn["map"]["f7_map"], 4.3), "phases": (phases(known), None), "work": (work(known), 4.0),
              "window": (drawn["stability"].get("penalty-double") or nothing(), 2.9), "steps": (drawn["realtime"]["steps"], None),
              "own": (own(drawn["families"]["map"]), 3.1), "engines": (engines(drawn["engines"]["regular"]), 3.4)}
     return {name: fit(figure, height, known.context["cpu_model"]) for name, (figure, height) in found.items()}
@@ -124,7 +126,7 @@ def mechanisms(known):
         return nothing()
     rows = rows[(rows.status == "ok") & rows.implementation.isin(known.registry.libraries)].merge(mine[["scene", "scheme"]], on=["scene", "scheme"])
     chosen = list(led(mine))[:NAMED]
-    figure, axes = plt.subplots(figsize=(8.4, 1.4 + 0.2 * len(mine)))
+    figure, axes = plt.subplots(figsize=(8.4, 1.4 + min(8.0, 0.2 * len(mine))))
     places = {scene: place for place, scene in enumerate(mine.scene)}
     for name, group in rows.groupby("implementation", sort=False):
         y = group.scene.map(places) + (0.16 * (chosen.index(name) - (len(chosen) - 1) / 2) if name in chosen else 0)

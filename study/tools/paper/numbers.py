@@ -153,14 +153,14 @@ def _gate(known):
 def _real(known):
     rows, table = real_mechanisms(known), "families/winners"
     if rows.empty:
-        return dict.fromkeys(("mechanisms", "families", "least", "most", "said", "leader", "leads", "shares", "single", "single_on", "mean", "worst", "where"))
+        return dict.fromkeys(("mechanisms", "families", "least", "most", "said", "margin", "leader", "leads", "shares", "single", "single_on", "mean", "worst", "where"))
     said = rows[rows.decided.fillna(False).astype(bool) | rows.settled.fillna(False).astype(bool)]
     leaders = led(rows)
     leader = next(iter(leaders))
     lost = losses(known)
     single = next(iter(lost))
     found = {"mechanisms": len(rows), "families": rows.family.nunique(), "least": number(rows.variables.min(), 5),
-             "most": number(rows.variables.max(), 5), "said": len(said), "leader": leader, "leads": leaders[leader],
+             "most": number(rows.variables.max(), 5), "said": len(said), "margin": number(rows.margin.median()), "leader": leader, "leads": leaders[leader],
              "shares": listed(f"{name} on {count}" for name, count in leaders.items())}
     found = {name: of_rows(one, table, rows) for name, one in found.items()}
     ratios = lost[single]
@@ -222,6 +222,8 @@ def _claims(known):
     by_id = ledger.by_id(table)
     found = {verdict: [name for name, (one, _) in by_id.items() if one == verdict] for verdict in ledger.VERDICTS}
     return {"all": of_rows(len(by_id), "map/claims", table), "rows": of_rows(len(table), "map/claims", table),
+            "counts": of_rows(", ".join(f"{len(names)} {'are' if len(names) > 1 else 'is'} {verdict}" for verdict, names in found.items() if names),
+                              "map/claims", table),
             "told": of_rows("; ".join(f"{verdict}: {', '.join(names)}" for verdict, names in found.items() if names), "map/claims", table)}
 
 

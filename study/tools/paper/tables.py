@@ -24,6 +24,7 @@ def tex(text):
     return re.sub("|".join(map(re.escape, ESCAPED)), lambda one: ESCAPED[one[0]], str(text))
 
 
+CHEAPEST = 8  # libraries of the table of prices
 TABLES = ("contenders", "decided", "ranking", "claims", "prices", "leaves", "defaults", "largest", "mechanisms")
 
 
@@ -34,14 +35,14 @@ def tables(known):
 
 def of_numbers(found):
     """The appendix: a line a number, to which its uses link."""
-    rows = "".join(rf"\hypertarget{{where:{name}}}{{{tex(name)}}} & {tex(shorten(one.text, 60, placeholder=' …'))} & {tex(one.table)} & {tex(_records(one))} \\" + "\n"
+    rows = "".join(rf"\hypertarget{{where:{name}}}{{{tex(name)}}} & {tex(shorten(one.text, 40, placeholder=' …'))} & {tex(one.table)} & {tex(_records(one))} \\" + "\n"
                    for name, one in found.items())
-    return (r"\begin{longtable}{p{32mm}p{38mm}p{34mm}p{58mm}}\toprule number & value & table & record \\\midrule\endhead\bottomrule\endfoot" + "\n"
+    return (r"\begin{longtable}{P{28mm}P{44mm}P{30mm}P{68mm}}\toprule number & value & table & record \\\midrule\endhead\bottomrule\endfoot" + "\n"
             + rows + r"\end{longtable}" + "\n")
 
 
 def _records(one):
-    return "" if not one.records else one.records[0] + (f", and {len(one.records) - 1} more" if len(one.records) > 1 else "")
+    return "" if not one.records else one.records[0] + (f" +{len(one.records) - 1}" if len(one.records) > 1 else "")
 
 
 def table(rows, columns, long=False, nothing="Not measured in this set."):
@@ -64,7 +65,7 @@ def contenders(known):
             rows.append({"variant": name, "library": f"{one['library']}" if name not in registry.own else "none: own", "form": one["description"],
                          "2008": "yes" if one.get("role") == "paper" else "no", "tried": str(mine.alternative.nunique()),
                          "longer / shorter": f"{(mine.low > 1).sum()} / {(mine.high < 1).sum()} of {len(mine)}" if len(mine) else "–"})
-    return table(rows, {"variant": r"p{32mm}", "library": r"p{24mm}", "form": r"p{56mm}", "2008": "l", "tried": "r", "longer / shorter": "l"})
+    return table(rows, {"variant": r"P{30mm}", "library": r"P{26mm}", "form": r"P{74mm}", "2008": "l", "tried": "r", "longer / shorter": "l"})
 
 
 def decided(known):
@@ -74,7 +75,7 @@ def decided(known):
     held = known.tables("limit")["held"]
     rows += [{"what": row.what, "asked": f"{row.sign} {number(row.bound)}", "found": between(row.worst, row.low, row.high) if row.worst == row.worst
               else "not measured", "holds": {"held": "yes", "not held": "no"}.get(row.verdict, row.verdict)} for row in held.itertuples() if row.worst == row.worst]
-    return table(rows, {"what": r"p{62mm}", "asked": r"p{27mm}", "found": r"p{52mm}", "holds": r"p{18mm}"})
+    return table(rows, {"what": r"P{62mm}", "asked": r"P{27mm}", "found": r"P{52mm}", "holds": r"P{18mm}"})
 
 
 def ranking(known):
@@ -96,8 +97,8 @@ def claims(known):
             mine[one.context["cpu_model"]] = _ours(its.loc[(row.id, row.claim)]) if (row.id, row.claim) in its.index else "–"
         rows.append(mine | {"verdict": row.verdict})
     width = 44 / len(sets)
-    heads = {head: r"p{%.0fmm}" % width for head in rows[0] if head not in ("", "claim", "2008", "verdict")} if rows else {}
-    return table(rows, {"": "l", "claim": r"p{61mm}", "2008": r"p{18mm}"} | heads | {"verdict": r"p{21mm}"}, long=True)
+    heads = {head: r"P{%.0fmm}" % width for head in rows[0] if head not in ("", "claim", "2008", "verdict")} if rows else {}
+    return table(rows, {"": "l", "claim": r"P{61mm}", "2008": r"P{18mm}"} | heads | {"verdict": r"P{21mm}"}, long=True)
 
 
 def _ours(row):
@@ -105,24 +106,24 @@ def _ours(row):
 
 
 def prices(known):
-    """What it costs to take one library always, over the cells of the map."""
+    """What it costs to take one library always, over the cells of the map: the cheapest."""
     results = of(known.tables("map"), known.view("map"))
     rows = [{"library": row["implementation"], "mean": number(row["mean"]), "worst": number(row["worst"]), "where": row["where"],
-             "cells": f"{row['cells']} of {row['of']}", "by pilot": str(row["rough"])} for row in summary.prices(results, results.layer("libraries"))]
+             "cells": f"{row['cells']} of {row['of']}", "by pilot": str(row["rough"])} for row in summary.prices(results, results.layer("libraries"))[:CHEAPEST]]
     return table(rows, {"library": "l", "mean": "r", "worst": "r", "where": "l", "cells": "l", "by pilot": "r"})
 
 
 def leaves(known):
     """The ends of the rule."""
     rows = [{"case": row["case"], "take": row["take"]} for row in cases(known.tables("families"), known.view("families"))]
-    return table(rows, {"case": r"p{75mm}", "take": r"p{88mm}"})
+    return table(rows, {"case": r"P{75mm}", "take": r"P{88mm}"})
 
 
 def defaults(known):
     """Defaults of other tools, as rules for our contenders."""
     rows = [{"default": row["rule"], "chooses": row["chooses"], "mean": ("about " if row["rough"] else "") + number(row["mean"]), "worst": number(row["worst"])}
             for row in known.tables("families")["defaults"].sort_values("mean").to_dict("records") if row["mean"] == row["mean"]]
-    return table(rows, {"default": r"p{40mm}", "chooses": r"p{92mm}", "mean": "r", "worst": "r"})
+    return table(rows, {"default": r"P{40mm}", "chooses": r"P{92mm}", "mean": "r", "worst": "r"})
 
 
 def largest(known):
@@ -134,7 +135,7 @@ def largest(known):
                          "missed": f"{row.missed} of {row.steps}", "longest": f"{number(row.max_us)} µs",
                          "next N": number(row.next, 5), "missed there": row.next_reason.split(":")[0] if row.next_reason else "–"})
     return table(rows, {"implementation": "l", "form": "l", "deadline": "r", "largest N": "r", "missed": "r", "longest": "r", "next N": "r",
-                        "missed there": r"p{48mm}"})
+                        "missed there": "l"})
 
 
 def mechanisms(known):
@@ -145,10 +146,10 @@ def mechanisms(known):
     for row in tables_["winners"][(tables_["winners"].layer == "libraries") & (tables_["winners"].winner != "")].sort_values(["scheme", "variables"]).itertuples():
         others = [name for name in row.equivalent.split() if name != row.winner]
         mine = own.loc[row.scene] if row.scene in own.index and own.scheme[row.scene] == row.scheme else None
-        rows.append({"mechanism": row.scene, "form": row.scheme, "n": number(row.variables, 5), "nz/col": number(about.per_column.get(row.scene, math.nan), 2),
+        rows.append({"mechanism": row.scene, "form": row.scheme.partition("-")[0], "n": number(row.variables, 5), "nz/col": number(about.per_column.get(row.scene, math.nan), 2),
                      "fastest library": row.winner, "step, µs": number(row.step_us), "next ÷ it": between(row.margin, row.low, row.high),
                      "as fast": ", ".join(others) or ("" if row.decided else "open"),
                      "own": "" if mine is None else f"{number(1 / mine.to_rival)}" + (f" ({ends(1 / mine.to_rival_high, 1 / mine.to_rival_low)})"
                                                                                      if bounded(mine.to_rival_low, mine.to_rival_high) else "")})
-    return table(rows, {"mechanism": r"p{30mm}", "form": r"p{16mm}", "n": "r", "nz/col": "r", "fastest library": r"p{25mm}", "step, µs": "r",
-                        "next ÷ it": r"p{22mm}", "as fast": r"p{25mm}", "own": r"p{19mm}"}, long=True)
+    return table(rows, {"mechanism": r"P{28mm}", "form": "l", "n": "r", "nz/col": "r", "fastest library": r"P{24mm}", "step, µs": "r",
+                        "next ÷ it": "l", "as fast": r"P{28mm}", "own": "l"}, long=True)
