@@ -153,16 +153,20 @@ def _gate(known):
 def _real(known):
     rows, table = real_mechanisms(known), "families/winners"
     if rows.empty:
-        return dict.fromkeys(("mechanisms", "families", "least", "most", "said", "margin", "leader", "leads", "shares", "single", "single_on", "mean", "worst", "where"))
+        return dict.fromkeys(("mechanisms", "families", "least", "most", "said", "margin", "leader", "leads", "shares", "saddle", "saddle_of", "single", "single_on", "mean", "worst", "where"))
     said = rows[rows.decided.fillna(False).astype(bool) | rows.settled.fillna(False).astype(bool)]
     leaders = led(rows)
     leader = next(iter(leaders))
+    winners = known.tables("families")["winners"]
+    saddle = winners[(winners.layer == "libraries") & (winners.scheme == "saddle-point") & (winners.winner != "") & ~winners.family.str.contains("filled")]
     lost = losses(known)
     single = next(iter(lost))
     found = {"mechanisms": len(rows), "families": rows.family.nunique(), "least": number(rows.variables.min(), 5),
              "most": number(rows.variables.max(), 5), "said": len(said), "margin": number(rows.margin.median()), "leader": leader, "leads": leaders[leader],
              "shares": listed(f"{name} on {count}" for name, count in leaders.items())}
     found = {name: of_rows(one, table, rows) for name, one in found.items()}
+    found |= {"saddle": of_rows(listed(f"{name} on {count}" for name, count in led(saddle).items()), table, saddle),
+              "saddle_of": of_rows(len(saddle), table, saddle)}
     ratios = lost[single]
     chosen = known.tables("families")["scenes"]
     chosen = chosen[(chosen.implementation == single) & chosen.scene.isin(ratios.index)]

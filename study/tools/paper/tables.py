@@ -7,7 +7,7 @@ import pandas
 
 from analysis.core.text import between, bounded, ends, number
 from analysis.families import bounds
-from analysis.families.figures import fastest_own
+from analysis.families.figures import best_form, fastest_own
 from analysis.families.sentences import cases
 from analysis.map import summary
 from analysis.map.results import of
@@ -139,11 +139,11 @@ def largest(known):
 
 
 def mechanisms(known):
-    """Each mechanism and form: the fastest library, how far the next is behind, who is as fast, and our own code."""
+    """Each mechanism, in the form that it is simulated in: the fastest library, how far the next is behind, who is as fast, our own code."""
     tables_, own = known.tables("families"), fastest_own(known.tables("families")["scenes"], known.registry).set_index("scene")
     about = tables_["mechanisms"].set_index("scene")
     rows = []
-    for row in tables_["winners"][(tables_["winners"].layer == "libraries") & (tables_["winners"].winner != "")].sort_values(["scheme", "variables"]).itertuples():
+    for row in best_form(tables_["winners"], "libraries").sort_values("variables").itertuples():
         others = [name for name in row.equivalent.split() if name != row.winner]
         mine = own.loc[row.scene] if row.scene in own.index and own.scheme[row.scene] == row.scheme else None
         rows.append({"mechanism": row.scene, "form": row.scheme.partition("-")[0], "n": number(row.variables, 5), "nz/col": number(about.per_column.get(row.scene, math.nan), 2),
