@@ -12,12 +12,12 @@ PAPER = ROOT / "paper"
 BUILD = PAPER / "build"
 STAMP = BUILD / "set.json"
 # What may hold digits that are no number of the text: names, lengths, what is marked as given, and the study's year.
-NO_TEXT = re.compile(r"\\(?:given|val|holds|cite|label|ref|eqref|tag|input|studyfigure|studytable|includegraphics|texttt)(?:\[[^]]*\])?\{(?:[^{}]|\{[^{}]*\})*\}"
+NO_TEXT = re.compile(r"\\(?:given|val|holds|cite|label|ref|eqref|tag|input|studyfigure|studytable|longstudytable|includegraphics|texttt)(?:\[[^]]*\])?\{(?:[^{}]|\{[^{}]*\})*\}"
                      r"|\\(?:setlength|renewcommand)\{[^{}]*\}(?:\{[^{}]*\})?|[\^_]\{?[0-9]\}?|(?<!\d)2008(?!\d)")
 EQUATION = re.compile(r"\\begin\{equation\}(.*?)\\end\{equation\}", re.S)  # whose coefficients have one digit
 EITHER = re.compile(r"\\either\{([\w.]+)\}")
 USED = {"value": re.compile(r"\\val\{([^{}]*)\}"), "holds": re.compile(r"\\holds\{([^{}]*)\}"), "figure": re.compile(r"\\studyfigure\{([^{}]*)\}"),
-        "table": re.compile(r"\\studytable(?:\[[^]]*\])?\{([^{}]*)\}"), "cited": re.compile(r"\\cite\{([^{}]*)\}"), "tag": re.compile(r"\\tag\{([^{}]*)\}|Eq\.~\\given\{\((\d+)\)\}")}
+        "table": re.compile(r"\\(?:long)?studytable(?:\[[^]]*\])?\{([^{}]*)\}"), "cited": re.compile(r"\\cite\{([^{}]*)\}"), "tag": re.compile(r"\\tag\{([^{}]*)\}|Eq\.~\\given\{\((\d+)\)\}")}
 
 
 def audit(known, text, found, claimed):
@@ -57,7 +57,7 @@ def of_set(known):
 
 def of_text(text, found, claimed):
     """Numbers that are typed; names that are unknown or not used; claims that do not hold."""
-    body = text[text.index(r"\begin{document}"):]
+    body = text = text[text.index(r"\begin{document}"):]
     body = EQUATION.sub(lambda one: re.sub(r"(?<!\d)\d(?!\d)", " ", one[1]), body)
     for line in NO_TEXT.sub(" ", re.sub(r"\\begin\{(\w+)\}(\[[^]]*\])?", " ", EITHER.sub(" ", body))).splitlines():
         for digits in re.findall(r"\S*\d\S*", line):

@@ -58,6 +58,7 @@ def work(known):
     legend = figure.axes[0].get_legend()
     if legend:
         legend.set_bbox_to_anchor((0.5, -0.17))
+    figure.set_layout_engine("none")  # which would count the legend to the axes
     return alone(figure)
 
 
@@ -74,6 +75,8 @@ def own(figure):
         libraries, families = figure.legends
         below(figure, families, 5)
         libraries.remove()
+    for axes in figure.axes:
+        axes.set_title("", loc="left")
     return alone(figure)
 
 
