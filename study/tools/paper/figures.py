@@ -17,11 +17,11 @@ from study.tools.paper.numbers import DENSE, HYBRID, led, real_mechanisms
 
 TEXT = 6.69      # inches, width of the paper's text
 SCALE = 0.78     # of letters and lines on paper: what figures have at 9.5 is 7.4 points
-NAMED = 5        # libraries of the figure of mechanisms with marks of their own
+NAMED = 6        # libraries of the figure of mechanisms with marks of their own
 END = 2.0        # ratio at which it ends
 PHASES_OF = (DENSE, HYBRID, "csc_cholmod/supernodal", "csc_cholmod/simplicial", "csc_ldl/uplooking", "eigen_sparse/ldlt", "csc_klu/refactor",
              "compiled_ldl/fronts")
-MARKS = ("o", "s", "^", "D", "v")
+MARKS = ("o", "s", "^", "D", "v", "P")
 
 
 def figures(known):
@@ -129,7 +129,7 @@ def mechanisms(known):
         return nothing()
     rows = rows[(rows.status == "ok") & rows.implementation.isin(known.registry.libraries)].merge(mine[["scene", "scheme"]], on=["scene", "scheme"])
     chosen = list(led(mine))[:NAMED]
-    figure, axes = plt.subplots(figsize=(8.4, 1.4 + min(8.0, 0.2 * len(mine))))
+    figure, axes = plt.subplots(figsize=(8.4, 1.4 + min(6.6, 0.2 * len(mine))))
     places = {scene: place for place, scene in enumerate(mine.scene)}
     for name, group in rows.groupby("implementation", sort=False):
         y = group.scene.map(places) + (0.16 * (chosen.index(name) - (len(chosen) - 1) / 2) if name in chosen else 0)
@@ -151,7 +151,7 @@ def mechanisms(known):
     said = mine.decided.fillna(False).astype(bool) | mine.settled.fillna(False).astype(bool)
     axes.set_yticks(range(len(mine)), [f"{row.scene}, n = {row.variables:.0f}{marks[one]}" for row, one in zip(mine.itertuples(), said)], fontsize=8)
     axes.plot([], [], "|", color="#9a9a9a", markersize=6, label="other libraries")
-    axes.legend(loc="upper right", fontsize=8.5, frameon=True, framealpha=0.9, edgecolor="none")
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=4, fontsize=8.5)
     return figure
 
 

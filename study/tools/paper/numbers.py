@@ -304,9 +304,10 @@ def _own(known):
         found |= {f"{name}_sets": of_rows(number(chosen), "limit/batches", mine) if len(mine) else None,
                   f"{name}_gain": of_rows(span(mine.gain), "limit/batches", mine) if len(mine) else None}
     equal = known.tables("engines")["equal_error"]
-    said = known.said("engines")
-    return found | {name: of_rows(" ".join(one for one in said if one.startswith("Our code") == ours), "engines/equal_error", equal)
-                    for name, ours in (("engines", True), ("engines_library", False))}
+    equal = equal[(equal.side == "library") & equal.ratio.notna()]
+    return found | {"engines": of_rows(len(equal), "engines/equal_error", equal), "engines_ahead": of_rows(
+        (equal.low > 1).sum(), "engines/equal_error", equal[equal.low > 1]), "engines_middle": of_rows(
+        number(equal.ratio.median(), 2), "engines/equal_error", equal)}
 
 
 def _limits(known):

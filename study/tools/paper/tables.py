@@ -6,6 +6,9 @@ from textwrap import shorten
 import pandas
 
 from analysis.core.text import between, bounded, ends, number
+from analysis.engines.equal_error import SIDES
+from analysis.engines.figures import title
+from analysis.engines.runs import NATIVE
 from analysis.families import bounds
 from analysis.families.figures import best_form, fastest_own
 from analysis.families.sentences import cases
@@ -25,7 +28,7 @@ def tex(text):
 
 
 CHEAPEST = 8  # libraries of the table of prices
-TABLES = ("contenders", "decided", "ranking", "claims", "prices", "leaves", "defaults", "largest", "mechanisms")
+TABLES = ("contenders", "decided", "ranking", "claims", "prices", "leaves", "defaults", "largest", "engines", "mechanisms")
 
 
 def tables(known):
@@ -136,6 +139,23 @@ def largest(known):
                          "next N": number(row.next, 5), "missed there": row.next_reason.split(":")[0] if row.next_reason else "–"})
     return table(rows, {"implementation": "l", "form": "l", "deadline": "r", "largest N": "r", "missed": "r", "longest": "r", "next N": "r",
                         "missed there": "l"})
+
+
+def engines(known):
+    """Each engine's time over that of each side of ours, at equal error."""
+    found = known.tables("engines")["equal_error"]
+    rows = []
+    for engine, mine in found[~found.engine.str.endswith(NATIVE)].groupby("engine", sort=False):
+        rows.append({"": title(engine)} | {label: _times(mine[mine.side == side]) for side, label in SIDES.items()})
+    return table(rows, {"": "l"} | dict.fromkeys(SIDES.values(), r"P{35mm}"))
+
+
+def _times(rows):
+    known = rows.ratio.dropna()
+    if known.empty:
+        return "–"
+    missed = len(rows) - len(known)
+    return f"{number(known.median())} ({number(known.min())} to {number(known.max())})" + (f"; {missed} of {len(rows)} errors not reached" if missed else "")
 
 
 def mechanisms(known):
