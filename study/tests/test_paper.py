@@ -3,6 +3,7 @@ import shutil
 
 import pytest
 
+from analysis.core import fragments
 from analysis.core.files import ROOT, read_json, write_json
 from study.core.main import newest
 from study.tests.conftest import study
@@ -40,6 +41,12 @@ def test_the_paper_is_of_the_newest_set(known, found):
     claimed = artifact.judged(known)
     assert [one for one in audit.audit(known, TEXT, found, claimed)] == []
     assert f"`{known.folder.name}`" in artifact.FILE.read_text(encoding="utf-8")
+
+
+def test_readme_rule_and_paper_are_of_one_commit(known):
+    named = {name for path in fragments.texts() for _, name, *_ in fragments.MARKED.findall(path.read_text(encoding="utf-8"))}
+    named |= {read_json(fragments.RULE).get("set")} - {None}
+    assert {read_json(ROOT / "results" / name / "set.json")["context"]["commit"] for name in named} == {known.context["commit"]}
 
 
 def test_every_number_has_a_source_and_most_are_measured(found):

@@ -129,10 +129,10 @@ def mechanisms(known):
         return nothing()
     rows = rows[(rows.status == "ok") & rows.implementation.isin(known.registry.libraries)].merge(mine[["scene", "scheme"]], on=["scene", "scheme"])
     chosen = list(led(mine))[:NAMED]
-    figure, axes = plt.subplots(figsize=(8.4, 1.4 + min(6.6, 0.2 * len(mine))))
+    figure, axes = plt.subplots(figsize=(8.4, 1.4 + min(7.2, 0.2 * len(mine))))
     places = {scene: place for place, scene in enumerate(mine.scene)}
     for name, group in rows.groupby("implementation", sort=False):
-        y = group.scene.map(places) + (0.16 * (chosen.index(name) - (len(chosen) - 1) / 2) if name in chosen else 0)
+        y = group.scene.map(places) + (0.7 / len(chosen) * (chosen.index(name) - (len(chosen) - 1) / 2) if name in chosen else 0)
         inside = group[group.to_rival <= END]
         if name not in chosen:
             axes.plot(inside.to_rival, y[inside.index], "|", color="#9a9a9a", markersize=6, zorder=1)
