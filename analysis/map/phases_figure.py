@@ -69,7 +69,7 @@ def draw(results):
     left = None
     for column, size in enumerate(panel_sizes(results)):
         left = figure.add_subplot(grid[1, column], sharey=left)
-        _all_panel(left, results, size, names, column == 0)
+        all_panel(left, results, size, names, column == 0)
     return figure
 
 
@@ -92,7 +92,8 @@ def _paper_panel(axes, rows):
     axes.set_title("Table 1: share of CPU time by phase, the paper's groups", pad=26)
 
 
-def _all_panel(axes, results, size, names, first):
+def all_panel(axes, results, size, names, first):
+    """A bar of all phases for each of `names`; `first`: with names, legend and title."""
     if not len(profiled(results, size=size)):
         missing(axes, f"no profiled runs at n = {size:g}")
         return

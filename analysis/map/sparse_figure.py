@@ -11,7 +11,7 @@ from analysis.map.compare import versus
 from analysis.map.marks import NOTE, draw_lost, footnote, lost
 
 PAPER_END = 160  # variables, right end of the paper's axis
-LEADERS = 2.2    # ratio at which the upper panel ends
+LEADERS = 1.5    # ratio at which the upper panel ends
 DODGE = 0.6      # width over which the contenders of a size are spread
 
 
@@ -53,7 +53,7 @@ def draw(results, look):
             axes.axvline(place, color="#e4e4e4", linewidth=0.8, zorder=0)
         axes.grid(True, axis="y", which="major")
         axes.set_ylabel("time ÷ the least at that size")
-    panels[0].set_ylim(0.93, LEADERS)
+    panels[0].set_ylim(0.96, LEADERS)
     panels[1].set_yscale("log")
     outcomes = {cell.variables: outcome(cell) for cell in map_cells(results, order) if cell.fill_asked is None}
     cells = lost(results.timing[results.timing.fill_asked.isna() & results.timing.implementation.isin(order)])
