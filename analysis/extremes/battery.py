@@ -12,10 +12,13 @@ REFERENCE = "reference"  # the role of its runs
 ALIKE = 10.0             # errors within this factor are alike
 
 
-def rows(records, registry):
-    """A row a run, in the order of cells, settings and implementations."""
-    known = {cell.name: (place, cell) for place, cell in enumerate(cells.battery())}
-    settings = {setting.file_name: setting.name for setting in (*cells.FORMS, *cells.OTHERS)}
+def rows(records, registry, every):
+    """A row a run of the cells `every`, in the order of cells, settings and implementations."""
+    known, settings = {}, {}
+    for place, cell in enumerate(every):
+        known.setdefault(cell.name, []).append((place, cell))
+        settings |= {setting.file_name: setting.name for setting in cell.settings}
+    settings |= {setting.file_name: setting.name for setting in cells.OTHERS}
     implementations = list(registry.variants)
     references, truths, found = {}, {}, []
     for record in records:
@@ -23,19 +26,23 @@ def rows(records, registry):
         if scene not in known or record.role not in (*settings, REFERENCE):
             raise StudyError(f"{record.name}: its cell is none of the battery: the set is of another state of it")
         if record.role == REFERENCE:
-            factor = round(known[scene][1].step / float(judge.options_of(record)["step"]))
+            factor = round(known[scene][0][1].step / _step(record))
             references.setdefault(scene, {})[factor] = record
     for record in records:
         if record.role != REFERENCE:
-            place, cell = known[judge.scene_of(record)]
+            place, cell = next(one for one in known[judge.scene_of(record)] if f"{one[1].step:g}" == f"{_step(record):g}")
             name = record.cell["contenders"][0]
             order = place, list(settings).index(record.role), implementations.index(name)
             times = record.series.get("t", [])
-            same = cell.name, len(times)  # all runs of a cell are judged at the same times
+            same = place, len(times)  # all runs of a cell are judged at the same times
             if same not in truths:
                 truths[same] = judge.true_motion(cell, references.get(cell.name, {}), times)
             found.append((order, _row(record, cell, name, settings[record.role], *truths[same])))
     return [row for _, row in sorted(found, key=lambda one: one[0])]
+
+
+def _step(record):
+    return float(judge.options_of(record)["step"])
 
 
 def _row(record, cell, name, setting, solutions, own, truth):
@@ -45,12 +52,15 @@ def _row(record, cell, name, setting, solutions, own, truth):
     error = judge.error_of(record, solutions, cell.length)
     error = error if not reported > error else reported
     limit = judge.allowed(cell, solutions)
-    silent = bool(solutions) and judge.is_silent(status, error, limit + own)
+    since = judge.wrong_from(record, solutions, cell.length, limit + own)
+    verdict = judge.verdict(status, error, limit + own, since, cell.harmless) if solutions and status not in NOT_RUN else ""
+    silent = verdict == judge.SILENT
     return {"axis": cell.axis, "value": cell.label, "implementation": name, "setting": setting, "status": status,
             "reason": reason, "failed_at": record.output.get("failed_at"), "true_error": error, "truth": truth,
-            "truth_error": own, "allowed": limit, "silent": silent, "steps": cell.steps, "step": cell.step,
+            "truth_error": own, "allowed": limit, "verdict": verdict, "silent": silent, "near": cell.near,
+            "wrong_from": since, "steps": cell.steps, "step": cell.step,
             "penalty": record.output.get("penalty"), "passes_per_step": record.output.get("passes_per_step"),
-            "command": shlex.join(record.command) if silent else "", "record": record.name}
+            "command": shlex.join(record.command) if verdict in (judge.SILENT, judge.FALSE) else "", "record": record.name}
 
 
 def ran(table):
@@ -91,5 +101,5 @@ def _same(first, second):
                                             or max(errors) <= ALIKE * min(errors))
 
 
-def table(records, registry):
-    return pandas.DataFrame(rows(records, registry))
+def table(records, registry, every):
+    return pandas.DataFrame(rows(records, registry, every))

@@ -4,6 +4,8 @@ import numpy
 from analysis.core.outcomes import FINISHED, GOOD, WHOLE, of_run
 
 CLASS = 1e-2         # of a link's length, what "ok" allows: AccurateBounds of harness/src/run/judge.hpp
+RIGHT, SILENT, TOLD, STOPPED, FALSE = "right", "silently wrong", "told", "stopped", "false alarm"  # verdicts
+PLACES = (".x", ".y", ".z")  # what columns of places end in
 STILL = 1e-9         # lengths; what moves less rests
 FINER = (4, 8)       # the reference runs at a quarter and at an eighth of the step
 
@@ -20,7 +22,7 @@ def true_motion(cell, references, times):
             return [], None, f"none: the reference is {status}: {reason}"
     fine, finest = ({column: values[:len(times)] for column, values in references[factor].series.items()}
                     for factor in FINER)
-    solution = {column: finest[column] for column in cell.columns}
+    solution = {column: values for column, values in finest.items() if column != "t"}
     # The error of the finer one of two runs of second order is a third of their difference.
     own = float(distances(fine, solution, cell.length).max()) / 3 if len(times) else 0.0
     if not own <= CLASS / 10:
@@ -43,8 +45,8 @@ def rounding(cell, solutions, times):
 def allowed(cell, solutions):
     """The largest true error, in lengths, of a run that may be ok. Of a short way it is the same share, as else a run
     that stood still would be right; what is at rest must stay within a hundredth."""
-    way = max((numpy.ptp(solution[column]) for solution in solutions for column in cell.columns
-               if len(solution[column])), default=0.0) / cell.length
+    way = max((numpy.ptp(values) for solution in solutions for column, values in solution.items()
+               if column.endswith(PLACES) and len(values)), default=0.0) / cell.length
     return CLASS * min(1.0, float(way)) if way > STILL else CLASS
 
 
@@ -56,6 +58,26 @@ def error_of(record, solutions, length):
     return min(distances(record.series, solution, length).max() for solution in solutions)
 
 
+def wrong_from(record, solutions, length, limit):
+    """The first instant kept at which it is off by more than `limit` lengths, s; None if it is at none."""
+    times = record.series.get("t", [])
+    if not times or not solutions:
+        return None
+    off = ~(numpy.min([distances(record.series, solution, length) for solution in solutions], axis=0) <= limit)
+    return float(times[off.argmax()]) if off.any() else None
+
+
+def verdict(status, error, limit, wrong_from, harmless):
+    """What its outcome is worth beside its true error. A run that stopped (wrong-branch, diverged) before any instant at which it was
+    wrong did so in time, unless that outcome is one that no motion of its cell deserves."""
+    if status in GOOD:
+        return RIGHT if error <= limit else SILENT
+    if status in WHOLE:
+        small = wrong_from is None and error <= limit / 10
+        return FALSE if small and (status in FINISHED or status in harmless) else TOLD
+    return FALSE if wrong_from is None and status in harmless else TOLD if wrong_from is not None else STOPPED
+
+
 def is_silent(status, error, limit):
     """Whether a run is reported ok or plausible though its error is beyond what that allows; one without positions is."""
     return status in GOOD and not error <= limit
@@ -63,10 +85,12 @@ def is_silent(status, error, limit):
 
 def distances(series, solution, length):
     """At each time of `series`, the largest distance of one of its points from `solution`, in lengths."""
-    points = [column.removesuffix(".x") for column in series if column.endswith(".x")]
-    found = [numpy.hypot(*((numpy.array(series[f"{point}.{axis}"], dtype=float) - solution[f"{point}.{axis}"]) / length
-                           for axis in "xy")) for point in points]
-    return numpy.max(found, axis=0)
+    found = {}
+    for column in series:
+        if column.endswith(PLACES) and column in solution:
+            point = column.rpartition(".")[0]
+            found[point] = found.get(point, 0) + ((numpy.array(series[column], dtype=float) - solution[column]) / length)**2
+    return numpy.sqrt(numpy.max(list(found.values()), axis=0))
 
 
 def options_of(record):
@@ -79,4 +103,6 @@ def options_of(record):
 
 
 def scene_of(record):
-    return record.cell["scene"].rpartition("/")[2].removesuffix(".json")
+    """What its cell is named by: a scene of the repository, or a file of the set's own."""
+    scene = record.cell["scene"]
+    return scene if scene.startswith("harness/") else scene.rpartition("/")[2].removesuffix(".json")

@@ -1,15 +1,16 @@
-# Every implementation at the extremes; ways out of what goes wrong there; kept pivots; the growth of roundoff.
-from analysis.extremes import battery as table, cells, judge, roundoff, ways
+# Every implementation at the extremes; is every wrong run told; ways out of what goes wrong there; kept pivots; the growth of roundoff.
+from analysis.extremes import battery as table, cells, judge, roundoff, trials, ways
 from study.core.cell import Cell
 from study.core.contender import REFERENCE
 
-SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms and roundoff, for other settings ...
+SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms and roundoff, for other settings, for trials ...
             "everyone": bool,         # ... and whether all others come after them
+            "trials": dict,           # runs of standard problems and of others; 0: all
             "cells": int,             # of the battery, telling ones of an axis at most; 0: these and all others
             "loops": dict,            # sizes: of the region of ways, of their times, of roundoff
             "processes": int,         # of a time
             "limit": float}           # s a run
-SHARES = {"battery": 0.6, "ways": 0.24, "pivots": 0.06, "roundoff": 0.1}
+SHARES = {"trials": 0.36, "battery": 0.36, "ways": 0.17, "pivots": 0.04, "roundoff": 0.07}
 DENSE_LOOPS = 200  # dense implementations run up to this size
 PREFERRED = {      # of each folder the first variant that serves a way stands for it
     "eigen_dense": ("eigen_dense/llt",),
@@ -22,7 +23,20 @@ def columns(settings, studyset):
 
 
 def run(lab, column):
-    {"battery": battery, "ways": way_out, "pivots": pivots, "roundoff": growth}[column](lab)
+    {"trials": trial, "battery": battery, "ways": way_out, "pivots": pivots, "roundoff": growth}[column](lab)
+
+
+def trial(lab):
+    """The standard problems, then the others in an order by lot; implementations take turns, a run an implementation."""
+    chosen = trials.few(trials.all_trials(), **lab.settings["trials"])
+    scenes = {cell.name: cell.scene or lab.scene(cell.name, cell.document) for cell, _ in chosen}
+    lab.run([_reference(lab, cell, scenes[cell.name], factor) for cell in dict.fromkeys(cell for cell, _ in chosen)
+             if cell.motion is None for factor in judge.FINER])
+    who, todo = _who(lab, "trials")[0], []
+    for place, (cell, setting) in enumerate(chosen):
+        serving = [one for one in who[place % len(who):] + who[:place % len(who)] if lab.registry.serves(one.variant, *setting.needs)]
+        todo += _run(lab, cell, scenes[cell.name], setting, serving[0]) if serving else []
+    lab.run(todo, drop=True)
 
 
 def battery(lab):
