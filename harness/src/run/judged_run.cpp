@@ -90,7 +90,8 @@ void JudgedRun::take(const StepOutcome& outcome) {
     access_.get_state(before_);
     judging_ += Clock::now() - begin;
   }
-  const bool is_looked_at = step >= next_look_ || (is_judged && watch_.is_needed());
+  const bool is_looked_at =
+      watch_.is_needed() && (step >= next_look_ || is_judged || is_unusual(outcome));
   if ((observer_ || half_ || is_looked_at) && !is_judged) access_.get_state(state_);
   const State& present = is_judged ? good_.state : state_;
   if (is_looked_at) look(present);
@@ -139,6 +140,13 @@ void JudgedRun::look(const State& present) {
   }
   next_look_ = step + looked_after(present);
   judging_ += Clock::now() - begin;
+}
+
+/// Whether the step was harder than most: near a singular position Newton needs more passes.
+bool JudgedRun::is_unusual(const StepOutcome& outcome) const {
+  return outcome.status == StepStatus::pass_limit ||
+         static_cast<double>(outcome.passes) * static_cast<double>(summary_.steps) >
+             1.5 * static_cast<double>(summary_.passes) + static_cast<double>(summary_.steps);
 }
 
 /// Steps until the next look: as many as leave no time to jump there and back, a quarter of the
