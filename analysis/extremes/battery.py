@@ -14,23 +14,21 @@ ALIKE = 10.0             # errors within this factor are alike
 
 def rows(records, registry, every):
     """A row a run of the cells `every`, in the order of cells, settings and implementations."""
-    known, settings = {}, {}
-    for place, cell in enumerate(every):
-        known.setdefault(cell.name, []).append((place, cell))
-        settings |= {setting.file_name: setting.name for setting in cell.settings}
-    settings |= {setting.file_name: setting.name for setting in cells.OTHERS}
+    known = {(cell.name, f"{cell.step:g}"): place for place, cell in enumerate(every)}
+    alone = {cell.name: cell for cell in every}  # a cell with a reference is the only one of its scene
+    settings = {setting.file_name: setting.name for some in (*(cell.settings for cell in every), cells.OTHERS) for setting in some}
     implementations = list(registry.variants)
     references, truths, found = {}, {}, []
     for record in records:
         scene = judge.scene_of(record)
-        if scene not in known or record.role not in (*settings, REFERENCE):
+        if record.role == REFERENCE and scene in alone:
+            references.setdefault(scene, {})[round(alone[scene].step / record.option("--step"))] = record
+        elif record.role not in settings or (scene, f"{record.option('--step'):g}") not in known:
             raise StudyError(f"{record.name}: its cell is none of the battery: the set is of another state of it")
-        if record.role == REFERENCE:
-            factor = round(known[scene][0][1].step / _step(record))
-            references.setdefault(scene, {})[factor] = record
     for record in records:
         if record.role != REFERENCE:
-            place, cell = next(one for one in known[judge.scene_of(record)] if f"{one[1].step:g}" == f"{_step(record):g}")
+            place = known[judge.scene_of(record), f"{record.option('--step'):g}"]
+            cell = every[place]
             name = record.cell["contenders"][0]
             order = place, list(settings).index(record.role), implementations.index(name)
             times = record.series.get("t", [])
@@ -41,10 +39,6 @@ def rows(records, registry, every):
     return [row for _, row in sorted(found, key=lambda one: one[0])]
 
 
-def _step(record):
-    return float(judge.options_of(record)["step"])
-
-
 def _row(record, cell, name, setting, solutions, own, truth):
     status, reason = of_run(record)
     # Its own word, where it knows the exact motion, covers instants and points that are not kept.
@@ -52,8 +46,9 @@ def _row(record, cell, name, setting, solutions, own, truth):
     error = judge.error_of(record, solutions, cell.length)
     error = error if not reported > error else reported
     limit = judge.allowed(cell, solutions)
-    since = judge.wrong_from(record, solutions, cell.length, limit + own)
-    verdict = judge.verdict(status, error, limit + own, since, cell.harmless) if solutions and status not in NOT_RUN else ""
+    beyond = limit + (own or 0.0)
+    since = judge.wrong_from(record, solutions, cell.length, beyond)
+    verdict = judge.verdict(status, error, beyond, since, cell.harmless) if solutions and record.done and status not in NOT_RUN else ""
     silent = verdict == judge.SILENT
     return {"axis": cell.axis, "value": cell.label, "implementation": name, "setting": setting, "status": status,
             "reason": reason, "failed_at": record.output.get("failed_at"), "true_error": error, "truth": truth,

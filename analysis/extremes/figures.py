@@ -1,10 +1,12 @@
-# The figures of the part: the battery, ways out, kept pivots, roundoff.
-from analysis.extremes import battery_figure, pivots, pivots_figure, roundoff_figure, ways_figure
+# The figures of the part: trials, the battery, ways out, kept pivots, roundoff.
+from analysis.extremes import battery_figure, pivots, pivots_figure, roundoff_figure, told, trials_figure, ways_figure
 from analysis.extremes.roundoff import FORMS
 
 
 def draw(tables, view):
     found = battery_figure.figures(tables["battery"]) if len(tables["battery"]) else {}
+    if len(told.judged(tables["trials"])):
+        found["trials"] = trials_figure.draw(tables["trials"])
     if len(tables["ways"]):
         found["ways"] = ways_figure.draw(tables["ways"], tables["ways_cost"])
     if len(pivots.timed(tables["pivots"])):

@@ -31,13 +31,13 @@ def true_motion(cell, references, times):
 
 
 def rounding(cell, solutions, times):
-    """The error of known motions as they are evaluated in double, in lengths: an ulp of time, one of positions, and
-    what their integration leaves."""
-    if not len(times):
-        return 0.0
+    """The error of known motions as they are evaluated in double, in lengths: what their integration leaves, or an ulp of
+    time and one of positions."""
+    if not len(times) or cell.motion.accuracy:
+        return cell.motion.accuracy / cell.length
     ulp = numpy.finfo(float).eps
     moved = cell.motion.solutions(numpy.asarray(times) * (1 + ulp))
-    return cell.motion.accuracy / cell.length + max(
+    return max(
         float(distances(late, known, cell.length).max() + ulp * max(abs(values).max() for values in known.values()) / cell.length)
         for late, known in zip(moved, solutions))
 
@@ -91,15 +91,6 @@ def distances(series, solution, length):
             point = column.rpartition(".")[0]
             found[point] = found.get(point, 0) + ((numpy.array(series[column], dtype=float) - solution[column]) / length)**2
     return numpy.sqrt(numpy.max(list(found.values()), axis=0))
-
-
-def options_of(record):
-    """{option: value} of a record's command line; "" for one without a value."""
-    found, words = {}, list(record.cell["settings"])
-    while words:
-        name = words.pop(0).removeprefix("--")
-        found[name] = words.pop(0) if words and not words[0].startswith("--") else ""
-    return found
 
 
 def scene_of(record):

@@ -3,8 +3,10 @@
 # Each point is where two loci meet; `side` says at which of their two meetings it is. As long as a linkage does not come
 # to the place where both meetings are one (its change point) the side stays what it was: that is the closed form.
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy
+from scipy.interpolate import CubicHermiteSpline
 
 from analysis.extremes.motions import GRAVITY
 
@@ -156,37 +158,15 @@ class Linkage:
 
     def angles(self, times):
         times = numpy.asarray(times, dtype=float)
-        return self.start + self.rate * times if self.driven or not len(times) else self._turned(times)
+        return self.start + self.rate * times if self.driven or not len(times) else _turned(self, float(numpy.ceil(times[-1])))(times)
 
-    def _turned(self, times):
-        """Of a free crank: dt = sqrt(I / 2(E - V)) d angle, by Gauss' rule of four points in each of many cells."""
-        end, sign = float(times[-1]), numpy.sign(self.rate)
-        _, v = self._energy(numpy.array([self.start]))
-        i, _ = self._energy(numpy.array([self.start]))
-        total = i[0] * self.rate**2 / 2 + v[0]
-        width = min(2 * numpy.pi / CELLS, self.finest / 4)
-        nodes, weights = numpy.polynomial.legendre.leggauss(4)
-        angles, clock = [self.start], [0.0]
-        while clock[-1] < end:
-            edges = angles[-1] + sign * width * numpy.arange(CELLS + 1)
-            inside = (edges[:-1, None] + sign * width * (nodes + 1) / 2).ravel()
-            i, v = self._energy(inside)
-            took = (numpy.sqrt(i / (2 * (total - v))).reshape(-1, 4) * weights).sum(axis=1) * width / 2
-            clock += list(clock[-1] + numpy.cumsum(took))
-            angles += list(edges[1:])
-        i, v = self._energy(numpy.array(angles))
-        speed = sign * numpy.sqrt(2 * (total - v) / i)
-        from scipy.interpolate import CubicHermiteSpline
-        return CubicHermiteSpline(clock, angles, speed)(times)
-
-    def _energy(self, angle):
+    def energy(self, angle):
         """(I, V): kinetic energy is I rate^2 / 2."""
         at = self.at(angle + 1j * BRANCHING)
-        inertia, potential = 0.0, 0.0
+        inertia = potential = 0 * angle.real
         for a, b in [ends for _, ends in self.links] + [(one.name, one.name) for one in self.followers if isinstance(one, Slider)]:
-            share = 1.0 / 3
             u, w = (at[end].imag / BRANCHING for end in (a, b))
-            inertia = inertia + share * (u * u + u * w + w * w).sum(axis=0)
+            inertia = inertia + (u * u + u * w + w * w).sum(axis=0) / 3
             potential = potential + self.gravity * (at[a][1].real + at[b][1].real) / 2
         return inertia, potential
 
@@ -233,3 +213,24 @@ class Linkage:
             if ends in known:
                 return known[ends]
         return self.crank if ends[1] == "B" else measured
+
+
+@lru_cache(maxsize=64)
+def _turned(linkage, end):
+    """The angle of a free crank over time until `end`: dt = sqrt(I / 2(E - V)) d angle, by Gauss' rule of four points in each
+    of many cells."""
+    sign, (inertia, potential) = numpy.sign(linkage.rate), linkage.energy(numpy.array([linkage.start]))
+    total = inertia[0] * linkage.rate**2 / 2 + potential[0]
+
+    def slowness(angle):
+        inertia, potential = linkage.energy(angle)
+        return numpy.sqrt(inertia / (2 * (total - potential)))
+    width = min(2 * numpy.pi / CELLS, linkage.finest / 4)
+    nodes, weights = numpy.polynomial.legendre.leggauss(4)
+    angles, clock = [linkage.start], [0.0]
+    while clock[-1] < end:
+        edges = angles[-1] + sign * width * numpy.arange(CELLS + 1)
+        took = slowness((edges[:-1, None] + sign * width * (nodes + 1) / 2).ravel()).reshape(-1, 4) @ weights * width / 2
+        clock += list(clock[-1] + numpy.cumsum(took))
+        angles += list(edges[1:])
+    return CubicHermiteSpline(clock, angles, sign / slowness(numpy.array(angles)))

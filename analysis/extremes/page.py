@@ -3,14 +3,24 @@ import numpy
 
 from analysis.core.outcomes import GOOD
 from analysis.core.text import number
-from analysis.extremes import battery, pivots, roundoff, ways
+from analysis.extremes import battery, judge, pivots, roundoff, told, ways
 
 SHORT = 1.0  # s of a motion of size or step: the first two singular positions are near 0.7 and 1.2 s
 
 
 def context(tables, view):
-    return {"settings": view.settings, "battery": _battery(tables["battery"]), "ways": _ways(tables["ways"], tables["ways_cost"]),
+    return {"settings": view.settings, "trials": _trials(tables["trials"]), "battery": _battery(tables["battery"]), "ways": _ways(tables["ways"], tables["ways_cost"]),
             "pivots": _pivots(tables["pivots"], tables["claims"]), "roundoff": _roundoff(tables["roundoff"])}
+
+
+def _trials(table):
+    """None where there is nothing to show."""
+    runs = told.judged(table)
+    if runs.empty:
+        return None
+    return {"counts": told.counts(runs), "kinds": told.kinds(runs), "verdicts": told.VERDICTS, "runs": len(runs),
+            "mechanisms": len(runs[["axis", "value"]].drop_duplicates()), "silent": told.listed(runs, judge.SILENT),
+            "false": told.listed(runs, judge.FALSE), "unserved": len(table) - len(runs), "dropped": int((table.status == "dropped").sum())}
 
 
 def _battery(table):

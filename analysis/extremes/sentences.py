@@ -1,13 +1,38 @@
 # The answers to "What happens at the extremes, and what helps there?", from the tables.
 from analysis.core.text import number
-from analysis.extremes import battery, pivots, ways
+from analysis.extremes import battery, judge, pivots, told, trials, ways
 from analysis.extremes.cells import FORMS
 from analysis.extremes.page import nobody, overhead, right, silent
 
 
 def answers(tables, view):
-    found = [*_battery(tables["battery"]), *_ways(tables["ways"], tables["ways_cost"]), *_pivots(tables["pivots"])]
+    found = [*_trials(tables["trials"]), *_battery(tables["battery"]), *_ways(tables["ways"], tables["ways_cost"]), *_pivots(tables["pivots"])]
     return found or [{"text": "Not measured: nobody that takes part runs at the extremes.", "anchor": ""}]
+
+
+def _trials(table):
+    runs = told.judged(table)
+    if runs.empty:
+        return
+    silent, false = (runs[runs.verdict == verdict] for verdict in (judge.SILENT, judge.FALSE))
+    standard = runs[runs.axis.isin(trials.STANDARD)]
+    held = [f"No run may be silently wrong: {_held(silent)}."]
+    if len(standard):
+        held.append(f"No standard problem may be called worse than it is: {_held(false[false.axis.isin(trials.STANDARD)])}, of {len(standard)}.")
+    others = false[~false.axis.isin(trials.STANDARD)]
+    yield {"anchor": "trials", "text": f"Of {len(runs)} runs of {len(runs[['axis', 'value']].drop_duplicates())} mechanisms of {runs.axis.nunique()} kinds "
+           f"{len(silent) or 'none'} {'are' if len(silent) > 1 else 'is'} silently wrong; {len(false) or 'none'} {'are' if len(false) > 1 else 'is'} "
+           f"called worse than {'they are' if len(false) > 1 else 'it is'}. {' '.join(held)}" + (
+               f" Near change points or with light parts: {_places(others)}." if len(others) else "")}
+
+
+def _held(rows):
+    """Whether the bound "none of these" holds."""
+    return f"not held, {len(rows)} run{'s' if len(rows) > 1 else ''} ({_places(rows)})" if len(rows) else "held"
+
+
+def _places(rows):
+    return ", ".join(f"{kind}: {count}" for kind, count in rows.axis.value_counts(sort=False).items())
 
 
 def _battery(table):

@@ -13,7 +13,7 @@ from analysis.core.records import Record
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
 from analysis.extremes import (battery, battery_figure, cells, figures, judge, page, pivots, roundoff, sentences,
-                               tables, ways)
+                               tables, told, trials, ways)
 from analysis.extremes.motions import Chain, Flat
 
 STATUSES = ("ok", "degraded", "diverged", "wrong-branch", "not-converged", "timeout", "crashed", "refused", "excluded", "dropped")
@@ -23,11 +23,13 @@ REGISTRY = Registry({"implementations": [{"folder": name.split("/")[0], "availab
 VIEW = SimpleNamespace(registry=REGISTRY, settings={"loops": {"ways": [2], "times": [10], "roundoff": [1]}})
 TIMES = numpy.linspace(0, 3, 31)
 CELL = next(cell for cell in cells.battery() if cell.label == "N = 1")
+KITE, PASSING, FAR, STANDARD = (next(cell for cell in trials.all_trials() if (cell.axis, cell.label) == key) for key in (
+    ("driven four-bar", "kite at 0.001, 1 per s"), ("passage, driven", "Cardan, 1 per s"), ("far, driven", "quick return, 1 per s"), ("standard problem", "A01")))
 SPRUNG = next(cell for cell in cells.battery() if cell.motion is None)
 
 
 def record(name, cell, output=None, series=None, ended="done", reason="", **more):
-    cell = {"contenders": ["a/v"], "role": "penalty", "number": 0, "program": "mbs", "settings": []} | cell
+    cell = {"contenders": ["a/v"], "role": "penalty", "number": 0, "program": "mbs", "settings": ["--step", f"{cells.STEP:g}"]} | cell
     return Record(name, cell, ended, reason, 0.1, ["build/mbs", "simulate", "a scene.json"], {},
                   {"status": "ok", "status_reason": ""} | (output or {}), series or {}, **more)
 
@@ -60,6 +62,47 @@ def test_what_is_ok_beyond_its_class_is_silently_wrong():
     assert found["b/v", "penalty"].command == "build/mbs simulate 'a scene.json'" and found["a/v", "penalty"].command == ""
     assert found["b/v", "saddle-point"].true_error == 0.02  # what it reports itself, between two instants
     assert numpy.isnan(found["a/v", "rattle4"].true_error) and found["a/v", "rattle6"].status == "dropped"
+
+
+def trial(status, error=0.0, of=KITE, until=None, **more):
+    motion = of.motion.solutions(TIMES)[0] if of.motion else {}
+    series = {"t": list(TIMES[:until])} | {column: list(values[:until] + error) for column, values in motion.items()}
+    return record(f"trials/{status}-{of.name}-{error}-{until}", {"scene": f"{of.scene or of.name}", "settings": ["--step", f"{of.step:g}"]},
+                  {"status": status, "status_reason": "why"} | more, series)
+
+
+@pytest.mark.parametrize(("run", "verdict"), [
+    (trial("ok"), "right"), (trial("plausible", 0.002), "right"), (trial("plausible", 0.02), "silently wrong"), (trial("ok", 0.02), "silently wrong"),
+    (trial("degraded"), "false alarm"), (trial("degraded", 0.002), "told"), (trial("degraded", 0.1), "told"), (trial("not-converged"), "told"),
+    (trial("wrong-branch", 0.1, until=9), "told"), (trial("wrong-branch", until=9), "stopped"), (trial("diverged", until=9), "stopped"),
+    (trial("wrong-branch", of=PASSING, until=9), "false alarm"), (trial("diverged", of=PASSING, until=9), "stopped"),
+    (trial("wrong-branch", of=FAR, until=9), "false alarm"), (trial("diverged", of=FAR, until=9), "false alarm"), (trial("diverged", 0.1, of=FAR, until=9), "told"),
+    (trial("ok", of=FAR), "right"), (trial("not-converged", of=FAR), "false alarm")])
+def test_a_trial_is_worth_what_it_said_beside_its_error(run, verdict):
+    [row] = made(run)["trials"].itertuples()
+    assert row.verdict == verdict and row.silent == (verdict == "silently wrong")
+    assert bool(row.command) == (verdict in ("silently wrong", "false alarm"))
+    assert (row.wrong_from == row.wrong_from) == (verdict == "silently wrong" or verdict == "told" and "0.1" in row.record)
+
+
+def test_trials_that_did_not_run_or_cannot_be_judged_have_no_verdict():
+    unknown = next(cell for cell in trials.all_trials() if cell.motion is None)
+    lost = record("trials/x", {"scene": KITE.name, "settings": ["--step", f"{KITE.step:g}"]}, ended="timeout", reason="20 s")
+    assert list(made(lost, trial("degraded", of=unknown), trial("unsupported", until=0))["trials"].verdict.fillna("")) == 3 * [""]
+    assert page._trials(made(lost)["trials"]) is None
+
+
+def test_trials_are_counted_by_kind_and_bounds_that_fail_are_said_to():
+    found = made(trial("plausible"), trial("plausible", 0.5), trial("ok", 0.6), trial("degraded"), trial("ok", of=STANDARD))["trials"]
+    counts = told.kinds(found)
+    assert [(row["kind"], row["mechanisms"], row["runs"]) for row in counts] == [(STANDARD.axis, 1, 1), ("driven four-bar", 1, 4)]
+    [wrong] = told.listed(found, judge.SILENT)
+    assert (wrong["runs"], wrong["since"], wrong["settings"]) == (2, 0.0, ["penalty"]) and wrong["error"] == pytest.approx(0.6 * 2**0.5 / KITE.length)
+    [text] = [one["text"] for one in sentences._trials(found)]
+    assert "Of 5 runs of 2 mechanisms of 2 kinds 2 are silently wrong; 1 is called worse than it is." in text
+    assert "No run may be silently wrong: not held, 2 runs (driven four-bar: 2)." in text and "called worse than it is: held, of 1." in text
+    text = render(made(trial("plausible", 0.5)))[1]
+    assert "1 silently wrong" in text and "build/mbs simulate" in text and "No false alarm." in text
 
 
 def test_records_of_another_battery_are_named():
@@ -307,17 +350,17 @@ FACTS = {"date": "today", "profile": "smoke", "only": [], "parts": ["extremes"]}
 
 
 def test_page_figures_and_answers_of_all_columns():
-    found = made(run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), way("penalty"), way("saddle-point", status="degraded"),
+    found = made(trial("plausible"), run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), way("penalty"), way("saddle-point", status="degraded"),
                  *(way("penalty", 1.0, number) for number in (1, 2)), way("saddle-point", who="b/v", scene="ways-mass-ratio-1-10", status="diverged"),
                  stale(1, (2.0, 2.4, 6.0)), rounded(0.0, "reference/reference", "mbs_reference"), rounded(1e-12))
     drawn, text = render(found)
-    assert drawn == {"battery", "battery-settings", "ways", "pivots", "roundoff-penalty"}
+    assert drawn == {"trials", "battery", "battery-settings", "ways", "pivots", "roundoff-penalty"}
     assert "1 run is “ok” or “plausible” though" in text and "build/mbs simulate &#39;a scene.json&#39;" in text
     assert "N = 10: ×1.00" in text and "holds" in text and "Not measured" not in text
     said = [one["text"] for one in sentences.answers(found, VIEW)]
-    assert said[0].startswith("2 of 3 runs at the extremes are ok or plausible, and right. 1 is silently wrong (loops N = 1)")
+    assert said[1].startswith("2 of 3 runs at the extremes are ok or plausible, and right. 1 is silently wrong (loops N = 1)")
     assert any("“α auto” is safe in most cells: 1 of 1" in text for text in said) and any("1.2 times the time" in text for text in said)
-    assert {one["anchor"] for one in sentences.answers(found, VIEW)} <= {"battery", "nobody", "ways", "pivots"}
+    assert {one["anchor"] for one in sentences.answers(found, VIEW)} <= {"trials", "battery", "nobody", "ways", "pivots"}
     assert all(f'id="{one["anchor"]}"' in text for one in sentences.answers(found, VIEW))
     assert sentences.cases(found, VIEW) == []
 
@@ -325,7 +368,7 @@ def test_page_figures_and_answers_of_all_columns():
 def test_a_page_of_nothing_says_so():
     found = made()
     drawn, text = render(found)
-    assert drawn == set() and text.count("Not measured") == 4
+    assert drawn == set() and text.count("Not measured") == 5
     assert [one["anchor"] for one in sentences.answers(found, VIEW)] == [""] and sentences.cases(found, VIEW) == []
 
 

@@ -30,11 +30,12 @@ def trial(lab):
     """The standard problems, then the others in an order by lot; implementations take turns, a run an implementation."""
     chosen = trials.few(trials.all_trials(), **lab.settings["trials"])
     scenes = {cell.name: cell.scene or lab.scene(cell.name, cell.document) for cell, _ in chosen}
-    lab.run([_reference(lab, cell, scenes[cell.name], factor) for cell in dict.fromkeys(cell for cell, _ in chosen)
-             if cell.motion is None for factor in judge.FINER])
     who, todo = _who(lab, "trials")[0], []
+    lab.run([_reference(lab, cell, scenes[cell.name], factor, who[-1], "mbs") for cell in dict.fromkeys(cell for cell, _ in chosen)
+             if cell.motion is None for factor in judge.FINER])
     for place, (cell, setting) in enumerate(chosen):
-        serving = [one for one in who[place % len(who):] + who[:place % len(who)] if lab.registry.serves(one.variant, *setting.needs)]
+        turn = 0 if cell.axis in trials.STANDARD else place % len(who)
+        serving = [one for one in who[turn:] + who[:turn] if lab.registry.serves(one.variant, *setting.needs)]
         todo += _run(lab, cell, scenes[cell.name], setting, serving[0]) if serving else []
     lab.run(todo, drop=True)
 
@@ -62,7 +63,7 @@ def battery(lab):
 def _who(lab, kind):
     """(those who differ in kind, the others if they are asked for) of whom takes part."""
     named = lab.settings["implementations"][kind]
-    kinds = [one for one in lab.contenders if one.variant in named] or lab.contenders
+    kinds = sorted((one for one in lab.contenders if one.variant in named), key=lambda one: named.index(one.variant)) or lab.contenders
     return kinds, [one for one in lab.contenders if one not in kinds] if lab.settings["everyone"] else []
 
 
@@ -77,9 +78,9 @@ def _run(lab, cell, scene, setting, one):
     return []
 
 
-def _reference(lab, cell, scene, factor):
-    return Cell("simulate", scene, (REFERENCE,), ("--step", f"{cell.step / factor:g}", "--duration", f"{cell.step * cell.steps:g}"),
-                table.REFERENCE, program="mbs_reference", seconds=10 * lab.settings["limit"], keep=cell.columns,
+def _reference(lab, cell, scene, factor, one=REFERENCE, program="mbs_reference"):
+    return Cell("simulate", scene, (one,), ("--step", f"{cell.step / factor:g}", "--duration", f"{cell.step * cell.steps:g}"),
+                table.REFERENCE, program=program, seconds=10 * lab.settings["limit"], keep=cell.columns,
                 every=cell.every * factor)
 
 
