@@ -88,8 +88,8 @@ class Extreme:
         return telling.index(self.label) if self.label in telling else None
 
 
-def battery():
-    """All cells, in the order of the picture."""
+def extremes():
+    """All cells that are extreme in one respect, in the order of the picture."""
     return [*_sizes(), *_steps(), *_penalties(), *_masses(), *_lengths(), *_springs(), *_redundant(),
             *_starts(), *_denormals()]
 

@@ -4,7 +4,6 @@ import numpy
 from analysis.core.outcomes import FINISHED, GOOD, WHOLE, of_run
 
 CLASS = 1e-2         # of a link's length, what "ok" allows: AccurateBounds of harness/src/run/judge.hpp
-RIGHT, SILENT, TOLD, STOPPED, FALSE = "right", "silently wrong", "told", "stopped", "false alarm"  # verdicts
 PLACES = (".x", ".y", ".z")  # what columns of places end in
 STILL = 1e-9         # lengths; what moves less rests
 FINER = (4, 8)       # the reference runs at a quarter and at an eighth of the step
@@ -65,17 +64,6 @@ def wrong_from(record, solutions, length, limit):
         return None
     off = ~(numpy.min([distances(record.series, solution, length) for solution in solutions], axis=0) <= limit)
     return float(times[off.argmax()]) if off.any() else None
-
-
-def verdict(status, error, limit, wrong_from, harmless):
-    """What its outcome is worth beside its true error. A run that stopped (wrong-branch, diverged) before any instant at which it was
-    wrong did so in time, unless that outcome is one that no motion of its cell deserves."""
-    if status in GOOD:
-        return RIGHT if error <= limit else SILENT
-    if status in WHOLE:
-        small = wrong_from is None and error <= limit / 10
-        return FALSE if small and (status in FINISHED or status in harmless) else TOLD
-    return FALSE if wrong_from is None and status in harmless else TOLD if wrong_from is not None else STOPPED
 
 
 def is_silent(status, error, limit):

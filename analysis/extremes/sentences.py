@@ -1,29 +1,38 @@
 # The answers to "What happens at the extremes, and what helps there?", from the tables.
 from analysis.core.text import number
-from analysis.extremes import battery, judge, pivots, told, trials, ways
-from analysis.extremes.cells import FORMS
-from analysis.extremes.page import nobody, overhead, right, silent
+from analysis.extremes import battery, pivots, trials, verdicts, ways
+from analysis.extremes.page import nobody, overhead
 
 
 def answers(tables, view):
-    found = [*_trials(tables["trials"]), *_battery(tables["battery"]), *_ways(tables["ways"], tables["ways_cost"]), *_pivots(tables["pivots"])]
+    found = [*_battery(tables["battery"]), *_ways(tables["ways"], tables["ways_cost"]), *_pivots(tables["pivots"])]
     return found or [{"text": "Not measured: nobody that takes part runs at the extremes.", "anchor": ""}]
 
 
-def _trials(table):
-    runs = told.judged(table)
+def _battery(table):
+    runs = verdicts.judged(table)
     if runs.empty:
         return
-    silent, false = (runs[runs.verdict == verdict] for verdict in (judge.SILENT, judge.FALSE))
-    standard = runs[runs.axis.isin(trials.STANDARD)]
-    held = [f"No run may be silently wrong: {_held(silent)}."]
-    if len(standard):
-        held.append(f"No standard problem may be called worse than it is: {_held(false[false.axis.isin(trials.STANDARD)])}, of {len(standard)}.")
-    others = false[~false.axis.isin(trials.STANDARD)]
-    yield {"anchor": "trials", "text": f"Of {len(runs)} runs of {len(runs[['axis', 'value']].drop_duplicates())} mechanisms of {runs.axis.nunique()} kinds "
-           f"{len(silent) or 'none'} {'are' if len(silent) > 1 else 'is'} silently wrong; {len(false) or 'none'} {'are' if len(false) > 1 else 'is'} "
-           f"called worse than {'they are' if len(false) > 1 else 'it is'}. {' '.join(held)}" + (
-               f" Near change points or with light parts: {_places(others)}." if len(others) else "")}
+    silent, false = (runs[runs.verdict == verdict] for verdict in (verdicts.SILENT, verdicts.FALSE))
+    standard = runs.axis.isin(trials.STANDARD)
+    wrongly, others = false[standard[false.index]], false[~standard[false.index]]
+    text = (f"Of {len(runs)} runs of {len(runs[['axis', 'value']].drop_duplicates())} mechanisms of {runs.axis.nunique()} kinds {_are(silent)} silently "
+            f"wrong, and {_are(false)} called worse than right though nothing is wrong. Bound “no run is silently wrong”: {_held(silent)}.")
+    if standard.any():
+        text += f" Bound “no false alarm on standard problems at their own steps”: {_held(wrongly)}, in {standard.sum()} runs."
+    if len(others):
+        text += f" Other false alarms: {_places(others)}."
+    yield {"anchor": "battery", "text": text}
+    lost = {}
+    for axis, value, _ in nobody(battery.extreme(runs)):
+        lost.setdefault(axis, []).append(value)
+    if lost:
+        yield {"anchor": "nobody", "text": "Nobody is right, in any setting tried, at " + "; ".join(
+            f"{axis}: {', '.join(values)}" for axis, values in lost.items()) + "."}
+
+
+def _are(rows):
+    return f"{len(rows) or 'none'} {'are' if len(rows) > 1 else 'is'}"
 
 
 def _held(rows):
@@ -33,23 +42,6 @@ def _held(rows):
 
 def _places(rows):
     return ", ".join(f"{kind}: {count}" for kind, count in rows.axis.value_counts(sort=False).items())
-
-
-def _battery(table):
-    runs = battery.ran(table)
-    if runs.empty:
-        return
-    count, places = int(runs.silent.sum()), "; ".join(f"{one['axis']} {one['value']}" for one in silent(runs))
-    yield {"anchor": "battery", "text": f"{right(runs).sum()} of {len(runs)} runs at the extremes are ok or plausible, and right. "
-           f"{count or 'None'} {'are' if count > 1 else 'is'} silently wrong{f' ({places})' if places else ''}. "
-           "The others say themselves that they failed or are off."}
-    forms = runs[runs.setting.isin([form.name for form in FORMS])]
-    lost = {}
-    for axis, value, _ in nobody(forms):
-        lost.setdefault(axis, []).append(value)
-    if lost:
-        yield {"anchor": "nobody", "text": "Neither form is ok at " + "; ".join(
-            f"{axis}: {', '.join(values)}" for axis, values in lost.items()) + "."}
 
 
 def _ways(table, cost):

@@ -1,10 +1,9 @@
 # The tables of the part, a column's records each.
-from analysis.extremes import battery, cells, pivots, roundoff, trials, ways
+from analysis.extremes import battery, pivots, roundoff, ways
 
 
 def build(records, view):
     of = {column: [record for record in records if record.column == column]
-          for column in ("battery", "trials", "ways", "pivots", "roundoff")}
-    return {"battery": battery.table(of["battery"], view.registry, cells.battery()),
-            "trials": battery.table(of["trials"], view.registry, trials.all_trials()), **ways.build(of["ways"], view.settings, view.registry),
+          for column in ("battery", "ways", "pivots", "roundoff")}
+    return {"battery": battery.table(of["battery"], view.registry), **ways.build(of["ways"], view.settings, view.registry),
             **pivots.build(of["pivots"]), **roundoff.build(of["roundoff"], view.registry)}

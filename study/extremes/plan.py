@@ -10,7 +10,7 @@ SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms a
             "loops": dict,            # sizes: of the region of ways, of their times, of roundoff
             "processes": int,         # of a time
             "limit": float}           # s a run
-SHARES = {"trials": 0.36, "battery": 0.36, "ways": 0.17, "pivots": 0.04, "roundoff": 0.07}
+SHARES = {"battery": 0.72, "ways": 0.17, "pivots": 0.04, "roundoff": 0.07}
 DENSE_LOOPS = 200  # dense implementations run up to this size
 PREFERRED = {      # of each folder the first variant that serves a way stands for it
     "eigen_dense": ("eigen_dense/llt",),
@@ -23,41 +23,35 @@ def columns(settings, studyset):
 
 
 def run(lab, column):
-    {"trials": trial, "battery": battery, "ways": way_out, "pivots": pivots, "roundoff": growth}[column](lab)
-
-
-def trial(lab):
-    """The standard problems, then the others in an order by lot; implementations take turns, a run an implementation."""
-    chosen = trials.few(trials.all_trials(), **lab.settings["trials"])
-    scenes = {cell.name: cell.scene or lab.scene(cell.name, cell.document) for cell, _ in chosen}
-    who, todo = _who(lab, "trials")[0], []
-    lab.run([_reference(lab, cell, scenes[cell.name], factor, who[-1], "mbs") for cell in dict.fromkeys(cell for cell, _ in chosen)
-             if cell.motion is None for factor in judge.FINER])
-    for place, (cell, setting) in enumerate(chosen):
-        turn = 0 if cell.axis in trials.STANDARD else place % len(who)
-        serving = [one for one in who[turn:] + who[:turn] if lab.registry.serves(one.variant, *setting.needs)]
-        todo += _run(lab, cell, scenes[cell.name], setting, serving[0]) if serving else []
-    lab.run(todo, drop=True)
+    {"battery": battery, "ways": way_out, "pivots": pivots, "roundoff": growth}[column](lab)
 
 
 def battery(lab):
-    """The most telling cells first, by those who differ in kind; then the other settings and cells, then the other
-    implementations; of equal worth the cheap ones first."""
+    """Standard problems, then other trials by lot, implementations in turn. Then cells that are extreme: the most telling ones first, by
+    those who differ in kind; other settings and cells, then all other implementations; of equal worth the cheap ones first."""
+    turns = _who(lab, "trials")[0]
+    chosen, extreme = trials.few(trials.all_trials(), **lab.settings["trials"]), sorted(cells.extremes(), key=lambda cell: cell.work)
     few = lab.settings["cells"] or len(cells.TELLING)
-    chosen = sorted(cells.battery(), key=lambda cell: cell.work)
-    telling = [cell for cell in chosen if cell.place is not None and cell.place < few]
-    rest = [cell for cell in chosen if cell.place is None and not lab.settings["cells"]]
-    scenes = {cell.name: cell.scene or lab.scene(cell.name, cell.document) for cell in telling + rest}
-    lab.run([_reference(lab, cell, scenes[cell.name], factor) for cell in telling + rest if cell.motion is None
-             for factor in judge.FINER])
+    telling = [cell for cell in extreme if cell.place is not None and cell.place < few]
+    rest = [cell for cell in extreme if cell.place is None and not lab.settings["cells"]]
+    tried = list(dict.fromkeys(cell for cell, _ in chosen))
+    scenes = {cell.name: cell.scene or lab.scene(cell.name, cell.document) for cell in tried + telling + rest}
+    lab.run([_reference(lab, cell, scenes[cell.name], factor, *who) for some, who in ((tried, (turns[-1], "mbs")), (telling + rest, ()))
+             for cell in some if cell.motion is None for factor in judge.FINER])
     todo = []
+    for place, (cell, setting) in enumerate(chosen):
+        turn = 0 if cell.axis in trials.STANDARD else place % len(turns)
+        todo += _run(lab, cell, scenes[cell.name], setting, *_serving(lab, turns[turn:] + turns[:turn], setting)[:1])
     for rank in (0, 1):
         forms, others = (_who(lab, kind)[rank] for kind in ("forms", "others"))
         for some, settings, who in ((telling, cells.FORMS, forms), (rest, cells.FORMS, forms), (telling, cells.OTHERS, others)):
-            for cell, setting, one in ((cell, setting, one) for cell in some for setting in settings for one in who):
-                if lab.registry.serves(one.variant, *setting.needs):
-                    todo += _run(lab, cell, scenes[cell.name], setting, one)
+            for cell, setting in ((cell, setting) for cell in some for setting in settings):
+                todo += _run(lab, cell, scenes[cell.name], setting, *_serving(lab, who, setting))
     lab.run(todo, drop=True)
+
+
+def _serving(lab, who, setting):
+    return [one for one in who if lab.registry.serves(one.variant, *setting.needs)]
 
 
 def _who(lab, kind):
@@ -67,15 +61,16 @@ def _who(lab, kind):
     return kinds, [one for one in lab.contenders if one not in kinds] if lab.settings["everyone"] else []
 
 
-def _run(lab, cell, scene, setting, one):
-    """[its Cell], or [] where it is left out."""
-    words = setting.words([("step", f"{cell.step:g}"), ("duration", f"{cell.step * cell.steps:g}"), ("penalty", cell.penalty)])
-    wanted = Cell("simulate", scene, (one,), words, setting.file_name, seconds=lab.settings["limit"], keep=cell.columns,
-                  every=cell.every)
-    if one.variant not in lab.registry.dense or cell.loops <= DENSE_LOOPS:
-        return [wanted]
-    lab.skip(wanted, "excluded", f"dense implementations run up to {DENSE_LOOPS} loops")
-    return []
+def _run(lab, cell, scene, setting, *who):
+    """[Cell of each], without those that are left out."""
+    words, found = setting.words([("step", f"{cell.step:g}"), ("duration", f"{cell.step * cell.steps:g}"), ("penalty", cell.penalty)]), []
+    for one in who:
+        wanted = Cell("simulate", scene, (one,), words, setting.file_name, seconds=lab.settings["limit"], keep=cell.columns, every=cell.every)
+        if one.variant not in lab.registry.dense or cell.loops <= DENSE_LOOPS:
+            found.append(wanted)
+        else:
+            lab.skip(wanted, "excluded", f"dense implementations run up to {DENSE_LOOPS} loops")
+    return found
 
 
 def _reference(lab, cell, scene, factor, one=REFERENCE, program="mbs_reference"):
