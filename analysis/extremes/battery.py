@@ -48,7 +48,8 @@ def _row(record, cell, name, setting, solutions, own, truth):
     limit = judge.allowed(cell, solutions)
     beyond = limit + (own or 0.0)
     since = judge.wrong_from(record, solutions, cell.length, beyond)
-    verdict = verdicts.verdict(status, error, beyond, since, cell.harmless) if solutions and record.done and status not in NOT_RUN else ""
+    harmless = judge.harmless(cell, record.output.get("failed_at"))
+    verdict = verdicts.verdict(status, error, beyond, since, harmless) if solutions and record.done and status not in NOT_RUN else ""
     return {"axis": cell.axis, "value": cell.label, "implementation": name, "setting": setting, "status": status,
             "reason": reason, "failed_at": record.output.get("failed_at"), "true_error": error, "truth": truth,
             "truth_error": own, "allowed": limit, "verdict": verdict, "near": cell.near,

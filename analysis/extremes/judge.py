@@ -5,6 +5,7 @@ from analysis.core.outcomes import FINISHED, GOOD, WHOLE, of_run
 
 CLASS = 1e-2         # of a link's length, what "ok" allows: AccurateBounds of harness/src/run/judge.hpp
 PLACES = (".x", ".y", ".z")  # what columns of places end in
+FAR = 0.3            # clearance from a change point, beyond which nothing jumps
 STILL = 1e-9         # lengths; what moves less rests
 FINER = (4, 8)       # the reference runs at a quarter and at an eighth of the step
 
@@ -64,6 +65,12 @@ def wrong_from(record, solutions, length, limit):
         return None
     off = ~(numpy.min([distances(record.series, solution, length) for solution in solutions], axis=0) <= limit)
     return float(times[off.argmax()]) if off.any() else None
+
+
+def harmless(cell, failed_at):
+    """Outcomes that its motion does not deserve at `failed_at`, s: far from its change points it jumps nowhere."""
+    clearance = getattr(cell.motion, "clearance", None)
+    return ("wrong-branch",) if clearance and failed_at and clearance(failed_at) > FAR else cell.harmless
 
 
 def is_silent(status, error, limit):

@@ -37,6 +37,10 @@ class Follower:
     def lists(self):
         return {}
 
+    def clearance(self, at):
+        """How far it is from its change point: for instance the sine of the angle between two links."""
+        return 1.0
+
 
 @dataclass(frozen=True)
 class Dyad(Follower):
@@ -52,6 +56,10 @@ class Dyad(Follower):
         far = numpy.sqrt((way * way).sum(axis=0))
         area = numpy.sqrt((far + r + s) * (r + s - far) * (far + r - s) * (far + s - r))  # four times the triangle's
         return first + ((far * far + (r - s) * (r + s)) * way + self.side.at(angle) * area * _across(way)) / (2 * far * far)
+
+    def clearance(self, at):
+        first, second = (at[end] - at[self.name] for end in self.ends)
+        return abs((_across(first) * second).sum(axis=0)) / (self.lengths[0] * self.lengths[1])
 
     @property
     def links(self):
@@ -70,6 +78,9 @@ class Slider(Follower):
     def place(self, at, angle):
         (x, y), level = at[self.end], at[self.foot][1]
         return numpy.array([x + self.side.at(angle) * numpy.sqrt((self.length - level + y) * (self.length + level - y)), level])
+
+    def clearance(self, at):
+        return abs(at[self.name][0] - at[self.end][0]) / self.length
 
     @property
     def links(self):
@@ -90,6 +101,9 @@ class Swing(Follower):
 
     def place(self, at, angle):
         return at[self.foot] + self.length * _unit(at[self.through] - at[self.foot])
+
+    def clearance(self, at):
+        return numpy.hypot(*(at[self.through] - at[self.foot])) / self.length
 
     @property
     def links(self):
@@ -164,6 +178,11 @@ class Linkage:
         at = self.at(self.angles(times))
         return [{f"{name}.{axis}": at[name][i] for name in self.points for i, axis in enumerate("xy")}]
 
+    def clearance(self, time):
+        """From its nearest change point: the least of its points'."""
+        at = self.at(self.angles([time]))
+        return min(float(numpy.min(one.clearance(at))) for one in self.followers)
+
     def energy(self, angle):
         """(I, V): the kinetic energy is I rate^2 / 2."""
         at = self.at(angle + 1j * IMAGINARY)
@@ -178,10 +197,10 @@ class Linkage:
         """The scene as JSON."""
         at = self.at(numpy.array([self.start + 1j * IMAGINARY]))
         plates = {one.ends: one for one in self.followers if isinstance(one, Plate)}
-        levels = [(name, place) for name, place in self.feet if name == self.feet[0][0] or any(isinstance(one, Slider) and one.foot == name for one in self.followers)]
+        lines = {self.feet[0][0], *(one.foot for one in self.followers if isinstance(one, Slider))}
         found = {"gravity": [0.0, -self.gravity], "rods": [], "bodies": [], "masses": [], "constraints": [], "points": [
             *({"name": name, "position": list(place), "fixed": True} for name, place in self.feet),
-            *({"name": f"{name}x", "position": [x + 1.0, y], "fixed": True} for name, (x, y) in levels),
+            *({"name": f"{name}x", "position": [x + 1.0, y], "fixed": True} for name, (x, y) in self.feet if name in lines),
             *({"name": name, "position": [float(x) for x in at[name].real[:, 0]],
                "velocity": [float(x) * self.rate / IMAGINARY for x in at[name].imag[:, 0]]} for name in self.points)]}
         for name, ends, length in self.links:

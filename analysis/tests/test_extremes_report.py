@@ -76,6 +76,7 @@ def trial(status, error=0.0, of=KITE, until=None, **more):
     (trial("ok"), "right"), (trial("plausible", 0.002), "right"), (trial("plausible", 0.02), "silently wrong"), (trial("ok", 0.02), "silently wrong"),
     (trial("degraded"), "false alarm"), (trial("degraded", 0.002), "told"), (trial("degraded", 0.1), "told"), (trial("not-converged"), "told"),
     (trial("wrong-branch", 0.1, until=9), "told"), (trial("wrong-branch", until=9), "stopped"), (trial("diverged", until=9), "stopped"),
+    (trial("wrong-branch", until=9, failed_at=5.28), "stopped"), (trial("wrong-branch", until=9, failed_at=1.5), "false alarm"),
     (trial("wrong-branch", of=PASSING, until=9), "false alarm"), (trial("diverged", of=PASSING, until=9), "stopped"),
     (trial("wrong-branch", of=FAR, until=9), "false alarm"), (trial("diverged", of=FAR, until=9), "false alarm"), (trial("diverged", 0.1, of=FAR, until=9), "told"),
     (trial("ok", of=FAR), "right"), (trial("not-converged", of=FAR), "false alarm")])

@@ -10,7 +10,7 @@ SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms a
             "loops": dict,            # sizes: of the region of ways, of their times, of roundoff
             "processes": int,         # of a time
             "limit": float}           # s a run
-SHARES = {"battery": 0.72, "ways": 0.17, "pivots": 0.04, "roundoff": 0.07}
+SHARES = {"battery": 0.77, "ways": 0.13, "pivots": 0.035, "roundoff": 0.055}
 DENSE_LOOPS = 200  # dense implementations run up to this size
 PREFERRED = {      # of each folder the first variant that serves a way stands for it
     "eigen_dense": ("eigen_dense/llt",),
