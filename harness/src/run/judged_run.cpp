@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "printable.hpp"
+#include "run/rounding.hpp"
 
 namespace mbs {
 namespace {
@@ -164,8 +165,8 @@ long JudgedRun::looked_after(const State& present) const {
   return static_cast<long>(std::clamp(t / settings_.step.step, 1.0, double{kMost}));
 }
 
-/// The step at which the motion found to have jumped at `step` did so, by doing those since the last
-/// sound look again; `step` if that does not show it.
+/// The step at which the motion found to have jumped at `step` did so, by doing those since the
+/// last sound look again; `step` if that does not show it.
 long JudgedRun::first_across(long step) {
   const auto sound = std::lround(watch_.anchor_time() / settings_.step.step);
   if (sound + 1 >= step) return step;
@@ -264,9 +265,13 @@ void JudgedRun::conclude() {
   const std::string estimated = beyond_estimates();
   if (!summary_.reason.empty() && !estimated.empty()) summary_.reason += ", ";
   summary_.reason += estimated;
-  if (!watch_.doubt().empty()) {
-    if (!summary_.reason.empty()) summary_.reason += ", ";
-    summary_.reason += watch_.doubt();
+  const auto add = [this](const std::string& reason) {
+    if (!summary_.reason.empty() && !reason.empty()) summary_.reason += ", ";
+    summary_.reason += reason;
+  };
+  add(watch_.doubt());
+  if (samples_local_error_) {
+    add(rounding_degradation(scene_.model, settings_.step, steps_, judge_.length()));
   }
   if (!summary_.reason.empty()) {
     summary_.status = RunStatus::degraded;
