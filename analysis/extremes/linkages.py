@@ -31,8 +31,8 @@ class Side:
 
 
 class Follower:
-    """What a point adds: `links`, (name, ends, length) each, 1 kg each; further lists of the scene."""
-    links = ()
+    """What a point adds: `links`, (name, ends, length) each, rods of 1 kg; the point that 1 kg is at; further lists of the scene."""
+    links, load = (), None
 
     def lists(self):
         return {}
@@ -74,6 +74,8 @@ class Slider(Follower):
     length: float
     foot: str
     side: Side = Side()
+
+    load = property(lambda self: self.name)
 
     def place(self, at, angle):
         (x, y), level = at[self.end], at[self.foot][1]
@@ -127,6 +129,20 @@ class Plate(Follower):
 
 
 @dataclass(frozen=True)
+class Wheel(Follower):
+    """A point of a wheel that turns about another point, its centre: nothing turns it, so that it keeps its direction."""
+    name: str
+    load: str
+    radius: float = 0.3
+
+    def place(self, at, angle):
+        return at[self.load] + numpy.array([[self.radius], [0.0]])
+
+    def lists(self):
+        return {"bodies": [{"name": "wheel", "mass": 1.0, "inertia": self.radius**2 / 2, "points": {self.load: [0, 0], self.name: [self.radius, 0]}}]}
+
+
+@dataclass(frozen=True)
 class Linkage:
     feet: tuple            # (name, (x, y)); the first one is the crank's
     crank: float           # m
@@ -136,6 +152,7 @@ class Linkage:
     driven: bool = True
     gravity: float = 0.0
     finest: float = 1.0    # rad of the crank, in which something turns over
+    carried: float = 0.0   # m/s, along x, of all feet
 
     loops = 1
 
@@ -175,34 +192,37 @@ class Linkage:
         return self.start + self.rate * times if self.driven or not len(times) else _turned(self, float(numpy.ceil(times[-1])))(times)
 
     def solutions(self, times):
-        at = self.at(self.angles(times))
-        return [{f"{name}.{axis}": at[name][i] for name in self.points for i, axis in enumerate("xy")}]
+        at, way = self.at(self.angles(times)), self.carried * numpy.asarray(times, dtype=float)
+        return [{f"{name}.{axis}": at[name][i] + way * (axis == "x") for name in self.points for i, axis in enumerate("xy")}]
 
     def clearance(self, time):
         """From its nearest change point: the least of its points'."""
         at = self.at(self.angles([time]))
-        return min(float(numpy.min(one.clearance(at))) for one in self.followers)
+        return min((float(numpy.min(one.clearance(at))) for one in self.followers), default=1.0)
 
     def energy(self, angle):
         """(I, V): the kinetic energy is I rate^2 / 2."""
         at = self.at(angle + 1j * IMAGINARY)
         inertia = potential = 0 * angle
-        for a, b in (*(ends for _, ends, _ in self.links), *((one.name, one.name) for one in self.followers if "masses" in one.lists())):
+        for a, b in (*(ends for _, ends, _ in self.links), *((one.load, one.load) for one in self.followers if one.load)):
             u, w = (at[end].imag / IMAGINARY for end in (a, b))
             inertia = inertia + (u * u + u * w + w * w).sum(axis=0) / 3
             potential = potential + self.gravity * (at[a][1].real + at[b][1].real) / 2
         return inertia, potential
 
+    def _foot(self, name, x, y):
+        return {"name": name, "position": [x, y]} | ({"driven": {"x": {"polynomial": [x, self.carried]}, "y": y}} if self.carried else {"fixed": True})
+
     def document(self):
         """The scene as JSON."""
         at = self.at(numpy.array([self.start + 1j * IMAGINARY]))
         plates = {one.ends: one for one in self.followers if isinstance(one, Plate)}
-        lines = {self.feet[0][0], *(one.foot for one in self.followers if isinstance(one, Slider))}
+        lines = {*[self.feet[0][0]] * self.driven, *(one.foot for one in self.followers if isinstance(one, Slider))}
         found = {"gravity": [0.0, -self.gravity], "rods": [], "bodies": [], "masses": [], "constraints": [], "points": [
-            *({"name": name, "position": list(place), "fixed": True} for name, place in self.feet),
-            *({"name": f"{name}x", "position": [x + 1.0, y], "fixed": True} for name, (x, y) in self.feet if name in lines),
+            *(self._foot(name, x, y) for name, (x, y) in self.feet),
+            *(self._foot(f"{name}x", x + 1.0, y) for name, (x, y) in self.feet if name in lines),
             *({"name": name, "position": [float(x) for x in at[name].real[:, 0]],
-               "velocity": [float(x) * self.rate / IMAGINARY for x in at[name].imag[:, 0]]} for name in self.points)]}
+               "velocity": [float(x) * self.rate / IMAGINARY + way for x, way in zip(at[name].imag[:, 0], (self.carried, 0.0))]} for name in self.points)]}
         for name, ends, length in self.links:
             if plate := plates.get(ends):
                 found["bodies"].append({"name": name, "mass": 1.0, "centre": [length / 2, 0], "inertia": length**2 / 12, "points": {

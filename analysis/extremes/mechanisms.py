@@ -48,6 +48,30 @@ class LightEnd:
 
 
 @dataclass(frozen=True)
+class Damped:
+    """A rod of 1 m and 1 kg that turns about its foot without gravity and is braked in proportion to its rate."""
+    damping: float  # N m s/rad
+
+    loops, truth, accuracy, shortest = 1, "closed form", 0.0, 1.0
+    start, rate = 0.3, 3.0  # rad, rad/s
+
+    def columns(self, most):
+        return "B.x", "B.y"
+
+    def solutions(self, times):
+        decay = 3 * self.damping  # over the inertia
+        angle = self.start - self.rate * numpy.expm1(-decay * numpy.asarray(times, dtype=float)) / decay
+        return [{"B.x": numpy.cos(angle), "B.y": numpy.sin(angle)}]
+
+    def document(self):
+        x, y = numpy.cos(self.start), numpy.sin(self.start)
+        return {"gravity": [0.0, 0.0], "rods": [{"name": "rod", "between": ["A", "B"], "mass": 1.0, "length": 1.0}],
+                "points": [{"name": "A", "position": [0, 0], "fixed": True}, {"name": "X", "position": [1, 0], "fixed": True},
+                           {"name": "B", "position": [x, y], "velocity": [-self.rate * y, self.rate * x]}],
+                "torsion_springs": [{"name": "brake", "from": ["A", "X"], "to": ["A", "B"], "stiffness": 0.0, "damping": self.damping, "angle": 1.0}]}
+
+
+@dataclass(frozen=True)
 class TwoPendulums:
     """Two rods that have nothing to do with each other, of 1 m and 1 kg and of 0.5 m and `mass`, released at rest."""
     mass: float
@@ -110,7 +134,7 @@ class TwoDrives:
         found = self._linkage().document()
         [drive] = found["constraints"]
         polynomial = {"polynomial": [drive["value"]["polynomial"][0], 1 + self.share]}
-        return found | {"constraints": [drive, {"name": "second drive", "type": "angle", "first": ["A", "X"], "second": ["D", "C"], "value": polynomial}]}
+        return found | {"constraints": [drive, {"name": "second drive", "type": "angle", "first": ["A", "Ax"], "second": ["D", "C"], "value": polynomial}]}
 
 
 @dataclass(frozen=True)

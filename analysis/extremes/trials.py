@@ -8,8 +8,8 @@ import numpy
 from scipy.optimize import minimize_scalar
 
 from analysis.extremes.cells import STEP, Extreme
-from analysis.extremes.linkages import Dyad, Linkage, Plate, Side, Slider, Swing
-from analysis.extremes.mechanisms import LightEnd, Standard, TwoDrives, TwoPendulums, Uneven
+from analysis.extremes.linkages import Dyad, Linkage, Plate, Side, Slider, Swing, Wheel
+from analysis.extremes.mechanisms import Damped, LightEnd, Standard, TwoDrives, TwoPendulums, Uneven
 from analysis.extremes.motions import Chain
 from study.core.setting import Setting
 from study.scenes.problems import read_list
@@ -20,6 +20,7 @@ STEPS = (1e-2, STEP, 2e-4)                        # s
 MASSES = tuple(10.0**-power for power in range(3, 13))
 UNEVEN = (1e-9, 1e-6, 1e-3, 1e-2)                 # shares by which speeds disagree
 DRAWN = 4                                         # four-bars whose lengths are drawn by lot
+MORE = ("crank-rocker", "double crank", "offset", "Watt")  # of which two freedoms, and feet that move, are tried too
 LONG = 100.0                                      # s
 HALF = ("half-step", "")
 DRIVEN = (Setting("penalty"), Setting("saddle-point"), Setting("penalty", (HALF,)), Setting("saddle-point", (HALF,)),
@@ -101,7 +102,7 @@ FAR = {"double crank": four_bar(1.2, 1.1, 1.0, 0.4), "crank-rocker": four_bar(0.
 
 @cache
 def all_trials():
-    return [*_standard(), *_near(), *_passing(), *_light(), *_redundant(), *_long()]
+    return [*_standard(), *_near(), *_passing(), *_worked(), *_light(), *_redundant(), *_long()]
 
 
 def few(trials, standard, others):
@@ -129,6 +130,10 @@ def _near():
             if gap >= 1e-3 or not narrow:
                 free = replace(linkage, driven=False, finest=gap if narrow else 1.0)
                 found += [_trial(f"free {kind}", label, free, step, 3.2, FREE, near=gap) for step in STEPS]
+            if name in MORE:
+                wheel = replace(free, followers=(*free.followers, Wheel("W", free.points[-1])))
+                found += [_trial("free, with a wheel", label, wheel, step, 3.2, FREE, near=gap) for step in STEPS[:2]]
+                found += [_trial("free, carried", label, replace(free, carried=0.5), step, 3.2, DRIVEN, near=gap) for step in STEPS[:2]]
     return found
 
 
@@ -142,6 +147,18 @@ def _passing():
                           for step in STEPS[1:]]
                 found += [_trial(f"{kind}, free", f"{name}, {rate:g} per s", replace(driven, driven=False), step, 6.4, FREE, harmless=harmless)
                           for step in STEPS[1:]]
+    return found
+
+
+def _worked():
+    """Where drivers or dampers do work, so that energy is not conserved."""
+    found = []
+    for step in (1e-2, 5e-3, STEP):
+        for speed in (0.5, 5.0):
+            found += [_trial("carried pendulum", f"at {speed:g} m/s, gravity {gravity:g} m/s²", Linkage(
+                (("A", (0.0, 0.0)),), 1.0, (), rate=rate, driven=False, gravity=gravity, carried=speed), step, 5.0, DRIVEN, harmless=REGULAR)
+                for rate, gravity in ((1.0, 0.0), (4.0, 3.0))]
+        found += [_trial("damped rod", f"{damping:g} N m s", Damped(damping), step, 5.0, DRIVEN, harmless=REGULAR) for damping in (0.4, 1.0, 10.0)]
     return found
 
 

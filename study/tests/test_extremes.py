@@ -12,6 +12,7 @@ from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
 from analysis.core.view import View
 from analysis.extremes import cells, judge, scenes, tables, trials, verdicts, ways
+from analysis.extremes.linkages import Wheel
 from analysis.extremes.mechanisms import LightEnd, TwoDrives, Uneven
 from analysis.extremes.motions import GRAVITY, Chain, Flat, singular_times
 from study.core import profile as profiles
@@ -84,6 +85,14 @@ def test_a_free_linkage_keeps_its_energy():
     inertia, potential = linkage.energy(angle)
     energy = inertia * numpy.gradient(angle, times)**2 / 2 + potential
     assert angle[-1] > 8 and energy[5:-5] == pytest.approx(energy[5], rel=1e-4) and numpy.ptp(potential) > 0.5
+
+
+def test_a_wheel_keeps_its_direction_and_a_carried_linkage_moves_as_at_rest():
+    still = replace(trials.FAR["crank-rocker"], driven=False)
+    for linkage in (still, replace(still, followers=(*still.followers, Wheel("W", "C")))):
+        [here], [carried] = (one.solutions(TIMES) for one in (linkage, replace(linkage, carried=0.5)))
+        assert carried["C.x"] - here["C.x"] == pytest.approx(0.5 * TIMES) and (carried["C.y"] == here["C.y"]).all()
+    assert here["W.x"] - here["C.x"] == pytest.approx(0.3) and abs(here["C.x"] - still.solutions(TIMES)[0]["C.x"]).max() > 0.03  # it is heavy
 
 
 def test_uneven_speeds_become_their_mean_and_two_drives_have_two_motions():
