@@ -13,7 +13,7 @@
 namespace mbs {
 namespace {
 
-std::string shown(const std::string& path) { return printable(path, 4096); }
+std::string shown(const std::string& path) { return printable(path, kLongestPath); }
 
 /// Takes the line of outcomes off.
 Outcomes take_outcomes(std::string& text) {
@@ -45,8 +45,9 @@ void require_same_sweep(const Journal& journal, const nlohmann::json& head) {
   for (const auto& [key, value] : head.items()) {
     const auto found = journal.head().find(key);
     if (found != journal.head().end() && *found == value) continue;
-    const std::string what = key == "program" ? "another build of mbs" : "another sweep (" + key + " differs)";
-    throw UsageError(fmt::format("{}: it is of {}, allowed is the same", shown(journal.path()), what));
+    const std::string what =
+        key == "program" ? "another build of mbs" : fmt::format("another sweep (not the same: {})", key);
+    throw UsageError(fmt::format("{}: found {}, allowed is the same", shown(journal.path()), what));
   }
 }
 

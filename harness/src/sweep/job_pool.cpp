@@ -15,6 +15,7 @@
 #include <cstring>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "usage_error.hpp"
@@ -101,6 +102,7 @@ class Job {
   ~Job() {
     ::close(requests_);
     ::close(results_);
+    if (process_ < 0) return;
     if (block_ >= 0) ::kill(process_, SIGTERM);  // what it would give is not wanted
     ::waitpid(process_, nullptr, 0);
   }
@@ -112,7 +114,7 @@ class Job {
 
   void begin(long block) {
     block_ = block;
-    if (!write_all(requests_, &block, sizeof block)) fail_lost();
+    write_all(requests_, &block, sizeof block);  // where it fails, no result will come
   }
   std::pair<long, std::string> finish() {
     Head head;
@@ -128,8 +130,11 @@ class Job {
   [[noreturn]] static void fail(const char* what) {
     throw std::runtime_error(fmt::format("--jobs: {}: {}", what, std::strerror(errno)));
   }
-  [[noreturn]] void fail_lost() const {
-    throw std::runtime_error(fmt::format("the process of a job ended at block {}", block_));
+  [[noreturn]] void fail_lost() {
+    int status = 0;
+    ::waitpid(std::exchange(process_, -1), &status, 0);
+    throw UsageError(fmt::format("a process of --jobs ended in block {} ({}); what was done stays for --resume",
+                                 block_, WIFSIGNALED(status) ? ::strsignal(WTERMSIG(status)) : "exit"));
   }
 
   pid_t process_ = -1;

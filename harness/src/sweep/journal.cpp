@@ -22,6 +22,10 @@ constexpr std::size_t kLargestBlock = std::size_t{1} << 30;
 
 std::string digits(uLong crc) { return fmt::format("{:08x}", crc); }
 
+std::string checksum_of_block(long block, const std::string& text) {
+  return checksum(fmt::format("{}\n{}", block, text));
+}
+
 }  // namespace
 
 std::string checksum(const std::string& text) {
@@ -68,7 +72,7 @@ Journal::Journal(const std::string& path, const nlohmann::json& head) : path_(pa
 }
 
 void Journal::fail(const std::string& what) const {
-  throw UsageError(fmt::format("{}: {}", printable(path_, 4096), what));
+  throw UsageError(fmt::format("{}: {}", printable(path_, kLongestPath), what));
 }
 
 void Journal::scan() {
@@ -87,7 +91,7 @@ void Journal::scan() {
     text.resize(size);
     input_.read(text.data(), static_cast<std::streamsize>(size));
     if (static_cast<std::size_t>(input_.gcount()) < size) return;
-    if (checksum(text) != sum) fail(fmt::format("block {} is damaged or was changed", block));
+    if (checksum_of_block(block, text) != sum) fail(fmt::format("block {} is damaged or was changed", block));
     const std::size_t offset = end_ + line.size() + 1;
     if (!blocks_.emplace(block, Record{offset, size}).second) {
       fail(fmt::format("block {} is there twice", block));
@@ -109,7 +113,7 @@ void Journal::open() {
 }
 
 void Journal::add(long block, const std::string& text) {
-  const std::string head = fmt::format("block {} {} {}\n", block, text.size(), checksum(text));
+  const std::string head = fmt::format("block {} {} {}\n", block, text.size(), checksum_of_block(block, text));
   const std::string all = head + text;
   for (std::size_t done = 0; done < all.size();) {
     const ssize_t count = ::write(file_, all.data() + done, all.size() - done);

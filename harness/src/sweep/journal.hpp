@@ -45,6 +45,8 @@ class Journal {
   int file_ = -1;  // held until the program ends
 };
 
+inline constexpr std::size_t kLongestPath = 4096;  ///< bytes of one that a message shows
+
 /// zlib's CRC-32, as eight digits.
 std::string checksum(const std::string& text);
 /// Of the program that runs.
