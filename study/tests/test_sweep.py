@@ -48,8 +48,9 @@ def test_the_surface_has_medians_and_marks_failures(tmp_path):
 
 def test_cells_are_of_values_or_of_one_width():
     assert [found.tolist() for found in sweep.cells(numpy.array([1.0, 4, 2]))] == [[0, 2, 1], [0.5, 1.5, 3, 5]]
-    places, edges = sweep.cells(numpy.linspace(0, 1, 1000))
-    assert len(edges) == sweep.CELLS + 1 and numpy.ptp(numpy.bincount(places)) <= 1
+    for count, expected in ((10_000, sweep.CELLS), (400, 10), (50, 4)):
+        places, edges = sweep.cells(numpy.linspace(0, 1, count))
+        assert len(edges) == expected + 1 and numpy.ptp(numpy.bincount(places)) <= 1
     assert [found.tolist() for found in sweep.cells(numpy.array([7.0, 7]))] == [[0, 0], [6.5, 7.5]]
 
 

@@ -11,7 +11,7 @@ from study.core.main import need_modules
 from study.core.options import Parser
 
 LINES = 2000  # of parallel coordinates, at most, of finished lanes and of failed ones
-CELLS = 40    # of a surface along a parameter that has more values than these
+CELLS = 40    # of a surface along a parameter, at most
 FAILED = "#c9403a"
 
 
@@ -118,13 +118,15 @@ def surface(axes, table, over, result):
 
 
 def cells(values):
-    """(the cell of each value, edges of the cells): one a value where these are few, else CELLS of one width."""
+    """(the cell of each value, edges of the cells): one a value where these are few, else of one width, so many that
+    cells of two parameters have some values each."""
     distinct = numpy.unique(values)
     if 1 < len(distinct) <= CELLS:
         inner = (distinct[:-1] + distinct[1:]) / 2
         edges = numpy.concatenate([[2 * distinct[0] - inner[0]], inner, [2 * distinct[-1] - inner[-1]]])
     else:
-        edges = numpy.linspace(distinct[0], distinct[-1], CELLS + 1) if len(distinct) > 1 else distinct[0] + numpy.array([-.5, .5])
+        count = int(numpy.clip(numpy.sqrt(len(values) / 4), 4, CELLS))
+        edges = numpy.linspace(distinct[0], distinct[-1], count + 1) if len(distinct) > 1 else distinct[0] + numpy.array([-.5, .5])
     return numpy.clip(numpy.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2), edges
 
 
