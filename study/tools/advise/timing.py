@@ -8,6 +8,7 @@ from analysis.core.outcomes import FINISHED
 ROUNDS, TIE_BREAKS = 3, 2
 SLOWER = (2.0, 1.25, 1.1)  # this times the best one's time drops out after the first, second, later rounds
 STRETCH = 2.0              # simulated s of a timing: past singular positions, as far as there are such
+LOST_AT_MOST = 4           # times a candidate's step may become shorter
 SHORTEST = 0.05            # wall s of its steps at least, if the whole duration has as many
 
 
@@ -44,9 +45,10 @@ def stretch(duration, us_per_second):
     return min(duration, max(STRETCH, 1e6 * SHORTEST / max(us_per_second, 1.0)))
 
 
-def race(candidates, run, left, deadline_us=None):
+def race(candidates, run, left, deadline_us=None, shorter=False):
     """Times the candidates; `run(candidate, round)` gives a row, `left()` the seconds left. Returns whether
-    there was time for all; slow ones have dropped out, with the reason."""
+    there was time for all; slow ones have dropped out, with the reason. `shorter`: a candidate that is lost, as its pilot
+    covered less of the motion, gets a shorter step."""
     for number in range(1, ROUNDS + TIE_BREAKS + 1):
         running = [one for one in candidates if not one.out]
         if number > ROUNDS and (len(running) < 2 or decided(running)):
@@ -56,6 +58,11 @@ def race(candidates, run, left, deadline_us=None):
                 _not_timed(candidates)
                 return False
             row = run(one, number)
+            for _ in range(LOST_AT_MOST if shorter else 0):
+                if row["status"] in FINISHED or left() <= 0:
+                    break
+                one.step, one.rows = float(f"{one.step / math.sqrt(2):.3g}"), []
+                row = run(one, number)
             if row["status"] in FINISHED:
                 one.rows.append(row)
             else:  # a stretch may end lost where the whole run is not: another candidate, then
