@@ -49,7 +49,7 @@ def _times(one):
 def _advised(advice, library):
     one, row = advice.chosen, advice.verified
     estimate = row["estimate"]
-    low, high = expected_error(advice, one, estimate)
+    low, high = expected_error(advice, one, row)
     return {"implementation": one.implementation, "setting": one.setting.name,
             "scheme": one.setting.scheme, "changes": dict(one.setting.changes),
             "precision": dict(one.setting.changes).get("precision", "double"), "step": one.step,
@@ -121,7 +121,7 @@ def _refused(advice):
                   and (one.step_us() / pilot.step < best or one is advice.found[advice.chosen.setting])]
         pilot = min(faster, key=lambda pilot: pilot.step, default=None)
         if pilot and pilot.valid:
-            shown = "" if counts(pilot.step, one.pilots, asked) else ", and halving the step does not show it to be right"
+            shown = "" if pilot.estimate > asked else ", and halving the step does not show it to be right"
             found.append({"setting": one.setting.name, "step": pilot.step, "why": f"estimate {number(pilot.estimate)} m{shown}"})
         elif pilot:
             found.append({"setting": one.setting.name, "step": pilot.step, "why": f"{pilot.status}: {pilot.reason}"})

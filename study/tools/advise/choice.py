@@ -76,15 +76,28 @@ def local_order(step, pilots, order):
     return order if at is None else min(max(found[at], 1.0), order + 2.0)
 
 
-def most(pilot, pilots, order):
-    """The largest error that a pilot's run may have, m."""
-    return interval(pilot.estimate, order, local_order(pilot.step, pilots, order))[1]
+def most(step, estimate, pilots, order, error):
+    """The largest error, m, of a run with this estimate: its distance to the run with half the step, and what that one's
+    may be, of which pilots tell; where there are none, by the order that they show. None where they show none."""
+    halves = [pilot for pilot in pilots if pilot.valid and 0.499 * step < pilot.step < 0.9 * step]
+    if halves:
+        half = min(halves, key=lambda pilot: pilot.step)
+        known = most(half.step, half.estimate, pilots, order, error)
+        if known is not None:
+            return estimate * (1 - 2.0**-order) + known
+    shown = counts(step, pilots, error)
+    return interval(estimate, order, local_order(step, pilots, order))[1] if shown else None
+
+
+def known(pilot, pilots, error, order):
+    """`most` of a pilot; infinite where it is not shown."""
+    found = most(pilot.step, pilot.estimate, pilots, order, error) if pilot.valid else None
+    return math.inf if found is None else found
 
 
 def enough(pilots, error, order):
-    """Pilots whose estimates count and whose errors are small enough, the longest step first."""
-    return [pilot for pilot in sorted(pilots, key=lambda pilot: -pilot.step)
-            if pilot.valid and counts(pilot.step, pilots, error) and most(pilot, pilots, order) <= error]
+    """Pilots whose errors are known to be small enough, the longest step first."""
+    return [pilot for pilot in sorted(pilots, key=lambda pilot: -pilot.step) if known(pilot, pilots, error, order) <= error]
 
 
 def possible(step, duration):
@@ -103,17 +116,18 @@ def next_step(pilots, error, order, start, duration):
                    and abs(math.remainder(math.log2(pilot.step / start), 1)) < 0.01), key=lambda pilot: -pilot.step)
     for pilot in good:
         step = pilot.step
-        if counts(step, pilots, error):
-            if most(pilot, pilots, order) > error:
-                continue
+        reached = known(pilot, pilots, error, order)
+        if reached <= error:
             longer, between = find(2 * step), find(math.sqrt(2) * step)
             if longer is None and possible(2 * step, duration):
                 return Next(step=2 * step)
             if longer and not longer.valid and between is None:
                 return Next(step=math.sqrt(2) * step)
-            if between and between.valid and pilot.estimate <= between.estimate and most(between, pilots, order) <= error:
+            if between and pilot.estimate <= (between.estimate or 0.0) and known(between, pilots, error, order) <= error:
                 return Next(chosen=between.step)
-            return Next(chosen=_between(pilot, longer, pilots, error, order))
+            return Next(chosen=_between(pilot, longer, reached, error))
+        if math.isfinite(reached):
+            continue
         # Two halvings are needed to believe it; the longer step is the cheaper witness.
         for witness in (2 * step, step / 2):
             if possible(witness, duration) and find(witness) is None:
@@ -138,13 +152,12 @@ def next_at(step, pilots, error, order, duration):
     return Next(reason=f"estimate {here.estimate:.2g} m at step {step:g} s, and half the step does not show it to be right")
 
 
-def _between(pilot, longer, pilots, error, order):
+def _between(pilot, longer, reached, error):
     """The step between a good one and twice that, where the error is expected to be met."""
     if longer is None or not longer.valid:
         return pilot.step
     slope = math.log2(longer.estimate / pilot.estimate) if longer.estimate > pilot.estimate > 0 else 1.0
-    room = AIM * error / max(most(pilot, pilots, order), 1e-300)
-    return pilot.step * min(2.0, max(1.0, room ** (1 / max(slope, 1.0))))
+    return pilot.step * min(2.0, max(1.0, (AIM * error / max(reached, 1e-300)) ** (1 / max(slope, 1.0))))
 
 
 def _shorter(pilots, error, order, duration):

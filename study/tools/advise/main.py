@@ -25,7 +25,8 @@ def advise(arguments):
     if options.validate:
         _nothing_beside_validate(options)
         need_modules("jinja2")
-        from study.tools.advise.validate import BEGUN, validate
+        from study.tools.advise.validate import BEGUN, questions, validate
+        questions(options.scene)
         results = options.results or DEFAULT / "validation"
         need_own(results, BEGUN)
         writable(results)

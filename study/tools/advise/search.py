@@ -3,7 +3,7 @@ import math
 from dataclasses import dataclass, field
 
 from analysis.core.outcomes import FINISHED
-from study.tools.advise.choice import enough, local_order, most, next_at, next_step
+from study.tools.advise.choice import enough, local_order, next_at, next_step
 
 SCHEME = 2.0     # a scheme is followed while it promises less than this times the best one's time, as its changes may
 NEAR = 1.15      # make up for it; a change of it while it promises less than that
@@ -110,7 +110,7 @@ class Search:
             return min(pilot.step for pilot in one.pilots) / 2
         finest = min(valid, key=lambda pilot: pilot.step)
         slope = local_order(finest.step, one.pilots, one.setting.order)
-        reached = max(most(finest, one.pilots, one.setting.order), 1e-300)
+        reached = max(finest.estimate, 1e-300)
         return finest.step * min(AHEAD, (self.error / reached) ** (1 / slope))
 
     def _ready(self, one, best):

@@ -44,11 +44,7 @@ def validate(options, ask, runner_of, results):
     """`ask` and `runner_of` are those of main.py, which calls this. `options.scene`: only these; empty: all."""
     known = listed()
     names = select(known, options.only)
-    chosen = [(kind, scene, duration) for (kind, duration), scenes in SCENES.items() for scene in scenes
-              if not options.scene or scene in options.scene or kind in options.scene]
-    if not chosen:
-        raise StudyError(f"--validate has none of {', '.join(options.scene)}; it has {', '.join(dict.fromkeys(k for k, _ in SCENES))}"
-                         " and their scenes")
+    chosen = questions(options.scene)
     rows, searched, unknown = [], [], []
     with locks.only_one(results):
         for kind, scene, duration in chosen:
@@ -77,6 +73,16 @@ def validate(options, ask, runner_of, results):
     held, sentence = verdict(pandas.DataFrame(rows), unknown)
     print(f"{sentence}\npage: {results / 'validation.html'}")
     return 0 if held else 1
+
+
+def questions(asked):
+    """[(kind, scene, s)] of SCENES: the scenes and kinds that are asked for, or all."""
+    found = [(kind, scene, duration) for (kind, duration), scenes in SCENES.items() for scene in scenes
+             if not asked or scene in asked or kind in asked]
+    if not found:
+        raise StudyError(f"--validate has none of {', '.join(asked)}; it has {', '.join(dict.fromkeys(k for k, _ in SCENES))}"
+                         " and their scenes")
+    return found
 
 
 def _reference(described, variants):
@@ -158,10 +164,10 @@ def meets(row, error):
 
 
 def sustained(found, error):
-    """The rows that meet an error, if the next shorter step of their setting does too, or was left out: one
-    that does so alone is luck, as an estimate of errors cannot find it."""
-    return [row for row, shorter in zip(found, [*found[1:], {"setting": None}])
-            if meets(row, error) and row["us_per_second"] and (shorter["setting"] != row["setting"] or meets(shorter, error))]
+    """The rows that meet an error, if the two next shorter steps of their setting, down to half of theirs, do too, or were
+    left out: else it is luck, which half the step cannot show."""
+    return [row for at, row in enumerate(found) if row["us_per_second"] and all(
+        meets(other, error) for other in found[at:at + 3] if other["setting"] == row["setting"])]
 
 
 def fastest(found, error):

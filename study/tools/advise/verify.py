@@ -1,7 +1,7 @@
 # The last stage of an advice: the fastest candidate over the whole time, and what follows if it fails.
 from analysis.core.outcomes import FINISHED
 from study.tools.advise import timing
-from study.tools.advise.choice import interval, local_order, tidy
+from study.tools.advise.choice import interval, local_order, most, tidy
 from study.tools.advise.runner import HALVED
 
 VERIFICATIONS = 20
@@ -66,7 +66,7 @@ def accepted(row, advice, one):
 def _excess(row, advice, one):
     """How many times the allowed error that of a run is; what is known exactly needs no margin."""
     allowed = advice.question.error * row["duration"] / advice.question.duration
-    return (row["exact"] if row["exact"] is not None else expected_error(advice, one, row["estimate"])[1]) / allowed
+    return (row["exact"] if row["exact"] is not None else max(row["estimate"], expected_error(advice, one, row)[1])) / allowed
 
 
 def _reconsider(one, row, advice):
@@ -92,7 +92,10 @@ def _reconsider(one, row, advice):
             other.step = tidy(step, question.duration)
 
 
-def expected_error(advice, one, estimate):
-    """(least, most) of a candidate's error, m, by the orders that its setting's pilots show."""
-    observed = local_order(one.step, advice.found[one.setting].pilots, one.setting.order)
-    return interval(estimate, one.setting.order, observed)
+def expected_error(advice, one, row):
+    """(least, most) of a verified candidate's error, m, by its setting's pilots."""
+    pilots, order = advice.found[one.setting].pilots, one.setting.order
+    low, high = interval(row["estimate"], order, local_order(one.step, pilots, order))
+    covered = advice.pilot_duration == row["duration"]  # else theirs are the errors of less motion
+    found = most(one.step, row["estimate"], pilots, order, advice.question.error) if covered else None
+    return low, high if found is None else found
