@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from analysis.core.outcomes import FINISHED
 from study.core.setting import Setting
 from study.tools.advise import timing
-from study.tools.advise.choice import LEAST_STEPS, Pilot, enough, tidy
+from study.tools.advise.choice import LEAST_STEPS, Pilot, enough, known, tidy
 from study.tools.advise.runner import HALVED, QUICK, REPEATS
 from study.tools.advise.search import LOST, Search
 from study.tools.advise.settings import fits, serving
@@ -123,7 +123,7 @@ def fastest(setting, speeds, variants):
 def _pilots(advice, settings, speeds, variants, run, start, left, tell):
     question = advice.question
     duration = question.duration
-    while 3e-6 * min(speeds.values()) * duration / start > question.budget / 40 and duration > 100 * start:
+    while 3e-6 * run.slowdown * min(speeds.values()) * duration / start > question.budget / 40 and duration > 100 * start:
         duration /= 2  # a scene this dear gets pilots of a part of the motion
     if duration < question.duration:
         advice.cut_short.append(f"error pilots cover {duration:g} of {question.duration:g} s, and were held to that "
@@ -133,7 +133,7 @@ def _pilots(advice, settings, speeds, variants, run, start, left, tell):
     def pilot(setting, step):
         name = fastest(setting, speeds, variants)
         known = search.found[setting].step_us()
-        expected = 3e-6 * duration / step * (speeds[name] if math.isnan(known) else known)
+        expected = 3e-6 * run.slowdown * duration / step * (speeds[name] if math.isnan(known) else known)
         if expected > left(PILOT_SHARE):
             return None
         tell(f"error pilots: {setting.name}, step {step:g} s")
@@ -146,7 +146,7 @@ def _pilots(advice, settings, speeds, variants, run, start, left, tell):
         steps = max(LEAST_STEPS, round(question.budget / 500 / (REPEATS * 1e-6 * speeds[name])))
         if left(PILOT_SHARE) < 0:
             return None
-        row = run("quick", setting, name, step, min(duration, steps * step), question.budget / 30)
+        row = run("quick", setting, name, step, min(duration, steps * step), run.slowdown * question.budget / 30)
         return math.inf if row["status"] == "timeout" else row["step_us"]
     search = Search(settings, pilot, quick, error=question.error * duration / question.duration, duration=duration,
                     start=start, deadline_us=question.deadline_us, step=question.step)
@@ -169,7 +169,7 @@ def _race(advice, speeds, variants, run, left, tell):
         if promise > SLOWER * least:
             one.drop(f"promises {promise / least:.2f} times the least time, by pilots and probe")
     length = timing.stretch(question.duration, least)
-    limit = max(5.0, 1e-5 * REPEATS * least * length)
+    limit = max(5.0, 1e-5 * run.slowdown * REPEATS * least * length)
 
     def timed(one, number):
         tell(f"timing: round {number}, {one.implementation}, {one.setting.name}")
@@ -187,18 +187,16 @@ def _what_helps(advice, speeds, variants, run, left, tell):
     if not valid:
         return
     setting, best = min(valid, key=lambda item: (not item[1].valid, item[1].estimate if item[1].valid else item[1].step))
-    name, pilots = fastest(setting, speeds, variants), advice.found[setting].pilots
-    count = enough(pilots, math.inf, setting.order)
-    if count:
-        least = min(pilot.estimate for pilot in count) * question.duration / advice.pilot_duration
-        if least > question.error:
-            advice.helps.append(f"--error {1.5 * least:.2g}: estimates reach {least:.2g} m")
+    name, error = fastest(setting, speeds, variants), question.error * advice.pilot_duration / question.duration
+    least = min(known(pilot, advice.found[one].pilots, error, one.order) for one, pilot in valid)
+    if error < least < math.inf:
+        advice.helps.append(f"--error {1.1 * question.error * least / error:.2g}: so much pilots were seen to keep")
     if question.step and best.valid and best.estimate > question.error:
         parts = math.ceil((1.2 * best.estimate / question.error) ** (1 / setting.order))
         advice.helps.append(f"--step {question.step / parts:g}: a {parts}-th of this one, by the order of {setting.name}")
-    timed = [one.p99_us() for one in advice.candidates if one.rows]
-    if question.deadline_us and timed:
-        advice.helps.append(f"--deadline-us {1.2 * min(timed):.3g}: 99 % of the steps took up to {min(timed):.3g} us at best")
+    late = [one.late_us for one in advice.candidates if one.late_us]
+    if late:
+        advice.helps.append(f"--deadline-us {1.2 * min(late):.3g}: 99 % of the steps took up to {min(late):.3g} us at best")
         return
     for halving in range(1, HALVES + 1):
         duration = float(f"{question.duration / 2**halving:.3g}")

@@ -21,7 +21,7 @@ def as_json(advice, run, described, variants, folder):
               "met": advice.verified is not None,
               "advice": _advised(advice, variants[advice.chosen.implementation]["library"]) if advice.verified
               else None,
-              "runner_up": None, "best_reached": None, "refused": _refused(advice) if advice.verified else [],
+              "runner_up": None, "refused": _refused(advice) if advice.verified else [],
               "why_not": None if advice.verified else _why_not(advice), "helps": advice.helps,
               "pilot_duration": advice.pilot_duration, "cut_short": advice.cut_short + _busy(advice),
               "seconds": round(advice.seconds, 2),
@@ -29,7 +29,7 @@ def as_json(advice, run, described, variants, folder):
               "left_out": advice.left_out,
               "candidates": [_candidate(one, advice) for one in advice.candidates],
               "runs": run.rows, "results": str(folder)}
-    return answer | {"runner_up": _runner_up(answer), "best_reached": _best_reached(answer)}
+    return answer | {"runner_up": _runner_up(answer)}
 
 
 def _busy(advice):
@@ -57,9 +57,7 @@ def _advised(advice, library):
             "status": advice.outcome["status"], "status_reason": advice.outcome["reason"],
             "verified_over": row["duration"],
             "error": {"estimate": estimate, "low": low, "high": high, "exact": row["exact"]},
-            **_times(one), "verified_step_us": {"median": row["step_us_median"], "p99": row["step_us_p99"],
-                                                "max": row["step_us_max"]},
-            "deadline_misses": row["deadline_misses"], "steps": row["steps"],
+            **_times(one), "deadline_misses": row["deadline_misses"], "steps": row["steps"],
             "command": advised(advice.outcome["command"], library),
             "raw_file": row["raw_file"]}
 
@@ -98,44 +96,32 @@ def _runner_up(answer):
         "ratio": ratio, "why": why}
 
 
-def _best_reached(answer):
-    """The pilot of the least estimate, one that counts if there is any."""
-    found = [{"setting": entry["setting"]} | {key: pilot[key] for key in ("step", "estimate", "counts")}
-             for entry in answer["settings"] for pilot in entry["pilots"]
-             if pilot["status"] in FINISHED and pilot["estimate"] is not None]
-    return None if answer["met"] else min(
-        found, key=lambda one: (not one["counts"], one["estimate"]), default=None)
-
-
 def _refused(advice):
-    """Why what would have been faster than the advice is not advised: [{"setting", "step", "why"}], the slowest pilot of
-    each such setting, and whole runs that failed."""
-    best, found = advice.chosen.us_per_second()[0], []
-    asked = advice.question.error * advice.pilot_duration / advice.question.duration
-    for row in advice.verifications[:-1]:
-        why = f"{row['status']}: {row['reason']}" if row["status"] not in FINISHED else (
-            f"estimate {number(row['estimate'])} m over {row['duration']:g} s")
-        found.append({"setting": row["setting"], "step": row["step"], "why": why})
+    """Why what would have been faster than the advice is not advised: [{"setting", "step", "why"}], whole runs that failed,
+    and the slowest pilot of each such setting, the fastest first."""
+    best, asked = advice.chosen.us_per_second()[0], advice.question.error * advice.pilot_duration / advice.question.duration
+    found = []
     for one in advice.found.values():
         faster = [pilot for pilot in one.pilots if pilot.step > 1.001 * (one.chosen or 0)
                   and (one.step_us() / pilot.step < best or one is advice.found[advice.chosen.setting])]
-        pilot = min(faster, key=lambda pilot: pilot.step, default=None)
-        if pilot and pilot.valid:
-            shown = "" if pilot.estimate > asked else ", and halving the step does not show it to be right"
-            found.append({"setting": one.setting.name, "step": pilot.step, "why": f"estimate {number(pilot.estimate)} m{shown}"})
-        elif pilot:
-            found.append({"setting": one.setting.name, "step": pilot.step, "why": f"{pilot.status}: {pilot.reason}"})
-    return found
+        if faster:
+            pilot = min(faster, key=lambda pilot: pilot.step)
+            why = f"{pilot.status}: {pilot.reason}" if not pilot.valid else f"estimate {number(pilot.estimate)} m" + (
+                ", and halving the step does not show it to be right" if pilot.estimate <= asked else "")
+            found.append((one.step_us() / pilot.step, one.setting.name, pilot.step, why))
+    whole = [(0.0, row["setting"], row["step"], f"estimate {number(row['estimate'])} m over {row['duration']:g} s, and no margin"
+              if row["status"] in FINISHED else f"{row['status']}: {row['reason']}") for row in advice.verifications[:-1]]
+    return [{"setting": name, "step": step, "why": why} for _, name, step, why in sorted(whole + found)]
 
 
 def _why_not(advice):
     if not any(row["step_us"] for row in advice.probe) and not advice.found:
         return "no implementation simulates this scene: " + "; ".join(
             dict.fromkeys(f"{row['status']}, {row['reason']}" for row in advice.probe))
-    late = [one for one in advice.candidates if "99th percentile" in one.reason]
+    late = min((one for one in advice.candidates if one.late_us), key=lambda one: one.late_us, default=None)
     if late:
-        return (f"99 % of the steps are not done within the deadline: {late[0].reason} with {late[0].implementation}, "
-                f"{late[0].setting.name}, step {late[0].step:g} s")
+        return (f"99 % of the steps are not done within the deadline: {late.reason} with {late.implementation}, "
+                f"{late.setting.name}, step {late.step:g} s")
     if advice.verifications:
         return "no candidate kept it over the whole time"
     slow = [found.reason for found in advice.found.values() if "beyond the deadline" in found.reason]
@@ -210,15 +196,8 @@ def _ends_as(told):
 
 
 def _refusal_lines(answer):
-    best = answer["best_reached"]
-    lines = ["", f"No setting meets this: {answer['why_not']}."]
-    lines += [_row("would help" * (one is answer["helps"][0]), one) for one in answer["helps"]]
-    if best:
-        lines.append(_row("best estimate", f"{number(best['estimate'])} m: {best['setting']}, "
-                          f"step {best['step']:g} s"
-                          + f" over {answer['pilot_duration']:g} s" * (answer["pilot_duration"] < answer["question"]["duration"])
-                          + ("" if best["counts"] else ", not shown to be right by halving the step")))
-    return lines
+    return ["", f"No setting meets this: {answer['why_not']}."] + [
+        _row("would help" * (one is answer["helps"][0]), one) for one in answer["helps"]]
 
 
 def _tried(answer):

@@ -16,7 +16,7 @@ EXACT = ("--judge-every", "1")  # for the exact error
 HALVED = ("--half-step", *EXACT)  # for an estimate beside it
 REPEATS = 3  # of a motion whose time matters; each step's least counts, as what interrupts one run spares another
 QUICK = 200  # steps of a run for its time
-OF_TIMES = {"step_us_median": "median", "step_us_p99": "p99", "step_us_max": "max", "deadline_misses": "deadline_misses"}
+OF_TIMES = {"step_us_median": "median", "step_us_p99": "p99", "deadline_misses": "deadline_misses"}
 
 
 def describe(scene):
@@ -89,7 +89,12 @@ class Runner:
     @property
     def waited(self):
         """Share of the time of all runs in which they had no processor: other programs had it."""
-        return max(0.0, 1.0 - self.processor / self.wall) if self.wall > 1.0 else 0.0
+        return min(0.9, max(0.0, 1.0 - self.processor / self.wall)) if self.wall > 1.0 else 0.0
+
+    @property
+    def slowdown(self):
+        """How many times longer runs take for that."""
+        return 1.0 / (1.0 - self.waited)
 
     def _simulate(self, kind, variant, step, duration, seconds, words, truth=None):
         seen = {"keep": truth.columns, "every": truth.every(step, duration)} if truth else {}

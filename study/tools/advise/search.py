@@ -7,8 +7,7 @@ from study.tools.advise.choice import enough, local_order, next_at, next_step
 
 SCHEME = 2.0     # a scheme is followed while it promises less than this times the best one's time, as its changes may
 NEAR = 1.15      # make up for it; a change of it while it promises less than that
-ROOM = {2: 2}    # times the best one's step, by a scheme's order: how long its own may be ...
-MOST_ROOM = 16   # ... where that is higher
+ROOM = 2, 16     # times the step of the best: how long another scheme's may be, of second order and of a higher one
 AHEAD = 4        # times the step of a pilot: how long the one is at most that it promises
 DOUBT = 2        # times its promise: what goes before a setting of which no run has come to its end
 LOST = (*FINISHED, "diverged", "not-converged", "wrong-branch", "refused")  # another step may mend what is wrong
@@ -86,7 +85,7 @@ class Search:
             at = where = self.step
         else:
             best = min((other for other in self.found.values() if other.chosen), key=self.promise, default=None)
-            at, where = ROOM.get(one.setting.order, MOST_ROOM) * (best.chosen if best else self.start), self.start
+            at, where = ROOM[one.setting.order > 2] * (best.chosen if best else self.start), self.start
         if math.isnan(one.quick_us):  # errors of a change are hardly less than those of its scheme: times decide
             one.quick_us = (math.inf if parent and parent.quick_us == math.inf else self.quick(one.setting, where)
                             or (parent.step_us() if self._tells(parent) else 0.0))
@@ -125,11 +124,7 @@ class Search:
         after = (next_at(self.step, one.pilots, self.error, order, self.duration) if self.step else
                  next_step(one.pilots, self.error, order, start, self.duration))
         if after.step is None:
-            one.chosen, one.reason = after.chosen, after.reason
-            if one.chosen:
-                one.chosen_us = self.quick(one.setting, one.chosen) or one.step_us()
-            if one.chosen and one.step_us() > self.deadline_us:
-                one.chosen, one.reason = None, f"a step takes {one.step_us():.3g} us, beyond the deadline"
+            self._end(one, after.chosen, after.reason)
             return
         pilot = self.run(one.setting, after.step)
         if pilot is None:
@@ -155,7 +150,12 @@ class Search:
         """Nothing more is tried: the longest step that is known to be good enough, if any."""
         good = [pilot.step for pilot in enough(one.pilots, self.error, one.setting.order)
                 if self.step in (None, pilot.step)]
-        if good:
-            one.chosen = good[0]
-        else:
-            one.reason = reason
+        self._end(one, good[0] if good else None, reason)
+
+    def _end(self, one, chosen, reason):
+        """Gives a setting its step, or the reason why it has none."""
+        one.chosen, one.reason = chosen, "" if chosen else reason
+        if chosen:
+            one.chosen_us = self.quick(one.setting, chosen) or one.step_us()
+            if one.chosen_us > self.deadline_us:
+                one.chosen, one.reason = None, f"a step takes {one.chosen_us:.3g} us, beyond the deadline"

@@ -23,6 +23,7 @@ class Candidate:
     out: bool = False
     slower: bool = False  # than others as they were then: that is why it is out
     kept: bool = False  # it is timed in every round, however slow
+    late_us: float = 0.0  # its 99th percentile, where that is why it is out
 
     def times(self, key="step_us"):
         return [row[key] for row in self.rows if row[key] is not None]
@@ -36,8 +37,11 @@ class Candidate:
         """Median over the rounds."""
         return median(self.times("step_us_p99")) if self.rows else math.inf
 
-    def drop(self, reason):
-        self.out, self.reason = True, reason
+    def drop(self, reason, late_us=0.0):
+        self.out, self.reason, self.late_us = True, reason, late_us
+
+    def drop_late(self, p99_us, when=""):
+        self.drop(f"99th percentile {p99_us:.3g} us{when}: beyond the deadline", p99_us)
 
 
 def stretch(duration, us_per_second):
@@ -68,7 +72,7 @@ def race(candidates, run, left, deadline_us=None, shorter=False):
             else:  # a stretch may end lost where the whole run is not: another candidate, then
                 one.drop(f"{row['status']} while it was timed: {row['reason']}")
             if deadline_us and one.rows and one.p99_us() > 2 * deadline_us:
-                one.drop(f"99th percentile {one.p99_us():.3g} us")
+                one.drop_late(one.p99_us())
         drop_slow(candidates, SLOWER[min(number, len(SLOWER)) - 1], number)
     return True
 
@@ -106,6 +110,6 @@ def ranked(candidates, deadline_us=None):
     """Those that may be advised, fastest first; a 99th percentile beyond the deadline is a reason to drop."""
     for one in candidates:
         if deadline_us and not one.out and one.p99_us() > deadline_us:
-            one.drop(f"99th percentile {one.p99_us():.3g} us: beyond the deadline")
+            one.drop_late(one.p99_us())
     return sorted((one for one in candidates if not one.out and one.rows),
                   key=lambda one: one.us_per_second()[0])

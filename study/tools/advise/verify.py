@@ -18,12 +18,12 @@ def verify(advice, run, left, tell):
             return
         one = order[0]
         seconds = max(left(1.0), 0.0 if advice.verifications else LEAST_SHARE * question.budget)
-        duration = _affordable(one, question, seconds)
+        duration = _affordable(one, question, seconds / run.slowdown)
         if not duration:
             advice.cut_short.append("no time was left to verify another candidate")
             return
         tell(f"verification: {one.implementation}, {one.setting.name}, step {one.step:g} s")
-        row = {} | run("verification", one.setting, one.implementation, one.step, duration, 2 * seconds + 2, checks=HALVED)
+        row = {} | run("verification", one.setting, one.implementation, one.step, duration, 1.5 * seconds + 2, checks=HALVED)
         row |= {"estimate": _at_least(row, advice)}
         advice.verifications.append(row)
         if accepted(row, advice, one):
@@ -33,7 +33,7 @@ def verify(advice, run, left, tell):
                     f"verified over {duration:g} of {question.duration:g} s, held to that share of the error: "
                     f"--budget {question.budget * question.duration / duration:.2g} is enough for all")
             tell("the advised line itself")
-            advice.outcome = run("outcome", one.setting, one.implementation, one.step, duration, 2 * seconds + 2, repeats=1)
+            advice.outcome = run("outcome", one.setting, one.implementation, one.step, duration, seconds + 2, repeats=1)
             return
         _reconsider(one, row, advice)
 
@@ -79,7 +79,7 @@ def _reconsider(one, row, advice):
         return
     excess = _excess(row, advice, one)
     if excess <= 1:
-        one.drop(f"99th percentile {row['step_us_p99']:.3g} us when verified: beyond the deadline")
+        one.drop_late(row["step_us_p99"], " when verified")
         return
     failed = sum(other["setting"] == one.setting.name for other in advice.verifications)
     step = one.step * 0.97 * excess ** (-1 / one.setting.order)
