@@ -30,7 +30,7 @@ def write_part(folder, part, started=lambda: None):
     tables = schema.write_tables(folder, part, _module(part, "tables").build(found, view), found)
     figures = _saved(folder / part / "figures", _module(part, "figures").draw(tables, view), started)
     known = _module(part, "page").context(tables, view)
-    _write(folder, part, _template(ROOT / "analysis" / part / "page.html.j2").render(
+    _write(folder, part, template(ROOT / "analysis" / part / "page.html.j2").render(
         **_frame(folder, part), **known, figures=figures, schema=schema.of_part(part)))
     said = _module(part, "sentences")
     write_json(folder / part / "answers.json", {
@@ -43,10 +43,10 @@ def write_index(folder):
     """index.html: the answers of the parts that are done; and a page for each of the others."""
     frame = _frame(folder, "index")
     answers = answers_of(folder)
-    _write(folder, "index", _template(HERE / "index.html.j2").render(**frame, answers=answers))
+    _write(folder, "index", template(HERE / "index.html.j2").render(**frame, answers=answers))
     for part, known in answers.items():
         if known is None:
-            _write(folder, part, _template(HERE / "pending.html.j2").render(
+            _write(folder, part, template(HERE / "pending.html.j2").render(
                 **_frame(folder, part), chosen=part in frame["facts"]["parts"]))
 
 
@@ -71,7 +71,7 @@ def _frame(folder, part):
             "context": view.context, "libraries": view.registry.versions}
 
 
-def _template(path):
+def template(path):
     loader = jinja2.FileSystemLoader([path.parent, HERE])
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)

@@ -1,5 +1,6 @@
 # All figures of the map.
 from analysis.core.style import Look
+from analysis.core.timing import TWIN
 from analysis.map import (dense_figure, fill_figure, maps, operations_figure, phases_figure, regret, sparse_figure)
 from analysis.map.cells import map_cells
 from analysis.map.results import of
@@ -7,7 +8,7 @@ from analysis.map.results import of
 
 def draw(tables, view):
     results = of(tables, view)
-    look = Look(results.registry, [name for name in tables["tidy"].implementation.unique() if "+" in name])
+    look = Look(results.registry, [name for name in tables["tidy"].implementation.unique() if "+" in name and not name.endswith(TWIN)])
     libraries, everyone = results.layer("libraries"), results.layer("all")
     return {"f6_map": maps.draw(results, look, "Figure 6: fastest library, 10 to 100 variables", libraries, 10, 100),
             "f7_map": maps.draw(results, look, "Figure 7: fastest library, all sizes", libraries),

@@ -60,6 +60,13 @@ void LltSolver::solve(double* x) const {
   L.triangularView<Eigen::Lower>().adjoint().solveInPlace(solution);
 }
 
+void LltSolver::solve(double* x, long count, long stride) const {
+  const Columns<const Eigen::MatrixXd> L(L_.data(), n_, n_, Eigen::OuterStride<>(rows_));
+  Columns<Eigen::MatrixXd> solutions(x, n_, count, Eigen::OuterStride<>(stride));
+  L.triangularView<Eigen::Lower>().solveInPlace(solutions);
+  L.triangularView<Eigen::Lower>().adjoint().solveInPlace(solutions);
+}
+
 bool PotrfSolver::factorize() {
   copy();
   const int n = static_cast<int>(n_), rows = static_cast<int>(rows_);
@@ -68,10 +75,11 @@ bool PotrfSolver::factorize() {
   return info == 0;
 }
 
-void PotrfSolver::solve(double* x) const {
-  const int n = static_cast<int>(n_), rows = static_cast<int>(rows_), one = 1;
+void PotrfSolver::solve(double* x, long count, long stride) const {
+  const int n = static_cast<int>(n_), rows = static_cast<int>(rows_);
+  const int columns = static_cast<int>(count), apart = static_cast<int>(stride);
   int info = 0;
-  dpotrs_("L", &n, &one, L_.data(), &rows, x, &rows, &info);
+  dpotrs_("L", &n, &columns, L_.data(), &rows, x, &apart, &info);
 }
 
 }  // namespace mbs::hybrid_dense

@@ -26,6 +26,10 @@ class PanelsSolver {
   [[nodiscard]] bool factorize() { return hybrid_dense::factorize(panels_, A_.data(), Z_.data()); }
   /// x is the right-hand side when it arrives; padded by zeros.
   void solve(double* x) const { hybrid_dense::solve(panels_, Z_.data(), x); }
+  /// `count` of them, each `stride` behind the one before.
+  void solve(double* x, long count, long stride) const {
+    for (long k = 0; k < count; ++k) solve(x + k * stride);
+  }
 
  private:
   Panels panels_;
@@ -58,6 +62,7 @@ class LltSolver : public ColumnsSolver {
   using ColumnsSolver::ColumnsSolver;
   [[nodiscard]] bool factorize();
   void solve(double* x) const;
+  void solve(double* x, long count, long stride) const;
 };
 
 /// LAPACK's dpotrf and dpotrs.
@@ -65,7 +70,8 @@ class PotrfSolver : public ColumnsSolver {
  public:
   using ColumnsSolver::ColumnsSolver;
   [[nodiscard]] bool factorize();
-  void solve(double* x) const;
+  void solve(double* x) const { solve(x, 1, rows_); }
+  void solve(double* x, long count, long stride) const;
 };
 
 }  // namespace mbs::hybrid_dense
