@@ -80,7 +80,8 @@ def named(described, variants, settings):
     """({implementation: foreseen us a step or nan} to try, fastest first; {implementation: why it is left out}): those
     near the fastest by the rule of `mbs describe`, who is sparse and unknown to it, as it was fitted to general code, and who
     else is needed for a setting; all without a rule."""
-    foreseen = {one["implementation"]: one["step_us"] for one in described["recommendation"] if one["implementation"] in variants}
+    foreseen = {one["implementation"]: one["step_us"] for one in described["recommendation"]
+                if one["implementation"] in variants}
     if not foreseen:
         return dict.fromkeys(variants, math.nan), {}
     order = sorted(foreseen, key=foreseen.get)

@@ -78,7 +78,7 @@ class Runner:
         row |= {key: found.get(key) for key in ("steps", "passes_per_step", "penalty", "tolerance", "warnings")}
         row |= {"seconds": record.seconds, "command": typed(record), "raw_file": f"raw/advise/{record.name}"}
         if self.truth and checks == EXACT and record.done and status in FINISHED:
-            row["exact"] = self.truth.error(record.series, row["exact"])
+            row["exact"] = self.truth.error(record.series)
         self.rows.append(row)
         return row
 

@@ -14,7 +14,7 @@ from study.core.setting import Setting, read_settings
 from study.core.studyset import listed, select
 from study.tools.advise import timing
 from study.tools.advise.advice import SLOWER, probe
-from study.tools.advise.runner import EXACT, QUICK, describe
+from study.tools.advise.runner import EXACT, describe
 from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.truth import Truth
 
@@ -37,6 +37,7 @@ BEGUN = {".lock", "searched.csv", "validation.csv", "validation.html", "scenes"}
 LONGEST, SHORTEST, RATIO = 0.08, 1e-6, 2**-0.5  # s; steps of the search, the longest at most a 20th of the duration
 NEAR = 1.5        # settings this times the fastest one's time, by one implementation each, are timed with all
 MOST, LATEST = 1.3, 60.0  # times the best found that an advised run may take; s, of an answer
+TOO_LONG = 20.0   # s, of a run of the search
 ROUNDS_AT_MOST = 600.0    # s of timing a question
 
 
@@ -53,11 +54,11 @@ def validate(options, ask, runner_of, results):
             errors = [float(f"{share * described['judged_length']:.2g}") for share in SHARES]
             with locks.only_one_study(options.wait):
                 variants, run = runner_of(folder, {"scene": scene, "duration": duration}, names, known)
-                run.lab.tell(f"{scene}: reference")
-                run.truth = Truth(run.lab, scene, described, run.contenders[_reference(described, variants)], duration,
-                                  CERTAIN * min(errors))
-                exact = scene.startswith("four-bar")
-                asked = [error for error in errors if exact or run.truth.uncertainty <= CERTAIN * error]
+                if not scene.startswith("four-bar"):  # of which the exact motion is known
+                    run.lab.tell(f"{scene}: reference")
+                    run.truth = Truth(run.lab, scene, described, run.contenders[_reference(described, variants)], duration,
+                                      CERTAIN * min(errors))
+                asked = [error for error in errors if not run.truth or run.truth.uncertainty <= CERTAIN * error]
                 unknown += [f"{scene} at {error:g} m" for error in errors if error not in asked]
                 found, speeds = search(run, variants, described, duration, asked, scene) if asked else ([], {})
             searched += [{"scene": scene} | row for row in found]
@@ -70,6 +71,8 @@ def validate(options, ask, runner_of, results):
                                 | _compare(scene, error, duration, answer, advice, run, variants, found, speeds))
                 write_results(results, rows, searched, unknown)
             run.lab.progress.end()
+    if not rows:
+        raise StudyError(f"no motion is known well enough to ask a question: {', '.join(unknown)}")
     held, sentence = verdict(pandas.DataFrame(rows), unknown)
     print(f"{sentence}\npage: {results / 'validation.html'}")
     return 0 if held else 1
@@ -87,8 +90,9 @@ def questions(asked):
 
 def _reference(described, variants):
     """Who simulates the reference: the fastest by the rule that serves both schemes."""
-    able = [one for one in described["recommendation"] if one["implementation"] in serving(Setting("saddle-point"), variants)]
-    return min(able, key=lambda one: one["step_us"])["implementation"] if able else serving(Setting("saddle-point"), variants)[0]
+    serves = serving(Setting("saddle-point"), variants)
+    able = [one for one in described["recommendation"] if one["implementation"] in serves]
+    return min(able, key=lambda one: one["step_us"])["implementation"]
 
 
 def write_results(results, rows, searched, unknown):
@@ -125,8 +129,8 @@ def verdict(table, unknown=()):
 def everything():
     """All settings that advice considers, and all of study/settings.yaml whose tolerances suit any scene."""
     found = catalogue()
-    return found + [Setting(one.scheme, one.changes) for one in read_settings()
-                    if not {"penalty", "tolerance"} & set(dict(one.changes)) and Setting(one.scheme, one.changes) not in found]
+    stored = [Setting(one.scheme, one.changes) for one in read_settings() if not {"penalty", "tolerance"} & set(dict(one.changes))]
+    return found + [one for one in stored if one not in found]
 
 
 def search(run, variants, described, duration, errors, scene):
@@ -142,18 +146,19 @@ def search(run, variants, described, duration, errors, scene):
         while served and met < 2 and step >= SHORTEST:
             run.lab.tell(f"search: {scene}, {setting.name}, step {step:.3g} s")
             at = float(f"{step:.3g}")
-            row = run("search", setting, served[0], at, duration, 120, checks=EXACT, repeats=1)
-            if row["status"] == "unsupported":
+            row = run("search", setting, served[0], at, duration, 4 * TOO_LONG, checks=EXACT, repeats=1)
+            if row["status"] in ("unsupported", "timeout", "crashed", "out-of-memory"):
                 break
-            quick = meets(row, max(errors)) and run("speed", setting, served[0], at, min(duration, max(QUICK * at, 0.4 * duration)), 60)
-            row |= {"us_per_second": quick["step_us"] / at if quick and quick["step_us"] else None, "pruned": ""}
+            timed = meets(row, max(errors)) and run("speed", setting, served[0], at, duration, 8 * TOO_LONG)
+            row |= {"us_per_second": timed["step_us"] / at if timed and timed["step_us"] else None, "pruned": ""}
             rows.append(row)
             met = met + 1 if meets(row, min(errors)) else 0
             if met and row["us_per_second"]:
                 least[setting] = min(least.get(setting, row["us_per_second"]), row["us_per_second"])
             usual = row["us_per_second"] or (row["step_us_median"] or 0.0) / at
-            if least and usual > 2 * NEAR * min(least.values()):
-                row["pruned"] = "shorter steps are left out: far slower than a setting that meets all errors"
+            if usual > (2 * NEAR * min(least.values()) if least else 1e6 * TOO_LONG / duration):
+                row["pruned"] = "shorter steps are left out: " + (
+                    "far slower than a setting that meets all errors" if least else f"they take more than {TOO_LONG:g} s")
                 break
             step *= RATIO
     return rows, speeds
@@ -183,16 +188,17 @@ def fastest(found, error):
 
 def _compare(scene, error, duration, answer, advice, run, variants, found, speeds):
     """The row of validation.csv of one question."""
-    settings = {setting.name: setting for setting in everything()}
-    candidates = [timing.Candidate(settings[row["setting"]], name, row["step"])
-                  for row in fastest(found, error) for name in speeds
-                  if name in serving(settings[row["setting"]], variants)
-                  and speeds[name] <= SLOWER * speeds[next(one for one in speeds if one in serving(settings[row["setting"]], variants))]]
+    settings, candidates = {setting.name: setting for setting in everything()}, []
+    for row in fastest(found, error):
+        serves = serving(settings[row["setting"]], variants)
+        served = {name: us for name, us in speeds.items() if name in serves}
+        candidates += [timing.Candidate(settings[row["setting"]], name, row["step"])
+                       for name, us in served.items() if us <= SLOWER * min(served.values())]
     advised = advice.chosen and timing.Candidate(advice.chosen.setting, advice.chosen.implementation,
                                                  advice.chosen.step, kept=True)
     _time(run, [one for one in candidates if advised is None or _same(one) != _same(advised)]
           + [advised] * bool(advised), duration, error)
-    held = advised and run("advised", advised.setting, advised.implementation, advised.step, duration, 300, checks=EXACT, repeats=1)
+    held = advised and run("advised", advised.setting, advised.implementation, advised.step, duration, 300, EXACT, 1)
     best = min((one for one in [*timing.ranked(candidates), advised] if one and one.rows), default=None,
                key=lambda one: one.us_per_second()[0])
     return {"scene": scene, "error": error, "met": answer["met"],
