@@ -266,7 +266,7 @@ def test_without_the_automatic_tolerance_none_is_made_up():
         found = {"tolerance": 1e-6, "status": "ok", "status_reason": ""} if works else {}
         return records.Record("runs/x", cell.settled().document(), "done" if works else "crashed", "" if works else "SIGSEGV",
                               0.1, ["build/mbs"], {}, found)
-    run = Runner(SimpleNamespace(one=one, names={}), "four-bar:1", [Contender("one/a", "one/a")])
+    run = Runner(SimpleNamespace(one=one, names={}), "four-bar:1", 4, [Contender("one/a", "one/a")])
     works = True
     assert run("search", LOOSE, "one/a", 1e-2, 1.0, 60)["status"] == "ok" and len(asked) == 2
     assert asked[1][asked[1].index("--tolerance") + 1] == "0.001"

@@ -17,7 +17,7 @@ BEHIND = 3.0       # times the least time that the rule foresees: who is slower 
                    # a factor of 1.5, mostly
 DEAR = 100.0       # us a step from which probes are as short as they can be
 SLOWER = 1.7       # times the time of the most promising, by pilots and probe: who is slower is not timed
-PILOT_SHARE, TIMING_SHARE = 0.5, 0.75  # of the budget: when pilots, when timings must be done
+PILOT_SHARE, TIMING_SHARE = 0.6, 0.8  # of the budget: when pilots, when timings must be done
 HALVES = 6         # of the duration, to find for how long an error can be kept
 
 
@@ -138,7 +138,7 @@ def _pilots(advice, settings, speeds, variants, run, start, left, tell):
         if expected > left(PILOT_SHARE):
             return None
         tell(f"error pilots: {setting.name}, step {step:g} s")
-        found = run.pilot(setting, name, step, duration, min(max(2.0, 4 * expected), max(1.0, left(TIMING_SHARE))))
+        found = run.pilot(setting, name, step, duration, min(question.budget / 10 + 4 * expected, max(1.0, left(TIMING_SHARE))))
         return None if found.status == "timeout" else found
 
     def quick(setting, step):

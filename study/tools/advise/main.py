@@ -67,7 +67,8 @@ def ask(options, folder=None):
     folder = folder or options.results or DEFAULT / _folder(inputs, names)
     writable(folder)
     with locks.only_one(folder), locks.only_one_study(options.wait, say):
-        variants, runner = runner_of(folder, inputs, names, known, question.deadline_us, options.json)
+        variants, runner = runner_of(folder, inputs, described["variables"], names, known, question.deadline_us,
+                                     options.json)
         advice = seek(question, catalogue(), described, variants, runner, runner.lab.tell)
         runner.lab.progress.end()
         answer = as_json(advice, runner, described, variants, folder)
@@ -80,7 +81,7 @@ def say(text):
     print(text, file=sys.stderr, flush=True)
 
 
-def runner_of(folder, inputs, names, known, deadline_us=None, quiet=False):
+def runner_of(folder, inputs, variables, names, known, deadline_us=None, quiet=False):
     """({name: what `mbs list --json` says of a variant that takes part}, Runner)"""
     from study.tools.advise.runner import Runner  # these need the modules
     from study.tools.shelf import ToolLab, open_shelf
@@ -88,7 +89,7 @@ def runner_of(folder, inputs, names, known, deadline_us=None, quiet=False):
     context = context_of(Contender(CONTROL.name, CONTROL.variant, usable(known, pairs["all"])))
     lab = ToolLab(open_shelf(folder, "advise", context, names, question=inputs), "advise", "runs", quiet=quiet)
     return ({name: known.variants[name] for name in names},
-            Runner(lab, inputs["scene"], on_usual_pairs(known, pairs, names), deadline_us))
+            Runner(lab, inputs["scene"], variables, on_usual_pairs(known, pairs, names), deadline_us))
 
 
 def _parser():

@@ -11,9 +11,10 @@ from study.core import executor
 from study.core.cell import Cell
 from study.tools.advise.choice import Pilot
 
-# After every step: the usual judging of a few of them may keep pace with the motion and miss its worst.
-EXACT = ("--judge-every", "1")  # for the exact error
-HALVED = ("--half-step", *EXACT)  # for an estimate beside it
+EXACT, HALVED = "exact", "half-step"  # what a run tells of its error: the exact one, where it is known; an estimate, too
+# Judged after every step, as the usual judging of a few may keep pace with the motion and miss its worst; but where steps
+# times variables are above VALUES, of a share of them, JUDGED at least.
+VALUES, JUDGED = 2e5, 100
 REPEATS = 3  # of a motion whose time matters; each step's least counts, as what interrupts one run spares another
 QUICK = 200  # steps of a run for its time
 OF_TIMES = {"step_us_median": "median", "step_us_p99": "p99", "deadline_misses": "deadline_misses"}
@@ -53,20 +54,20 @@ class Runner:
     """Runs simulations of one scene one after the other, and keeps a row of each. `truth`: where it is known, what a run's
     series is held against (truth.py)."""
 
-    def __init__(self, lab, scene, contenders, deadline_us=None, truth=None):
-        self.lab, self.scene, self.truth = lab, scene, truth
+    def __init__(self, lab, scene, variables, contenders, deadline_us=None, truth=None):
+        self.lab, self.scene, self.variables, self.truth = lab, scene, variables, truth
         self.contenders = {one.name: one for one in contenders}
         self.deadline = ["--deadline-us", f"{deadline_us:g}"] if deadline_us else []
         self.rows, self.wall, self.processor = [], 0.0, 0.0  # s, of all runs
 
-    def __call__(self, kind, setting, variant, step, duration, seconds, checks=(), repeats=REPEATS):
+    def __call__(self, kind, setting, variant, step, duration, seconds, checks="", repeats=REPEATS):
         """The row of a run: kind, setting, implementation, step, outcome, times, command, raw_file. `checks`: EXACT
         or HALVED where its error matters, not only its time. `step_us`, by which runs are ranked, is the mean over
         the steps of each one's least time over the repeats; the other times are those of the first repeat."""
         record, tolerance = self._tolerance(setting, variant, step) if setting.loosened else (None, None)
         if tolerance or not setting.loosened:  # else the row is that of the run which should have told it
             repeated = ("--repeats", repeats) if repeats > 1 and checks != HALVED else ()
-            words = [*setting.words(tolerance=tolerance), *self.deadline, *repeated, *checks]
+            words = [*setting.words(tolerance=tolerance), *self.deadline, *repeated, *self._checks(checks, duration / step)]
             record = self._simulate(kind, variant, step, duration, seconds, words, self.truth if checks == EXACT else None)
         status, reason = of_run(record)
         found = record.output
@@ -95,6 +96,10 @@ class Runner:
     def slowdown(self):
         """How many times longer runs take for that."""
         return 1.0 / (1.0 - self.waited)
+
+    def _checks(self, checks, steps):
+        every = max(1, min(int(steps / JUDGED), int(steps * self.variables / VALUES)))
+        return [*["--half-step"] * (checks == HALVED), "--judge-every", every] if checks else []
 
     def _simulate(self, kind, variant, step, duration, seconds, words, truth=None):
         seen = {"keep": truth.columns, "every": truth.every(step, duration)} if truth else {}

@@ -53,7 +53,7 @@ def validate(options, ask, runner_of, results):
             described = describe(scene)
             errors = [float(f"{share * described['judged_length']:.2g}") for share in SHARES]
             with locks.only_one_study(options.wait):
-                variants, run = runner_of(folder, {"scene": scene, "duration": duration}, names, known)
+                variants, run = runner_of(folder, {"scene": scene, "duration": duration}, described["variables"], names, known)
                 if not scene.startswith("four-bar"):  # of which the exact motion is known
                     run.lab.tell(f"{scene}: reference")
                     run.truth = Truth(run.lab, scene, described, run.contenders[_reference(described, variants)], duration,

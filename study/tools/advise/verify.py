@@ -66,7 +66,7 @@ def accepted(row, advice, one):
 def _excess(row, advice, one):
     """How many times the allowed error that of a run is; what is known exactly needs no margin."""
     allowed = advice.question.error * row["duration"] / advice.question.duration
-    return (row["exact"] if row["exact"] is not None else max(row["estimate"], expected_error(advice, one, row)[1])) / allowed
+    return (row["exact"] if row["exact"] is not None else expected_error(advice, one, row)[1]) / allowed
 
 
 def _reconsider(one, row, advice):
@@ -98,4 +98,4 @@ def expected_error(advice, one, row):
     low, high = interval(row["estimate"], order, local_order(one.step, pilots, order))
     covered = advice.pilot_duration == row["duration"]  # else theirs are the errors of less motion
     found = most(one.step, row["estimate"], pilots, order, advice.question.error) if covered else None
-    return low, high if found is None else found
+    return low, max(row["estimate"], high if found is None else found)
