@@ -6,8 +6,8 @@ from study.core.setting import LOOSENED, Setting
 PROJECTIONS = {"penalty": ("both", "velocity", "none"), "saddle-point": ("both", "velocity", "none")}
 SCHEMES = ("penalty", "saddle-point", "rattle", "rattle4", "rattle6", "multistep6")
 CHEAP = (("projections", "velocity"), ("tolerance", "one-pass"))
-OTHERS = [Setting(scheme, (change, *CHEAP)) for scheme, change in (
-    ("saddle-point", ("tangent", "kept")), ("penalty", ("precision", "single")), ("penalty", ("geometric-stiffness", "")))]
+OTHERS = [Setting("saddle-point", (("tangent", "every-step"),)), *(Setting(scheme, (change, *CHEAP)) for scheme, change in (
+    ("saddle-point", ("tangent", "kept")), ("penalty", ("precision", "single")), ("penalty", ("geometric-stiffness", ""))))]
 
 
 def catalogue():

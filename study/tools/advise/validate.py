@@ -34,7 +34,7 @@ SCENES = {  # (kind, s): scenes
 SHARES = (1e-2, 1e-3, 1e-4)  # of the scene's length (describe: judged_length): the errors that are asked for
 CERTAIN = 0.1     # of an error: how well the motion must be known
 BEGUN = {".lock", "searched.csv", "validation.csv", "validation.html", "scenes"}  # its folder
-LONGEST, SHORTEST, RATIO = 0.08, 1e-6, 2**-0.5  # s; steps of the search, the longest at most a 20th of the duration
+LEAST_STEPS, MOST_STEPS, RATIO = 20, 2e5, 2**-0.5  # of a run of the search; of a step to the next longer one
 NEAR = 1.5        # settings this times the fastest one's time, by one implementation each, are timed with all
 MOST, LATEST = 1.3, 60.0  # times the best found that an advised run may take; s, of an answer
 TOO_LONG = 20.0   # s, of a run of the search
@@ -136,14 +136,14 @@ def everything():
 def search(run, variants, described, duration, errors, scene):
     """Rows of every setting at every step by its fastest implementation, and {implementation: us a step}.
     A setting's steps end where two in succession meet the smallest error or where they cost too much."""
-    longest = min(LONGEST, duration / 20)
+    longest = duration / LEAST_STEPS
     asked = Namespace(duration=duration, step=None)
     _, speeds = probe(variants, run, longest / 8, described, asked, lambda share: 20.0, run.lab.tell)
     rows, least = [], {}  # least time of a simulated second that meets the smallest error
     for setting in (one for one in everything() if not fits(one, described)):
         served = [name for name in speeds if name in serving(setting, variants)]
         step, met = longest, 0
-        while served and met < 2 and step >= SHORTEST:
+        while served and met < 2 and step >= duration / MOST_STEPS:
             run.lab.tell(f"search: {scene}, {setting.name}, step {step:.3g} s")
             at = float(f"{step:.3g}")
             row = run("search", setting, served[0], at, duration, 4 * TOO_LONG, checks=EXACT, repeats=1)
