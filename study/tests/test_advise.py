@@ -194,7 +194,7 @@ def test_a_deadline_is_for_the_99th_percentile():
     assert found["b"].reason == "no time was left to time it"
 
 
-def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=None):
+def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=None, plain=()):
     """Advice on two implementations of a setting whose pilots at 10 and 5 ms were good, and `others`; what
     was run."""
     question = Question("bar", 1e-3, 1.0, deadline_us, 45.0, step)
@@ -207,7 +207,8 @@ def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=No
 
     def run(kind, setting, name, step, duration, *_, **__):
         ran.append((name, step)) if kind == "verification" else None
-        return {"status": "ok", "reason": "", "setting": setting.name, "step": step, "step_us_p99": p99,
+        status = dict(plain).get(name, "ok") if kind == "outcome" else "ok"
+        return {"status": status, "reason": "", "setting": setting.name, "step": step, "step_us_p99": p99,
                 "estimate": estimate(step), "exact": exact, "duration": duration}
     run.slowdown = 1.0
     verify(advice, run, lambda share: 1.0, lambda text: None)
@@ -401,9 +402,10 @@ def test_what_is_advised_is_what_was_timed_and_errors_are_judged_after_every_ste
         {"automatic"} & set(repeated))
 
 
-def test_who_uses_no_library_is_advised_without_a_blas():
-    line = "build/mbs simulate four-bar:2 --blas openblas"
-    assert advised_line(line, "none") == "build/mbs simulate four-bar:2" and advised_line(line, "KLU") == line
+def test_the_advised_line_is_over_all_of_the_time_and_without_a_blas_where_it_uses_none():
+    line = "build/mbs simulate four-bar:2 --duration 2 --blas openblas"
+    assert advised_line(line, "none", 5.0) == "build/mbs simulate four-bar:2 --duration 5"
+    assert advised_line(line, "KLU", 2.0) == line
 
 
 def test_runs_are_ranked_by_what_interruptions_do_not_reach(advised):
@@ -481,3 +483,8 @@ def test_the_validation_names_what_did_not_hold_and_groups_by_kind():
     table.loc[3, "ratio"] = 1.6
     held, sentence = verdict(table)
     assert not held and sentence.endswith("not so: four-bar:1 at 0.01 m, chain:1 at 0.001 m")
+
+
+def test_a_line_that_is_lost_without_its_check_is_not_advised():
+    advice, ran = verified(lambda step: 1e-4, plain={"a": "wrong-branch"})
+    assert advice.chosen.implementation == "b" and advice.candidates[0].reason.startswith("wrong-branch as it would be advised")

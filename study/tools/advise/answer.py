@@ -58,7 +58,7 @@ def _advised(advice, library):
             "verified_over": row["duration"],
             "error": {"estimate": estimate, "low": low, "high": high, "exact": row["exact"]},
             **_times(one), "deadline_misses": row["deadline_misses"], "steps": row["steps"],
-            "command": advised(advice.outcome["command"], library),
+            "command": advised(advice.outcome["command"], library, advice.question.duration),
             "raw_file": row["raw_file"]}
 
 

@@ -41,9 +41,10 @@ def typed(record):
     return shlex.join(["build/mbs", *(word for word in record.command[1:] if word != "--json")])
 
 
-def advised(command, library):
-    """A command line as it is advised: without a BLAS where `library` of `mbs list --json` is "none"."""
+def advised(command, library, duration):
+    """A command line as it is advised: over all of the time, without a BLAS where `library` of `mbs list --json` is "none"."""
     words = shlex.split(command)
+    words[words.index("--duration") + 1] = f"{duration:g}"
     if library == "none" and "--blas" in words:
         at = words.index("--blas")
         del words[at:at + 2]

@@ -26,16 +26,20 @@ def verify(advice, run, left, tell):
         row = {} | run("verification", one.setting, one.implementation, one.step, duration, 1.5 * seconds + 2, checks=HALVED)
         row |= {"estimate": _at_least(row, advice)}
         advice.verifications.append(row)
-        if accepted(row, advice, one):
-            advice.chosen, advice.verified = one, row | {"estimate": max(row["estimate"], row["exact"] or 0.0)}
-            if duration < question.duration:
-                advice.cut_short.append(
-                    f"verified over {duration:g} of {question.duration:g} s, held to that share of the error: "
-                    f"--budget {question.budget * question.duration / duration:.2g} is enough for all")
-            tell("the advised line itself")
-            advice.outcome = run("outcome", one.setting, one.implementation, one.step, duration, seconds + 2, repeats=1)
-            return
-        _reconsider(one, row, advice)
+        if not accepted(row, advice, one):
+            _reconsider(one, row, advice)
+            continue
+        tell("the advised line itself")
+        advice.outcome = run("outcome", one.setting, one.implementation, one.step, duration, seconds + 2, repeats=1)
+        if advice.outcome["status"] not in FINISHED:
+            one.drop(f"{advice.outcome['status']} as it would be advised: {advice.outcome['reason']}")
+            continue
+        advice.chosen, advice.verified = one, row | {"estimate": max(row["estimate"], row["exact"] or 0.0)}
+        if duration < question.duration:
+            advice.cut_short.append(
+                f"verified over {duration:g} of {question.duration:g} s, held to that share of the error: "
+                f"--budget {question.budget * question.duration / duration:.2g} is enough for all")
+        return
 
 
 def _affordable(one, question, seconds):
