@@ -4,6 +4,9 @@ from analysis.extremes import battery, pivots, trials, verdicts, ways
 from analysis.extremes.page import nobody, overhead
 
 
+MOST = 10  # silent wrongs that the answer itself names
+
+
 def answers(tables, view):
     found = [*_battery(tables["battery"]), *_ways(tables["ways"], tables["ways_cost"]), *_pivots(tables["pivots"])]
     return found or [{"text": "Not measured: nobody that takes part runs at the extremes.", "anchor": ""}]
@@ -22,7 +25,9 @@ def _battery(table):
         text += f" Bound “no false alarm on standard problems at their own steps”: {_held(wrongly)}, in {standard.sum()} runs."
     if len(others):
         text += f" Other false alarms: {_places(others)}."
-    yield {"anchor": "battery", "text": text}
+    entries = verdicts.listed(runs, verdicts.SILENT)
+    text += "".join(f" {one['kind']}, {one['mechanism']}: {one['commands'][0]}." for one in entries[:MOST])
+    yield {"anchor": "battery", "text": text + (f" {len(entries) - MOST} more on the page." if len(entries) > MOST else "")}
     lost = {}
     for axis, value, _ in nobody(battery.extreme(runs)):
         lost.setdefault(axis, []).append(value)

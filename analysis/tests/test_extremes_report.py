@@ -31,7 +31,7 @@ SPRUNG = next(cell for cell in cells.extremes() if cell.motion is None)
 
 def record(name, cell, output=None, series=None, ended="done", reason="", **more):
     cell = {"contenders": ["a/v"], "role": "penalty", "number": 0, "program": "mbs", "settings": ["--step", f"{cells.STEP:g}"]} | cell
-    return Record(name, cell, ended, reason, 0.1, ["build/mbs", "simulate", "a scene.json"], {},
+    return Record(name, cell, ended, reason, 0.1, ["build/mbs", "simulate", "a scene.json", "--json", "--trajectory", "MOTION", "--every", "5"], {},
                   {"status": "ok", "status_reason": ""} | (output or {}), series or {}, **more)
 
 
@@ -102,6 +102,7 @@ def test_trials_are_counted_by_kind_and_bounds_that_fail_are_said_to():
     assert (wrong["runs"], wrong["wrong_from"], wrong["settings"]) == (2, 0.0, ["penalty"]) and wrong["true_error"] == pytest.approx(0.6 * 2**0.5 / KITE.length)
     [text] = [one["text"] for one in sentences._battery(found)]
     assert "Of 5 runs of 2 mechanisms of 2 kinds 2 are silently wrong, and 1 is called worse" in text
+    assert text.endswith("driven four-bar, kite at 0.001, 1 per s: build/mbs simulate 'a scene.json'.")
     assert "silently wrong”: not held, 2 runs (driven four-bar: 2)." in text and "own steps”: held, in 1 runs." in text
     text = render(made(trial("plausible", 0.5)))[1]
     assert "Silently wrong: 1 run<" in text and "build/mbs simulate" in text and "False alarm: no run." in text
