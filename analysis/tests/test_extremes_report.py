@@ -312,7 +312,7 @@ def render(found):
     drawn = figures.draw(found, VIEW)
     for figure in drawn.values():
         plt.close(figure)
-    template = site._template(ROOT / "analysis" / "extremes" / "page.html.j2")
+    template = site.template(ROOT / "analysis" / "extremes" / "page.html.j2")
     return set(drawn), template.render(**page.context(found, VIEW), figures=dict.fromkeys(drawn, "AA"), schema={}, part="extremes", parts={},
                                        question="?", facts=FACTS, libraries=["c"], context=dict.fromkeys(("cpu_model", "num_cpus", "commit", "compiler",
                                                                                         "flags", "kernel", "machine", "dirty"), "c"))
