@@ -1,8 +1,10 @@
 # Statistics of timed cells: ratios within a process, intervals over processes, who is fastest and who is as fast.
 #
 # In a process all contenders of a scene take turns, so that what disturbs the machine disturbs all of them: the
-# ratio of two is the median over samples of their quotient there. Processes differ by the layout of memory. The
-# ratio is the mean of its logarithm over processes, with Student's interval [Kalibera and Jones 2013].
+# ratio of two is the median over samples of their quotient there. Processes differ by the layout of memory, and each of
+# the program's layouts (LAYOUTS, whose functions lie in other places) by where its code lies, as another build would. The
+# ratio is the mean of its logarithm over layouts, of each the mean over its processes, with Student's interval over layouts
+# [Kalibera and Jones 2013]: what a new build on a machine of this kind will show.
 #
 # Times are those of the processor: a turn takes a few milliseconds, and whoever is interrupted in one would lose by
 # the clock what others did meanwhile. `clock_us` beside them tells how much that was.
@@ -16,13 +18,15 @@ CONFIDENCE = 0.95
 PHASES = ("evaluation", "assembly", "factorization", "solve", "projection", "other")  # of a step: counters phase_…
 EQUIVALENT = 1.05  # who is shown to take at most so many times the fastest's time is as fast
 LEFT_OUT, ALONE = "-left-out", "-alone"  # ends of roles of study.core.timing.measure
-COLUMNS = ("scene", "implementation", "environment", "process", "status", "reason", "step_us", "low_us", "high_us",
+DISTURBED = 1.1  # the clock over the processor's time, from which a process counts as disturbed
+TWIN = "+twin"  # a second instance of a contender in the same process: what is told apart where nothing differs
+COLUMNS = ("scene", "implementation", "environment", "process", "layout", "status", "reason", "step_us", "low_us", "high_us",
            "clock_us", "samples", "record")
 
 
 def processes(records):
     """One row for each contender of each process of timed cells (records of `study.core.timing.measure`):
-    scene, implementation, environment, process (its number), status, reason, step_us (median over samples, with
+    scene, implementation, environment, process (its number), layout (the program's, if it had one), status, reason, step_us (median over samples, with
     the least and the largest), samples (µs a step), clock_us (the median by the clock), record, and every counter of `mbs bench` by its name."""
     rows = [row for record in records for row in _rows(record)]
     found = pandas.DataFrame(rows)
@@ -33,8 +37,8 @@ def counted(records):
     """The records of timed cells that count. Who ended a process or differed was left out, and the others were measured
     again. So a process that failed speaks for nobody who has a record of being left out of it or was measured beside
     one; a process that ended well gives way to the one of the same number without those who were left out. Trials of
-    one alone do not count. Roles come without "-left-out"."""
-    records = [one for one in records if not one.role.endswith(ALONE)]
+    one alone do not count, nor do disturbed processes where most of their kind are not. Roles come without "-left-out"."""
+    records = _calm([one for one in records if not one.role.endswith(ALONE)])
     out, groups = {}, {}
     for one in records:
         chosen = out if one.role.endswith(LEFT_OUT) else groups
@@ -47,6 +51,21 @@ def counted(records):
         elif not _replaced(one, groups[_asked(one)], lost):
             found.append(one)
     return found
+
+
+def _calm(records):
+    """Without disturbed processes, where most of the same question were calm."""
+    kinds = {}
+    for one in records:
+        kinds.setdefault((*_asked(one), one.role, *one.cell["contenders"]), []).append((disturbed(one), one))
+    lost = {id(one) for group in kinds.values() if 2 * sum(found for found, _ in group) < len(group) for found, one in group if found}
+    return [one for one in records if id(one) not in lost]
+
+
+def disturbed(record):
+    """Whether others ran on its processor: by the clock its turns took clearly longer than by the processor's time."""
+    rows = [row for row in record.output.get("rows", {}).values() if row.get("cpu_us") and row.get("stretch_us")]
+    return bool(rows) and sum(sum(row["stretch_us"]) for row in rows) > DISTURBED * sum(sum(row["cpu_us"]) for row in rows)
 
 
 def _asked(record):
@@ -67,8 +86,10 @@ def _rows(record):
     cell = record.cell
     for name in cell["contenders"]:
         row = {"scene": cell["scene"], "implementation": name, "environment": cell["environment"],
-               "process": cell["number"], "status": record.status, "reason": record.reason, "record": record.name}
-        found = record.output.get("rows", {}).get(f"{name.partition('+')[0]}/{cell['scene']}")
+               "process": cell["number"], "layout": cell.get("program", ""), "status": record.status, "reason": record.reason,
+               "record": record.name}
+        given = record.output.get("rows", {})
+        found = given.get(f"{name if name.endswith(TWIN) else name.partition('+')[0]}/{cell['scene']}")
         if not record.done:
             yield row
         elif found is None:
@@ -98,6 +119,7 @@ class Ratio:
     value: float
     low: float
     high: float
+    chance: float = math.nan  # to find so large a ratio, or a larger one, where it is 1 (Student's, one-sided)
 
 
 NONE = Ratio(math.nan, math.nan, math.nan)
@@ -110,6 +132,9 @@ class Paired:
     def __init__(self, rows):
         self.logs = {}  # {name: {(environment, process): logarithms of samples}}
         good = rows[rows.status == "ok"]
+        # {process: its layout}; in sets without layouts each process stands for itself
+        self.layouts = {number: layout for number, layout in zip(good.process, good.layout)
+                        if str(layout).startswith("layouts/")} if "layout" in good else {}
         for name, environment, process, samples in zip(good.implementation, good.environment, good.process, good.samples):
             self.logs.setdefault(name, {})[environment, process] = numpy.log(samples)
         self.lost = set(rows[~rows.status.isin(["ok", "dropped"])].implementation)
@@ -121,37 +146,52 @@ def paired(rows):
 
 def ratio(rows, first, second):
     """Time of `first` over that of `second` in `rows` of one scene; NaN where they share no process. Of one
-    process there is no interval: it reaches from 0 to infinity."""
-    logs = log_ratios(rows, first, second)
+    layout, or process, there is no interval: it reaches from 0 to infinity."""
+    rows = paired(rows)
+    return of_logs(by_layout(rows, log_ratios(rows, first, second)))
+
+
+def by_layout(rows, logs):
+    """Means of `log_ratios` over the processes of each layout."""
+    found = {}
+    for number, value in logs.items():
+        found.setdefault(rows.layouts.get(number, number), []).append(value)
+    return numpy.array([numpy.mean(one) for one in found.values()])
+
+
+def of_logs(logs):
+    """The Ratio whose logarithm is the mean of `logs`, independent of each other."""
     if not len(logs):
         return NONE
     middle = float(numpy.mean(logs))
     if len(logs) == 1:
         return Ratio(math.exp(middle), 0.0, math.inf)
     from scipy import stats
-    half = stats.t.ppf((1 + CONFIDENCE) / 2, len(logs) - 1) * float(numpy.std(logs, ddof=1)) / math.sqrt(len(logs))
-    return Ratio(*(math.exp(middle + shift) for shift in (0.0, -half, half)))
+    error = float(numpy.std(logs, ddof=1)) / math.sqrt(len(logs))
+    half = stats.t.ppf((1 + CONFIDENCE) / 2, len(logs) - 1) * error
+    chance = float(stats.t.sf(middle / error, len(logs) - 1)) if error else float(middle <= 0)
+    return Ratio(*(math.exp(middle + shift) for shift in (0.0, -half, half)), chance)
 
 
 def log_ratios(rows, first, second):
-    """Logarithms of the ratio, one a process. Contenders of different environments are compared through the
-    variant that both environments have."""
+    """{process: logarithm of the ratio}. Contenders of different environments are compared through the variant that
+    both environments have."""
     logs = paired(rows).logs
     mine, other = (logs.get(name, {}) for name in (first, second))
-    direct = [_median(mine[key], other[key]) for key in sorted(set(mine) & set(other))]
+    direct = {key[1]: _median(mine[key], other[key]) for key in sorted(set(mine) & set(other))}
     if direct or not (mine and other):
-        return numpy.array(direct)
+        return direct
     environments = [next(iter(one))[0] for one in (mine, other)]
     common = _common(logs, environments)
     if common is None:
-        return numpy.array([])
+        return {}
     anchors = [logs[name] for name in common]
-    found = []
+    found = {}
     for number in sorted({key[1] for key in mine} & {key[1] for key in other}):
         keys = [(environment, number) for environment in environments]
         if keys[0] in anchors[0] and keys[1] in anchors[1]:
-            found.append(_median(mine[keys[0]], anchors[0][keys[0]]) - _median(other[keys[1]], anchors[1][keys[1]]))
-    return numpy.array(found)
+            found[number] = _median(mine[keys[0]], anchors[0][keys[0]]) - _median(other[keys[1]], anchors[1][keys[1]])
+    return found
 
 
 def _median(first, second):
@@ -188,6 +228,11 @@ class Ranking:
         return all(one.low > 1 for name, one in self.ratios.items() if name != self.winner)
 
     @property
+    def chance(self):
+        """To find the winner so far ahead where one of the others is as fast; NaN if there is no other."""
+        return max((one.chance for name, one in self.ratios.items() if name != self.winner), default=math.nan)
+
+    @property
     def equivalent(self):
         """The winner and all that are shown to take at most EQUIVALENT times its time."""
         return tuple(name for name, one in self.ratios.items() if name == self.winner or one.high <= EQUIVALENT)
@@ -202,6 +247,11 @@ class Ranking:
     def settled(self):
         """Whether it is said of each whether it is as fast as the winner."""
         return not self.open
+
+
+def by_time(winner, ratios):
+    """Ratios to the winner, which comes first; those that share no process with it last."""
+    return dict(sorted(ratios.items(), key=lambda one: (one[0] != winner, one[1].value if one[1].value > 0 else math.inf)))
 
 
 def rank(rows, names=None):
@@ -223,5 +273,5 @@ def rank(rows, names=None):
         faster = min((name for name in order if name not in tried and ratios[name].value < 1),
                      key=lambda name: ratios[name].value, default=None)
         if faster is None:
-            return Ranking(winner, dict(sorted(ratios.items(), key=lambda one: (one[0] != winner, one[1].value))))
+            return Ranking(winner, by_time(winner, ratios))
         winner = faster

@@ -1,4 +1,5 @@
 # Cells of the maps: who is fastest in a scene, in each layer.
+import math
 from dataclasses import dataclass
 
 import pandas
@@ -46,8 +47,19 @@ def map_cells(results, names):
 
 
 def table(results):
-    return pandas.DataFrame([_row(results, cell, layer) for layer in layers(results.registry)
-                             for cell in map_cells(results, results.layer(layer))])
+    return pandas.DataFrame([row for layer in layers(results.registry) for row in _holm(
+        [_row(results, cell, layer) for cell in map_cells(results, results.layer(layer))])])
+
+
+def _holm(rows):
+    """Marks what stays decided when all cells of a layer are asked at once [Holm 1979]: the chance of one false winner
+    or more among them stays below 5 %. Fills that were added where the winner changes count."""
+    asked = sorted((row for row in rows if not math.isnan(row.get("chance", math.nan))), key=lambda row: row["chance"])
+    for place, row in enumerate(asked):
+        if row["chance"] > 0.05 / (len(asked) - place):
+            break
+        row["holm"] = row["decided"]
+    return rows
 
 
 def _row(results, cell, layer):
@@ -61,6 +73,6 @@ def _row(results, cell, layer):
     mine = rows[(rows.implementation == ranking.winner) & (rows.status == "ok")]
     margin = ranking.margin if ranking.second else NONE
     return row | {"winner": ranking.winner, "second": ranking.second, "margin": margin.value, "low": margin.low,
-                  "high": margin.high, "equivalent": " ".join(ranking.equivalent), "open": " ".join(ranking.open),
+                  "high": margin.high, "chance": ranking.chance, "holm": False, "equivalent": " ".join(ranking.equivalent), "open": " ".join(ranking.open),
                   "processes": len(mine), "record": " ".join(mine.record)}
 

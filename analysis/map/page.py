@@ -1,6 +1,6 @@
 # What the page of the map says besides its figures.
 from analysis.core.text import interval
-from analysis.map import losses, paper, summary
+from analysis.map import carry, losses, paper, summary
 from analysis.map.ledger import by_id
 from analysis.map.operations import table as table2
 from analysis.map.results import of
@@ -22,6 +22,9 @@ def context(tables, view):
             "verdicts": losses.verdicts(results), "checks": losses.checks(results), "losses": losses.losses(results),
             "not_reached": list(scenes[scenes.reason != ""].scene), "entries": view.registry.entries,
             "coverage": view.registry.coverage, "variants": list(view.registry.variants),
+            "controls": carry.judged(tables["controls"]), "twins": tables["controls"].to_dict("records"), "spread": [
+                row | {"of": carry.SOURCES[row["source"]]} for row in tables["spread"].to_dict("records")],
+            "disturbance": tables["disturbance"].to_dict("records")[0],
             "processes": results.timing[results.timing.status == "ok"].record.nunique()}
 
 

@@ -19,6 +19,10 @@ def of(tables, view):
 _last = []
 
 
+def with_samples(rows):
+    return rows.assign(samples=[tuple(map(float, text.split())) for text in rows.samples_us])
+
+
 class Results:
     def __init__(self, tables, view):
         self.tidy, self.verification, self.view = tables["tidy"], tables["verification"], view
@@ -34,8 +38,7 @@ class Results:
     @cached_property
     def timing(self):
         """Rows of timed processes and of what was not timed."""
-        rows = self.tidy[self.tidy.kind == "timing"]
-        return rows.assign(samples=[tuple(map(float, text.split())) for text in rows.samples_us])
+        return with_samples(self.tidy[self.tidy.kind == "timing"])
 
     @cached_property
     def _scenes(self):
@@ -78,7 +81,8 @@ class Results:
     def alternatives(self, variant):
         """Rows of `variant` at natural fill on all pairs that it was timed on."""
         rows = self.timing
-        return rows[(rows.status == "ok") & (rows.folder + "/" + rows.variant == variant) & rows.fill_asked.isna()]
+        return rows[(rows.status == "ok") & (rows.folder + "/" + rows.variant == variant) & rows.fill_asked.isna() &
+                    ~rows.implementation.str.endswith(timing.TWIN)]
 
     def builds(self, variant):
         """Rows of `variant` in several builds. Their processes alternate: those of one number belong together."""

@@ -69,8 +69,8 @@ def prices(results, names):
 
 
 def settled(table, layer):
-    """{"cells", "decided", "equivalent", "open"}: how many cells of a layer were timed, and how they ended."""
+    """{"cells", "decided", "holm", "equivalent", "open"}: how many cells of a layer were timed, and how they ended."""
     rows = table[(table.layer == layer) & (table.winner != "")]
     decided, settled = rows.decided.fillna(False).astype(bool), rows.settled.fillna(False).astype(bool)
-    return {"cells": len(rows), "decided": int(decided.sum()), "equivalent": int((settled & ~decided).sum()),
+    return {"cells": len(rows), "decided": int(decided.sum()), "holm": int(rows.holm.fillna(False).astype(bool).sum()), "equivalent": int((settled & ~decided).sum()),
             "open": int((~settled & ~decided).sum())}

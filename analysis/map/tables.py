@@ -2,10 +2,10 @@
 import pandas
 
 from analysis.core import schema
-from analysis.map import tidy
+from analysis.map import carry, tidy
 from analysis.map.cells import table as cells
 from analysis.map.claims import claims
-from analysis.map.results import Results
+from analysis.map.results import Results, with_samples
 
 
 def build(records, view):
@@ -14,4 +14,7 @@ def build(records, view):
     found = {name: schema.conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(known[name])), known[name],
                                   f"map/{name}.csv") for name, frame in found.items()}
     results = Results(found, view)
-    return found | {"cells": cells(results), "claims": pandas.DataFrame(claims(results))}
+    seeds = results.tidy[results.tidy.kind == "seeds"]
+    return found | {"cells": cells(results), "claims": pandas.DataFrame(claims(results)), "controls": carry.controls(results.timing),
+                    "spread": carry.components(results.timing, with_samples(seeds)),
+                    "disturbance": carry.disturbance(records)}

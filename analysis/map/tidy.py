@@ -20,7 +20,7 @@ def tidy(records):
     rows += [_common(row | {"process": None}, "timing") for row in [*lost, *_rejected(records)]]
     rows += [_common(row | {"process": None}, "timing")
              for row in processes([one for one in records if one.role in SKIPPED]).to_dict("records")]
-    rows += [_common(row, kind) for kind in ("builds", "phases")
+    rows += [_common(row, kind) for kind in ("builds", "phases", "seeds")
              for row in processes([one for one in records if one.role == kind]).to_dict("records")]
     rows += [row for one in records if one.role == "operations" for row in _operations(one)]
     timed = {(row["scene"], row["implementation"]) for row in rows if row["status"] == "ok" and row["kind"] == "timing"}
@@ -35,7 +35,7 @@ def tidy(records):
 
 def scene_of(name):
     """{"scene", "variables", "fill_asked"} of the N-four-bar's name."""
-    loops, _, fill = name.removeprefix("four-bar:").partition(",fill=")
+    loops, _, fill = name.removeprefix("four-bar:").partition(",seed=")[0].partition(",fill=")
     return {"scene": name, "variables": 2 * int(loops) + 2, "fill_asked": float(fill) if fill else None}
 
 
@@ -46,7 +46,7 @@ def _common(row, kind):
     samples = row.get("samples")
     timed = {"samples": len(samples), "samples_us": " ".join(f"{one:.6g}" for one in samples)} if isinstance(samples, tuple) else {}
     return {"kind": kind, "folder": folder, "variant": variant, "build": "" if build == "own" else build, "blas": blas} | {
-        key: row.get(key) for key in ("implementation", "environment", "status", "reason", "process", "step_us", "low_us",
+        key: row.get(key) for key in ("implementation", "environment", "status", "reason", "process", "layout", "step_us", "low_us",
                                       "high_us", "clock_us", "record", *COUNTERS)} | scene_of(row["scene"]) | timed
 
 

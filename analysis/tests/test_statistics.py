@@ -8,7 +8,9 @@ import pytest
 from analysis.core.records import Record
 from analysis.core.statistics import median, phase_shares, power_law_exponent
 from analysis.core.timing import counted, rank, ratio
+from analysis.map import carry
 from analysis.map.tidy import PHASES
+from analysis.map.timed import AFTER
 
 
 def rows(name, processes, environment="own", status="ok"):
@@ -56,6 +58,50 @@ def test_the_interval_covers_the_truth_as_often_as_it_says(processes):
     assert 0.91 <= covered / 300 <= 0.99
 
 
+def in_layouts(random, level, layouts, each, between, inside):
+    """Rows of two contenders in `each` processes of each layout, which shifts their ratio."""
+    found = []
+    for number in range(layouts * each):
+        if number < layouts:
+            in_layouts.shift[number] = between * random.standard_normal()
+        ratio_here = level * math.exp(in_layouts.shift[number % layouts] + inside * random.standard_normal())
+        found += [row | {"layout": f"layouts/mbs-{number % layouts + 1}", "record": "r", "scene": "s"} for row in
+                  rows("a", {AFTER + 1 + number: (ratio_here,) * 4}) + rows("b", {AFTER + 1 + number: (1.0,) * 4})]
+    return pandas.DataFrame(found)
+
+
+in_layouts.shift = {}
+
+
+def test_the_interval_is_that_for_a_new_layout_however_many_processes_each_has():
+    random, covered = numpy.random.default_rng(8), 0
+    for _ in range(200):
+        found = ratio(in_layouts(random, 1.2, 8, 3, 0.04, 0.005), "a", "b")
+        covered += found.low <= 1.2 <= found.high
+    assert 0.90 <= covered / 200 <= 0.99
+
+
+def test_the_spread_is_told_by_its_sources():
+    random = numpy.random.default_rng(9)
+    found = [carry.components(in_layouts(random, 1.2, 8, 3, 0.04, 0.01), pandas.DataFrame(columns=["status", "variables", "fill_asked"])) for _ in range(60)]
+    mean = {source: numpy.sqrt(numpy.mean([one.set_index("source").percent[source] ** 2 for one in found]))
+            for source in ("process", "layout")}
+    assert mean["process"] == pytest.approx(1.0, rel=0.1) and mean["layout"] == pytest.approx(4.0, rel=0.15)
+
+
+def test_controls_count_what_is_decided_though_nothing_differs():
+    random = numpy.random.default_rng(10)
+
+    def table(shift, scenes):
+        return pandas.concat([pandas.DataFrame(
+            rows("a", {AFTER + n: (1.0,) for n in range(1, 9)}) +
+            rows("a+twin", {AFTER + n: (shift * math.exp(0.01 * random.standard_normal()),) for n in range(1, 9)})
+        ).assign(scene=f"four-bar:{scene}", record="r") for scene in range(1, scenes + 1)])
+    sound, unsound = (carry.judged(carry.controls(table(shift, 40))) for shift in (1.0, 1.02))
+    assert sound["pairs"] == 40 and sound["false"] <= 6 and sound["sound"]
+    assert unsound["false"] > 30 and not unsound["sound"] and unsound["widest"] > 1.01
+
+
 def test_clear_difference_is_decided_and_the_same_is_not():
     random = numpy.random.default_rng(3)
     found = rank(pandas.DataFrame(rows("a", noisy(random, 1.0)) + rows("b", noisy(random, 1.5))))
@@ -79,7 +125,7 @@ def test_who_failed_once_is_not_ranked():
 
 def asked(names, number, status="done", role="look/default", step="1e-3", environment="own"):
     return Record(f"{role}/{names}-{number}-{step}", {"scene": "s", "contenders": list(names), "environment": environment, "role": role,
-                                               "number": number, "settings": ["--step", step, "--seed", number]}, status, "", 1.0, [], {})
+                                               "number": number, "settings": ["--step", step, "--seed", number]}, status, "", 1.0, [], {}, {})
 
 
 def test_a_process_that_was_measured_again_without_who_ended_it_does_not_count():
@@ -95,6 +141,16 @@ def test_a_process_that_was_measured_again_without_who_ended_it_does_not_count()
     assert [(one.cell["contenders"], one.status) for one in spent] == [
         (list("abc"), "done"), (["c"], "crashed"), (list("ab"), "dropped")]
     assert [one.status for one in counted([asked("ab", 1, "crashed")])] == ["crashed"]  # nobody knows yet who did it
+
+
+def test_a_process_in_which_others_ran_does_not_count_where_most_were_calm():
+    def timed(number, clock):
+        found = asked("ab", number)
+        found.output["rows"] = {"a/s": {"cpu_us": [10.0, 10.0], "stretch_us": [10.0 * clock, 10.0 * clock]}}
+        return found
+    calm, busy = [timed(number, 1.02) for number in (1, 2, 3)], timed(4, 1.5)
+    assert counted([*calm, busy]) == calm
+    assert len(counted([calm[0], busy])) == 2  # half of them: nobody knows which is the rule
 
 
 def test_power_law_exponent():

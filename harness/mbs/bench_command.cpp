@@ -18,6 +18,7 @@
 #include "bench/scene_timing.hpp"
 #include "describe/warnings.hpp"
 #include "environment/environment.hpp"
+#include "environment/machine.hpp"
 #include "mbs/bench_flags.hpp"
 #include "mbs/bench_output.hpp"
 #include "mbs/commands.hpp"
@@ -39,7 +40,7 @@ void add_options(CLI::App& app, BenchRequest& request, StepOptions& step, Shown&
   app.add_option("--implementation", request.implementations,
                  "folder or folder/variant, several by commas or repeated (default: all but examples and what was "
                  "tried, and the control "
-                 "null/null that does nothing)")
+                 "null/null that does nothing); NAME+twin is a second instance of a variant")
       ->allow_extra_args(false)
       ->delimiter(',');
   step.add_to(app);
@@ -144,6 +145,7 @@ int run_cells(const std::vector<PlannedCell>& cells, const BenchRequest& request
     require_not_scene("--benchmark_out", flags.out, scene);
   }
   BenchOutput output(flags.out);
+  stay_on_this_processor();
   for (const auto& [key, value] : environment_record()) benchmark::AddCustomContext(key, value);
   if (!request.operations) warn(cells, from);
   if (request.operations || request.batch) return run_benchmarks(cells, request, output);

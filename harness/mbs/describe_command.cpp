@@ -1,34 +1,15 @@
 // mbs describe: what a scene requires.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 
 #include "describe/describe.hpp"
 #include "describe/recommendation.hpp"
 #include "mbs/commands.hpp"
-#include "registry/factory.hpp"
 #include "registry/registry.hpp"
 #include "scene_file/load_scene.hpp"
 
 namespace mbs {
-namespace {
-
-/// Whether the variants of this build serve the scene.
-WhyNot why_not(const Model& model, StepSettings settings) {
-  return [&model, settings](const std::string& name, Scheme scheme) mutable -> std::string {
-    const auto variants = all_variants();
-    const auto found = std::ranges::find(variants, name, &NamedVariant::name);
-    if (found == variants.end()) return "it is not in this build";
-    settings.scheme = scheme;
-    const Serves& serves = found->variant->serves;
-    std::string missing = why_not_served(serves, settings);
-    if (missing.empty()) missing = why_not_served(serves.terms, model);
-    return missing.empty() ? "" : "it does not serve " + missing;
-  };
-}
-
-}  // namespace
 
 void add_describe_command(CLI::App& app, int& status) {
   struct Options {
@@ -50,8 +31,12 @@ void add_describe_command(CLI::App& app, int& status) {
     require_step(options->settings.step);
     const Scene scene = load_scene(options->scene);
     nlohmann::json description = describe_json(scene, options->settings);
-    description.update(recommendation_json(parse_rule(kRuleText), description,
-                                           why_not(scene.model, options->settings)));
+    const auto why_not = [&](const std::string& variant, Scheme scheme) {
+      StepSettings settings = options->settings;
+      settings.scheme = scheme;
+      return why_not_offered(variant, scene.model, settings);
+    };
+    description.update(recommendation_json(parse_rule(kRuleText), description, why_not));
     if (options->json) {
       fmt::print("{}\n", description.dump(2));
     } else {

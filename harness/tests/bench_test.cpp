@@ -196,6 +196,21 @@ TEST(BenchPlan, TakesWhatWasTriedOnlyByItsFullName) {
       folder.cells, [&](const PlannedCell& cell) { return cell.variant == tried.variant; }));
 }
 
+TEST(BenchPlan, ATwinIsASecondInstanceOfItsVariant) {
+  if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
+  const NamedVariant first = all_variants().front();
+  BenchRequest twice = request();
+  twice.scenes = {"four-bar:1"};
+  twice.implementations = {first.name, first.name + "+twin"};
+  const BenchPlan plan = plan_bench(twice);
+  ASSERT_EQ(plan.cells.size(), 2U);
+  EXPECT_EQ(plan.cells[0].name, first.name + "/four-bar:1");
+  EXPECT_EQ(plan.cells[1].name, first.name + "+twin/four-bar:1");
+  EXPECT_EQ(plan.cells[1].variant, first.variant);
+  twice.implementations = {"nobody+twin"};
+  EXPECT_THROW(plan_bench(twice), UsageError);
+}
+
 TEST(BenchPlan, CentresTheStretchOnTheSingularPosition) {
   for (const int loops : {1, 10, 40, kMostLoopsToCross}) {
     BenchRequest one = request();

@@ -6,6 +6,10 @@
 #include <algorithm>
 
 #include "describe/structure.hpp"
+#include "reference/reference_simulation.hpp"
+#include "registry/setting_names.hpp"
+#include "run/initial_state.hpp"
+#include "run/settings.hpp"
 #include "scene_file/load_scene.hpp"
 #include "support/sample_models.hpp"
 
@@ -51,8 +55,9 @@ TEST(Describe, FourBar) {
   EXPECT_EQ(d["tangent"]["nonzeros"], 28);
   EXPECT_EQ(d["tangent"]["fill"], 28.0 / 36.0);
   // Three points in a chain, two coordinates each: columns of 4, 3, 4, 3, 2 and 1 non-zeros.
-  const nlohmann::json counts = {
-      {"factor_nonzeros", 17}, {"flops", 55.0}, {"height", 6}, {"widest", 4}};
+  const nlohmann::json counts = {{"factor_nonzeros", 17}, {"per_column", 17.0 / 6.0},
+                                 {"flops", 55.0},         {"height", 6},
+                                 {"widest", 4},           {"supernodes", 2}};
   EXPECT_EQ(d["elimination"]["orderings"]["natural"], counts);
   EXPECT_EQ(d["elimination"]["ordering"], "AMD");
   // AMD takes the ends first: the middle two are on every path.
@@ -61,23 +66,30 @@ TEST(Describe, FourBar) {
   }
   EXPECT_EQ(d["elimination"]["height"], 4);
   EXPECT_EQ(d["elimination"]["per_column"], 17.0 / 6.0);
-  EXPECT_EQ(d["features"], nlohmann::json({{"one", 1},
-                                           {"n", 6},
-                                           {"m", 5},
-                                           {"n2", 36},
-                                           {"n3", 216},
-                                           {"jacobian", 14},
-                                           {"mass", 14},
-                                           {"tangent", 28},
-                                           {"fill", 100.0 * (28.0 / 36.0)},
-                                           {"factor", 17},
-                                           {"per_column", 17.0 / 6.0},
-                                           {"flops", 55},
-                                           {"height", 4},
-                                           {"widest", 4},
-                                           {"dimension", 2},
-                                           {"springs", 0},
-                                           {"saddle", 0}}));
+  const nlohmann::json& rows = d["elimination"]["orderings"]["saddle-point"];
+  EXPECT_EQ(d["features"],
+            nlohmann::json({{"n", 6},
+                            {"m", 5},
+                            {"jacobian", 14},
+                            {"mass", 14},
+                            {"tangent", 28},
+                            {"fill", 100.0 * (28.0 / 36.0)},
+                            {"factor", 17},
+                            {"per_column", 17.0 / 6.0},
+                            {"flops", 55},
+                            {"dense", 100.0 * 55.0 / 91.0},
+                            {"height", 4},
+                            {"widest", 4},
+                            {"supernodes", d["elimination"]["supernodes"]},
+                            {"block", 6.0 / d["elimination"]["supernodes"].get<int>()},
+                            {"saddle_factor", rows["factor_nonzeros"]},
+                            {"saddle_flops", rows["flops"]},
+                            {"passes", d["passes"]["penalty"]},
+                            {"saddle_passes", d["passes"]["saddle-point"]},
+                            {"dimension", 2},
+                            {"springs", 0},
+                            {"stiff", 0},
+                            {"saddle", 0}}));
   EXPECT_EQ(d["scheme"]["take"], "penalty");
   EXPECT_EQ(d["precision"], "double");
   EXPECT_EQ(d["terms"]["gravity"], true);
@@ -89,6 +101,30 @@ TEST(Describe, FourBar) {
   EXPECT_EQ(d["assembly"]["position_correction"], 0.0);
   EXPECT_EQ(d["judged_length"], 1.0);
   EXPECT_TRUE(d["artificial_fill"].is_null());
+}
+
+double counted_passes(const Scene& scene, Scheme scheme) {
+  StepSettings settings = kSettings;
+  settings.scheme = scheme;
+  settings.penalty = automatic_penalty(scene.model, settings);
+  settings.tolerance = automatic_tolerance(scene.model, settings);
+  ReferenceSimulation simulation(scene.model, settings);
+  simulation.set_state(initial_state(scene.model));
+  constexpr int kSteps = 100;
+  int passes = 0;
+  for (int step = 0; step < kSteps; ++step) passes += simulation.step().passes;
+  return static_cast<double>(passes) / kSteps;
+}
+
+TEST(Describe, PassesAreThoseThatStepsTake) {
+  for (const char* name : {"chain:3", "ladder:2", "truss:2", "vehicle:2", "star:3", "clusters:2"}) {
+    const Scene scene = load_scene(name);
+    const auto d = describe_json(scene, kSettings);
+    for (const Scheme scheme : {Scheme::penalty, Scheme::saddle_point}) {
+      EXPECT_NEAR(d["passes"][name_of(scheme)], counted_passes(scene, scheme), 0.1)
+          << name << ' ' << name_of(scheme);
+    }
+  }
 }
 
 TEST(Describe, Text) {
@@ -107,7 +143,8 @@ TEST(Describe, Text) {
         "penalty factor        ", "(singular positions) to ", "for step 0.00125 s; automatic ",
         "14 non-zeros, 46.67 % of m n", "28 non-zeros, 77.78 % of n^2",
         "elimination, AMD      17 non-zeros of L, 2.83 a column, 4 at most; 55 operations; tree of "
-        "height 4\n"}) {
+        "height 4; ",
+        "saddle-point matrix "}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\nnot in\n" << text;
   }
   EXPECT_EQ(text.find("artificial"), std::string::npos);

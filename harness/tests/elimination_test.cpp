@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <random>
+#include <set>
+
+#include "scene_file/load_scene.hpp"
 
 namespace mbs {
 namespace {
@@ -27,43 +30,45 @@ SymmetricPattern band(int size, int width) {
 }
 
 void expect_counts(const SymmetricPattern& pattern, const std::vector<int>& order, long nonzeros,
-                   double flops, int height, int widest) {
+                   double flops, int height, int widest, int supernodes) {
   const auto found = eliminate(pattern, order);
   ASSERT_TRUE(found.has_value());
   EXPECT_EQ(found->factor_nonzeros, nonzeros);
   EXPECT_EQ(found->flops, flops);
   EXPECT_EQ(found->height, height);
   EXPECT_EQ(found->widest, widest);
+  EXPECT_EQ(found->supernodes, supernodes);
 }
 
 TEST(Elimination, ArrowFillsUpAsGivenAndNotByMinimumDegree) {
   const auto small = arrow(5);
-  expect_counts(small, natural_order(small), 5 + 4 + 3 + 2 + 1, 25 + 16 + 9 + 4 + 1, 5, 5);
+  expect_counts(small, natural_order(small), 5 + 4 + 3 + 2 + 1, 25 + 16 + 9 + 4 + 1, 5, 5, 1);
   for (const int size : {5, 40}) {  // Eigen's AMD puts the hub of the small one aside as dense
     const auto pattern = arrow(size);
-    expect_counts(pattern, amd_order(pattern), 2 * size - 1, 4.0 * (size - 1) + 1.0, 2, 2);
+    expect_counts(pattern, amd_order(pattern), 2 * size - 1, 4.0 * (size - 1) + 1.0, 2, 2,
+                  size - 1);
   }
 }
 
 TEST(Elimination, BandKeepsItsWidth) {
   const auto three = band(6, 1), five = band(6, 2);
-  expect_counts(three, natural_order(three), 11, 5 * 4 + 1, 6, 2);
-  expect_counts(five, natural_order(five), 3 * 4 + 2 + 1, 9 * 4 + 4 + 1, 6, 3);
+  expect_counts(three, natural_order(three), 11, 5 * 4 + 1, 6, 2, 5);
+  expect_counts(five, natural_order(five), 3 * 4 + 2 + 1, 9 * 4 + 4 + 1, 6, 3, 4);
   // From both ends to the middle the tree has two branches.
-  expect_counts(band(5, 1), {0, 4, 1, 3, 2}, 9, 4 * 4 + 1, 3, 2);
+  expect_counts(band(5, 1), {0, 4, 1, 3, 2}, 9, 4 * 4 + 1, 3, 2, 4);
 }
 
 TEST(Elimination, DiagonalAndFullAndSmall) {
   const auto diagonal = band(4, 0), full = band(7, 6), one = band(1, 0), none = band(0, 0);
-  expect_counts(diagonal, amd_order(diagonal), 4, 4, 1, 1);
-  expect_counts(full, amd_order(full), 28, 140, 7, 7);
-  expect_counts(one, amd_order(one), 1, 1, 1, 1);
-  expect_counts(none, natural_order(none), 0, 0, 0, 0);
+  expect_counts(diagonal, amd_order(diagonal), 4, 4, 1, 1, 4);
+  expect_counts(full, amd_order(full), 28, 140, 7, 7, 1);
+  expect_counts(one, amd_order(one), 1, 1, 1, 1, 1);
+  expect_counts(none, natural_order(none), 0, 0, 0, 0, 0);
 }
 
 TEST(Elimination, ALoopFills) {
   const SymmetricPattern loop(4, {{1, 0}, {2, 1}, {3, 2}, {3, 0}});
-  expect_counts(loop, natural_order(loop), 3 + 3 + 2 + 1, 9 + 9 + 4 + 1, 4, 3);
+  expect_counts(loop, natural_order(loop), 3 + 3 + 2 + 1, 9 + 9 + 4 + 1, 4, 3, 2);
 }
 
 TEST(Elimination, RandomPatternsAsEntryByEntry) {
@@ -91,7 +96,9 @@ TEST(Elimination, RandomPatternsAsEntryByEntry) {
     long nonzeros = 0;
     double flops = 0.0;
     int tallest = 0, widest = 0;
-    std::vector<int> height(order.size(), 1);
+    std::vector<int> height(order.size(), 1), counts;
+    std::set<int> goes_on;  // columns with the rows of one before, less one
+    std::vector<std::pair<int, int>> parents;
     for (int k = 0; k < size; ++k) {
       std::vector<int> below;
       for (int i = k + 1; i < size; ++i) {
@@ -106,15 +113,29 @@ TEST(Elimination, RandomPatternsAsEntryByEntry) {
       widest = std::max(widest, count);
       tallest = std::max(tallest, height[k]);
       if (!below.empty()) height[below[0]] = std::max(height[below[0]], height[k] + 1);
+      if (!below.empty()) parents.emplace_back(k, below[0]);
+      counts.push_back(count);
     }
-    expect_counts(pattern, order, nonzeros, flops, tallest, widest);
+    for (const auto& [child, parent] : parents) {
+      if (counts[child] == counts[parent] + 1) goes_on.insert(parent);
+    }
+    expect_counts(pattern, order, nonzeros, flops, tallest, widest,
+                  size - static_cast<int>(goes_on.size()));
   }
+}
+
+TEST(Elimination, RowsOfConstraintsWaitForTheirVariables) {
+  // Variables 0 to 2; row 3 has 0 and 2, row 4 has 1, row 5 none.
+  const SymmetricPattern pattern(6, {{3, 0}, {3, 2}, {4, 1}});
+  EXPECT_EQ(rows_behind({2, 1, 0}, pattern), (std::vector<int>{5, 2, 1, 4, 0, 3}));
+  const auto pendulum = saddle_point_pattern(load_scene("chain:1").model);  // x, y and its rod
+  expect_counts(pendulum, rows_behind({0, 1}, pendulum), 2 + 2 + 1, 4 + 4 + 1, 2, 2, 2);
 }
 
 TEST(Elimination, TooManyAreNotCounted) {
   const auto pattern = arrow(10'001);
   EXPECT_EQ(eliminate(pattern, natural_order(pattern)), std::nullopt);
-  const auto json = elimination_json(pattern);
+  const auto json = elimination_json(pattern, pattern);
   EXPECT_TRUE(json["orderings"]["natural"].is_null());
   EXPECT_EQ(json["factor_nonzeros"], 2 * 10'001 - 1);
   EXPECT_EQ(json["widest"], 2);

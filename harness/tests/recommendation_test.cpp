@@ -18,7 +18,7 @@ using nlohmann::json;
 /// times are one number for all but b's.
 json rule_json() {
   const auto time = [](double us) {
-    return json{{"coefficients", {{"one", us}}}, {"low", 0.5}, {"high", 2.0}};
+    return json{{"coefficients", {{"1", us}}}, {"low", 0.5}, {"high", 2.0}};
   };
   const auto scene = [](const char* name, int n, double step_us) {
     return json{{"scene", name},
@@ -26,30 +26,30 @@ json rule_json() {
                 {"fastest", "a/fast"},
                 {"step_us", step_us}};
   };
-  return {
-      {"set", "made-up"},
-      {"machine", "a machine"},
-      {"commit", "abc"},
-      {"tree",
-       {{"feature", "n"},
-        {"below", 100},
-        {"then", {{"take", "a/fast"}}},
-        {"else", {{"take", "b/large"}}}}},
-      {"held",
-       {{"families", 3},
-        {"scenes", 10},
-        {"mean_loss", 0.02},
-        {"worst_loss", 0.2},
-        {"within", 0.93}}},
-      {"times",
-       {{"a/fast", {{"layer", "library"}, {"penalty", time(8)}}},
-        {"b/large",
-         {{"layer", "library"},
-          {"penalty", {{"coefficients", {{"one", 1.0}, {"n", 0.5}}}, {"low", 0.75}, {"high", 1.5}}},
-          {"saddle-point", time(30)}}},
-        {"c/third", {{"layer", "library"}, {"penalty", time(6)}}},
-        {"d/own", {{"layer", "own"}, {"penalty", time(5)}, {"saddle-point", nullptr}}}}},
-      {"scenes", json::array({scene("small", 6, 7.5), scene("middle", 50, 70.0)})}};
+  return {{"set", "made-up"},
+          {"machine", "a machine"},
+          {"commit", "abc"},
+          {"tree",
+           {{"feature", "n"},
+            {"below", 100},
+            {"then", {{"take", "a/fast"}}},
+            {"else", {{"take", "b/large"}}}}},
+          {"held",
+           {{"families", 3},
+            {"scenes", 10},
+            {"mean_loss", 0.02},
+            {"worst_loss", 0.2},
+            {"within", 0.93}}},
+          {"times",
+           {{"a/fast", {{"layer", "library"}, {"penalty", time(8)}}},
+            {"b/large",
+             {{"layer", "library"},
+              {"penalty",
+               {{"coefficients", {{"1", 1.75}, {"n*n", 0.0625}}}, {"low", 0.75}, {"high", 1.5}}},
+              {"saddle-point", time(30)}}},
+            {"c/third", {{"layer", "library"}, {"penalty", time(6)}}},
+            {"d/own", {{"layer", "own"}, {"penalty", time(5)}, {"saddle-point", nullptr}}}}},
+          {"scenes", json::array({scene("small", 6, 7.5), scene("middle", 50, 70.0)})}};
 }
 
 std::string anything(const std::string& /*variant*/, Scheme /*scheme*/) { return ""; }
@@ -188,8 +188,12 @@ TEST(Recommendation, RefusesWhatIsNoRule) {
   });
   expect_refused("the layer is 'other'",
                  [](json& rule) { rule["times"]["a/fast"]["layer"] = "other"; });
-  expect_refused("n is -1, allowed",
-                 [](json& rule) { rule["times"]["a/fast"]["penalty"]["coefficients"]["n"] = -1; });
+  expect_refused("n*m is -1, allowed", [](json& rule) {
+    rule["times"]["a/fast"]["penalty"]["coefficients"]["n*m"] = -1;
+  });
+  expect_refused("'colour' is no feature", [](json& rule) {
+    rule["times"]["a/fast"]["penalty"]["coefficients"]["n*colour"] = 1;
+  });
   expect_refused("low is above high",
                  [](json& rule) { rule["times"]["a/fast"]["penalty"]["low"] = 3; });
   expect_refused("a/fast has no times",

@@ -53,7 +53,7 @@ Implementation implementation() {
       .version = library_version(),
       .licence = "LGPL-2.1-or-later AND GPL-2.0-or-later",
       .variants = {{.name = "simplicial",
-                    .description = "entry by entry, LDL', without BLAS (LGPL-2.1-or-later)",
+                    .description = "entry by entry, LDL', without BLAS (LGPL-2.1-or-later itself, in a library that is GPL as a whole)",
                     .create = create<kSimplicial>,
                     .serves = {.terms = kTerms, .saddle_point = true},
                     .operations = create_operations},

@@ -5,6 +5,11 @@
 extern "C" {
 void ilaver_(int* major, int* minor, int* patch);
 void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
+void dtrsm_(const char* side, const char* uplo, const char* trans, const char* diag, const int* m,
+            const int* n, const double* alpha, const double* a, const int* lda, double* b,
+            const int* ldb);
+void dsyrk_(const char* uplo, const char* trans, const int* n, const int* k, const double* alpha,
+            const double* a, const int* lda, const double* beta, double* c, const int* ldc);
 void dpotrs_(const char* uplo, const int* n, const int* nrhs, const double* a, const int* lda,
              double* b, const int* ldb, int* info);
 }
@@ -60,6 +65,23 @@ void LltSolver::solve(double* x) const {
   L.triangularView<Eigen::Lower>().adjoint().solveInPlace(solution);
 }
 
+void LltSolver::solve(double* x, long count, long stride) const {
+  const Columns<const Eigen::MatrixXd> L(L_.data(), n_, n_, Eigen::OuterStride<>(rows_));
+  Columns<Eigen::MatrixXd> solutions(x, n_, count, Eigen::OuterStride<>(stride));
+  L.triangularView<Eigen::Lower>().solveInPlace(solutions);
+  L.triangularView<Eigen::Lower>().adjoint().solveInPlace(solutions);
+}
+
+void LltSolver::multiply(double* x, long count, long stride, LltSolver& products) const {
+  const Columns<const Eigen::MatrixXd> L(L_.data(), n_, n_, Eigen::OuterStride<>(rows_));
+  Columns<Eigen::MatrixXd> columns(x, n_, count, Eigen::OuterStride<>(stride));
+  Columns<Eigen::MatrixXd> A(products.A_.data(), count, count,
+                             Eigen::OuterStride<>(products.rows_));
+  L.triangularView<Eigen::Lower>().solveInPlace(columns);
+  A.triangularView<Eigen::Lower>().setZero();
+  A.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
+}
+
 bool PotrfSolver::factorize() {
   copy();
   const int n = static_cast<int>(n_), rows = static_cast<int>(rows_);
@@ -68,10 +90,20 @@ bool PotrfSolver::factorize() {
   return info == 0;
 }
 
-void PotrfSolver::solve(double* x) const {
-  const int n = static_cast<int>(n_), rows = static_cast<int>(rows_), one = 1;
+void PotrfSolver::multiply(double* x, long count, long stride, PotrfSolver& products) const {
+  const int n = static_cast<int>(n_), rows = static_cast<int>(rows_);
+  const int columns = static_cast<int>(count), apart = static_cast<int>(stride);
+  const int below = static_cast<int>(products.rows_);
+  const double one = 1.0, zero = 0.0;
+  dtrsm_("L", "L", "N", "N", &n, &columns, &one, L_.data(), &rows, x, &apart);
+  dsyrk_("L", "T", &columns, &n, &one, x, &apart, &zero, products.A_.data(), &below);
+}
+
+void PotrfSolver::solve(double* x, long count, long stride) const {
+  const int n = static_cast<int>(n_), rows = static_cast<int>(rows_);
+  const int columns = static_cast<int>(count), apart = static_cast<int>(stride);
   int info = 0;
-  dpotrs_("L", &n, &one, L_.data(), &rows, x, &rows, &info);
+  dpotrs_("L", &n, &columns, L_.data(), &rows, x, &apart, &info);
 }
 
 }  // namespace mbs::hybrid_dense

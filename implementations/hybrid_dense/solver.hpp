@@ -15,6 +15,7 @@ std::string library_versions();
 /// Own kernels, in panels.
 class PanelsSolver {
  public:
+  static constexpr bool kProducts = false;  // whether it has multiply()
   explicit PanelsSolver(long n) : panels_(n), A_(panels_.size()), Z_(panels_.size()) {
     for (long i = n; i < padded(n); ++i) A_[Panels::position(i, i)] = 1.0;
   }
@@ -26,6 +27,10 @@ class PanelsSolver {
   [[nodiscard]] bool factorize() { return hybrid_dense::factorize(panels_, A_.data(), Z_.data()); }
   /// x is the right-hand side when it arrives; padded by zeros.
   void solve(double* x) const { hybrid_dense::solve(panels_, Z_.data(), x); }
+  /// `count` of them, each `stride` behind the one before.
+  void solve(double* x, long count, long stride) const {
+    for (long k = 0; k < count; ++k) solve(x + k * stride);
+  }
 
  private:
   Panels panels_;
@@ -35,6 +40,7 @@ class PanelsSolver {
 /// Columns one behind the other, as libraries take them.
 class ColumnsSolver {
  public:
+  static constexpr bool kProducts = true;
   explicit ColumnsSolver(long n)
       : n_(n), rows_(std::max<long>(padded(n), kWidth)), A_(n * rows_), L_(n * rows_) {}
   double* matrix() { return A_.data(); }
@@ -57,7 +63,11 @@ class LltSolver : public ColumnsSolver {
  public:
   using ColumnsSolver::ColumnsSolver;
   [[nodiscard]] bool factorize();
+  /// x = L^-1 x for `count` vectors, each `stride` behind the one before; then their products with
+  /// each other into the lower half of the matrix of `products`.
+  void multiply(double* x, long count, long stride, LltSolver& products) const;
   void solve(double* x) const;
+  void solve(double* x, long count, long stride) const;
 };
 
 /// LAPACK's dpotrf and dpotrs.
@@ -65,7 +75,9 @@ class PotrfSolver : public ColumnsSolver {
  public:
   using ColumnsSolver::ColumnsSolver;
   [[nodiscard]] bool factorize();
-  void solve(double* x) const;
+  void multiply(double* x, long count, long stride, PotrfSolver& products) const;
+  void solve(double* x) const { solve(x, 1, rows_); }
+  void solve(double* x, long count, long stride) const;
 };
 
 }  // namespace mbs::hybrid_dense

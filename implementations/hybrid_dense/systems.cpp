@@ -39,27 +39,42 @@ SaddleSystem<D, Solver>::SaddleSystem(const Model& model, const Slots& slots,
       schedule_(model, {}, {}, forces.tangent_entries(),
                 [this](long i, long j) { return T_0_.position(i, j); }),
       Phi_q_(constraints.entries()),
-      inverse_(total_ * padded(n_)),
+      inverse_((forces.in_tangent() ? m_ : total_) * padded(n_)),
       product_(total_ * padded(m_)),
       z_(total_),
       z_y_(padded(m_)) {
   const Schedule::Position position = [this](long i, long j) { return T_0_.position(i, j); };
   Schedule::write_mass(model, position, T_0_.matrix());
   forces.schedule(position);
-  regular_ = T_0_.factorize() && invert();
+  if (!forces.in_tangent()) invert();
 }
 
-// Column by column; T_0 is well conditioned where masses are, and Cholesky does not mind their
-// scale.
+// T_0 is well conditioned where masses are, and Cholesky does not mind their scale.
 template <int D, class Solver>
-bool SaddleSystem<D, Solver>::invert() {
-  for (long j = 0; j < n_; ++j) {
-    double* row = inverse_.data() + j * padded(n_);
-    std::fill_n(row, padded(n_), 0.0);
-    row[j] = 1.0;
-    T_0_.solve(row);
+void SaddleSystem<D, Solver>::invert() {
+  for (long j = 0; j < n_; ++j) inverse_[j * padded(n_) + j] = 1.0;
+  regular_ = T_0_.factorize();
+  if (regular_) T_0_.solve(inverse_.data(), n_, padded(n_));
+}
+
+template <int D, class Solver>
+void SaddleSystem<D, Solver>::solve_rows() {
+  const auto first = constraints_.firsts();
+  const auto slots = constraints_.slots();
+  std::fill_n(inverse_.data(), m_ * padded(n_), 0.0);
+  for (long row = 0; row < m_; ++row) {
+    for (int e = first[row]; e < first[row + 1]; ++e) {
+      if (slots[e] < n_) inverse_[row * padded(n_) + slots[e]] += Phi_q_[e];
+    }
   }
-  return true;
+  regular_ = T_0_.factorize();
+  if (!regular_) return;
+  if constexpr (Solver::kProducts) {
+    T_0_.multiply(inverse_.data(), m_, padded(n_), S_);
+  } else {
+    T_0_.solve(inverse_.data(), m_, padded(n_));
+    multiply_rows();
+  }
 }
 
 template <int D, class Solver>
@@ -68,9 +83,15 @@ void SaddleSystem<D, Solver>::assemble(const double* Phi_q) {
   if (forces_.in_tangent()) {
     schedule_.assemble(0.0, Phi_q, T_0_.matrix());
     forces_.add_tangent(T_0_.matrix());
-    regular_ = T_0_.factorize() && invert();
+    solve_rows();
   }
   if (!regular_) return;
+  if (!forces_.in_tangent()) multiply_rows();
+  for (long k = 0; k < m_; ++k) S_.matrix()[S_.position(k, k)] += epsilon_;
+}
+
+template <int D, class Solver>
+void SaddleSystem<D, Solver>::multiply_rows() {
   const auto first = constraints_.firsts();
   const auto slots = constraints_.slots();
   const long columns = padded(n_);
@@ -80,8 +101,12 @@ void SaddleSystem<D, Solver>::assemble(const double* Phi_q) {
     for (long j = 0; j < columns; j += kWidth) {
       Vec sums[kWidth] = {};
       for (long r = 0; r < rows; ++r) {
+        if (forces_.in_tangent()) {
+          sums[r] = load(inverse_.data() + (p + r) * columns + j);
+          continue;
+        }
         for (int e = first[p + r]; e < first[p + r + 1]; ++e) {
-          sums[r] += broadcast(Phi_q[e]) * load(inverse_.data() + slots[e] * columns + j);
+          sums[r] += broadcast(Phi_q_[e]) * load(inverse_.data() + slots[e] * columns + j);
         }
       }
       transpose(sums);
@@ -90,12 +115,11 @@ void SaddleSystem<D, Solver>::assemble(const double* Phi_q) {
     for (long l = 0; l < p + rows; ++l) {
       Vec sum = {};
       for (int e = first[l]; e < first[l + 1]; ++e) {
-        sum += broadcast(Phi_q[e]) * load(product + slots[e] * kWidth);
+        sum += broadcast(Phi_q_[e]) * load(product + slots[e] * kWidth);
       }
       store(S_.matrix() + S_.position(p, l), sum);
     }
   }
-  for (long k = 0; k < m_; ++k) S_.matrix()[S_.position(k, k)] += epsilon_;
 }
 
 template <int D, class Solver>

@@ -53,7 +53,8 @@ class PenaltySystem {
 ///
 /// This is the factorization L D L^T of the quasi-definite matrix in the order (q, mu), whose
 /// pivots are those of T_0 and then those of -S; no other order is safer, as T_0 holds no
-/// 1/epsilon. Without springs T_0 = M is inverted once.
+/// 1/epsilon. Without springs T_0 = M is inverted once; with springs every row of Phi_q is solved
+/// for.
 template <int D, class Solver>
 class SaddleSystem {
  public:
@@ -69,7 +70,9 @@ class SaddleSystem {
   void solve(double* x, double* y);
 
  private:
-  [[nodiscard]] bool invert();
+  void invert();
+  void solve_rows();
+  void multiply_rows();
 
   const Constraints<D>& constraints_;
   const Forces<D>& forces_;
@@ -79,7 +82,9 @@ class SaddleSystem {
   Schedule schedule_;
   bool regular_ = true;
   Array Phi_q_;
-  Array inverse_;  // T_0^-1, row by row; rows of fixed points are zero
+  // T_0^-1, row by row; rows of fixed points are zero. With springs only Phi_q T_0^-1,
+  // or Phi_q L^-T of T_0 = L L^T.
+  Array inverse_;
   Array product_;  // Phi_q T_0^-1: kWidth rows at a time, column by column
   Array z_, z_y_;
 };

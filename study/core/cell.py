@@ -6,6 +6,9 @@ from pathlib import Path
 from analysis.core.files import ROOT, digest
 
 
+LAYOUT = "layouts/mbs-"  # `mbs` with its functions in other places: + seed
+
+
 @dataclass(frozen=True)
 class Cell:
     kind: str               # subcommand of the program: simulate, check, bench, describe, limit; "" if it has none
@@ -14,7 +17,7 @@ class Cell:
     settings: tuple = ()    # further words of the command line
     role: str = ""          # what the part wants it for: a folder of its records
     number: int = 0         # of equal cells: the process
-    program: str = "mbs"    # or another one of the build, for instance mbs_reference
+    program: str = "mbs"    # or another one of the build: mbs_reference, or a layout of `mbs`
     timed: bool = False     # has the machine for itself
     seconds: float = 60.0   # limit
     memory_mb: int = 4096   # limit
@@ -31,6 +34,11 @@ class Cell:
     @property
     def environment(self):
         return self.contenders[0].environment if self.contenders else "own|system"
+
+    @property
+    def own(self):
+        """Whether its program is `mbs`, in whatever layout."""
+        return self.program == "mbs" or self.program.startswith(LAYOUT)
 
     @property
     def built(self):

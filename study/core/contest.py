@@ -12,15 +12,15 @@ STEPS = 40  # of a look
 CHECK_S = 60  # of a contender, in the gate
 
 
-def contest(lab, scene, contenders, role, settings=(), *, own, always=False, processes, samples, patience=1.0, stretch=()):
+def contest(lab, scene, contenders, role, settings=(), *, own, always=False, processes, samples, patience=1.0, stretch=(), look=STEPS):
     """Rows of the look. Roles of the records: `role`-look, `role`-gate and `role`. `own`: names of those that are no libraries;
-    `always`: they are gated and timed whatever they take; `settings`: of the step; `stretch`: that is timed, else the scene's."""
-    look = rows_of(measure(lab, scene, contenders, processes=1, repetitions=1, drop=True, role=f"{role}-look",
-                           settings=("--steps", STEPS, "--patience", patience, *settings)))
-    asked = near(look, contenders, own, always)
+    `always`: they are gated and timed whatever they take; `settings`: of the step; `stretch`: that is timed, else the scene's; `look`: steps of the look."""
+    rows = rows_of(measure(lab, scene, contenders, processes=1, repetitions=1, drop=True, role=f"{role}-look",
+                           settings=("--steps", look, "--patience", patience, *settings)))
+    asked = near(rows, contenders, own, always)
     here = agreeing(lab, scene, asked, f"{role}-gate", settings, each=CHECK_S, seconds=CHECK_S * (1 + len(asked)), drop=True)
     measure(lab, scene, here, processes=processes, repetitions=samples, settings=(*settings, *stretch), role=role, drop=True)
-    return look
+    return rows
 
 
 def near(rows, contenders, own, always=False):
@@ -49,4 +49,4 @@ def elsewhere(lab, cell):
 
 def about(lab, scene):
     """Has the program describe a scene."""
-    lab.one(Cell("describe", scene, role="about"))
+    return lab.one(Cell("describe", scene, role="about"))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from analysis.core.errors import StudyError
 from study.core import child
+from study.core.cell import LAYOUT
 
 USAGE = 2  # the exit status of a program that refuses what it is asked for
 BY_FILE = ("check", "bench")  # these write their JSON into a file
@@ -17,7 +18,7 @@ CULPRIT = re.compile(r"ended by \S+ in (\S+)")  # what `mbs bench` says where a 
 def program_of(name="mbs", build=""):
     """Path of a program, relative to the repository; MBS_PROGRAM stands in for `mbs` in tests, but for that of
     another revision ("against/REVISION/build")."""
-    if name == "mbs" and "/" not in build and "MBS_PROGRAM" in os.environ:
+    if (name == "mbs" or name.startswith(LAYOUT)) and "/" not in build and "MBS_PROGRAM" in os.environ:
         return os.environ["MBS_PROGRAM"]
     return f"build-{build}/{name}" if build else f"build/{name}"
 
@@ -32,7 +33,7 @@ def command_of(cell, output="FILE", motion="MOTION"):
         words += ["--benchmark_out_format=json", f"--benchmark_out={output}"]
     elif cell.kind == "check":
         words += ["--json", output]
-    elif cell.program in ("mbs", "mbs_reference"):
+    elif cell.own or cell.program == "mbs_reference":
         words += ["--json"]
     if cell.every:
         words += ["--output" if cell.keep == ("outputs",) else "--trajectory", motion, "--every", str(cell.every)]
@@ -127,7 +128,7 @@ def _columns(path, keep):
     with open(path, newline="", encoding="utf-8") as file:
         rows = csv.reader(file)
         names = next(rows, [])
-        chosen = [place for place, name in enumerate(names) if keep == ("outputs",) or name in ("t", *keep)]
+        chosen = [place for place, name in enumerate(names) if keep in (("outputs",), ("all",)) or name in ("t", *keep)]
         values = [[_finite(row[place]) for place in chosen] for row in rows]
     return {names[place]: [row[at] for row in values] for at, place in enumerate(chosen)}
 

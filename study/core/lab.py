@@ -97,12 +97,12 @@ class Lab:
 
     def _made(self, cell, drop, at_once):
         program = program_of(*cell.built.split("@"))
-        if cell.program != "mbs" and not (ROOT / program).exists():  # `mbs` is there, or nothing is
+        if not cell.own and not (ROOT / program).exists():  # `mbs` is there, or nothing is
             return self._skipped(cell, "unavailable", f"{program} is missing: study/setup builds it")
         if drop and self.left <= 0:
             return self._skipped(cell, "dropped", f"the budget of {self.budget:.0f} s was spent")
         context = self._asked_of(cell)
-        data = executor.run(cell, context if cell.program == "mbs" and cell.contenders else None, self.set.scratch)
+        data = executor.run(cell, context if cell.own and cell.contenders else None, self.set.scratch)
         if not data["context"]:
             data["context"] = self._context(cell, context)
         records.write(self._path(cell), data)
@@ -122,7 +122,7 @@ class Lab:
     @staticmethod
     def _context(cell, context):
         """What is known of a cell that says nothing of it: other programs have compilers and libraries of their own."""
-        return context if cell.program == "mbs" else {key: context[key] for key in executor.OF_ALL if key in context}
+        return context if cell.own else {key: context[key] for key in executor.OF_ALL if key in context}
 
     def _keep(self, record, at_once=None):
         if record.name not in self.names:

@@ -1,10 +1,13 @@
 # A timed cell is a scene: its contenders take turns in one process (`mbs bench`), and several processes, each with
-# another layout of memory, say how far that matters. analysis/core/timing.py has the statistics.
+# another layout of memory and of the program's functions, say how far that matters. analysis/core/timing.py has the statistics.
 from dataclasses import replace
 
 from analysis.core.registry import ANCHOR
-from study.core.cell import Cell
+from analysis.core.timing import disturbed
+from study.core.cell import LAYOUT, Cell
 from study.core.contender import by_environment
+
+LAYOUTS = 8  # of the program, which processes take in turn: harness/mbs/CMakeLists.txt
 
 
 def measure(lab, scene, contenders, *, processes=5, repetitions=None, settings=(), role="time", seconds=120.0,
@@ -31,9 +34,12 @@ def _environment(lab, cell, processes, drop):
     """All processes of one environment, without those who end them."""
     lost = []
     while cell.contenders:
-        found = []
-        for number in range(1, processes + 1):
-            record = lab.run([replace(cell, number=number, settings=(*cell.settings, "--seed", number))], drop)[0]
+        found, number = [], 0
+        while number < processes or _again(found, processes):
+            number += 1
+            program = cell.program if cell.contenders[0].build else f"{LAYOUT}{(number - 1) % LAYOUTS + 1}"
+            record = lab.run([replace(cell, number=number, program=program,
+                                      settings=(*cell.settings, "--seed", number))], drop)[0]
             found.append(record)
             if record.status == "dropped":
                 return [*lost, *found]
@@ -47,6 +53,11 @@ def _environment(lab, cell, processes, drop):
         names = {one.name for one, _, _ in culprits}
         cell = replace(cell, contenders=tuple(one for one in cell.contenders if one.name not in names))
     return lost
+
+
+def _again(found, processes):
+    """Whether a further process is asked for, in place of one in which others ran: at most a quarter more in all."""
+    return len(found) < processes + processes // 4 and len(found) - sum(map(disturbed, found)) < processes
 
 
 def _culprits(lab, cell, record):

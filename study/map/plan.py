@@ -3,6 +3,7 @@
 # For each scene: rough pilots say who is hopeless, the gate says who is right, the rest is timed in turns. All of that
 # is decided from records, so that a run that was interrupted decides alike.
 from analysis.core.errors import StudyError
+from analysis.map.timed import leaders
 from study.core.cell import Cell
 from study.core.contender import Contender, by_environment
 from study.core.profile import need_keys
@@ -20,6 +21,7 @@ SETTINGS = {"processes": int,      # of a timed scene
             "alternatives": list,  # the same on other BLAS pairs or in other builds, at natural fill; never ranked
             "phases": dict,        # columns, processes: shares of a step by phase
             "operations": dict,    # columns, processes: Table 2's operations one by one
+            "seeds": dict,         # columns, seeds, processes: the leaders of a filled scene with other artificial positions
             "columns": list}       # variables, seconds, fills (natural, then shares of n^2), perhaps its own slower
 CLOSEST = 0.04  # fills nearer than this have none put between them, share
 
@@ -61,6 +63,7 @@ def run(lab, column):
     _builds(lab, natural, costs)
     for _ in range(lab.settings["between"]):
         _add_between(lab, timed)
+    _seeds(lab, timed)
 
 
 def _unavailable(lab, scene):
@@ -69,6 +72,19 @@ def _unavailable(lab, scene):
         if not entry["available"] and (not lab.set.facts["only"] or entry["folder"] in lab.set.facts["only"]):
             lab.skip(Cell("bench", scene.name, (Contender(entry["folder"], entry["folder"]),), role="unavailable"),
                      "unavailable", entry["reason"])
+
+
+def _seeds(lab, timed):
+    """How far a ratio depends on where the artificial positions lie: never ranked."""
+    asked = lab.settings["seeds"]
+    filled = next((one for one in timed if one.scene.fill and one.scene.fill < 1), None)
+    if filled is None or filled.scene.variables not in asked["columns"]:
+        return
+    names = leaders([filled.rankings["libraries"]])
+    chosen = [one for one in filled.costs if one.name in names]
+    for seed in range(1, asked["seeds"] + 1) if len(chosen) > 1 else ():
+        measure(lab, f"{filled.scene.name},seed={seed}", chosen, processes=asked["processes"], repetitions=3, role="seeds",
+                seconds=lab.settings["limits"]["time"], drop=True)
 
 
 def _phases(lab, timed):

@@ -1,7 +1,8 @@
 # A scene that is timed: a few processes of all, without those whose stretch takes another number of passes, and then
 # more of those who lead.
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from analysis.core.timing import TWIN
 from analysis.map import timed
 from analysis.map.timed import differing, layers, leaders, timed_rows
 from study.core.cell import Cell
@@ -41,7 +42,9 @@ class TimedScene:
             names.add(rankings["all"].winner)
         chosen = [one for one in self.costs if one.name in names]
         if len(chosen) > 1 and count:
-            self.records += self.processes(chosen, count, "again")
+            fastest = {ranking.winner for ranking in rankings.values() if ranking}
+            twins = [replace(one, name=one.name + TWIN, variant=one.variant + TWIN) for one in chosen if one.name in fastest]
+            self.records += self.processes([*chosen, *twins], count, "again")
 
     @property
     def rankings(self):

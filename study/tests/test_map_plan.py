@@ -25,6 +25,7 @@ SETTINGS = {"seconds": 100, "processes": 3, "process": 0.1, "again": 2, "between
             "limits": {"pilot": 2, "check": 10, "time": 10}, "alternatives": [{"implementations": ["good_dense"],
                                                                               "blas": ["reference", "atlas"], "columns": [10]}],
             "phases": {"columns": [10], "processes": 1}, "operations": {"columns": [10], "processes": 1},
+            "seeds": {"columns": [10], "seeds": 2, "processes": 2},
             "columns": [{"variables": 10, "seconds": 90, "fills": ["natural", 0.3, 1.0]}]}
 
 
@@ -96,6 +97,7 @@ def test_a_fill_is_put_between_where_another_leads(run):
     winners = found["cells"][found["cells"].layer == "libraries"].set_index("scene").winner
     if winners["four-bar:4"] != winners["four-bar:4,fill=1.00"]:
         assert "four-bar:4,fill=0.76" in winners.index
+        assert set(found["tidy"].scene[found["tidy"].kind == "seeds"]) == {f"four-bar:4,fill=0.76,seed={one}" for one in (1, 2)}
 
 
 @pytest.mark.slow

@@ -20,6 +20,8 @@ namespace mbs {
 namespace {
 
 constexpr const char* kControl = "null/null";
+/// A second instance of a variant: what the measurement tells apart where nothing differs (A/A).
+constexpr std::string_view kTwin = "+twin";
 
 void check(const BenchRequest& request) {
   constexpr int kMostSteps = 10'000'000;
@@ -91,7 +93,17 @@ std::vector<NamedVariant> choose_variants(std::vector<std::string> names, bool s
       names, [](const std::string& name) { return name == "null" || name == kControl; });
   control = (everything && !summary) || removed > 0;
   if (names.empty() && !everything) return {};
-  auto chosen = select_variants(names);
+  std::vector<std::string> twins;
+  std::erase_if(names, [&twins](const std::string& name) {
+    if (!name.ends_with(kTwin)) return false;
+    twins.push_back(name.substr(0, name.size() - kTwin.size()));
+    return true;
+  });
+  auto chosen = names.empty() && !twins.empty() ? std::vector<NamedVariant>() : select_variants(names);
+  for (NamedVariant& one : twins.empty() ? std::vector<NamedVariant>() : select_variants(twins)) {
+    one.name += kTwin;
+    chosen.push_back(std::move(one));
+  }
   if (everything) {
     std::erase_if(chosen, [](const NamedVariant& one) {
       return one.entry->implementation.role == Role::example;

@@ -11,6 +11,7 @@
 #include "describe/elements.hpp"
 #include "describe/elimination.hpp"
 #include "describe/features.hpp"
+#include "describe/passes.hpp"
 #include "describe/penalty_window.hpp"
 #include "describe/structure.hpp"
 #include "describe/terms.hpp"
@@ -112,6 +113,15 @@ void add_settings(json& result, const Model& model, const Structure& structure,
   }
 }
 
+constexpr long kMostForPasses = 1'000'000;  // non-zeros of L that passes are still estimated with
+
+/// Passes a step in both forms; where their estimate is too much work, 2.
+json passes_json(const Scene& scene, const StepSettings& settings, const json& saddle_point) {
+  const bool few = !saddle_point.is_null() && saddle_point["factor_nonzeros"] <= kMostForPasses;
+  const Passes found = few ? expected_passes(scene, settings) : Passes{};
+  return {{"penalty", found.penalty}, {"saddle-point", found.saddle_point}};
+}
+
 json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json fill_json(const std::optional<Fill>& fill) {
@@ -150,10 +160,12 @@ json describe_json(const Scene& scene, const StepSettings& settings) {
       {"drivers_end", finite_or_null(driver_end(model))},
       {"artificial_fill", fill_json(scene.fill)},
       {"elements", elements_json(scene)}};
-  result["elimination"] = elimination_json(tangent_pattern(model));
+  result["elimination"] = elimination_json(tangent_pattern(model), saddle_point_pattern(model));
   add_points(result, scene);
   add_structure(result, model, structure);
   add_settings(result, model, structure, settings);
+  result["passes"] =
+      passes_json(scene, settings, result["elimination"]["orderings"]["saddle-point"]);
   result["features"] = features_json(result);
   return result;
 }

@@ -82,13 +82,14 @@ std::string penalty_text(const json& window) {
                      window["upper_from"].get<std::string>(), step, rest);
 }
 
-std::string elimination_text(const json& found, int variables) {
+std::string elimination_text(const json& found) {
   if (found.is_null()) return "not computed, it is too much work";
-  const long nonzeros = found["factor_nonzeros"];
   return fmt::format(
-      "{} non-zeros of L, {:.3g} a column, {} at most; {:.3g} operations; tree of height {}",
-      nonzeros, static_cast<double>(nonzeros) / variables, found["widest"].get<int>(),
-      found["flops"].get<double>(), found["height"].get<int>());
+      "{} non-zeros of L, {:.3g} a column, {} at most; {:.3g} operations; tree of height {}; {} "
+      "supernodes",
+      found["factor_nonzeros"].get<long>(), found["per_column"].get<double>(),
+      found["widest"].get<int>(), found["flops"].get<double>(), found["height"].get<int>(),
+      found["supernodes"].get<int>());
 }
 
 }  // namespace
@@ -133,10 +134,13 @@ std::string describe_text(const json& d) {
   text += text_line("Jacobian", matrix_text(d["jacobian"], "m n"));
   text += text_line("tangent", matrix_text(d["tangent"], "n^2"));
   for (const auto& [label, ordering] :
-       {std::pair{"elimination, AMD", "AMD"}, std::pair{"  as given", "natural"}}) {
-    text +=
-        text_line(label, elimination_text(d["elimination"]["orderings"][ordering], d["variables"]));
+       {std::pair{"elimination, AMD", "AMD"}, std::pair{"  as given", "natural"},
+        std::pair{"  saddle-point matrix", "saddle-point"}}) {
+    text += text_line(label, elimination_text(d["elimination"]["orderings"][ordering]));
   }
+  text += text_line("passes a step", fmt::format("about {:.3g}, {:.3g} in the saddle-point form",
+                                                 d["passes"]["penalty"].get<double>(),
+                                                 d["passes"]["saddle-point"].get<double>()));
   text += text_line("length l", length_text(d));
   text += text_line("penalty factor", penalty_text(d["penalty_window"]));
   for (const json& warning : d["warnings"]) text += text_line("warning", warning);

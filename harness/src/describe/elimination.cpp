@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "model_math/kinematics.hpp"
 #include "scene/tangent_pattern.hpp"
 
 namespace mbs {
@@ -19,26 +20,42 @@ Index at(int index) { return static_cast<Index>(index); }
 json elimination_json(const std::optional<Elimination>& found) {
   if (!found) return nullptr;
   return {{"factor_nonzeros", found->factor_nonzeros},
+          {"per_column", found->per_column},
           {"flops", found->flops},
           {"height", found->height},
-          {"widest", found->widest}};
+          {"widest", found->widest},
+          {"supernodes", found->supernodes}};
 }
 
 /// `below[j]` is the number of non-zeros of column j of L below its diagonal.
 Elimination summed(const std::vector<int>& parent, const std::vector<int>& below) {
   Elimination result;
   std::vector<int> height(parent.size(), 1);  // of the subtree of a column: parents come later
+  std::vector<char> goes_on(parent.size(), false);  // whether a column goes on with a child's rows
   for (Index j = 0; j < parent.size(); ++j) {
     const int count = below[j] + 1;
     result.factor_nonzeros += count;
     result.flops += static_cast<double>(count) * count;
     result.widest = std::max(result.widest, count);
     result.height = std::max(result.height, height[j]);
+    result.supernodes += goes_on[j] ? 0 : 1;
     if (parent[j] < 0) continue;
-    int& above = height[at(parent[j])];
-    above = std::max(above, height[j] + 1);
+    const Index next = at(parent[j]);
+    height[next] = std::max(height[next], height[j] + 1);
+    if (below[j] == below[next] + 1) goes_on[next] = true;
   }
+  const auto columns = static_cast<double>(std::max<Index>(1, parent.size()));
+  result.per_column = static_cast<double>(result.factor_nonzeros) / columns;
   return result;
+}
+
+std::vector<std::pair<int, int>> pairs_of(const Model& model, PatternOf which) {
+  TangentPattern pattern(model, which);
+  std::vector<std::pair<int, int>> pairs;
+  for (int col = 0; col < model.variables(); ++col) {
+    for (const int row : pattern.below(col)) pairs.emplace_back(row, col);
+  }
+  return pairs;
 }
 
 }  // namespace
@@ -58,12 +75,16 @@ SymmetricPattern::SymmetricPattern(int size, const std::vector<std::pair<int, in
 }
 
 SymmetricPattern tangent_pattern(const Model& model) {
-  TangentPattern pattern(model);
-  std::vector<std::pair<int, int>> pairs;
-  for (int col = 0; col < model.variables(); ++col) {
-    for (const int row : pattern.below(col)) pairs.emplace_back(row, col);
+  return {model.variables(), pairs_of(model, PatternOf::tangent)};
+}
+
+SymmetricPattern saddle_point_pattern(const Model& model) {
+  const int n = model.variables();
+  auto pairs = pairs_of(model, PatternOf::leading_block);
+  for (const JacobianEntry& entry : jacobian(model, 0.0, model.initial_position())) {
+    pairs.emplace_back(n + entry.row, entry.col);
   }
-  return {model.variables(), pairs};
+  return {n + model.constraints(), pairs};
 }
 
 std::optional<Elimination> eliminate(const SymmetricPattern& pattern,
@@ -114,19 +135,37 @@ std::vector<int> amd_order(const SymmetricPattern& pattern) {
   return {permutation.indices().data(), permutation.indices().data() + size};
 }
 
-json elimination_json(const SymmetricPattern& pattern) {
-  const auto natural = eliminate(pattern, natural_order(pattern));
-  const auto amd = eliminate(pattern, amd_order(pattern));
-  json result = {
-      {"ordering", "AMD"},
-      {"orderings", {{"natural", elimination_json(natural)}, {"AMD", elimination_json(amd)}}}};
-  for (const char* key : {"factor_nonzeros", "per_column", "flops", "height", "widest"}) {
+std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPattern& pattern) {
+  std::vector<int> left(at(pattern.size()), 0), result;
+  for (Index row = order.size(); row < left.size(); ++row) {
+    left[row] = pattern.start[row + 1] - pattern.start[row];
+    if (left[row] == 0) result.push_back(static_cast<int>(row));
+  }
+  for (const int variable : order) {
+    result.push_back(variable);
+    for (int k = pattern.start[at(variable)]; k < pattern.start[at(variable) + 1]; ++k) {
+      const int row = pattern.rows[at(k)];
+      if (at(row) >= order.size() && --left[at(row)] == 0) result.push_back(row);
+    }
+  }
+  return result;
+}
+
+json elimination_json(const SymmetricPattern& tangent, const SymmetricPattern& saddle_point) {
+  const std::vector<int> order = amd_order(tangent);
+  const auto natural = eliminate(tangent, natural_order(tangent));
+  const auto amd = eliminate(tangent, order);
+  const auto rows = eliminate(saddle_point, rows_behind(order, saddle_point));
+  json result = {{"ordering", "AMD"},
+                 {"orderings",
+                  {{"natural", elimination_json(natural)},
+                   {"AMD", elimination_json(amd)},
+                   {"saddle-point", elimination_json(rows)}}}};
+  for (const char* key :
+       {"factor_nonzeros", "per_column", "flops", "height", "widest", "supernodes"}) {
     result[key] = nullptr;
   }
-  if (amd) {
-    result.update(result["orderings"]["AMD"]);
-    result["per_column"] = static_cast<double>(amd->factor_nonzeros) / std::max(1, pattern.size());
-  }
+  if (amd) result.update(result["orderings"]["AMD"]);
   return result;
 }
 

@@ -28,6 +28,8 @@ struct SymmetricPattern {
 
 /// Pattern of the tangent, as tangent_nonzeros() counts it.
 SymmetricPattern tangent_pattern(const Model& model);
+/// Of the saddle-point matrix (12): n variables, then m rows of constraints.
+SymmetricPattern saddle_point_pattern(const Model& model);
 
 /// c_j is the number of non-zeros of column j of L, its diagonal included.
 struct Elimination {
@@ -35,6 +37,8 @@ struct Elimination {
   double flops = 0.0;        ///< sum of c_j^2
   int height = 0;            ///< of the elimination tree: columns on its longest path
   int widest = 0;            ///< largest c_j
+  double per_column = 0.0;   ///< mean c_j
+  int supernodes = 0;        ///< chains of columns, each with the rows of the one before less one
 };
 
 /// Of the pivots order[0], order[1], ...; none beyond kMostFactorNonzeros. Takes a time that is
@@ -47,9 +51,15 @@ std::vector<int> natural_order(const SymmetricPattern& pattern);
 /// Approximate minimum degree [Amestoy, Davis, Duff, 1996].
 std::vector<int> amd_order(const SymmetricPattern& pattern);
 
-/// Keys: ordering ("AMD"), whose factor_nonzeros, per_column (non-zeros of L a column), flops,
-/// height and widest follow, null if not computed; orderings {"natural", "AMD"}: {factor_nonzeros,
-/// flops, height, widest} each, or null.
-nlohmann::json elimination_json(const SymmetricPattern& pattern);
+/// `order` of the first unknowns of `pattern`, and each of the others right after the last of those
+/// that it is coupled with: so the sparse implementations order the saddle-point matrix (12).
+std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPattern& pattern);
+
+/// Of the patterns of tangent and saddle-point matrix. Keys: ordering ("AMD"), whose
+/// factor_nonzeros, per_column (non-zeros of L a column), flops, height, widest and supernodes
+/// follow, null if not computed; orderings {"natural", "AMD", "saddle-point"}: the same keys each,
+/// or null; the last is of the saddle-point matrix.
+nlohmann::json elimination_json(const SymmetricPattern& tangent,
+                                const SymmetricPattern& saddle_point);
 
 }  // namespace mbs

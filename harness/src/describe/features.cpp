@@ -14,11 +14,8 @@ struct Feature {
   const char* text;
 };
 
-constexpr Feature kFeatures[] = {{"one", "1"},
-                                 {"n", "variables"},
+constexpr Feature kFeatures[] = {{"n", "variables"},
                                  {"m", "constraints"},
-                                 {"n2", "variables squared"},
-                                 {"n3", "variables cubed"},
                                  {"jacobian", "non-zeros of the Jacobian"},
                                  {"mass", "non-zeros of M"},
                                  {"tangent", "non-zeros of the tangent"},
@@ -26,10 +23,18 @@ constexpr Feature kFeatures[] = {{"one", "1"},
                                  {"factor", "non-zeros of L"},
                                  {"per_column", "non-zeros a column of L"},
                                  {"flops", "operations of a factorization"},
+                                 {"dense", "operations in % of those of a full L"},
                                  {"height", "height of the elimination tree"},
                                  {"widest", "widest column of L"},
+                                 {"supernodes", "supernodes of L"},
+                                 {"block", "columns a supernode"},
+                                 {"saddle_factor", "non-zeros of the saddle-point matrix's L"},
+                                 {"saddle_flops", "operations of its factorization"},
+                                 {"passes", "passes a step"},
+                                 {"saddle_passes", "passes a step in the saddle-point form"},
                                  {"dimension", "dimension"},
                                  {"springs", "springs and laws"},
+                                 {"stiff", "springs or laws are there (1 or 0)"},
                                  {"saddle", "saddle-point form (1 or 0)"}};
 
 const Feature* find(const std::string& name) {
@@ -50,25 +55,40 @@ json features_json(const json& description) {
   const double n = description["variables"];
   const json& terms = description["terms"];
   const json& elimination = description["elimination"];
+  const json& saddle = elimination["orderings"]["saddle-point"];
   const long springs = terms["springs"].get<long>() + terms["torsion_springs"].get<long>() +
                        terms["laws"].get<long>();
-  return {{"one", 1},
-          {"n", n},
-          {"m", description["constraints"]},
-          {"n2", n * n},
-          {"n3", n * n * n},
-          {"jacobian", description["jacobian"]["nonzeros"]},
-          {"mass", description["mass"]["nonzeros"]},
-          {"tangent", description["tangent"]["nonzeros"]},
-          {"fill", 100.0 * description["tangent"]["fill"].get<double>()},
-          {"factor", elimination["factor_nonzeros"]},
-          {"per_column", elimination["per_column"]},
-          {"flops", elimination["flops"]},
-          {"height", elimination["height"]},
-          {"widest", elimination["widest"]},
-          {"dimension", description["dimension"]},
-          {"springs", springs},
-          {"saddle", description.at("scheme").at("take") == "saddle-point" ? 1 : 0}};
+  json result = {{"n", n},
+                 {"m", description["constraints"]},
+                 {"jacobian", description["jacobian"]["nonzeros"]},
+                 {"mass", description["mass"]["nonzeros"]},
+                 {"tangent", description["tangent"]["nonzeros"]},
+                 {"fill", 100.0 * description["tangent"]["fill"].get<double>()},
+                 {"factor", elimination["factor_nonzeros"]},
+                 {"per_column", elimination["per_column"]},
+                 {"flops", elimination["flops"]},
+                 {"dense", nullptr},
+                 {"height", elimination["height"]},
+                 {"widest", elimination["widest"]},
+                 {"supernodes", elimination["supernodes"]},
+                 {"block", nullptr},
+                 {"saddle_factor", nullptr},
+                 {"saddle_flops", nullptr},
+                 {"passes", description["passes"]["penalty"]},
+                 {"saddle_passes", description["passes"]["saddle-point"]},
+                 {"dimension", description["dimension"]},
+                 {"springs", springs},
+                 {"stiff", springs > 0 ? 1 : 0},
+                 {"saddle", description.at("scheme").at("take") == "saddle-point" ? 1 : 0}};
+  if (!elimination["flops"].is_null() && n > 0) {
+    result["dense"] = 600.0 * elimination["flops"].get<double>() / (n * (n + 1) * (2 * n + 1));
+    result["block"] = n / elimination["supernodes"].get<double>();
+  }
+  if (!saddle.is_null()) {
+    result["saddle_factor"] = saddle["factor_nonzeros"];
+    result["saddle_flops"] = saddle["flops"];
+  }
+  return result;
 }
 
 }  // namespace mbs

@@ -17,8 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-const char* const kRepeated[] = {"one", "n2", "n3"};  // features that say nothing beside n
-
 struct Walk {
   std::string leaf;
   std::vector<std::string> path;
@@ -42,14 +40,22 @@ Walk walk(const RuleTree& tree, const Features& scene) {
 
 double step_us(const StepTime& time, const Features& scene) {
   double sum = 0.0;
-  for (const auto& [name, coefficient] : time.coefficients) sum += coefficient * scene.at(name);
+  for (const TimeTerm& term : time.terms) {
+    double us = term.us;
+    for (const std::string& name : term.features) us *= scene.at(name);
+    sum += us;
+  }
   return sum;
 }
 
 /// Why `variant` is not among those to choose from; empty if it is.
-std::string refusal(const TimedVariant& variant, Scheme scheme, const WhyNot& why_not) {
+std::string refusal(const TimedVariant& variant, Scheme scheme, const Features& scene,
+                    const WhyNot& why_not) {
   if (!variant.times.contains(scheme)) {
     return fmt::format("its {} form was not measured", name_of(scheme));
+  }
+  if (!std::isfinite(step_us(variant.times.at(scheme), scene))) {
+    return "its factorization is too much work to be counted";
   }
   return why_not(variant.name, scheme);
 }
@@ -59,7 +65,7 @@ json ranked(const Rule& rule, Scheme scheme, const Features& scene, const WhyNot
             const std::string& leaf) {
   std::vector<json> result;
   for (const TimedVariant& variant : rule.variants) {
-    if (!refusal(variant, scheme, why_not).empty()) continue;
+    if (!refusal(variant, scheme, scene, why_not).empty()) continue;
     const StepTime& time = variant.times.at(scheme);
     const double us = step_us(time, scene);
     result.push_back({{"layer", variant.own ? "own" : "library"},
@@ -96,7 +102,6 @@ json nearest(const std::vector<MeasuredScene>& scenes, const Features& scene) {
 json outside(const std::vector<MeasuredScene>& scenes, const Features& scene) {
   json result = json::array();
   for (const auto& [name, value] : scene) {
-    if (std::ranges::find(kRepeated, name) != std::end(kRepeated)) continue;
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (const MeasuredScene& other : scenes) {
       const auto found = other.features.find(name);
@@ -132,10 +137,12 @@ json recommendation_json(const std::optional<Rule>& rule, const json& descriptio
   if (description["precision"] != name_of(Precision::double_precision)) {
     return nothing("steps were measured in double precision only");
   }
-  Features scene;
+  if (description["elimination"]["flops"].is_null()) {
+    return nothing("the elimination was not computed, it is too much work");
+  }
+  Features scene;  // infinite: too many to be counted
   for (const auto& [name, value] : description["features"].items()) {
-    if (value.is_null()) return nothing("the elimination was not computed, it is too much work");
-    scene[name] = value;
+    scene[name] = value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
   }
   const bool is_penalty = description["scheme"]["take"] == name_of(Scheme::penalty);
   const Scheme scheme = is_penalty ? Scheme::penalty : Scheme::saddle_point;
@@ -154,7 +161,7 @@ json recommendation_json(const std::optional<Rule>& rule, const json& descriptio
                    {"leaf_refused", nullptr},
                    {"outside", outside(rule->scenes, scene)}}}};
   const auto leaf = std::ranges::find(rule->variants, found.leaf, &TimedVariant::name);
-  const std::string refused = refusal(*leaf, scheme, why_not);
+  const std::string refused = refusal(*leaf, scheme, scene, why_not);
   if (!refused.empty()) result["rule"]["leaf_refused"] = refused;
   if (list.empty()) {
     result["no_recommendation"] =

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -43,6 +44,16 @@ Features read_features(const json& values) {
   return result;
 }
 
+/// From a name such as "n*n*m", or "1".
+TimeTerm read_term(const json& values, const std::string& name) {
+  TimeTerm result{{}, read_number(values, name.c_str(), 0.0)};
+  std::istringstream words(name == "1" ? "" : name);
+  for (std::string word; std::getline(words, word, '*');) {
+    result.features.push_back(known_feature(word));
+  }
+  return result;
+}
+
 RuleTree read_tree(const json& node, int& leaves) {
   RuleTree result;
   if (node.contains("take")) {
@@ -66,8 +77,10 @@ TimedVariant read_variant(const std::string& name, const json& value) {
     const auto found = value.find(name_of(scheme));
     if (found == value.end() || found->is_null()) continue;
     StepTime& time = result.times[scheme];
-    time = {read_features(found->at("coefficients")), read_number(*found, "low", 0.0),
-            read_number(*found, "high", 0.0)};
+    time = {{}, read_number(*found, "low", 0.0), read_number(*found, "high", 0.0)};
+    for (const auto& [term, us] : found->at("coefficients").items()) {
+      time.terms.push_back(read_term(found->at("coefficients"), term));
+    }
     require(time.low <= time.high, fmt::format("{}: low is above high", name));
   }
   require(!result.times.empty(), fmt::format("{} has no times", name));

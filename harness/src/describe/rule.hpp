@@ -14,9 +14,15 @@ namespace mbs {
 /// Features by name.
 using Features = std::map<std::string, double>;
 
-/// Time of a step in us: the sum of coefficient times feature, and factors of its range.
+/// A product of features, of none 1, and what it costs.
+struct TimeTerm {
+  std::vector<std::string> features;
+  double us = 0.0;  ///< at least 0
+};
+
+/// Time of a step in us: the sum over terms of us times the features, and factors of its range.
 struct StepTime {
-  Features coefficients;  ///< at least 0
+  std::vector<TimeTerm> terms;
   double low = 1.0, high = 1.0;
 };
 

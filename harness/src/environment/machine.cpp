@@ -1,6 +1,7 @@
 // Reads /proc and /sys for the machine's identity.
 #include "environment/machine.hpp"
 
+#include <sched.h>
 #include <fmt/format.h>
 #include <sys/utsname.h>
 #include <unistd.h>
@@ -85,6 +86,15 @@ std::string machine_fingerprint() {
       fmt::format("{}; {} processors; {}{} GiB; {}", cpu_model(), sysconf(_SC_NPROCESSORS_ONLN),
                   caches(), memory_gib(), system_name().machine);
   return fmt::format("{:016x}", hash(identity)).substr(0, 12);
+}
+
+void stay_on_this_processor() {
+  const int here = sched_getcpu();
+  if (here < 0) return;
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  CPU_SET(here, &set);
+  sched_setaffinity(0, sizeof(set), &set);  // where that is not permitted, times are still times
 }
 
 }  // namespace mbs

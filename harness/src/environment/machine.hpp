@@ -15,4 +15,7 @@ std::string kernel();
 /// whole GiB and architecture. Equal on machines whose timings may be compared, not unique.
 std::string machine_fingerprint();
 
+/// Keeps this thread on the processor that runs it now: caches and clocks differ among them.
+void stay_on_this_processor();
+
 }  // namespace mbs

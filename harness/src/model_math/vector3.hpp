@@ -30,6 +30,10 @@ inline Vector3 multiply(const Matrix3& A, const Vector3& x) {
           A[1][0] * x[0] + A[1][1] * x[1] + A[1][2] * x[2],
           A[2][0] * x[0] + A[2][1] * x[1] + A[2][2] * x[2]};
 }
+inline constexpr Matrix3 kIdentity{{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
+inline Matrix3 transposed(const Matrix3& A) {
+  return {{{A[0][0], A[1][0], A[2][0]}, {A[0][1], A[1][1], A[2][1]}, {A[0][2], A[1][2], A[2][2]}}};
+}
 inline Vector3 multiply_transposed(const Matrix3& A, const Vector3& x) {
   return {A[0][0] * x[0] + A[1][0] * x[1] + A[2][0] * x[2],
           A[0][1] * x[0] + A[1][1] * x[1] + A[2][1] * x[2],

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "limit/limit.hpp"
+#include "registry/factory.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -70,6 +71,17 @@ std::vector<NamedVariant> select_variants(const std::vector<std::string>& names)
     result.push_back({limit::kName, nullptr, &limit::variant()});
   }
   return result;
+}
+
+std::string why_not_offered(const std::string& variant, const Model& model,
+                            const StepSettings& settings) {
+  const auto variants = all_variants();
+  const auto found = std::ranges::find(variants, variant, &NamedVariant::name);
+  if (found == variants.end()) return "it is not in this build";
+  const Serves& serves = found->variant->serves;
+  std::string missing = why_not_served(serves, settings);
+  if (missing.empty()) missing = why_not_served(serves.terms, model);
+  return missing.empty() ? "" : "it does not serve " + missing;
 }
 
 }  // namespace mbs

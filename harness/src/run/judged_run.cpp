@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "printable.hpp"
+#include "run/rounding.hpp"
 
 namespace mbs {
 namespace {
@@ -30,14 +31,17 @@ JudgedRun::JudgedRun(const Scene& scene, const Variant& variant, const RunSettin
       steps_(count_steps(settings)),
       interval_(judge_interval(settings)),
       next_judged_(judged_after(0)),
+      next_look_(steps_ + 1),
       state_(std::move(start)),
       before_(state_),
       judge_(scene, state_, 0.0),
       good_{0, state_, judge_.figures()},
+      watch_(scene, state_, judge_.length(), !judge_.knows_exact_motion()),
       samples_local_error_(!judge_.knows_exact_motion()) {}
 
 void JudgedRun::begin(Access access) {
   access_ = std::move(access);
+  if (watch_.is_needed()) next_look_ = looked_after(state_);
   if (observer_) observer_(0, 0.0, state_);
   if (settings_.half_step) {
     half_.emplace(scene_, variant_, *settings_.half_step, state_, judge_.length());
@@ -87,8 +91,12 @@ void JudgedRun::take(const StepOutcome& outcome) {
     access_.get_state(before_);
     judging_ += Clock::now() - begin;
   }
-  if ((observer_ || half_) && !is_judged) access_.get_state(state_);
+  const bool is_looked_at =
+      watch_.is_needed() && (step >= next_look_ || is_judged || is_unusual(outcome));
+  if ((observer_ || half_ || is_looked_at) && !is_judged) access_.get_state(state_);
   const State& present = is_judged ? good_.state : state_;
+  if (is_looked_at) look(present);
+  if (is_over_) return;
   if (half_) half_->compare(present);
   if (observer_) observer_(step, time(step), present);
   if (step == steps_) conclude();
@@ -113,6 +121,64 @@ void JudgedRun::judge_present() {
   std::swap(good_.state, state_);
   good_.figures = judge_.figures();
   judging_ += Clock::now() - begin;
+}
+
+/// Whether the motion went on as another assembly.
+void JudgedRun::look(const State& present) {
+  const auto begin = Clock::now();
+  const long step = summary_.steps;
+  const std::string jump = watch_.look(time(step), present);
+  if (!jump.empty()) {
+    const long first = first_across(step);
+    std::string reason = jump;
+    if (watch_.step_needed()) {
+      reason += fmt::format("; --step {:.1g} would be short enough there", *watch_.step_needed());
+    } else {
+      reason += "; a shorter --step may follow them";
+    }
+    lose(RunStatus::wrong_branch, std::move(reason), time(first));
+    return;
+  }
+  next_look_ = step + looked_after(present);
+  judging_ += Clock::now() - begin;
+}
+
+/// Whether the step was harder than most: near a singular position Newton needs more passes.
+bool JudgedRun::is_unusual(const StepOutcome& outcome) const {
+  return outcome.status == StepStatus::pass_limit ||
+         static_cast<double>(outcome.passes) * static_cast<double>(summary_.steps) >
+             1.5 * static_cast<double>(summary_.passes) + static_cast<double>(summary_.steps);
+}
+
+/// Steps until the next look: as many as leave no time to jump there and back, a quarter of the
+/// judged length by speed and acceleration of the fastest point, and at most 64.
+long JudgedRun::looked_after(const State& present) const {
+  constexpr double kWay = 0.25;  // of the length
+  constexpr long kMost = 64;
+  const double length = judge_.length();
+  double speed = 0.0, acceleration = 0.0;
+  for (const double v : present.v) speed = std::max(speed, std::abs(v));
+  for (const double a : present.a) acceleration = std::max(acceleration, std::abs(a));
+  // The smaller root of acceleration t^2/2 + speed t = way.
+  const double way = kWay * length;
+  const double t = 2 * way / (speed + std::sqrt(speed * speed + 2 * acceleration * way) + 1e-300);
+  return static_cast<long>(std::clamp(t / settings_.step.step, 1.0, double{kMost}));
+}
+
+/// The step at which the motion found to have jumped at `step` did so, by doing those since the
+/// last sound look again; `step` if that does not show it.
+long JudgedRun::first_across(long step) {
+  const auto sound = std::lround(watch_.anchor_time() / settings_.step.step);
+  if (sound + 1 >= step) return step;
+  State state = watch_.anchor();
+  Simulation& simulation = access_.again();
+  simulation.set_state(state);
+  for (long i = sound + 1; i < step; ++i) {
+    if (simulation.step().status == StepStatus::factorization_failed) return step;
+    simulation.get_state(state);
+    if (watch_.is_across(time(i), state)) return i;
+  }
+  return step;
 }
 
 /// What the last step left, m, sampled where the state is judged.
@@ -199,8 +265,21 @@ void JudgedRun::conclude() {
   const std::string estimated = beyond_estimates();
   if (!summary_.reason.empty() && !estimated.empty()) summary_.reason += ", ";
   summary_.reason += estimated;
+  const auto add = [this](const std::string& reason) {
+    if (!summary_.reason.empty() && !reason.empty()) summary_.reason += ", ";
+    summary_.reason += reason;
+  };
+  add(watch_.doubt());
+  if (samples_local_error_) {
+    add(rounding_degradation(scene_.model, settings_.step, steps_, judge_.length()));
+  }
   if (!summary_.reason.empty()) {
     summary_.status = RunStatus::degraded;
+  } else if (half_ && !watch_.passage().empty()) {
+    summary_.status = RunStatus::plausible;
+    summary_.reason = watch_.passage() +
+                      ", where half the step goes the same way: it does not tell whether it is "
+                      "the right one";
   } else if (samples_local_error_ && !half_) {
     summary_.status = RunStatus::plausible;
     summary_.reason = "no exact motion is known; --half-step estimates the position error";

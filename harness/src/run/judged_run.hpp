@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "run/branch_watch.hpp"
 #include "run/half_step_run.hpp"
 #include "run/local_half_steps.hpp"
 #include "run/run.hpp"
@@ -56,6 +57,10 @@ class JudgedRun {
   [[nodiscard]] long judged_after(long step) const;
   void count(const StepOutcome& outcome);
   void judge_present();
+  void look(const State& present);
+  [[nodiscard]] bool is_unusual(const StepOutcome& outcome) const;
+  [[nodiscard]] long looked_after(const State& present) const;
+  [[nodiscard]] long first_across(long step);
   bool locate_loss(const std::string& reason);
   void lose(RunStatus status, std::string reason, std::optional<double> t);
   void lose(const Judge& judge, const std::string& reason, long step);
@@ -73,10 +78,12 @@ class JudgedRun {
   long steps_;        // of the whole run
   long interval_;     // between two judgements
   long next_judged_;  // step
+  long next_look_;    // step; beyond the last where there is nothing to look at
   State state_;       // the last one that was looked at
   State before_;      // one step before the one that is judged next
   Judge judge_;
   LastGood good_;
+  BranchWatch watch_;
   std::optional<HalfStepRun> half_;
   std::optional<LocalHalfSteps> local_half_;
   bool samples_local_error_;  // nothing better tells

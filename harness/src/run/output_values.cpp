@@ -20,7 +20,6 @@ OutputValues::OutputValues(const Scene& scene) : scene_(scene), motion_(scene) {
 }
 
 void OutputValues::follow(double t, const State& state) {
-  const bool is_first = state_ == nullptr;
   state_ = &state;
   motion_.set(t, state);
   for (std::size_t i = 0; i < angles_.size(); ++i) {
@@ -28,25 +27,28 @@ void OutputValues::follow(double t, const State& state) {
     if (output.kind != Output::Kind::angle) continue;
     const double now = angle(output);
     // The multiple of 2 pi that brings it closest to the last one.
-    angles_[i] =
-        is_first ? now : angles_[i] + std::remainder(now - angles_[i], 2 * std::numbers::pi);
+    angles_[i] += std::remainder(now - angles_[i], 2 * std::numbers::pi);
   }
 }
 
 std::vector<double> OutputValues::values() const {
-  std::vector<double> result;
-  result.reserve(columns_.size());
+  std::vector<double> result(columns_.size());
+  values(result);
+  return result;
+}
+
+void OutputValues::values(std::span<double> result) const {
+  auto place = result.begin();
   const auto dimension = static_cast<std::size_t>(scene_.model.dimension());
   for (std::size_t i = 0; i < angles_.size(); ++i) {
     const Output& output = scene_.elements.outputs[i];
     if (vector_prefix(output) == nullptr) {
-      result.push_back(scalar(i));
+      *place++ = scalar(i);
       continue;
     }
     const Vector3 value = vector(output);
-    for (std::size_t axis = 0; axis < dimension; ++axis) result.push_back(value[axis]);
+    for (std::size_t axis = 0; axis < dimension; ++axis) *place++ = value[axis];
   }
-  return result;
 }
 
 Vector3 OutputValues::vector(const Output& output) const {

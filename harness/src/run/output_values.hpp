@@ -1,6 +1,7 @@
 // The quantities that a scene's author asked for, evaluated from states.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,11 @@ class OutputValues {
 
   /// One number a column at the state last taken: m, m/s, m/s^2, rad, J, N, N m.
   [[nodiscard]] std::vector<double> values() const;
+  void values(std::span<double> result) const;
+
+  /// What follow() has made of the angles, one an output, to go on from a state in the past.
+  [[nodiscard]] const std::vector<double>& angles() const { return angles_; }
+  void set_angles(const std::vector<double>& angles) { angles_ = angles; }
 
  private:
   [[nodiscard]] Vector3 along(const Direction& direction) const;

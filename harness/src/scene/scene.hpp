@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -96,6 +97,14 @@ struct Driver {
   std::string range = {};  ///< what is allowed: "a distance above 0 m"
 };
 
+/// A value that a program sets from step to step, wherever the scene has {"input": ...} of this
+/// name.
+struct Input {
+  std::string name;
+  double start = 0.0;                         ///< what it is until then
+  std::shared_ptr<TimeFunction::Sample> now;  ///< what the functions of the Model read
+};
+
 /// What the scene's author named, for outputs, messages and pictures; no implementation sees it.
 struct Elements {
   struct Rod {
@@ -114,6 +123,7 @@ struct Elements {
   std::vector<int> helpers;  ///< points and vectors that the scene does not name; as in bodies
   std::vector<Output> outputs;
   std::vector<Driver> drivers = {};
+  std::vector<Input> inputs = {};
   DrivenEnergy driven_energy;
 };
 

@@ -14,7 +14,7 @@ void accumulate(std::vector<std::size_t>& counts) {
 
 }  // namespace
 
-TangentPattern::TangentPattern(const Model& model)
+TangentPattern::TangentPattern(const Model& model, PatternOf which)
     : mass_(model.mass()),
       mass_start_(static_cast<std::size_t>(model.variables()) + 1, 0),
       clique_start_{0},
@@ -22,7 +22,8 @@ TangentPattern::TangentPattern(const Model& model)
       seen_in_(static_cast<std::size_t>(model.variables()), -1) {
   for (const MassEntry& entry : mass_) ++mass_start_[static_cast<std::size_t>(entry.col) + 1];
   accumulate(mass_start_);
-  read_cliques(model);
+  if (which == PatternOf::tangent) read_constraints(model);
+  read_forces(model);
   for (const int col : clique_columns_) ++column_start_[static_cast<std::size_t>(col) + 1];
   accumulate(column_start_);
   column_cliques_.resize(clique_columns_.size());
@@ -50,7 +51,7 @@ void TangentPattern::add_points(const Model& model, std::initializer_list<int> p
   clique_start_.push_back(clique_columns_.size());
 }
 
-void TangentPattern::read_cliques(const Model& model) {
+void TangentPattern::read_constraints(const Model& model) {
   for (const DotConstraint& c : model.dot_constraints()) add_points(model, {c.a, c.b, c.c, c.d});
   for (const BilinearConstraint& c : model.bilinear_constraints()) {
     add_points(model, {c.a, c.b, c.c, c.d});
@@ -59,6 +60,9 @@ void TangentPattern::read_cliques(const Model& model) {
     for (const auto& term : constraint.terms) clique_columns_.push_back(term.coordinate);
     clique_start_.push_back(clique_columns_.size());
   }
+}
+
+void TangentPattern::read_forces(const Model& model) {
   for (const Spring& spring : model.springs()) add_points(model, {spring.a, spring.b});
   for (const TorsionSpring& spring : model.torsion_springs()) {
     add_points(model, {spring.a, spring.b, spring.c, spring.d});

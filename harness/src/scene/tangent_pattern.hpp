@@ -9,7 +9,13 @@
 
 namespace mbs {
 
-/// Pattern of M + C + K + Phi_q^T Phi_q without storing it: memory is that of M and Phi_q, and a
+/// Which matrix a pattern is of.
+enum class PatternOf {
+  tangent,       ///< M + C + K + Phi_q^T Phi_q
+  leading_block  ///< M + C + K, which the saddle-point matrix (12) has there
+};
+
+/// Pattern of such a matrix without storing it: memory is that of M and Phi_q, and a
 /// column costs the sizes of the cliques that touch it. A clique is a set of coordinates that are
 /// all coupled: those of a constraint, a spring or a torsion spring. The diagonal is always in the
 /// pattern.
@@ -18,7 +24,7 @@ namespace mbs {
 class TangentPattern {
  public:
   /// `model` must outlive the pattern.
-  explicit TangentPattern(const Model& model);
+  explicit TangentPattern(const Model& model, PatternOf which = PatternOf::tangent);
 
   /// Rows of the non-zeros below the diagonal of column `col`, unsorted; valid until the next call.
   std::span<const int> below(int col);
@@ -26,7 +32,8 @@ class TangentPattern {
  private:
   void collect(int col, int row);
   void add_points(const Model& model, std::initializer_list<int> points);
-  void read_cliques(const Model& model);
+  void read_constraints(const Model& model);
+  void read_forces(const Model& model);
 
   std::span<const MassEntry> mass_;
   std::vector<std::size_t> mass_start_;    // of column j in mass_

@@ -96,6 +96,29 @@ class SplineKind final : public TimeFunction::Kind {
   std::vector<double> t_, y_, bend_;
 };
 
+class InputKind final : public TimeFunction::Kind {
+ public:
+  explicit InputKind(std::shared_ptr<const Sample> now) : now_(std::move(now)) {}
+
+  [[nodiscard]] Sample at(double /*t*/) const override { return *now_; }
+
+ private:
+  std::shared_ptr<const Sample> now_;
+};
+
+class PushingKind final : public TimeFunction::Kind {
+ public:
+  PushingKind(TimeFunction force, double position)
+      : force_(std::move(force)), position_(position) {}
+
+  [[nodiscard]] Sample at(double t) const override { return {position_, 0.0, -force_.at(t).value}; }
+  [[nodiscard]] double end() const override { return force_.end(); }
+
+ private:
+  TimeFunction force_;
+  double position_;
+};
+
 class SquareKind final : public TimeFunction::Kind {
  public:
   explicit SquareKind(TimeFunction f) : f_(std::move(f)) {}
@@ -164,6 +187,12 @@ TimeFunction sine(const Sine& sine) { return make<SineKind>(sine); }
 
 TimeFunction spline(std::vector<double> times, std::vector<double> values) {
   return make<SplineKind>(std::move(times), std::move(values));
+}
+
+TimeFunction input(std::shared_ptr<const Sample> now) { return make<InputKind>(std::move(now)); }
+
+TimeFunction pushing(TimeFunction force, double position) {
+  return make<PushingKind>(std::move(force), position);
 }
 
 TimeFunction square_of(TimeFunction f) {

@@ -1,6 +1,7 @@
 // The kinds of TimeFunction that a JSON scene can ask for, and what lowering makes of them.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -21,6 +22,13 @@ TimeFunction sine(const Sine& sine);
 /// Natural cubic spline through (times[i], values[i]); beyond them it goes on straight, and end()
 /// is the last time. Needs at least two rows and strictly increasing times.
 TimeFunction spline(std::vector<double> times, std::vector<double> values);
+
+/// Whatever `now` is when it is asked, at all times: what a program sets from step to step.
+TimeFunction input(std::shared_ptr<const TimeFunction::Sample> now);
+
+/// `position`, at rest, whose acceleration is -force: with a DrivenMass of 1 kg it puts the force
+/// (N) into Q.
+TimeFunction pushing(TimeFunction force, double position);
 
 /// f^2.
 TimeFunction square_of(TimeFunction f);

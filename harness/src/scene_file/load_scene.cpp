@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -34,12 +35,19 @@ int parse_loops(const std::string& scene, std::string_view text) {
   return parse_whole(scene, text, "N", 1, kMostLoops);
 }
 
-double parse_fill(const std::string& scene, std::string_view option) {
+/// The text behind "NAME=" in an option.
+std::string_view value_of(const std::string& scene, std::string_view name,
+                          std::string_view option) {
   const auto equals = option.find('=');
-  if (option.substr(0, equals) != "fill" || equals == std::string_view::npos) {
-    fail(scene, fmt::format("found the option {}, allowed is fill=F", in_quotes(option)));
+  if (option.substr(0, equals) != name || equals == std::string_view::npos) {
+    fail(scene, fmt::format("found the option {}, allowed is fill=F or fill=F,seed=S",
+                            in_quotes(option)));
   }
-  const std::string_view text = option.substr(equals + 1);
+  return option.substr(equals + 1);
+}
+
+double parse_fill(const std::string& scene, std::string_view option) {
+  const std::string_view text = value_of(scene, "fill", option);
   double fill = 0.0;
   const auto [end, error] =
       std::from_chars(text.data(), text.data() + text.size(), fill, std::chars_format::fixed);
@@ -59,10 +67,18 @@ Scene load_four_bar(const std::string& scene) {
   if (comma == std::string_view::npos) {
     return {scene, Model(four_bar(loops)), loops, {}, four_bar_elements(loops), {}};
   }
-  const double asked = parse_fill(scene, rest.substr(comma + 1));
+  const std::string_view options = rest.substr(comma + 1);
+  const auto second = options.find(',');
+  const double asked = parse_fill(scene, options.substr(0, second));
+  const std::uint64_t seed =
+      second == std::string_view::npos
+          ? kFillSeed
+          : static_cast<std::uint64_t>(
+                parse_whole(scene, value_of(scene, "seed", options.substr(second + 1)), "S", 1,
+                            std::numeric_limits<int>::max()));
   ModelData data = four_bar(loops);
   try {
-    const Fill fill = add_fill(data, asked, kFillSeed);
+    const Fill fill = add_fill(data, asked, seed);
     return {scene, Model(std::move(data)), loops, fill, four_bar_elements(loops), {}};
   } catch (const UsageError& error) {
     fail(scene, error.what());
@@ -105,7 +121,7 @@ void require_file(const std::string& path) {
     const bool missing = status.type() == std::filesystem::file_type::not_found || path.empty();
     fail(path,
          fmt::format("{}; allowed are four-bar:N (N from 1 to {}), four-bar:N,fill=F (F above "
-                     "0, up to 1), {} (mbs list --scenes), or the path of a JSON scene file",
+                     "0, up to 1; and ,seed=S for other positions), {} (mbs list --scenes), or the path of a JSON scene file",
                      missing ? "no such file and no such kind of scene" : error.message(),
                      kMostLoops, fmt::join(forms, ", ")));
   }

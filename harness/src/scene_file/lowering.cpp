@@ -8,6 +8,7 @@
 
 #include "model_math/extent.hpp"
 #include "printable.hpp"
+#include "scene/time_functions.hpp"
 #include "scene_file/kinds/kinds.hpp"
 
 namespace mbs {
@@ -24,6 +25,7 @@ Lowered Lowering::run() {
   rows_.finish();
   add_elements();
   elements().drivers = std::move(draft_.drivers);
+  elements().inputs = std::move(draft_.inputs);
   lowered_.data.largest_correction =
       draft_.largest_correction.value_or(0.1 * extent(model().points));
   return std::move(lowered_);
@@ -41,6 +43,22 @@ void Lowering::number_points() {
     if (is_free && point.bodies.size() == 1 && !point.is_member) continue;
     add_point(point);
   }
+  for (DraftForce& force : draft_.forces) {
+    const auto is_driven = [](const TimeFunction& axis) { return !axis.is_constant(); };
+    if (std::ranges::any_of(force.driven, is_driven)) add_pusher(force);
+  }
+}
+
+/// A force that is a function of time: what the mass of a driven point would put into Q.
+void Lowering::add_pusher(DraftForce& force) {
+  force.pusher = add_hidden(force.node.path(), false);
+  Point& point = model().points[static_cast<std::size_t>(force.pusher)];
+  point.position = position(force.point);  // so that the scene's extent stays
+  DrivenPoint driven{force.pusher, {}};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    driven.position[axis] = pushing(force.driven[axis], point.position[axis]);
+  }
+  model().driven_points.push_back(driven);
 }
 
 void Lowering::add_point(DraftPoint& point) {

@@ -21,7 +21,7 @@ struct Lowered {
   SceneData data;
   std::vector<std::string> labels;  ///< of the points of the model, for messages
   /// Springs whose free length or angle is that of the assembled start.
-  std::vector<std::size_t> relaxed_springs, relaxed_torsion_springs;
+  std::vector<std::size_t> relaxed_springs, relaxed_force_laws, relaxed_torsion_springs;
 };
 
 class Lowering {
@@ -80,6 +80,7 @@ class Lowering {
 
  private:
   void number_points();
+  void add_pusher(DraftForce& force);
   void add_point(DraftPoint& point);
   [[nodiscard]] std::string velocity_path(const DraftPoint& point) const;
   void add_elements();

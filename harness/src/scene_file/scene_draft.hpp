@@ -112,7 +112,7 @@ struct DraftSpring {
   JsonNode node;
   std::string name;
   int a = 0, b = 0;
-  double stiffness = 0.0, damping = 0.0;
+  TimeFunction stiffness = {}, damping = {};
   std::optional<double> length = std::nullopt;
 };
 
@@ -128,7 +128,9 @@ struct DraftTorsionSpring {
 struct DraftForce {
   JsonNode node;
   int point = 0;
-  Vector3 force{};
+  Vector3 force{};                          ///< the constant part
+  std::array<TimeFunction, 3> driven = {};  ///< the other: one axis has either
+  int pusher = -1;  ///< then: the hidden driven point that has it, an index into Model::points()
 };
 
 struct DraftTorque {
@@ -137,7 +139,7 @@ struct DraftTorque {
   int body = -1;               ///< planar: turned as a whole, by its basis
   DraftDirection direction{};  ///< else
   int axis = -1;
-  double torque = 0.0;
+  TimeFunction torque = {};
 };
 
 struct DraftForceLaw {
@@ -178,6 +180,7 @@ struct SceneDraft {
   std::vector<DraftTorqueLaw> torque_laws;
   std::vector<DraftOutput> outputs;
   std::vector<Driver> drivers;
+  std::vector<Input> inputs;
   std::optional<double> largest_correction;
   std::unordered_map<std::string, int> index_of;  ///< points and vectors by name
   std::unordered_map<std::string, int> body_of;

@@ -23,10 +23,10 @@
 namespace mbs {
 namespace {
 
-enum class Kind : char { result, usage_error, failure };
+enum class Message : char { result, usage_error, failure };
 
 struct Head {
-  Kind kind = Kind::result;
+  Message kind = Message::result;
   std::size_t size = 0;
 };
 
@@ -65,10 +65,10 @@ bool read_all(int file, void* data, std::size_t size) {
     try {
       text = work(block);
     } catch (const UsageError& error) {
-      head.kind = Kind::usage_error;
+      head.kind = Message::usage_error;
       text = error.what();
     } catch (const std::exception& error) {
-      head.kind = Kind::failure;
+      head.kind = Message::failure;
       text = error.what();
     }
     head.size = text.size();
@@ -121,8 +121,8 @@ class Job {
     if (!read_all(results_, &head, sizeof head)) fail_lost();
     std::string text(head.size, '\0');
     if (!read_all(results_, text.data(), text.size())) fail_lost();
-    if (head.kind == Kind::usage_error) throw UsageError(text);
-    if (head.kind == Kind::failure) throw std::runtime_error(text);
+    if (head.kind == Message::usage_error) throw UsageError(text);
+    if (head.kind == Message::failure) throw std::runtime_error(text);
     return {std::exchange(block_, -1), std::move(text)};
   }
 

@@ -97,11 +97,13 @@ class BodyLowering {
   }
 
   /// A force on a point of the body that is no coordinate.
-  void push(std::size_t item, const Vector3& force) const {
+  void push(std::size_t item, const DraftForce& force) const {
     const BodyMass::Weights weights = algebra_.weights(place(item));
     for (std::size_t k = 0; k < body_.basis.size(); ++k) {
       const Matrix3 block = block_of(weights[k], draft_.dimension);
-      scene_.mass().push(point(body_.basis[k]).index, multiply_transposed(block, force));
+      const int at = point(body_.basis[k]).index;
+      scene_.mass().push(at, multiply_transposed(block, force.force));
+      if (force.pusher >= 0) scene_.mass().add(at, force.pusher, transposed(block));
     }
   }
 
@@ -341,6 +343,7 @@ void lower_bodies(Lowering& scene) {
     const DraftPoint& at = scene.draft().point(force.point);
     if (at.index >= 0) {
       scene.mass().push(at.index, force.force);
+      if (force.pusher >= 0) scene.mass().add(at.index, force.pusher, kIdentity);
     } else {
       forces[static_cast<std::size_t>(at.bodies.front())].push_back(&force);
     }
@@ -350,7 +353,7 @@ void lower_bodies(Lowering& scene) {
     BodyLowering body(scene, index, is_done);
     body.run();
     for (const DraftForce* force : forces[static_cast<std::size_t>(index)]) {
-      body.push(scene.draft().point(force->point).item, force->force);
+      body.push(scene.draft().point(force->point).item, *force);
     }
     is_done[static_cast<std::size_t>(index)] = true;
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 
 #include "scene/time_functions.hpp"
 
@@ -78,19 +79,40 @@ GivenFunction read_table(const JsonNode& node) {
           "the table's shortest row distance"};
 }
 
-GivenFunction read_function(const JsonNode& node, const std::string& unit) {
+/// Inputs of one name are one input.
+TimeFunction read_input(SceneReader& reader, const JsonNode& node) {
+  node.allow_keys({"name", "value"});
+  const JsonNode name = node.get("name");
+  if (!is_usable_name(name.text())) name.fail(kUsableName);
+  const auto value = node.find("value");
+  const double start = value ? value->number() : 0.0;
+  std::vector<Input>& inputs = reader.draft().inputs;
+  auto found = std::ranges::find(inputs, name.text(), &Input::name);
+  if (found == inputs.end()) {
+    found = inputs.insert(
+        found,
+        {name.text(), start, std::make_shared<TimeFunction::Sample>(TimeFunction::Sample{start})});
+  } else if (found->start != start) {
+    node.fail(fmt::format("an input that starts at {:g}", start),
+              fmt::format("{:g}, where the input of this name starts elsewhere", found->start));
+  }
+  return input(found->now);
+}
+
+GivenFunction read_function(SceneReader& reader, const JsonNode& node, const std::string& unit) {
   if (node.is_number()) return {node.number()};
   if (!node.is_object()) {
-    node.fail("a number " + unit + ", or an object with polynomial, sine or table");
+    node.fail("a number " + unit + ", or an object with polynomial, sine, table or input");
   }
-  node.allow_keys({"polynomial", "sine", "table"});
+  node.allow_keys({"polynomial", "sine", "table", "input"});
   const auto members = node.members();
   if (members.size() != 1) {
     node.fail(fmt::format("an object with {} members", members.size()),
-              "one of polynomial, sine, table");
+              "one of polynomial, sine, table, input");
   }
   const auto& [kind, value] = members.front();
   if (kind == "polynomial") return {read_polynomial(value)};
+  if (kind == "input") return {read_input(reader, value)};
   return kind == "sine" ? read_sine(value) : read_table(value);
 }
 
@@ -98,7 +120,7 @@ GivenFunction read_function(const JsonNode& node, const std::string& unit) {
 
 TimeFunction read_driver(SceneReader& reader, const JsonNode& node, const std::string& unit,
                          Driver driver) {
-  const GivenFunction given = read_function(node, unit);
+  const GivenFunction given = read_function(reader, node, unit);
   if (given.value.is_constant()) return given.value;
   driver.path = node.path();
   driver.value = given.value;

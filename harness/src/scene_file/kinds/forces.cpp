@@ -7,6 +7,8 @@
 #include <string_view>
 
 #include "printable.hpp"
+#include "scene/time_functions.hpp"
+#include "scene_file/kinds/drivers.hpp"
 #include "scene_file/kinds/kinds.hpp"
 #include "usage_error.hpp"
 
@@ -19,6 +21,26 @@ double optional_not_negative(const JsonNode& node, std::string_view key, const c
   const auto found = node.find(key);
   return found ? found->number_at_least(0.0, allowed) : 0.0;
 }
+
+/// A number of at least 0, or a function of time that stays so; 0 without the key.
+TimeFunction not_negative_driver(SceneReader& reader, const JsonNode& node, std::string_view key,
+                                 const std::string& allowed) {
+  const auto found = node.find(key);
+  if (!found) return 0.0;
+  if (found->is_number()) return found->number_at_least(0.0, allowed);
+  Driver driver;
+  driver.least = 0.0;
+  driver.range = allowed;
+  return read_driver(reader, *found, allowed, std::move(driver));
+}
+
+/// What is left of a spring's stiffness or damping when a law has the function.
+double constant_part(const TimeFunction& function) {
+  return function.is_constant() ? function.at(0.0).value : 0.0;
+}
+
+/// 1 N/m from `origin` on: by the factor of a law it is a stiffness, or a damping.
+Curve unit_slope(double origin) { return {{}, {{origin, {0.0, 1.0, 0.0, 0.0}}}}; }
 
 /// In the plane the body's two coordinate points take the couple; in space a vector of the body's
 /// across the axis does, which must stay across it.
@@ -67,8 +89,9 @@ void read_spring(SceneReader& reader, const JsonNode& node) {
   const auto [a, b] = reader.point_pair(between);
   reader.use_between(between, {a, b});
   DraftSpring spring{node, reader.element_name(node), a, b};
-  spring.stiffness = optional_not_negative(node, "stiffness", "a stiffness in N/m of at least 0");
-  spring.damping = optional_not_negative(node, "damping", "a damping in N s/m of at least 0");
+  spring.stiffness =
+      not_negative_driver(reader, node, "stiffness", "a stiffness in N/m of at least 0");
+  spring.damping = not_negative_driver(reader, node, "damping", "a damping in N s/m of at least 0");
   if (const auto length = node.find("length")) {
     spring.length = length->number_at_least(0.0, "a length in m of at least 0");
   }
@@ -77,9 +100,20 @@ void read_spring(SceneReader& reader, const JsonNode& node) {
 
 void lower_springs(Lowering& scene) {
   for (const DraftSpring& spring : scene.draft().springs) {
+    const int a = scene.index(spring.a), b = scene.index(spring.b);
+    const double length = spring.length.value_or(0.0);
+    std::vector<ForceLaw>& laws = scene.model().force_laws;
+    if (!spring.stiffness.is_constant()) {
+      if (!spring.length) scene.lowered().relaxed_force_laws.push_back(laws.size());
+      laws.push_back({a, b, {unit_slope(length), {}, spring.stiffness}, spring.name});
+    }
+    if (!spring.damping.is_constant()) {
+      laws.push_back({a, b, {{}, unit_slope(0.0), spring.damping}, spring.name});
+    }
+    if (!spring.stiffness.is_constant() && !spring.damping.is_constant()) continue;
     if (!spring.length) scene.lowered().relaxed_springs.push_back(scene.model().springs.size());
-    scene.model().springs.push_back({scene.index(spring.a), scene.index(spring.b), spring.stiffness,
-                                     spring.damping, spring.length.value_or(0.0), spring.name});
+    scene.model().springs.push_back({a, b, constant_part(spring.stiffness),
+                                     constant_part(spring.damping), length, spring.name});
   }
 }
 
@@ -119,13 +153,30 @@ void read_force(SceneReader& reader, const JsonNode& node) {
             "a free point (a force there has no effect)");
   }
   reader.draft().point(index).is_loaded = true;
-  reader.draft().forces.push_back({node, index, reader.coordinates(node.get("force"))});
+  DraftForce force{node, index};
+  const JsonNode given = node.get("force");
+  const auto axes = given.items();
+  const auto dimension = static_cast<std::size_t>(reader.draft().dimension);
+  const bool is_driven = std::ranges::any_of(axes, &JsonNode::is_object);
+  if (!is_driven || axes.size() != dimension) {
+    force.force = reader.coordinates(given);  // or its complaint
+  } else {
+    for (std::size_t axis = 0; axis < dimension; ++axis) {
+      const TimeFunction part = read_driver(reader, axes[axis], "in N");
+      if (part.is_constant()) {
+        force.force[axis] = part.at(0.0).value;
+      } else {
+        force.driven[axis] = part;
+      }
+    }
+  }
+  reader.draft().forces.push_back(std::move(force));
 }
 
 void read_torque(SceneReader& reader, const JsonNode& node) {
   node.allow_keys({"name", "direction", "body", "axis", "torque"});
   DraftTorque torque{node, reader.element_name(node)};
-  torque.torque = node.get("torque").number();
+  torque.torque = read_driver(reader, node.get("torque"), "in N m");
   torque.axis = reader.axis(node);
   if (node.find("body")) {
     if (const auto other = node.find("direction")) {
@@ -143,6 +194,29 @@ void read_torque(SceneReader& reader, const JsonNode& node) {
   reader.draft().torques.push_back(std::move(torque));
 }
 
+namespace {
+
+/// A law from a fixed direction across the axis, at any angle: -1 N m times the factor turns back.
+void lower_driven_torque(Lowering& scene, const DraftTorque& torque, const Lowering::Edge& turned,
+                         int axis) {
+  Vector3 across{1.0, 0.0, 0.0};
+  if (axis >= 0) {
+    if (scene.draft().point(torque.axis).hold != Hold::fixed) {
+      torque.node.get("torque").fail(
+          "a function of time about an axis that moves",
+          "a number, a fixed axis, or a torque law between two directions, with a factor");
+    }
+    across = any_across(scene.position(torque.axis));
+  }
+  const int from = scene.add_hidden(torque.node.path() + ".from", true);
+  scene.model().points[static_cast<std::size_t>(from)].position = across;
+  const Curve back{{}, {{0.0, {-1.0, 0.0, 0.0, 0.0}}}};
+  scene.model().torque_laws.push_back(
+      {from, scene.zero(), turned.a, turned.b, axis, {{}, back, torque.torque}, torque.name});
+}
+
+}  // namespace
+
 void lower_torques(Lowering& scene) {
   for (const DraftTorque& torque : scene.draft().torques) {
     Lowering::Edge turned;
@@ -153,9 +227,13 @@ void lower_torques(Lowering& scene) {
     } else {
       turned = scene.edge(torque.direction);
     }
-    scene.model().couples.push_back({turned.a, turned.b,
-                                     torque.axis < 0 ? -1 : scene.index(torque.axis), torque.torque,
-                                     torque.name});
+    const int axis = torque.axis < 0 ? -1 : scene.index(torque.axis);
+    if (torque.torque.is_constant()) {
+      scene.model().couples.push_back(
+          {turned.a, turned.b, axis, torque.torque.at(0.0).value, torque.name});
+    } else {
+      lower_driven_torque(scene, torque, turned, axis);
+    }
   }
 }
 
@@ -164,6 +242,11 @@ void finish_start(Lowered& lowered, const std::string& where) {
   for (const std::size_t i : lowered.relaxed_springs) {
     const Vector3 d = difference(data, data.springs[i].a, data.springs[i].b);
     data.springs[i].length = std::hypot(d[0], d[1], d[2]);
+  }
+  for (const std::size_t i : lowered.relaxed_force_laws) {
+    ForceLaw& law = data.force_laws[i];
+    const Vector3 d = difference(data, law.a, law.b);
+    law.law.by_position.pieces.front().origin = std::hypot(d[0], d[1], d[2]);
   }
   for (const std::size_t i : lowered.relaxed_torsion_springs) {
     TorsionSpring& s = data.torsion_springs[i];

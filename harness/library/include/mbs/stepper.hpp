@@ -1,0 +1,169 @@
+// The library: a scene, stepped from one's own program. harness/library/README.md begins with an
+// example.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mbs/simulation.hpp"
+
+namespace mbs {
+
+/// What the library refuses: a scene, a name, a setting. what() is one line.
+class Refused : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A scene that is read and may still be changed. Copies share nothing.
+class SceneDocument {
+ public:
+  /// What `mbs simulate` takes: the path of a JSON file, "four-bar:40", "vehicle:4". Throws
+  /// Refused.
+  static SceneDocument load(const std::string& scene);
+  /// The text of a JSON scene; `name` stands for it in messages. Throws Refused.
+  static SceneDocument parse(std::string_view json, const std::string& name = "scene");
+
+  SceneDocument(const SceneDocument& other);
+  SceneDocument& operator=(const SceneDocument& other);
+  ~SceneDocument();
+
+  /// A number of the document, by the path that `mbs sweep --vary` takes:
+  /// "springs/front/stiffness", "points/B/velocity/0". Throws Refused with what is there.
+  [[nodiscard]] double number(const std::string& path) const;
+  void set_number(const std::string& path, double value);
+
+  [[nodiscard]] const std::string& name() const;
+  [[nodiscard]] std::string json() const;
+  /// What `mbs describe --json` prints for a time step of `step` s. Throws Refused.
+  [[nodiscard]] std::string describe(double step = StepSettings{}.step) const;
+
+ private:
+  friend class Stepper;
+  friend class BatchStepper;
+  struct Content;
+  explicit SceneDocument(std::unique_ptr<Content> content);
+  std::unique_ptr<Content> content_;
+};
+
+/// How a scene is stepped.
+struct StepperOptions {
+  /// "folder/variant" of implementations(), or "auto": of those in this build, the one that the
+  /// measured rule of `mbs describe` expects to be fastest on the scene with this scheme.
+  std::string implementation = "auto";
+  /// A penalty or tolerance of 0 is chosen from the scene, as `mbs simulate` does.
+  StepSettings settings = {.penalty = 0.0, .tolerance = 0.0};
+};
+
+/// An implementation of this build, and the library that it stands on.
+struct Offer {
+  std::string name;         ///< "folder/variant"
+  std::string description;  ///< one line
+  std::string library;      ///< "none": code of this project alone, under its licence
+  std::string licence;      ///< of that library, SPDX
+};
+std::vector<Offer> implementations();
+
+/// "0.1.0".
+const char* version();
+
+/// A moment of a Stepper, to come back to.
+struct Saved {
+  State state;
+  std::vector<TimeFunction::Sample> inputs;
+  std::vector<double> angles;  ///< as outputs count them, with turns
+};
+
+/// One simulation of one scene, from its start on. Set up once; step() and set_input() allocate
+/// nothing (but where mbs::Variant::allocates says so), and neither do the others after their first
+/// call.
+///
+///   mbs::Stepper car(mbs::SceneDocument::load("car.json"), {.implementation =
+///   "csc_ldl/uplooking"}); const int road = car.input("road"), hub = car.output("hub.y"); for (;;)
+///   {
+///     car.set_input(road, z, dz, ddz);        // at the end of the step
+///     if (car.step().status != mbs::StepStatus::converged) ...
+///     use(car.outputs()[hub]);
+///   }
+///
+/// A Stepper belongs to one thread at a time; several of the same document share nothing.
+class Stepper {
+ public:
+  /// Throws Refused, or Unsupported if the implementation does not serve the scene or the settings.
+  explicit Stepper(const SceneDocument& scene, const StepperOptions& options = {});
+  Stepper(Stepper&&) noexcept;
+  Stepper& operator=(Stepper&&) noexcept;
+  ~Stepper();
+
+  [[nodiscard]] const std::string& implementation() const;  ///< the one chosen
+  [[nodiscard]] const StepSettings& settings() const;       ///< with the chosen numbers
+
+  /// Names of the scene's {"input": ...}, and columns of its "outputs" ("hub.x", "hub.y").
+  [[nodiscard]] std::span<const std::string> input_names() const;
+  [[nodiscard]] std::span<const std::string> output_names() const;
+  /// Where a name is among them. Throws Refused with the names.
+  [[nodiscard]] int input(std::string_view name) const;
+  [[nodiscard]] int output(std::string_view name) const;
+
+  /// What an input is from the next step on; of a function of time: its value at the end of that
+  /// step. Forces, torques, stiffnesses, dampings and factors need the value alone. What moves a
+  /// point or a constraint needs its rate (per s) and acceleration (per s^2) too, consistent with
+  /// each other.
+  void set_input(int input, double value, double rate = 0.0, double acceleration = 0.0);
+
+  /// Delta t further.
+  [[nodiscard]] StepOutcome step();
+  /// At most `steps` steps, fewer where a factorization fails. The status is the worst of them,
+  /// passes and factorizations are sums.
+  [[nodiscard]] StepOutcome step(long steps);
+
+  /// q, v, a, lambda and t now; valid until the next step or restore(). The same buffers every
+  /// time.
+  [[nodiscard]] const State& state();
+  /// One number an output; valid like state(). Driven points are where the inputs are now. Angles
+  /// count turns if they are asked for at least twice a turn.
+  [[nodiscard]] std::span<const double> outputs();
+
+  /// State and inputs. Kept tangents and the history of multistep6 begin anew with restore().
+  void save(Saved& moment);
+  void restore(const Saved& moment);
+
+ private:
+  friend class BatchStepper;
+  struct Content;
+  std::unique_ptr<Content> content_;
+};
+
+/// Several scenes of one shape at once: what `mbs sweep` does, for one's own loop. Where the
+/// implementation offers no batch or the scenes differ in shape, they are stepped one after the
+/// other.
+class BatchStepper {
+ public:
+  /// Throws as Stepper, and Refused if there is no scene. `auto` is the choice for the first scene.
+  explicit BatchStepper(std::span<const SceneDocument> scenes, const StepperOptions& options = {});
+  BatchStepper(BatchStepper&&) noexcept;
+  BatchStepper& operator=(BatchStepper&&) noexcept;
+  ~BatchStepper();
+
+  [[nodiscard]] int lanes() const;
+  [[nodiscard]] bool is_side_by_side() const;
+  [[nodiscard]] const std::string& implementation() const;
+  [[nodiscard]] const StepSettings& settings(int lane) const;
+  [[nodiscard]] std::span<const std::string> input_names() const;
+  [[nodiscard]] std::span<const std::string> output_names() const;
+
+  void set_input(int lane, int input, double value, double rate = 0.0, double acceleration = 0.0);
+  /// All lanes Delta t further; one outcome a lane. A lane that failed goes no further.
+  [[nodiscard]] std::span<const StepOutcome> step();
+  [[nodiscard]] const State& state(int lane);
+  [[nodiscard]] std::span<const double> outputs(int lane);
+
+ private:
+  struct Content;
+  std::unique_ptr<Content> content_;
+};
+
+}  // namespace mbs

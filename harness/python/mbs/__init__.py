@@ -1,0 +1,62 @@
+"""Multibody simulations from Python: scenes, steppers, tables of a run. harness/python/README.md has examples."""
+from concurrent.futures import ThreadPoolExecutor
+
+from ._mbs import (BatchStepper, Projections, Refused, Saved, Scene, Scheme, StepOutcome, Stepper, Unsupported,
+                   __version__, implementations)
+
+__all__ = ["BatchStepper", "Projections", "Refused", "Saved", "Scene", "Scheme", "StepOutcome", "Stepper",
+           "Unsupported", "__version__", "implementations", "simulate", "simulate_all"]
+
+
+def simulate(scene, duration, implementation="auto", *, every=1, inputs=None, **settings):
+    """The outputs of a run as a DataFrame over t, s.
+
+    `inputs`: by name, one value a step, or a row (value, rate, acceleration) a step. `settings` are those of Stepper. The frame's attrs say who ran it and how many steps ended at the pass limit; it is
+    shorter than `duration` where a step failed.
+    """
+    import numpy
+    import pandas
+
+    stepper = Stepper(Scene(scene), implementation, **settings)
+    steps = round(duration / stepper.dt)
+    start = numpy.concatenate([[stepper.t], stepper.values])
+    rows, at_limit = stepper.run(steps, every, None if inputs is None else _rows(stepper, inputs, steps))
+    frame = pandas.DataFrame(numpy.vstack([start, rows]), columns=["t", *stepper.outputs]).set_index("t")
+    frame.attrs.update(implementation=stepper.implementation, steps_at_limit=at_limit)
+    return frame
+
+
+def simulate_all(scenes, duration, implementation="auto", *, every=1, threads=1, lanes=8, **settings):
+    """The outputs of a run of each scene, as one DataFrame over (scene, t): batches of `lanes` on `threads`."""
+    import pandas
+
+    scenes = [Scene(scene) for scene in scenes]
+    batches = [scenes[first:first + lanes] for first in range(0, len(scenes), lanes)]
+
+    def run(batch):
+        stepper = BatchStepper(batch, implementation, **settings)
+        rows = stepper.run(round(duration / stepper.dt), every)
+        return [pandas.DataFrame(lane, columns=["t", *stepper.outputs]).set_index("t") for lane in rows]
+
+    with ThreadPoolExecutor(threads) as pool:
+        frames = [frame for batch in pool.map(run, batches) for frame in batch]
+    return pandas.concat(frames, keys=range(len(frames)), names=["scene", "t"])
+
+
+def _rows(stepper, inputs, steps):
+    """(steps, inputs, 3), every input of the scene in its place."""
+    import numpy
+
+    unknown = set(inputs) - set(stepper.inputs)
+    if unknown:
+        raise Refused(f"the scene has no input {sorted(unknown)}: there are {stepper.inputs}")
+    missing = set(stepper.inputs) - set(inputs)
+    if missing:
+        raise Refused(f"inputs are missing: {sorted(missing)}")
+    rows = numpy.zeros((steps, len(stepper.inputs), 3))
+    for index, name in enumerate(stepper.inputs):
+        given = numpy.asarray(inputs[name], dtype=float)
+        if given.shape not in ((steps,), (steps, 3)):
+            raise Refused(f"input {name!r} has shape {given.shape}: ({steps},) or ({steps}, 3) is needed")
+        rows[:, index, :1 if given.ndim == 1 else 3] = given.reshape(steps, -1)
+    return rows

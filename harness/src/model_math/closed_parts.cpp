@@ -1,0 +1,207 @@
+// Matching, what is reached from unmatched columns, strongly connected components.
+#include "model_math/closed_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "model_math/jacobian_rank.hpp"
+#include "model_math/kinematics.hpp"
+
+namespace mbs {
+namespace {
+
+using Lists = std::vector<std::vector<int>>;
+
+/// Phi_q as a bipartite graph with a matching of its rows.
+class Pattern {
+ public:
+  Pattern(int rows, int cols)
+      : cols_of_(static_cast<std::size_t>(rows)),
+        rows_of_(static_cast<std::size_t>(cols)),
+        col_of_(cols_of_.size(), -1),
+        row_of_(rows_of_.size(), -1) {}
+
+  void add(int row, int col) {
+    cols_of_[at(row)].push_back(col);
+    rows_of_[at(col)].push_back(row);
+  }
+
+  /// Gives as many rows as possible a column of their own.
+  void match() {
+    std::vector<int> seen(rows_of_.size(), -1);
+    for (int row = 0; row < static_cast<int>(cols_of_.size()); ++row) augment(row, seen);
+  }
+
+  /// The columns that are reached from unmatched ones by rows and their columns, as a flag each.
+  [[nodiscard]] std::vector<bool> loose() const {
+    std::vector<bool> reached(rows_of_.size(), false);
+    std::vector<int> stack;
+    for (std::size_t col = 0; col < row_of_.size(); ++col) {
+      if (row_of_[col] < 0) stack.push_back(static_cast<int>(col));
+    }
+    while (!stack.empty()) {
+      const auto col = at(stack.back());
+      stack.pop_back();
+      if (reached[col]) continue;
+      reached[col] = true;
+      for (const int row : rows_of_[col]) {
+        if (col_of_[at(row)] >= 0) stack.push_back(col_of_[at(row)]);
+      }
+    }
+    return reached;
+  }
+
+  /// The rows of the columns that `loose` leaves, in strongly connected groups: a row leads to
+  /// those whose columns it has [Tarjan, 1972].
+  [[nodiscard]] Lists groups(const std::vector<bool>& loose) const {
+    Lists result;
+    std::vector<int> index(cols_of_.size(), -1), low(index), path;
+    std::vector<bool> on_path(index.size(), false);
+    int count = 0;
+    const std::function<void(int)> visit = [&](int row) {
+      const auto r = at(row);
+      index[r] = low[r] = count++;
+      path.push_back(row);
+      on_path[r] = true;
+      for (const int col : cols_of_[r]) {
+        const int next = row_of_[at(col)];
+        if (next < 0 || next == row) continue;
+        if (index[at(next)] < 0) visit(next);
+        if (on_path[at(next)]) low[r] = std::min(low[r], low[at(next)]);
+      }
+      if (low[r] != index[r]) return;
+      result.emplace_back();
+      for (int top = -1; top != row;) {
+        top = path.back();
+        path.pop_back();
+        on_path[at(top)] = false;
+        result.back().push_back(top);
+      }
+    };
+    for (int row = 0; row < static_cast<int>(cols_of_.size()); ++row) {
+      if (is_tight(row, loose) && index[at(row)] < 0) visit(row);
+    }
+    return result;
+  }
+
+  /// The loose columns in groups that share rows.
+  [[nodiscard]] std::vector<ConstraintBlock> pieces(const std::vector<bool>& loose) const {
+    std::vector<ConstraintBlock> result;
+    std::vector<bool> has_col(rows_of_.size(), false), has_row(cols_of_.size(), false);
+    for (std::size_t first = 0; first < loose.size(); ++first) {
+      if (!loose[first] || has_col[first]) continue;
+      ConstraintBlock piece;
+      std::vector<int> stack{static_cast<int>(first)};
+      has_col[first] = true;
+      while (!stack.empty()) {
+        const int col = stack.back();
+        stack.pop_back();
+        piece.cols.push_back(col);
+        for (const int row : rows_of_[at(col)]) {
+          if (has_row[at(row)]) continue;
+          has_row[at(row)] = true;
+          piece.rows.push_back(row);
+          for (const int next : cols_of_[at(row)]) {
+            if (!loose[at(next)] || has_col[at(next)]) continue;
+            has_col[at(next)] = true;
+            stack.push_back(next);
+          }
+        }
+      }
+      result.push_back(std::move(piece));
+    }
+    return result;
+  }
+
+  [[nodiscard]] bool is_tight(int row, const std::vector<bool>& loose) const {
+    return col_of_[at(row)] >= 0 && !loose[at(col_of_[at(row)])];
+  }
+  [[nodiscard]] int col_of(int row) const { return col_of_[at(row)]; }
+
+ private:
+  static std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+  bool augment(int row, std::vector<int>& seen) {
+    // Depth first, without recursion over whole chains: breadth first with parents.
+    std::vector<std::pair<int, int>> queue;  // row, place of its parent
+    std::vector<int> via;                    // the column by which it was found
+    queue.emplace_back(row, -1);
+    via.push_back(-1);
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+      for (const int col : cols_of_[at(queue[i].first)]) {
+        if (seen[at(col)] == row) continue;
+        seen[at(col)] = row;
+        if (row_of_[at(col)] >= 0) {
+          queue.emplace_back(row_of_[at(col)], static_cast<int>(i));
+          via.push_back(col);
+          continue;
+        }
+        int free = col;
+        for (int k = static_cast<int>(i); k >= 0; k = queue[at(k)].second) {
+          const int owner = queue[at(k)].first;
+          col_of_[at(owner)] = free;
+          row_of_[at(free)] = owner;
+          free = via[at(k)];
+        }
+        return true;
+      }
+    }
+    return false;
+  }
+
+  Lists cols_of_, rows_of_;
+  std::vector<int> col_of_, row_of_;  // the matching; -1: none
+};
+
+bool is_driven(const Model& model) {
+  return !model.driven_points().empty() || !model.driven_values().empty();
+}
+
+ConstraintBlock sorted(ConstraintBlock block) {
+  std::ranges::sort(block.rows);
+  std::ranges::sort(block.cols);
+  return block;
+}
+
+}  // namespace
+
+ClosedParts closed_parts(const Model& model, const std::vector<double>& q, int largest) {
+  ClosedParts result;
+  const int rows = model.constraints(), cols = model.variables();
+  const auto entries = jacobian(model, 0.0, q);
+  const auto rank = find_rank(rows, cols, entries);
+  if (rows == 0 || !rank) return result;
+  result.has_redundant_rows = !rank->dependent.empty();
+  Pattern pattern(rows, cols);
+  for (const JacobianEntry& entry : entries) {
+    if (!std::ranges::binary_search(rank->dependent, entry.row)) pattern.add(entry.row, entry.col);
+  }
+  pattern.match();
+  const auto loose = pattern.loose();
+  const auto most = static_cast<std::size_t>(largest);
+  if (is_driven(model)) {
+    for (const auto& group : pattern.groups(loose)) {
+      ConstraintBlock block;
+      for (const int row : group) {
+        block.rows.push_back(row);
+        block.cols.push_back(pattern.col_of(row));
+        result.driven.rows.push_back(row);
+        result.driven.cols.push_back(pattern.col_of(row));
+      }
+      result.blocks.push_back(sorted(std::move(block)));
+    }
+    result.driven = sorted(std::move(result.driven));
+    if (result.driven.rows.size() > most) result.driven = {}, result.blocks.clear();
+    return result;
+  }
+  constexpr std::size_t kLeastLoop = 3;  // rows; with fewer nothing is closed
+  for (ConstraintBlock& piece : pattern.pieces(loose)) {
+    const std::size_t size = piece.rows.size();
+    if (size < kLeastLoop || size > most || piece.cols.size() != size + 1) continue;
+    result.free.push_back(sorted(std::move(piece)));
+  }
+  return result;
+}
+
+}  // namespace mbs

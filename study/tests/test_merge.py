@@ -1,0 +1,75 @@
+# study/merge: what holds on several machines.
+import json
+import shutil
+from types import SimpleNamespace
+
+import pytest
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT
+from analysis.core.timing import Ratio
+from study.tests.conftest import study
+from study.tools.merge import agreement
+from study.tools.merge.agreement import Agreement, Question
+from study.tools.merge.main import labels, need_alike
+
+ONE = Ratio(1.0, 1.0, 1.0)
+SETS = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))
+
+
+def agreed(*machines):
+    return Agreement(Question("map", "four-bar:4", "penalty", "libraries", 10.0), machines)
+
+
+def test_who_is_best_on_one_machine_and_near_it_on_the_other_holds_on_both():
+    found = agreed({"a": ONE, "b": Ratio(1.03, 1.01, 1.05), "c": Ratio(1.4, 1.3, 1.5)},
+                   {"b": ONE, "a": Ratio(1.2, 1.1, 1.3), "c": Ratio(1.5, 1.4, 1.6)})
+    assert found.common == ["b"] and found.verdict == "decided" and found.robust == "b"
+    assert found.winners == ["a", "b"] and found.worst["a"] == 1.2
+
+
+def test_contradicting_machines_leave_nobody_and_name_the_robust_one():
+    found = agreed({"a": ONE, "b": Ratio(1.3, 1.2, 1.4), "c": Ratio(1.15, 1.1, 1.2)},
+                   {"b": ONE, "a": Ratio(1.4, 1.3, 1.5), "c": Ratio(1.12, 1.1, 1.2)})
+    assert found.common == [] and found.verdict == "differs" and found.robust == "c"
+
+
+def test_what_an_interval_does_not_exclude_stays_inside():
+    found = agreed({"a": ONE, "b": Ratio(1.2, 1.04, 1.4)}, {"a": ONE, "b": Ratio(1.1, 1.0, 1.2)})
+    assert found.common == ["a", "b"] and found.verdict == "several"
+
+
+def test_a_fresh_run_is_held_to_the_decided_cells(monkeypatch):
+    cells = [agreed({"a": ONE, "b": Ratio(1.3, 1.2, 1.4)}, {"a": ONE, "b": Ratio(1.3, 1.2, 1.4)})]
+    for winner, inner in (("a", 1), ("b", 0)):
+        monkeypatch.setattr(agreement, "questions", lambda _: {cells[0].question: {winner: ONE}})
+        assert agreement.held(cells, None) == {"libraries": (1, inner)}
+
+
+@pytest.mark.parametrize("key, value, words", [("commit", "other", "commit"), ("libraries", "Eigen 9", "libraries"),
+                                               ("dirty", "true", "tree with changes")])
+def test_other_builds_and_dirty_trees_are_refused(key, value, words):
+    context = {"commit": "c", "compiler": "g", "flags": "f", "build_type": "Release", "libraries": "l", "dirty": "false", "cpu_model": "p"}
+    sets = [SimpleNamespace(folder=name, facts={"context": one, "date": name}) for name, one in
+            (("first", context), ("second", context | {key: value}))]
+    need_alike(sets[0], sets[0])
+    with pytest.raises(StudyError, match=words):
+        need_alike(*sets)
+    assert labels(sets) == ["p, first", "p, second"]
+
+
+@pytest.mark.skipif(not SETS, reason="no stored set")
+def test_two_sets_become_a_page_and_a_table(tmp_path):
+    for day in (1, 2):
+        shutil.copytree(SETS[0], tmp_path / str(day))
+        facts = json.loads((tmp_path / str(day) / "set.json").read_text())
+        (tmp_path / str(day) / "set.json").write_text(json.dumps(facts | {"date": f"2026-01-0{day} 00:00"}))
+    done = study("merge", tmp_path / "1", tmp_path / "2", "--fresh", tmp_path / "2", "--to", tmp_path / "merged")
+    assert done.returncode == 0, done.stderr
+    assert "0 differ by machine" in done.stdout and "(100 %)" in done.stdout
+    assert "2026-01-02" in (tmp_path / "merged" / "index.html").read_text()
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "mine.txt").touch()
+    refused = study("merge", tmp_path / "1", tmp_path / "2", "--to", tmp_path / "full")
+    assert refused.returncode == 2 and "is not empty" in refused.stderr
+    assert study("merge", tmp_path / "1").returncode == 2

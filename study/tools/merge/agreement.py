@@ -1,0 +1,122 @@
+# What several sets say of the same question: per scene and layer, who is among the best on each machine, and on all.
+from dataclasses import dataclass
+
+from analysis.core import schema
+from analysis.core.timing import EQUIVALENT, NONE, Ratio
+from analysis.core.view import View
+from analysis.map.results import Results
+
+LAYERS = {"libraries": "libraries", "all": "all, own code included"}
+
+
+@dataclass(frozen=True)
+class Question:
+    part: str
+    scene: str
+    form: str  # of the step
+    layer: str
+    variables: float
+
+
+def questions(studyset):
+    """{Question: {contender: Ratio to the fastest of the layer}} of one set's map and mechanisms."""
+    return dict([*_map(studyset), *_families(studyset)])
+
+
+def _map(studyset):
+    if not (studyset.folder / "map" / "cells.csv").exists():
+        return
+    tables = {name: schema.read_table(studyset.folder, "map", name) for name in ("tidy", "verification")}
+    results = Results(tables, View(studyset.folder, "map"))
+    for layer in LAYERS:
+        names = results.layer(layer)
+        for scene, rows in results.timing.groupby("scene"):
+            ranking = results.rank(scene, names)
+            if ranking:
+                yield Question("map", scene, "penalty", layer, rows.variables.iloc[0]), ranking.ratios
+
+
+def _families(studyset):
+    """Of libraries alone: the table has ratios to the best library."""
+    if not (studyset.folder / "families" / "scenes.csv").exists():
+        return
+    rows = schema.read_table(studyset.folder, "families", "scenes")
+    rows = rows[(rows.status == "ok") & rows.implementation.isin(studyset.registry.libraries) & rows.to_rival.notna()]
+    for (scene, form), group in rows.groupby(["scene", "scheme"]):
+        if group.to_rival_low.notna().any():
+            yield Question("families", scene, form, "libraries", group.variables.iloc[0]), {
+                row.implementation: Ratio(row.to_rival, row.to_rival_low, row.to_rival_high) if row.to_rival != 1 else Ratio(1.0, 1.0, 1.0)
+                for row in group.sort_values("to_rival").itertuples()}
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """`machines`: for each set {contender: Ratio}. A contender is inside on a machine if it is not shown to be more than
+    5 % behind the fastest there."""
+    question: Question
+    machines: tuple
+
+    @property
+    def sets(self):
+        """Of each machine, those inside."""
+        return [[name for name, one in ratios.items() if inside(one)] for ratios in self.machines]
+
+    @property
+    def common(self):
+        """Those inside on all machines: the equivalence set that holds on all."""
+        first, *others = self.sets
+        return [name for name in first if all(name in one for one in others)]
+
+    @property
+    def winners(self):
+        return [next(iter(ratios)) for ratios in self.machines]
+
+    @property
+    def decided(self):
+        """Whether the machines leave one alone."""
+        return len(self.common) == 1
+
+    @property
+    def worst(self):
+        """{contender timed on all machines: its largest ratio to the fastest there}, the least first."""
+        shared = set.intersection(*(set(one) for one in self.machines))
+        found = {name: max(one[name].value for one in self.machines) for name in shared}
+        return dict(sorted(found.items(), key=lambda one: one[1]))
+
+    @property
+    def robust(self):
+        """Whom to take where nobody knows the machine: the least worst loss."""
+        return next(iter(self.worst), "")
+
+    @property
+    def verdict(self):
+        return "decided" if self.decided else "several" if self.common else "differs"
+
+
+def inside(ratio):
+    return ratio.value == 1 or not ratio.low > EQUIVALENT
+
+
+def agreements(sets):
+    """Agreements on the questions that all sets answer; and how many only some of them have."""
+    found = [questions(one) for one in sets]
+    shared = [one for one in found[0] if all(one in other for other in found)]
+    everything = {one for other in found for one in other}
+    return [Agreement(one, tuple(other[one] for other in found)) for one in shared], len(everything) - len(shared)
+
+
+def held(agreed, fresh):
+    """{layer: (decided cells that a further set answers, of these with its winner in their set)}."""
+    known, found = questions(fresh), {}
+    for one in agreed:
+        if one.decided and one.question in known:
+            winner = next(iter(known[one.question]))
+            cells, inner = found.get(one.question.layer, (0, 0))
+            found[one.question.layer] = (cells + 1, inner + (winner in one.common))
+    return found
+
+
+def pair(one, place):
+    """The margin of the second on a machine; NONE without one."""
+    ratios = list(one.machines[place].values())
+    return ratios[1] if len(ratios) > 1 else NONE

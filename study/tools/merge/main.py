@@ -1,0 +1,81 @@
+# study/merge SET SET …: which winners and equivalence sets hold on all machines, which depend on the processor.
+import pandas
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, write_text
+from analysis.core.site import template
+from study.core.main import need_modules
+from study.core.options import Parser, directory
+from study.core.studyset import opened
+
+ALIKE = ("commit", "compiler", "flags", "build_type", "libraries")  # of sets that may be merged
+
+
+def merge(arguments):
+    parser = Parser(prog="study/merge", description="Merges sets of one commit and the same libraries, from several machines (or days): "
+                    "a page and a table of what holds on all of them.")
+    parser.add_argument("sets", nargs="+", type=directory, metavar="SET", help="directories of two sets or more")
+    parser.add_argument("--to", type=directory, default=ROOT / "results" / "local" / "merged", metavar="DIR",
+                        help="where page and table go (results/local/merged)")
+    parser.add_argument("--fresh", type=directory, metavar="SET", help="a further set: how many of its winners lie in the merged sets?")
+    options = parser.parse_args(arguments)
+    if len(options.sets) < 2 or len({one.resolve() for one in options.sets}) < len(options.sets):
+        raise StudyError("needs two different sets or more")
+    need_modules()
+    sets = [opened(folder) for folder in options.sets]
+    fresh = opened(options.fresh) if options.fresh else None
+    for one in (*sets, *([fresh] if fresh else [])):
+        need_alike(sets[0], one)
+    if options.to.exists() and any(options.to.iterdir()) and not (options.to / "agreement.csv").exists():
+        raise StudyError(f"{options.to} is not empty and holds no merged sets: name another directory with --to")
+    from study.tools.merge import agreement
+    agreed, alone = agreement.agreements(sets)
+    if not agreed:
+        raise StudyError("the sets have no question in common: each needs the map or the families")
+    machines = labels(sets)
+    table = pandas.DataFrame(row(one, machines) for one in agreed)
+    counts = {layer: {verdict: int(((table.layer == layer) & (table.verdict == verdict)).sum()) for verdict in ("decided", "several", "differs")}
+              for layer in agreement.LAYERS if (table.layer == layer).any()}
+    found = agreement.held(agreed, fresh) if fresh else {}
+    options.to.mkdir(parents=True, exist_ok=True)
+    write_text(options.to / "agreement.csv", table.to_csv(index=False))
+    write_text(options.to / "index.html", template(ROOT / "study" / "tools" / "merge" / "page.html.j2").render(
+        machines=[{"label": label, "facts": one.facts} for label, one in zip(machines, sets)], counts=counts, layers=agreement.LAYERS,
+        rows=table.to_dict("records"), alone=alone, held=found, fresh=fresh.facts if fresh else None))
+    for layer, count in counts.items():
+        total = sum(count.values())
+        print(f"{agreement.LAYERS[layer]}: {total} common cells, {count['decided']} with one winner everywhere, {count['several']} with several, "
+              f"{count['differs']} differ by machine")
+    for layer, (cells, inner) in found.items():
+        print(f"{agreement.LAYERS[layer]}: of {cells} decided cells the fresh set's winner lies in {inner} ({100 * inner / cells:.0f} %)")
+    print(f"page: {options.to / 'index.html'}")
+    return 0
+
+
+def need_alike(first, other):
+    """StudyError naming what differs between two sets that are not to be merged."""
+    for one in (first, other):
+        if str(one.facts["context"].get("dirty")).lower() != "false":
+            raise StudyError(f"{one.folder} was measured from a tree with changes: such sets are not merged")
+    for key in ALIKE:
+        mine, its = (str(one.facts["context"].get(key, "missing")) for one in (first, other))
+        if mine != its:
+            raise StudyError(f"{other.folder} is not to be merged with {first.folder}: {key} is '{its}', not '{mine}'")
+
+
+def labels(sets):
+    """A name for each: its processor, and its date where two have the same."""
+    names = [one.facts["context"]["cpu_model"] for one in sets]
+    return [f"{name}, {one.facts['date']}" if names.count(name) > 1 else name for name, one in zip(names, sets)]
+
+
+def row(one, machines):
+    found = {"part": one.question.part, "scene": one.question.scene, "form": one.question.form, "layer": one.question.layer,
+             "variables": one.question.variables, "verdict": one.verdict, "common": " ".join(one.common), "robust": one.robust,
+             "worst": one.worst.get(one.robust)}
+    from study.tools.merge import agreement
+    for place, label in enumerate(machines):
+        margin = agreement.pair(one, place)
+        found |= {f"winner: {label}": one.winners[place], f"margin: {label}": margin.value, f"low: {label}": margin.low,
+                  f"high: {label}": margin.high, f"inside: {label}": " ".join(one.sets[place])}
+    return found
