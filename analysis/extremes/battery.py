@@ -55,7 +55,13 @@ def _row(record, cell, name, setting, solutions, own, truth):
             "truth_error": own, "allowed": limit, "verdict": verdict, "near": cell.near,
             "wrong_from": since, "steps": cell.steps, "step": cell.step,
             "penalty": record.output.get("penalty"), "passes_per_step": record.output.get("passes_per_step"),
-            "command": shlex.join(record.command) if verdict in (verdicts.SILENT, verdicts.FALSE) else "", "record": record.name}
+            "command": _shown(record.command) if verdict in (verdicts.SILENT, verdicts.FALSE) else "", "record": record.name}
+
+
+def _shown(command):
+    """What repeats a run, without the files that the study reads."""
+    words = iter(command)
+    return shlex.join(word for word in words if not (word == "--json" or word in ("--trajectory", "--output", "--every") and next(words)))
 
 
 def extreme(table):

@@ -116,25 +116,24 @@ class Uneven(Chain):
 
 @dataclass(frozen=True)
 class TwoDrives:
-    """A parallelogram whose cranks are both driven, the second one faster by a share: it can obey neither, one, or something between."""
-    share: float
+    """A parallelogram whose cranks are both driven, the second one faster and faster: it can obey neither, one, or something between."""
+    share: float  # rad/s^2
 
     loops, truth, accuracy, shortest = 1, "closed form", 0.0, 0.5
+    linkage = Linkage((("A", (0.0, 0.0)), ("D", (1.0, 0.0))), 0.5, (Dyad("C", ("B", "D"), (1.0, 0.5), Side(1, 0.0)),))
 
     def columns(self, most):
-        return "B.x", "B.y", "C.x", "C.y"
-
-    def _linkage(self, share=0.0):
-        return Linkage((("A", (0.0, 0.0)), ("D", (1.0, 0.0))), 0.5, (Dyad("C", ("B", "D"), (1.0, 0.5), Side(1, 0.0)),), rate=1 + share)
+        return self.linkage.columns(most)
 
     def solutions(self, times):
-        return [self._linkage(share).solutions(times)[0] for share in (0.0, self.share)]
+        times = numpy.asarray(times, dtype=float)
+        both = [self.linkage.at(self.linkage.start + times + share * times**2) for share in (0.0, self.share)]
+        return [{f"{name}.{axis}": at[name][i] for name in "BC" for i, axis in enumerate("xy")} for at in both]
 
     def document(self):
-        found = self._linkage().document()
-        [drive] = found["constraints"]
-        polynomial = {"polynomial": [drive["value"]["polynomial"][0], 1 + self.share]}
-        return found | {"constraints": [drive, {"name": "second drive", "type": "angle", "first": ["A", "Ax"], "second": ["D", "C"], "value": polynomial}]}
+        found = self.linkage.document()
+        return found | {"constraints": [*found["constraints"], {
+            "name": "second drive", "type": "angle", "first": ["A", "Ax"], "second": ["D", "C"], "value": {"polynomial": [self.linkage.start, 1.0, self.share]}}]}
 
 
 @dataclass(frozen=True)

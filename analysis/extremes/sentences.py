@@ -4,6 +4,9 @@ from analysis.extremes import battery, pivots, trials, verdicts, ways
 from analysis.extremes.page import nobody, overhead
 
 
+MOST = 10  # silent wrongs that the answer itself names
+
+
 def answers(tables, view):
     found = [*_battery(tables["battery"]), *_ways(tables["ways"], tables["ways_cost"]), *_pivots(tables["pivots"])]
     return found or [{"text": "Not measured: nobody that takes part runs at the extremes.", "anchor": ""}]
@@ -16,13 +19,15 @@ def _battery(table):
     silent, false = (runs[runs.verdict == verdict] for verdict in (verdicts.SILENT, verdicts.FALSE))
     standard = runs.axis.isin(trials.STANDARD)
     wrongly, others = false[standard[false.index]], false[~standard[false.index]]
-    text = (f"Of {len(runs)} runs of {len(runs[['axis', 'value']].drop_duplicates())} mechanisms of {runs.axis.nunique()} kinds {_are(silent)} silently "
-            f"wrong, and {_are(false)} called worse than right though nothing is wrong. Bound “no run is silently wrong”: {_held(silent)}.")
+    text = (f"In {len(runs)} runs of {len(runs[['axis', 'value']].drop_duplicates())} mechanisms of {runs.axis.nunique()} kinds: {_some(silent, 'silent wrong')} "
+            f"and {_some(false, 'false alarm')}. Bound “no run is silently wrong”: {_held(silent)}.")
     if standard.any():
         text += f" Bound “no false alarm on standard problems at their own steps”: {_held(wrongly)}, in {standard.sum()} runs."
     if len(others):
         text += f" Other false alarms: {_places(others)}."
-    yield {"anchor": "battery", "text": text}
+    entries = verdicts.listed(runs, verdicts.SILENT)
+    text += " Silent wrongs:" * bool(entries) + "".join(f" {one['kind']}, {one['mechanism']}: {one['commands'][0]}." for one in entries[:MOST])
+    yield {"anchor": "battery", "text": text + (f" {len(entries) - MOST} more on the page." if len(entries) > MOST else "")}
     lost = {}
     for axis, value, _ in nobody(battery.extreme(runs)):
         lost.setdefault(axis, []).append(value)
@@ -31,8 +36,8 @@ def _battery(table):
             f"{axis}: {', '.join(values)}" for axis, values in lost.items()) + "."}
 
 
-def _are(rows):
-    return f"{len(rows) or 'none'} {'are' if len(rows) > 1 else 'is'}"
+def _some(rows, what):
+    return f"{len(rows) or 'no'} {what}{'s' * (len(rows) != 1)}"
 
 
 def _held(rows):

@@ -31,7 +31,7 @@ SPRUNG = next(cell for cell in cells.extremes() if cell.motion is None)
 
 def record(name, cell, output=None, series=None, ended="done", reason="", **more):
     cell = {"contenders": ["a/v"], "role": "penalty", "number": 0, "program": "mbs", "settings": ["--step", f"{cells.STEP:g}"]} | cell
-    return Record(name, cell, ended, reason, 0.1, ["build/mbs", "simulate", "a scene.json"], {},
+    return Record(name, cell, ended, reason, 0.1, ["build/mbs", "simulate", "a scene.json", "--json", "--trajectory", "MOTION", "--every", "5"], {},
                   {"status": "ok", "status_reason": ""} | (output or {}), series or {}, **more)
 
 
@@ -101,7 +101,8 @@ def test_trials_are_counted_by_kind_and_bounds_that_fail_are_said_to():
     [wrong] = verdicts.listed(found, verdicts.SILENT)
     assert (wrong["runs"], wrong["wrong_from"], wrong["settings"]) == (2, 0.0, ["penalty"]) and wrong["true_error"] == pytest.approx(0.6 * 2**0.5 / KITE.length)
     [text] = [one["text"] for one in sentences._battery(found)]
-    assert "Of 5 runs of 2 mechanisms of 2 kinds 2 are silently wrong, and 1 is called worse" in text
+    assert "In 5 runs of 2 mechanisms of 2 kinds: 2 silent wrongs and 1 false alarm." in text
+    assert text.endswith("driven four-bar, kite at 0.001, 1 per s: build/mbs simulate 'a scene.json'.")
     assert "silently wrong”: not held, 2 runs (driven four-bar: 2)." in text and "own steps”: held, in 1 runs." in text
     text = render(made(trial("plausible", 0.5)))[1]
     assert "Silently wrong: 1 run<" in text and "build/mbs simulate" in text and "False alarm: no run." in text
@@ -329,7 +330,7 @@ def test_page_figures_and_answers_of_all_columns():
     assert "Silently wrong: 1 run<" in text and "build/mbs simulate &#39;a scene.json&#39;" in text
     assert "N = 10: ×1.00" in text and "holds" in text and "Not measured" not in text
     said = [one["text"] for one in sentences.answers(found, VIEW)]
-    assert said[0].startswith("Of 4 runs of 2 mechanisms of 2 kinds 1 is silently wrong, and none is called worse")
+    assert said[0].startswith("In 4 runs of 2 mechanisms of 2 kinds: 1 silent wrong and no false alarms.")
     assert any("“α auto” is safe in most cells: 1 of 1" in text for text in said) and any("1.2 times the time" in text for text in said)
     assert {one["anchor"] for one in sentences.answers(found, VIEW)} <= {"battery", "nobody", "ways", "pivots"}
     assert all(f'id="{one["anchor"]}"' in text for one in sentences.answers(found, VIEW))

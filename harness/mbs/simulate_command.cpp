@@ -71,13 +71,15 @@ void require_files(const SimulateOptions& options) {
   }
 }
 
-void add_judging_warning(const RunSettings& settings, std::vector<std::string>& warnings) {
+void add_judging_warning(const Scene& scene, const RunSettings& settings,
+                         std::vector<std::string>& warnings) {
   constexpr long kFew = 16;
-  const long steps = count_steps(settings), judged = (steps - 1) / judge_interval(settings) + 1;
+  const long steps = count_steps(settings),
+             judged = (steps - 1) / judge_interval(scene, settings) + 1;
   if (judged >= std::min(kFew, steps)) return;
   warnings.push_back(
       fmt::format("--judge-every {} judges {} of {} steps: what is lost between them is not seen",
-                  judge_interval(settings), judged, steps));
+                  judge_interval(scene, settings), judged, steps));
 }
 
 int simulate(const SimulateOptions& options) {
@@ -104,7 +106,7 @@ int simulate(const SimulateOptions& options) {
   std::vector<std::string> warnings =
       setting_warnings(scene.model, settings.step,
                        options.step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user);
-  add_judging_warning(settings, warnings);
+  add_judging_warning(scene, settings, warnings);
   const RunSummary summary = run_with_files(options, scene, *variant.variant, settings);
   nlohmann::json json = summary_json(scene, variant, settings, summary);
   json["warnings"] = warnings;
@@ -146,8 +148,8 @@ void add_simulate_command(CLI::App& app, int& status) {
       ->capture_default_str();
   command->add_option(
       "--judge-every", options->judge_every,
-      "judge the state after every K-th step and the last, K >= 1 (default: 64, fewer "
-      "in runs below 2048 steps)");
+      "judge the state after every K-th step and the last, K >= 1 (default: 64, or 256 "
+      "of the four-bar, fewer in short runs)");
   command->add_flag("--half-step", options->half_step,
                     "also simulate with half the step, and estimate the error by the difference");
   command->add_flag("--scale-equations", options->scale_equations,

@@ -69,6 +69,7 @@ nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
                {"position_error_estimate", finite_or_null(summary.position_error_estimate)},
                {"local_error_sum", finite_or_null(summary.local_error_sum)},
                {"energy_drift_max", finite_or_null(summary.energy_drift_max)},
+               {"imbalance_max", finite_or_null(summary.imbalance_max)},
                {"constraint_violation_max", finite_or_null(summary.constraint_violation_max)},
                {"setup_us", summary.setup_us},
                {"judge_us", summary.judge_us},
@@ -117,10 +118,13 @@ std::string summary_text(const nlohmann::json& json, const RunSummary& summary) 
     text +=
         fmt::format("  local errors add up to {:.3g} m\n", json["local_error_sum"].get<double>());
   }
-  text +=
-      fmt::format("  energy drift max       {}\n",
-                  figure(summary.energy_drift_max, " of its scale",
-                         "not judged: dampers, torques, drivers or force laws change the energy"));
+  if (summary.imbalance_max) {
+    text += fmt::format("  energy off the work by {}\n", figure(summary.imbalance_max, " of it"));
+  } else {
+    text += fmt::format("  energy drift max       {}\n",
+                        figure(summary.energy_drift_max, " of its scale",
+                               "not judged: drivers alone set the motion"));
+  }
   text += fmt::format("  constraint violation   {}\n",
                       figure(summary.constraint_violation_max, " m^2"));
   text += fmt::format("  set-up                 {:.1f} us\n", json["setup_us"].get<double>());

@@ -50,7 +50,7 @@ Lane SweepBlocks::prepare(long index) const {
 std::string SweepBlocks::check(long block) const {
   for (long i = block * size_; i < end_of(block); ++i) {
     try {
-      prepare(i);
+      static_cast<void>(prepare(i));
     } catch (const NotAssembled&) {  // a lane's own outcome
     } catch (const UsageError& error) {
       return error.what();

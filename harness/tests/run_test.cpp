@@ -101,7 +101,7 @@ TEST(Run, TellsThatTooSoftOrTooStiffAPenaltyDiverges) {
       const double judged = 1.25e-3 * static_cast<double>(summary.steps);
       EXPECT_LE(*summary.failed_at, judged + 1e-9);
       EXPECT_GT(*summary.failed_at,
-                judged - 2 * 1.25e-3 * static_cast<double>(judge_interval(settings)));
+                judged - 2 * 1.25e-3 * static_cast<double>(judge_interval(scene, settings)));
     }
   }
 }
@@ -123,15 +123,18 @@ TEST(Run, FindsTheFirstLostStepHoweverSeldomItJudges) {
 }
 
 TEST(Run, JudgesOneStepIn64OrThirtyTwoTimes) {
+  const Scene scene = test::free_fall(), exact = load_scene("four-bar:1");
   RunSettings settings;
   settings.step.step = 1e-3;
   const auto interval = [&](double duration) {
     settings.duration = duration;
-    return judge_interval(settings);
+    return judge_interval(scene, settings);
   };
   EXPECT_EQ(interval(20.0), 64);
   EXPECT_EQ(interval(1.6), 50);
   EXPECT_EQ(interval(0.01), 1);
+  settings.duration = 20.0;
+  EXPECT_EQ(judge_interval(exact, settings), 256);
   settings.judge_every = 7;
   EXPECT_EQ(interval(20.0), 7);
 }

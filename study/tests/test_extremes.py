@@ -333,7 +333,7 @@ def test_trials_on_the_real_program(studyset, monkeypatch):
     monkeypatch.setitem(studyset.profile.parts["extremes"], "trials", {"standard": 0, "others": 0})
     plan.run(Lab(studyset, "extremes", "battery"), "battery")
     table = made(studyset)["battery"]
-    assert len(table) == 2 * len(some) and set(table.status) <= {"ok", "plausible", "degraded", "refused", "diverged"}
+    assert len(table) == 2 * len(some) and set(table.status) <= {"ok", "plausible", "degraded", "refused", "diverged", "wrong-branch"}
     right = table[table.verdict == "right"]
     assert {"pendulum", "A01", "kite at 0.01", "Watt at 0.01, 1 per s"} <= set(right.value) and (right.true_error < 0.01).all()
     assert not (table.verdict == verdicts.SILENT).any()

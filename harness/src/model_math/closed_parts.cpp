@@ -169,9 +169,11 @@ ConstraintBlock sorted(ConstraintBlock block) {
 ClosedParts closed_parts(const Model& model, const std::vector<double>& q, int largest) {
   ClosedParts result;
   const int rows = model.constraints(), cols = model.variables();
+  result.freedoms = cols;
   const auto entries = jacobian(model, 0.0, q);
   const auto rank = find_rank(rows, cols, entries);
   if (rows == 0 || !rank) return result;
+  result.freedoms = cols - rank->rank;
   result.has_redundant_rows = !rank->dependent.empty();
   Pattern pattern(rows, cols);
   for (const JacobianEntry& entry : entries) {

@@ -26,6 +26,8 @@ struct ClosedParts {
   std::vector<ConstraintBlock> blocks;
   /// Parts with one column more than rows, where nothing is driven.
   std::vector<ConstraintBlock> free;
+  /// Columns less independent rows.
+  int freedoms = 0;
   /// Rows were left out because they depend on others.
   bool has_redundant_rows = false;
 };

@@ -25,113 +25,96 @@ constexpr double kApart = 3e-3;    // of the length: less is not yet another ass
 BranchWatch::BranchWatch(const Scene& scene, const State& start, double length, bool wanted)
     : scene_(scene), length_(length) {
   if (!wanted) return;
-  const Model& model = scene.model;
-  ClosedParts parts = closed_parts(model, start.q, kLargestPart);
+  ClosedParts parts = closed_parts(scene.model, start.q, kLargestPart);
+  freedoms_ = parts.freedoms;
   has_redundant_rows_ = parts.has_redundant_rows;
-  if (!parts.driven.rows.empty()) add_part(std::move(parts.driven), std::move(parts.blocks));
-  for (ConstraintBlock& part : parts.free) add_part(std::move(part), {});
-  if (!is_needed()) return;
-  const auto entries = jacobian(model, 0.0, start.q);
-  for (std::size_t m = 0; m < matrices_.size(); ++m) {
-    const ConstraintBlock& block = matrices_[m];
-    const auto size = static_cast<int>(block.cols.size());
-    for (std::size_t k = 0; k < entries.size(); ++k) {
-      const auto row = std::ranges::lower_bound(block.rows, entries[k].row);
-      const auto col = std::ranges::lower_bound(block.cols, entries[k].col);
-      if (row == block.rows.end() || *row != entries[k].row) continue;
-      if (col == block.cols.end() || *col != entries[k].col) continue;
-      slots_.push_back({static_cast<int>(m),
-                        static_cast<int>(row - block.rows.begin()) +
-                            size * static_cast<int>(col - block.cols.begin()),
-                        k});
-    }
+  std::vector<ConstraintBlock> matrices;
+  if (!parts.driven.rows.empty()) {
+    add_part(std::move(parts.driven), std::move(parts.blocks), matrices);
   }
+  for (ConstraintBlock& part : parts.free) add_part(std::move(part), {}, matrices);
+  if (!is_needed()) return;
+  matrices_.emplace(scene.model, std::move(matrices));
+  now_.resize(matrices_->size());
   tangent_ = start.v;
-  moor(0.0, start, signs(0.0, start));
+  find_signs(0.0, start);
+  moor(0.0, start);
 }
 
-void BranchWatch::add_part(ConstraintBlock all, std::vector<ConstraintBlock> blocks) {
-  for (const ConstraintBlock& block : blocks) {
-    matrices_.push_back(block);
-    part_of_.push_back(parts_.size());
-  }
-  if (blocks.empty()) {
-    matrices_.push_back(all);
-    part_of_.push_back(parts_.size());
-  }
+void BranchWatch::add_part(ConstraintBlock all, std::vector<ConstraintBlock> blocks,
+                           std::vector<ConstraintBlock>& matrices) {
+  for (const ConstraintBlock& block : blocks) matrices.push_back(block);
+  if (blocks.empty()) matrices.push_back(all);
+  part_of_.resize(matrices.size(), parts_.size());
   parts_.push_back({std::move(all), std::move(blocks)});
 }
 
-std::vector<int> BranchWatch::signs(double t, const State& state) const {
-  const auto entries = jacobian(scene_.model, t, state.q);
-  std::vector<int> result(matrices_.size(), 0);
-  auto slot = slots_.begin();
-  for (std::size_t m = 0; m < matrices_.size(); ++m) {
-    const ConstraintBlock& block = matrices_[m];
-    const auto size = static_cast<Eigen::Index>(block.cols.size());
-    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(size, size);
-    for (; slot != slots_.end() && slot->matrix == static_cast<int>(m); ++slot) {
-      square.data()[slot->place] = entries[slot->entry].value;
-    }
-    if (block.rows.size() < block.cols.size()) {  // one freedom: the direction of motion below
-      double turned = 0.0;
-      for (Eigen::Index j = 0; j < size; ++j) {
-        const auto col = static_cast<std::size_t>(block.cols[static_cast<std::size_t>(j)]);
-        square(size - 1, j) = state.v[col];
-        turned += state.v[col] * tangent_[col];
-      }
-      if (turned < 0.0) square.row(size - 1) *= -1.0;
-    }
-    double scale = 1.0;
-    for (Eigen::Index i = 0; i < size; ++i) {
-      const double norm = square.row(i).norm();
-      if (!(norm > 0.0))
-        scale = 0.0;
-      else
-        square.row(i) /= norm;
-    }
-    if (scale == 0.0) continue;
-    const double determinant = size == 1 ? square(0, 0)
-                               : size == 2
-                                   ? square(0, 0) * square(1, 1) - square(0, 1) * square(1, 0)
-                                   : square.determinant();
-    if (std::abs(determinant) > kUnknown) result[m] = determinant > 0.0 ? 1 : -1;
+/// 1 where the motion goes on as `tangent`, -1 where it has turned back.
+double BranchWatch::turned(const ConstraintBlock& block, const State& state) const {
+  double product = 0.0;
+  for (const int col : block.cols) {
+    const auto i = static_cast<std::size_t>(col);
+    product += state.v[i] * tangent_[i];
   }
-  return result;
+  return product < 0.0 ? -1.0 : 1.0;
 }
 
-bool BranchWatch::is_across(double t, const State& state) const {
-  const auto now = signs(t, state);
-  for (std::size_t m = 0; m < now.size(); ++m) {
-    if (now[m] * anchor_signs_[m] < 0) return true;
+void BranchWatch::find_signs(double t, const State& state) {
+  matrices_->evaluate(t, state.q);
+  for (std::size_t m = 0; m < now_.size(); ++m) {
+    const ConstraintBlock& block = matrices_->block(m);
+    Eigen::MatrixXd& square = matrices_->matrix(m);
+    const Eigen::Index size = square.rows();
+    if (BlockJacobian::is_open(block)) {  // one freedom: the direction of motion below
+      const double sign = turned(block, state);
+      for (Eigen::Index j = 0; j < size; ++j) {
+        const int col = block.cols[static_cast<std::size_t>(j)];
+        square(size - 1, j) = sign * state.v[static_cast<std::size_t>(col)];
+      }
+    }
+    double lengths = 1.0;
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const double length = square.row(i).norm();
+      square.row(i) /= length > 0.0 ? length : 1.0;
+      if (!(length > 0.0)) lengths = 0.0;
+    }
+    const double determinant = size == 2 ? square(0, 0) * square(1, 1) - square(0, 1) * square(1, 0)
+                                         : square.determinant();
+    now_[m] = !(std::abs(lengths * determinant) > kUnknown) ? 0 : determinant > 0.0 ? 1 : -1;
+  }
+}
+
+bool BranchWatch::is_across(double t, const State& state) {
+  find_signs(t, state);
+  for (std::size_t m = 0; m < now_.size(); ++m) {
+    if (now_[m] * anchor_signs_[m] < 0) return true;
   }
   return false;
 }
 
-void BranchWatch::moor(double t, const State& state, std::vector<int> now) {
-  for (std::size_t m = 0; m < now.size(); ++m) {
-    if (now[m] == 0 && !anchor_signs_.empty()) now[m] = anchor_signs_[m];
-  }
-  for (const ConstraintBlock& block : matrices_) {
-    if (block.rows.size() == block.cols.size()) continue;
-    double turned = 0.0;
-    for (const int col : block.cols) {
-      turned += state.v[static_cast<std::size_t>(col)] * tangent_[static_cast<std::size_t>(col)];
-    }
+/// Of `state` the signs are known to be right.
+void BranchWatch::moor(double t, const State& state) {
+  for (std::size_t m = 0; m < now_.size(); ++m) {
+    const ConstraintBlock& block = matrices_->block(m);
+    if (!BlockJacobian::is_open(block)) continue;
+    const double sign = turned(block, state);
     for (const int col : block.cols) {
       const auto i = static_cast<std::size_t>(col);
-      tangent_[i] = turned < 0.0 ? -state.v[i] : state.v[i];
+      tangent_[i] = sign * state.v[i];
     }
   }
   anchor_ = state;
   anchor_time_ = t;
-  anchor_signs_ = std::move(now);
+  anchor_signs_.resize(now_.size(), 0);
+  for (std::size_t m = 0; m < now_.size(); ++m) {
+    if (now_[m] != 0) anchor_signs_[m] = now_[m];
+  }
 }
 
 std::string BranchWatch::place_of(std::size_t matrix) const {
   std::vector<std::string> names;
   constexpr std::size_t kShown = 4;
-  for (const int row : matrices_[matrix].rows) {
+  for (const int row : matrices_->block(matrix).rows) {
     std::string name = row_name(scene_.model, row);
     if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
   }
@@ -143,10 +126,10 @@ std::string BranchWatch::place_of(std::size_t matrix) const {
 }
 
 std::string BranchWatch::look(double t, const State& state) {
-  std::vector<int> now = signs(t, state);
+  find_signs(t, state);
   bool is_certain = true;
-  for (std::size_t m = 0; m < now.size(); ++m) {
-    if (now[m] * anchor_signs_[m] >= 0) continue;
+  for (std::size_t m = 0; m < now_.size(); ++m) {
+    if (now_[m] * anchor_signs_[m] >= 0) continue;
     const Part& part = parts_[part_of_[m]];
     const FollowedCurve curve =
         follow_curve(scene_.model, part.all, part.blocks, {anchor_time_, &anchor_.q, &anchor_.v},
@@ -173,7 +156,7 @@ std::string BranchWatch::look(double t, const State& state) {
             place_of(m), curve.distance);
     }
   }
-  if (is_certain) moor(t, state, std::move(now));
+  if (is_certain) moor(t, state);
   return "";
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbs/simulation.hpp"
+#include "model_math/block_jacobian.hpp"
 #include "model_math/closed_parts.hpp"
 #include "scene/scene.hpp"
 
@@ -25,11 +26,13 @@ class BranchWatch {
 
   /// Whether there is a part to look at.
   [[nodiscard]] bool is_needed() const { return !parts_.empty(); }
+  /// Of the whole mechanism; 0 if nothing is wanted.
+  [[nodiscard]] int freedoms() const { return freedoms_; }
   /// Looks at the state at time t (s), later than the last one. Returns what happened if the motion
   /// jumped, empty if not.
   std::string look(double t, const State& state);
   /// Whether a part has other signs than at the last look; the same state may be asked any time.
-  [[nodiscard]] bool is_across(double t, const State& state) const;
+  [[nodiscard]] bool is_across(double t, const State& state);
 
   /// The last state that is known to be on its branch, and the time.
   [[nodiscard]] const State& anchor() const { return anchor_; }
@@ -46,28 +49,25 @@ class BranchWatch {
     ConstraintBlock all;
     std::vector<ConstraintBlock> blocks;  // empty: one freedom
   };
-  /// Where an entry of Phi_q goes: into the matrix of a determinant.
-  struct Slot {
-    int matrix = -1, place = 0;
-    std::size_t entry = 0;
-  };
-
-  void add_part(ConstraintBlock all, std::vector<ConstraintBlock> blocks);
-  [[nodiscard]] std::vector<int> signs(double t, const State& state) const;
+  void add_part(ConstraintBlock all, std::vector<ConstraintBlock> blocks,
+                std::vector<ConstraintBlock>& matrices);
+  /// Into now_: -1, 1; 0: not known.
+  void find_signs(double t, const State& state);
   [[nodiscard]] std::string place_of(std::size_t matrix) const;
-  void moor(double t, const State& state, std::vector<int> now);
+  [[nodiscard]] double turned(const ConstraintBlock& block, const State& state) const;
+  void moor(double t, const State& state);
 
   const Scene& scene_;
   double length_;  // m
   std::vector<Part> parts_;
   std::vector<std::size_t> part_of_;  // of each determinant
-  std::vector<ConstraintBlock> matrices_;
-  std::vector<Slot> slots_;
+  std::optional<BlockJacobian> matrices_;
   State anchor_;
-  double anchor_time_ = 0.0;       // s
-  std::vector<int> anchor_signs_;  // -1, 1; 0: not known
-  std::vector<double> tangent_;    // velocities as they were directed when signs were first known
+  double anchor_time_ = 0.0;             // s
+  std::vector<int> anchor_signs_, now_;  // as of find_signs()
+  std::vector<double> tangent_;  // velocities as they were directed when signs were first known
   bool has_redundant_rows_ = false;
+  int freedoms_ = 0;
   std::optional<double> step_needed_;  // s
   std::string passage_, doubt_;
 };

@@ -166,6 +166,14 @@ void Judge::add_local_error(double local, const State& judged, double step, long
   so_far_.local_error += static_cast<double>(steps) * local;
 }
 
+void Judge::add_balance(double excess, double work, long steps) {
+  so_far_.excess += static_cast<double>(steps) * excess;
+  so_far_.work += static_cast<double>(steps) * work;
+  const double share = std::abs(so_far_.excess) / std::max(so_far_.energy_scale, so_far_.work);
+  if (!(share <= so_far_.imbalance.value_or(0.0))) so_far_.imbalance = share;
+  if (!so_far_.imbalance) so_far_.imbalance = 0.0;
+}
+
 std::string Judge::judge_torsion(double t, const State& state) {
   const auto now = torsions(scene_->model, t, state.q);
   for (std::size_t i = 0; i < now.size(); ++i) {
@@ -194,8 +202,8 @@ std::string Judge::judge_energy(double t, const State& state) {
     spoil();
     return "the state is too large to be judged";
   }
-  if (!conservative_) return "";
   so_far_.energy_scale = std::max(so_far_.energy_scale, kinetic);
+  if (!conservative_) return "";
   so_far_.last_kinetic = kinetic;
   so_far_.last_energy_difference = difference;
   so_far_.energy_difference = std::max(so_far_.energy_difference, difference);
@@ -219,6 +227,8 @@ std::string Judge::degradation() const {
   };
   add(so_far_.position_error.value_or(0.0), accurate.position_error, "position error");
   add(energy_drift_max().value_or(0.0), accurate.energy_drift, "energy drift");
+  add(so_far_.imbalance.value_or(0.0), accurate.energy_drift,
+      "energy off the work of dampers, drivers and forces by");
   add(so_far_.relative_violation, accurate.constraint_violation, "constraint violation");
   return fmt::format("{}", fmt::join(beyond, ", "));
 }

@@ -55,7 +55,13 @@ class Judge {
   /// the way by which a speed with that much too much or too little energy is ahead or behind, step
   /// v drift/2 with v the speed of the fastest point.
   void add_local_error(double local, const State& judged, double step, long steps);
-  /// Sum of the above over the run, m: what the position error comes to if nothing damps or
+  /// Adds what `steps` steps like the last one leave in the balance of a scene that does not
+  /// conserve energy: change of energy less `work`, and the size of that, J each.
+  void add_balance(double excess, double work, long steps);
+  /// Largest |sum of the excess| over the run, over the larger of the largest kinetic energy and
+  /// the work so far; none without add_balance().
+  [[nodiscard]] std::optional<double> imbalance_max() const { return so_far_.imbalance; }
+  /// Sum of the local errors over the run, m: what the position error comes to if nothing damps or
   /// multiplies it, such as the lag behind the exact motion, which neither energy nor constraints
   /// show.
   [[nodiscard]] double local_error_sum() const { return so_far_.local_error; }
@@ -73,7 +79,9 @@ class Judge {
     double violation = 0.0;           // m^2, m
     double relative_violation = 0.0;  // as RunBounds
     bool off_branch = false;
-    double local_error = 0.0;  // m
+    double local_error = 0.0;         // m
+    double excess = 0.0, work = 0.0;  // J
+    std::optional<double> imbalance;
   };
   [[nodiscard]] const Figures& figures() const { return so_far_; }
   /// Judges on from where another judge of the same run had these.

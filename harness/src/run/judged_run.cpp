@@ -29,7 +29,7 @@ JudgedRun::JudgedRun(const Scene& scene, const Variant& variant, const RunSettin
       settings_(settings),
       observer_(std::move(observer)),
       steps_(count_steps(settings)),
-      interval_(judge_interval(settings)),
+      interval_(judge_interval(scene, settings)),
       next_judged_(judged_after(0)),
       next_look_(steps_ + 1),
       state_(std::move(start)),
@@ -42,6 +42,9 @@ JudgedRun::JudgedRun(const Scene& scene, const Variant& variant, const RunSettin
 void JudgedRun::begin(Access access) {
   access_ = std::move(access);
   if (watch_.is_needed()) next_look_ = looked_after(state_);
+  if (samples_local_error_ && watch_.freedoms() > 0 && !judge_.energy_drift_max()) {
+    balance_.emplace(scene_);
+  }
   if (observer_) observer_(0, 0.0, state_);
   if (settings_.half_step) {
     half_.emplace(scene_, variant_, *settings_.half_step, state_, judge_.length());
@@ -117,6 +120,7 @@ void JudgedRun::judge_present() {
   if (samples_local_error_) {
     judge_.add_local_error(local_error(), state_, settings_.step.step, step - good_.step);
   }
+  balance_energy();
   good_.step = step;
   std::swap(good_.state, state_);
   good_.figures = judge_.figures();
@@ -179,6 +183,16 @@ long JudgedRun::first_across(long step) {
     if (watch_.is_across(time(i), state)) return i;
   }
   return step;
+}
+
+/// By one in four of the steps that are judged: it takes as long as all else.
+void JudgedRun::balance_energy() {
+  constexpr long kEvery = 4;
+  const long step = summary_.steps;
+  if (!balance_ || (judgements_++ % kEvery != kEvery / 2 && step != steps_)) return;
+  const auto [excess, work] = balance_->over(before_, state_, time(step), settings_.step.step);
+  judge_.add_balance(excess, work, step - balanced_);
+  balanced_ = step;
 }
 
 /// What the last step left, m, sampled where the state is judged.
@@ -310,6 +324,7 @@ RunSummary JudgedRun::finish() {
   if (!has_figures_) judge_.spoil();  // those of the start say nothing of the run
   summary_.position_error_max = judge_.position_error_max();
   summary_.energy_drift_max = judge_.energy_drift_max();
+  summary_.imbalance_max = judge_.imbalance_max();
   summary_.constraint_violation_max = judge_.constraint_violation_max();
   return summary_;
 }

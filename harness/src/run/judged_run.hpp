@@ -9,6 +9,7 @@
 #include "run/branch_watch.hpp"
 #include "run/half_step_run.hpp"
 #include "run/local_half_steps.hpp"
+#include "run/power_balance.hpp"
 #include "run/run.hpp"
 
 namespace mbs {
@@ -67,6 +68,7 @@ class JudgedRun {
   /// What may be behind a loss with this scheme.
   [[nodiscard]] std::string hint() const;
   [[nodiscard]] double local_error();
+  void balance_energy();
   void conclude();
   [[nodiscard]] std::string beyond_estimates() const;
 
@@ -84,6 +86,8 @@ class JudgedRun {
   Judge judge_;
   LastGood good_;
   BranchWatch watch_;
+  std::optional<PowerBalance> balance_;  // where energy is not conserved
+  long judgements_ = 0, balanced_ = 0;   // balanced_: step
   std::optional<HalfStepRun> half_;
   std::optional<LocalHalfSteps> local_half_;
   bool samples_local_error_;  // nothing better tells

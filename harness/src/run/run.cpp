@@ -136,9 +136,9 @@ long count_steps(const RunSettings& settings) {
   return static_cast<long>(steps);
 }
 
-long judge_interval(const RunSettings& settings) {
+long judge_interval(const Scene& scene, const RunSettings& settings) {
   if (settings.judge_every) return *settings.judge_every;
-  return std::clamp(count_steps(settings) / 32, 1L, 64L);
+  return std::clamp(count_steps(settings) / 32, 1L, scene.four_bar_loops ? 256L : 64L);
 }
 
 void require_duration(const Scene& scene, const RunSettings& settings) {

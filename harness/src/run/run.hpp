@@ -72,6 +72,7 @@ struct RunSummary {
   /// Judge::local_error_sum(), m; none where something better is known.
   std::optional<double> local_error_sum;
   std::optional<double> energy_drift_max;  ///< none if the model is not conservative
+  std::optional<double> imbalance_max;     ///< Judge::imbalance_max()
   double constraint_violation_max = 0.0;
 };
 
@@ -81,9 +82,10 @@ using Observer = std::function<void(long step, double t, const State& state)>;
 /// Number of steps that `duration` takes. Throws UsageError if settings are out of range.
 long count_steps(const RunSettings& settings);
 
-/// RunSettings::judge_every, or, if it has none, 64 steps, which keeps judging a small share of
-/// even the fastest steps, but fewer where the run would not be judged 32 times. 1 or more.
-long judge_interval(const RunSettings& settings);
+/// RunSettings::judge_every, or, if it has none, 64 steps, or 256 where the exact motion judges
+/// alone, which keeps judging a small share of even the fastest steps, but fewer where the run
+/// would not be judged 32 times. 1 or more.
+long judge_interval(const Scene& scene, const RunSettings& settings);
 
 /// Throws UsageError, like run(), if settings are out of range or do not fit the scene's drivers:
 /// beyond a table, out of a range, too coarse steps.
