@@ -27,7 +27,7 @@ def draw(winners, look):
         axes.set_yticks([place + 0.5 for place in range(len(errors))], [f"{number(error)} m" for error in errors])
         axes.set_ylabel("error at most")
         axes.tick_params(length=0)
-        axes.set_title(f"fastest of {TITLES[layer]}")
+        axes.set_title(f"N-four-bar, fastest of {TITLES[layer]}")
         axes.legend(handles=_legend(rows, look), loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8.5)
     return figure
 

@@ -32,7 +32,7 @@ def winners(table, measured, errors, libraries):
                 none = {"implementation": NOT_TIMED if dropped or reached <= required else NOBODY, "candidates": 0,
                         "decided": None, "settled": None, "equivalent": ""}
                 rows.append({"scene": scene, "layer": layer, "required": required}
-                            | (_winner(meeting(here, required), samples) or none))
+                            | (fastest(meeting(here, required), samples) or none))
     return pandas.DataFrame(rows)
 
 
@@ -41,7 +41,7 @@ def met(rows):
     return rows[~rows.implementation.isin((NOBODY, NOT_TIMED))]
 
 
-def _winner(found, samples):
+def fastest(found, samples):
     """None if nobody was timed. Each implementation counts with its fastest point: one of the rounds where it has one
     there. Ranked are those that have rounds; the others were slower in a look, or the budget did not reach them."""
     if found.empty:

@@ -1,5 +1,6 @@
-# Error against time of one subject: a panel for libraries, one for all. The front is the thick line; the series on it
-# or close to it have names, colours by setting and markers by implementation, the others are grey.
+# Error against time of one subject: a column for libraries, one for all. The front is the thick line; the series on it
+# or close to it have names, colours by setting and markers by implementation, the others are grey. Below, as those lie on
+# each other: their time over the least of them at the same error.
 import matplotlib.pyplot as plt
 import numpy
 from matplotlib.lines import Line2D
@@ -14,6 +15,7 @@ from analysis.core.style import GREY, missing, number_axis
 
 CLOSE = 1.25  # times the front's time at its error
 MOST = 8      # named series of a panel
+SHOWN = 2.5   # times the least, at which the lower panels end at most
 GAP = 2.6     # times the shorter of two steps
 RINGED = "fastest for a required error (dashed)"
 RING = {"marker": "o", "markersize": 13, "markerfacecolor": "none", "markeredgecolor": "black", "markeredgewidth": 1.3}
@@ -26,21 +28,32 @@ def name(subject):
 
 def draw(rows, won, look, unit, title):
     """The figure of one subject's points at its own fill. `won`: its rows of winners.csv, which are ringed."""
-    figure, panels = plt.subplots(1, 2, figsize=(13, 6), sharex=True, sharey=True, constrained_layout=True)
+    figure, (panels, below) = plt.subplots(2, 2, figsize=(13, 9), sharex="row", sharey="row", constrained_layout=True, height_ratios=[1.7, 1])
     drawn = False
-    for axes, layer in zip(panels, LAYERS):
+    for axes, ratios, layer in zip(panels, below, LAYERS):
         mine = rows[rows.library.astype(bool)] if layer == "libraries" else rows
         axes.set_title(TITLES[layer])
         if meeting(mine, numpy.inf).empty:
             missing(axes, "nobody finished and was timed")
+            missing(ratios, "")
             continue
         drawn = True
-        _panel(axes, mine, mine[mine[f"front_{layer}"].astype(bool)], met(won[won.layer == layer]), look)
+        front = mine[mine[f"front_{layer}"].astype(bool)]
+        handles = _panel(axes, mine, front, met(won[won.layer == layer]), look)
+        _ratios(ratios, mine, front, look)
+        ratios.set_xlabel(f"error, {unit}")
+        ratios.legend(handles=handles, fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
         axes.set(xscale="log", yscale="log", xlabel="computation for a simulated second, s")
         axes.grid(True)
     if drawn:
         first = next(axes for axes in panels if axes.axison)
         first.set_ylabel(f"error, {unit}")
+        lower = next(axes for axes in below if axes.axison)
+        lower.set(xscale="log", yscale="log", ylabel="time ÷ the least at that error")
+        lower.set_ylim(0.95, min(lower.get_ylim()[1], SHOWN))
+        for axis, unit in ((lower.xaxis, ""), (lower.yaxis, "×")):
+            number_axis(axis, unit)
+        lower.invert_xaxis()
         for axis in (first.xaxis, first.yaxis):
             number_axis(axis)
         if numpy.ptp(numpy.log10(first.get_xlim())) > 1.5:
@@ -66,14 +79,8 @@ def _panel(axes, rows, front, won, look):
         mine = mine.sort_values("step")
         if key not in chosen:
             axes.plot(mine.time, mine.error, color="#c4c8ce", linewidth=0.7, marker=".", markersize=3, zorder=1)
-    handles, colours = [], names.colours(key[1] for key in chosen)
-    for key in chosen:
-        mine = meeting(rows[(rows.implementation == key[0]) & (rows.setting == key[1])], numpy.inf).sort_values("step")
-        line = {"color": colours[key[1]], "linewidth": 1.5, "linestyle": look.dash(key[0]), "marker": look.marker(key[0]),
-                "markersize": 8 if look.marker(key[0]) in "*PX" else 6, "markeredgecolor": "white", "markeredgewidth": 0.5}
-        # What lies between two steps that were timed is not known: no line there.
-        gaps = mine.step / mine.step.shift(1) > GAP
-        pieces = [one for _, one in mine.groupby(gaps.cumsum())]
+    handles = []
+    for key, line, mine, pieces in _series(rows, chosen, look):
         for piece in pieces:
             axes.plot(piece.time, piece.error, **line, zorder=4)
         axes.hlines(mine.error, mine.time_low, mine.time_high, color=line["color"], linewidth=1.0, zorder=3)
@@ -94,4 +101,30 @@ def _panel(axes, rows, front, won, look):
     if front.at_most.fillna(False).any():
         handles.append(Line2D([], [], color=GREY, marker="v", markerfacecolor="none", linestyle="none",
                               label="below the reference's own error"))
-    axes.legend(handles=handles, fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, -0.11), ncols=2)
+    return handles
+
+
+def _series(rows, chosen, look):
+    """(key, keywords of `plot`, its points, these in pieces) of each named series: what lies between two steps that were
+    timed is not known, and has no line."""
+    colours = names.colours(key[1] for key in chosen)
+    for key in chosen:
+        mine = meeting(rows[(rows.implementation == key[0]) & (rows.setting == key[1])], numpy.inf).sort_values("step")
+        line = {"color": colours[key[1]], "linewidth": 1.5, "linestyle": look.dash(key[0]), "marker": look.marker(key[0]),
+                "markersize": 8 if look.marker(key[0]) in "*PX" else 6, "markeredgecolor": "white", "markeredgewidth": 0.5}
+        yield key, line, mine, [one for _, one in mine.groupby((mine.step / mine.step.shift(1) > GAP).cumsum())]
+
+
+def _ratios(axes, rows, front, look):
+    """Time of each named series over the least of all at its error, between its points on logarithms; bars from the least to the
+    largest of its processes."""
+    every = [(line, piece.sort_values("error")) for _, line, _, pieces in _series(rows, named(rows, front), look) for piece in pieces]
+    errors = numpy.unique([error for _, piece in every for error in piece.error])
+    times = numpy.array([numpy.exp(numpy.interp(numpy.log(errors), numpy.log(piece.error), numpy.log(piece.time), numpy.nan, numpy.nan)) for _, piece in every])
+    best = numpy.nanmin(times, axis=0)
+    for (line, piece), mine in zip(every, times):
+        there = best[numpy.searchsorted(errors, piece.error)]
+        axes.plot(errors, mine / best, **line | {"marker": ""}, zorder=4)
+        axes.plot(piece.error, piece.time / there, **line | {"linestyle": "none"}, zorder=5)
+        axes.vlines(piece.error, piece.time_low / there, piece.time_high / there, color=line["color"], linewidth=1.0, zorder=3)
+    axes.grid(True)

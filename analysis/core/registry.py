@@ -49,6 +49,10 @@ class Registry:
     def dense(self):
         return frozenset(name for name, one in self.variants.items() if one.get("dense"))
 
+    def gpl(self, name):
+        """Whether a program with the library of this variant may be distributed under the GPL alone."""
+        return re.search(r"(?<!L)GPL", self.variants[name]["licence"]) is not None
+
     @property
     def pairs(self):
         """{name: why it cannot be used, or ""} of the BLAS and LAPACK pairs."""

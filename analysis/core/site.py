@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 from analysis.core import records, schema
 from analysis.core.files import ROOT, read_object, write_json, write_text
 from analysis.core.parts import parts
-from analysis.core.style import save
+from analysis.core.style import save, stamp
 from analysis.core.text import between, ends, number
 from analysis.core.view import View
 
@@ -28,7 +28,7 @@ def write_part(folder, part, started=lambda: None):
     for record in found:
         records.need_same_origin(record, view.context, f"{folder}/raw/{part}")
     tables = schema.write_tables(folder, part, _module(part, "tables").build(found, view), found)
-    figures = _saved(folder / part / "figures", _module(part, "figures").draw(tables, view), started)
+    figures = _saved(folder / part / "figures", _module(part, "figures").draw(tables, view), view, started)
     known = _module(part, "page").context(tables, view)
     _write(folder, part, template(ROOT / "analysis" / part / "page.html.j2").render(
         **_frame(folder, part), **known, figures=figures, schema=schema.of_part(part)))
@@ -40,10 +40,11 @@ def write_part(folder, part, started=lambda: None):
 
 
 def write_index(folder):
-    """index.html: the answers of the parts that are done; and a page for each of the others."""
+    """index.html: the answers of the parts that are done; explore.html; and a page for each of the other parts."""
     frame = _frame(folder, "index")
-    answers = answers_of(folder)
-    _write(folder, "index", template(HERE / "index.html.j2").render(**frame, answers=answers))
+    answers, known = answers_of(folder), _module("explorer", "page").context(folder)
+    _write(folder, "explore", template(ROOT / "analysis" / "explorer" / "page.html.j2").render(**_frame(folder, "explore"), **known))
+    _write(folder, "index", template(HERE / "index.html.j2").render(**frame, answers=answers, examples=known["examples"]))
     for part, known in answers.items():
         if known is None:
             _write(folder, part, template(HERE / "pending.html.j2").render(
@@ -80,25 +81,27 @@ def template(path):
     return environment.get_template(path.name)
 
 
-def _saved(base, figures, started):
+def _saved(base, figures, view, started):
     """Writes NAME.svg of each figure into `base`, on all cores, and closes it; {name: the file in base 64}."""
+    about = f"{view.context.get('cpu_model', '')} · {view.facts['date'][:10]} · {view.part}, profile {view.facts['profile']}"
     base.mkdir(parents=True, exist_ok=True)
     paths = {base / f"{name}.svg": figure for name, figure in figures.items()}
     fork = multiprocessing.get_context("fork")  # figures go with it as they are
-    with fork.Pool(len(os.sched_getaffinity(0)), _begin, (started, paths)) as pool:
+    with fork.Pool(len(os.sched_getaffinity(0)), _begin, (started, paths, about)) as pool:
         pool.map(_save, paths, chunksize=1)
     plt.close("all")
     return {name: base64.b64encode((base / f"{name}.svg").read_bytes()).decode() for name in figures}
 
 
-def _begin(started, paths):
+def _begin(started, paths, about):
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # which is how a pool ends its processes
     started()
-    _paths.update(paths)
+    _figures.update({path: (figure, about) for path, figure in paths.items()})
 
 
 def _save(path):
-    save(_paths[path], path)
+    stamp(*_figures[path])
+    save(_figures[path][0], path)
 
 
-_paths = {}  # of a process that saves figures: {path: figure}
+_figures = {}  # of a process that saves figures: {path: (figure, what is said above it)}

@@ -134,6 +134,14 @@ def plain(value):
     return f"${'' if digits == '1' else digits + '·'}10^{{{int(power)}}}$"
 
 
+def stamp(figure, text):
+    """A line above all of a figure: of which machine and day it is, wherever it is shown."""
+    figure.draw_without_rendering()  # which is when layouts place what there is
+    box, (width, height) = figure.get_tightbbox(), figure.get_size_inches()
+    figure.set_layout_engine("none")
+    figure.text(box.x0 / width, (box.y1 + 0.08) / height, text, fontsize=8, color=GREY, va="bottom")
+
+
 def save(figure, path):
     """Writes a figure in the format of the suffix of `path`; equal figures give equal files."""
     kind = Path(path).suffix

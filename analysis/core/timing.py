@@ -249,6 +249,11 @@ class Ranking:
         return not self.open
 
 
+def by_time(winner, ratios):
+    """Ratios to the winner, which comes first; those that share no process with it last."""
+    return dict(sorted(ratios.items(), key=lambda one: (one[0] != winner, one[1].value if one[1].value > 0 else math.inf)))
+
+
 def rank(rows, names=None):
     """The Ranking of one scene's rows among `names` (all of their names); None if none of them was timed."""
     rows = paired(rows)
@@ -268,5 +273,5 @@ def rank(rows, names=None):
         faster = min((name for name in order if name not in tried and ratios[name].value < 1),
                      key=lambda name: ratios[name].value, default=None)
         if faster is None:
-            return Ranking(winner, dict(sorted(ratios.items(), key=lambda one: (one[0] != winner, one[1].value))))
+            return Ranking(winner, by_time(winner, ratios))
         winner = faster

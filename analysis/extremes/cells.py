@@ -4,7 +4,6 @@ import unicodedata
 from dataclasses import dataclass, field
 
 from analysis.extremes import scenes
-from analysis.extremes.mechanisms import DragLink, LightEnd
 from analysis.extremes.motions import Chain, Flat
 from study.core.setting import Setting
 
@@ -13,7 +12,6 @@ INSTANTS = 20        # of a run at least, at which it is judged ...
 TURN = 2             # ... and in a turn of about 2 s, where a run has many
 POINTS = 6           # whose places are kept, at most: all of them up to five loops
 LONGEST = 5.0        # s of simulated time where the step is what is varied
-LENGTHY = 160000     # steps of 200 s
 SIZES = {1: STEPS, 10: STEPS, 100: 1200, 1000: 100, 10000: 24}  # loops: steps; 1.25 s are past two singular positions
 JSON_LOOPS = 1000    # up to this size the scene is a file: the program knows the exact motion of `four-bar:N`
 LOOPS = 5            # where size is not what is varied
@@ -29,14 +27,11 @@ TELLING = {  # axis: labels of its most telling cells, these in order
     "step": tuple(f"Δt = 1e{power} s" for power in (-2, -5, -1, -4, -3)),
     "penalty": ("α = 1e12", "α = 1e4"),
     "mass ratio": ("1e6", "1e3", "1e-6"),
-    "light end": ("1e-6 kg",),
     "length": ("1e-6 m", "1e6 m", "100 m, usual step"),
     "offset": ("1000 m",),
     "spring": ("pendulum, 1e8 N/m", "loop, 1e8 N/m"),
     "redundant": ("third rod at 1e-5 m", "rod doubled"),
-    "nearly singular": ("by 3e-5 m",),
     "start": ("singular, at rest", "singular, moving", "zero gravity", "hanging at rest"),
-    "duration": ("200 s",),
     "denormal": ("lengths 1e-160 m",)}
 
 
@@ -45,12 +40,17 @@ class Extreme:
     axis: str
     label: str
     scene: str                # of `mbs`, or "": a file of this name
-    motion: Chain | DragLink | LightEnd | None  # None: the reference in shorter steps
+    motion: object            # Chain, Linkage or what else has `solutions`; None: the reference in shorter steps
     document: dict | None = field(default=None, compare=False)
     step: float = STEP
     steps: int = STEPS
     penalty: str = "auto"
-    length: float = 1.0       # m, of a link: what errors are relative to
+    length: float = 1.0       # m, of a link, the shortest: what errors are relative to
+    kept: tuple = ()          # columns of the trajectory; empty: those of the motion
+    # Of trials:
+    settings: tuple = FORMS
+    near: float = math.nan    # distance from the change point, m; a light mass, kg; a share of speed
+    harmless: tuple = ()      # outcomes that no motion of it deserves
 
     @property
     def name(self):
@@ -64,7 +64,7 @@ class Extreme:
     @property
     def columns(self):
         """Of its motion: those that are kept."""
-        return self.motion.columns(POINTS) if self.motion else ("B.x", "B.y", "C.x", "C.y")
+        return self.kept or self.motion.columns(POINTS)
 
     @property
     def every(self):
@@ -88,10 +88,10 @@ class Extreme:
         return telling.index(self.label) if self.label in telling else None
 
 
-def battery():
-    """All cells, in the order of the picture."""
-    return [*_sizes(), *_steps(), *_penalties(), *_masses(), *_ends(), *_lengths(), *_springs(), *_redundant(),
-            *_gaps(), *_starts(), *_long(), *_denormals()]
+def extremes():
+    """All cells that are extreme in one respect, in the order of the picture."""
+    return [*_sizes(), *_steps(), *_penalties(), *_masses(), *_lengths(), *_springs(), *_redundant(),
+            *_starts(), *_denormals()]
 
 
 def _short(value):
@@ -102,10 +102,6 @@ def _short(value):
 
 def _chain(axis, label, chain, **more):
     return Extreme(axis, label, "", chain, chain.document(), length=chain.length, **more)
-
-
-def _other(axis, label, motion, steps=STEPS):
-    return Extreme(axis, label, "", motion, motion.document(), steps=steps)
 
 
 def _sizes():
@@ -128,14 +124,6 @@ def _masses():
             for power in (-9, -6, -3, 3, 6, 9)]
 
 
-def _ends():
-    return [_other("light end", f"{_short(mass)} kg", LightEnd(mass), steps=4 * STEPS) for mass in (1e-3, 1e-6, 1e-9)]
-
-
-def _gaps():
-    return [_other("nearly singular", f"by {_short(gap)} m", DragLink(gap)) for gap in (3e-3, 3e-4, 3e-5)]
-
-
 def _lengths():
     """Steps in proportion to sqrt(length), as the motion is; two with the usual step."""
     def chain(length):
@@ -152,7 +140,7 @@ def _springs():
     for stiffness in (1e6, 1e8, 1e10, 1e12):
         found += [Extreme("spring", f"loop, {_short(stiffness)} N/m", "", Chain(2), scenes.sprung_loop(stiffness)),
                   Extreme("spring", f"pendulum, {_short(stiffness)} N/m", "", None,
-                          scenes.sprung_pendulum(stiffness), steps=800)]
+                          scenes.sprung_pendulum(stiffness), steps=800, kept=("B.x", "B.y", "C.x", "C.y"))]
     return found
 
 
@@ -172,10 +160,6 @@ def _starts():
             _chain("start", "zero gravity, at rest", Chain(LOOPS, gravity=0.0, rate=0.0)),
             _chain("start", "hanging at rest", Chain(LOOPS, angle=math.pi, rate=0.0)),
             _chain("start", "upright at rest", Chain(LOOPS, rate=0.0))]
-
-
-def _long():
-    return [_chain("duration", f"{LENGTHY * STEP:g} s", Chain(2), steps=LENGTHY)]
 
 
 def _denormals():

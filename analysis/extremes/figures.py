@@ -1,10 +1,14 @@
-# The figures of the part: the battery, ways out, kept pivots, roundoff.
-from analysis.extremes import battery_figure, pivots, pivots_figure, roundoff_figure, ways_figure
+# The figures of the part: trials, the battery, ways out, kept pivots, roundoff.
+from analysis.extremes import battery, battery_figure, pivots, pivots_figure, roundoff_figure, trials_figure, ways_figure
 from analysis.extremes.roundoff import FORMS
 
 
 def draw(tables, view):
-    found = battery_figure.figures(tables["battery"]) if len(tables["battery"]) else {}
+    found, extreme = {}, battery.extreme(tables["battery"])
+    if tables["battery"].near.notna().any():
+        found["trials"] = trials_figure.draw(tables["battery"])
+    if len(battery.ran(extreme)):
+        found["battery"] = battery_figure.draw(extreme)
     if len(tables["ways"]):
         found["ways"] = ways_figure.draw(tables["ways"], tables["ways_cost"])
     if len(pivots.timed(tables["pivots"])):

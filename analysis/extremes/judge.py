@@ -4,6 +4,8 @@ import numpy
 from analysis.core.outcomes import FINISHED, GOOD, WHOLE, of_run
 
 CLASS = 1e-2         # of a link's length, what "ok" allows: AccurateBounds of harness/src/run/judge.hpp
+PLACES = (".x", ".y", ".z")  # what columns of places end in
+FAR = 0.3            # clearance from a change point, beyond which nothing jumps
 STILL = 1e-9         # lengths; what moves less rests
 FINER = (4, 8)       # the reference runs at a quarter and at an eighth of the step
 
@@ -20,7 +22,7 @@ def true_motion(cell, references, times):
             return [], None, f"none: the reference is {status}: {reason}"
     fine, finest = ({column: values[:len(times)] for column, values in references[factor].series.items()}
                     for factor in FINER)
-    solution = {column: finest[column] for column in cell.columns}
+    solution = {column: values for column, values in finest.items() if column != "t"}
     # The error of the finer one of two runs of second order is a third of their difference.
     own = float(distances(fine, solution, cell.length).max()) / 3 if len(times) else 0.0
     if not own <= CLASS / 10:
@@ -29,13 +31,13 @@ def true_motion(cell, references, times):
 
 
 def rounding(cell, solutions, times):
-    """The error of known motions as they are evaluated in double, in lengths: an ulp of time, one of positions, and
-    what their integration leaves."""
-    if not len(times):
-        return 0.0
+    """The error of known motions as they are evaluated in double, in lengths: what their integration leaves, or an ulp of
+    time and one of positions."""
+    if not len(times) or cell.motion.accuracy:
+        return cell.motion.accuracy / cell.length
     ulp = numpy.finfo(float).eps
     moved = cell.motion.solutions(numpy.asarray(times) * (1 + ulp))
-    return cell.motion.accuracy / cell.length + max(
+    return max(
         float(distances(late, known, cell.length).max() + ulp * max(abs(values).max() for values in known.values()) / cell.length)
         for late, known in zip(moved, solutions))
 
@@ -43,8 +45,8 @@ def rounding(cell, solutions, times):
 def allowed(cell, solutions):
     """The largest true error, in lengths, of a run that may be ok. Of a short way it is the same share, as else a run
     that stood still would be right; what is at rest must stay within a hundredth."""
-    way = max((numpy.ptp(solution[column]) for solution in solutions for column in cell.columns
-               if len(solution[column])), default=0.0) / cell.length
+    way = max((numpy.ptp(values) for solution in solutions for column, values in solution.items()
+               if column.endswith(PLACES) and len(values)), default=0.0) / cell.length
     return CLASS * min(1.0, float(way)) if way > STILL else CLASS
 
 
@@ -56,6 +58,21 @@ def error_of(record, solutions, length):
     return min(distances(record.series, solution, length).max() for solution in solutions)
 
 
+def wrong_from(record, solutions, length, limit):
+    """The first instant kept at which it is off by more than `limit` lengths, s; None if it is at none."""
+    times = record.series.get("t", [])
+    if not times or not solutions:
+        return None
+    off = ~(numpy.min([distances(record.series, solution, length) for solution in solutions], axis=0) <= limit)
+    return float(times[off.argmax()]) if off.any() else None
+
+
+def harmless(cell, failed_at):
+    """Outcomes that its motion does not deserve at `failed_at`, s: far from its change points it jumps nowhere."""
+    clearance = getattr(cell.motion, "clearance", None)
+    return ("wrong-branch",) if clearance and failed_at and clearance(failed_at) > FAR else cell.harmless
+
+
 def is_silent(status, error, limit):
     """Whether a run is reported ok or plausible though its error is beyond what that allows; one without positions is."""
     return status in GOOD and not error <= limit
@@ -63,20 +80,15 @@ def is_silent(status, error, limit):
 
 def distances(series, solution, length):
     """At each time of `series`, the largest distance of one of its points from `solution`, in lengths."""
-    points = [column.removesuffix(".x") for column in series if column.endswith(".x")]
-    found = [numpy.hypot(*((numpy.array(series[f"{point}.{axis}"], dtype=float) - solution[f"{point}.{axis}"]) / length
-                           for axis in "xy")) for point in points]
-    return numpy.max(found, axis=0)
-
-
-def options_of(record):
-    """{option: value} of a record's command line; "" for one without a value."""
-    found, words = {}, list(record.cell["settings"])
-    while words:
-        name = words.pop(0).removeprefix("--")
-        found[name] = words.pop(0) if words and not words[0].startswith("--") else ""
-    return found
+    found = {}
+    for column in series:
+        if column.endswith(PLACES) and column in solution:
+            point = column.rpartition(".")[0]
+            found[point] = found.get(point, 0) + ((numpy.array(series[column], dtype=float) - solution[column]) / length)**2
+    return numpy.sqrt(numpy.max(list(found.values()), axis=0))
 
 
 def scene_of(record):
-    return record.cell["scene"].rpartition("/")[2].removesuffix(".json")
+    """What its cell is named by: a scene of the repository, or a file of the set's own."""
+    scene = record.cell["scene"]
+    return scene if scene.startswith("harness/") else scene.rpartition("/")[2].removesuffix(".json")

@@ -1,42 +1,13 @@
-# Mechanisms that are no chain of four-bars and whose motion is known: near-singular and with a light end.
+# More mechanisms whose motion is known: with a light part, with speeds that do not agree, and the standard problems.
 from dataclasses import dataclass
 
 import numpy
 from scipy.integrate import solve_ivp
 
-from analysis.extremes.motions import GRAVITY
-
-
-@dataclass(frozen=True)
-class DragLink:
-    """A four-bar with links of 1 m on a ground that is shorter by `gap`, whose crank turns evenly through its ground
-    line. Its two assemblies never meet; on that line they are `gap` from each other, and the rocker turns over."""
-    gap: float
-
-    loops, truth, accuracy = 1, "exact", 0.0
-    start, rate = numpy.pi / 2, -1.0  # of the crank, rad and rad/s
-
-    def columns(self, most):
-        return "B0.x", "B0.y", "B1.x", "B1.y"
-
-    def solutions(self, times):
-        angle = self.start + self.rate * numpy.asarray(times, dtype=float)
-        x, y = numpy.cos(angle), numpy.sin(angle)
-        # From B0 to A1. Near the ground line 1 - gap - cos(angle) is made of small numbers.
-        along, up = 2 * numpy.sin(angle / 2)**2 - self.gap, -y
-        square = along**2 + up**2
-        aside = numpy.sqrt((1 - square / 4) / square)
-        return [{"B0.x": x, "B0.y": y, "B1.x": x + along / 2 - aside * up, "B1.y": y + up / 2 + aside * along}]
-
-    def document(self):
-        at = {key: float(values[0]) for key, values in self.solutions([0.0])[0].items()}
-        return {"points": [{"name": "A0", "position": [0, 0], "fixed": True}, {"name": "X", "position": [2, 0], "fixed": True},
-                           {"name": "A1", "position": [1 - self.gap, 0], "fixed": True},
-                           *({"name": name, "position": [at[f"{name}.x"], at[f"{name}.y"]]} for name in ("B0", "B1"))],
-                "rods": [{"name": name, "between": ends, "mass": 1.0, "length": 1.0} for name, ends in (
-                    ("crank", ["A0", "B0"]), ("coupler", ["B0", "B1"]), ("rocker", ["A1", "B1"]))],
-                "constraints": [{"name": "drive", "type": "angle", "first": ["A0", "X"], "second": ["A0", "B0"],
-                                 "value": {"polynomial": [self.start, self.rate]}}]}
+from analysis.extremes import scenes
+from analysis.extremes.linkages import Dyad, Linkage, Side
+from analysis.extremes.motions import GRAVITY, Chain
+from study.scenes.references import CLOSED, KNOWN
 
 
 @dataclass(frozen=True)
@@ -45,7 +16,7 @@ class LightEnd:
     motion in the angles from the downward vertical, that of the lower rod divided by its mass, are integrated."""
     mass: float                 # kg, of the lower rod
 
-    loops, truth, accuracy = 1, "equations of its own, integrated", 1e-8
+    loops, truth, accuracy, shortest = 1, "equations of its own, integrated", 1e-8, 1.0
     start, tolerance = 1.0, 1e-12  # rad
 
     def columns(self, most):
@@ -74,3 +45,117 @@ class LightEnd:
                            *({"name": name, "position": [at[f"{name}.x"], at[f"{name}.y"]]} for name in "BC")],
                 "rods": [{"name": "upper", "between": ["A", "B"], "mass": 1.0, "length": 1.0},
                          {"name": "lower", "between": ["B", "C"], "mass": self.mass, "length": 1.0}]}
+
+
+@dataclass(frozen=True)
+class Damped:
+    """A rod of 1 m and 1 kg that turns about its foot without gravity and is braked in proportion to its rate."""
+    damping: float  # N m s/rad
+
+    loops, truth, accuracy, shortest = 1, "closed form", 0.0, 1.0
+    start, rate = 0.3, 3.0  # rad, rad/s
+
+    def columns(self, most):
+        return "B.x", "B.y"
+
+    def solutions(self, times):
+        decay = 3 * self.damping  # over the inertia
+        angle = self.start - self.rate * numpy.expm1(-decay * numpy.asarray(times, dtype=float)) / decay
+        return [{"B.x": numpy.cos(angle), "B.y": numpy.sin(angle)}]
+
+    def document(self):
+        x, y = numpy.cos(self.start), numpy.sin(self.start)
+        return {"gravity": [0.0, 0.0], "rods": [{"name": "rod", "between": ["A", "B"], "mass": 1.0, "length": 1.0}],
+                "points": [{"name": "A", "position": [0, 0], "fixed": True}, {"name": "X", "position": [1, 0], "fixed": True},
+                           {"name": "B", "position": [x, y], "velocity": [-self.rate * y, self.rate * x]}],
+                "torsion_springs": [{"name": "brake", "from": ["A", "X"], "to": ["A", "B"], "stiffness": 0.0, "damping": self.damping, "angle": 1.0}]}
+
+
+@dataclass(frozen=True)
+class TwoPendulums:
+    """Two rods that have nothing to do with each other, of 1 m and 1 kg and of 0.5 m and `mass`, released at rest."""
+    mass: float
+
+    loops, truth, accuracy, shortest = 1, "closed form", 0.0, 0.5
+
+    def columns(self, most):
+        return "B.x", "B.y", "C.x", "C.y"
+
+    def solutions(self, times):
+        found = {}
+        for name, length, angle in (("B", 1.0, 2.0), ("C", 0.5, 1.2)):  # one rod alone: as good as no coupler, nor a second rod
+            [one] = Chain(1, length, rods=(1.0, 1.0), couplers=(1e-300,), angle=angle, rate=0.0).solutions(times)
+            found |= {f"{name}.{axis}": one[f"B0.{axis}"] for axis in "xy"}
+        return [found]
+
+    def document(self):
+        at = {key: float(values[0]) for key, values in self.solutions([0.0])[0].items()}
+        return {"gravity": [0.0, -GRAVITY],
+                "points": [{"name": "A", "position": [0, 0], "fixed": True},
+                           *({"name": name, "position": [at[f"{name}.x"], at[f"{name}.y"]]} for name in "BC")],
+                "rods": [{"name": "heavy", "between": ["A", "B"], "mass": 1.0, "length": 1.0},
+                         {"name": "light", "between": ["A", "C"], "mass": self.mass, "length": 0.5}]}
+
+
+@dataclass(frozen=True)
+class Uneven(Chain):
+    """One loop with a redundant rod whose second crank is given a speed greater by a share. The least change, weighted with
+    the masses, makes it the mean of both."""
+    share: float = 0.0
+    same_points: bool | None = None  # of the redundant rod, as in scenes.twin_rod; None: a third crank in the middle
+
+    def solutions(self, times):
+        return Chain(1, rate=1 + self.share / 2).solutions(times)
+
+    def document(self):
+        document = scenes.shifted_rod(0.5) if self.same_points is None else scenes.twin_rod(self.same_points)
+        [point] = [point for point in document["points"] if point["name"] == "B1"]
+        point["velocity"] = [value * (1 + self.share) for value in point["velocity"]]
+        return document
+
+
+@dataclass(frozen=True)
+class TwoDrives:
+    """A parallelogram whose cranks are both driven, the second one faster by a share: it can obey neither, one, or something between."""
+    share: float
+
+    loops, truth, accuracy, shortest = 1, "closed form", 0.0, 0.5
+
+    def columns(self, most):
+        return "B.x", "B.y", "C.x", "C.y"
+
+    def _linkage(self, share=0.0):
+        return Linkage((("A", (0.0, 0.0)), ("D", (1.0, 0.0))), 0.5, (Dyad("C", ("B", "D"), (1.0, 0.5), Side(1, 0.0)),), rate=1 + share)
+
+    def solutions(self, times):
+        return [self._linkage(share).solutions(times)[0] for share in (0.0, self.share)]
+
+    def document(self):
+        found = self._linkage().document()
+        [drive] = found["constraints"]
+        polynomial = {"polynomial": [drive["value"]["polynomial"][0], 1 + self.share]}
+        return found | {"constraints": [drive, {"name": "second drive", "type": "angle", "first": ["A", "Ax"], "second": ["D", "C"], "value": polynomial}]}
+
+
+@dataclass(frozen=True)
+class Standard:
+    """A standard problem with a reference that `mbs` has no part in: of study/scenes/references.py."""
+    known: str
+
+    loops = 1
+
+    @property
+    def truth(self):
+        return "closed form" if self.known in CLOSED else "equations of its own, integrated"
+
+    @property
+    def accuracy(self):
+        return 0.0 if self.known in CLOSED else 1e-8
+
+    def columns(self, most):
+        return ("outputs",)
+
+    def solutions(self, times):
+        times = numpy.asarray(times, dtype=float)
+        found = KNOWN[self.known](times) if len(times) else {}
+        return [{column: values for column, values in found.items() if column.split(".")[-1] in ("x", "y", "z")}]

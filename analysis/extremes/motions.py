@@ -30,6 +30,11 @@ class Chain:
     truth, accuracy = "exact", 0.0  # what `solutions` are; their error beside rounding, m
 
     @property
+    def shortest(self):
+        """m, of its links."""
+        return min(self.length, *self.spans, self.length)
+
+    @property
     def masses(self):
         """(of the rods, of the couplers), kg"""
         return self.rods or (1.0,) * (self.loops + 1), self.couplers or (1.0,) * self.loops

@@ -3,9 +3,7 @@ import numpy
 
 from analysis.core.outcomes import GOOD
 from analysis.core.text import number
-from analysis.extremes import battery, pivots, roundoff, ways
-
-SHORT = 1.0  # s of a motion of size or step: the first two singular positions are near 0.7 and 1.2 s
+from analysis.extremes import battery, pivots, roundoff, verdicts, ways
 
 
 def context(tables, view):
@@ -15,56 +13,35 @@ def context(tables, view):
 
 def _battery(table):
     """None where there is nothing to show."""
+    runs, extreme = verdicts.judged(table), battery.extreme(table)
     if table.empty:
         return None
-    runs, tried = battery.ran(table), table[~table.status.isin(("excluded", "dropped", "unsupported"))]
-    return {"total": len(runs), "rows": len(table), "right": int(right(runs).sum()), "silent": silent(table),
-            "left_out": left_out(table), "nobody": nobody(tried), "unlike": unlike(tried),
-            "statuses": list(dict.fromkeys([*GOOD, "degraded", *sorted(table.status.unique())])),
-            "counts": [(name, int(right(rows).sum()), len(battery.ran(rows)), rows.status.value_counts().to_dict())
-                       for name, rows in table.groupby("setting", sort=False)],
-            "unjudged": table[table.status.isin(GOOD) & table.true_error.isna()].to_dict("records")}
+    return {"runs": len(runs), "mechanisms": len(runs[["axis", "value"]].drop_duplicates()), "kinds": verdicts.kinds(runs), "verdicts": verdicts.ALL,
+            "lists": {verdict: verdicts.listed(runs, verdict) for verdict in (verdicts.SILENT, verdicts.FALSE)}, "left_out": left_out(table),
+            "nobody": nobody(extreme), "unlike": unlike(extreme), "unjudged": int((table.status.isin(GOOD) & table.true_error.isna()).sum()),
+            "settings": [(name, len(rows), verdicts.counts(rows)) for name, rows in runs.groupby("setting", sort=False)]}
 
 
-def right(rows):
-    """Which are ok or plausible, and right."""
-    return rows.status.isin(GOOD) & ~rows.silent
-
-
-def nobody(tried):
+def nobody(extreme):
     """[(axis, value, {outcome: count})] of cells in which no run is right."""
-    found = []
-    for (axis, value), rows in tried.groupby(["axis", "value"], sort=False):
-        if not right(rows).any():
-            found.append((axis, value, rows.status.mask(rows.silent, "silently wrong").value_counts().to_dict()))
-    return found
+    tried = extreme[~extreme.status.isin(("excluded", "dropped", "unsupported"))]
+    return [(axis, value, rows.status.mask(rows.verdict == verdicts.SILENT, verdicts.SILENT).value_counts().to_dict())
+            for (axis, value), rows in tried.groupby(["axis", "value"], sort=False) if not (rows.verdict == verdicts.RIGHT).any()]
 
 
-def unlike(tried):
+def unlike(extreme):
     """Cells where implementations of one setting end differently: axis, value, setting, {status: [names]}."""
     return [{"axis": axis, "value": value, "setting": setting, "outcomes": {
         status: list(group.implementation) for status, group in rows.groupby("status", sort=False)}}
-        for (axis, value, setting), rows in tried.groupby(["axis", "value", "setting"], sort=False) if rows.status.nunique() > 1]
+        for (axis, value, setting), rows in battery.ran(extreme).groupby(["axis", "value", "setting"], sort=False) if rows.status.nunique() > 1]
 
 
 def left_out(table):
-    """What was not run and why, and the cells of extreme size and step whose motions are short."""
-    found = []
-    for reason, rows in table[table.status == "excluded"].groupby("reason", sort=False):
-        cells = ", ".join(dict.fromkeys(rows.axis + " " + rows.value))
-        found.append(f"Left out in {cells}: {', '.join(dict.fromkeys(rows.implementation))} ({reason}).")
-    dropped = table[table.status == "dropped"]
-    if len(dropped):
-        found.append(f"{len(dropped)} runs were left out, as the budget was spent: the cheap ones of the most telling cells came first.")
-    cells = table.drop_duplicates(["axis", "value"])
-    seconds = cells.steps * cells.step
-    short = cells[cells.axis.isin(["loops", "step"]) & (seconds < SHORT)]
-    if len(short):
-        told = "; ".join(f"{row.value}: {row.steps:.0f} steps of {row.step:g} s, {row.steps * row.step:.3g} s"
-                         for row in short.itertuples())
-        found.append(f"Motions last {seconds.mode().iloc[0]:g} s in most cells. Those of extreme size and step that are "
-                     f"shorter than {SHORT:g} s may miss what happens later: {told}.")
-    return found
+    """What was not run and why."""
+    found = [f"Left out: {', '.join(dict.fromkeys(rows.implementation))} in {', '.join(dict.fromkeys(rows.axis + ' ' + rows.value))} ({reason})."
+             for reason, rows in table[table.status == "excluded"].groupby("reason", sort=False)]
+    dropped = int((table.status == "dropped").sum())
+    return found + [f"{dropped} runs were left out, as the budget was spent: the more telling ones came first."] * (dropped > 0)
 
 
 def silent(rows):

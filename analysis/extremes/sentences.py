@@ -1,8 +1,7 @@
 # The answers to "What happens at the extremes, and what helps there?", from the tables.
 from analysis.core.text import number
-from analysis.extremes import battery, pivots, ways
-from analysis.extremes.cells import FORMS
-from analysis.extremes.page import nobody, overhead, right, silent
+from analysis.extremes import battery, pivots, trials, verdicts, ways
+from analysis.extremes.page import nobody, overhead
 
 
 def answers(tables, view):
@@ -11,20 +10,38 @@ def answers(tables, view):
 
 
 def _battery(table):
-    runs = battery.ran(table)
+    runs = verdicts.judged(table)
     if runs.empty:
         return
-    count, places = int(runs.silent.sum()), "; ".join(f"{one['axis']} {one['value']}" for one in silent(runs))
-    yield {"anchor": "battery", "text": f"{right(runs).sum()} of {len(runs)} runs at the extremes are ok or plausible, and right. "
-           f"{count or 'None'} {'are' if count > 1 else 'is'} silently wrong{f' ({places})' if places else ''}. "
-           "The others say themselves that they failed or are off."}
-    forms = runs[runs.setting.isin([form.name for form in FORMS])]
+    silent, false = (runs[runs.verdict == verdict] for verdict in (verdicts.SILENT, verdicts.FALSE))
+    standard = runs.axis.isin(trials.STANDARD)
+    wrongly, others = false[standard[false.index]], false[~standard[false.index]]
+    text = (f"Of {len(runs)} runs of {len(runs[['axis', 'value']].drop_duplicates())} mechanisms of {runs.axis.nunique()} kinds {_are(silent)} silently "
+            f"wrong, and {_are(false)} called worse than right though nothing is wrong. Bound “no run is silently wrong”: {_held(silent)}.")
+    if standard.any():
+        text += f" Bound “no false alarm on standard problems at their own steps”: {_held(wrongly)}, in {standard.sum()} runs."
+    if len(others):
+        text += f" Other false alarms: {_places(others)}."
+    yield {"anchor": "battery", "text": text}
     lost = {}
-    for axis, value, _ in nobody(forms):
+    for axis, value, _ in nobody(battery.extreme(runs)):
         lost.setdefault(axis, []).append(value)
     if lost:
-        yield {"anchor": "nobody", "text": "Neither form is ok at " + "; ".join(
+        yield {"anchor": "nobody", "text": "Nobody is right, in any setting tried, at " + "; ".join(
             f"{axis}: {', '.join(values)}" for axis, values in lost.items()) + "."}
+
+
+def _are(rows):
+    return f"{len(rows) or 'none'} {'are' if len(rows) > 1 else 'is'}"
+
+
+def _held(rows):
+    """Whether the bound "none of these" holds."""
+    return f"not held, {len(rows)} run{'s' if len(rows) > 1 else ''} ({_places(rows)})" if len(rows) else "held"
+
+
+def _places(rows):
+    return ", ".join(f"{kind}: {count}" for kind, count in rows.axis.value_counts(sort=False).items())
 
 
 def _ways(table, cost):

@@ -9,13 +9,13 @@ from analysis.families.rule import WITHIN
 from analysis.families.tables import SCHEMES
 
 DECIDES = "per_column"  # beside n, the number that tells mechanisms apart; the page shows what each tells alone
-FORMS = (*MARKERS, "H", "8")  # of families
+FORMS = (*((4, 1, 0) if mark == "h" else mark for mark in MARKERS), "h", (8, 1, 0))  # of families
 NAMED = {"per_column": "non-zeros a column of the factor L (AMD's order)"}
 
 
 def draw(tables, view):
-    look, machine = Look(view.registry), view.context.get("cpu_model", "")
-    return {"map": real_map(tables, look, view.registry, machine), "held": held_figure(tables["held"], machine)}
+    look = Look(view.registry)
+    return {"map": real_map(tables, look, view.registry), "held": held_figure(tables["held"])}
 
 
 def best_form(winners, layer):
@@ -25,7 +25,7 @@ def best_form(winners, layer):
     return rows.assign(place=rows.scheme.map(order)).sort_values("place", kind="stable").drop_duplicates("scene").drop(columns="place")
 
 
-def real_map(tables, look, registry, machine):
+def real_map(tables, look, registry):
     """Left: a mark a mechanism, in the colour of its fastest library; a second colour inside is another that is as fast; empty
     inside: not decided. Right: how many times faster the fastest code of our own is."""
     mechanisms, winners, scenes = (tables[name] for name in ("mechanisms", "winners", "scenes"))
@@ -43,10 +43,10 @@ def real_map(tables, look, registry, machine):
         members = row.equivalent.split()
         known = row.settled or row.decided
         shown |= {name: look.colour(name) for name in members}
-        left.plot(row.n, getattr(row, DECIDES), marks[row.family], markersize=10.5, markeredgewidth=2.6, markeredgecolor=look.colour(members[0]),
+        left.plot(row.n, getattr(row, DECIDES), marker=marks[row.family], markersize=10.5, markeredgewidth=2.6, markeredgecolor=look.colour(members[0]),
                   markerfacecolor=look.colour(members[1] if len(members) > 1 else members[0]) if known else "white", linestyle="none")
     _scales(left, rows.n, rows[DECIDES], NAMED[DECIDES])
-    left.set_title(f"Fastest library, by size and sparsity of the factor\n{machine}")
+    left.set_title("Fastest library, by size and sparsity of the factor")
     _lead(right, rows, scenes, look, marks, registry)
     colours = [Patch(facecolor=colour, label=name) for name, colour in shown.items()]
     forms = [Line2D([], [], marker=mark, linestyle="none", color="#444444", label=family) for family, mark in marks.items()]
@@ -73,10 +73,10 @@ def _lead(axes, rows, scenes, look, marks, registry):
     for row in fastest.itertuples():
         axes.plot([row.n, row.n], [1 / row.to_rival_high, 1 / row.to_rival_low] if row.to_rival_low > 0 else [1 / row.to_rival] * 2,
                   color=look.colour(row.implementation), linewidth=1.0, alpha=0.7)
-        axes.plot(row.n, 1 / row.to_rival, marks[row.family], markersize=7.5, color=look.colour(row.implementation), linestyle="none")
+        axes.plot(row.n, 1 / row.to_rival, marker=marks[row.family], markersize=7.5, color=look.colour(row.implementation), linestyle="none")
     axes.axhline(1.0, color=GREY, linewidth=0.9)
     _scales(axes, fastest.n, 1 / fastest.to_rival, "times as fast as the fastest library")
-    axes.set_title("Fastest code of our own, which is no library\n95 % intervals")
+    axes.set_title("Fastest code of our own, which is no library; 95 % intervals")
     axes.legend(handles=[Patch(facecolor=look.colour(name), label=name) for name in dict.fromkeys(fastest.implementation)], loc="upper right",
                 fontsize=8.5, frameon=True, framealpha=0.85, edgecolor="none")
 
@@ -96,7 +96,7 @@ def _scales(axes, n, values, label):
     axes.set_axisbelow(True)
 
 
-def held_figure(held, machine):
+def held_figure(held):
     """Families left out: predicted over measured time of a step; what the choice costs."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 4.6), gridspec_kw={"wspace": 0.25})
     rows = held[held.step_us.notna() & held.predicted_us.notna()] if len(held) else held
@@ -123,5 +123,5 @@ def held_figure(held, machine):
     right.set_ylabel("loss of the choice, %")
     right.set_title("Time lost by the chosen library")
     left.legend(fontsize=8.5)
-    figure.suptitle(f"Each family predicted by the others, {machine}", x=0.01, ha="left", fontsize=10)
+    figure.suptitle("Each family predicted by the others", x=0.01, ha="left", fontsize=10)
     return figure

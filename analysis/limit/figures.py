@@ -73,6 +73,7 @@ def over_size(bounds, rows, look, own=()):
         number_axis(axes.yaxis, unit)
         axes.grid(True, which="major")
     size_ticks(multiples, sorted(rows.variables.unique()))
+    multiples.set_xlim(rows.variables.min() / 1.3, rows.variables.max() * 1.3)
     legend(times, order=[*(label for label, _ in BOUNDS.values()), LIMIT_LABEL, *leaders(rows, own)].index)
     return figure
 
@@ -107,7 +108,7 @@ def by_phase(rows, own=()):
             axes.text(1, place, f" {number(row.multiple)}×, {number(row.step_us)} µs", va="center", fontsize=8)
         axes.set_xlim(0, 1.6)
         axes.set_xticks([0, 0.5, 1], ["0", "50 %", "100 %"])
-        axes.set_title(f"n = {2 * loops + 2:.0f}, limit {number(of_size.step_us[LIMIT])} µs")
+        axes.set_title(f"N-four-bar, n = {2 * loops + 2:.0f}; limit {number(of_size.step_us[LIMIT])} µs")
         axes.set_xlabel("share of the step")
         axes.set_yticks(range(len(names)), names)
         axes.set_ylim(len(names) - 0.4, -0.6)
@@ -137,7 +138,8 @@ def ahead(leads):
                         axes.plot([row.low, row.high], [place + shift] * 2, color=colour, linewidth=1.6, alpha=0.6)
                     axes.plot(row.lead, place + shift, marker, color=colour, markersize=5.5, linestyle="none", label=label)
                     axes.annotate(f"{number(row.lead)}×", (max(row.lead, row.high if row.high < numpy.inf else 0), place + shift),
-                                  (5, 0), textcoords="offset points", va="center", fontsize=7, color=colour)
+                                  (5, 0), textcoords="offset points", va="center", fontsize=7, color=colour, zorder=4,
+                                  bbox={"boxstyle": "round,pad=0.1", "facecolor": "white", "alpha": 0.8, "linewidth": 0})
                     label = None
                 elif row.status != "unsupported":
                     axes.annotate(f"{name.partition('/')[2]}: {row.status}", (1, place + shift), (5, 0), va="center", fontsize=7,

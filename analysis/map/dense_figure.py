@@ -24,7 +24,7 @@ def draw(results, look):
     found = series(results)
     sizes = sorted({size for mine in found.values() for size in mine})
     figure, axes = plt.subplots(figsize=(max(6.5, 1.2 * len(sizes) + 1), 5.2))
-    axes.set_title(f"Figure 2: dense versions on pairs of BLAS and LAPACK, {results.view.context.get('cpu_model', '')}")
+    axes.set_title("Figure 2: dense versions on pairs of BLAS and LAPACK")
     if not found:
         missing(axes, f"{paper.STARTING['dense']} and another dense version were not both timed")
         return figure

@@ -13,7 +13,6 @@ def draw(tables, view):
     return {"f6_map": maps.draw(results, look, "Figure 6: fastest library, 10 to 100 variables", libraries, 10, 100),
             "f7_map": maps.draw(results, look, "Figure 7: fastest library, all sizes", libraries),
             "map_all": maps.draw(results, look, "Fastest of all, code of our own included", everyone),
-            "map_families": maps.draw_families(results, look),
             "regret": regret.draw(results, map_cells(results, libraries), libraries),
             "f4_sparse_solvers": sparse_figure.draw(results, look), "f5_fill": fill_figure.draw(results, look),
             "f2_dense_pairs": dense_figure.draw(results, look), "t1_phases": phases_figure.draw(results),

@@ -49,7 +49,7 @@ def draw(results, look):
     found = crossings(results, size)
     figure, (axes, below) = plt.subplots(2, 1, figsize=(8.4, 5.4 + 0.21 * max(3, len(found))), sharex=True, gridspec_kw={
         "hspace": 0.14, "height_ratios": [5, 0.3 + 0.21 * max(3, len(found))]})
-    axes.set_title(f"Figure 5: time against tangent fill, n = {size:g}, {results.view.context.get('cpu_model', '')}")
+    axes.set_title(f"Figure 5: time against tangent fill, n = {size:g}")
     _times(axes, results, size, look)
     if found:
         _crossings(below, found, look)

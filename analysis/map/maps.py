@@ -12,7 +12,6 @@ from analysis.map.grid import EDGE, columns, draw_grid, handles
 
 LINE = "#111111"
 OPAQUE, PALE = 0.85, 0.4
-LEGEND = 3.8  # inches beside a map, where the layout counts it to the map's own width
 
 
 def draw(results, look, title, names, smallest=0, largest=float("inf")):
@@ -20,7 +19,7 @@ def draw(results, look, title, names, smallest=0, largest=float("inf")):
     cells = [cell for cell in map_cells(results, names) if smallest <= cell.variables <= largest]
     count = len(columns(cells))
     figure, axes = plt.subplots(figsize=(max(5.0, 0.9 + 1.02 * count), 7.4))
-    axes.set_title(f"{title}\n{results.view.context.get('cpu_model', '')}")
+    axes.set_title(title)
     if not any(cell.ranking for cell in cells):
         missing(axes, "nobody of these was timed")
         return figure
@@ -106,26 +105,3 @@ def _legend(axes, cells, look, names, crossed, pairs=""):
     shown += [Patch(facecolor="none", label=text) for text in ("1.32×: the second behind the winner", "= 2 more: as fast, within 5 %",
                                                               "? 2 more: may be as fast")]
     axes.legend(handles=shown, loc="upper left", bbox_to_anchor=(1.01, 1.01), fontsize=8)
-
-
-def families(results):
-    """{title: names} of the libraries."""
-    names = [name for name in results.layer("libraries") if not paper.starting(name)
-             and name.split("/")[0] != paper.NOT_OPTIMISED]
-    return {title: [name for name in names if bool(results.variants[name].get("unsymmetric")) == value]
-            for title, value in (("for symmetric tangents only", False), ("of those that take unsymmetric tangents", True))}
-
-
-def draw_families(results, look):
-    groups = families(results)
-    cells = {title: map_cells(results, names) for title, names in groups.items()}
-    count = max(len(columns(mine)) for mine in cells.values()) or 1
-    figure, panels = plt.subplots(len(groups), 1, figsize=(max(6.0, 0.9 + 1.02 * count) + LEGEND, 6.2 * len(groups)), layout="constrained")
-    for axes, (title, names) in zip(panels, groups.items()):
-        axes.set_title(f"Fastest library {title} ({len(names)}), {results.view.context.get('cpu_model', '')}")
-        if any(cell.ranking for cell in cells[title]):
-            draw_grid(axes, cells[title], lambda axes, x, y, height, cell: _cell(axes, x, y, height, cell, look))
-            _legend(axes, cells[title], look, names, {})
-        else:
-            missing(axes, "nobody of this family was timed")
-    return figure

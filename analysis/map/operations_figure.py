@@ -29,7 +29,7 @@ def draw(results, look):
         _ratios(ratios, [row for row in rows if row["operation"] == operation], look, paper.TABLE2[operation][2])
     panels[0, 0].set_ylabel("µs a call")
     panels[1, 0].set_ylabel("not optimised ÷ fastest optimised")
-    figure.suptitle(f"Table 2: operations without and with symbolic preprocessing, {results.view.context.get('cpu_model', '')}",
+    figure.suptitle("Table 2: operations without and with symbolic preprocessing",
                     x=0.125, ha="left", fontsize=11, y=0.965)
     handles = {label: handle for axes in panels[0] for handle, label in zip(*axes.get_legend_handles_labels())}
     if handles:

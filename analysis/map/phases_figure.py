@@ -10,6 +10,7 @@ from analysis.map.compare import group_shares, profiled
 from analysis.map.tidy import PHASES
 
 SIZES = (22, 82)
+WHOLE = 0.99  # of a step in "other": it has no phases
 GROUP_FILLS = dict(zip(paper.GROUPS, ("#6baed6", "#f6dcae", "#08519c", "#e4e4e4")))
 # Light to dark and back, so that neighbours stay apart in black and white.
 FILLS = {"evaluation": "#cfe3f2", "assembly": "#6baed6", "factorization": "#08519c",
@@ -68,7 +69,7 @@ def draw(results):
     left = None
     for column, size in enumerate(panel_sizes(results)):
         left = figure.add_subplot(grid[1, column], sharey=left)
-        _all_panel(left, results, size, names, column == 0)
+        all_panel(left, results, size, names, column == 0)
     return figure
 
 
@@ -91,15 +92,19 @@ def _paper_panel(axes, rows):
     axes.set_title("Table 1: share of CPU time by phase, the paper's groups", pad=26)
 
 
-def _all_panel(axes, results, size, names, first):
+def all_panel(axes, results, size, names, first):
+    """A bar of all phases for each of `names`; `first`: with names, legend and title."""
     if not len(profiled(results, size=size)):
         missing(axes, f"no profiled runs at n = {size:g}")
         return
     for place, name in enumerate(names):
         rows = profiled(results, name, size)
         shares = phase_shares(rows, PHASES) if len(rows) else {}
-        _bar(axes, place, [(phase, 100 * share) for phase, share in shares.items()], FILLS, False)
-        if not shares:
+        whole = shares.get("other", 0) > WHOLE
+        _bar(axes, place, [(phase, 100 * share) for phase, share in shares.items() if not whole], FILLS, False)
+        if whole:
+            axes.text(1, place, "all in the same sweeps", va="center", fontsize=7.5)
+        elif not shares:
             axes.text(1, place, why_not(results, name, size), va="center", fontsize=7.5,
                       color=GREY)
     axes.set_yticks(range(len(names)), names, fontsize=8.5)

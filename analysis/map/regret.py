@@ -66,8 +66,7 @@ def draw(results, cells, names):
     found = regrets(results, cells, names)
     cells = [cell for cell in cells if cell.ranking]
     figure, axes = plt.subplots(figsize=(3.0 + 0.34 * len(cells), 2.2 + 0.27 * len(found)))
-    axes.set_title("Time lost by always using one library: its time over the best library's in each cell\n"
-                   f"{results.view.context.get('cpu_model', '')}")
+    axes.set_title("Time lost by always using one library: its time over the best library's in each cell")
     if not cells:
         missing(axes, "nobody was timed")
         return figure

@@ -37,7 +37,7 @@ class Scene:
             return found  # who is fastest far ahead of all leads nobody, and has no further processes
         first = timing.rank(self.again, set(found.ratios))
         others = {name: timing.ratio(self.all, name, first.winner) for name in found.ratios if name not in first.ratios}
-        return timing.Ranking(first.winner, first.ratios | others)
+        return timing.Ranking(first.winner, timing.by_time(first.winner, first.ratios | others))
 
     def ratio(self, slow, fast):
         """timing.Ratio of two contenders."""

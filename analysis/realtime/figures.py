@@ -11,7 +11,7 @@ LEFT = 0.7  # of the axis of sizes
 
 def draw(tables, view):
     return {"steps": distributions(tables["steps"], tables["machine"]),
-            "largest": sizes(tables["largest"], view.context["cpu_model"])}
+            "largest": sizes(tables["largest"])}
 
 
 def distributions(table, machine):
@@ -71,7 +71,7 @@ def _panel(axes, rows, names):
     axes.grid(axis="x")
 
 
-def sizes(table, machine):
+def sizes(table):
     """The largest size that was kept up with and the next one that was not, with the misses of both."""
     if table.empty:
         return _nothing("No search was made.")
@@ -92,7 +92,7 @@ def sizes(table, machine):
         axes.set_yticks(range(len(names)), names)
         axes.set_ylim(len(names) - 0.4, -0.6)
         axes.grid(axis="x")
-    figure.suptitle(f"Largest N in real time on {machine}", x=0.01, ha="left", fontsize=12)
+    figure.suptitle("Largest N in real time", x=0.01, ha="left", fontsize=12)
     handles = [plt.Line2D([], [], color=FORMS[form][0], marker=FORMS[form][1], linestyle="none",
                           label=f"{form}: kept up with") for form in shown]
     handles += [plt.Line2D([], [], color=GREY, marker="X", linestyle="none", label="next size tried: not kept up with"),

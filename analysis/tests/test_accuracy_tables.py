@@ -192,8 +192,8 @@ def test_the_figures_show_what_won_and_name_few(found):
     made, seen = found
     drawn = figures.draw(made, seen)
     assert set(drawn) == {"work-four-bar-10", "regions", pairs.FORMS}
-    libraries, everyone = drawn["work-four-bar-10"].axes
-    named = [text.get_text() for text in libraries.get_legend().get_texts()]
+    libraries, _, below, everyone = drawn["work-four-bar-10"].axes
+    named = [text.get_text() for text in below.get_legend().get_texts()]
     assert named[-3:] == ["front", "others", work_figure.RINGED] and len(named) <= work_figure.MOST + 3
     rings = [line for line in libraries.get_lines() if line.get_markeredgewidth() == work_figure.RING["markeredgewidth"]]
     won = made["winners"][(made["winners"].layer == "libraries") & made["winners"].fill_asked.isna()]
@@ -202,7 +202,7 @@ def test_the_figures_show_what_won_and_name_few(found):
     assert everyone.get_legend().get_texts()[0].get_text().startswith("own/code")
     panels = drawn["regions"].axes
     assert [axes.get_title(loc="left") for axes in panels] == [
-        "fastest of libraries", "fastest of libraries and code without one"]
+        f"N-four-bar, fastest of {who}" for who in ("libraries", "libraries and code without one")]
     assert [tick.get_text() for tick in panels[0].get_xticklabels()] == ["n = 22\nown fill", "n = 22\nfill 100%"]
     assert [text.get_text() for text in panels[0].texts].count("rattle\n20 ms") == 2
     for figure in drawn.values():

@@ -5,6 +5,7 @@ import matplotlib.pyplot as plt
 import numpy
 import pandas
 import pytest
+from matplotlib.patches import Polygon
 
 from analysis.core import site
 from analysis.core.errors import StudyError
@@ -13,7 +14,7 @@ from analysis.core.records import Record
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
 from analysis.extremes import (battery, battery_figure, cells, figures, judge, page, pivots, roundoff, sentences,
-                               tables, ways)
+                               tables, trials, verdicts, ways)
 from analysis.extremes.motions import Chain, Flat
 
 STATUSES = ("ok", "degraded", "diverged", "wrong-branch", "not-converged", "timeout", "crashed", "refused", "excluded", "dropped")
@@ -22,12 +23,14 @@ REGISTRY = Registry({"implementations": [{"folder": name.split("/")[0], "availab
     {"name": name, "dense": name == "a/v"}]} for name in NAMES]})
 VIEW = SimpleNamespace(registry=REGISTRY, settings={"loops": {"ways": [2], "times": [10], "roundoff": [1]}})
 TIMES = numpy.linspace(0, 3, 31)
-CELL = next(cell for cell in cells.battery() if cell.label == "N = 1")
-SPRUNG = next(cell for cell in cells.battery() if cell.motion is None)
+CELL = next(cell for cell in cells.extremes() if cell.label == "N = 1")
+KITE, PASSING, FAR, STANDARD = (next(cell for cell in trials.all_trials() if (cell.axis, cell.label) == key) for key in (
+    ("driven four-bar", "kite at 0.001, 1 per s"), ("passage, driven", "Cardan, 1 per s"), ("far, driven", "quick return, 1 per s"), ("standard problem", "A01")))
+SPRUNG = next(cell for cell in cells.extremes() if cell.motion is None)
 
 
 def record(name, cell, output=None, series=None, ended="done", reason="", **more):
-    cell = {"contenders": ["a/v"], "role": "penalty", "number": 0, "program": "mbs", "settings": []} | cell
+    cell = {"contenders": ["a/v"], "role": "penalty", "number": 0, "program": "mbs", "settings": ["--step", f"{cells.STEP:g}"]} | cell
     return Record(name, cell, ended, reason, 0.1, ["build/mbs", "simulate", "a scene.json"], {},
                   {"status": "ok", "status_reason": ""} | (output or {}), series or {}, **more)
 
@@ -55,11 +58,53 @@ def test_what_is_ok_beyond_its_class_is_silently_wrong():
                  run("ok", float("nan"), role="saddle-point"), run("plausible", 1e-3, "b/v", "saddle-point", position_error_max=0.02),
                  record("battery/dropped", {"scene": CELL.name, "role": "rattle6"}, ended="dropped", reason="budget"))["battery"]
     found = {(row.implementation, row.setting): row for row in table.itertuples()}
-    assert [key for key, row in found.items() if row.silent] == [("b/v", "penalty"), ("a/v", "saddle-point"), ("b/v", "saddle-point")]
+    assert [key for key, row in found.items() if row.verdict == verdicts.SILENT] == [("b/v", "penalty"), ("a/v", "saddle-point"), ("b/v", "saddle-point")]
     assert found["b/v", "penalty"].true_error == pytest.approx(0.02 * 2**0.5)
     assert found["b/v", "penalty"].command == "build/mbs simulate 'a scene.json'" and found["a/v", "penalty"].command == ""
     assert found["b/v", "saddle-point"].true_error == 0.02  # what it reports itself, between two instants
     assert numpy.isnan(found["a/v", "rattle4"].true_error) and found["a/v", "rattle6"].status == "dropped"
+
+
+def trial(status, error=0.0, of=KITE, until=None, **more):
+    motion = of.motion.solutions(TIMES)[0] if of.motion else {}
+    series = {"t": list(TIMES[:until])} | {column: list(values[:until] + error) for column, values in motion.items()}
+    return record(f"battery/{status}-{of.name}-{error}-{until}", {"scene": f"{of.scene or of.name}", "settings": ["--step", f"{of.step:g}"]},
+                  {"status": status, "status_reason": "why"} | more, series)
+
+
+@pytest.mark.parametrize(("run", "verdict"), [
+    (trial("ok"), "right"), (trial("plausible", 0.002), "right"), (trial("plausible", 0.02), "silently wrong"), (trial("ok", 0.02), "silently wrong"),
+    (trial("degraded"), "false alarm"), (trial("degraded", 0.002), "told"), (trial("degraded", 0.1), "told"), (trial("not-converged"), "told"),
+    (trial("wrong-branch", 0.1, until=9), "told"), (trial("wrong-branch", until=9), "stopped"), (trial("diverged", until=9), "stopped"),
+    (trial("wrong-branch", until=9, failed_at=5.28), "stopped"), (trial("wrong-branch", until=9, failed_at=1.5), "false alarm"),
+    (trial("wrong-branch", of=PASSING, until=9), "false alarm"), (trial("diverged", of=PASSING, until=9), "stopped"),
+    (trial("wrong-branch", of=FAR, until=9), "false alarm"), (trial("diverged", of=FAR, until=9), "false alarm"), (trial("diverged", 0.1, of=FAR, until=9), "told"),
+    (trial("ok", of=FAR), "right"), (trial("not-converged", of=FAR), "false alarm")])
+def test_a_trial_is_worth_what_it_said_beside_its_error(run, verdict):
+    [row] = made(run)["battery"].itertuples()
+    assert row.verdict == verdict 
+    assert bool(row.command) == (verdict in ("silently wrong", "false alarm"))
+    assert (row.wrong_from == row.wrong_from) == (verdict == "silently wrong" or verdict == "told" and "0.1" in row.record)
+
+
+def test_trials_that_did_not_run_or_cannot_be_judged_have_no_verdict():
+    unknown = next(cell for cell in trials.all_trials() if cell.motion is None)
+    lost = record("battery/x", {"scene": KITE.name, "settings": ["--step", f"{KITE.step:g}"]}, ended="timeout", reason="20 s")
+    assert list(made(lost, trial("degraded", of=unknown), trial("unsupported", until=0))["battery"].verdict.fillna("")) == 3 * [""]
+    assert page._battery(made(lost)["battery"]) ["runs"] == 0
+
+
+def test_trials_are_counted_by_kind_and_bounds_that_fail_are_said_to():
+    found = made(trial("plausible"), trial("plausible", 0.5), trial("ok", 0.6), trial("degraded"), trial("ok", of=STANDARD))["battery"]
+    counts = verdicts.kinds(found)
+    assert [(row["kind"], row["mechanisms"], row["runs"]) for row in counts] == [(STANDARD.axis, 1, 1), ("driven four-bar", 1, 4)]
+    [wrong] = verdicts.listed(found, verdicts.SILENT)
+    assert (wrong["runs"], wrong["wrong_from"], wrong["settings"]) == (2, 0.0, ["penalty"]) and wrong["true_error"] == pytest.approx(0.6 * 2**0.5 / KITE.length)
+    [text] = [one["text"] for one in sentences._battery(found)]
+    assert "Of 5 runs of 2 mechanisms of 2 kinds 2 are silently wrong, and 1 is called worse" in text
+    assert "silently wrong”: not held, 2 runs (driven four-bar: 2)." in text and "own steps”: held, in 1 runs." in text
+    text = render(made(trial("plausible", 0.5)))[1]
+    assert "Silently wrong: 1 run<" in text and "build/mbs simulate" in text and "False alarm: no run." in text
 
 
 def test_records_of_another_battery_are_named():
@@ -99,15 +144,15 @@ def test_references_are_found_by_their_step():
     [row] = made(*finer, mine)["battery"].itertuples()
     assert row.truth == "reference at 1/8 of the step" and row.true_error == 0
     [row] = made(mine)["battery"].itertuples()
-    assert row.truth.startswith("none") and not row.silent and battery.kind(row) == "unjudged"
+    assert row.truth.startswith("none") and row.verdict == "" and battery.kind(row) == "unjudged"
 
 
 def small():
     """battery.csv with every outcome, of two implementations that end alike."""
     return pandas.DataFrame([
         {"axis": axis, "value": status, "implementation": name, "setting": setting, "status": status, "reason": "why",
-         "true_error": 1e-5 if status in ("ok", "degraded") else float("nan"), "truth": "exact", "silent": False,
-         "truth_error": 2e-16, "steps": 24.0 if status == "ok" else 2000.0, "step": 1e-3, "command": "",
+         "true_error": 1e-5 if status in ("ok", "degraded") else float("nan"), "truth": "exact",
+         "verdict": {"ok": verdicts.RIGHT, "degraded": verdicts.FALSE}.get(status, ""), "near": float("nan"), "wrong_from": float("nan"), "truth_error": 2e-16, "steps": 24.0 if status == "ok" else 2000.0, "step": 1e-3, "command": "",
          "record": f"{axis} {status} {name} {setting}"}
         for axis in ("loops", "step") for status in STATUSES for setting in ("penalty", "saddle-point") for name in ("a/v", "b/v")])
 
@@ -116,72 +161,41 @@ def texts(figure):
     return [text.get_text() for text in figure.texts] + [text.get_text() for axes in figure.axes for text in axes.texts]
 
 
-def test_implementations_that_end_alike_are_one_column():
+def test_the_matrix_shows_the_worst_and_names_every_outcome():
     table = small()
-    assert {setting: [names for names, _ in found] for setting, found in battery.groups(table).items()} == {
-        "penalty": [("a/v", "b/v")], "saddle-point": [("a/v", "b/v")]}
-    mine = (table.implementation == "b/v") & (table.setting == "penalty") & (table.value == "ok")
-    table.loc[mine, "true_error"] = 9e-5  # not a decade more
-    assert len(battery.groups(table)["penalty"]) == 1
-    assert "−5" in texts(battery_figure.draw(table, "x"))  # of the larger error
-    table.loc[mine, "true_error"] = 1.1e-4
-    assert [names for names, _ in battery.groups(table)["penalty"]] == [("a/v",), ("b/v",)]
-    told = texts(battery_figure.draw(table, "x"))
-    assert any("A  a/v\nB  b/v\nC  a/v, b/v" in text for text in told)
-    table.loc[mine, "silent"] = True
-    assert len(battery.groups(table)["penalty"]) == 2
+    figure = battery_figure.draw(table)
+    named = {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
+    assert {"ok or plausible", *STATUSES[1:8]} <= named and "No silent wrong in 56 runs at the extremes" in texts(figure)[0]
+    assert "−5" in texts(figure) and not any(isinstance(patch, Polygon) and len(patch.get_xy()) == 4 for patch in figure.axes[0].patches)
+    table.loc[table.index[0], ["verdict", "true_error"]] = verdicts.SILENT, 0.3
+    table.loc[table.index[9], "status"] = "strange"
+    figure = battery_figure.draw(table)
+    named = {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
+    assert {"silently wrong", "other failure"} <= named and "1 silent wrong in 56 runs" in texts(figure)[0] and "−1" in texts(figure)
+    assert any(isinstance(patch, Polygon) and len(patch.get_xy()) == 4 for patch in figure.axes[0].patches)  # who are unlike
+    table["truth_error"] = 1e-3
+    assert "−3" in texts(battery_figure.draw(table)) and "−5" not in texts(battery_figure.draw(table))  # none is shown below that of the truth
     plt.close("all")
 
 
-def test_who_is_alike_with_one_member_must_be_so_with_all():
-    rows = pandas.DataFrame([{"axis": "x", "value": "1", "setting": "penalty", "implementation": name, "status": "ok", "silent": False,
-                              "true_error": error, "truth_error": 1e-16} for name, error in (("a", 1e-5), ("b", 8e-5), ("c", 7e-4))])
-    assert [names for names, _ in battery.groups(rows)["penalty"]] == [("a", "b"), ("c",)]
-
-
-def test_the_matrix_names_every_outcome_and_counts_what_is_silently_wrong():
-    table = small()
-    figure = battery_figure.draw(table, "Forms")
-    named = {text.get_text() for text in figure.legends[0].get_texts()}
-    assert {"ok or plausible", *STATUSES[1:8], "left out: budget"} <= named and "Forms: no silent wrong in 56 runs" in texts(figure)
-    table.loc[0, "silent"], table.loc[9, "status"], table.loc[1, "true_error"] = True, "strange", 0.0
-    figure = battery_figure.draw(table, "Forms")
-    named = {text.get_text() for text in figure.legends[0].get_texts()}
-    assert {"silently wrong: ok or plausible beyond its class", "other failure"} <= named
-    assert battery_figure.title(table) == "1 silent wrong in 56 runs"
-    plt.close("all")
-
-
-def test_no_error_is_shown_below_that_of_the_truth():
-    table = small()[lambda rows: rows.implementation == "a/v"].reset_index(drop=True)
-    table.loc[[0, 1], "true_error"] = [0.0, 2.1e-16]
-    table.loc[1, ["status", "value"]] = "degraded", "ok"
-    table.loc[1, "axis"] = "other"
-    shown = texts(battery_figure.draw(table, "x"))
-    assert shown.count("≤−16") == 1 and shown.count("−16") == 1
-    plt.close("all")
-
-
-def test_what_was_left_out_and_what_is_short_is_told():
+def test_what_was_left_out_is_told():
     table = small()
     table["reason"] = table.reason.mask(table.status == "excluded", "dense implementations run up to 200 loops")
     table = table[(table.status != "excluded") | (table.axis == "loops") & (table.implementation == "a/v")]
     assert page.left_out(table) == [
-        "Left out in loops excluded: a/v (dense implementations run up to 200 loops).",
-        "8 runs were left out, as the budget was spent: the cheap ones of the most telling cells came first.",
-        "Motions last 2 s in most cells. Those of extreme size and step that are shorter than 1 s may miss what happens "
-        "later: ok: 24 steps of 0.001 s, 0.024 s; ok: 24 steps of 0.001 s, 0.024 s."]
+        "Left out: a/v in loops excluded (dense implementations run up to 200 loops).",
+        "8 runs were left out, as the budget was spent: the more telling ones came first."]
     assert page.left_out(table[table.status == "degraded"]) == []
 
 
 def test_cells_in_which_nobody_is_right_or_not_all_end_alike_are_found():
     table = small()
     found = page._battery(table)
-    assert (found["right"], found["total"], len(found["nobody"]), found["unlike"]) == (8, 56, 14, [])
-    table.loc[(table.value == "diverged") & (table.implementation == "a/v"), "status"] = "ok"
+    assert (found["runs"], len(found["nobody"]), found["unlike"]) == (16, 14, [])
+    table.loc[(table.value == "diverged") & (table.implementation == "a/v"), ["status", "verdict"]] = "ok", verdicts.RIGHT
     found = page._battery(table)
     assert len(found["nobody"]) == 12 and found["unlike"][0]["outcomes"] == {"ok": ["a/v"], "diverged": ["b/v"]}
-    assert ("penalty", 6, 28) == found["counts"][0][:3]
+    assert found["settings"][0] == ("penalty", 10, verdicts.counts(table[table.setting == "penalty"]))
 
 
 def way(role, time=None, number=0, who="csc_klu/v", scene="ways-step-0.0008-2", status="ok", **more):
@@ -307,15 +321,15 @@ FACTS = {"date": "today", "profile": "smoke", "only": [], "parts": ["extremes"]}
 
 
 def test_page_figures_and_answers_of_all_columns():
-    found = made(run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), way("penalty"), way("saddle-point", status="degraded"),
+    found = made(trial("plausible"), run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), way("penalty"), way("saddle-point", status="degraded"),
                  *(way("penalty", 1.0, number) for number in (1, 2)), way("saddle-point", who="b/v", scene="ways-mass-ratio-1-10", status="diverged"),
                  stale(1, (2.0, 2.4, 6.0)), rounded(0.0, "reference/reference", "mbs_reference"), rounded(1e-12))
     drawn, text = render(found)
-    assert drawn == {"battery", "battery-settings", "ways", "pivots", "roundoff-penalty"}
-    assert "1 run is “ok” or “plausible” though" in text and "build/mbs simulate &#39;a scene.json&#39;" in text
+    assert drawn == {"trials", "battery", "ways", "pivots", "roundoff-penalty"}
+    assert "Silently wrong: 1 run<" in text and "build/mbs simulate &#39;a scene.json&#39;" in text
     assert "N = 10: ×1.00" in text and "holds" in text and "Not measured" not in text
     said = [one["text"] for one in sentences.answers(found, VIEW)]
-    assert said[0].startswith("2 of 3 runs at the extremes are ok or plausible, and right. 1 is silently wrong (loops N = 1)")
+    assert said[0].startswith("Of 4 runs of 2 mechanisms of 2 kinds 1 is silently wrong, and none is called worse")
     assert any("“α auto” is safe in most cells: 1 of 1" in text for text in said) and any("1.2 times the time" in text for text in said)
     assert {one["anchor"] for one in sentences.answers(found, VIEW)} <= {"battery", "nobody", "ways", "pivots"}
     assert all(f'id="{one["anchor"]}"' in text for one in sentences.answers(found, VIEW))

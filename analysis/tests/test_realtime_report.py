@@ -95,7 +95,7 @@ def test_figures_page_and_answers():
     found = made(run(10, 2, role="steps"), run(10, 0, role="steps", who="own/a"), run(40, 0, role="steps", ended="timeout"),
                  null("distributions", 1), run(8, 0), run(16, 90), run(64, 0, who="own/a"))
     drawn = figures.draw(found, VIEW)
-    assert set(drawn) == {"steps", "largest"} and "A machine" in drawn["largest"]._suptitle.get_text()
+    assert set(drawn) == {"steps", "largest"} and "Largest N" in drawn["largest"]._suptitle.get_text()
     for figure in drawn.values():
         plt.close(figure)
     known = page.context(found, VIEW)

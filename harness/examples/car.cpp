@@ -1,4 +1,4 @@
-// A full car over a road from a file: ./car car.json road.csv [IMPLEMENTATION]; one row a step, one column an input.
+// A full car with inputs from a file, one row a step, one column an input: car SCENE FILE [VARIANT]
 #include <cstdio>
 #include <fstream>
 #include <mbs/stepper.hpp>
@@ -6,26 +6,26 @@
 
 int main(int argc, char** argv) try {
   if (argc < 3) throw mbs::Refused("car SCENE INPUTS.csv [IMPLEMENTATION]");
+  mbs::Stepper car(mbs::SceneDocument::load(argv[1]), {argc > 3 ? argv[3] : "auto"});
   std::ifstream file(argv[2]);
-  std::string line, cell;
-  if (!std::getline(file, line)) throw mbs::Refused(std::string(argv[2]) + " cannot be read");
-  mbs::Stepper car(mbs::SceneDocument::load(argv[1]), {.implementation = argc > 3 ? argv[3] : "auto"});
+  std::string line, name;
+  std::getline(file, line);
   std::vector<int> inputs;
-  for (std::istringstream names(line); std::getline(names, cell, ',');) inputs.push_back(car.input(cell));
-  std::vector<std::vector<double>> rows;
-  while (std::getline(file, line)) {
-    rows.emplace_back();
-    for (std::istringstream cells(line); std::getline(cells, cell, ',');) rows.back().push_back(std::stod(cell));
-    if (rows.back().size() != inputs.size()) throw mbs::Refused("a row has another number of columns than the first");
-  }
+  for (std::istringstream in(line); std::getline(in, name, ',');) inputs.push_back(car.input(name));
+  std::vector<double> z;
+  for (double value; file >> value; file.ignore()) z.push_back(value);
+  const std::size_t row = inputs.size();
+  if (row == 0 || z.size() % row != 0 || !file.eof()) throw mbs::Refused("this is no table");
   const double dt = car.settings().step;
   const int body = car.output("body.z");
-  for (std::size_t k = 1; k + 1 < rows.size(); ++k) {
-    for (std::size_t i = 0; i < inputs.size(); ++i) {  // rate and acceleration by the neighbours
-      const double before = rows[k - 1][i], now = rows[k][i], after = rows[k + 1][i];
-      car.set_input(inputs[i], now, (after - before) / (2 * dt), (after - 2 * now + before) / (dt * dt));
+  for (std::size_t k = row; k + row < z.size(); k += row) {
+    for (std::size_t i = k; i < k + row; ++i) {  // rate and acceleration by the neighbours
+      const double before = z[i - row], after = z[i + row];
+      car.set_input(inputs[i - k], z[i], (after - before) / (2 * dt),
+                    (after - 2 * z[i] + before) / (dt * dt));
     }
-    if (car.step().status == mbs::StepStatus::factorization_failed) throw std::runtime_error("a step failed");
+    const auto [status, passes, factorizations] = car.step();
+    if (status == mbs::StepStatus::factorization_failed) throw mbs::Refused("a step failed");
     std::printf("%.5f,%.9f\n", car.state().t, car.outputs()[body]);
   }
 } catch (const std::exception& error) {

@@ -1,4 +1,5 @@
-// How high a car rises from its start if nobody knows its springs well: ./monte_carlo car.json [RUNS] [THREADS] [IMPLEMENTATION]
+// How high a car rises from its start if nobody knows its springs well: ./monte_carlo car.json
+// [RUNS] [THREADS] [IMPLEMENTATION]
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -41,7 +42,8 @@ double highest(const Task& task, unsigned run) {
 int main(int argc, char** argv) try {
   if (argc < 2) throw mbs::Refused("monte_carlo SCENE [RUNS] [THREADS] [IMPLEMENTATION]");
   const auto runs = static_cast<unsigned>(argc > 2 ? std::stoul(argv[2]) : 200);
-  const unsigned threads = argc > 3 ? static_cast<unsigned>(std::stoul(argv[3])) : std::thread::hardware_concurrency();
+  const unsigned threads =
+      argc > 3 ? static_cast<unsigned>(std::stoul(argv[3])) : std::thread::hardware_concurrency();
   Task task{mbs::SceneDocument::load(argv[1]), {.implementation = argc > 4 ? argv[4] : "auto"}};
   task.options.settings.step = 1e-3;
   std::vector<double> results(runs);
@@ -57,8 +59,8 @@ int main(int argc, char** argv) try {
   double mean = 0.0, square = 0.0;
   for (const double result : results) mean += result / runs;
   for (const double result : results) square += (result - mean) * (result - mean) / runs;
-  std::printf("%u runs on %u threads: highest body %.5f m on average, standard deviation %.5f m\n", runs, threads, mean,
-              std::sqrt(square));
+  std::printf("%u runs on %u threads: highest body %.5f m on average, standard deviation %.5f m\n",
+              runs, threads, mean, std::sqrt(square));
 } catch (const std::exception& error) {
   std::fprintf(stderr, "monte_carlo: %s\n", error.what());
   return 1;

@@ -1,4 +1,5 @@
-// A loop in real time: ./realtime car.json [SECONDS] [IMPLEMENTATION]; how long steps take, and which come too late.
+// A loop in real time: ./realtime car.json [SECONDS] [IMPLEMENTATION]; how long steps take, and
+// which come too late.
 #include <sched.h>
 #include <sys/mman.h>
 #include <time.h>
@@ -31,22 +32,27 @@ timespec later(timespec time, long nanoseconds) {
   return time;
 }
 
-/// What a process can ask of the machine; a plain user is refused some of it, and the loop runs all the same.
+/// What a process can ask of the machine; a plain user is refused some of it, and the loop runs all
+/// the same.
 void ask_for_real_time() {
   sched_param parameters{};
   parameters.sched_priority = sched_get_priority_max(SCHED_FIFO) / 2;
   const bool has_priority = sched_setscheduler(0, SCHED_FIFO, &parameters) == 0;
   const bool is_locked = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
-  std::printf("SCHED_FIFO: %s, mlockall: %s\n", has_priority ? "yes" : "refused", is_locked ? "yes" : "refused");
+  std::printf("SCHED_FIFO: %s, mlockall: %s\n", has_priority ? "yes" : "refused",
+              is_locked ? "yes" : "refused");
 }
 
 /// In microseconds; `times` are nanoseconds.
 void print(const char* what, std::vector<long> times) {
   std::ranges::sort(times);
   const auto at = [&](double share) {
-    return static_cast<double>(times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))]) / 1e3;
+    return static_cast<double>(
+               times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))]) /
+           1e3;
   };
-  std::printf("%-22s median %8.1f us, 99 %% %8.1f us, longest %8.1f us\n", what, at(0.5), at(0.99), at(1.0));
+  std::printf("%-22s median %8.1f us, 99 %% %8.1f us, longest %8.1f us\n", what, at(0.5), at(0.99),
+              at(1.0));
 }
 
 }  // namespace
@@ -65,7 +71,8 @@ int main(int argc, char** argv) try {
   waking.reserve(steps);
   mbs::Saved start;
   car.save(start);
-  if (car.step(100).status == mbs::StepStatus::factorization_failed) throw std::runtime_error("a step failed");
+  if (car.step(100).status == mbs::StepStatus::factorization_failed)
+    throw std::runtime_error("a step failed");
   car.restore(start);  // pages and caches are warm, and the car stands at its start
   ask_for_real_time();
 
@@ -78,7 +85,8 @@ int main(int argc, char** argv) try {
     const double phase = kOmega * static_cast<double>(k + 1) * car.settings().step;
     car.set_input(wheel, kHeight * (1 - std::cos(phase)), kHeight * kOmega * std::sin(phase),
                   kHeight * kOmega * kOmega * std::cos(phase));
-    if (car.step().status == mbs::StepStatus::factorization_failed) throw std::runtime_error("a step failed");
+    if (car.step().status == mbs::StepStatus::factorization_failed)
+      throw std::runtime_error("a step failed");
     const timespec end = now();
     waking.push_back(between(due, begin));
     working.push_back(between(begin, end));

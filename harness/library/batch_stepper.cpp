@@ -11,7 +11,9 @@ struct BatchStepper::Content {
   std::vector<char> has_failed;
   std::unique_ptr<BatchSimulation> batch;  // null: each lane has its simulation
 
-  [[nodiscard]] Stepper::Content& lane(int index) { return *lanes.at(static_cast<std::size_t>(index)); }
+  [[nodiscard]] Stepper::Content& lane(int index) {
+    return *lanes.at(static_cast<std::size_t>(index));
+  }
   void start();
   /// Null where the implementation offers none of these scenes.
   [[nodiscard]] std::unique_ptr<BatchSimulation> side_by_side() const;
@@ -75,9 +77,7 @@ bool BatchStepper::is_side_by_side() const { return content_->batch != nullptr; 
 const std::string& BatchStepper::implementation() const {
   return content_->lane(0).choice.variant.name;
 }
-const StepSettings& BatchStepper::settings(int lane) const {
-  return content_->lane(lane).settings;
-}
+const StepSettings& BatchStepper::settings(int lane) const { return content_->lane(lane).settings; }
 std::span<const std::string> BatchStepper::input_names() const {
   return content_->lane(0).input_names;
 }

@@ -17,18 +17,19 @@ namespace {
 using nlohmann::json;
 
 /// What `mbs describe --json` prints; with `scheme`, of this form whatever suits the scene.
-json description_of(const Scene& scene, const StepSettings& settings, const char* scheme = nullptr) {
+json description_of(const Scene& scene, const StepSettings& settings,
+                    const char* scheme = nullptr) {
   json description = describe_json(scene, settings);
   if (scheme != nullptr) {
     description["scheme"]["take"] = scheme;
     description["features"] = features_json(description);
   }
-  description.update(recommendation_json(
-      parse_rule(kRuleText), description, [&](const std::string& variant, Scheme asked) {
-        StepSettings with = settings;
-        with.scheme = asked;
-        return why_not_offered(variant, scene.model, with);
-      }));
+  description.update(recommendation_json(parse_rule(kRuleText), description,
+                                         [&](const std::string& variant, Scheme asked) {
+                                           StepSettings with = settings;
+                                           with.scheme = asked;
+                                           return why_not_offered(variant, scene.model, with);
+                                         }));
   return description;
 }
 

@@ -216,7 +216,7 @@ TEST(BadElement, Drivers) {
   }
   expect_edits(
       kPlanar,
-      {driver("\"fast\"", {"points[2].driven.y: found \"fast\"", "polynomial, sine or table"}),
+      {driver("\"fast\"", {"points[2].driven.y: found \"fast\"", "polynomial, sine, table or input"}),
        driver("{}", {"points[2].driven.y: found an object with 0 members"}),
        driver(R"({"sin": 1})", {"points[2].driven.y", "unknown key \"sin\"", "is \"sine\""}),
        driver(R"({"sine": 1, "polynomial": [1, 2]})", {"2 members", "one of polynomial, sine"}),

@@ -1,4 +1,5 @@
-// The library: inputs mean the same as functions of time in every implementation, states come back, nothing allocates.
+// The library: inputs mean the same as functions of time in every implementation, states come back,
+// nothing allocates.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,17 +18,21 @@ namespace {
 
 const std::map<std::string, Sine>& sines() {
   static const std::map<std::string, Sine> all{
-      {"point", {0.05, 1.0, 0.3, 0.0}},    {"constraint", {0.1, 0.7, 0.0, 1.0}}, {"force", {3.0, 2.0, 0.2, 1.0}},
-      {"load", {2.0, 1.5, 0.0, 0.0}},      {"torque", {0.5, 1.0, 1.0, 0.2}},     {"stiffness", {20.0, 3.0, 0.0, 60.0}},
-      {"damping", {0.5, 2.0, 0.0, 1.0}},   {"factor", {0.3, 1.0, 0.0, 1.0}}};
+      {"point", {0.05, 1.0, 0.3, 0.0}},  {"constraint", {0.1, 0.7, 0.0, 1.0}},
+      {"force", {3.0, 2.0, 0.2, 1.0}},   {"load", {2.0, 1.5, 0.0, 0.0}},
+      {"torque", {0.5, 1.0, 1.0, 0.2}},  {"stiffness", {20.0, 3.0, 0.0, 60.0}},
+      {"damping", {0.5, 2.0, 0.0, 1.0}}, {"factor", {0.3, 1.0, 0.0, 1.0}}};
   return all;
 }
 
 /// A function of this name, as the sine or as an input that starts where the sine does.
 std::string function(const std::string& name, bool is_input) {
   const Sine& s = sines().at(name);
-  nlohmann::json result = {{"sine", {{"amplitude", s.amplitude}, {"frequency", s.frequency}, {"phase", s.phase},
-                                     {"offset", s.offset}}}};
+  nlohmann::json result = {{"sine",
+                            {{"amplitude", s.amplitude},
+                             {"frequency", s.frequency},
+                             {"phase", s.phase},
+                             {"offset", s.offset}}}};
   if (is_input) result = {{"input", {{"name", name}, {"value", sine(s).at(0.0).value}}}};
   return result.dump();
 }
@@ -35,40 +40,52 @@ std::string function(const std::string& name, bool is_input) {
 /// Everything in the plane that may be a function of time; `of` writes one.
 std::string planar(const std::function<std::string(const char*)>& of) {
   return R"({"points": [{"name": "O", "position": [0, 0], "fixed": true},
-      {"name": "D", "position": [2, 0], "driven": {"y": )" + of("point") + R"(}}, {"name": "P", "position": [0, 1]},
+      {"name": "D", "position": [2, 0], "driven": {"y": )" +
+         of("point") + R"(}}, {"name": "P", "position": [0, 1]},
       {"name": "A", "position": [1, 0]}, {"name": "B", "position": [2, -1]}, {"name": "C", "position": [3, 0.5]}],
     "rods": [{"name": "rod", "between": ["O", "A"], "mass": 2}, {"between": ["A", "B"], "mass": 1}],
     "bodies": [{"name": "plate", "mass": 2, "inertia": 0.5, "centre": [0.2, 0.1],
                 "points": {"B": [0, 0], "C": [1, 1.5], "E": [0.4, -0.3]}}],
     "masses": [{"point": "P", "mass": 1}],
-    "constraints": [{"type": "distance", "between": ["O", "P"], "value": )" + of("constraint") + R"(}],
-    "springs": [{"between": ["D", "B"], "stiffness": )" + of("stiffness") + R"(, "damping": )" + of("damping") + R"(},
-                {"between": ["P", "A"], "stiffness": 30, "damping": )" + of("damping") + R"(, "length": 1}],
+    "constraints": [{"type": "distance", "between": ["O", "P"], "value": )" +
+         of("constraint") + R"(}],
+    "springs": [{"between": ["D", "B"], "stiffness": )" +
+         of("stiffness") + R"(, "damping": )" + of("damping") + R"(},
+                {"between": ["P", "A"], "stiffness": 30, "damping": )" +
+         of("damping") + R"(, "length": 1}],
     "force_laws": [{"between": ["P", "C"], "by_length": {"lengths": [0, 3], "forces": [-20, 10]},
-                    "factor": )" + of("factor") + R"(}],
-    "forces": [{"point": "B", "force": [)" + of("force") + R"(, 2]}, {"point": "E", "force": [-1, )" + of("load") + R"(]}],
-    "torques": [{"direction": ["O", "A"], "torque": )" + of("torque") + R"(}],
+                    "factor": )" +
+         of("factor") + R"(}],
+    "forces": [{"point": "B", "force": [)" +
+         of("force") + R"(, 2]}, {"point": "E", "force": [-1, )" + of("load") + R"(]}],
+    "torques": [{"direction": ["O", "A"], "torque": )" +
+         of("torque") + R"(}],
     "outputs": [{"name": "end", "position": "E"}, {"name": "turn", "angle": [["O", "D"], ["O", "A"]]}]})";
 }
 
 std::string spatial(const std::function<std::string(const char*)>& of) {
   return R"({"dimension": 3,
     "points": [{"name": "O", "position": [0, 0, 0], "fixed": true}, {"name": "A", "position": [1, 0, 0.2]},
-      {"name": "D", "position": [1, 1, 0], "driven": {"z": )" + of("point") + R"(}}],
+      {"name": "D", "position": [1, 1, 0], "driven": {"z": )" +
+         of("point") + R"(}}],
     "rods": [{"between": ["O", "A"], "mass": 1}],
     "bodies": [{"name": "top", "mass": 2, "inertia": [0.3, 0.4, 0.5], "pose": {"position": [1, 0, 0.2]},
                 "points": {"A": [0, 0, 0], "E": [0.3, 0.4, 0.5]}}],
-    "springs": [{"between": ["D", "A"], "stiffness": )" + of("stiffness") + R"(, "damping": )" + of("damping") + R"(}],
-    "forces": [{"point": "E", "force": [)" + of("force") + ", " + of("load") + R"(, 1]}],
+    "springs": [{"between": ["D", "A"], "stiffness": )" +
+         of("stiffness") + R"(, "damping": )" + of("damping") + R"(}],
+    "forces": [{"point": "E", "force": [)" +
+         of("force") + ", " + of("load") + R"(, 1]}],
     "outputs": [{"name": "end", "position": "E"}]})";
 }
 
-std::string hinge(const std::function<std::string(const char*)>& of) {  // a torque about a fixed axis in space
+std::string hinge(
+    const std::function<std::string(const char*)>& of) {  // a torque about a fixed axis in space
   return R"({"dimension": 3, "vectors": [{"name": "z", "direction": [0, 0, 1], "fixed": true}],
     "bodies": [{"name": "door", "mass": 2, "inertia": [0.3, 0.4, 0.5], "centre": [0.5, 0, 0], "pose": {"position": [0, 0, 0]},
                 "points": {"O": [0, 0, 0], "E": [1, 0, 0]}, "vectors": {"z": [0, 0, 1]}}],
     "points": [{"name": "O", "position": [0, 0, 0], "fixed": true}],
-    "torques": [{"direction": ["O", "E"], "axis": "z", "torque": )" + of("torque") + R"(}],
+    "torques": [{"direction": ["O", "E"], "axis": "z", "torque": )" +
+         of("torque") + R"(}],
     "outputs": [{"name": "end", "position": "E"}]})";
 }
 
@@ -91,7 +108,8 @@ class StepperInputs : public testing::TestWithParam<SceneText> {};
 
 TEST_P(StepperInputs, AreWhatFunctionsOfTimeAreInEveryImplementation) {
   const auto scene = [](bool is_input) {
-    return SceneDocument::parse(GetParam()([is_input](const char* name) { return function(name, is_input); }));
+    return SceneDocument::parse(
+        GetParam()([is_input](const char* name) { return function(name, is_input); }));
   };
   const SceneDocument known = scene(false), set = scene(true);
   const auto names = serving(known);
@@ -125,20 +143,23 @@ TEST_P(StepperInputs, AreWhatFunctionsOfTimeAreInEveryImplementation) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, StepperInputs, testing::Values(planar, spatial, hinge));
 
-/// Inputs that stay are the numbers of a scene that has no function of time: springs, couples, constant forces.
+/// Inputs that stay are the numbers of a scene that has no function of time: springs, couples,
+/// constant forces.
 TEST_P(StepperInputs, ThatStayAreNumbers) {
   const auto value = [](const char* name) { return std::string(name) == "point" ? 0.0 : 1.0; };
   const auto number = [&](const char* name) { return nlohmann::json(value(name)).dump(); };
   const auto input = [&](const char* name) {
     return nlohmann::json{{"input", {{"name", name}, {"value", value(name)}}}}.dump();
   };
-  const SceneDocument numbers = SceneDocument::parse(GetParam()(number)), inputs = SceneDocument::parse(GetParam()(input));
+  const SceneDocument numbers = SceneDocument::parse(GetParam()(number)),
+                      inputs = SceneDocument::parse(GetParam()(input));
   for (const std::string& name : serving(inputs)) {
     Stepper a(numbers, {.implementation = name});
     Stepper b(inputs, {.implementation = name, .settings = a.settings()});
     ASSERT_EQ(a.step(100).status, StepStatus::converged) << name;
     ASSERT_EQ(b.step(100).status, StepStatus::converged) << name;
-    for (std::size_t i = 0; i < a.outputs().size(); ++i) EXPECT_NEAR(a.outputs()[i], b.outputs()[i], 1e-9) << name;
+    for (std::size_t i = 0; i < a.outputs().size(); ++i)
+      EXPECT_NEAR(a.outputs()[i], b.outputs()[i], 1e-9) << name;
   }
 }
 
@@ -170,7 +191,8 @@ TEST(Stepper, ComesBackToWhatItSaved) {
 }
 
 TEST(Stepper, AllocatesNothingOnceItRuns) {
-  if (!test::counts_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc: nothing can be counted";
+  if (!test::counts_allocations())
+    GTEST_SKIP() << "sanitizers bring their own malloc: nothing can be counted";
   Stepper stepper(planar_with_inputs());
   Saved moment;
   const auto loop = [&] {
@@ -189,7 +211,8 @@ TEST(Stepper, AllocatesNothingOnceItRuns) {
 }
 
 TEST(Stepper, TakesTheRulesChoiceAndItsNumbers) {
-  Stepper stepper(SceneDocument::load("vehicle:4"), {.settings = {.step = 1e-3, .penalty = 0.0, .tolerance = 0.0}});
+  Stepper stepper(SceneDocument::load("vehicle:4"),
+                  {.settings = {.step = 1e-3, .penalty = 0.0, .tolerance = 0.0}});
   EXPECT_NE(stepper.implementation(), "");
   EXPECT_GT(stepper.settings().penalty, 1.0);
   EXPECT_GT(stepper.settings().tolerance, 0.0);
@@ -207,16 +230,24 @@ TEST(Stepper, RefusesInOneLine) {
     return "";
   };
   const SceneDocument scene = planar_with_inputs();
-  EXPECT_NE(refusal([] { static_cast<void>(SceneDocument::load("nowhere.json")); }).find("no such file"), std::string::npos);
-  EXPECT_NE(refusal([&] { Stepper(scene, {.implementation = "nobody"}); }).find("unknown implementation"), std::string::npos);
-  EXPECT_NE(refusal([&] { static_cast<void>(Stepper(scene).input("wind")); }).find("has no input 'wind': there are "), std::string::npos);
+  EXPECT_NE(
+      refusal([] { static_cast<void>(SceneDocument::load("nowhere.json")); }).find("no such file"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal([&] { Stepper(scene, {.implementation = "nobody"}); }).find("unknown implementation"),
+      std::string::npos);
+  EXPECT_NE(refusal([&] {
+              static_cast<void>(Stepper(scene).input("wind"));
+            }).find("has no input 'wind': there are "),
+            std::string::npos);
   EXPECT_NE(refusal([&] { static_cast<void>(scene.number("springs/9/stiffness")); }), "");
   StepperOptions options;
   options.settings.step = -1.0;
   EXPECT_NE(refusal([&] { Stepper(scene, options); }), "");
   options.settings.step = 1e-3;
   options.settings.scheme = Scheme::rattle;
-  EXPECT_NE(refusal([&] { Stepper(scene, options); }).find("name an implementation"), std::string::npos);
+  EXPECT_NE(refusal([&] { Stepper(scene, options); }).find("name an implementation"),
+            std::string::npos);
 }
 
 TEST(SceneDocument, ChangesNumbersOfACopyAlone) {
@@ -229,9 +260,10 @@ TEST(SceneDocument, ChangesNumbersOfACopyAlone) {
 }
 
 TEST(BatchStepper, MovesEachLaneAsAStepperDoes) {
-  const auto of = [](const std::string& name) {  // laws of forces would leave nobody who offers batches
-    return name == "stiffness" || name == "damping" ? std::string("20") : function(name, true);
-  };
+  const auto of =
+      [](const std::string& name) {  // laws of forces would leave nobody who offers batches
+        return name == "stiffness" || name == "damping" ? std::string("20") : function(name, true);
+      };
   std::vector<SceneDocument> scenes;
   for (int i = 0; i < 3; ++i) {
     scenes.push_back(SceneDocument::parse(spatial(of)));
@@ -243,27 +275,32 @@ TEST(BatchStepper, MovesEachLaneAsAStepperDoes) {
     batches += batch.is_side_by_side();
     for (int lane = 0; lane < 3; ++lane) batch.set_input(lane, 0, 0.0, 0.0, 0.1 * lane);
     for (int step = 0; step < 50; ++step) {
-      for (const StepOutcome& outcome : batch.step()) EXPECT_EQ(outcome.status, StepStatus::converged) << name;
+      for (const StepOutcome& outcome : batch.step())
+        EXPECT_EQ(outcome.status, StepStatus::converged) << name;
     }
     for (int lane = 0; lane < 3; ++lane) {
-      Stepper alone(scenes[static_cast<std::size_t>(lane)], {.implementation = name, .settings = batch.settings(lane)});
+      Stepper alone(scenes[static_cast<std::size_t>(lane)],
+                    {.implementation = name, .settings = batch.settings(lane)});
       alone.set_input(0, 0.0, 0.0, 0.1 * lane);
       ASSERT_EQ(alone.step(50).status, StepStatus::converged);
-      for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(batch.outputs(lane)[i], alone.outputs()[i], 1e-9) << name;
+      for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(batch.outputs(lane)[i], alone.outputs()[i], 1e-9) << name;
     }
   }
   EXPECT_GT(batches, 0);
 }
 
 TEST(SceneFile, RefusesAnInputOfTwoStarts) {
-  const std::string message = parse_error_of(R"({"points": [{"name": "A", "position": [0, 0], "driven":
+  const std::string message =
+      parse_error_of(R"({"points": [{"name": "A", "position": [0, 0], "driven":
     {"x": {"input": {"name": "u", "value": 1}}, "y": {"input": {"name": "u"}}}}, {"name": "B", "position": [1, 0]}],
     "rods": [{"between": ["A", "B"], "mass": 1}]})");
   EXPECT_NE(message.find("starts elsewhere"), std::string::npos) << message;
 }
 
 TEST(SceneFile, RefusesAFunctionOfTimeAboutAMovingAxis) {
-  const std::string message = parse_error_of(R"({"dimension": 3, "points": [{"name": "O", "position": [0, 0, 0], "fixed": true}],
+  const std::string message = parse_error_of(
+      R"({"dimension": 3, "points": [{"name": "O", "position": [0, 0, 0], "fixed": true}],
     "bodies": [{"name": "b", "mass": 1, "inertia": [1, 1, 1], "points": {"O": [0, 0, 0]}, "vectors": {"z": [0, 0, 1]},
                 "pose": {"position": [0, 0, 0]}}],
     "torques": [{"body": "b", "axis": "z", "torque": {"input": {"name": "u"}}}]})");

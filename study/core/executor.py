@@ -128,7 +128,7 @@ def _columns(path, keep):
     with open(path, newline="", encoding="utf-8") as file:
         rows = csv.reader(file)
         names = next(rows, [])
-        chosen = [place for place, name in enumerate(names) if keep == ("outputs",) or name in ("t", *keep)]
+        chosen = [place for place, name in enumerate(names) if keep in (("outputs",), ("all",)) or name in ("t", *keep)]
         values = [[_finite(row[place]) for place in chosen] for row in rows]
     return {names[place]: [row[at] for row in values] for at, place in enumerate(chosen)}
 

@@ -1,15 +1,16 @@
-# Every implementation at the extremes; ways out of what goes wrong there; kept pivots; the growth of roundoff.
-from analysis.extremes import battery as table, cells, judge, roundoff, ways
+# Every implementation at the extremes; is every wrong run told; ways out of what goes wrong there; kept pivots; the growth of roundoff.
+from analysis.extremes import battery as table, cells, judge, roundoff, trials, ways
 from study.core.cell import Cell
 from study.core.contender import REFERENCE
 
-SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms and roundoff, for other settings ...
+SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms and roundoff, for other settings, for trials ...
             "everyone": bool,         # ... and whether all others come after them
+            "trials": dict,           # runs of standard problems and of others; 0: all
             "cells": int,             # of the battery, telling ones of an axis at most; 0: these and all others
             "loops": dict,            # sizes: of the region of ways, of their times, of roundoff
             "processes": int,         # of a time
             "limit": float}           # s a run
-SHARES = {"battery": 0.6, "ways": 0.24, "pivots": 0.06, "roundoff": 0.1}
+SHARES = {"battery": 0.77, "ways": 0.13, "pivots": 0.035, "roundoff": 0.055}
 DENSE_LOOPS = 200  # dense implementations run up to this size
 PREFERRED = {      # of each folder the first variant that serves a way stands for it
     "eigen_dense": ("eigen_dense/llt",),
@@ -26,46 +27,55 @@ def run(lab, column):
 
 
 def battery(lab):
-    """The most telling cells first, by those who differ in kind; then the other settings and cells, then the other
-    implementations; of equal worth the cheap ones first."""
+    """Standard problems, then other trials by lot, implementations in turn. Then cells that are extreme: the most telling ones first, by
+    those who differ in kind; other settings and cells, then all other implementations; of equal worth the cheap ones first."""
+    turns = _who(lab, "trials")[0]
+    chosen, extreme = trials.few(trials.all_trials(), **lab.settings["trials"]), sorted(cells.extremes(), key=lambda cell: cell.work)
     few = lab.settings["cells"] or len(cells.TELLING)
-    chosen = sorted(cells.battery(), key=lambda cell: cell.work)
-    telling = [cell for cell in chosen if cell.place is not None and cell.place < few]
-    rest = [cell for cell in chosen if cell.place is None and not lab.settings["cells"]]
-    scenes = {cell.name: cell.scene or lab.scene(cell.name, cell.document) for cell in telling + rest}
-    lab.run([_reference(lab, cell, scenes[cell.name], factor) for cell in telling + rest if cell.motion is None
-             for factor in judge.FINER])
+    telling = [cell for cell in extreme if cell.place is not None and cell.place < few]
+    rest = [cell for cell in extreme if cell.place is None and not lab.settings["cells"]]
+    tried = list(dict.fromkeys(cell for cell, _ in chosen))
+    scenes = {cell.name: cell.scene or lab.scene(cell.name, cell.document) for cell in tried + telling + rest}
+    lab.run([_reference(lab, cell, scenes[cell.name], factor, *who) for some, who in ((tried, (turns[-1], "mbs")), (telling + rest, ()))
+             for cell in some if cell.motion is None for factor in judge.FINER])
     todo = []
+    for place, (cell, setting) in enumerate(chosen):
+        turn = 0 if cell.axis in trials.STANDARD else place % len(turns)
+        todo += _run(lab, cell, scenes[cell.name], setting, *_serving(lab, turns[turn:] + turns[:turn], setting)[:1])
     for rank in (0, 1):
         forms, others = (_who(lab, kind)[rank] for kind in ("forms", "others"))
         for some, settings, who in ((telling, cells.FORMS, forms), (rest, cells.FORMS, forms), (telling, cells.OTHERS, others)):
-            for cell, setting, one in ((cell, setting, one) for cell in some for setting in settings for one in who):
-                if lab.registry.serves(one.variant, *setting.needs):
-                    todo += _run(lab, cell, scenes[cell.name], setting, one)
+            for cell, setting in ((cell, setting) for cell in some for setting in settings):
+                todo += _run(lab, cell, scenes[cell.name], setting, *_serving(lab, who, setting))
     lab.run(todo, drop=True)
+
+
+def _serving(lab, who, setting):
+    return [one for one in who if lab.registry.serves(one.variant, *setting.needs)]
 
 
 def _who(lab, kind):
     """(those who differ in kind, the others if they are asked for) of whom takes part."""
     named = lab.settings["implementations"][kind]
-    kinds = [one for one in lab.contenders if one.variant in named] or lab.contenders
+    kinds = sorted((one for one in lab.contenders if one.variant in named), key=lambda one: named.index(one.variant)) or lab.contenders
     return kinds, [one for one in lab.contenders if one not in kinds] if lab.settings["everyone"] else []
 
 
-def _run(lab, cell, scene, setting, one):
-    """[its Cell], or [] where it is left out."""
-    words = setting.words([("step", f"{cell.step:g}"), ("duration", f"{cell.step * cell.steps:g}"), ("penalty", cell.penalty)])
-    wanted = Cell("simulate", scene, (one,), words, setting.file_name, seconds=lab.settings["limit"], keep=cell.columns,
-                  every=cell.every)
-    if one.variant not in lab.registry.dense or cell.loops <= DENSE_LOOPS:
-        return [wanted]
-    lab.skip(wanted, "excluded", f"dense implementations run up to {DENSE_LOOPS} loops")
-    return []
+def _run(lab, cell, scene, setting, *who):
+    """[Cell of each], without those that are left out."""
+    words, found = setting.words([("step", f"{cell.step:g}"), ("duration", f"{cell.step * cell.steps:g}"), ("penalty", cell.penalty)]), []
+    for one in who:
+        wanted = Cell("simulate", scene, (one,), words, setting.file_name, seconds=lab.settings["limit"], keep=cell.columns, every=cell.every)
+        if one.variant not in lab.registry.dense or cell.loops <= DENSE_LOOPS:
+            found.append(wanted)
+        else:
+            lab.skip(wanted, "excluded", f"dense implementations run up to {DENSE_LOOPS} loops")
+    return found
 
 
-def _reference(lab, cell, scene, factor):
-    return Cell("simulate", scene, (REFERENCE,), ("--step", f"{cell.step / factor:g}", "--duration", f"{cell.step * cell.steps:g}"),
-                table.REFERENCE, program="mbs_reference", seconds=10 * lab.settings["limit"], keep=cell.columns,
+def _reference(lab, cell, scene, factor, one=REFERENCE, program="mbs_reference"):
+    return Cell("simulate", scene, (one,), ("--step", f"{cell.step / factor:g}", "--duration", f"{cell.step * cell.steps:g}"),
+                table.REFERENCE, program=program, seconds=10 * lab.settings["limit"], keep=cell.columns,
                 every=cell.every * factor)
 
 

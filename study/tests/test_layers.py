@@ -6,6 +6,7 @@ from analysis.core.files import ROOT
 from analysis.core.parts import parts
 
 BUILDS_UPON = {("accuracy", "scenes"),  # standard problems with their references
+               ("extremes", "scenes"),  # the same problems
                ("limit", "scenes"),     # the same scenes
                ("families", "limit"),   # looks, gates and times of a scene
                ("tuning", "limit")}     # cells and verdicts of a scene

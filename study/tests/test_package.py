@@ -1,4 +1,4 @@
-"""The installed package: examples and Python against a fresh prefix, from an empty folder; a build without GPL parts."""
+"""The installed package: examples and Python against a fresh prefix, from an empty folder; without GPL parts."""
 import csv
 import os
 import re
@@ -41,14 +41,19 @@ def examples(prefix, tmp_path_factory):
     return folder
 
 
+def driven(examples, inputs, *more):
+    """Rows (t, height of the body) of the car."""
+    text = run(examples / "car", "car.json", inputs, *more, cwd=examples)
+    return [[float(cell) for cell in row] for row in csv.reader(text.splitlines())]
+
+
 def test_the_car_feels_the_bump(examples):
     (examples / "road.csv").write_text(run(examples / "road.py", 1))
-    rows = [[float(cell) for cell in row] for row in csv.reader(run(examples / "car", "car.json", "road.csv", cwd=examples).splitlines())]
+    rows = driven(examples, "road.csv")
     assert len(rows) == 800 and rows[-1][0] == pytest.approx(1.0)
     flat = re.sub(r"(?m)^[\d.,e-]+$", "0,0,0,0", (examples / "road.csv").read_text())
     (examples / "flat.csv").write_text(flat)
-    level = [float(row[1]) for row in csv.reader(run(examples / "car", "car.json", "flat.csv", cwd=examples).splitlines())]
-    lifted = [bumpy[1] - still for bumpy, still in zip(rows, level)]
+    lifted = [bumpy[1] - still[1] for bumpy, still in zip(rows, driven(examples, "flat.csv"))]
     assert max(map(abs, lifted[:150])) < 1e-12, "before the bump, at 2 m and 10 m/s"
     assert 0.005 < max(lifted) < 0.05
 
@@ -57,18 +62,22 @@ def test_the_car_feels_the_bump(examples):
 def test_thirty_lines_agree_with_mbs_simulate(examples, prefix, implementation):
     """On a flat road the inputs are what `mbs simulate` leaves them at."""
     (examples / "level.csv").write_text("road FL,road FR,road RL,road RR\n" + "0,0,0,0\n" * 402)
-    last = run(examples / "car", "car.json", "level.csv", implementation, cwd=examples).splitlines()[-1]
+    last = driven(examples, "level.csv", implementation)[-1]
     run(prefix / "bin/mbs", "simulate", "car.json", "--implementation", "csc_ldl/uplooking", "--duration", "0.5",
         "--output", "out.csv", cwd=examples)
     with open(examples / "out.csv", encoding="utf-8") as file:
         *_, expected = csv.DictReader(file)
-    assert float(last.split(",")[1]) == pytest.approx(float(expected["body.z"]), abs=1e-8)
+    assert last[1] == pytest.approx(float(expected["body.z"]), abs=1e-8)
 
 
 def test_errors_are_one_line(examples):
-    found = subprocess.run([examples / "car", "nowhere.json", examples / "road.py"], capture_output=True, text=True, check=False)
-    assert found.returncode == 1
-    assert found.stderr.startswith("car: ") and found.stderr.count("\n") == 1
+    (examples / "bad.csv").write_text("road FL,road FR\n0,0\n0,x\n")
+    (examples / "unknown.csv").write_text("road XY\n0\n0\n0\n")
+    for scene, inputs in (("nowhere.json", "level.csv"), ("car.json", "nowhere.csv"), ("car.json", "bad.csv"),
+                          ("car.json", "unknown.csv")):
+        found = subprocess.run([examples / "car", scene, inputs], cwd=examples, capture_output=True, text=True, check=False)
+        assert found.returncode == 1
+        assert found.stderr.startswith("car: ") and found.stderr.count("\n") == 1
 
 
 def test_the_loop_in_real_time_counts(examples):

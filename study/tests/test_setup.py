@@ -65,6 +65,15 @@ def test_engines_are_installed_only_when_asked_for(stand_ins):
     assert log[1] == "apt-get install -y --no-install-recommends libsimbody-dev libode-dev"
 
 
+@pytest.mark.skipif(os.geteuid() != 0, reason="installing needs root")
+def test_latex_is_installed_only_when_asked_for(stand_ins):
+    without = ALL_BUT_CMAKE.replace("== cmake", "== @(latexmk|biber)")
+    assert run_setup(stand_ins, without).returncode == 0
+    assert not (stand_ins / "apt-get.log").exists()
+    assert run_setup(stand_ins, without, "--paper").returncode == 0
+    assert (stand_ins / "apt-get.log").read_text().splitlines()[1] == "apt-get install -y --no-install-recommends latexmk biber"
+
+
 def test_others_are_told_the_command(stand_ins):
     done = run_setup(stand_ins, ALL_BUT_CMAKE, user="nobody" if os.geteuid() == 0 else None)
     assert done.returncode == 1

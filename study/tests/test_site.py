@@ -5,7 +5,7 @@ from analysis.core.parts import parts
 from study.tests.browser import Browser
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("smoke")]
-PAGES = ["index", *parts()]
+PAGES = ["index", "explore", *parts()]
 
 LINKS = "[...document.querySelectorAll('a[href]')].map(one => one.getAttribute('href'))"
 # Elements that hide something of their width, and what the page itself has beyond its width.

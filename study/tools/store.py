@@ -154,3 +154,4 @@ def _tell(folder, name, pictures):
     print(f"to commit it: git add results/{name}")
     if pictures:  # others that study/figures draws are ignored
         print("              git add -f " + " ".join(f"results/{name}/{tail}" for tail in pictures))
+    print("the newest set is the paper's: study/paper --fill")

@@ -4,14 +4,14 @@ from concurrent.futures import ThreadPoolExecutor
 from ._mbs import (BatchStepper, Projections, Refused, Saved, Scene, Scheme, StepOutcome, Stepper, Unsupported,
                    __version__, implementations)
 
-__all__ = ["BatchStepper", "Projections", "Refused", "Saved", "Scene", "Scheme", "StepOutcome", "Stepper", "Unsupported",
-           "__version__", "implementations", "simulate", "simulate_all"]
+__all__ = ["BatchStepper", "Projections", "Refused", "Saved", "Scene", "Scheme", "StepOutcome", "Stepper",
+           "Unsupported", "__version__", "implementations", "simulate", "simulate_all"]
 
 
 def simulate(scene, duration, implementation="auto", *, every=1, inputs=None, **settings):
-    """The outputs of a run as a DataFrame over t, s. `inputs`: by name, one value a step, or (value, rate, acceleration).
+    """The outputs of a run as a DataFrame over t, s.
 
-    `settings` are those of Stepper. The frame's attrs say who ran it and how many steps ended at the pass limit; it is
+    `inputs`: by name, one value a step, or a row (value, rate, acceleration) a step. `settings` are those of Stepper. The frame's attrs say who ran it and how many steps ended at the pass limit; it is
     shorter than `duration` where a step failed.
     """
     import numpy

@@ -52,8 +52,8 @@ class Pattern {
     return reached;
   }
 
-  /// The rows of the columns that `loose` leaves, in strongly connected groups: a row leads to those
-  /// whose columns it has [Tarjan, 1972].
+  /// The rows of the columns that `loose` leaves, in strongly connected groups: a row leads to
+  /// those whose columns it has [Tarjan, 1972].
   [[nodiscard]] Lists groups(const std::vector<bool>& loose) const {
     Lists result;
     std::vector<int> index(cols_of_.size(), -1), low(index), path;

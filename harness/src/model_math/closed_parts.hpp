@@ -21,8 +21,8 @@ struct ConstraintBlock {
 struct ClosedParts {
   /// Rows that fix as many coordinates at each instant. Empty unless something is driven.
   ConstraintBlock driven;
-  /// Its strongly connected blocks: each is as many rows as columns, and the sign of the determinant
-  /// of each stays along a motion that goes on without a jump.
+  /// Its strongly connected blocks: each is as many rows as columns, and the sign of the
+  /// determinant of each stays along a motion that goes on without a jump.
   std::vector<ConstraintBlock> blocks;
   /// Parts with one column more than rows, where nothing is driven.
   std::vector<ConstraintBlock> free;

@@ -24,8 +24,8 @@ constexpr int kMostSteps = 4000;
 /// The part's equations in x = (its coordinates, then, if driven, t times a speed).
 class PartCurve {
  public:
-  PartCurve(const Model& model, const ConstraintBlock& part, const std::vector<ConstraintBlock>& blocks,
-        const CurveEnd& from)
+  PartCurve(const Model& model, const ConstraintBlock& part,
+            const std::vector<ConstraintBlock>& blocks, const CurveEnd& from)
       : model_(model),
         part_(part),
         blocks_(blocks),
@@ -170,7 +170,8 @@ class Follower {
       const double s = a / (a - b);
       const double h00 = (1 + 2 * s) * (1 - s) * (1 - s), h10 = s * (1 - s) * (1 - s);
       const double h01 = s * s * (3 - 2 * s), h11 = s * s * (s - 1);
-      const Vector between = h00 * from.x + h01 * to.x + chord * (h10 * from.tangent + h11 * to.tangent);
+      const Vector between =
+          h00 * from.x + h01 * to.x + chord * (h10 * from.tangent + h11 * to.tangent);
       curve_.evaluate(between, phi_, J_);
       if (!(phi_.cwiseAbs().maxCoeff() <= kExactCrossing * length_ * length_)) return false;
     }
@@ -213,9 +214,8 @@ FollowedCurve follow(PartCurve& curve, const CurveEnd& from, const CurveEnd& to,
   double ds = std::min(0.1 * length, reach), gone = 0.0;
   for (int step = 0; step < kMostSteps; ++step) {
     if (curve.is_driven() && !(place->tangent[last] > 0.0)) return result;
-    const double left = curve.is_driven()
-                            ? (target[last] - place->x[last]) / place->tangent[last]
-                            : (target - place->x).dot(place->tangent);
+    const double left = curve.is_driven() ? (target[last] - place->x[last]) / place->tangent[last]
+                                          : (target - place->x).dot(place->tangent);
     const bool lands = left >= 0.0 && left <= ds;
     const double now = lands ? left : ds;
     Vector border = place->tangent;
@@ -233,8 +233,8 @@ FollowedCurve follow(PartCurve& curve, const CurveEnd& from, const CurveEnd& to,
     if (advance == Follower::Advance::crossing) result.crossed = true;
     if (curve.is_driven()) {
       if (!lands) {
-        result.least_time = std::min(result.least_time,
-                                     (next->x[last] - place->x[last]) * curve.time_per_length());
+        result.least_time =
+            std::min(result.least_time, (next->x[last] - place->x[last]) * curve.time_per_length());
       }
       if (lands) {
         result.distance = largest(next->x, target, points);
@@ -269,7 +269,8 @@ FollowedCurve follow_curve(const Model& model, const ConstraintBlock& part,
   PartCurve curve(model, part, blocks, from);
   const FollowedCurve onward = follow(curve, from, to, 1.0, length, tolerance);
   if (curve.is_driven() || onward.end == FollowedCurve::End::reached) return onward;
-  const FollowedCurve back = follow(curve, from, to, -1.0, length, tolerance);  // it may have turned
+  const FollowedCurve back =
+      follow(curve, from, to, -1.0, length, tolerance);  // it may have turned
   return back.end == FollowedCurve::End::reached ? back : onward;
 }
 

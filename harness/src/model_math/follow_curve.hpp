@@ -11,9 +11,9 @@ namespace mbs {
 
 /// A configuration on the way, and which way the motion goes there.
 struct CurveEnd {
-  double t = 0.0;                       ///< s
-  const std::vector<double>* q = {};    ///< n, m
-  const std::vector<double>* v = {};    ///< n, m/s
+  double t = 0.0;                     ///< s
+  const std::vector<double>* q = {};  ///< n, m
+  const std::vector<double>* v = {};  ///< n, m/s
 };
 
 /// Where the curve led.
@@ -24,9 +24,10 @@ struct FollowedCurve {
     lost,       ///< it could not be followed to its end: a driver beyond reach, or too sharp bends
   };
   End end = End::lost;
-  double distance = 0.0;   ///< m, from what was looked for, largest of a coordinate
-  bool crossed = false;    ///< an exact singular position, where the curve crosses another, was passed
-  double least_time = 0.0; ///< s; driven: the shortest step that bends on the way asked for
+  double distance = 0.0;  ///< m, from what was looked for, largest of a coordinate
+  bool crossed =
+      false;  ///< an exact singular position, where the curve crosses another, was passed
+  double least_time = 0.0;  ///< s; driven: the shortest step that bends on the way asked for
 };
 
 /// Follows Phi = 0 of the rows and columns given from `from` to `to` by predictor and corrector,
@@ -35,13 +36,13 @@ struct FollowedCurve {
 /// arc, in the direction of the velocity at `from`, then in the other. `length` (m): what is small
 /// against it, is small; `tolerance` (m): reached.
 ///
-/// Near the change point of a linkage two branches pass each other at a distance of about the square
-/// root of what its lengths are off; a step of a simulation goes straight across, and nothing that
-/// is looked at from step to step shows it. Here steps are shortened until the determinant keeps its
-/// sign. Where two branches meet exactly, the curve between two of its points satisfies the
-/// constraints too: that is a crossing, which a motion with inertia passes straight on.
-/// [Allgower, Georg, 2003] E. L. Allgower, K. Georg, Introduction to Numerical Continuation Methods,
-/// SIAM, ch. 8.
+/// Near the change point of a linkage two branches pass each other at a distance of about the
+/// square root of what its lengths are off; a step of a simulation goes straight across, and
+/// nothing that is looked at from step to step shows it. Here steps are shortened until the
+/// determinant keeps its sign. Where two branches meet exactly, the curve between two of its points
+/// satisfies the constraints too: that is a crossing, which a motion with inertia passes straight
+/// on. [Allgower, Georg, 2003] E. L. Allgower, K. Georg, Introduction to Numerical Continuation
+/// Methods, SIAM, ch. 8.
 FollowedCurve follow_curve(const Model& model, const ConstraintBlock& part,
                            const std::vector<ConstraintBlock>& blocks, const CurveEnd& from,
                            const CurveEnd& to, double length, double tolerance);

@@ -73,7 +73,8 @@ std::vector<NamedVariant> select_variants(const std::vector<std::string>& names)
   return result;
 }
 
-std::string why_not_offered(const std::string& variant, const Model& model, const StepSettings& settings) {
+std::string why_not_offered(const std::string& variant, const Model& model,
+                            const StepSettings& settings) {
   const auto variants = all_variants();
   const auto found = std::ranges::find(variants, variant, &NamedVariant::name);
   if (found == variants.end()) return "it is not in this build";

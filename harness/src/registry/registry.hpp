@@ -46,7 +46,8 @@ std::vector<NamedVariant> tried_variants();
 std::vector<NamedVariant> select_variants(const std::vector<std::string>& names);
 
 /// Why this build cannot run the variant of this name on `model` with `settings`; empty if it can.
-std::string why_not_offered(const std::string& variant, const Model& model, const StepSettings& settings);
+std::string why_not_offered(const std::string& variant, const Model& model,
+                            const StepSettings& settings);
 
 inline RegistryEntry available(std::string folder, Implementation implementation,
                                std::vector<std::pair<std::string, std::string>> lacking = {}) {

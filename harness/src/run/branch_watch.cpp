@@ -16,14 +16,13 @@
 namespace mbs {
 namespace {
 
-constexpr int kLargestPart = 60;         // rows; larger ones would cost more than steps
-constexpr double kUnknown = 1e-9;        // |determinant| over its rows' lengths: no sign
-constexpr double kApart = 3e-3;          // of the length: less is not yet another assembly
+constexpr int kLargestPart = 60;   // rows; larger ones would cost more than steps
+constexpr double kUnknown = 1e-9;  // |determinant| over its rows' lengths: no sign
+constexpr double kApart = 3e-3;    // of the length: less is not yet another assembly
 
 }  // namespace
 
-BranchWatch::BranchWatch(const Scene& scene, const State& start, double length,
-                         bool wanted)
+BranchWatch::BranchWatch(const Scene& scene, const State& start, double length, bool wanted)
     : scene_(scene), length_(length) {
   if (!wanted) return;
   const Model& model = scene.model;
@@ -86,14 +85,16 @@ std::vector<int> BranchWatch::signs(double t, const State& state) const {
     double scale = 1.0;
     for (Eigen::Index i = 0; i < size; ++i) {
       const double norm = square.row(i).norm();
-      if (!(norm > 0.0)) scale = 0.0;
-      else square.row(i) /= norm;
+      if (!(norm > 0.0))
+        scale = 0.0;
+      else
+        square.row(i) /= norm;
     }
     if (scale == 0.0) continue;
-    const double determinant =
-        size == 1   ? square(0, 0)
-        : size == 2 ? square(0, 0) * square(1, 1) - square(0, 1) * square(1, 0)
-                    : square.determinant();
+    const double determinant = size == 1 ? square(0, 0)
+                               : size == 2
+                                   ? square(0, 0) * square(1, 1) - square(0, 1) * square(1, 0)
+                                   : square.determinant();
     if (std::abs(determinant) > kUnknown) result[m] = determinant > 0.0 ? 1 : -1;
   }
   return result;
@@ -154,8 +155,8 @@ std::string BranchWatch::look(double t, const State& state) {
       case FollowedCurve::End::reached:
         if (!curve.crossed && !part.blocks.empty()) is_certain = false;  // too close to tell
         if (curve.crossed && passage_.empty() && !has_redundant_rows_) {
-          passage_ = fmt::format("a singular position of {} was passed before t = {:g} s",
-                                 place_of(m), t);
+          passage_ =
+              fmt::format("a singular position of {} was passed before t = {:g} s", place_of(m), t);
         }
         break;
       case FollowedCurve::End::lost:

@@ -64,7 +64,7 @@ class BranchWatch {
   std::vector<ConstraintBlock> matrices_;
   std::vector<Slot> slots_;
   State anchor_;
-  double anchor_time_ = 0.0;     // s
+  double anchor_time_ = 0.0;       // s
   std::vector<int> anchor_signs_;  // -1, 1; 0: not known
   std::vector<double> tangent_;    // velocities as they were directed when signs were first known
   bool has_redundant_rows_ = false;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "printable.hpp"
+#include "run/rounding.hpp"
 
 namespace mbs {
 namespace {
@@ -90,7 +91,8 @@ void JudgedRun::take(const StepOutcome& outcome) {
     access_.get_state(before_);
     judging_ += Clock::now() - begin;
   }
-  const bool is_looked_at = step >= next_look_ || (is_judged && watch_.is_needed());
+  const bool is_looked_at =
+      watch_.is_needed() && (step >= next_look_ || is_judged || is_unusual(outcome));
   if ((observer_ || half_ || is_looked_at) && !is_judged) access_.get_state(state_);
   const State& present = is_judged ? good_.state : state_;
   if (is_looked_at) look(present);
@@ -141,6 +143,13 @@ void JudgedRun::look(const State& present) {
   judging_ += Clock::now() - begin;
 }
 
+/// Whether the step was harder than most: near a singular position Newton needs more passes.
+bool JudgedRun::is_unusual(const StepOutcome& outcome) const {
+  return outcome.status == StepStatus::pass_limit ||
+         static_cast<double>(outcome.passes) * static_cast<double>(summary_.steps) >
+             1.5 * static_cast<double>(summary_.passes) + static_cast<double>(summary_.steps);
+}
+
 /// Steps until the next look: as many as leave no time to jump there and back, a quarter of the
 /// judged length by speed and acceleration of the fastest point, and at most 64.
 long JudgedRun::looked_after(const State& present) const {
@@ -156,8 +165,8 @@ long JudgedRun::looked_after(const State& present) const {
   return static_cast<long>(std::clamp(t / settings_.step.step, 1.0, double{kMost}));
 }
 
-/// The step at which the motion found to have jumped at `step` did so, by doing those since the last
-/// sound look again; `step` if that does not show it.
+/// The step at which the motion found to have jumped at `step` did so, by doing those since the
+/// last sound look again; `step` if that does not show it.
 long JudgedRun::first_across(long step) {
   const auto sound = std::lround(watch_.anchor_time() / settings_.step.step);
   if (sound + 1 >= step) return step;
@@ -256,9 +265,13 @@ void JudgedRun::conclude() {
   const std::string estimated = beyond_estimates();
   if (!summary_.reason.empty() && !estimated.empty()) summary_.reason += ", ";
   summary_.reason += estimated;
-  if (!watch_.doubt().empty()) {
-    if (!summary_.reason.empty()) summary_.reason += ", ";
-    summary_.reason += watch_.doubt();
+  const auto add = [this](const std::string& reason) {
+    if (!summary_.reason.empty() && !reason.empty()) summary_.reason += ", ";
+    summary_.reason += reason;
+  };
+  add(watch_.doubt());
+  if (samples_local_error_) {
+    add(rounding_degradation(scene_.model, settings_.step, steps_, judge_.length()));
   }
   if (!summary_.reason.empty()) {
     summary_.status = RunStatus::degraded;

@@ -58,6 +58,7 @@ class JudgedRun {
   void count(const StepOutcome& outcome);
   void judge_present();
   void look(const State& present);
+  [[nodiscard]] bool is_unusual(const StepOutcome& outcome) const;
   [[nodiscard]] long looked_after(const State& present) const;
   [[nodiscard]] long first_across(long step);
   bool locate_loss(const std::string& reason);

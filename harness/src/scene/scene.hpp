@@ -97,7 +97,8 @@ struct Driver {
   std::string range = {};  ///< what is allowed: "a distance above 0 m"
 };
 
-/// A value that a program sets from step to step, wherever the scene has {"input": ...} of this name.
+/// A value that a program sets from step to step, wherever the scene has {"input": ...} of this
+/// name.
 struct Input {
   std::string name;
   double start = 0.0;                         ///< what it is until then

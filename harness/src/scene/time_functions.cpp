@@ -108,7 +108,8 @@ class InputKind final : public TimeFunction::Kind {
 
 class PushingKind final : public TimeFunction::Kind {
  public:
-  PushingKind(TimeFunction force, double position) : force_(std::move(force)), position_(position) {}
+  PushingKind(TimeFunction force, double position)
+      : force_(std::move(force)), position_(position) {}
 
   [[nodiscard]] Sample at(double t) const override { return {position_, 0.0, -force_.at(t).value}; }
   [[nodiscard]] double end() const override { return force_.end(); }

@@ -26,7 +26,8 @@ TimeFunction spline(std::vector<double> times, std::vector<double> values);
 /// Whatever `now` is when it is asked, at all times: what a program sets from step to step.
 TimeFunction input(std::shared_ptr<const TimeFunction::Sample> now);
 
-/// `position`, at rest, whose acceleration is -force: with a DrivenMass of 1 kg it puts the force (N) into Q.
+/// `position`, at rest, whose acceleration is -force: with a DrivenMass of 1 kg it puts the force
+/// (N) into Q.
 TimeFunction pushing(TimeFunction force, double position);
 
 /// f^2.

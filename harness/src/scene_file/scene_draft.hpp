@@ -127,7 +127,7 @@ struct DraftTorsionSpring {
 struct DraftForce {
   JsonNode node;
   int point = 0;
-  Vector3 force{};                            ///< the constant part
+  Vector3 force{};                          ///< the constant part
   std::array<TimeFunction, 3> driven = {};  ///< the other: one axis has either
   int pusher = -1;  ///< then: the hidden driven point that has it, an index into Model::points()
 };

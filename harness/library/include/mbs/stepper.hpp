@@ -1,4 +1,5 @@
-// The library: a scene, stepped from one's own program. harness/library/README.md begins with an example.
+// The library: a scene, stepped from one's own program. harness/library/README.md begins with an
+// example.
 #pragma once
 
 #include <memory>
@@ -20,7 +21,8 @@ class Refused : public std::runtime_error {
 /// A scene that is read and may still be changed. Copies share nothing.
 class SceneDocument {
  public:
-  /// What `mbs simulate` takes: the path of a JSON file, "four-bar:40", "vehicle:4". Throws Refused.
+  /// What `mbs simulate` takes: the path of a JSON file, "four-bar:40", "vehicle:4". Throws
+  /// Refused.
   static SceneDocument load(const std::string& scene);
   /// The text of a JSON scene; `name` stands for it in messages. Throws Refused.
   static SceneDocument parse(std::string_view json, const std::string& name = "scene");
@@ -29,8 +31,8 @@ class SceneDocument {
   SceneDocument& operator=(const SceneDocument& other);
   ~SceneDocument();
 
-  /// A number of the document, by the path that `mbs sweep --vary` takes: "springs/front/stiffness",
-  /// "points/B/velocity/0". Throws Refused with what is there.
+  /// A number of the document, by the path that `mbs sweep --vary` takes:
+  /// "springs/front/stiffness", "points/B/velocity/0". Throws Refused with what is there.
   [[nodiscard]] double number(const std::string& path) const;
   void set_number(const std::string& path, double value);
 
@@ -75,12 +77,13 @@ struct Saved {
   std::vector<double> angles;  ///< as outputs count them, with turns
 };
 
-/// One simulation of one scene, from its start on. Set up once; step() and set_input() allocate nothing
-/// (but where mbs::Variant::allocates says so), and neither do the others after their first call.
+/// One simulation of one scene, from its start on. Set up once; step() and set_input() allocate
+/// nothing (but where mbs::Variant::allocates says so), and neither do the others after their first
+/// call.
 ///
-///   mbs::Stepper car(mbs::SceneDocument::load("car.json"), {.implementation = "csc_ldl/uplooking"});
-///   const int road = car.input("road"), hub = car.output("hub.y");
-///   for (;;) {
+///   mbs::Stepper car(mbs::SceneDocument::load("car.json"), {.implementation =
+///   "csc_ldl/uplooking"}); const int road = car.input("road"), hub = car.output("hub.y"); for (;;)
+///   {
 ///     car.set_input(road, z, dz, ddz);        // at the end of the step
 ///     if (car.step().status != mbs::StepStatus::converged) ...
 ///     use(car.outputs()[hub]);
@@ -105,18 +108,20 @@ class Stepper {
   [[nodiscard]] int input(std::string_view name) const;
   [[nodiscard]] int output(std::string_view name) const;
 
-  /// What an input is from the next step on; of a function of time: its value at the end of that step.
-  /// Forces, torques, stiffnesses, dampings and factors need the value alone. What moves a point or a
-  /// constraint needs its rate (per s) and acceleration (per s^2) too, consistent with each other.
+  /// What an input is from the next step on; of a function of time: its value at the end of that
+  /// step. Forces, torques, stiffnesses, dampings and factors need the value alone. What moves a
+  /// point or a constraint needs its rate (per s) and acceleration (per s^2) too, consistent with
+  /// each other.
   void set_input(int input, double value, double rate = 0.0, double acceleration = 0.0);
 
   /// Delta t further.
   [[nodiscard]] StepOutcome step();
-  /// At most `steps` steps, fewer where a factorization fails. The status is the worst of them, passes
-  /// and factorizations are sums.
+  /// At most `steps` steps, fewer where a factorization fails. The status is the worst of them,
+  /// passes and factorizations are sums.
   [[nodiscard]] StepOutcome step(long steps);
 
-  /// q, v, a, lambda and t now; valid until the next step or restore(). The same buffers every time.
+  /// q, v, a, lambda and t now; valid until the next step or restore(). The same buffers every
+  /// time.
   [[nodiscard]] const State& state();
   /// One number an output; valid like state(). Driven points are where the inputs are now. Angles
   /// count turns if they are asked for at least twice a turn.
@@ -133,7 +138,8 @@ class Stepper {
 };
 
 /// Several scenes of one shape at once: what `mbs sweep` does, for one's own loop. Where the
-/// implementation offers no batch or the scenes differ in shape, they are stepped one after the other.
+/// implementation offers no batch or the scenes differ in shape, they are stepped one after the
+/// other.
 class BatchStepper {
  public:
   /// Throws as Stepper, and Refused if there is no scene. `auto` is the choice for the first scene.

@@ -89,8 +89,9 @@ TimeFunction read_input(SceneReader& reader, const JsonNode& node) {
   std::vector<Input>& inputs = reader.draft().inputs;
   auto found = std::ranges::find(inputs, name.text(), &Input::name);
   if (found == inputs.end()) {
-    found = inputs.insert(found, {name.text(), start,
-                                  std::make_shared<TimeFunction::Sample>(TimeFunction::Sample{start})});
+    found = inputs.insert(
+        found,
+        {name.text(), start, std::make_shared<TimeFunction::Sample>(TimeFunction::Sample{start})});
   } else if (found->start != start) {
     node.fail(fmt::format("an input that starts at {:g}", start),
               fmt::format("{:g}, where the input of this name starts elsewhere", found->start));

@@ -197,7 +197,8 @@ void read_torque(SceneReader& reader, const JsonNode& node) {
 namespace {
 
 /// A law from a fixed direction across the axis, at any angle: -1 N m times the factor turns back.
-void lower_driven_torque(Lowering& scene, const DraftTorque& torque, const Lowering::Edge& turned, int axis) {
+void lower_driven_torque(Lowering& scene, const DraftTorque& torque, const Lowering::Edge& turned,
+                         int axis) {
   Vector3 across{1.0, 0.0, 0.0};
   if (axis >= 0) {
     if (scene.draft().point(torque.axis).hold != Hold::fixed) {
@@ -210,8 +211,8 @@ void lower_driven_torque(Lowering& scene, const DraftTorque& torque, const Lower
   const int from = scene.add_hidden(torque.node.path() + ".from", true);
   scene.model().points[static_cast<std::size_t>(from)].position = across;
   const Curve back{{}, {{0.0, {-1.0, 0.0, 0.0, 0.0}}}};
-  scene.model().torque_laws.push_back({from, scene.zero(), turned.a, turned.b, axis,
-                                       {{}, back, torque.torque}, torque.name});
+  scene.model().torque_laws.push_back(
+      {from, scene.zero(), turned.a, turned.b, axis, {{}, back, torque.torque}, torque.name});
 }
 
 }  // namespace

@@ -1,0 +1,122 @@
+// Pictures as SVG: a ranking, and the map with the place of the case. Names are text nodes, never markup.
+"use strict";
+
+function element(kind, attributes = {}, ...children) {
+  const svg = ["svg", "g", "line", "rect", "circle", "path", "text", "title", "polygon"].includes(kind);
+  const node = svg ? document.createElementNS("http://www.w3.org/2000/svg", kind) : document.createElement(kind);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
+    else if (value !== null && value !== undefined && value !== false) node.setAttribute(name, value === true ? "" : value);
+  }
+  node.append(...children.filter((one) => one !== null && one !== undefined && one !== ""));
+  return node;
+}
+
+// A logarithmic axis: {at(value), ticks}.
+function scale(low, high, left, right) {
+  const [a, b] = [Math.log(low), Math.log(high)];
+  const at = (value) => left + (right - left) * (Math.log(value) - a) / (b - a || 1);
+  const within = (steps) => {
+    const found = [];
+    for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power++)
+      found.push(...steps.map((step) => step * 10 ** power).filter((one) => one >= low * 0.999 && one <= high * 1.001));
+    return found;
+  };
+  const apart = (ticks) => ticks.every((one, i) => !i || Math.abs(at(one) - at(ticks[i - 1])) >= 34);
+  const ticks = [[1, 1.1, 1.2, 1.3, 1.4, 1.5, 1.7, 2, 2.5, 3, 4, 5, 6, 7, 8], [1, 1.2, 1.5, 2, 3, 5, 7], [1, 2, 5], [1, 3], [1]].map(within).find(apart);
+  return {at, ticks: ticks ?? within([1])};
+}
+
+const INK = "var(--ink)", SOFT = "var(--soft)", LINE = "var(--line)";
+
+function drawing(width, height, label) {
+  const svg = element("svg", {viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "aria-label": label,
+                              "font-family": "Source Sans 3, Segoe UI, Helvetica Neue, Arial, sans-serif", "font-size": 13});
+  svg.append(element("rect", {width, height, fill: "var(--paper)"}));
+  return svg;
+}
+
+function words(x, y, text, more = {}) {
+  return element("text", {x, y, fill: INK, ...more}, text);
+}
+
+// A row: {name, value, low, high, colour, hollow, own: {us, value}, group, onclick}. `axis` names the value; `mark`: {value, text}
+// is a line, such as a deadline.
+function drawRanking(rows, axis, width, label, mark = null) {
+  const narrow = width < 560 || rows.some((one) => one.name.length > 26), left = narrow ? 10 : 190, right = width - (narrow ? 14 : 170);
+  const step = narrow ? 40 : 25, top = 10;
+  const height = top + rows.length * step + 46, svg = drawing(width, height, label);
+  const all = rows.flatMap((one) => [one.value, one.low, one.high, one.own?.value]).concat(mark?.value).filter((one) => one > 0 && Number.isFinite(one));
+  const [least, most] = [Math.min(...all) / 1.06, Math.max(...all) * 1.06], x = scale(least, Math.max(most, least * 1.3), left, right);
+  for (const tick of x.ticks) {
+    svg.append(element("line", {x1: x.at(tick), x2: x.at(tick), y1: top, y2: height - 40, stroke: LINE}));
+    svg.append(words(x.at(tick), height - 24, short(tick), {"text-anchor": "middle", fill: SOFT, "font-size": 12}));
+  }
+  svg.append(words((left + right) / 2, height - 6, axis, {"text-anchor": "middle", fill: SOFT, "font-size": 12}));
+  if (mark) {
+    const at = x.at(mark.value);
+    svg.append(element("line", {x1: at, x2: at, y1: top, y2: height - 40, stroke: "var(--bad)", "stroke-dasharray": "5 3"}));
+    svg.append(words(at - 4, height - 44, mark.text, {"text-anchor": "end", fill: "var(--bad)", "font-size": 11}));
+  }
+  rows.forEach((row, place) => {
+    const y = top + place * step + (narrow ? 28 : 13), clamp = (value) => Math.min(Math.max(x.at(value), left), right);
+    const group = element("g", {class: "bar", "data-name": row.name, onclick: row.onclick}, element("title", {}, row.title));
+    const tied = ["fastest", "as fast"].includes(row.group), at = clamp(row.value), colour = row.colour;
+    group.append(element("rect", {x: 0, y: top + place * step, width, height: step, fill: tied ? "var(--wash)" : "transparent"}));
+    group.append(words(narrow ? left : left - 8, narrow ? y - 12 : y + 4, row.name,
+                       {"text-anchor": narrow ? "start" : "end", "font-weight": row.group === "fastest" ? 600 : 400}));
+    group.append(element("rect", {x: left, y: y - 5, width: Math.max(at - left, 1), height: 10, fill: colour, "fill-opacity": row.hollow ? 0.12 : 0.3}));
+    if (row.low < row.high)
+      group.append(element("line", {x1: clamp(row.low || least), x2: clamp(row.high), y1: y, y2: y, stroke: colour, "stroke-width": 2.5}));
+    group.append(element("circle", {cx: at, cy: y, r: 4.5, fill: row.hollow ? "var(--paper)" : colour, stroke: colour, "stroke-width": 1.6}));
+    if (row.own?.value > 0) group.append(diamond(clamp(row.own.value), y));
+    group.append(words(narrow ? width - 4 : right + 10, narrow ? y - 12 : y + 4, row.text,
+                       {"text-anchor": narrow ? "end" : "start", "font-size": 12, fill: SOFT}));
+    svg.append(group);
+  });
+  return svg;
+}
+
+const diamond = (x, y) => element("polygon", {class: "own", points: `${x},${y - 7} ${x + 6},${y} ${x},${y + 7} ${x - 6},${y}`, fill: "none",
+                                              stroke: INK, "stroke-width": 1.8});
+
+// Marks: {n, fill, colour, inner, open, square, title, onclick}; `here`: {n, fill} of the case.
+function drawMap(marks, here, width, label) {
+  const height = Math.min(440, Math.max(300, width * 0.6)), left = 52, right = width - 14, top = 14, bottom = height - 44;
+  const svg = drawing(width, height, label), small = {fill: SOFT, "font-size": 12};
+  const spread = (values) => [Math.min(...values) / 1.25, Math.max(...values) * 1.25];
+  const x = scale(...spread([...marks.map((one) => one.n), here?.n].filter((one) => one > 0)), left, right);
+  const y = scale(...spread([...marks.map((one) => one.fill), here?.fill].filter((one) => one > 0)), bottom, top);
+  for (const tick of x.ticks)
+    svg.append(element("line", {x1: x.at(tick), x2: x.at(tick), y1: top, y2: bottom, stroke: LINE}),
+               words(x.at(tick), bottom + 17, short(tick), {"text-anchor": "middle", ...small}));
+  for (const tick of y.ticks)
+    svg.append(element("line", {x1: left, x2: right, y1: y.at(tick), y2: y.at(tick), stroke: LINE}),
+               words(left - 6, y.at(tick) + 4, short(tick), {"text-anchor": "end", ...small}));
+  svg.append(words((left + right) / 2, height - 6, "variables n", {"text-anchor": "middle", ...small}));
+  svg.append(words(0, 0, "fill of the tangent, %", {transform: `translate(13 ${(top + bottom) / 2}) rotate(-90)`, "text-anchor": "middle", ...small}));
+  for (const one of marks) {
+    const [cx, cy] = [x.at(one.n), y.at(one.fill)], more = {fill: one.open ? "var(--paper)" : one.colour, stroke: one.colour, "stroke-width": 2.4};
+    const group = element("g", {class: "mark", onclick: one.onclick}, element("title", {}, one.title));
+    group.append(one.square ? element("rect", {x: cx - 6, y: cy - 6, width: 12, height: 12, ...more}) : element("circle", {cx, cy, r: 6.5, ...more}));
+    if (one.inner && !one.open) group.append(element("circle", {cx, cy, r: 3, fill: one.inner, stroke: "var(--paper)", "stroke-width": 0.8}));
+    svg.append(group);
+  }
+  if (here?.n > 0 && here.fill > 0) svg.append(pin(here, x.at(here.n), y.at(here.fill), width));
+  return svg;
+}
+
+function pin(here, cx, cy, width) {
+  const right = cx > width * 0.7, line = {fill: "none", stroke: INK, "stroke-width": 2};
+  return element("g", {id: "pin", "data-n": here.n, "data-fill": here.fill}, element("circle", {cx, cy, r: 13, ...line}),
+    element("path", {d: `M${cx - 19} ${cy}h10M${cx + 9} ${cy}h10M${cx} ${cy - 19}v10M${cx} ${cy + 9}v10`, ...line}),
+    words(cx + (right ? -18 : 18), cy - 12, "you are here",
+          {"text-anchor": right ? "end" : "start", "font-weight": 600, "paint-order": "stroke", stroke: "var(--paper)", "stroke-width": 3}));
+}
+
+// An SVG by itself: colours of the page as it is shown, instead of their names.
+function standalone(svg) {
+  const style = getComputedStyle(document.documentElement), copy = svg.cloneNode(true);
+  copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
+  return new XMLSerializer().serializeToString(copy).replace(/var\((--\w+)\)/g, (_, name) => style.getPropertyValue(name).trim());
+}

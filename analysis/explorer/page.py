@@ -1,0 +1,88 @@
+# What the template of explore.html gets: the data as JSON, and three questions with the answers of this set.
+import json
+
+import yaml
+from scipy import stats
+
+from analysis.accuracy.winners import NEAR
+from analysis.core import timing
+from analysis.core.files import ROOT
+from analysis.core.style import Look
+from analysis.core.view import facts_of, registry_of
+from analysis.explorer import data
+
+SETTINGS = ROOT / "study" / "settings.yaml"
+MOST = 200  # processes of an interval
+
+
+def context(folder):
+    """`data`: of the set in `folder`, and of stored sets of other processors beside it; `examples`: (question, state in the
+    address, answer)."""
+    sets = {one: data.read(one) for one in (folder, *_others(folder))}
+    names = list(dict.fromkeys(name for found in sets.values() for name in data.names_of(found)))
+    number = {name: place for place, name in enumerate(names)}
+    about = [_about(name, sets) for name in names]
+    contests = [one for part in ("families", "map") for one in sets[folder][part]]
+    known = {"sets": [data.as_json(one, found, number) for one, found in sets.items()], "names": about, "sizes": data.size_of(contests),
+             "settings": _settings(), "equivalent": timing.EQUIVALENT, "near": NEAR,
+             "quantiles": [float(stats.t.ppf((1 + timing.CONFIDENCE) / 2, freedom)) for freedom in range(1, MOST)]}
+    text = json.dumps(known, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    return {"data": text.replace("<", "\\u003c"), "examples": examples(contests, registry_of(folder))}
+
+
+def _others(folder):
+    """Stored sets beside this one, of other processors."""
+    known = {facts_of(folder)["context"].get("cpu_model")}
+    for path in sorted(folder.parent.glob("*/set.json")):
+        stored = any((path.parent / "raw").glob("*.tar.xz"))
+        model = facts_of(path.parent)["context"].get("cpu_model") if stored else None
+        if model and model not in known:
+            known.add(model)
+            yield path.parent
+
+
+def _about(name, sets):
+    """What can be asked of a name: whether it is own code, dense, under the GPL; its licence and colour."""
+    for folder in sets:
+        registry = registry_of(folder)
+        plain = name.partition("+")[0]
+        if plain in registry.variants:
+            return {"name": name, "own": plain in registry.own, "dense": plain in registry.dense, "gpl": registry.gpl(plain),
+                    "licence": registry.variants[plain]["licence"], "colour": Look(registry).colour(plain)}
+    return {"name": name, "own": False, "dense": False, "gpl": False, "licence": "", "colour": "#777777"}
+
+
+def _settings():
+    """{setting: options of `mbs simulate`}"""
+    return {one["name"]: " ".join(f"--{key}" if value is True else f"--{key} {value}" for key, value in one.get("options", {}).items())
+            for one in yaml.safe_load(SETTINGS.read_text(encoding="utf-8"))["settings"]}
+
+
+ASKED = (  # of the examples: the least fill of the mechanism, %, and who is left out; words
+    (0, 30, ("own",), "libraries only"),
+    (30, 101, ("own", "gpl"), "a filled tangent, no GPL"),
+    (0, 30, ("own", "penalty"), "libraries only, saddle-point form"))
+
+
+def examples(contests, registry):
+    """[{"case", "state", "take"}]: each on the largest mechanism of its kind, of another family."""
+    found, used, known = [], set(), {}
+    for one in contests:  # of a scene and form the one with most samples, as the page takes it
+        if (one.scene, one.form) not in known or len(one.rows) > len(known[one.scene, one.form].rows):
+            known[one.scene, one.form] = one
+    for low, high, without, words in ASKED:
+        names = [name for name in registry.variants if not ("own" in without and name in registry.own or "gpl" in without and registry.gpl(name))]
+        ranked = [(one, ranking) for one in known.values() if one.family not in used and low <= one.fill < high
+                  and one.form == ("saddle-point" if "penalty" in without else "penalty") for ranking in [one.rank(names)] if ranking]
+        if ranked:
+            one, ranking = max(ranked, key=lambda pair: pair[0].n)
+            used.add(one.family)
+            found.append({"case": f"{one.scene}: {one.n:.0f} variables, {words}", "take": _said(ranking),
+                          "state": f"scene={one.scene}&no={','.join(without)}"})
+    return found
+
+
+def _said(ranking):
+    others = [name for name in ranking.equivalent if name != ranking.winner]
+    doubt = "" if ranking.decided or ranking.settled else " (not decided)"
+    return f"{ranking.winner}{doubt}" + (f"; as fast: {', '.join(others)}" if others else "")

@@ -1,0 +1,203 @@
+# The trials: mechanisms whose motion is known, where simulations jump, lag or hide an error. Is every wrong run told, and no right one?
+import math
+import random
+from dataclasses import replace
+from functools import cache
+
+import numpy
+from scipy.optimize import minimize_scalar
+
+from analysis.extremes.cells import STEP, Extreme
+from analysis.extremes.linkages import Dyad, Linkage, Plate, Side, Slider, Swing, Wheel
+from analysis.extremes.mechanisms import Damped, LightEnd, Standard, TwoDrives, TwoPendulums, Uneven
+from analysis.extremes.motions import Chain
+from study.core.setting import Setting
+from study.scenes.problems import read_list
+from study.scenes.references import EXTRAPOLATED
+
+DISTANCES = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)  # from the change point, in lengths of about a link
+STEPS = (1e-2, STEP, 2e-4)                        # s
+MASSES = tuple(10.0**-power for power in range(3, 13))
+UNEVEN = (1e-9, 1e-6, 1e-3, 1e-2)                 # shares by which speeds disagree
+DRAWN = 4                                         # four-bars whose lengths are drawn by lot
+MORE = ("crank-rocker", "double crank", "offset", "Watt")  # of which two freedoms, and feet that move, are tried too
+LONG = 100.0                                      # s
+HALF = ("half-step", "")
+DRIVEN = (Setting("penalty"), Setting("saddle-point"), Setting("penalty", (HALF,)), Setting("saddle-point", (HALF,)),
+          Setting("penalty", (("tangent", "kept"),)), Setting("saddle-point", (("tangent", "kept"),)))
+FREE = (*DRIVEN, *map(Setting, ("rattle", "rattle4", "rattle6", "multistep6")))  # these take no drivers
+PASSAGE, REGULAR = ("wrong-branch",), ("wrong-branch", "diverged", "not-converged")  # what is no outcome of a motion that is right
+STANDARD = ("standard problem", "example or family")
+PLAIN = (Setting("penalty"), Setting("saddle-point"))
+LINKS = {"A01": 1.0, "A02": 1.0, "A03": 7e-3, "A04": 1.0, "A05": 1.0, "slider-crank": 0.5, "double four-bar": 1.0, "spatial slider-crank": 0.08,
+         "chain": 0.1, "grid": 1.0, "half car": 0.4}  # m, the shortest link
+EXAMPLES = {  # and families in small: the length of the shortest link, m
+    **{f"harness/scenes/{name}.json": length for name, length in (
+        ("pendulum", 1.0), ("point_mass_pendulum", 0.866), ("double_pendulum", 1.0), ("four_bar_2", 1.0), ("examples/bump_stop", 0.8),
+        ("examples/compound_pendulum", 0.36), ("examples/coupler", 1.0), ("examples/driven_crank", 0.5), ("examples/driven_elbow", 1.0),
+        ("examples/planar_joints", 0.5), ("examples/quarter_car", 0.8), ("examples/slider_crank", 0.1), ("examples/spatial_angles", 1.0),
+        ("examples/spatial_joints", 0.07), ("examples/spatial_pendulum", 0.5), ("examples/spatial_slider_crank", 0.08))},
+    "chain:3": 1.0, "loop:6": 1.0, "tree:3": 1.0, "ladder:3": 0.5, "grid:3x3": 0.5, "truss:2": 1.0, "scissors:3": 0.5, "bodies:3": 0.5,
+    "vehicle:2": 0.4, "robot:6": 0.5, "star:3": 1.0, "clusters:2": 0.6, "flexible:2": 0.57}
+
+
+def four_bar(crank, coupler, rocker, ground, side=Side(), **more):
+    return Linkage((("A", (0.0, 0.0)), ("D", (ground, 0.0))), crank, (Dyad("C", ("B", "D"), (coupler, rocker), side),), **more)
+
+
+def slider_crank(crank, rod, offset=0.0, side=Side(), **more):
+    return Linkage((("A", (0.0, 0.0)), ("D", (0.0, offset))), crank, (Slider("C", "B", rod, "D", side),), **more)
+
+
+def quick_return(crank, ground, swing, **more):
+    return Linkage((("A", (0.0, 0.0)), ("D", (ground, 0.0))), crank, (Swing("C", "D", "B", swing),), **more)
+
+
+def _longer(base, foot, plate, gap, share):
+    """`base` with a plate on it and a dyad from that to one more foot, which is stretched but for `gap` where it is farthest."""
+    base = replace(base, feet=(*base.feet, ("F", foot)), followers=(*base.followers, plate))
+
+    def far(angle):
+        at = base.at(numpy.atleast_1d(angle))
+        return numpy.hypot(*(at[plate.name] - at["F"]))
+    turn = numpy.linspace(0, 2 * math.pi, 3601)
+    around = turn[far(turn).argmax()]
+    most = -minimize_scalar(lambda angle: -far(angle)[0], bounds=(around - 0.01, around + 0.01), method="bounded", options={"xatol": 1e-12}).fun
+    first = share * most
+    return replace(base, followers=(*base.followers, Dyad("E", (plate.name, "F"), (first, most - first + gap))))
+
+
+def drawn(number, gap):
+    """A four-bar drawn by lot whose crank turns fully, by Grashof's rule with `gap` to spare."""
+    lot = random.Random(number)
+    short = lot.uniform(0.3, 0.6)
+    other, another = (lot.uniform(short + 0.2, 1.5) for _ in range(2))
+    long = other + another - short - gap
+    links = lot.sample([other, another, long], 3)
+    side = Side(lot.choice((1, -1)))
+    return four_bar(short, *links, side) if number % 2 else four_bar(*links, short, side)
+
+
+def near(gap):
+    """{(kind, name): linkage} at `gap` from its change point."""
+    return {("four-bar", "rhombus"): four_bar(1.0, 1.0, 1.0, 1 - gap),
+            ("four-bar", "crank-rocker"): four_bar(0.4 - gap, 1.0, 0.4, 1.0),
+            ("four-bar", "kite"): four_bar(0.5, 1.0, 1.0, 0.5 - gap),
+            ("four-bar", "double crank"): four_bar(1.2, 0.9, 1.0, 0.7 - gap, Side(-1)),
+            **{("four-bar", f"drawn {number}"): drawn(number, gap) for number in range(1, DRAWN + 1)},
+            ("slider-crank", "centric"): slider_crank(0.5, 0.5 + gap),
+            ("slider-crank", "offset"): slider_crank(0.4, 0.55 + gap, 0.15),
+            ("slider-crank", "offset, behind"): slider_crank(0.6, 0.8 + gap, -0.2, Side(-1)),
+            ("slider-crank", "quick return"): quick_return(0.5, 0.5 + gap, 0.8),
+            ("six-bar", "Watt"): _longer(four_bar(0.5, 1.1, 0.9, 1.2), (2.4, 0.1), Plate("P", ("D", "C"), 0.5, -0.4), gap, 0.55),
+            ("six-bar", "Stephenson"): _longer(four_bar(0.4, 1.0, 0.9, 1.1), (0.3, -1.0), Plate("P", ("B", "C"), 0.6, 0.5), gap, 0.6),
+            ("six-bar", "Stephenson, bent"): _longer(four_bar(0.3, 0.9, 0.8, 1.0), (1.5, 1.2), Plate("P", ("B", "C"), 0.4, -0.3), gap, 0.4)}
+
+
+PASSING = {"parallelogram": four_bar(0.5, 1.0, 0.5, 1.0, Side(1, 0.0)), "antiparallelogram": four_bar(0.5, 1.0, 0.5, 1.0, Side(-1, 0.0)),
+           "Cardan": slider_crank(0.5, 0.5, side=Side(1, -math.pi / 2))}
+FAR = {"double crank": four_bar(1.2, 1.1, 1.0, 0.4), "crank-rocker": four_bar(0.3, 1.0, 0.8, 0.9), "slider-crank": slider_crank(0.3, 0.9, 0.1),
+       "quick return": quick_return(0.3, 0.7, 0.9)}
+
+
+@cache
+def all_trials():
+    return [*_standard(), *_near(), *_passing(), *_worked(), *_light(), *_redundant(), *_long()]
+
+
+def few(trials, standard, others):
+    """[(trial, setting)]: first `standard` of the standard problems' runs, then a sample of `others` of the others; all with 0."""
+    runs = [(trial, setting) for trial in trials for setting in trial.settings]
+    known = [run for run in runs if run[0].axis in STANDARD]
+    rest = [run for run in runs if run[0].axis not in STANDARD]
+    return known[:standard or None] + (random.Random(1).sample(rest, min(others, len(rest))) if others else rest)
+
+
+def _trial(kind, label, motion, step, seconds, settings, **more):
+    return Extreme(kind, label, "", motion, motion.document(), step=step, steps=round(seconds / step), length=motion.shortest,
+                   settings=settings, **more)
+
+
+def _near():
+    found = []
+    for gap in DISTANCES:
+        for (kind, name), linkage in near(gap).items():
+            label = f"{name} at {gap:g}"
+            for rate in (1.0, -2.0):
+                driven = replace(linkage, rate=rate)
+                found += [_trial(f"driven {kind}", f"{label}, {rate:g} per s", driven, step, 6.4 / abs(rate), DRIVEN, near=gap) for step in STEPS]
+            narrow = name in ("rhombus", "kite", "quick return")  # what follows the crank turns over within this angle
+            if gap >= 1e-3 or not narrow:
+                free = replace(linkage, driven=False, finest=gap if narrow else 1.0)
+                found += [_trial(f"free {kind}", label, free, step, 3.2, FREE, near=gap) for step in STEPS]
+            if name in MORE:
+                wheel = replace(free, followers=(*free.followers, Wheel("W", free.points[-1])))
+                found += [_trial("free, with a wheel", label, wheel, step, 3.2, FREE, near=gap) for step in STEPS[:2]]
+                found += [_trial("free, carried", label, replace(free, carried=0.5), step, 3.2, DRIVEN, near=gap) for step in STEPS[:2]]
+    return found
+
+
+def _passing():
+    found = []
+    for kind, linkages, harmless in (("passage", PASSING, PASSAGE), ("far", FAR, REGULAR)):
+        for name, linkage in linkages.items():
+            for rate in (1.0, -2.0):
+                driven = replace(linkage, rate=rate)
+                found += [_trial(f"{kind}, driven", f"{name}, {rate:g} per s", driven, step, 20 / abs(rate), DRIVEN[:4], harmless=harmless)
+                          for step in STEPS[1:]]
+                found += [_trial(f"{kind}, free", f"{name}, {rate:g} per s", replace(driven, driven=False), step, 6.4, FREE, harmless=harmless)
+                          for step in STEPS[1:]]
+    return found
+
+
+def _worked():
+    """Where drivers or dampers do work, so that energy is not conserved."""
+    found = []
+    for step in (1e-2, 5e-3, STEP):
+        for speed in (0.5, 5.0):
+            found += [_trial("carried pendulum", f"at {speed:g} m/s, gravity {gravity:g} m/s²", Linkage(
+                (("A", (0.0, 0.0)),), 1.0, (), rate=rate, driven=False, gravity=gravity, carried=speed), step, 5.0, DRIVEN, harmless=REGULAR)
+                for rate, gravity in ((1.0, 0.0), (4.0, 3.0))]
+        found += [_trial("damped rod", f"{damping:g} N m s", Damped(damping), step, 5.0, DRIVEN, harmless=REGULAR) for damping in (0.4, 1.0, 10.0)]
+    return found
+
+
+def _light():
+    found = []
+    for mass in MASSES:
+        for step in STEPS[:2]:
+            found += [_trial("light part", f"lower rod of {mass:g} kg", LightEnd(mass), step, 8.0, FREE, near=mass),
+                      _trial("light part", f"pendulum of {mass:g} kg beside one of 1 kg", TwoPendulums(mass), step, 8.0, FREE, near=mass)]
+    return found
+
+
+def _redundant():
+    found = []
+    for share in UNEVEN:
+        found += [_trial("uneven speeds", f"three cranks, by {share:g}", Uneven(1, share=share), STEP, 5.0, FREE, near=share),
+                  _trial("uneven speeds", f"crank doubled, by {share:g}", Uneven(1, share=share, same_points=False), STEP, 5.0, FREE, near=share),
+                  _trial("uneven speeds", f"two drives, by {share:g}", TwoDrives(share), STEP, 6.4, DRIVEN, near=share)]
+    return found
+
+
+def _long():
+    found = []
+    for step in STEPS[:2]:
+        found += [_trial("100 s", f"{loops} loops", Chain(loops), step, LONG, FREE) for loops in (1, 2, 5)]
+        found += [_trial("100 s", f"{name}, driven", linkage, step, LONG, DRIVEN[:2]) for name, linkage in FAR.items()]
+        found += [_trial("100 s", f"{name}, free", replace(linkage, driven=False), step, LONG, FREE) for name, linkage in FAR.items()]
+    return found
+
+
+def _standard():
+    """Standard problems, examples and families at their own steps."""
+    found = [Extreme(STANDARD[1], scene.rpartition("/")[2].removesuffix(".json"), scene, None, steps=1600, length=length,
+                     kept=("all",), settings=PLAIN, harmless=REGULAR) for scene, length in EXAMPLES.items()]
+    for one in read_list()[1]:
+        motion = None if one.known == EXTRAPOLATED else Standard(one.known)
+        own = tuple((option, f"{value}") for option, value, usual in (("penalty", one.penalty, "auto"), ("tolerance", one.tolerance, "auto"),
+                                                                      ("max-passes", one.max_passes, 20)) if value != usual)
+        found.append(Extreme(STANDARD[0], one.name, one.scene, motion, step=one.steps[0], steps=round(one.duration / one.steps[0]),
+                             length=LINKS[one.name], kept=("B0.x", "B0.y") if one.scene.startswith("four-bar") else ("outputs",),
+                             settings=(Setting("penalty", own),) if own else PLAIN, harmless=REGULAR))
+    return found

@@ -1,0 +1,308 @@
+# explore.html of a stored set in Chromium: what it ranks is what Python ranks, every control obeys, and it asks nobody.
+import json
+import math
+import random
+import shutil
+
+import pandas
+import pytest
+
+from analysis.accuracy.winners import fastest, meeting
+from analysis.core import site, timing
+from analysis.core.files import ROOT, read_json, write_json
+from analysis.explorer import data
+from study.tests.browser import Browser
+from study.tests.test_site import BEYOND, HIDDEN
+
+STORED = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))[0]
+QUESTIONS = 200
+SECOND = "Another processor"  # of a copy beside the set
+WITHOUT = ("own", "gpl", "dense")
+DESCRIBED = {"scene": "<img src=x onerror=alert(1)>", "variables": 50, "tangent": {"fill": 0.2}, "warnings": ["<b>a step too long</b>"],
+             "scheme": {"take": "penalty"}, "features": {"n": 50, "per_column": 1e5, "flops": 9000, "tangent": 500, "fill": 20}}
+PRINTED = """Release build by GNU 12.2.0 on Some processor, BLAS system
+
+four-bar:10: 22 variables, 21 constraints, tangent filled to 25.6 %
+800 steps of 1.25 ms from t = 0.220308 s; 3 samples of each, a turn each, of one or more stretches
+                        step, µs  to the fastest           set-up, µs  passes  error, m
+compiled_ldl/fronts        1.279  1                             48.86   2.256  3.69e-05
+csc_klu/refactor           2.188  1.712 (1.710..1.713)          19.27   2.256  3.69e-05
+
+four-bar:40: 82 variables, 81 constraints, tangent filled to 7.2 %
+csc_klu/refactor           9.188  1.712 (1.710..1.713)          19.27   2.256  3.69e-05
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The set with its page, and another one of another processor beside it."""
+    base = tmp_path_factory.mktemp("sets")
+    for name in ("first", "second"):
+        shutil.copytree(STORED, base / name, ignore=shutil.ignore_patterns("engines", "extremes*"))
+    facts = read_json(base / "second" / "set.json")
+    write_json(base / "second" / "set.json", facts | {"context": facts["context"] | {"cpu_model": SECOND}})
+    site.write_index(base / "first")
+    return base / "first"
+
+
+@pytest.fixture(scope="module")
+def found(folder):
+    return data.read(folder)
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    with Browser(tmp_path_factory.mktemp("profile")) as browser:
+        yield browser
+
+
+@pytest.fixture
+def page(browser, folder):
+    """The page with a question in its address; looks for complaints and requests when the test is done."""
+    browser.complaints.clear()
+    browser.requests.clear()
+
+    def ask(question=""):
+        browser.open(folder / "index.html")
+        browser.value(f"location.href = {json.dumps((folder / 'explore.html').as_uri() + '#' + question)}")
+        browser.wait("location.pathname.endsWith('explore.html') && document.readyState === 'complete' && !!window.explorer")
+        return browser
+    yield ask
+    assert browser.complaints == []
+    assert all(address.startswith(("file:", "data:", "blob:")) for address in browser.requests)
+
+
+def said(browser):
+    return browser.value("document.getElementById('answer').innerText")
+
+
+def put(browser, name, value, event="input"):
+    browser.value(f"(() => {{ const one = document.getElementById('{name}'); one.value = {json.dumps(str(value))};"
+                  f"one.dispatchEvent(new Event('{event}', {{bubbles: true}})); }})()")
+
+
+def press(browser, name):
+    browser.value(f"document.getElementById('{name}').click()")
+
+
+def winner(browser):
+    return browser.value("explorer.shown.near[0]?.ranking.winner ?? ''")
+
+
+def test_it_is_small_and_whole(folder):
+    text = (folder / "explore.html").read_text(encoding="utf-8")
+    assert len(text.encode()) < 3e6
+    assert "http://" not in text.replace("http://www.w3.org/", "") and "https://" not in text
+
+
+def test_winners_are_those_of_python(page, found):
+    everyone = {one.name: one for one in _about(page().value("DATA.names"))}
+    contests = {(one.part, one.scene, one.form): one for part in ("families", "map") for one in found[part]}
+    draw, questions = random.Random(1), []
+    for _ in range(QUESTIONS):
+        asked = {"no": draw.sample(WITHOUT, draw.randint(0, 2)) + draw.choice([[], [], ["penalty"], ["saddle"]]), "without": draw.sample(sorted(everyone), draw.randint(0, 8)),
+                 "error": 10 ** draw.uniform(-5, -1), "scene": "", "family": ""}
+        if draw.random() < 0.7:
+            asked["scene"] = draw.choice(list(contests))[1]
+        else:
+            asked |= {"n": 10 ** draw.uniform(1, 3), "fill": 10 ** draw.uniform(0, 2), "family": draw.choice(["", *{one.family for one in contests.values()}])}
+        questions.append(asked)
+    answers = page().value(f"""{json.dumps(questions)}.map((asked) => {{ const found = explorer.ask(asked); return {{
+      near: found.near.map(({{contest, ranking}}) => ({{...ranking, key: [contest.part, contest.scene, contest.form]}})),
+      curve: found.error?.curve.scene, point: found.error?.ranking && {{...found.error.ranking.winner, decided: found.error.ranking.decided,
+        settled: found.error.ranking.settled, equal: found.error.ranking.equivalent.map((one) => one.name)}}}}; }})""")
+    ranked = 0
+    for asked, answer in zip(questions, answers):
+        names = {name for name, one in everyone.items() if "+" not in name and name not in asked["without"] and not any(getattr(one, word) for word in WITHOUT if word in asked["no"])}
+        there = [key for key, one in contests.items() if (key[1] == asked["scene"] if asked["scene"] else asked["family"] in ("", one.family))
+                 and set(one.able) & names and key[2].split("-")[0] not in asked["no"]]
+        assert answer["near"] or not there
+        if asked["scene"] and there:
+            assert tuple(answer["near"][0]["key"]) in there
+        for one in answer["near"]:
+            _same(one, contests[tuple(one["key"])], names)
+            ranked += 1
+        _same_point(asked, answer, found["accuracy"], names)
+    assert ranked > QUESTIONS and sum(1 for answer in answers if answer["point"]) > QUESTIONS / 4
+
+
+def test_layouts_of_the_program_count_as_one_each(page):
+    draw, rows = random.Random(2), []
+    for number in range(1, 10):
+        for name in ("a", "b"):
+            rows.append({"implementation": name, "environment": "own", "process": number, "layout": f"layouts/mbs-{number % 3}", "status": "ok",
+                         "samples": tuple(draw.uniform(1, 2) for _ in range(4))})
+    found = timing.ratio(pandas.DataFrame(rows), "a", "b")
+    asked = [[row["implementation"], {"environment": "own", "number": row["process"], "layout": row["layout"]}, row["samples"]] for row in rows]
+    assert page().value(f"Object.values(new Paired({json.dumps(asked)}).ratio('a', 'b'))") == pytest.approx([found.value, found.low, found.high])
+
+
+class _about(list):
+    """Names of the page as objects."""
+
+    def __init__(self, rows):
+        super().__init__(type("About", (), row) for row in rows)
+
+
+def _same(one, contest, names):
+    ranking = contest.rank(names)
+    assert one["winner"] == ranking.winner and [name for name, _ in one["ratios"]] == list(ranking.ratios)
+    failed = set(contest.failed) & names
+    assert one["decided"] == (ranking.decided and (bool(ranking.second) or not failed))
+    assert one["settled"] == (ranking.settled and (bool(ranking.second) or not failed))
+    assert one["equivalent"] == list(ranking.equivalent) and one["open"] == list(ranking.open)
+    for (_, mine), theirs in zip(one["ratios"], ranking.ratios.values()):
+        for bound in ("value", "low", "high"):
+            value = math.inf if mine[bound] is None else mine[bound]  # as JSON has no infinity
+            assert value == pytest.approx(getattr(theirs, bound), rel=1e-5)
+
+
+def _same_point(asked, answer, curves, names):
+    curve = next(one for one in curves if one.scene == answer["curve"])
+    form = curve.points.setting.map(lambda setting: "saddle" if setting.startswith("saddle") else "" if setting.startswith(("rattle", "multistep")) else "penalty")
+    row = fastest(meeting(curve.points[curve.points.implementation.isin(names) & ~form.isin(asked["no"])], asked["error"]), curve.rounds)
+    assert (row is None) == (answer["point"] is None)
+    if row:
+        assert (row["implementation"], row["setting"], row["step"]) == tuple(answer["point"][key] for key in ("name", "setting", "step"))
+        assert (bool(row["decided"]), bool(row["settled"])) == (answer["point"]["decided"], answer["point"]["settled"])
+        assert row["equivalent"].split("; ") == (answer["point"]["equal"] or [""])
+
+
+def test_an_example_of_the_front_page_is_what_the_page_says(page, folder):
+    browser = page()
+    browser.open(folder / "index.html")
+    links = browser.value("[...document.querySelectorAll('#explore ~ ul li')].map(one => [one.querySelector('a').getAttribute('href'), one.innerText])")
+    assert len(links) == 3
+    for link, text in links:
+        page(link.partition("#")[2])
+        assert f": {winner(browser)}" in text
+
+
+def test_each_box_takes_somebody_out(page):
+    browser = page("scene=four-bar:49")
+    everyone = browser.value("explorer.shown.names.size")
+    for box in WITHOUT:
+        press(browser, box)
+        assert browser.value("explorer.shown.names.size") < everyone
+        assert browser.value(f"[...explorer.shown.names].every((name) => !ABOUT.get(name).{box})")
+        assert f"no={box}" in browser.value("location.hash")
+        press(browser, box)
+    press(browser, "penalty")
+    assert browser.value("explorer.shown.form") == "saddle-point"
+    press(browser, "saddle")
+    assert "Nobody" in said(browser)
+    press(browser, "reset")
+    first = winner(browser)
+    browser.value(f"[...document.querySelectorAll('#contenders input')].find((one) => one.value === {json.dumps(first)}).click()")
+    assert winner(browser) not in ("", first) and "without=" in browser.value("location.hash")
+    press(browser, "reset")
+    assert winner(browser) == first and browser.value("document.querySelectorAll('input[type=checkbox]:checked').length") >= 5
+
+
+def test_the_case_can_be_chosen_and_stands_in_the_address(page):
+    browser = page()
+    put(browser, "family", "ladder", "change")
+    put(browser, "n", 150)
+    assert browser.value("explorer.shown.near.map((one) => one.contest.family)") == ["ladder", "ladder"]
+    assert not browser.value("explorer.shown.near[0].exact") and "ladder" in said(browser)
+    assert browser.value("document.querySelector('#copy pre').textContent").startswith("build/mbs bench ladder:38 ")
+    put(browser, "family", "", "change")
+    put(browser, "fill", 40)
+    put(browser, "error", 1e-3)
+    put(browser, "deadline", 30)
+    assert "30 µs" in said(browser) and "0.001 m" in said(browser) and browser.value("!!document.querySelector('#points svg') && !!document.querySelector('#model svg')")
+    commands = browser.value("[...document.querySelectorAll('#copy pre')].map((one) => one.textContent)")
+    assert commands[1].startswith("build/mbs simulate ") and commands[2].startswith("study/advise ") and "--error 0.001 --deadline-us 30" in commands[2]
+    before, address = said(browser), browser.value("location.hash")
+    page(address[1:])
+    assert said(browser) == before and browser.value("location.hash") == address
+    put(browser, "scene", "four-bar:49", "change")
+    assert browser.value("explorer.shown.near[0].exact") and browser.value("document.getElementById('n').value") == "100"
+    put(browser, "machine", "second", "change")
+    assert browser.value("explorer.shown.set.machine") == SECOND and "machine=second" in browser.value("location.hash")
+
+
+def test_damaged_addresses_do_no_harm(page):
+    for question in ("n=-3&family=<b>&no=x,own&without=nobody&mine={", "scene=%00&machine=..&n=1e99&error=x", "mine=%7B%22n%22%3A5%7D"):
+        browser = page(question)
+        assert said(browser)
+
+
+def test_my_scene_moves_the_pin(page):
+    browser = page()
+    before = browser.value("document.getElementById('pin').dataset.n")
+    put(browser, "mine", json.dumps(DESCRIBED))
+    press(browser, "use")
+    assert (before, browser.value("document.getElementById('pin').dataset.n")) == ("100", "50")
+    assert browser.value("document.images.length") == 0 and DESCRIBED["scene"] in browser.value("document.getElementById('mine-said').innerText")
+    assert "non-zeros a column of the factor: 100000 lies outside" in said(browser) and "<b>a step too long</b>" in said(browser)
+    assert browser.value("document.querySelector('#copy pre').textContent").startswith(f"build/mbs bench '{DESCRIBED['scene']}' ")
+    press(browser, "forget")
+    assert browser.value("document.getElementById('pin').dataset.n") == "100"
+    for text, what in (("{", "whole JSON"), ("[1]", "not what"), ("{}", "neither"), ("hello", "not what"), (" ", "nothing")):
+        put(browser, "mine", text)
+        press(browser, "use")
+        assert what in browser.value("document.getElementById('mine-said').innerText")
+
+
+def test_own_measurements_are_drawn_over_ours(page):
+    browser = page()
+    drop = "document.getElementById('drop').dispatchEvent(new DragEvent('drop', {{dataTransfer: (() => {{ const one = new DataTransfer(); {0}; return one; }})(), bubbles: true, cancelable: true}}))"
+    browser.value(drop.format(f"one.items.add(new File([{json.dumps(PRINTED)}], 'bench.txt'))"))
+    browser.wait("document.querySelectorAll('#near-0 .own').length === 2")
+    assert "Some processor" in said(browser) and browser.value("explorer.shown.near[0].contest.scene") == "four-bar:10"
+    assert "2.19" in browser.value("document.querySelector('#near-0 tr[data-name=\"csc_klu/refactor\"]').textContent")
+    rows = [{"run_type": "iteration", "name": f"{name}/four-bar:10", "cpu_time": us, "steps": 10, "variables": 22, "fill_percent": 25.6}
+            for name, us in (("eigen_dense/llt", 50), ("eigen_dense/llt", 70), ("csc_klu/refactor", 20))]
+    browser.value(drop.format(f"one.setData('text', {json.dumps(json.dumps({'context': {'cpu_model': SECOND}, 'benchmarks': rows}))})"))
+    browser.wait("document.querySelectorAll('#near-0 .own').length === 2 && explorer.state.mine.own[0].us === 6")
+    address = browser.value("location.hash")
+    page(address[1:])
+    assert browser.value("document.querySelectorAll('#near-0 .own').length") == 2
+
+
+def test_rows_marks_and_files(page):
+    browser = page("scene=ladder:10&no=own")
+    browser.value("document.querySelector('#near-0 .bar').dispatchEvent(new MouseEvent('click'))")
+    assert browser.value("document.querySelector('#near-0 details').open && !document.querySelector('#near-0 tr.raw').hidden")
+    assert "raw/families/" in browser.value("document.querySelector('#near-0 tr.raw').textContent")
+    browser.value("""URL.createObjectURL = (blob) => { window.saved = blob; return 'blob:none'; }; HTMLAnchorElement.prototype.click = function () { window.link = this.download; };""")
+    for button, name, start in (("csv", "ranking.csv", "kind,machine"), ("svg-map", "map.svg", "<svg"), ("svg-ranking", "ranking.svg", "<svg")):
+        press(browser, button)
+        text = browser.value("saved.text()")
+        assert browser.value("link") == name and text.startswith(start) and "var(--" not in text
+    press(browser, "csv")
+    lines = browser.value("saved.text()").splitlines()
+    assert any(line.startswith("measured,") and f",{winner(browser)},fastest,1,1,1," in line for line in lines) and any(line.startswith("interpolated,") for line in lines)
+    assert browser.value("cell('=1+1')") == "'=1+1" and browser.value("cell('a\"b,c')") == '"a""b,c"'
+    browser.value("document.querySelectorAll('#map .mark')[3].dispatchEvent(new MouseEvent('click'))")
+    assert browser.value("explorer.state.scene") == browser.value("document.querySelectorAll('#map .mark title')[3].textContent.split(': ')[0]")
+
+
+def test_a_set_without_contests_has_a_page(browser, folder, tmp_path):
+    for name in ("set.json", "registry.json"):
+        shutil.copyfile(folder / name, tmp_path / name)
+    site.write_index(tmp_path)
+    browser.complaints.clear()
+    browser.open(tmp_path / "explore.html")
+    browser.wait("!!window.explorer")
+    assert "Nobody" in said(browser) and browser.complaints == []
+
+
+def test_keys_width_and_speed(page):
+    browser = page("scene=ladder:10")
+    browser.value("document.getElementById('own').focus()")
+    browser.key(" ")
+    assert browser.value("explorer.state.no") == ["own"]
+    unnamed = browser.value("""[...document.querySelectorAll('input, select, textarea, button')].filter((one) =>
+      !one.labels?.length && !one.getAttribute('aria-label') && !one.textContent.trim()).map((one) => one.outerHTML)""")
+    assert unnamed == []
+    assert browser.value("[...document.querySelectorAll('svg')].every((one) => one.getAttribute('role') === 'img' && one.getAttribute('aria-label'))")
+    for width in (360, 1300, 1600):
+        browser.resize(width, 800)
+        browser.value("new Promise((done) => setTimeout(done, 400))")
+        browser.value("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
+        assert browser.value(BEYOND) <= 0
+        assert width == 360 or browser.value(HIDDEN) == []
+    browser.resize(1200, 760)
+    assert min(browser.value("(() => { change({n: 90 + Math.random()}); return explorer.took; })()") for _ in range(5)) < 100  # ms

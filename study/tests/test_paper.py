@@ -1,0 +1,128 @@
+# study/paper: the paper in the repository is of its set, and each way to be wrong is found. No LaTeX is needed.
+import shutil
+
+import pytest
+
+from analysis.core import fragments
+from analysis.core.files import ROOT, read_json, write_json
+from study.core.main import newest
+from study.tests.conftest import study
+from study.tools.paper import artifact, audit
+from study.tools.paper.claims import claims
+from study.tools.paper.known import Known
+from study.tools.paper.numbers import NOT_MEASURED, Number, numbers
+
+TEXT = audit.source()
+BIBLIOGRAPHY = (ROOT / "paper" / "references.bib").read_text(encoding="utf-8")
+CLAIMS = {one.name: (True, "") for one in claims()}
+pytestmark = pytest.mark.xdist_group("test_paper.py")
+
+
+@pytest.fixture(scope="module")
+def known():
+    return Known(newest())
+
+
+@pytest.fixture(scope="module")
+def found(known):
+    return numbers(known)
+
+
+def wrong(text, found, claimed=CLAIMS):
+    return list(audit.of_text(text, found, claimed))
+
+
+def in_text(addition):
+    """The paper with a sentence more."""
+    return TEXT.replace(r"\section{Threats", addition + "\n" + r"\section{Threats")
+
+
+def test_the_paper_is_of_the_newest_set(known, found):
+    claimed = artifact.judged(known)
+    assert [one for one in audit.audit(known, TEXT, found, claimed)] == []
+    assert f"`{known.folder.name}`" in artifact.FILE.read_text(encoding="utf-8")
+
+
+def test_readme_rule_and_paper_are_of_one_commit(known):
+    named = {name for path in fragments.texts() for _, name, *_ in fragments.MARKED.findall(path.read_text(encoding="utf-8"))}
+    named |= {read_json(fragments.RULE).get("set")} - {None}
+    assert {read_json(ROOT / "results" / name / "set.json")["context"]["commit"] for name in named} == {known.context["commit"]}
+
+
+def test_every_number_has_a_source_and_most_are_measured(found):
+    assert all(one.table for one in found.values() if one.text != NOT_MEASURED)
+    assert sum(one.text != NOT_MEASURED for one in found.values()) > 60
+    assert all(len(set(one.records)) == len(one.records) for one in found.values())
+
+
+@pytest.mark.parametrize("typed", ["KLU takes 1.31 times as long.", "On 19 mechanisms it leads.", r"\caption{At $n=82$ it is fast.}", "10\\,µs a step"])
+def test_a_typed_number_is_found(found, typed):
+    assert [one for one in wrong(in_text(typed), found) if "is typed" in one]
+
+
+def test_a_measured_number_may_not_be_called_given(found):
+    name, one = next((name, one) for name, one in found.items() if one.records and one.text.replace(".", "").isdigit() and len(one.text) > 3)
+    assert any(f"is the measured number {name}" in line for line in wrong(in_text(rf"\given{{{one.text}}}"), found))
+
+
+@pytest.mark.parametrize("addition, said", [
+    (r"\val{real.nothing}", "the value 'real.nothing', which is not defined"), (r"\studytable{prizes}", "the table 'prizes', which is not defined"),
+    (r"\studyfigure{f8}", "the figure 'f8', which is not defined"), (r"\holds{flat}", "the claim 'flat', which is not defined"),
+    (r"\either{flat}{yes}{no}{unknown}", "the claim 'flat', which is not defined")])
+def test_an_unknown_name_is_found(found, addition, said):
+    assert any(said in line for line in wrong(in_text(addition), found))
+
+
+def test_what_is_not_used_is_found(found):
+    assert "the value 'real.more' is defined and not used" in wrong(TEXT, found | {"real.more": Number("3", "families/winners")})
+    assert "the claim 'more' is defined and not used" in wrong(TEXT, found, CLAIMS | {"more": (True, "")})
+
+
+@pytest.mark.parametrize("truth", [False, None])
+def test_a_claim_that_does_not_hold_is_found(found, truth):
+    assert any("the claim 'sparse' does not hold" in line for line in wrong(TEXT, found, CLAIMS | {"sparse": (truth, "")}))
+    assert wrong(TEXT, found, CLAIMS | {"batches": (truth, "")}) == []  # for which the paper has a sentence each
+
+
+@pytest.mark.parametrize("text, bibliography, said", [
+    (TEXT + r"\cite{nobody}", BIBLIOGRAPHY, "no 'nobody'"), (TEXT.replace(r"\cite{amd}", ""), BIBLIOGRAPHY, "'amd' of references.bib is not cited"),
+    (TEXT, BIBLIOGRAPHY.replace("doi = {10.1137/0805005}", "year = {1995}"), "'vanderbei1995' of references.bib has no DOI"),
+    (TEXT + r"\tag{99}", BIBLIOGRAPHY, "no equation (99)")])
+def test_references_and_equations(text, bibliography, said):
+    assert any(said in line for line in audit.of_references(text, bibliography))
+
+
+def test_a_dirty_or_mixed_or_stale_set_is_found(known, tmp_path):
+    copy = Known(shutil.copytree(known.folder, tmp_path / known.folder.name))
+    assert list(audit.of_set(copy)) == []
+    context = next(path for path in sorted((copy.folder / "contexts").glob("*.json")))
+    write_json(context, read_json(context) | {"dirty": "true", "commit": "0" * 40})
+    digests = copy.folder / "realtime" / "tables.json"
+    write_json(digests, read_json(digests) | {"records": "0" * 64})
+    with open(copy.folder / "stability" / "windows.csv", "a", encoding="utf-8") as file:
+        file.write("\n")
+    said = "\n".join(audit.of_set(copy))
+    for part in ("with changes", "another commit", "not those of its records", "windows.csv is not as it was written"):
+        assert part in said
+
+
+def test_built_files_of_another_set_are_found(known, tmp_path, monkeypatch):
+    monkeypatch.setattr(audit, "STAMP", tmp_path / "set.json")
+    assert list(audit.built(known)) == []  # nothing was built
+    write_json(audit.STAMP, audit.stamp(known))
+    assert list(audit.built(known)) == []
+    write_json(audit.STAMP, audit.stamp(known) | {"set": "another"})
+    assert "is of another at" in next(audit.built(known))
+
+
+def test_an_old_artifact_is_found(known, tmp_path, monkeypatch):
+    monkeypatch.setattr(artifact, "FILE", tmp_path / "ARTIFACT.md")
+    artifact.FILE.write_text((ROOT / "paper" / "ARTIFACT.md").read_text(encoding="utf-8").replace("| claim |", "| claims |"), encoding="utf-8")
+    claimed = artifact.judged(known)
+    assert list(artifact.stale(known, claimed))
+    assert artifact.refresh(known, claimed) and not list(artifact.stale(known, claimed))
+
+
+def test_a_set_that_is_not_stored_is_refused(tmp_path):
+    done = study("paper", "--audit", tmp_path)
+    assert done.returncode == 2 and "is no stored set" in done.stderr

@@ -1,0 +1,51 @@
+# paper/ARTIFACT.md: the places that are filled from the set of the paper.
+import math
+import re
+
+from analysis.core.files import ROOT, digest, write_text
+from study.tools.paper.claims import claims
+
+FILE = ROOT / "paper" / "ARTIFACT.md"
+MARKED = re.compile(r"(<!-- of the paper's set: (\w+) -->\n)(.*?)(<!-- end -->)", re.S)
+SAYS = {True: "holds", False: "does not hold", None: "not measured"}
+
+
+def filled(text, known, claimed):
+    made = {"set": lambda: _set(known), "claims": lambda: _claims(known, claimed), "archives": lambda: _archives(known)}
+    return MARKED.sub(lambda one: one[1] + made[one[2]]() + one[4], text)
+
+
+def refresh(known, claimed):
+    """Whether the file changed."""
+    before = FILE.read_text(encoding="utf-8")
+    after = filled(before, known, claimed)
+    if after != before:
+        write_text(FILE, after)
+    return after != before
+
+
+def stale(known, claimed=None):
+    text = FILE.read_text(encoding="utf-8")
+    if filled(text, known, claimed or judged(known)) != text:
+        yield f"paper/ARTIFACT.md is not of {known.folder.name} as it is now: study/paper --fill"
+
+
+def judged(known):
+    """{claim: (whether it holds, what was found)}"""
+    return {one.name: one.found(known) for one in claims()}
+
+
+def _set(known):
+    return f"Set `{known.folder.name}` of {known.facts['date'][:10]}, commit `{known.context['commit'][:10]}`, {known.context['cpu_model']}.\n"
+
+
+def _claims(known, claimed):
+    """claim → command → what it should give → minutes → where"""
+    rows = [f"| {one.text} ({SAYS[claimed[one.name][0]]}) | `study/run --profile {known.facts['profile']} --part {one.part}` | {claimed[one.name][1] or '–'} | "
+            f"{math.ceil(known.view(one.part).settings['seconds'] / 60)} | `{one.part}.html`; section {one.where} |\n" for one in claims()]
+    return "| claim | command | expected | minutes | where |\n|---|---|---|---|---|\n" + "".join(rows)
+
+
+def _archives(known):
+    rows = [f"| `raw/{path.name}` | {path.stat().st_size / 2**20:.2f} | `{digest(path)}` |\n" for path in sorted((known.folder / "raw").glob("*.tar.xz"))]
+    return "| archive | MB | SHA-256 |\n|---|---|---|\n" + "".join(rows)

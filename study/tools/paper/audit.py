@@ -1,0 +1,104 @@
+# study/paper --audit: what is wrong with the paper, its set and what was built, each a line. Needs no LaTeX.
+import re
+
+from analysis.core import records, schema
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, digest, read_json
+from analysis.core.parts import parts
+from study.tools.paper import artifact
+from study.tools.paper.tables import TABLES
+
+PAPER = ROOT / "paper"
+BUILD = PAPER / "build"
+STAMP = BUILD / "set.json"
+# What may hold digits that are no number of the text: names, lengths, what is marked as given, and the study's year.
+NO_TEXT = re.compile(r"\\(?:given|val|holds|cite|label|ref|eqref|tag|input|studyfigure|studytable|longstudytable|includegraphics|texttt)(?:\[[^]]*\])?\{(?:[^{}]|\{[^{}]*\})*\}"
+                     r"|\\(?:setlength|renewcommand)\{[^{}]*\}(?:\{[^{}]*\})?|[\^_]\{?[0-9]\}?|(?<!\d)2008(?!\d)")
+EQUATION = re.compile(r"\\begin\{equation\}(.*?)\\end\{equation\}", re.S)  # whose coefficients have one digit
+EITHER = re.compile(r"\\either\{([\w.]+)\}")
+USED = {"value": re.compile(r"\\val\{([^{}]*)\}"), "holds": re.compile(r"\\holds\{([^{}]*)\}"), "figure": re.compile(r"\\studyfigure\{([^{}]*)\}"),
+        "table": re.compile(r"\\(?:long)?studytable(?:\[[^]]*\])?\{([^{}]*)\}"), "cited": re.compile(r"\\cite\{([^{}]*)\}"), "tag": re.compile(r"\\tag\{([^{}]*)\}|Eq\.~\\given\{\((\d+)\)\}")}
+
+
+def audit(known, text, found, claimed):
+    """[what is wrong]; `found`: numbers by name; `claimed`: {claim: (whether it holds, what was found)}."""
+    return [*of_set(known), *of_text(text, found, claimed), *of_references(text, (PAPER / "references.bib").read_text(encoding="utf-8")),
+            *built(known), *artifact.stale(known)]
+
+
+def source():
+    """The paper without comments."""
+    return re.sub(r"(?<!\\)%.*", "", (PAPER / "paper.tex").read_text(encoding="utf-8"))
+
+
+def of_set(known):
+    """A set that is dirty, mixed, stale or not whole."""
+    context = known.context
+    for path in sorted((known.folder / "contexts").glob("*.json")) + [known.folder / "set.json"]:
+        one = read_json(path)
+        one = one.get("context", one)
+        if str(one.get("dirty")).lower() != "false":
+            yield f"{path}: measured from a tree with changes (dirty is {one.get('dirty')})"
+        yield from (f"{path}: is of another {key} than its set" for key in ("commit", "machine") if one.get(key) != context.get(key))
+    for part in parts():
+        if part not in known.facts["parts"]:
+            yield f"{known.folder} lacks the part {part}"
+            continue
+        try:
+            schema.need_unchanged(known.folder, part)
+            there = records.read_part(known.folder, part)
+            if read_json(known.folder / part / schema.DIGESTS)["records"] != schema.digest_of(there):
+                yield f"{known.folder / part}: its tables are not those of its records: study/figures {known.folder}"
+            for record in there:
+                records.need_same_origin(record, context, f"{known.folder}/raw/{part}")
+        except StudyError as error:
+            yield str(error)
+
+
+def of_text(text, found, claimed):
+    """Numbers that are typed; names that are unknown or not used; claims that do not hold."""
+    body = text = text[text.index(r"\begin{document}"):]
+    body = EQUATION.sub(lambda one: re.sub(r"(?<!\d)\d(?!\d)", " ", one[1]), body)
+    for line in NO_TEXT.sub(" ", re.sub(r"\\begin\{(\w+)\}(\[[^]]*\])?", " ", EITHER.sub(" ", body))).splitlines():
+        for digits in re.findall(r"\S*\d\S*", line):
+            yield rf"a number is typed: {digits} (a measured one is a \val, another \given)"
+    for digits in re.findall(r"\\given\{([^{}]*)\}", text):
+        for name, one in found.items():
+            if digits.strip("$") == one.text and one.records and len(re.sub(r"\D", "", digits)) > 2:
+                yield rf"\given{{{digits}}} is the measured number {name}"
+    for kind, known in (("value", found), ("table", [*TABLES]), ("figure", FIGURES)):
+        used = USED[kind].findall(text)
+        yield from (f"paper.tex uses the {kind} '{name}', which is not defined" for name in dict.fromkeys(used) if name not in known)
+        yield from (f"the {kind} '{name}' is defined and not used" for name in known if name not in used)
+    held, chosen = USED["holds"].findall(text), EITHER.findall(text)
+    yield from (f"paper.tex asks for the claim '{name}', which is not defined" for name in dict.fromkeys([*held, *chosen]) if name not in claimed)
+    yield from (f"the claim '{name}' is defined and not used" for name in claimed if name not in [*held, *chosen])
+    yield from (f"the claim '{name}' does not hold: {claimed[name][1] or 'not measured'}" for name in dict.fromkeys(held) if name in claimed and not claimed[name][0])
+
+
+def of_references(text, bibliography):
+    """Who is cited and unknown, or known and not cited, or has no DOI; equations that have no place in paper/."""
+    entries = dict(re.findall(r"@\w+\{(\w+),(.*?)\}\}\s*(?=\n|$)", bibliography, re.S))
+    cited = {name for group in USED["cited"].findall(text) for name in group.split(",")}
+    yield from (f"references.bib has no '{name}'" for name in sorted(cited - set(entries)))
+    yield from (f"'{name}' of references.bib is not cited" for name in entries if name not in cited)
+    yield from (f"'{name}' of references.bib has no DOI" for name, entry in entries.items() if "doi = {10." not in entry)
+    equations = "\n".join((PAPER / name).read_text(encoding="utf-8") for name in ("README.md", "other_schemes.md"))
+    yield from (f"paper/README.md has no equation ({number})" for pair in USED["tag"].findall(text) for number in [next(filter(None, pair))]
+                if f"    ({number})" not in equations)
+
+
+def stamp(known):
+    """What the built files are of: the set, its commit and its tables."""
+    kept = {part: digest(known.folder / part / schema.DIGESTS) for part in known.facts["parts"]}
+    return {"set": known.folder.name, "commit": known.context["commit"], "tables": kept}
+
+
+def built(known):
+    """Figures and numbers that lie in paper/build and are of another set."""
+    if STAMP.exists() and read_json(STAMP) != stamp(known):
+        was = read_json(STAMP)
+        yield f"paper/build is of {was.get('set')} at {str(was.get('commit'))[:10]}, not of {known.folder.name} as it is now: run study/paper, or remove it"
+
+
+FIGURES = ("mechanisms", "held", "own_fill", "map", "phases", "work", "window", "steps", "own", "engines")

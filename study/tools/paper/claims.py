@@ -1,0 +1,131 @@
+# What the paper claims, and whether the set says so: the build stops at a claim that does not hold (\holds), and chooses the
+# sentence that fits where the paper has one for each outcome (\either).
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from analysis.accuracy import pairs
+from analysis.core.text import between, number
+from analysis.families import bounds, rule
+from analysis.families.figures import fastest_own
+from analysis.limit import held as limits
+from study.tools.paper.numbers import DENSE, HYBRID, losses, mean, of, percent, real_mechanisms, span
+
+PAPER_PENALTY = 1e8  # the factor of 2008, at 1.25 ms
+
+
+@dataclass(frozen=True)
+class Claim:
+    name: str
+    text: str         # what is claimed
+    part: str         # whose run tells
+    where: str        # in the paper: its section's label
+    found: Callable   # Known → (whether it holds, None if nothing was measured; what a run should give)
+
+
+def claims():
+    return (
+        Claim("agree", "Whoever is ranked on a mechanism agrees with the reference", "families", "method", _agree),
+        Claim("sparse", "On most mechanisms at their own fill the fastest library is a sparse one", "families", "real", _sparse),
+        Claim("single", "The best single library is within 1.3 times of the fastest on average over mechanisms", "families", "real", _single),
+        Claim("assembly", "Sparse assembly makes dense Cholesky faster in every filled cell", "map", "fill", _assembly),
+        Claim("overtakes", "Somewhere a dense factorization is as fast as the fastest library, or it is that one", "map", "fill", _overtakes),
+        Claim("rule", "The rule keeps its bounds on families left out", "families", "price", _rule),
+        Claim("automatic", "The automatic penalty factor is ok in every cell of size and step", "stability", "window", _automatic),
+        Claim("below", "At the largest size and the step of 2008 the factor of 2008 lies below the estimated window", "stability", "window", _below),
+        Claim("mixed", "Mixed precision is nowhere shown to gain a fifth at the same error class", "accuracy", "error", _mixed),
+        Claim("compiled", "The fastest code of our own is shown to be faster than the fastest library on every mechanism", "families", "own", _compiled),
+        Claim("batches", "Batches have the gain that was asked of them", "limit", "own", _batches),
+        Claim("engines", "No engine is shown to be faster at equal error than the fastest library", "engines", "own", _engines),
+        Claim("quiet", "The machine itself lost no deadline", "realtime", "latency", _quiet))
+
+
+def _agree(known):
+    rows = known.tables("families")["scenes"]
+    ranked = rows[(rows.status == "ok") & rows.to_rival.notna()]
+    wrong = ranked[ranked.verdict != "agrees"]
+    return (wrong.empty if len(ranked) else None), f"{len(ranked) - len(wrong)} of {len(ranked)} agree"
+
+
+def _sparse(known):
+    rows = real_mechanisms(known)
+    dense = known.registry.dense
+    count = int((~rows.winner.isin(dense)).sum())
+    return (2 * count > len(rows) if len(rows) else None), f"more than half; here {count} of {len(rows)}"
+
+
+def _single(known):
+    name, ratios = next(iter(losses(known).items()), ("", None))
+    return (mean(ratios) <= 1.3 if name else None), f"at most 1.3; here {name} {number(mean(ratios))}" if name else ""
+
+
+def _assembly(known):
+    results, cells = of(known.tables("map"), known.view("map")), known.tables("map")["cells"]
+    scenes = cells[(cells.layer == "libraries") & cells.fill_asked.notna()].scene
+    found = [one for scene in scenes for one in [results.ratio(scene, DENSE, HYBRID)] if one]
+    return (all(one.low > 1 for one in found) if found else None), (f"above 1; here {span([one.low for one in found])} at the lower ends" if found else "")
+
+
+def _overtakes(known):
+    cells = known.tables("map")["cells"]
+    rows = cells[(cells.layer == "libraries") & (cells.winner != "")]
+    count = sum(bool(set(text.split()) & known.registry.dense) for text in rows.equivalent)
+    return (count > 0 if len(rows) else None), f"at least one cell; here {count} of {len(rows)}"
+
+
+def _rule(known):
+    held = known.tables("families")["held"]
+    if held.empty:
+        return None, ""
+    found = rule.summary(held)
+    kept = all(found[name] <= most for name, most in bounds.LOSS.items()) and found["within"] >= bounds.SHARE
+    return kept, (f"mean loss at most {percent(bounds.LOSS['mean_loss'])}, worst {percent(bounds.LOSS['worst_loss'])}, {percent(bounds.SHARE)} of the times; "
+                  f"here {percent(found['mean_loss'])}, {percent(found['worst_loss'])}, {percent(found['within'])}")
+
+
+def _automatic(known):
+    rows = known.tables("stability")["maps"]
+    rows = rows[(rows.penalty_asked == "auto") & (rows.precision == "double") & (rows.status != "dropped")]
+    good = int((rows.status == "ok").sum())
+    return (good == len(rows) if len(rows) else None), f"all; here {good} of {len(rows)}"
+
+
+def _below(known):
+    rows = known.tables("stability")["windows"]
+    rows = rows[(rows.precision == "double") & (abs(rows.step - 1.25e-3) < 1e-9) & rows.lower.notna()].nlargest(1, "loops")
+    return (bool(PAPER_PENALTY < rows.lower.iloc[0]) if len(rows) else None), (
+        f"the window begins above {number(PAPER_PENALTY)}; here at {number(rows.lower.iloc[0])}" if len(rows) else "")
+
+
+def _mixed(known):
+    rows = known.tables("accuracy")["pairs"]
+    rows = rows[(rows.kind == pairs.PRECISION) & rows.ratio.notna() & rows.second.str.contains("mixed")]
+    won = pairs.gains(rows) if len(rows) else rows
+    return (won.empty if len(rows) else None), f"none; here {len(won)} of {len(rows)}"
+
+
+def _compiled(known):
+    rows = fastest_own(known.tables("families")["scenes"], known.registry)
+    ahead = int((rows.to_rival_high < 1).sum())
+    return (ahead == len(rows) if len(rows) else None), (f"time over the library's below 1; here {span(rows.to_rival)}, {ahead} of {len(rows)} shown"
+                                                         if len(rows) else "")
+
+
+def _batches(known):
+    rows = known.tables("limit")["held"]
+    rows = rows[rows.what.str.contains("batches") & (rows.verdict != limits.NOT_MEASURED)]
+    kept = rows.verdict.isin([limits.HELD, limits.PARTLY])
+    return (bool(kept.all()) if len(rows) else None), "; ".join(
+        f"{row.sign} {number(row.bound)}; here {between(row.worst, row.low, row.high)}" for row in rows.itertuples())
+
+
+def _engines(known):
+    rows = known.tables("engines")["equal_error"]
+    rows = rows[(rows.side == "library") & rows.ratio.notna()]
+    behind = rows[rows.high < 1]
+    return (behind.empty if len(rows) else None), f"none; here {len(behind)} of {len(rows)} comparisons"
+
+
+def _quiet(known):
+    rows = known.tables("realtime")["machine"]
+    rows = rows[rows.status == "done"]
+    return (bool(rows.lost.sum() == 0) if len(rows) else None), f"0; here {number(rows.lost.sum(), 5)} in {number(rows.seconds.sum())} s"

@@ -1,0 +1,52 @@
+# What the paper is built from: the tables of one set, and the other stored sets.
+import importlib
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import pandas
+
+from analysis.core import schema
+from analysis.core.files import ROOT, read_object
+from analysis.core.view import View
+
+
+@dataclass(frozen=True)
+class Known:
+    folder: Path
+    _tables: dict = field(default_factory=dict)
+
+    def tables(self, part):
+        """{table: DataFrame} of a part; a table that a set of an older schema lacks is empty."""
+        if part not in self._tables:
+            kept = read_object(self.folder / part / schema.DIGESTS, tables=dict)["tables"]
+            self._tables[part] = {name: schema.read_table(self.folder, part, name) if name in kept else
+                                  schema.conform(pandas.DataFrame(columns=list(columns)), columns, f"{part}/{name}.csv")
+                                  for name, columns in schema.of_part(part).items()}
+        return self._tables[part]
+
+    def view(self, part="map"):
+        return View(self.folder, part)
+
+    def said(self, part):
+        """The part's own answers, one text."""
+        module = importlib.import_module(f"analysis.{part}.sentences")
+        return [one["text"] for one in module.answers(self.tables(part), self.view(part))]
+
+    @property
+    def facts(self):
+        return self.view().facts
+
+    @property
+    def context(self):
+        return self.facts["context"]
+
+    @property
+    def registry(self):
+        return self.view().registry
+
+    @cached_property
+    def others(self):
+        """The stored sets of other machines, as Known."""
+        found = [Known(path.parent) for path in sorted((ROOT / "results").glob("*/set.json")) if path.parent != self.folder]
+        return [one for one in found if one.context["cpu_model"] != self.context["cpu_model"]]

@@ -1,0 +1,87 @@
+# study/paper [SET]: the paper of a stored set, as PDF; study/paper --audit: is it of this set, and does it say what the set says?
+import os
+import shutil
+import subprocess
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, write_json, write_text
+from study.core.main import need_modules, newest
+from study.core.options import Parser, directory
+
+LATEX = ("latexmk", "biber")
+
+
+def paper(arguments):
+    parser = Parser(prog="study/paper", description="Builds paper/build/paper.pdf from a stored set. The build fails where the paper types a number, "
+                    "names one that is not there, or claims what the set does not say.")
+    parser.add_argument("set", nargs="?", type=directory, help="its directory (the newest in results/)")
+    parser.add_argument("--audit", action="store_true", help="only say what is wrong, a line each; needs no LaTeX")
+    parser.add_argument("--fill", action="store_true", help="only fill paper/ARTIFACT.md anew")
+    options = parser.parse_args(arguments)
+    need_modules()
+    from study.tools.paper import artifact, audit
+    from study.tools.paper.known import Known
+    from study.tools.paper.numbers import numbers
+    known = Known((options.set or newest()).resolve())
+    if known.folder.parent != ROOT / "results":
+        raise StudyError(f"{known.folder} is no stored set: the paper is built from one of results/ (study/store)")
+    claimed = artifact.judged(known)
+    if options.fill:
+        print("filled anew: paper/ARTIFACT.md" if artifact.refresh(known, claimed) else "paper/ARTIFACT.md is as it was")
+        return 0
+    if not options.audit:
+        need_latex()
+        artifact.refresh(known, claimed)
+        shutil.rmtree(audit.BUILD, ignore_errors=True)  # which may be of another set
+    found = numbers(known)
+    wrong = list(audit.audit(known, audit.source(), found, claimed))
+    for line in wrong:
+        print(f"paper: {line}")
+    if wrong:
+        return 1
+    if options.audit:
+        print(f"paper: of {known.folder.name} at {known.context['commit'][:10]}: {len(found)} numbers, {len(claimed)} claims, nothing wrong")
+        return 0
+    write_parts(known, found, claimed)
+    return build()
+
+
+def need_latex():
+    missing = [name for name in LATEX if shutil.which(name) is None]
+    if missing:
+        raise StudyError(f"{', '.join(missing)} is missing: run study/setup --paper")
+
+
+def write_parts(known, found, claimed):
+    """What paper.tex takes in: numbers, claims, tables and figures of the set, and the stamp that says of which."""
+    from analysis.core.style import save
+    from study.tools.paper import audit, figures, tables
+    words = {True: "yes", False: "no", None: "unknown"}
+    lines = [rf"\csdef{{number@{name}}}{{{tables.tex(one.text)}}}" for name, one in found.items()]
+    lines += [rf"\csdef{{claim@{name}}}{{{words[holds]}}}" for name, (holds, _) in claimed.items()]
+    write_text(audit.BUILD / "numbers.tex", MACROS + "\n".join(lines) + "\n")
+    for name, text in tables.tables(known).items():
+        write_text(audit.BUILD / f"table-{name}.tex", text + "\n")
+    write_text(audit.BUILD / "table-numbers.tex", tables.of_numbers(found))
+    print("drawing", flush=True)
+    for name, figure in figures.figures(known).items():
+        save(figure, audit.BUILD / f"figure-{name}.pdf")
+    write_json(audit.STAMP, audit.stamp(known))
+
+
+def build():
+    from study.tools.paper import audit
+    done = subprocess.run(["latexmk", "-pdf", "-interaction=nonstopmode", "-halt-on-error", "-file-line-error", "-outdir=build", "paper.tex"],
+                          cwd=audit.PAPER, env={**os.environ, "max_print_line": "1000"}, capture_output=True, text=True, errors="replace")
+    if done.returncode:
+        said = [line for line in done.stdout.splitlines() if line.startswith("!") or ".tex:" in line]
+        raise StudyError("LaTeX failed: " + "; ".join(said[:3] or done.stdout.splitlines()[-3:]) + f" (log: {audit.BUILD / 'paper.log'})")
+    print(f"paper: {audit.BUILD / 'paper.pdf'}")
+    return 0
+
+
+MACROS = r"""% Made by study/paper: the numbers and claims of its set.
+\DeclareRobustCommand{\val}[1]{\ifcsdef{number@#1}{\hyperlink{where:#1}{\csuse{number@#1}}}{\PackageError{paper}{no number #1}{}}}
+\DeclareRobustCommand{\holds}[1]{\ifcsstring{claim@#1}{yes}{}{\PackageError{paper}{the claim #1 does not hold}{}}}
+\DeclareRobustCommand{\either}[4]{\ifcsstring{claim@#1}{yes}{#2}{\ifcsstring{claim@#1}{no}{#3}{\ifcsstring{claim@#1}{unknown}{#4}{\PackageError{paper}{no claim #1}{}}}}}
+"""

@@ -1,0 +1,175 @@
+# The paper's tables, as LaTeX, from tables of the set.
+import math
+import re
+from textwrap import shorten
+
+import pandas
+
+from analysis.core.text import between, bounded, ends, number
+from analysis.engines.equal_error import SIDES
+from analysis.engines.figures import title
+from analysis.engines.runs import NATIVE
+from analysis.families import bounds
+from analysis.families.figures import best_form, fastest_own
+from analysis.families.sentences import cases
+from analysis.map import summary
+from analysis.map.results import of
+from study.tools.paper.numbers import led, losses, mean, real_mechanisms
+
+ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}",
+           "^": r"\textasciicircum{}", "$": r"\$", "<": r"\textless{}", ">": r"\textgreater{}", "/": r"/\allowbreak{}", ":": r":\allowbreak{}", "@": r"@\allowbreak{}", "µ": r"\textmu{}", "÷": r"\(\div\)", "×": r"\(\times\)", "≥": r"\(\ge\)",
+           "≤": r"\(\le\)", "→": r"\(\to\)", "≈": r"\(\approx\)", "α": r"\(\alpha\)", "Δ": r"\(\Delta\)", "Φ": r"\(\Phi\)", "λ": r"\(\lambda\)", "·": r"\(\cdot\)",
+           "⁻": r"\textsuperscript{\(-\)}"} | {raised: rf"\textsuperscript{{{digit}}}" for digit, raised in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")}
+
+
+def tex(text):
+    """A text as LaTeX prints it."""
+    return re.sub("|".join(map(re.escape, ESCAPED)), lambda one: ESCAPED[one[0]], str(text))
+
+
+CHEAPEST = 8  # libraries of the table of prices
+TABLES = ("contenders", "decided", "ranking", "claims", "prices", "leaves", "defaults", "largest", "engines", "mechanisms")
+
+
+def tables(known):
+    """{name: LaTeX}"""
+    return {name: globals()[name](known) for name in TABLES}
+
+
+def of_numbers(found):
+    """The appendix: a line a number, to which its uses link."""
+    rows = "".join(rf"\hypertarget{{where:{name}}}{{{tex(name)}}} & {tex(shorten(one.text, 40, placeholder=' …'))} & {tex(one.table)} & {tex(_records(one))} \\" + "\n"
+                   for name, one in found.items())
+    return (r"\begin{longtable}{P{28mm}P{44mm}P{30mm}P{68mm}}\toprule number & value & table & record \\\midrule\endhead\bottomrule\endfoot" + "\n"
+            + rows + r"\end{longtable}" + "\n")
+
+
+def _records(one):
+    return "" if not one.records else one.records[0] + (f" +{len(one.records) - 1}" if len(one.records) > 1 else "")
+
+
+def table(rows, columns, long=False, nothing="Not measured in this set."):
+    """Rows, dicts by the heads of `columns`, {head: LaTeX column}. `long`: over several pages."""
+    if not rows:
+        return tex(nothing)
+    frame = pandas.DataFrame(rows, columns=list(columns))
+    style = frame.style.hide(axis="index").format(tex).format_index(tex, axis=1)
+    return style.to_latex(column_format="".join(columns.values()), hrules=True, environment="longtable" if long else None)
+
+
+def contenders(known):
+    """Who takes part, and what was tried for each."""
+    registry, tried = known.registry, known.tables("tuning")["alternatives"]
+    tried = tried[tried.status == "ok"]
+    rows = []
+    for name, one in registry.variants.items():
+        if name not in registry.examples:
+            mine = tried[tried.base == name]
+            rows.append({"variant": name, "library": f"{one['library']}" if name not in registry.own else "none: own", "form": one["description"],
+                         "2008": "yes" if one.get("role") == "paper" else "no", "tried": str(mine.alternative.nunique()),
+                         "longer / shorter": f"{(mine.low > 1).sum()} / {(mine.high < 1).sum()} of {len(mine)}" if len(mine) else "–"})
+    return table(rows, {"variant": r"P{30mm}", "library": r"P{26mm}", "form": r"P{74mm}", "2008": "l", "tried": "r", "longer / shorter": "l"})
+
+
+def decided(known):
+    """What the mechanisms were held to, and what was found."""
+    rows = [{"what": what, "asked": asked, "found": found, "holds": {True: "yes", False: "no", None: "–"}[holds]}
+            for what, asked, found, holds in bounds.bounds(known.tables("families"), known.registry)]
+    held = known.tables("limit")["held"]
+    rows += [{"what": row.what, "asked": f"{row.sign} {number(row.bound)}", "found": between(row.worst, row.low, row.high) if row.worst == row.worst
+              else "not measured", "holds": {"held": "yes", "not held": "no"}.get(row.verdict, row.verdict)} for row in held.itertuples() if row.worst == row.worst]
+    return table(rows, {"what": r"P{62mm}", "asked": r"P{27mm}", "found": r"P{52mm}", "holds": r"P{18mm}"})
+
+
+def ranking(known):
+    """Libraries over the mechanisms at their own fill."""
+    mine, lost = led(real_mechanisms(known)), losses(known)
+    rows = [{"library": name, "first or as fast": str(mine.get(name, 0)), "timed on": str(len(one)), "mean": number(mean(one)),
+             "worst": number(one.max()), "where": one.idxmax()} for name, one in lost.items()]
+    return table(rows, {"library": "l", "first or as fast": "r", "timed on": "r", "mean": "r", "worst": "r", "where": "l"})
+
+
+def claims(known):
+    """The claims of 2008, each with theirs, ours on each machine and the verdict."""
+    sets = [known, *known.others]
+    others = [one.tables("map")["claims"].set_index(["id", "claim"]) for one in sets[1:]]
+    rows = []
+    for row in known.tables("map")["claims"].itertuples():
+        mine = {"": row.id, "claim": row.claim, "2008": row.paper, sets[0].context["cpu_model"]: _ours(row)}
+        for one, its in zip(sets[1:], others):
+            mine[one.context["cpu_model"]] = _ours(its.loc[(row.id, row.claim)]) if (row.id, row.claim) in its.index else "–"
+        rows.append(mine | {"verdict": row.verdict})
+    width = 44 / len(sets)
+    heads = {head: r"P{%.0fmm}" % width for head in rows[0] if head not in ("", "claim", "2008", "verdict")} if rows else {}
+    return table(rows, {"": "l", "claim": r"P{61mm}", "2008": r"P{18mm}"} | heads | {"verdict": r"P{21mm}"}, long=True)
+
+
+def _ours(row):
+    return "–" if not row.ours else row.ours + (f" ({row.low} to {row.high})" if row.low else "")
+
+
+def prices(known):
+    """What it costs to take one library always, over the cells of the map: the cheapest."""
+    results = of(known.tables("map"), known.view("map"))
+    rows = [{"library": row["implementation"], "mean": number(row["mean"]), "worst": number(row["worst"]), "where": row["where"],
+             "cells": f"{row['cells']} of {row['of']}", "by pilot": str(row["rough"])} for row in summary.prices(results, results.layer("libraries"))[:CHEAPEST]]
+    return table(rows, {"library": "l", "mean": "r", "worst": "r", "where": "l", "cells": "l", "by pilot": "r"})
+
+
+def leaves(known):
+    """The ends of the rule."""
+    rows = [{"case": row["case"], "take": row["take"]} for row in cases(known.tables("families"), known.view("families"))]
+    return table(rows, {"case": r"P{75mm}", "take": r"P{88mm}"})
+
+
+def defaults(known):
+    """Defaults of other tools, as rules for our contenders."""
+    rows = [{"default": row["rule"], "chooses": row["chooses"], "mean": ("about " if row["rough"] else "") + number(row["mean"]), "worst": number(row["worst"])}
+            for row in known.tables("families")["defaults"].sort_values("mean").to_dict("records") if row["mean"] == row["mean"]]
+    return table(rows, {"default": r"P{40mm}", "chooses": r"P{92mm}", "mean": "r", "worst": "r"})
+
+
+def largest(known):
+    """Who keeps up with which size."""
+    rows = []
+    for row in known.tables("realtime")["largest"].itertuples():
+        if row.largest == row.largest:
+            rows.append({"implementation": row.implementation, "form": row.scheme, "deadline": f"{1e3 * row.step:g} ms", "largest N": number(row.largest, 5),
+                         "missed": f"{row.missed} of {row.steps}", "longest": f"{number(row.max_us)} µs",
+                         "next N": number(row.next, 5), "missed there": row.next_reason.split(":")[0] if row.next_reason else "–"})
+    return table(rows, {"implementation": "l", "form": "l", "deadline": "r", "largest N": "r", "missed": "r", "longest": "r", "next N": "r",
+                        "missed there": "l"})
+
+
+def engines(known):
+    """Each engine's time over that of each side of ours, at equal error."""
+    found = known.tables("engines")["equal_error"]
+    rows = []
+    for engine, mine in found[~found.engine.str.endswith(NATIVE)].groupby("engine", sort=False):
+        rows.append({"": title(engine)} | {label: _times(mine[mine.side == side]) for side, label in SIDES.items()})
+    return table(rows, {"": "l"} | dict.fromkeys(SIDES.values(), r"P{35mm}"))
+
+
+def _times(rows):
+    known = rows.ratio.dropna()
+    if known.empty:
+        return "–"
+    missed = len(rows) - len(known)
+    return f"{number(known.median())} ({number(known.min())} to {number(known.max())})" + (f"; {missed} of {len(rows)} errors not reached" if missed else "")
+
+
+def mechanisms(known):
+    """Each mechanism, in the form that it is simulated in: the fastest library, how far the next is behind, who is as fast, our own code."""
+    tables_, own = known.tables("families"), fastest_own(known.tables("families")["scenes"], known.registry).set_index("scene")
+    about = tables_["mechanisms"].set_index("scene")
+    rows = []
+    for row in best_form(tables_["winners"], "libraries").sort_values("variables").itertuples():
+        others = [name for name in row.equivalent.split() if name != row.winner]
+        mine = own.loc[row.scene] if row.scene in own.index and own.scheme[row.scene] == row.scheme else None
+        rows.append({"mechanism": row.scene, "form": row.scheme.partition("-")[0], "n": number(row.variables, 5), "nz/col": number(about.per_column.get(row.scene, math.nan), 2),
+                     "fastest library": row.winner, "step, µs": number(row.step_us), "next ÷ it": between(row.margin, row.low, row.high),
+                     "as fast": ", ".join(others) or ("" if row.decided else "open"),
+                     "own": "" if mine is None else f"{number(1 / mine.to_rival)}" + (f" ({ends(1 / mine.to_rival_high, 1 / mine.to_rival_low)})"
+                                                                                     if bounded(mine.to_rival_low, mine.to_rival_high) else "")})
+    return table(rows, {"mechanism": r"P{28mm}", "form": "l", "n": "r", "nz/col": "r", "fastest library": r"P{24mm}", "step, µs": "r",
+                        "next ÷ it": "l", "as fast": r"P{28mm}", "own": "l"}, long=True)
