@@ -10,6 +10,7 @@
 
 #include "atomic_file.hpp"
 #include "check/gate.hpp"
+#include "describe/warnings.hpp"
 #include "environment/environment.hpp"
 #include "ladder/ladder.hpp"
 #include "mbs/commands.hpp"
@@ -126,6 +127,11 @@ int check(const CheckOptions& options) {
     const StepSettings settings = options.step.resolve(scene.model);
     ReferenceRun reference;
     if (why_unsuited(scene.model, settings).empty()) reference = run_reference(scene, settings);
+    for (const std::string& warning : setting_warnings(
+             scene.model, settings,
+             options.step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user)) {
+      fmt::print(stderr, "mbs: warning: {}: {}\n", scene.name, warning);
+    }
     for (const NamedVariant& variant : variants) {
       verdicts.push_back(check_implementation(scene, variant, settings, reference,
                                               {.seconds = options.time_limit}));

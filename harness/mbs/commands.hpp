@@ -14,6 +14,7 @@ void add_list_command(CLI::App& app, int& status);
 void add_describe_command(CLI::App& app, int& status);
 void add_simulate_command(CLI::App& app, int& status);
 void add_sweep_command(CLI::App& app, int& status);
+void add_merge_sweep_command(CLI::App& app, int& status);
 void add_check_command(CLI::App& app, int& status);
 void add_reference_command(CLI::App& app, int& status);
 void add_limit_command(CLI::App& app, int& status);

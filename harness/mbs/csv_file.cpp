@@ -24,14 +24,16 @@ CsvFile::CsvFile(const std::string& path, const std::vector<std::string>& column
   write(columns);
 }
 
-void CsvFile::write(std::span<const std::string> row) {
+std::string csv_line(std::span<const std::string> row) {
   std::string line;
   for (std::size_t i = 0; i < row.size(); ++i) {
     if (i > 0) line += ',';
     line += quoted(row[i]);
   }
-  file_.stream() << line << '\n';
+  return line + '\n';
 }
+
+void CsvFile::write(std::span<const std::string> row) { file_.stream() << csv_line(row); }
 
 void CsvFile::write(std::span<const double> row) {
   fmt::memory_buffer text;

@@ -9,6 +9,9 @@
 
 namespace mbs {
 
+/// With its end.
+std::string csv_line(std::span<const std::string> row);
+
 /// One line of column names, then rows of numbers that round-trip, or of text. Names and text with
 /// a comma, a quote or a line break are quoted as RFC 4180 says.
 class CsvFile {

@@ -173,6 +173,7 @@ int run_program(int argc, char** argv) {
   add_describe_command(app, status);
   add_simulate_command(app, status);
   add_sweep_command(app, status);
+  add_merge_sweep_command(app, status);
   add_check_command(app, status);
   add_reference_command(app, status);
   add_limit_command(app, status);
@@ -187,7 +188,7 @@ int run_program(int argc, char** argv) {
   }
   if (argc > 1 && argv[1][0] != '-' && !is_subcommand(app, argv[1])) {
     throw UsageError(fmt::format(
-        "unknown subcommand '{}': there are list, describe, simulate, sweep, check, reference, "
+        "unknown subcommand '{}': there are list, describe, simulate, sweep, merge-sweep, check, reference, "
         "limit, bench",
         argv[1]));
   }

@@ -138,6 +138,8 @@ TEST(CheckProgram, SaysSoIfTheReferenceItselfFails) {
   if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
   const std::string file = test::temporary_path("verdicts.json");
   expect_refusal("four-bar:1 --penalty 1e300 --json '" + file + "'", "the reference fails");
+  expect_refusal("chain:60 --step 0.1", "the reference fails at t = 0.1 s");
+  expect_refusal("chain:60 --step 0.1", "try --scheme saddle-point, or a shorter step");
   EXPECT_FALSE(fs::exists(file));
   EXPECT_FALSE(fs::exists(file + ".partial"));
 }

@@ -10,7 +10,8 @@ LIST = ROOT / "study" / "settings.yaml"
 ORDERS = {"rattle4": 4, "rattle6": 6, "multistep6": 6}  # of a scheme; the others are of second order
 EVERYONE = {"scheme", "penalty", "tolerance", "max-passes", "projections", "half-step", "scale-equations",
             "judge-every"}  # all serve these
-LOOSE = "loose"  # a tolerance that stands for another one, which the caller of `words` knows
+LOOSENED = {"loose": 1e3, "one-pass": 1e6}  # tolerances that stand for so many times the automatic one, which the caller
+                                            # of `words` knows
 
 
 @dataclass(frozen=True)
@@ -33,10 +34,6 @@ class Setting:
         return ORDERS.get(self.scheme, 2)
 
     @property
-    def loose(self):
-        return ("tolerance", LOOSE) in self.changes
-
-    @property
     def parent(self):
         """The scheme without changes: what this is compared with first."""
         return Setting(self.scheme)
@@ -49,11 +46,16 @@ class Setting:
             found |= set() if option in EVERYONE else {value} if option == "precision" else {option}
         return found - {"penalty", "double"}
 
+    @property
+    def loosened(self):
+        """How many times the automatic tolerance its own is; None if it does not refer to that."""
+        return LOOSENED.get(dict(self.changes).get("tolerance"))
+
     def words(self, base=(), tolerance=None):
         """Of the command line. `base`: (option, value) pairs that the setting's own go before; `tolerance`, m: what
-        the loose one stands for."""
+        one that is loosened stands for."""
         pairs = dict(base) | {"scheme": self.scheme} | dict(self.changes)
-        if self.loose:
+        if self.loosened:
             pairs["tolerance"] = f"{tolerance:.3g}"
         return [word for option, value in pairs.items() for word in (f"--{option}", f"{value}") if word]
 

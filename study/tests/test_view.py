@@ -259,12 +259,26 @@ def test_the_sheet_shows_the_whole_motion_unless_a_window_is_asked_for(tmp_path,
     ('{"gravity": [0, 0, -9.81]}', [0, 0, 1]), ('{"gravity": [0, 0, 9.81]}', [0, 0, -1]),
     ('{"gravity": [-9, 0.1, 4]}', [1, 0, 0]), ('{"gravity": [0, 0, 0]}', [0, 1, 0]),
     ('// "gravity": /*\n{"points": [{"name": "a//b/*"}], /* here:\n*/ "gravity": [0, 0, -1.6]}',
-     [0, 0, 1]), ("{}", [0, 1, 0]), ("no JSON", [0, 1, 0])])
+     [0, 0, 1]), ("{}", [0, 1, 0]), ('{"gravity": [0, 0, "=-g"]}', [0, 1, 0]), ("no JSON", [0, 1, 0])])
 def test_up_is_against_gravity(tmp_path, text, up):
     path = tmp_path / "scene.json"
     path.write_text(text)
     assert upward(path) == up
     assert upward("four-bar:3") == [0, 1, 0]
+
+
+def test_faces_are_those_of_a_solid_and_look_outward(tmp_path):
+    scene, motion = scene_of("top"), trajectory.read(csv_of(tmp_path, "top"), scene_of("top"), 100)
+    corners = numpy.array([[x, y, z] for x in (0, 1) for y in (0, 2) for z in (0, 3)], float)
+    count = len(scene.points)
+    motion.positions = numpy.concatenate([motion.positions, numpy.tile(corners, (len(motion.times), 1, 1))], axis=1)
+    scene.bodies = [type(scene.bodies[0])(name, [count + k for k in corners_of], [])
+                    for name, corners_of in (("box", range(8)), ("plate", (0, 1, 2, 3)), ("bar", (0, 7)))]
+    box, plate, bar = picture.faces(scene, motion)
+    assert len(box) == 12 and plate == bar == []
+    at = motion.positions[0]
+    volume = sum(numpy.dot(at[a], numpy.cross(at[b], at[c])) for a, b, c in box) / 6
+    assert volume == pytest.approx(6)  # positive: all look outward
 
 
 def test_a_bodys_own_helper_points_are_not_drawn(tmp_path):

@@ -2,10 +2,12 @@
 #include "check/reference_run.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "describe/warnings.hpp"
 #include "model_math/kinematics.hpp"
 #include "run/settings.hpp"
 #include "usage_error.hpp"
@@ -21,6 +23,15 @@ double row_sum_norm(const Model& model, const State& state) {
     sums[static_cast<std::size_t>(entry.row)] += std::abs(entry.value);
   }
   return *std::ranges::max_element(sums);
+}
+
+/// What `mbs describe` says against the settings that the reference fails with, or what often helps.
+std::string what_helps(const Model& model, const StepSettings& settings) {
+  const bool is_auto = settings.penalty == automatic_penalty(model, settings);
+  const std::vector<std::string> known =
+      setting_warnings(model, settings, is_auto ? PenaltyFrom::rule : PenaltyFrom::user);
+  if (!known.empty()) return fmt::format("{}", fmt::join(known, "; "));
+  return fmt::format("choose a shorter step{}", is_auto ? "" : ", or let --penalty be auto");
 }
 
 }  // namespace
@@ -55,13 +66,9 @@ ReferenceRun run_reference(const Scene& scene, const StepSettings& settings) {
     const bool finite = std::ranges::all_of(state.q, [](double x) { return std::isfinite(x); });
     if (!finite || result.outcomes.back().status == StepStatus::factorization_failed) {
       throw UsageError(fmt::format(
-          "scene '{}': the reference fails at t = {:g} s with step {:g} s and penalty {:.3g}; "
-          "choose a shorter step{}",
+          "scene '{}': the reference fails at t = {:g} s with step {:g} s and penalty {:.3g}; {}",
           scene.name, result.stretch.start + (i + 1) * settings.step, settings.step,
-          settings.penalty,
-          settings.penalty == automatic_penalty(scene.model, settings)
-              ? ""
-              : ", or let --penalty be auto"));
+          settings.penalty, what_helps(scene.model, settings)));
     }
     result.positions.push_back(state.q);
     result.multipliers.push_back(state.lambda);

@@ -1,6 +1,7 @@
 // A JSON scene: text, then members, then equations, then the whole at its start.
 #include <fmt/format.h>
 
+#include <optional>
 #include <stdexcept>
 
 #include "printable.hpp"
@@ -10,6 +11,7 @@
 #include "scene_file/json_text.hpp"
 #include "scene_file/load_scene.hpp"
 #include "scene_file/lowering.hpp"
+#include "scene_file/parameters.hpp"
 #include "scene_file/scene_checks.hpp"
 #include "scene_file/scene_reader.hpp"
 #include "usage_error.hpp"
@@ -21,7 +23,8 @@ SceneData parse_scene(std::string_view json, const std::string& where) {
 }
 
 SceneData read_scene(const nlohmann::json& document, const std::string& where) {
-  SceneDraft draft = SceneReader(JsonNode(document, where)).read();
+  const std::optional<nlohmann::json> numbers = with_numbers(document, where);
+  SceneDraft draft = SceneReader(JsonNode(numbers ? *numbers : document, where)).read();
   choose_bases(draft);
   place(draft);
   try {

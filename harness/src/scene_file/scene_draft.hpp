@@ -101,7 +101,8 @@ struct DraftConstraint {
   const ConstraintKind* kind = nullptr;
   std::vector<int> points = {};  ///< distance, coincident: two; on_line: the point, then the line
   DraftDirection first = {}, second = {};  ///< dot: from - to is what the constraint multiplies
-  int direction = -1;                      ///< on_line in space: along the line
+  int axis = -1;                           ///< joints in space: parallel to `direction`
+  int direction = -1;                      ///< on_line, joints in space: along the line
   std::array<int, 2> normals{-1, -1};      ///< then: of a moving line, the vectors across it
   std::vector<Term> terms = {};
   std::optional<TimeFunction> value = std::nullopt;

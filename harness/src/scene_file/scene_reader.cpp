@@ -17,8 +17,8 @@ constexpr double kAcross = 1e-12;  // cosine that counts as a right angle
 }  // namespace
 
 SceneDraft SceneReader::read() {
-  root_.allow_keys({"dimension", "gravity", "points", "vectors", "rods", "masses", "mass_matrices", "bodies",
-                    "constraints", "springs", "torsion_springs", "force_laws", "torque_laws",
+  root_.allow_keys({"dimension", "gravity", "parameters", "points", "vectors", "rods", "masses",
+                    "mass_matrices", "bodies", "constraints", "springs", "torsion_springs", "force_laws", "torque_laws",
                     "forces", "torques", "assembly", "outputs", "$schema"});
   read_dimension_and_gravity();
   if (!root_.find("bodies")) static_cast<void>(root_.get("points"));

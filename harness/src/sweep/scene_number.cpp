@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "printable.hpp"
+#include "scene_file/parameters.hpp"
 #include "sweep/value_range.hpp"
 
 namespace mbs {
@@ -107,6 +108,10 @@ std::optional<std::size_t> find_item(const json& array, const std::string& token
 }  // namespace
 
 json::json_pointer find_number(const json& document, const std::string& path) {
+  const auto parameters = document.find("parameters");
+  if (parameters != document.end() && parameters->is_object() && parameters->contains(path)) {
+    return json::json_pointer("/parameters") / path;
+  }
   json::json_pointer pointer;
   const json* at = &document;
   for (const std::string& token : tokens_of(path)) {
@@ -129,7 +134,7 @@ json::json_pointer find_number(const json& document, const std::string& path) {
     }
     at = &document.at(pointer);
   }
-  if (!at->is_number()) {
+  if (!at->is_number() && !is_expression(*at)) {
     refuse_vary(path, kind_of(*at),
                 at->is_structured() && !at->empty() ? "a number: go on with " + members_of(*at)
                                                     : "a number");

@@ -12,9 +12,11 @@
 
 namespace mbs {
 
-SweepGrid::SweepGrid(const std::string& scene, const std::vector<std::string>& vary)
+SweepGrid::SweepGrid(const std::string& scene, const std::vector<std::string>& vary,
+                     const Sampling& sampling)
     : name_(scene), document_(load_document(scene)), base_(scene_of(document_, name_)) {
   for (const std::string& text : vary) add_axis(text);
+  add_samples(sampling);
 }
 
 void SweepGrid::add_axis(const std::string& text) {
@@ -22,24 +24,56 @@ void SweepGrid::add_axis(const std::string& text) {
   if (equals == std::string::npos || equals == 0) {
     throw UsageError(fmt::format("--vary: found {}, allowed is PATH=RANGE", in_quotes(text)));
   }
-  const std::string path = text.substr(0, equals);
-  SweepAxis axis{path, find_number(document_, path), parse_range(text.substr(equals + 1), path)};
+  const std::string path = text.substr(0, equals), range = text.substr(equals + 1);
+  SweepAxis axis{path, find_number(document_, path), {}, parse_distribution(range, path)};
   for (const SweepAxis& other : axes_) {
     if (other.number != axis.number) continue;
     refuse_vary(path, "the same number as --vary " + in_quotes(other.path), "once");
   }
-  const auto count = static_cast<long>(axis.values.size());
+  if (!axis.distribution) {
+    axis.values = parse_range(range, path);
+    multiply_lanes(static_cast<long>(axis.values.size()), "--vary " + in_quotes(path));
+  }
+  axes_.push_back(std::move(axis));
+}
+
+void SweepGrid::multiply_lanes(long count, const std::string& option) {
   if (count > kMostLanes / lanes_) {
-    throw UsageError(fmt::format("--vary {}: found more than {} lanes, allowed are that many",
-                                 in_quotes(path), kMostLanes));
+    throw UsageError(fmt::format("{}: found more than {} lanes, allowed are that many", option,
+                                 kMostLanes));
   }
   lanes_ *= count;
-  axes_.push_back(std::move(axis));
+}
+
+void SweepGrid::add_samples(const Sampling& sampling) {
+  std::vector<Distribution> distributions;
+  for (const SweepAxis& axis : axes_) {
+    if (axis.distribution) distributions.push_back(*axis.distribution);
+  }
+  if (distributions.empty() != (sampling.count == 0)) {
+    throw UsageError(distributions.empty()
+                         ? "--sample: found no number to sample, allowed with --vary "
+                           "PATH=uniform:a:b or PATH=normal:mean:deviation"
+                         : "--vary: found a distribution, allowed with --sample N");
+  }
+  if (distributions.empty()) return;
+  multiply_lanes(samples_ = sampling.count, "--sample");
+  auto values = draw(distributions, sampling);
+  auto next = values.begin();
+  for (SweepAxis& axis : axes_) {
+    if (axis.distribution) axis.values = std::move(*next++);
+  }
 }
 
 std::vector<double> SweepGrid::values(long lane) const {
   std::vector<double> result(axes_.size());
+  const auto sample = static_cast<std::size_t>(lane % samples_);
+  lane /= samples_;
   for (std::size_t i = axes_.size(); i-- > 0;) {
+    if (axes_[i].distribution) {
+      result[i] = axes_[i].values[sample];
+      continue;
+    }
     const auto count = static_cast<long>(axes_[i].values.size());
     result[i] = axes_[i].values[static_cast<std::size_t>(lane % count)];
     lane /= count;

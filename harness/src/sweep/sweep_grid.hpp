@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/scene.hpp"
+#include "sweep/sample.hpp"
 
 namespace mbs {
 
@@ -13,10 +14,12 @@ namespace mbs {
 struct SweepAxis {
   std::string path;  ///< as typed
   nlohmann::json::json_pointer number;
-  std::vector<double> values;
+  std::vector<double> values;  ///< of a sampled one: one a sample
+  std::optional<Distribution> distribution = std::nullopt;
 };
 
-/// The full grid over the axes; the last one varies fastest.
+/// The full grid over the axes; the last one varies fastest. Axes that are sampled vary together,
+/// faster than all others: every point of the grid has the same samples.
 ///
 ///   SweepGrid grid("pendulum.json", {"masses/B/mass=1:3:3", "gravity/1=-9.81,-1.62"});
 ///   grid.lanes() == 6;  grid.values(1) == {1.0, -1.62};  Scene scene = grid.scene(1);
@@ -24,10 +27,13 @@ class SweepGrid {
  public:
   /// `vary` has PATH=RANGE of find_number() and parse_range(). Throws UsageError, also on more than
   /// kMostLanes lanes and on a number that is varied twice.
-  SweepGrid(const std::string& scene, const std::vector<std::string>& vary);
+  SweepGrid(const std::string& scene, const std::vector<std::string>& vary,
+            const Sampling& sampling = {});
 
   [[nodiscard]] long lanes() const { return lanes_; }
   [[nodiscard]] const std::vector<SweepAxis>& axes() const { return axes_; }
+  /// Without what is varied.
+  [[nodiscard]] const nlohmann::json& document() const { return document_; }
   /// As it is without the sweep.
   [[nodiscard]] const Scene& base() const { return base_; }
   /// One an axis.
@@ -39,12 +45,15 @@ class SweepGrid {
 
  private:
   void add_axis(const std::string& text);
+  void add_samples(const Sampling& sampling);
+  void multiply_lanes(long count, const std::string& option);
 
   std::string name_;
   nlohmann::json document_;
   Scene base_;
   std::vector<SweepAxis> axes_;
-  long lanes_ = 1;
+  long lanes_ = 1;  // of the grid without samples, then of all
+  long samples_ = 1;
 };
 
 }  // namespace mbs

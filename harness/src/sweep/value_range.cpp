@@ -32,16 +32,6 @@ bool parse_all(std::string_view text, Number& value) {
   return error == std::errc{} && stop == end;
 }
 
-double parse_number(const std::string& text, const std::string& path) {
-  double value = 0.0;
-  if (!parse_all(text, value) || !std::isfinite(value)) {
-    refuse_vary(
-        path, in_quotes(text),
-        "a number, in a range a:b:K (K values from a to b), a:b:K:log, or a list v1,v2,...");
-  }
-  return value;
-}
-
 long parse_count(const std::string& text, const std::string& path) {
   long count = 0;
   if (!parse_all(text, count) || count < 2 || count > kMostLanes) {
@@ -56,6 +46,16 @@ long parse_count(const std::string& text, const std::string& path) {
 void refuse_vary(const std::string& path, const std::string& found, const std::string& allowed) {
   throw UsageError(
       fmt::format("--vary {}: found {}, allowed is {}", in_quotes(path), found, allowed));
+}
+
+double parse_number(const std::string& text, const std::string& path) {
+  double value = 0.0;
+  if (!parse_all(text, value) || !std::isfinite(value)) {
+    refuse_vary(
+        path, in_quotes(text),
+        "a number, in a range a:b:K (K values from a to b), a:b:K:log, or a list v1,v2,...");
+  }
+  return value;
 }
 
 std::vector<double> parse_range(const std::string& text, const std::string& path) {

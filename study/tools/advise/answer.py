@@ -1,14 +1,16 @@
 # The answer as JSON (its keys: README.md) and as text.
 from dataclasses import asdict
 
+from analysis.core.outcomes import FINISHED, GOOD
 from analysis.core.text import number
-from study.tools.advise.choice import allowed, counts, halvings
+from study.tools.advise.choice import counts, halvings
 from study.tools.advise.runner import advised
 from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.verify import expected_error
-from analysis.core.outcomes import FINISHED
 
 MOST_REASONS = 3  # of pilots that were lost
+MOST_REFUSED = 5  # lines of settings that would be faster
+BUSY = 0.05       # share of the time of runs in which other programs had the processor, from which it is said
 
 
 def as_json(advice, run, described, variants, folder):
@@ -19,14 +21,21 @@ def as_json(advice, run, described, variants, folder):
               "met": advice.verified is not None,
               "advice": _advised(advice, variants[advice.chosen.implementation]["library"]) if advice.verified
               else None,
-              "runner_up": None, "best_reached": None,
-              "why_not": None if advice.verified else _why_not(advice),
-              "pilot_duration": advice.pilot_duration, "cut_short": advice.cut_short,
+              "runner_up": None, "refused": _refused(advice) if advice.verified else [],
+              "why_not": None if advice.verified else _why_not(advice), "helps": advice.helps,
+              "pilot_duration": advice.pilot_duration, "cut_short": advice.cut_short + _busy(advice),
               "seconds": round(advice.seconds, 2),
               "settings": [_setting(setting, advice, described, variants) for setting in catalogue()],
+              "left_out": advice.left_out,
               "candidates": [_candidate(one, advice) for one in advice.candidates],
               "runs": run.rows, "results": str(folder)}
-    return answer | {"runner_up": _runner_up(answer), "best_reached": _best_reached(answer)}
+    return answer | {"runner_up": _runner_up(answer)}
+
+
+def _busy(advice):
+    return [f"the machine is busy: other programs had the processor for {100 * advice.waited:.0f} % of the time of these "
+            "runs, so that times, and above all a 99th percentile, may be too long; ask again when it is quiet"
+            ] if advice.waited > BUSY else []
 
 
 def _times(one):
@@ -39,17 +48,18 @@ def _times(one):
 
 def _advised(advice, library):
     one, row = advice.chosen, advice.verified
-    estimate, low, high = expected_error(advice)
+    estimate = row["estimate"]
+    low, high = expected_error(advice, one, row)
     return {"implementation": one.implementation, "setting": one.setting.name,
             "scheme": one.setting.scheme, "changes": dict(one.setting.changes),
             "precision": dict(one.setting.changes).get("precision", "double"), "step": one.step,
-            "penalty": row["penalty"], "tolerance": row["tolerance"], "status": row["status"],
-            "error": {"estimate": estimate, "low": low, "high": high, "exact": row["exact"],
-                      "allowed_estimate": allowed(advice.question.error, one.setting.order)},
-            **_times(one), "verified_step_us": {"median": row["step_us_median"], "p99": row["step_us_p99"],
-                                                "max": row["step_us_max"]},
-            "deadline_misses": row["deadline_misses"], "steps": row["steps"],
-            "command": advised(row["command"], library), "raw_file": row["raw_file"]}
+            "penalty": row["penalty"], "tolerance": row["tolerance"],
+            "status": advice.outcome["status"], "status_reason": advice.outcome["reason"],
+            "verified_over": row["duration"],
+            "error": {"estimate": estimate, "low": low, "high": high, "exact": row["exact"]},
+            **_times(one), "deadline_misses": row["deadline_misses"], "steps": row["steps"],
+            "command": advised(advice.outcome["command"], library, advice.question.duration),
+            "raw_file": row["raw_file"]}
 
 
 def _setting(setting, advice, described, variants):
@@ -57,11 +67,11 @@ def _setting(setting, advice, described, variants):
     reason = fits(setting, described) or (
         "" if serving(setting, variants) else "no implementation serves it")
     orders = halvings(found.pilots) if found else {}
-    limit = allowed(advice.question.error, setting.order)
+    error = advice.question.error * advice.pilot_duration / advice.question.duration
     return {"setting": setting.name, "step": found.chosen if found else None,
             "reason": found.reason if found else reason or "no implementation simulates the scene",
             "pilots": [asdict(pilot) | {"order": orders.get(pilot.step),
-                                        "counts": counts(pilot.step, found.pilots, limit)}
+                                        "counts": counts(pilot.step, found.pilots, error)}
                        for pilot in (found.pilots if found else [])]}
 
 
@@ -86,34 +96,46 @@ def _runner_up(answer):
         "ratio": ratio, "why": why}
 
 
-def _best_reached(answer):
-    """The pilot of the least estimate, one that counts if there is any."""
-    found = [{"setting": entry["setting"]} | {key: pilot[key] for key in ("step", "estimate", "counts")}
-             for entry in answer["settings"] for pilot in entry["pilots"]
-             if pilot["status"] in FINISHED and pilot["estimate"] is not None]
-    return None if answer["met"] else min(
-        found, key=lambda one: (not one["counts"], one["estimate"]), default=None)
+def _refused(advice):
+    """Why what would have been faster than the advice is not advised: [{"setting", "step", "why"}], whole runs that failed,
+    and the slowest pilot of each such setting, the fastest first."""
+    best, asked = advice.chosen.us_per_second()[0], advice.question.error * advice.pilot_duration / advice.question.duration
+    found = []
+    for one in advice.found.values():
+        faster = [pilot for pilot in one.pilots if pilot.step > 1.001 * (one.chosen or 0)
+                  and (one.step_us() / pilot.step < best or one is advice.found[advice.chosen.setting])]
+        if faster:
+            pilot = min(faster, key=lambda pilot: pilot.step)
+            why = f"{pilot.status}: {pilot.reason}" if not pilot.valid else f"estimate {number(pilot.estimate)} m" + (
+                ", and halving the step does not show it to be right" if pilot.estimate <= asked else "")
+            found.append((one.step_us() / pilot.step, one.setting.name, pilot.step, why))
+    whole = [(0.0, row["setting"], row["step"], f"estimate {number(row['estimate'])} m over {row['duration']:g} s, and no margin"
+              if row["status"] in FINISHED else f"{row['status']}: {row['reason']}") for row in advice.verifications[:-1]]
+    return [{"setting": name, "step": step, "why": why} for _, name, step, why in sorted(whole + found)]
 
 
 def _why_not(advice):
-    if not any(row["step_us"] for row in advice.probe):
+    if not any(row["step_us"] for row in advice.probe) and not advice.found:
         return "no implementation simulates this scene: " + "; ".join(
             dict.fromkeys(f"{row['status']}, {row['reason']}" for row in advice.probe))
+    late = min((one for one in advice.candidates if one.late_us), key=lambda one: one.late_us, default=None)
+    if late:
+        return (f"99 % of the steps are not done within the deadline: {late.reason} with {late.implementation}, "
+                f"{late.setting.name}, step {late.step:g} s")
     if advice.verifications:
         return "no candidate kept it over the whole time"
+    slow = [found.reason for found in advice.found.values() if "beyond the deadline" in found.reason]
     if any(found.chosen for found in advice.found.values()):
-        late = [one for one in advice.candidates if "99th percentile" in one.reason]
-        return ("no step is done within the deadline" if late else "no candidate could be timed")
-    if any("a step takes" in found.reason for found in advice.found.values()):
-        return "no step is done within the deadline"
+        return "no candidate could be timed"
+    if slow:
+        return f"what is accurate enough is too slow: {slow[0]}"
     pilots = [pilot for found in advice.found.values() for pilot in found.pilots]
     if pilots and not any(pilot.status in FINISHED for pilot in pilots):
         return "no pilot came to its end: " + "; ".join(
             dict.fromkeys(f"{pilot.status}, {pilot.reason}" for pilot in pilots[:MOST_REASONS]))
     return "no setting reaches the error" + (
         f" in steps of {advice.question.step:g} s" if advice.question.step else "") + (
-        f" within the budget of {advice.question.budget:g} s (--budget)"
-        if any("left" in cut for cut in advice.cut_short) else "")
+        f" within the budget of {advice.question.budget:g} s" if any("left" in cut for cut in advice.cut_short) else "")
 
 
 def text(answer):
@@ -142,13 +164,13 @@ def _who(one):
 def _advice_lines(answer):
     told, times = answer["advice"], answer["advice"]["us_per_second"]
     error, step = told["error"], told["step_us"]
-    lines = ["", "Run this (add --half-step to check):", "", f"  {told['command']}", "",
+    lines = ["", "Run this (--half-step checks its error):", "", f"  {told['command']}", "",
              _row("implementation", told["implementation"]), _row("settings", told["setting"]),
              _row("step", f"{told['step']:g} s"),
              _row("penalty factor", f"{number(told['penalty'], 4)}, automatic"),
              _row("tolerance", f"{number(told['tolerance'])} m"), _row("precision", told["precision"]),
-             _row("expected error", f"{_spread(error['estimate'], error, 'm')}, verified over "
-                  f"{answer['question']['duration']:g} s: {told['status']}"),
+             _row("expected error", f"{_spread(error['estimate'], error, 'm')}, verified over {told['verified_over']:g} s"),
+             *_ends_as(told),
              _row("time per step", f"{_spread(step['median'], step, 'us')} without interruptions, {told['rounds']} "
                   f"round{'s' * (told['rounds'] > 1)}; with them 99th percentile {number(step['p99'])} us"),
              _row("per simulated second", _spread(times["median"] / 1e3, {
@@ -158,26 +180,29 @@ def _advice_lines(answer):
     second = answer["runner_up"]
     if second:
         lines += [_row("runner-up", _who(second)), _row("", second["why"])]
+    refused = answer["refused"][:MOST_REFUSED]
+    lines += [_row("faster, but refused" * (one is refused[0]), f"{one['setting']}, step {one['step']:g} s: {one['why']}")
+              for one in refused]
     return lines
+
+
+def _ends_as(told):
+    """How the advised line ends, and why that is no objection."""
+    if told["status"] in GOOD:
+        return [_row("ends as", told["status"])]
+    return [_row("ends as", f"{told['status']}: {told['status_reason']}"),
+            _row("", "by the program's own bounds, which know nothing of the error that you asked for; half the step shows "
+                     f"{number(told['error']['high'])} m at most")]
 
 
 def _refusal_lines(answer):
-    best = answer["best_reached"]
-    lines = ["", f"No setting meets this: {answer['why_not']}."]
-    if best:
-        lines.append(_row("best estimate", f"{number(best['estimate'])} m: {best['setting']}, "
-                          f"step {best['step']:g} s"
-                          + ("" if best["counts"] else ", not shown to be right by halving the step")))
-    timed = [one for one in answer["candidates"] if one["rounds"]]
-    if timed and answer["question"]["deadline_us"]:
-        one = min(timed, key=lambda one: one["step_us"]["p99"])
-        lines.append(_row("fastest steps", f"99th percentile {number(one['step_us']['p99'])} us: {_who(one)}"))
-    return lines
+    return ["", f"No setting meets this: {answer['why_not']}."] + [
+        _row("would help" * (one is answer["helps"][0]), one) for one in answer["helps"]]
 
 
 def _tried(answer):
     runs = answer["runs"]
     settings = [entry for entry in answer["settings"] if entry["pilots"]]
     return (f"{len(settings)} settings in {sum(run['kind'] == 'pilots' for run in runs)} error pilots, "
-            f"{sum(bool(one['rounds']) for one in answer['candidates'])} candidates timed; "
-            f"{answer['seconds']:.0f} s")
+            f"{len({run['implementation'] for run in runs})} implementations, "
+            f"{sum(bool(one['rounds']) for one in answer['candidates'])} candidates timed; {answer['seconds']:.0f} s")

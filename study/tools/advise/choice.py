@@ -6,8 +6,9 @@ from analysis.core.outcomes import FINISHED
 
 LEAST_STEPS = 10   # of a whole run
 MOST_STEPS = 10**7
-NEGLIGIBLE = 0.01  # of the limit
-AIM = 0.9          # of the limit: what the step between two pilots is chosen for
+NEGLIGIBLE = 0.01  # of the error that is asked for
+SLACK = 0.3        # by which an order may fall below the one that was shown
+AIM = 0.95         # of the error: what the step between two pilots is chosen for
 TIDY = 0.05        # share that a step may become shorter to be a tidy number
 JUMP = 8           # a pilot's step is at least this part of the one before it
 
@@ -19,7 +20,6 @@ class Pilot:
     status: str
     estimate: float | None     # of the position error, m
     step_us: float = math.nan  # median time of a step: one run must do, even on a busy machine
-    p99_us: float = math.nan
     reason: str = ""
 
     @property
@@ -36,16 +36,11 @@ class Next:
     reason: str = ""
 
 
-def allowed(error, order):
-    """The largest estimate, m, that is good enough for `error`. An estimate assumes that halving the
-    step divides the error by 2^order; this one still holds if it only halves it."""
-    return error / (2 * (1 - 2.0**-order))
-
-
-def interval(estimate, order, observed):
-    """The error that a run may have whose order is between `observed` (at least 1) and infinite."""
+def interval(estimate, order, shown):
+    """(least, most) error of a run whose estimate assumes `order` while halving the step showed another one: that of
+    all orders from SLACK below the shown one on, but not below 1."""
     difference = estimate * (1 - 2.0**-order)  # to the run with half the step
-    return difference, difference / (1 - 2.0 ** -min(max(observed, 1.0), order))
+    return difference, difference / (1 - 2.0 ** -min(max(shown - SLACK, 1.0), order))
 
 
 def halvings(pilots):
@@ -59,11 +54,11 @@ def close(one, other):
     return abs(one - other) < 1e-3 * other
 
 
-def counts(step, pilots, limit=0.0):
+def counts(step, pilots, error=0.0):
     """Whether the estimate at a step counts: the halving that begins there, or if that is not known the one
-    that ends there, shows an order of at least 1, or leaves both estimates below a hundredth of `limit` (a
+    that ends there, shows an order of at least 1, or leaves both estimates below a hundredth of `error` (a
     motion that steps hardly change shows no order)."""
-    small = {pilot.step for pilot in pilots if pilot.valid and pilot.estimate <= NEGLIGIBLE * limit}
+    small = {pilot.step for pilot in pilots if pilot.valid and pilot.estimate <= NEGLIGIBLE * error}
     begins = ends = None
     for at, order in halvings(pilots).items():
         shown = order >= 1 or (at in small and any(close(at / 2, other) for other in small))
@@ -73,75 +68,99 @@ def counts(step, pilots, limit=0.0):
 
 
 def local_order(step, pilots, order):
-    """The order observed nearest above a step, or below it; the scheme's own where none is."""
+    """The order observed at a step or nearest above it, or below it; the scheme's own where none is."""
     found = halvings(pilots)
-    longer = [at for at in found if at > step * 1.001]
-    shorter = [at for at in found if at <= step * 1.001]
+    longer = [at for at in found if at > step * 0.999]
+    shorter = [at for at in found if at <= step * 0.999]
     at = min(longer) if longer else max(shorter) if shorter else None
     return order if at is None else min(max(found[at], 1.0), order + 2.0)
 
 
-def next_step(pilots, limit, order, start, duration):
+def most(step, estimate, pilots, order, error):
+    """The largest error, m, of a run with this estimate: its distance to the run with half the step, and what that one's
+    may be, of which pilots tell; where there are none, by the order that they show. None where they show none."""
+    halves = [pilot for pilot in pilots if pilot.valid and 0.499 * step < pilot.step < 0.9 * step]
+    if halves:
+        half = min(halves, key=lambda pilot: pilot.step)
+        known = most(half.step, half.estimate, pilots, order, error)
+        if known is not None:
+            return estimate * (1 - 2.0**-order) + known
+    shown = counts(step, pilots, error)
+    return interval(estimate, order, local_order(step, pilots, order))[1] if shown else None
+
+
+def known(pilot, pilots, error, order):
+    """`most` of a pilot; infinite where it is not shown."""
+    found = most(pilot.step, pilot.estimate, pilots, order, error) if pilot.valid else None
+    return math.inf if found is None else found
+
+
+def enough(pilots, error, order):
+    """Pilots whose errors are known to be small enough, the longest step first."""
+    return [pilot for pilot in sorted(pilots, key=lambda pilot: -pilot.step) if known(pilot, pilots, error, order) <= error]
+
+
+def possible(step, duration):
+    return duration / MOST_STEPS <= step <= duration / LEAST_STEPS
+
+
+def next_step(pilots, error, order, start, duration):
     """The Next of a setting with these pilots, on the ladder start·2^k but for one half-way (√2) to a step
-    where the motion is lost; `limit` is for estimates."""
-    def fits(step):
-        return duration / MOST_STEPS <= step <= duration / LEAST_STEPS
+    where the motion is lost."""
     if not pilots:
         return Next(step=start)
-    by_step = {pilot.step: pilot for pilot in pilots}
 
     def find(step):
-        return next((by_step[at] for at in by_step if close(at, step)), None)
-    good = sorted(step for step, pilot in by_step.items() if pilot.valid and pilot.estimate <= limit
-                  and abs(math.remainder(math.log2(step / start), 1)) < 0.01)
-    for step in reversed(good):  # the longest first
-        if counts(step, pilots, limit):
-            longer = find(2 * step)
-            if longer is None and fits(2 * step):
+        return next((pilot for pilot in pilots if close(pilot.step, step)), None)
+    good = sorted((pilot for pilot in pilots if pilot.valid and pilot.estimate <= error
+                   and abs(math.remainder(math.log2(pilot.step / start), 1)) < 0.01), key=lambda pilot: -pilot.step)
+    for pilot in good:
+        step = pilot.step
+        reached = known(pilot, pilots, error, order)
+        if reached <= error:
+            longer, between = find(2 * step), find(math.sqrt(2) * step)
+            if longer is None and possible(2 * step, duration):
                 return Next(step=2 * step)
-            between = find(math.sqrt(2) * step)
             if longer and not longer.valid and between is None:
                 return Next(step=math.sqrt(2) * step)
-            if between and between.valid and by_step[step].estimate <= between.estimate <= limit:
+            if between and pilot.estimate <= (between.estimate or 0.0) and known(between, pilots, error, order) <= error:
                 return Next(chosen=between.step)
-            return Next(chosen=_between(step, longer, pilots, limit))
+            return Next(chosen=_between(pilot, longer, reached, error))
+        if math.isfinite(reached):
+            continue
         # Two halvings are needed to believe it; the longer step is the cheaper witness.
         for witness in (2 * step, step / 2):
-            if fits(witness) and find(witness) is None:
+            if possible(witness, duration) and find(witness) is None:
                 return Next(step=witness)
-    return _shorter(pilots, limit, order, fits)
+    return _shorter(pilots, error, order, duration)
 
 
-def next_at(step, pilots, limit, duration):
-    """The Next of a setting whose step is given: other steps are run only to believe the estimate at that one."""
+def next_at(step, pilots, error, order, duration):
+    """The Next of a setting whose step is given: half of it is run, too, to show that the estimate there counts."""
     by_step = {pilot.step: pilot for pilot in pilots}
     if step not in by_step:
         return Next(step=step)
     here = by_step[step]
     if not here.valid:
         return Next(reason=f"{here.status} at step {step:g} s: {here.reason}")
-    if here.estimate > limit:
+    if here.estimate > error:
         return Next(reason=f"estimate {here.estimate:.2g} m at step {step:g} s")
-    if counts(step, pilots, limit):
+    if step / 2 not in by_step and possible(step / 2, duration):
+        return Next(step=step / 2)
+    if here in enough(pilots, error, order):
         return Next(chosen=step)
-    for witness in (2 * step, step / 2):
-        if witness not in by_step and duration / MOST_STEPS <= witness <= duration / LEAST_STEPS:
-            return Next(step=witness)
-    return Next(reason=f"the estimate {here.estimate:.2g} m at step {step:g} s is not shown to be right by halving "
-                       "the step")
+    return Next(reason=f"estimate {here.estimate:.2g} m at step {step:g} s, and half the step does not show it to be right")
 
 
-def _between(step, longer, pilots, limit):
-    """The step between a good one and twice that, where the estimate is expected to meet the limit."""
+def _between(pilot, longer, reached, error):
+    """The step between a good one and twice that, where the error is expected to be met."""
     if longer is None or not longer.valid:
-        return step
-    here = next(pilot for pilot in pilots if pilot.step == step)
-    slope = math.log2(longer.estimate / here.estimate) if longer.estimate > here.estimate else 1.0
-    slope = max(slope, 1.0)
-    return step * min(2.0, max(1.0, (AIM * limit / max(here.estimate, 1e-300)) ** (1 / slope)))
+        return pilot.step
+    slope = math.log2(longer.estimate / pilot.estimate) if longer.estimate > pilot.estimate > 0 else 1.0
+    return pilot.step * min(2.0, max(1.0, (AIM * error / max(reached, 1e-300)) ** (1 / max(slope, 1.0))))
 
 
-def _shorter(pilots, limit, order, fits):
+def _shorter(pilots, error, order, duration):
     """A shorter step than all so far, or why none helps."""
     valid = sorted((pilot for pilot in pilots if pilot.valid), key=lambda pilot: pilot.step)
     least = min(pilot.step for pilot in pilots)
@@ -152,11 +171,11 @@ def _shorter(pilots, limit, order, fits):
         return Next(reason=f"shorter steps do not help: estimate {best.estimate:.2g} m at step "
                            f"{best.step:g} s, {valid[0].estimate:.2g} m at {valid[0].step:g} s")
     factor = 2.0
-    if valid and valid[0].step == least and valid[0].estimate > limit and counts(least, pilots):
+    if valid and valid[0].step == least and valid[0].estimate > error and counts(least, pilots):
         # The order shown tells how far; one halving less, as two steps must show it there.
-        halvings_left = math.log2(valid[0].estimate / limit) / local_order(least, pilots, order)
+        halvings_left = math.log2(valid[0].estimate / error) / local_order(least, pilots, order)
         factor = min(JUMP, 2.0 ** max(1, math.floor(halvings_left)))
-    if not fits(least / factor):
+    if not possible(least / factor, duration):
         lost = max(pilots, key=lambda pilot: -pilot.step)
         return Next(reason=f"no step down to {least:g} s: {lost.reason or lost.status}")
     return Next(step=least / factor)
@@ -164,12 +183,10 @@ def _shorter(pilots, limit, order, fits):
 
 def tidy(step, duration):
     """The longest step of three digits, at most 5 % shorter than `step`, that fits whole into `duration`;
-    or else of two digits; or else of three."""
+    or else of three digits."""
     unit = 10.0 ** math.floor(math.log10(step) - 2)
-    most = math.floor(step / unit * (1 + 1e-9))
-    numbers = range(most, math.ceil((1 - TIDY) * most) - 1, -1)
-    values = [float(f"{number * unit:.6g}") for number in numbers]
+    most_units = math.floor(step / unit * (1 + 1e-9))
+    values = [float(f"{number * unit:.6g}") for number in range(most_units, math.ceil((1 - TIDY) * most_units) - 1, -1)]
     whole = [value for value in values
              if abs(duration / value - round(duration / value)) < 1e-9 * duration / value]
-    short = [value for value, number in zip(values, numbers) if number % 10 == 0]
-    return [*whole, *short, *values][0]
+    return [*whole, *values][0]

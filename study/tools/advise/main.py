@@ -2,6 +2,7 @@
 import json
 import math
 import re
+import sys
 from pathlib import Path
 
 from analysis.core.errors import StudyError
@@ -14,34 +15,29 @@ from study.core.options import Parser, directory, positive
 from study.core.studyset import context_of, listed, need_own, select
 
 DURATION, BUDGET, LONGEST = 20.0, 45.0, 1e6  # s
-OF_A_QUESTION = ("SCENE", "--error", "--deadline-us", "--step", "--duration", "--budget", "--json", "--plot")
+OF_A_QUESTION = ("--error", "--deadline-us", "--step", "--duration", "--budget", "--json")
 DEFAULT = ROOT / "results" / "local" / "advice"
 
 
 def advise(arguments):
     options = _parser().parse_args(arguments)
-    need_modules("yaml", "pandas", "matplotlib")
-    if options.plot and Path(options.plot).suffix not in (".svg", ".png"):
-        raise StudyError(f"--plot {options.plot}: the name must end in .svg or .png")
-    if options.plot and not Path(options.plot).absolute().parent.is_dir():
-        raise StudyError(f"--plot {options.plot}: there is no such directory")
+    need_modules("yaml", "pandas")
     if options.validate:
         _nothing_beside_validate(options)
-        from study.tools.advise.validate import BEGUN, validate
+        need_modules("jinja2")
+        from study.tools.advise.validate import BEGUN, questions, validate
+        questions(options.scene)
         results = options.results or DEFAULT / "validation"
         need_own(results, BEGUN)
         writable(results)
         return validate(options, ask, runner_of, results)
     if options.results:
         need_own(options.results)
-    if not options.scene or options.error is None:
-        raise StudyError("a SCENE and --error E are needed (see study/advise --help)")
+    if len(options.scene) != 1 or options.error is None:
+        raise StudyError("one SCENE and --error E are needed (see study/advise --help)")
     answer, _ = ask(options)
     from study.tools.advise.answer import text
     print(json.dumps(answer, indent=1) if options.json else text(answer))
-    if options.plot:
-        from study.tools.advise.figure import draw, write
-        write(draw(answer), options.plot)
     return 0 if answer["met"] else 1
 
 
@@ -60,9 +56,9 @@ def ask(options, folder=None):
     from study.tools.advise.settings import catalogue
     known = listed()
     names = select(known, options.only)
-    scene = scene_name(options.scene)
+    scene = scene_name(options.scene[0])
     described = describe(scene)
-    question = Question(options.scene, options.error, duration(options.scene, options.duration, described),
+    question = Question(options.scene[0], options.error, duration(options.scene[0], options.duration, described),
                         options.deadline_us, options.budget or BUDGET, options.step)
     _need_possible(question)
     inputs = {"scene": scene, "file": digest(ROOT / scene) if (ROOT / scene).is_file() else "",
@@ -70,8 +66,9 @@ def ask(options, folder=None):
               "budget": question.budget, "step": question.step, "repeats": REPEATS}
     folder = folder or options.results or DEFAULT / _folder(inputs, names)
     writable(folder)
-    with locks.only_one(folder), locks.only_one_study(options.wait):
-        variants, runner = runner_of(folder, inputs, names, known, question.deadline_us, options.json)
+    with locks.only_one(folder), locks.only_one_study(options.wait, say):
+        variants, runner = runner_of(folder, inputs, described["variables"], names, known, question.deadline_us,
+                                     options.json)
         advice = seek(question, catalogue(), described, variants, runner, runner.lab.tell)
         runner.lab.progress.end()
         answer = as_json(advice, runner, described, variants, folder)
@@ -79,7 +76,12 @@ def ask(options, folder=None):
     return answer, advice
 
 
-def runner_of(folder, inputs, names, known, deadline_us=None, quiet=False):
+def say(text):
+    """On standard error: standard output may be JSON."""
+    print(text, file=sys.stderr, flush=True)
+
+
+def runner_of(folder, inputs, variables, names, known, deadline_us=None, quiet=False):
     """({name: what `mbs list --json` says of a variant that takes part}, Runner)"""
     from study.tools.advise.runner import Runner  # these need the modules
     from study.tools.shelf import ToolLab, open_shelf
@@ -87,7 +89,7 @@ def runner_of(folder, inputs, names, known, deadline_us=None, quiet=False):
     context = context_of(Contender(CONTROL.name, CONTROL.variant, usable(known, pairs["all"])))
     lab = ToolLab(open_shelf(folder, "advise", context, names, question=inputs), "advise", "runs", quiet=quiet)
     return ({name: known.variants[name] for name in names},
-            Runner(lab, inputs["scene"], on_usual_pairs(known, pairs, names), deadline_us))
+            Runner(lab, inputs["scene"], variables, on_usual_pairs(known, pairs, names), deadline_us))
 
 
 def _parser():
@@ -95,7 +97,8 @@ def _parser():
                     "simulate SCENE with positions as accurate as E, in the least time? Runs pilots of "
                     "that very scene, under a minute for four-bar:40; exit status 1 if no setting is "
                     "good enough.")
-    parser.add_argument("scene", nargs="?", metavar="SCENE", help="four-bar:N, one of mbs list --scenes, or a JSON file")
+    parser.add_argument("scene", nargs="*", metavar="SCENE", help="four-bar:N, one of mbs list --scenes, or a JSON file; "
+                        "with --validate scenes or kinds of its list")
     parser.add_argument("--error", type=positive, metavar="E",
                         help="largest position error of any point over the whole time, m")
     parser.add_argument("--deadline-us", type=positive, metavar="D",
@@ -111,12 +114,11 @@ def _parser():
     parser.add_argument("--budget", type=positive, metavar="S",
                         help=f"for pilots and timings ({BUDGET:g} s); what is left out then is said")
     parser.add_argument("--json", action="store_true", help="print everything as JSON (study/tools/advise/README.md)")
-    parser.add_argument("--plot", metavar="FILE", help="draw the pilots and the choice (.svg or .png)")
     parser.add_argument("--results", type=directory, metavar="DIR",
                         help="where raw files are kept (results/local/advice/, one folder a question)")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
     parser.add_argument("--validate", action="store_true", help="hold the advice against an exhaustive "
-                        "search on scenes with exact solutions; about 20 minutes")
+                        "search on families of mechanisms and standard problems, all or those named; some minutes a mechanism")
     return parser
 
 

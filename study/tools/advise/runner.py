@@ -1,20 +1,23 @@
 # One `mbs simulate` of the advice as a cell, and its row; what `mbs describe` says of the scene.
+import resource
 import shlex
+import time
 from pathlib import Path
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
-from analysis.core.outcomes import of_run
+from analysis.core.outcomes import FINISHED, of_run
 from study.core import executor
 from study.core.cell import Cell
 from study.tools.advise.choice import Pilot
 
-# After every step: the usual judging of a few of them may keep pace with the motion and miss its worst.
-EXACT = ("--judge-every", "1")  # for the exact error
-HALVED = ("--half-step", *EXACT)  # for an estimate beside it
+EXACT, HALVED = "exact", "half-step"  # what a run tells of its error: the exact one, where it is known; an estimate, too
+# Judged after every step, as the usual judging of a few may keep pace with the motion and miss its worst; but where steps
+# times variables are above VALUES, of a share of them, JUDGED at least.
+VALUES, JUDGED = 2e5, 100
 REPEATS = 3  # of a motion whose time matters; each step's least counts, as what interrupts one run spares another
-LOOSER = 10  # a loose tolerance is this times the automatic one of the scheme
-OF_TIMES = {"step_us_median": "median", "step_us_p99": "p99", "step_us_max": "max", "deadline_misses": "deadline_misses"}
+QUICK = 200  # steps of a run for its time
+OF_TIMES = {"step_us_median": "median", "step_us_p99": "p99", "deadline_misses": "deadline_misses"}
 
 
 def describe(scene):
@@ -38,56 +41,87 @@ def typed(record):
     return shlex.join(["build/mbs", *(word for word in record.command[1:] if word != "--json")])
 
 
-def advised(command, library):
-    """A verified command line as it is advised: without what only tells its error, and without a BLAS where
-    `library` of `mbs list --json` is "none"."""
+def advised(command, library, duration):
+    """A command line as it is advised: over all of the time, without a BLAS where `library` of `mbs list --json` is "none"."""
     words = shlex.split(command)
-    for option, count in ((HALVED[0], len(HALVED)), *([("--blas", 2)] if library == "none" else [])):
-        at = words.index(option) if option in words else len(words)
-        del words[at:at + count]
+    words[words.index("--duration") + 1] = f"{duration:g}"
+    if library == "none" and "--blas" in words:
+        at = words.index("--blas")
+        del words[at:at + 2]
     return shlex.join(words)
 
 
 class Runner:
-    """Runs simulations of one scene one after the other, and keeps a row of each."""
+    """Runs simulations of one scene one after the other, and keeps a row of each. `truth`: where it is known, what a run's
+    series is held against (truth.py)."""
 
-    def __init__(self, lab, scene, contenders, deadline_us=None):
-        self.lab, self.scene, self.contenders = lab, scene, {one.name: one for one in contenders}
+    def __init__(self, lab, scene, variables, contenders, deadline_us=None, truth=None):
+        self.lab, self.scene, self.variables, self.truth = lab, scene, variables, truth
+        self.contenders = {one.name: one for one in contenders}
         self.deadline = ["--deadline-us", f"{deadline_us:g}"] if deadline_us else []
-        self.rows = []
+        self.rows, self.wall, self.processor = [], 0.0, 0.0  # s, of all runs
 
-    def __call__(self, kind, setting, variant, step, duration, seconds, checks=()):
+    def __call__(self, kind, setting, variant, step, duration, seconds, checks="", repeats=REPEATS):
         """The row of a run: kind, setting, implementation, step, outcome, times, command, raw_file. `checks`: EXACT
         or HALVED where its error matters, not only its time. `step_us`, by which runs are ranked, is the mean over
         the steps of each one's least time over the repeats; the other times are those of the first repeat."""
-        repeats = [] if checks == HALVED else ["--repeats", str(REPEATS)]
-        record, tolerance = self._tolerance(setting, variant, step) if setting.loose else (None, None)
-        if tolerance or not setting.loose:  # else the row is that of the run which should have told it
-            words = [*setting.words(tolerance=tolerance), *self.deadline, *repeats, *checks]
-            record = self._simulate(kind, variant, step, duration, seconds, words)
+        record, tolerance = self._tolerance(setting, variant, step) if setting.loosened else (None, None)
+        if tolerance or not setting.loosened:  # else the row is that of the run which should have told it
+            repeated = ("--repeats", repeats) if repeats > 1 and checks != HALVED else ()
+            words = [*setting.words(tolerance=tolerance), *self.deadline, *repeated, *self._checks(checks, duration / step)]
+            record = self._simulate(kind, variant, step, duration, seconds, words, self.truth if checks == EXACT else None)
         status, reason = of_run(record)
         found = record.output
-        times = found.get("step_us", {})
+        times, least = found.get("step_us", {}), found.get("least_us") or {}
         row = {"kind": kind, "setting": setting.name, "implementation": variant, "step": step, "duration": duration,
                "status": status, "reason": reason, "estimate": found.get("position_error_estimate"),
-               "exact": found.get("position_error_max"), "step_us": (found.get("least_us") or {}).get("mean")}
+               "exact": found.get("position_error_max"), "step_us": least.get("mean")}
         row |= {column: times.get(name) for column, name in OF_TIMES.items()}
-        row |= {key: found.get(key) for key in ("steps", "passes_per_step", "penalty", "tolerance")}
+        row |= {key: found.get(key) for key in ("steps", "passes_per_step", "penalty", "tolerance", "warnings")}
         row |= {"seconds": record.seconds, "command": typed(record), "raw_file": f"raw/advise/{record.name}"}
+        if self.truth and checks == EXACT and record.done and status in FINISHED:
+            row["exact"] = self.truth.error(record.series)
         self.rows.append(row)
         return row
 
     def pilot(self, setting, variant, step, duration, seconds):
         row = self("pilots", setting, variant, step, duration, seconds, checks=HALVED)
-        return Pilot(row["step"], row["status"], row["estimate"], row["step_us_median"] or float("nan"),
-                     row["step_us_p99"] or float("nan"), row["reason"])
+        return Pilot(row["step"], row["status"], row["estimate"], row["step_us_median"] or float("nan"), row["reason"])
 
-    def _simulate(self, kind, variant, step, duration, seconds, words):
-        return self.lab.one(Cell("simulate", self.scene, (self.contenders[variant],), (
-            "--step", f"{step:g}", "--duration", f"{duration:g}", *words), kind, timed=True, seconds=round(seconds, 3)))
+    @property
+    def waited(self):
+        """Share of the time of all runs in which they had no processor: other programs had it."""
+        return min(0.9, max(0.0, 1.0 - self.processor / self.wall)) if self.wall > 1.0 else 0.0
+
+    @property
+    def slowdown(self):
+        """How many times longer runs take for that."""
+        return 1.0 / (1.0 - self.waited)
+
+    def _checks(self, checks, steps):
+        every = max(1, min(int(steps / JUDGED), int(steps * self.variables / VALUES)))
+        return [*["--half-step"] * (checks == HALVED), "--judge-every", every] if checks else []
+
+    def _simulate(self, kind, variant, step, duration, seconds, words, truth=None):
+        seen = {"keep": truth.columns, "every": truth.every(step, duration)} if truth else {}
+        return self._timed(Cell("simulate", self.scene, (self.contenders[variant],), (
+            "--step", f"{step:g}", "--duration", f"{duration:g}", *words), kind, timed=True, seconds=round(seconds, 3), **seen))
 
     def _tolerance(self, setting, variant, step):
         """(record of a run of one step, which tells the automatic tolerance; what that is loosened to, m, or None)"""
         record = self._simulate("automatic", variant, step, step, 60, setting.parent.words())
         found = record.output.get("tolerance")
-        return record, LOOSER * found if found else None
+        return record, setting.loosened * found if found else None
+
+    def _timed(self, cell):
+        known, began, used = len(self.lab.names), time.monotonic(), _children()
+        record = self.lab.one(cell)
+        if len(self.lab.names) > known and time.monotonic() - began > 0.9 * record.seconds:  # not read from a file
+            self.wall, self.processor = self.wall + record.seconds, self.processor + _children() - used
+        return record
+
+
+def _children():
+    """Processor time of the children that have ended, s."""
+    found = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return found.ru_utime + found.ru_stime

@@ -2,13 +2,15 @@
 import math
 from dataclasses import dataclass, field
 
-from study.tools.advise.choice import allowed, counts, local_order, next_at, next_step
 from analysis.core.outcomes import FINISHED
+from study.tools.advise.choice import enough, local_order, next_at, next_step
 
-DOMINATED = 1.6  # a setting that promises this times the best one's time is not followed further,
-SCHEME = 3.0     # a scheme that promises this times, as its changes may make up for it
-LOST = ("diverged", "not-converged", "wrong-branch")  # a shorter step may mend these
-HOPE = 0.5       # of its scheme's time a simulated second: what a change is expected to reach at best
+SCHEME = 2.0     # a scheme is followed while it promises less than this times the best one's time, as its changes may
+NEAR = 1.15      # make up for it; a change of it while it promises less than that
+ROOM = 2, 16     # times the step of the best: how long another scheme's may be, of second order and of a higher one
+AHEAD = 4        # times the step of a pilot: how long the one is at most that it promises
+DOUBT = 2        # times its promise: what goes before a setting of which no run has come to its end
+LOST = (*FINISHED, "diverged", "not-converged", "wrong-branch", "refused")  # another step may mend what is wrong
 
 
 @dataclass
@@ -18,29 +20,33 @@ class Found:
     pilots: list = field(default_factory=list)
     chosen: float | None = None  # step, s
     reason: str = ""             # why it has none
+    quick_us: float = math.nan   # of a step, in a short run before any pilot
+    chosen_us: float = math.nan  # of the chosen step
 
     @property
     def open(self):
         return self.chosen is None and not self.reason
 
     def step_us(self):
-        """Median time of a step at the shortest step that was run."""
+        """Time of a step: of the run at the chosen step, else the median at the shortest one that was tried, else of the
+        short run."""
         times = [pilot for pilot in self.pilots if pilot.step_us > 0]
-        return min(times, key=lambda pilot: pilot.step).step_us if times else math.nan
+        pilot = min(times, key=lambda pilot: pilot.step).step_us if times else self.quick_us
+        return pilot if math.isnan(self.chosen_us) else self.chosen_us
 
     def rung(self):
         """The longest step that was run and is not longer than the chosen one; the shortest without."""
         steps = [pilot.step for pilot in self.pilots]
-        return max([step for step in steps if self.chosen and step <= self.chosen * 1.001]
-                   or [min(steps)])
+        return max([step for step in steps if self.chosen and step <= self.chosen * 1.001] or [min(steps)])
 
 
 class Search:
-    """`run(setting, step)` gives a Pilot, or None if no time is left for it."""
+    """`run(setting, step)` gives a Pilot, or None if no time is left for it; `quick(setting, step)` the time of a step
+    in a short run, us, or None."""
 
-    def __init__(self, settings, run, *, error, duration, start, deadline_us=None, step=None):
+    def __init__(self, settings, run, quick, *, error, duration, start, deadline_us=None, step=None):
         self.found = {setting: Found(setting) for setting in settings}
-        self.run, self.error, self.duration, self.start = run, error, duration, start
+        self.run, self.quick, self.error, self.duration, self.start = run, quick, error, duration, start
         self.deadline_us = deadline_us or math.inf
         self.step = step  # where only one may be chosen
         self.cut = False
@@ -48,31 +54,51 @@ class Search:
     def search(self):
         """Pilots until every setting has a step, or a reason why it has none; {setting: Found}."""
         while True:
-            waiting = [one for one in self.found.values() if one.open]
             best = self.best()
-            ready = [one for one in waiting if self._ready(one, best)]
+            ready = [one for one in self.found.values() if one.open and self._ready(one, best)]
             if not ready:
                 break
-            self._advance(min(ready, key=self.promise))
-        for one in waiting:
-            one.reason = (f"promises {self.promise(one) / 1e3:.3g} ms a simulated second at best, the "
-                          f"fastest {best / 1e3:.3g}")
+            self._advance(min(ready, key=self._rank))
+        for one in self.found.values():
+            if one.open and one.quick_us == math.inf:
+                one.reason = "its steps take far longer than those of other settings"
+            elif one.open:
+                one.reason = (f"promises {self.promise(one) / 1e3:.3g} ms a simulated second at best, the fastest "
+                              f"{best / 1e3:.3g}")
         return self.found
+
+    def _rank(self, one):
+        return self.promise(one) * (1 if self._tells(one) or self._tells(self.parent(one)) else DOUBT)
 
     def best(self):
         """Least time of a simulated second among the settings that have a step, us."""
         return min((self.promise(one) for one in self.found.values() if one.chosen), default=math.inf)
 
     def promise(self, one):
-        """Time of a simulated second that a setting may reach, us."""
+        """Time of a simulated second that a setting may reach, us; 0 where nothing is known."""
         if one.chosen:
             return one.step_us() / one.chosen
+        parent = self.parent(one)
         if one.pilots:
             return one.step_us() / self._needed(one)
-        parent = self._parent(one)
-        return HOPE * self.promise(parent) if parent else 0.0
+        if self._tells(parent):
+            at = where = parent.chosen or self._needed(parent)
+        elif self.step:
+            at = where = self.step
+        else:
+            best = min((other for other in self.found.values() if other.chosen), key=self.promise, default=None)
+            at, where = ROOM[one.setting.order > 2] * (best.chosen if best else self.start), self.start
+        if math.isnan(one.quick_us):  # errors of a change are hardly less than those of its scheme: times decide
+            one.quick_us = (math.inf if parent and parent.quick_us == math.inf else self.quick(one.setting, where)
+                            or (parent.step_us() if self._tells(parent) else 0.0))
+        return one.quick_us / at
 
-    def _parent(self, one):
+    @staticmethod
+    def _tells(one):
+        """Whether a setting's pilots tell which step it needs."""
+        return one and any(pilot.valid for pilot in one.pilots)
+
+    def parent(self, one):
         """The scheme without changes, where that is another setting."""
         return self.found.get(one.setting.parent) if one.setting.changes else None
 
@@ -84,43 +110,54 @@ class Search:
         if not valid:
             return min(pilot.step for pilot in one.pilots) / 2
         finest = min(valid, key=lambda pilot: pilot.step)
-        limit = allowed(self.error, one.setting.order)
         slope = local_order(finest.step, one.pilots, one.setting.order)
-        return finest.step * min(2.0, (limit / max(finest.estimate, 1e-300)) ** (1 / slope))
+        reached = max(finest.estimate, 1e-300)
+        return finest.step * min(AHEAD, (self.error / reached) ** (1 / slope))
 
     def _ready(self, one, best):
-        parent = self._parent(one)
+        parent = self.parent(one)
         if parent and parent.open and self._ready(parent, best):
             return False  # the scheme itself first
-        return not self.promise(one) > (DOMINATED if parent else SCHEME) * best
+        return not self.promise(one) > (NEAR if self._tells(parent) else SCHEME) * best
 
     def _advance(self, one):
-        parent = self._parent(one)
-        start = parent.rung() if parent and parent.pilots else self.start
-        limit = allowed(self.error, one.setting.order)
-        after = (next_at(self.step, one.pilots, limit, self.duration) if self.step else
-                 next_step(one.pilots, limit, one.setting.order, start, self.duration))
+        parent, order = self.parent(one), one.setting.order
+        start = parent.rung() if self._tells(parent) else self.start
+        after = (next_at(self.step, one.pilots, self.error, order, self.duration) if self.step else
+                 next_step(one.pilots, self.error, order, start, self.duration))
         if after.step is None:
-            one.chosen, one.reason = after.chosen, after.reason
+            self._end(one, after.chosen, after.reason)
             return
         pilot = self.run(one.setting, after.step)
         if pilot is None:
             self.cut = True
-            self._settle(one)
-            return
-        one.pilots.append(pilot)
-        if pilot.status not in (*FINISHED, *LOST):
-            one.reason = f"{pilot.status}: {pilot.reason}"
-        elif pilot.step_us > 2 * self.deadline_us:
-            one.reason = f"a step takes {pilot.step_us:.3g} us"
-
-    def _settle(self, one):
-        """Out of time: the longest step that is known to be good enough, if any."""
-        limit = allowed(self.error, one.setting.order)
-        good = [pilot.step for pilot in one.pilots
-                if pilot.valid and pilot.estimate <= limit and counts(pilot.step, one.pilots, limit)
-                and self.step in (None, pilot.step)]
-        if good:
-            one.chosen = max(good)
+            self._settle(one, "no time was left for the pilots that it needs")
+        elif pilot.status == "unsupported":
+            one.reason = f"unsupported: {pilot.reason}"
         else:
-            one.reason = "no time was left for the pilots that it needs"
+            one.pilots.append(pilot)
+            if pilot.status not in LOST:
+                self._settle(one, f"{pilot.status}: {pilot.reason}")
+            elif parent and self._harmful(pilot, parent):
+                self._settle(one, f"estimate {pilot.estimate:.2g} m at step {pilot.step:g} s, far above that of "
+                                  f"{parent.setting.name} without the change")
+
+    @staticmethod
+    def _harmful(pilot, parent):
+        """Whether a change spoils what its scheme has at this step: a step of less than a third would mend it."""
+        beside = [other for other in parent.pilots if other.valid and other.step == pilot.step]
+        return pilot.valid and beside and pilot.estimate > 3.0**parent.setting.order * beside[0].estimate
+
+    def _settle(self, one, reason):
+        """Nothing more is tried: the longest step that is known to be good enough, if any."""
+        good = [pilot.step for pilot in enough(one.pilots, self.error, one.setting.order)
+                if self.step in (None, pilot.step)]
+        self._end(one, good[0] if good else None, reason)
+
+    def _end(self, one, chosen, reason):
+        """Gives a setting its step, or the reason why it has none."""
+        one.chosen, one.reason = chosen, "" if chosen else reason
+        if chosen:
+            one.chosen_us = self.quick(one.setting, chosen) or one.step_us()
+            if one.chosen_us > self.deadline_us:
+                one.chosen, one.reason = None, f"a step takes {one.chosen_us:.3g} us, beyond the deadline"

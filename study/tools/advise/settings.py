@@ -1,30 +1,25 @@
 # The settings that advice considers, as options of `mbs simulate`, and who serves them.
-from study.core.setting import Setting
+from itertools import product
 
-# What is changed beside the scheme, one combination a line. Measured on the N-four-bar: the penalty
-# form bears neither a loose tolerance nor missing projections, whatever the step.
-CHANGES = {
-    "penalty": [
-        {}, {"multipliers": "converged"}, {"tangent": "every-step"}, {"tangent": "kept"},
-        {"projections": "velocity"}, {"precision": "mixed"}, {"precision": "single"},
-        {"geometric-stiffness": ""},
-        {"multipliers": "converged", "tangent": "every-step"}],
-    "saddle-point": [
-        {}, {"tolerance": "loose"}, {"projections": "velocity"}, {"projections": "none"},
-        {"tangent": "every-step"}, {"tangent": "kept"}, {"precision": "mixed"},
-        {"precision": "single"}, {"geometric-stiffness": ""},
-        {"tolerance": "loose", "projections": "velocity"},
-        {"tolerance": "loose", "projections": "none"},
-        {"tolerance": "loose", "tangent": "every-step"},
-        {"tolerance": "loose", "tangent": "kept"},
-        {"tolerance": "loose", "geometric-stiffness": ""}],
-    "rattle": [{}], "rattle4": [{}], "rattle6": [{}], "multistep6": [{}]}
+from study.core.setting import LOOSENED, Setting
+
+PROJECTIONS = {"penalty": ("both", "velocity", "none"), "saddle-point": ("both", "velocity", "none")}
+SCHEMES = ("penalty", "saddle-point", "rattle", "rattle4", "rattle6", "multistep6")
+CHEAP = (("projections", "velocity"), ("tolerance", "one-pass"))
+OTHERS = [Setting("saddle-point", (("tangent", "every-step"),)), *(Setting(scheme, (change, *CHEAP)) for scheme, change in (
+    ("saddle-point", ("tangent", "kept")), ("penalty", ("precision", "single")), ("penalty", ("geometric-stiffness", ""))))]
 
 
 def catalogue():
-    """All settings, a scheme's own before what changes it."""
-    return [Setting(scheme, tuple(changes.items())) for scheme, all_changes in CHANGES.items()
-            for changes in all_changes]
+    """Scheme × projections × tolerance, a scheme's own before what changes it; of what else changes a step, what was the
+    fastest somewhere when all was tried (README.md)."""
+    found = []
+    for scheme in SCHEMES:
+        for projections, tolerance in product(PROJECTIONS.get(scheme, ("both",)), ("auto", *LOOSENED)):
+            changes = (("projections", projections),) * (projections != "both") + (
+                (("tolerance", tolerance),) * (tolerance != "auto"))
+            found.append(Setting(scheme, changes))
+    return [*found, *OTHERS]
 
 
 def fits(setting, scene):

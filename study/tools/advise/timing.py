@@ -8,6 +8,7 @@ from analysis.core.outcomes import FINISHED
 ROUNDS, TIE_BREAKS = 3, 2
 SLOWER = (2.0, 1.25, 1.1)  # this times the best one's time drops out after the first, second, later rounds
 STRETCH = 2.0              # simulated s of a timing: past singular positions, as far as there are such
+LOST_AT_MOST = 4           # times a candidate's step may become shorter
 SHORTEST = 0.05            # wall s of its steps at least, if the whole duration has as many
 
 
@@ -22,6 +23,7 @@ class Candidate:
     out: bool = False
     slower: bool = False  # than others as they were then: that is why it is out
     kept: bool = False  # it is timed in every round, however slow
+    late_us: float = 0.0  # its 99th percentile, where that is why it is out
 
     def times(self, key="step_us"):
         return [row[key] for row in self.rows if row[key] is not None]
@@ -35,8 +37,11 @@ class Candidate:
         """Median over the rounds."""
         return median(self.times("step_us_p99")) if self.rows else math.inf
 
-    def drop(self, reason):
-        self.out, self.reason = True, reason
+    def drop(self, reason, late_us=0.0):
+        self.out, self.reason, self.late_us = True, reason, late_us
+
+    def drop_late(self, p99_us, when=""):
+        self.drop(f"99th percentile {p99_us:.3g} us{when}: beyond the deadline", p99_us)
 
 
 def stretch(duration, us_per_second):
@@ -44,9 +49,10 @@ def stretch(duration, us_per_second):
     return min(duration, max(STRETCH, 1e6 * SHORTEST / max(us_per_second, 1.0)))
 
 
-def race(candidates, run, left, deadline_us=None):
+def race(candidates, run, left, deadline_us=None, shorter=False):
     """Times the candidates; `run(candidate, round)` gives a row, `left()` the seconds left. Returns whether
-    there was time for all; slow ones have dropped out, with the reason."""
+    there was time for all; slow ones have dropped out, with the reason. `shorter`: a candidate that is lost, as its pilot
+    covered less of the motion, gets a shorter step."""
     for number in range(1, ROUNDS + TIE_BREAKS + 1):
         running = [one for one in candidates if not one.out]
         if number > ROUNDS and (len(running) < 2 or decided(running)):
@@ -56,12 +62,17 @@ def race(candidates, run, left, deadline_us=None):
                 _not_timed(candidates)
                 return False
             row = run(one, number)
+            for _ in range(LOST_AT_MOST if shorter else 0):
+                if row["status"] in FINISHED or left() <= 0:
+                    break
+                one.step, one.rows = float(f"{one.step / math.sqrt(2):.3g}"), []
+                row = run(one, number)
             if row["status"] in FINISHED:
                 one.rows.append(row)
             else:  # a stretch may end lost where the whole run is not: another candidate, then
                 one.drop(f"{row['status']} while it was timed: {row['reason']}")
             if deadline_us and one.rows and one.p99_us() > 2 * deadline_us:
-                one.drop(f"99th percentile {one.p99_us():.3g} us")
+                one.drop_late(one.p99_us())
         drop_slow(candidates, SLOWER[min(number, len(SLOWER)) - 1], number)
     return True
 
@@ -99,6 +110,6 @@ def ranked(candidates, deadline_us=None):
     """Those that may be advised, fastest first; a 99th percentile beyond the deadline is a reason to drop."""
     for one in candidates:
         if deadline_us and not one.out and one.p99_us() > deadline_us:
-            one.drop(f"99th percentile {one.p99_us():.3g} us: beyond the deadline")
+            one.drop_late(one.p99_us())
     return sorted((one for one in candidates if not one.out and one.rows),
                   key=lambda one: one.us_per_second()[0])

@@ -1,82 +1,164 @@
-# study/advise --validate: the advice against an exhaustive search, on scenes whose exact motion is known.
+# study/advise --validate: the advice against an exhaustive search, on families of mechanisms and standard problems.
 from argparse import Namespace
+from pathlib import Path
 
+import jinja2
 import pandas
 
-from analysis.core.files import write
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, write, write_text
 from analysis.core.outcomes import FINISHED
+from analysis.core.text import number
 from study.core import locks
+from study.core.setting import Setting, read_settings
 from study.core.studyset import listed, select
 from study.tools.advise import timing
-from study.tools.advise.advice import PROBE_FACTOR, probe
-from study.tools.advise.runner import EXACT, REPEATS
-from study.tools.advise.settings import catalogue, serving
+from study.tools.advise.advice import SLOWER, probe
+from study.tools.advise.runner import EXACT, describe
+from study.tools.advise.settings import catalogue, fits, serving
+from study.tools.advise.truth import Truth
 
-LOOPS, ERRORS, DURATION = (1, 2, 10, 40), (1e-1, 1e-2, 1e-3, 1e-4), 5.0
-BEGUN = {".lock", "searched.csv", "validation.csv", *(f"n{count}" for count in LOOPS)}  # its folder
-LONGEST, SHORTEST, RATIO = 0.08, 5e-5, 2**-0.5  # steps of the search, s
-NEAR = 2.0        # settings this times the fastest one's time, by one implementation each, are timed with all
-MOST = 1.5        # times the best found that an advised run may take
-ROUNDS_AT_MOST = 600.0  # s of timing a question
+PROBLEMS = "harness/scenes/problems"
+SCENES = {  # (kind, s): scenes
+    ("four-bar", 5): ("four-bar:1", "four-bar:2", "four-bar:10", "four-bar:40"),
+    ("ladder", 4): ("ladder:12", "ladder:40"), ("grid", 3): ("grid:5x5", "grid:10x10"), ("truss", 3): ("truss:3", "truss:8"),
+    ("vehicle", 4): ("vehicle:8", "vehicle:40"), ("robot", 4): ("robot:8", "robot:30"),
+    ("flexible", 3): ("flexible:4", "flexible:8,nodes=24"), ("bodies", 4): ("bodies:8", "bodies:10,dimension=3"),
+    ("tree", 4): ("tree:20", "tree:200"), ("scissors", 4): ("scissors:5", "scissors:12"), ("star", 4): ("star:10", "star:100"),
+    ("loop", 4): ("loop:20", "loop:60"), ("chain", 2): ("chain:20", "chain:60"),
+    ("standard problems", 5): tuple(f"{PROBLEMS}/{name}.json" for name in (
+        "a01_pendulum", "a04_bricard", "a05_governor", "slider_crank", "spatial_slider_crank", "half_car", "double_four_bar")),
+    ("standard problems", 0.03): (f"{PROBLEMS}/a03_andrews.json",),
+    ("standard problems", 1): (f"{PROBLEMS}/chain_200.json", f"{PROBLEMS}/grid_10.json"),
+    ("large, n about 2000", 1): ("tree:1000", "star:500", "ladder:500")}
+SHARES = (1e-2, 1e-3, 1e-4)  # of the scene's length (describe: judged_length): the errors that are asked for
+CERTAIN = 0.1     # of an error: how well the motion must be known
+BEGUN = {".lock", "searched.csv", "validation.csv", "validation.html", "scenes"}  # its folder
+LEAST_STEPS, MOST_STEPS, RATIO = 20, 2e5, 2**-0.5  # of a run of the search; of a step to the next longer one
+NEAR = 1.5        # settings this times the fastest one's time, by one implementation each, are timed with all
+MOST, LATEST = 1.3, 60.0  # times the best found that an advised run may take; s, of an answer
+TOO_LONG = 20.0   # s, of a run of the search
+ROUNDS_AT_MOST = 600.0    # s of timing a question
 
 
-def validate(options, ask, runner_of, results, loops=LOOPS, errors=ERRORS, duration=DURATION):
-    """`ask` and `runner_of` are those of main.py, which calls this."""
+def validate(options, ask, runner_of, results):
+    """`ask` and `runner_of` are those of main.py, which calls this. `options.scene`: only these; empty: all."""
     known = listed()
     names = select(known, options.only)
-    rows, searched = [], []
+    chosen = questions(options.scene)
+    rows, searched, unknown = [], [], []
     with locks.only_one(results):
-        for count in loops:
-            scene = f"four-bar:{count}"
-            folder = results / f"n{count}"
+        for kind, scene, duration in chosen:
+            folder = results / "scenes" / Path(scene).stem.replace(":", "-")
+            described = describe(scene)
+            errors = [float(f"{share * described['judged_length']:.2g}") for share in SHARES]
             with locks.only_one_study(options.wait):
-                variants, run = runner_of(folder, {"scene": scene, "duration": duration, "repeats": REPEATS}, names, known)
-                found, speeds = search(run, variants, duration, errors, scene)
+                variants, run = runner_of(folder, {"scene": scene, "duration": duration}, described["variables"], names, known)
+                if not scene.startswith("four-bar"):  # of which the exact motion is known
+                    run.lab.tell(f"{scene}: reference")
+                    run.truth = Truth(run.lab, scene, described, run.contenders[_reference(described, variants)], duration,
+                                      CERTAIN * min(errors))
+                asked = [error for error in errors if not run.truth or run.truth.uncertainty <= CERTAIN * error]
+                unknown += [f"{scene} at {error:g} m" for error in errors if error not in asked]
+                found, speeds = search(run, variants, described, duration, asked, scene) if asked else ([], {})
             searched += [{"scene": scene} | row for row in found]
-            for error in errors:
-                asked = Namespace(scene=scene, error=error, duration=duration, deadline_us=None, only=options.only,
-                                  budget=None, step=None, results=None, wait=options.wait, json=False)
-                answer, advice = ask(asked, folder=folder / f"error-{error:g}")
+            for error in asked:
+                question = Namespace(scene=[scene], error=error, duration=duration, deadline_us=None, only=options.only,
+                                     budget=None, step=None, results=None, wait=options.wait, json=False)
+                answer, advice = ask(question, folder=folder / f"error-{error:g}")
                 with locks.only_one_study(options.wait):
-                    rows.append(_compare(scene, error, duration, answer, advice, run, variants, found, speeds))
+                    rows.append({"kind": kind, "n": described["variables"]}
+                                | _compare(scene, error, duration, answer, advice, run, variants, found, speeds))
+                write_results(results, rows, searched, unknown)
             run.lab.progress.end()
-    table = pandas.DataFrame(rows)
-    for name, found in (("searched", pandas.DataFrame(searched)), ("validation", table)):
-        write(results / f"{name}.csv", lambda partial, found=found: found.to_csv(partial, index=False))
-    held, sentence = verdict(table, MOST)
-    print(f"{sentence}\ntable: {results / 'validation.csv'}")
+    if not rows:
+        raise StudyError(f"no motion is known well enough to ask a question: {', '.join(unknown)}")
+    held, sentence = verdict(pandas.DataFrame(rows), unknown)
+    print(f"{sentence}\npage: {results / 'validation.html'}")
     return 0 if held else 1
 
 
-def verdict(table, most):
+def questions(asked):
+    """[(kind, scene, s)] of SCENES: the scenes and kinds that are asked for, or all."""
+    found = [(kind, scene, duration) for (kind, duration), scenes in SCENES.items() for scene in scenes
+             if not asked or scene in asked or kind in asked]
+    if not found:
+        raise StudyError(f"--validate has none of {', '.join(asked)}; it has {', '.join(dict.fromkeys(k for k, _ in SCENES))}"
+                         " and their scenes")
+    return found
+
+
+def _reference(described, variants):
+    """Who simulates the reference: the fastest by the rule that serves both schemes."""
+    serves = serving(Setting("saddle-point"), variants)
+    able = [one for one in described["recommendation"] if one["implementation"] in serves]
+    return min(able, key=lambda one: one["step_us"])["implementation"]
+
+
+def write_results(results, rows, searched, unknown):
+    table = pandas.DataFrame(rows)
+    for name, found in (("searched", pandas.DataFrame(searched)), ("validation", table)):
+        write(results / f"{name}.csv", lambda partial, found=found: found.to_csv(partial, index=False))
+    loader = jinja2.FileSystemLoader([Path(__file__).parent, ROOT / "analysis" / "core"])
+    page = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, undefined=jinja2.StrictUndefined)
+    page.filters["number"] = number
+    write_text(results / "validation.html", page.get_template("validation.html.j2").render(
+        sentence=verdict(table, unknown)[1], kinds=by_kind(table), rows=table.to_dict("records"), unknown=unknown, most=MOST))
+
+
+def by_kind(table):
+    """Questions of a kind are one row: {"kind", "mechanisms", "questions", "met", "ratio" (the worst), "seconds" (the longest),
+    "settings" and who ran them, the most frequent first}."""
+    return [{"kind": kind, "mechanisms": rows.scene.nunique(), "sizes": sorted(set(rows.n)), "questions": len(rows),
+             "met": int(rows.meets.sum()), "ratio": rows.ratio.max(), "within": int((rows.ratio <= MOST).sum()),
+             "seconds": rows.seconds.max(), "settings": rows.advised_setting.dropna().value_counts().to_dict()}
+            for kind, rows in table.groupby("kind", sort=False)]
+
+
+def verdict(table, unknown=()):
     """(whether all held, a sentence)."""
-    late = ~(table.ratio <= most)  # no ratio is too late as well
-    named = [f"{row.scene} at {row.error:g} m" for row in table[~table.meets | late].itertuples()]
-    return not named, (f"{int(table.meets.sum())} of {len(table)} advised runs are as accurate as asked; "
-                       f"{int((~late).sum())} take at most {most:g} times the best found, the slowest "
-                       f"{table.ratio.max():.2f}" + (f"; not so: {', '.join(named)}" if named else ""))
+    late = ~(table.ratio <= MOST)  # no ratio is too late as well
+    named = [f"{row.scene} at {row.error:g} m" for row in table[~table.meets | late | (table.seconds > LATEST)].itertuples()]
+    return not named, (f"{len(table)} questions on {table.scene.nunique()} mechanisms of {table.kind.nunique()} kinds: "
+                       f"{int(table.meets.sum())} advised runs are as accurate as asked; {int((~late).sum())} take at most "
+                       f"{MOST:g} times the best found, the slowest {table.ratio.max():.2f}; answers took up to "
+                       f"{table.seconds.max():.0f} s" + (f"; not so: {', '.join(named)}" if named else "")
+                       + (f"; not asked, as two schemes do not agree on the motion: {len(unknown)}" if len(unknown) else ""))
 
 
-def search(run, variants, duration, errors, scene):
+def everything():
+    """All settings that advice considers, and all of study/settings.yaml whose tolerances suit any scene."""
+    found = catalogue()
+    stored = [Setting(one.scheme, one.changes) for one in read_settings() if not {"penalty", "tolerance"} & set(dict(one.changes))]
+    return found + [one for one in stored if one not in found]
+
+
+def search(run, variants, described, duration, errors, scene):
     """Rows of every setting at every step by its fastest implementation, and {implementation: us a step}.
     A setting's steps end where two in succession meet the smallest error or where they cost too much."""
-    _, speeds = probe(variants, run, 1e-2, duration)
+    longest = duration / LEAST_STEPS
+    asked = Namespace(duration=duration, step=None)
+    _, speeds = probe(variants, run, longest / 8, described, asked, lambda share: 20.0, run.lab.tell)
     rows, least = [], {}  # least time of a simulated second that meets the smallest error
-    for setting in catalogue():
+    for setting in (one for one in everything() if not fits(one, described)):
         served = [name for name in speeds if name in serving(setting, variants)]
-        step, met = LONGEST, 0
-        while served and met < 2 and step >= SHORTEST:
+        step, met = longest, 0
+        while served and met < 2 and step >= duration / MOST_STEPS:
             run.lab.tell(f"search: {scene}, {setting.name}, step {step:.3g} s")
-            row = run("search", setting, served[0], float(f"{step:.3g}"), duration, 120, checks=EXACT)
-            row |= {"us_per_second": row["step_us"] / row["step"] if row["step_us"] else None, "pruned": ""}
+            at = float(f"{step:.3g}")
+            row = run("search", setting, served[0], at, duration, 4 * TOO_LONG, checks=EXACT, repeats=1)
+            if row["status"] in ("unsupported", "timeout", "crashed", "out-of-memory"):
+                break
+            timed = meets(row, max(errors)) and run("speed", setting, served[0], at, duration, 8 * TOO_LONG)
+            row |= {"us_per_second": timed["step_us"] / at if timed and timed["step_us"] else None, "pruned": ""}
             rows.append(row)
             met = met + 1 if meets(row, min(errors)) else 0
-            if met:
+            if met and row["us_per_second"]:
                 least[setting] = min(least.get(setting, row["us_per_second"]), row["us_per_second"])
-            if row["status"] == "unsupported":
-                break
-            if least and row["us_per_second"] and row["us_per_second"] > 2 * NEAR * min(least.values()):
-                row["pruned"] = "shorter steps are left out: far slower than a setting that meets all errors"
+            usual = row["us_per_second"] or (row["step_us_median"] or 0.0) / at
+            if usual > (2 * NEAR * min(least.values()) if least else 1e6 * TOO_LONG / duration):
+                row["pruned"] = "shorter steps are left out: " + (
+                    "far slower than a setting that meets all errors" if least else f"they take more than {TOO_LONG:g} s")
                 break
             step *= RATIO
     return rows, speeds
@@ -87,17 +169,10 @@ def meets(row, error):
 
 
 def sustained(found, error):
-    """The rows that meet an error, if the next shorter step of their setting does too, or was left out: one
-    that does so alone is luck, as an estimate of errors cannot find it."""
-    return [row for row, shorter in zip(found, [*found[1:], {"setting": None}])
-            if meets(row, error) and (shorter["setting"] != row["setting"] or meets(shorter, error))]
-
-
-def luck(found, error, us_per_second):
-    """The fastest row that meets an error by luck in less time than `us_per_second`, or {}."""
-    good = sustained(found, error)
-    return min((row for row in found if meets(row, error) and row not in good
-                and row["us_per_second"] < us_per_second), key=lambda row: row["us_per_second"], default={})
+    """The rows that meet an error, if the two next shorter steps of their setting, down to half of theirs, do too, or were
+    left out: else it is luck, which half the step cannot show."""
+    return [row for at, row in enumerate(found) if row["us_per_second"] and all(
+        meets(other, error) for other in found[at:at + 3] if other["setting"] == row["setting"])]
 
 
 def fastest(found, error):
@@ -113,56 +188,40 @@ def fastest(found, error):
 
 def _compare(scene, error, duration, answer, advice, run, variants, found, speeds):
     """The row of validation.csv of one question."""
-    settings = {setting.name: setting for setting in catalogue()}
-    candidates = [timing.Candidate(settings[row["setting"]], name, row["step"])
-                  for row in fastest(found, error) for name in speeds
-                  if name in serving(settings[row["setting"]], variants)
-                  and speeds[name] <= PROBE_FACTOR * min(speeds.values())]
-    exact = {(row["setting"], row["step"]): row for row in found}
+    settings, candidates = {setting.name: setting for setting in everything()}, []
+    for row in fastest(found, error):
+        serves = serving(settings[row["setting"]], variants)
+        served = {name: us for name, us in speeds.items() if name in serves}
+        candidates += [timing.Candidate(settings[row["setting"]], name, row["step"])
+                       for name, us in served.items() if us <= SLOWER * min(served.values())]
     advised = advice.chosen and timing.Candidate(advice.chosen.setting, advice.chosen.implementation,
                                                  advice.chosen.step, kept=True)
-    lines = _time(run, [one for one in candidates if advised is None or _same(one) != _same(advised)]
-                  + [advised] * bool(advised), duration, error)
-    order = [one for one in timing.ranked(candidates) if _same(one) != (advised and _same(advised))]
-    best = min([*order, *[one for one in [advised] if one and one.rows]], default=None,
+    _time(run, [one for one in candidates if advised is None or _same(one) != _same(advised)]
+          + [advised] * bool(advised), duration, error)
+    held = advised and run("advised", advised.setting, advised.implementation, advised.step, duration, 300, EXACT, 1)
+    best = min((one for one in [*timing.ranked(candidates), advised] if one and one.rows), default=None,
                key=lambda one: one.us_per_second()[0])
-    lucky = luck(found, error, best.us_per_second()[0]) if best else {}
-    told = answer["advice"] or {"error": {}}
-    return {"scene": scene, "error": error, "met": answer["met"], "estimate": told["error"].get("estimate"),
-            "exact": told["error"].get("exact"),
-            "meets": bool(answer["met"] and told["error"]["exact"] <= error),
-            "seconds": answer["seconds"]} | _columns("advised", advised, lines) | _columns("best", best, lines) | {
-            "best_exact": None if best is None else told["error"]["exact"] if best is advised
-            else exact[best.setting.name, best.step]["exact"],
-            "lucky_setting": lucky.get("setting"), "lucky_step": lucky.get("step"),
-            "lucky_exact": lucky.get("exact"), "lucky_us_per_second": lucky.get("us_per_second"),
+    return {"scene": scene, "error": error, "met": answer["met"],
+            "estimate": answer["advice"] and answer["advice"]["error"]["estimate"], "exact": held["exact"] if held else None,
+            "meets": bool(held and meets(held, error)), "seconds": answer["seconds"], "why_not": answer["why_not"] or ""
+            } | _columns("advised", advised) | _columns("best", best) | {
             "ratio": advised.us_per_second()[0] / best.us_per_second()[0] if advised and best else None}
 
 
 def _time(run, candidates, duration, error):
-    """{candidate: (its command, raw file)} after timing all in the same rounds."""
-    lines = {}
-
+    """Times all in the same rounds."""
     def timed(one, number):
         run.lab.tell(f"timing: error {error:g} m, round {number}, {one.implementation}, {one.setting.name}")
-        row = run(f"timing-{error:g}/round{number}", one.setting, one.implementation, one.step, duration, 60)
-        lines[_same(one)] = (row["command"], row["raw_file"])
-        return row
+        return run(f"timing-{error:g}/round{number}", one.setting, one.implementation, one.step, duration, 60)
     timing.race(candidates, timed, lambda: ROUNDS_AT_MOST)
-    return lines
 
 
 def _same(one):
     return one.setting, one.implementation, one.step
 
 
-def _columns(prefix, one, lines):
-    values = dict.fromkeys(("implementation", "setting", "step", "us_per_second", "low", "high", "command",
-                            "raw_file"))
-    if one:
-        middle, low, high = one.us_per_second()
-        command, raw_file = lines.get(_same(one), (None, None))
-        values |= {"implementation": one.implementation, "setting": one.setting.name, "step": one.step,
-                   "us_per_second": middle, "low": low, "high": high, "command": command,
-                   "raw_file": raw_file}
+def _columns(prefix, one):
+    values = {"implementation": one.implementation, "setting": one.setting.name, "step": one.step,
+              "us_per_second": one.us_per_second()[0]} if one else dict.fromkeys(
+                  ("implementation", "setting", "step", "us_per_second"))
     return {f"{prefix}_{key}": value for key, value in values.items()}

@@ -1,55 +1,76 @@
 # The last stage of an advice: the fastest candidate over the whole time, and what follows if it fails.
-from study.tools.advise import timing
-from study.tools.advise.choice import allowed, interval, local_order, tidy
-from study.tools.advise.runner import HALVED
 from analysis.core.outcomes import FINISHED
+from study.tools.advise import timing
+from study.tools.advise.choice import interval, local_order, most, tidy
+from study.tools.advise.runner import HALVED
 
 VERIFICATIONS = 20
+LEAST_SHARE = 0.3  # of the budget that a first verification may take, however little of it is left
 
 
 def verify(advice, run, left, tell):
-    """Whole runs of the fastest candidate, until one is as accurate as asked: `advice.chosen`, and its row
-    `advice.verified`. `run` is a Runner, `left()` the seconds left."""
+    """Whole runs of the fastest candidate, until one is as accurate as asked: `advice.chosen`, its row
+    `advice.verified`, and that of the line as it is advised, without a check. `run` is a Runner."""
     question = advice.question
     for _ in range(VERIFICATIONS):
         order = timing.ranked(advice.candidates, question.deadline_us)
         if not order:
             return
         one = order[0]
-        expected = 3e-6 * one.us_per_second()[0] * question.duration
-        if advice.verifications and expected > left():
+        seconds = max(left(1.0), 0.0 if advice.verifications else LEAST_SHARE * question.budget)
+        duration = _affordable(one, question, seconds / run.slowdown)
+        if not duration:
             advice.cut_short.append("no time was left to verify another candidate")
             return
         tell(f"verification: {one.implementation}, {one.setting.name}, step {one.step:g} s")
-        row = {} | run("verification", one.setting, one.implementation, one.step, question.duration,
-                  max(60.0, 5 * expected), checks=HALVED)
+        row = {} | run("verification", one.setting, one.implementation, one.step, duration, 1.5 * seconds + 2, checks=HALVED)
         row |= {"estimate": _at_least(row, advice)}
         advice.verifications.append(row)
-        if accepted(row, one.setting, question):
-            advice.chosen = one
-            advice.verified = row | {"estimate": max(row["estimate"], row["exact"] or 0.0)}
-            return
-        _reconsider(one, row, advice)
+        if not accepted(row, advice, one):
+            _reconsider(one, row, advice)
+            continue
+        tell("the advised line itself")
+        advice.outcome = run("outcome", one.setting, one.implementation, one.step, duration, seconds + 2, repeats=1)
+        if advice.outcome["status"] not in FINISHED:
+            one.drop(f"{advice.outcome['status']} as it would be advised: {advice.outcome['reason']}")
+            continue
+        advice.chosen, advice.verified = one, row | {"estimate": max(row["estimate"], row["exact"] or 0.0)}
+        if duration < question.duration:
+            advice.cut_short.append(
+                f"verified over {duration:g} of {question.duration:g} s, held to that share of the error: "
+                f"--budget {question.budget * question.duration / duration:.2g} is enough for all")
+        return
+
+
+def _affordable(one, question, seconds):
+    """The simulated time that a verification can cover, s; 0 if that is not worth it."""
+    expected = 4e-6 * one.us_per_second()[0] * question.duration  # 3 for the check, 1 for the line itself
+    if expected <= seconds:
+        return question.duration
+    share = seconds / expected
+    return float(f"{share * question.duration:.2g}") if share > 0.05 and share * question.duration > 20 * one.step else 0.0
 
 
 def _at_least(row, advice):
     """The estimate of a whole run, or a larger one that the same setting has at a shorter step: then the two runs
     that gave it were wrong alike."""
-    if row["estimate"] is None or advice.pilot_duration < advice.question.duration:
+    if row["estimate"] is None or advice.pilot_duration < row["duration"]:
         return row["estimate"]
     found = next(found for setting, found in advice.found.items() if setting.name == row["setting"])
     return max([row["estimate"], *(pilot.estimate for pilot in found.pilots if pilot.valid and pilot.step < row["step"])])
 
 
-def accepted(row, setting, question):
+def accepted(row, advice, one):
     """Whether a whole run is as accurate, and as punctual, as asked."""
-    return (row["status"] in FINISHED and row["estimate"] is not None and _excess(row, setting, question) <= 1
-            and (not question.deadline_us or row["step_us_p99"] <= question.deadline_us))
+    deadline = advice.question.deadline_us
+    return (row["status"] in FINISHED and row["estimate"] is not None and _excess(row, advice, one) <= 1
+            and (not deadline or row["step_us_p99"] <= deadline))
 
 
-def _excess(row, setting, question):
-    """How many times the allowed error that of a whole run is; only estimates need a margin."""
-    return max(row["estimate"] / allowed(question.error, setting.order), (row["exact"] or 0.0) / question.error)
+def _excess(row, advice, one):
+    """How many times the allowed error that of a run is; what is known exactly needs no margin."""
+    allowed = advice.question.error * row["duration"] / advice.question.duration
+    return (row["exact"] if row["exact"] is not None else expected_error(advice, one, row)[1]) / allowed
 
 
 def _reconsider(one, row, advice):
@@ -58,26 +79,27 @@ def _reconsider(one, row, advice):
     timing.take_back(advice.candidates)
     question, found = advice.question, advice.found[one.setting]
     if row["status"] not in FINISHED or row["estimate"] is None:
-        one.drop(f"{row['status']} when verified over {question.duration:g} s: {row['reason']}")
+        one.drop(f"{row['status']} when verified over {row['duration']:g} s: {row['reason']}")
         return
-    excess = _excess(row, one.setting, question)
+    excess = _excess(row, advice, one)
     if excess <= 1:
-        one.drop(f"99th percentile {row['step_us_p99']:.3g} us when verified: beyond the deadline")
+        one.drop_late(row["step_us_p99"], " when verified")
         return
     failed = sum(other["setting"] == one.setting.name for other in advice.verifications)
-    step = one.step * 0.95 * excess ** (-1 / one.setting.order)
+    step = one.step * 0.97 * excess ** (-1 / one.setting.order)
     if failed > 1 and advice.pilot_duration == question.duration and found.rung() < one.step:
         step = found.rung()  # its pilot was good enough
     for other in (other for other in advice.candidates if other.setting == one.setting):
         if question.step or failed > 4 or step < one.step / 8:
-            other.drop(f"estimate {row['estimate']:.2g} m when verified over {question.duration:g} s")
+            other.drop(f"estimate {row['estimate']:.2g} m when verified over {row['duration']:g} s")
         else:
             other.step = tidy(step, question.duration)
 
 
-def expected_error(advice):
-    """(estimate, low, high) of the chosen run, m, by the orders that its setting's pilots show."""
-    one, found = advice.chosen, advice.found[advice.chosen.setting]
-    observed = local_order(one.step, found.pilots, one.setting.order)
-    low, high = interval(advice.verified["estimate"], one.setting.order, observed)
-    return advice.verified["estimate"], low, high
+def expected_error(advice, one, row):
+    """(least, most) of a verified candidate's error, m, by its setting's pilots."""
+    pilots, order = advice.found[one.setting].pilots, one.setting.order
+    low, high = interval(row["estimate"], order, local_order(one.step, pilots, order))
+    covered = advice.pilot_duration == row["duration"]  # else theirs are the errors of less motion
+    found = most(one.step, row["estimate"], pilots, order, advice.question.error) if covered else None
+    return low, max(row["estimate"], high if found is None else found)

@@ -28,10 +28,10 @@ def figures(known):
     """{name: figure}, each as wide as the paper's text"""
     matplotlib.rcParams["figure.max_open_warning"] = 0  # all of some parts, of which few are taken
     drawn = {part: draw(known, part) for part in ("families", "map", "stability", "realtime", "engines")}
-    found = {"mechanisms": (mechanisms(known), None), "held": (drawn["families"]["held"], 2.4), "own_fill": (lower_notes(drawn["map"]["f4_sparse_solvers"]), 4.5),
-             "map": (drawn["map"]["f7_map"], 4.3), "phases": (phases(known), None), "work": (work(known), 4.4),
+    found = {"mechanisms": (mechanisms(known), None), "held": (drawn["families"]["held"], 2.4), "own_fill": (lower_notes(drawn["map"]["f4_sparse_solvers"]), 4.2),
+             "map": (drawn["map"]["f7_map"], 4.1), "phases": (phases(known), None), "work": (work(known), 4.0),
              "window": (drawn["stability"].get("penalty-double") or nothing(), 2.9), "steps": (drawn["realtime"]["steps"], None),
-             "own": (own(drawn["families"]["map"]), 3.1), "engines": (engines(drawn["engines"]["regular"]), 3.4)}
+             "own": (own(drawn["families"]["map"]), 3.1), "engines": (engines(drawn["engines"]["regular"]), 3.2)}
     return {name: fit(figure, height, known.context["cpu_model"]) for name, (figure, height) in found.items()}
 
 

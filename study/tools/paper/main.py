@@ -1,5 +1,6 @@
 # study/paper [SET]: the paper of a stored set, as PDF; study/paper --audit: is it of this set, and does it say what the set says?
 import os
+import re
 import shutil
 import subprocess
 
@@ -9,6 +10,7 @@ from study.core.main import need_modules, newest
 from study.core.options import Parser, directory
 
 LATEX = ("latexmk", "biber")
+LEAST, MOST = 10, 14  # pages
 
 
 def paper(arguments):
@@ -76,7 +78,9 @@ def build():
     if done.returncode:
         said = [line for line in done.stdout.splitlines() if line.startswith("!") or ".tex:" in line]
         raise StudyError("LaTeX failed: " + "; ".join(said[:3] or done.stdout.splitlines()[-3:]) + f" (log: {audit.BUILD / 'paper.log'})")
-    print(f"paper: {audit.BUILD / 'paper.pdf'}")
+    found = re.search(r"Output written on .*?\((\d+) pages", (audit.BUILD / "paper.log").read_text(encoding="utf-8", errors="replace"), re.S)
+    pages = int(found[1]) if found else 0
+    print(f"paper: {audit.BUILD / 'paper.pdf'}, {pages} pages" + ("" if LEAST <= pages <= MOST else f": it should have {LEAST} to {MOST}"))
     return 0
 
 

@@ -7,23 +7,26 @@ INK, ROD, GROUND, DRIVEN, SPRING, ACCENT = ("#1b2330", "#49627c", "#6d7683", "#b
 HUES = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8a8a00", "#7a5cc0")
 BULK = 300  # more rods than these are one line, not sorted by depth
 COILS = 7
+LIGHT = numpy.array([0.3, 0.65, 0.7])  # direction towards it: right, above, out of the paper; as in elements.js
 
 
-def draw_instant(axes, scene, at, depth, arrows, wires, typical):
-    """`at` has all places on the paper (points, 2), `depth` how far behind it they are; `arrows`
+def draw_instant(axes, scene, at, depth, faces, arrows, wires, typical):
+    """`at` has all places on the paper (points, 2), `depth` how far behind it they are; `faces` the triangles of each
+    body; `arrows`
     pairs of a place and a vector on the paper; `wires` the ways of torsion springs; `typical` is the length of an element in points of
     paper, which the widths of lines go by."""
     width = float(numpy.clip(0.06 * typical, 0.8, 4.0))
-    items = [(element, _body, element.points, HUES[index % len(HUES)])
+    solid = numpy.column_stack([at, -depth])
+    items = [(_body, element.points, (HUES[index % len(HUES)], solid[faces[index]]))
              for index, element in enumerate(scene.bodies) if element.points]
-    items += [(element, _spring, element.points, SPRING) for element in scene.springs]
+    items += [(_spring, element.points, SPRING) for element in scene.springs]
     if len(scene.rods) > BULK:
         _many_rods(axes, at[[rod.points for rod in scene.rods]], width)
     else:
-        items += [(element, _rod, element.points, ROD) for element in scene.rods]
-    items.sort(key=lambda item: -depth[item[2]].mean())  # stable: planar ones stay in order
-    for order, (_, draw, points, colour) in enumerate(items):
-        draw(axes, at[points], colour, width, 2 + order / len(items), scene.dimension)
+        items += [(_rod, element.points, ROD) for element in scene.rods]
+    items.sort(key=lambda item: -depth[item[1]].mean())  # stable: planar ones stay in order
+    for order, (draw, points, look) in enumerate(items):
+        draw(axes, at[points], look, width, 2 + order / len(items))
     for start, along in arrows:
         axes.annotate("", start + along, start, zorder=3.5, annotation_clip=False, arrowprops={
             "arrowstyle": "-|>", "color": ACCENT, "linewidth": 1, "shrinkA": 0, "shrinkB": 0,
@@ -52,7 +55,7 @@ def _line(axes, way, colour, width, order):
               solid_joinstyle="round")
 
 
-def _rod(axes, ends, colour, width, order, _):
+def _rod(axes, ends, colour, width, order):
     _line(axes, ends, "white", width + 1.2, order)
     _line(axes, ends, colour, width, order)
 
@@ -62,18 +65,26 @@ def _many_rods(axes, ends, width):
     _line(axes, numpy.concatenate([ends, gap], axis=1).reshape(-1, 2), ROD, width, 2)
 
 
-def _body(axes, corners, hue, width, order, dimension):
+def _body(axes, corners, look, width, order):
+    hue, faces = look
     outline = hull(corners)
     closed = numpy.vstack([outline, outline[:1]])
-    light = tuple(0.4 * channel + 0.6 for channel in to_rgb(hue))
+    light = _mixed(hue, 0.4, 1)
     wide = width * (1.3 if len(outline) > 1 else 2.5)
     _line(axes, closed, hue, wide + 1.4, order)
     _line(axes, closed, light, wide, order)
     axes.fill(*outline.T, color=light, zorder=order, linewidth=0)
-    if dimension == 3 and 3 < len(corners) < 9:
-        for index, corner in enumerate(corners):
-            for other in corners[index + 1:]:
-                _line(axes, numpy.stack([corner, other]), hue, 0.6, order)
+    for face in faces:
+        normal = numpy.cross(face[1] - face[0], face[2] - face[0])
+        if normal[2] > 0:  # seen from outside
+            shine = max(LIGHT @ normal / numpy.linalg.norm(normal), 0)
+            axes.fill(*face[:, :2].T, color=_mixed(_mixed(hue, 0.55, 1), 0.6 + 0.4 * shine, 0), zorder=order,
+                      linewidth=0.4)
+
+
+def _mixed(colour, share, other):
+    """With so much of a grey (0: black, 1: white)."""
+    return tuple(share * channel + (1 - share) * other for channel in to_rgb(colour))
 
 
 def hull(corners):
@@ -91,7 +102,7 @@ def hull(corners):
     return numpy.array(ordered if len(ordered) < 3 else half(ordered) + half(ordered[::-1]))
 
 
-def _spring(axes, ends, colour, width, order, _):
+def _spring(axes, ends, colour, width, order):
     """A zigzag whose height on the paper does not change."""
     place = axes.transData.transform(ends)
     along = place[1] - place[0]

@@ -47,7 +47,8 @@ def _data(scene, motion, moving, up):
         "typical": picture.typical_length(scene, motion),
         "rods": [rod.points for rod in scene.rods],
         "springs": [spring.points for spring in scene.springs],
-        "bodies": [{"name": body.name, "points": body.points} for body in scene.bodies],
+        "bodies": [{"name": body.name, "points": body.points, "faces": faces}
+                   for body, faces in zip(scene.bodies, picture.faces(scene, motion))],
         "arrows": [vars(arrow) for arrow in picture.arrows(scene, motion)],
         "coils": [vars(coil) for coil in picture.coils(scene, motion)],
         "traces": picture.traces(scene, motion),

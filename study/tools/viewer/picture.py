@@ -2,6 +2,7 @@
 from dataclasses import dataclass
 
 import numpy
+from scipy.spatial import ConvexHull, QhullError
 
 from study.tools.viewer.scene import NO_PLACES
 
@@ -80,6 +81,28 @@ def typical_length(scene, motion):
         if len(corners) > 1:
             lengths.append(float(numpy.linalg.norm(corners - corners[0], axis=1).max()))
     return float(numpy.median(lengths)) if lengths else 0.1 * reach(scene, motion)
+
+
+def faces(scene, motion):
+    """For each body the triangles of its points' hull, triples of points counter-clockwise seen from outside; none
+    in the plane and where the hull is flat. A body is rigid: those of the start are those of all instants."""
+    return [_hull(motion.positions[0], body.points) if scene.dimension == 3 else [] for body in scene.bodies]
+
+
+def _hull(at, points):
+    places = numpy.array(points)[numpy.unique(at[points].round(12), axis=0, return_index=True)[1]] if points else []
+    if len(places) < 4:
+        return []
+    try:
+        found = ConvexHull(at[places])
+    except QhullError:  # flat
+        return []
+    triangles = []
+    for corners, outward in zip(found.simplices, found.equations[:, :3]):
+        a, b, c = (int(places[corner]) for corner in corners)
+        turned = numpy.cross(at[b] - at[a], at[c] - at[a]) @ outward < 0
+        triangles.append([a, c, b] if turned else [a, b, c])
+    return triangles
 
 
 def arrows(scene, motion):

@@ -93,9 +93,9 @@ def upward(path):
     gravity; y where it has none."""
     try:
         text = COMMENTS.sub(lambda found: found[1] or " ", Path(path).read_text(encoding="utf-8"))
-        gravity = json.loads(text).get("gravity", [])
+        gravity = [float(x) for x in json.loads(text).get("gravity", [])]
     except (OSError, ValueError):
-        gravity = []  # no file of this kind: `mbs describe` says what is wrong with it
+        gravity = []  # an expression, or no file of this kind: `mbs describe` says what is wrong with it
     axis = max(range(len(gravity)), key=lambda i: abs(gravity[i]), default=1)
     sign = -1 if gravity and gravity[axis] > 0 else 1
     return [sign * (i == axis) for i in range(3)] if any(gravity) else [0, 1, 0]

@@ -25,7 +25,7 @@ def draw(scene, motion, up, window=None):
     flat, depth = _flatten(motion.positions, scene, motion, up)
     axes_of_space = _paper(scene, up)[0]
     arrows, traced = picture.arrows(scene, motion), picture.traces(scene, motion)
-    coils = picture.coils(scene, motion)
+    coils, faces = picture.coils(scene, motion), picture.faces(scene, motion)
     starts = [flat[:, arrow.at].mean(axis=1) for arrow in arrows]
     alongs = [arrow.length * motion.positions[:, arrow.vector] @ axes_of_space for arrow in arrows]
     shown = numpy.concatenate([flat[:, picture.places(scene)], *(
@@ -49,7 +49,7 @@ def draw(scene, motion, up, window=None):
         wires = [_flatten(picture.spiral(coil, motion.positions[frame]), scene, motion, up)[0]
                  for coil in coils]
         at_once = [(start[frame], along[frame]) for start, along in zip(starts, alongs)]
-        draw_instant(axes, scene, flat[frame], depth[frame], at_once, wires, typical)
+        draw_instant(axes, scene, flat[frame], depth[frame], faces, at_once, wires, typical)
         axes.set_title(f"{motion.times[frame]:.{digits}f} s", fontsize=9, loc="left", pad=3,
                        color=INK)
     if scene.dimension == 2:

@@ -6,6 +6,7 @@
 
 #include "scene/time_functions.hpp"
 #include "scene_file/kinds/drivers.hpp"
+#include "scene_file/kinds/joint_parts.hpp"
 #include "scene_file/kinds/kinds.hpp"
 
 namespace mbs {
@@ -136,6 +137,28 @@ void lower_spatial_angle(Lowering& scene, const DraftConstraint& constraint,
 
 }  // namespace
 
+void write_kept_angle_row(Lowering& scene, const DraftConstraint& constraint) {
+  scene.refuse_same_dot(constraint.node, constraint.first, constraint.second);
+  const double start = start_angle(scene, constraint);
+  lower_planar_angle(scene, constraint, start, start);
+}
+
+void write_perpendicular_row(Lowering& scene, const DraftConstraint& constraint,
+                             const std::string& name, const DraftDirection& first,
+                             const DraftDirection& second) {
+  scene.refuse_same_dot(constraint.node, first, second);
+  const Vector3 u = scene.along(first), w = scene.along(second);
+  if (scene.draft().is_fixed(first)) {
+    scene.distinct_linear(constraint.node, name,
+                          scene.fixed_dot((norm(w) / norm(u)) * u, second), 0.0);
+  } else if (scene.draft().is_fixed(second)) {
+    scene.distinct_linear(constraint.node, name,
+                          scene.fixed_dot((norm(u) / norm(w)) * w, first), 0.0);
+  } else {
+    scene.rows().dot(name, scene.edge(first), scene.edge(second), 0.0);
+  }
+}
+
 void read_angle(SceneReader& reader, const JsonNode& node, DraftConstraint& constraint) {
   node.allow_keys({"type", "name", "first", "second", "value"});
   read_directions(reader, node, constraint);
@@ -168,18 +191,7 @@ void read_perpendicular(SceneReader& reader, const JsonNode& node, DraftConstrai
 
 Lowering::Force lower_perpendicular(Lowering& scene, const DraftConstraint& constraint) {
   static_cast<void>(start_angle(scene, constraint));
-  scene.refuse_same_dot(constraint.node, constraint.first, constraint.second);
-  const Vector3 u = scene.along(constraint.first), w = scene.along(constraint.second);
-  if (scene.draft().is_fixed(constraint.first)) {
-    scene.distinct_linear(constraint.node, constraint.name,
-                          scene.fixed_dot((norm(w) / norm(u)) * u, constraint.second), 0.0);
-  } else if (scene.draft().is_fixed(constraint.second)) {
-    scene.distinct_linear(constraint.node, constraint.name,
-                          scene.fixed_dot((norm(u) / norm(w)) * w, constraint.first), 0.0);
-  } else {
-    scene.rows().dot(constraint.name, scene.edge(constraint.first), scene.edge(constraint.second),
-                     0.0);
-  }
+  write_perpendicular_row(scene, constraint, constraint.name, constraint.first, constraint.second);
   return {Output::Force::torque, {}, constraint.first, constraint.second};
 }
 

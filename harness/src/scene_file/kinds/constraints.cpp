@@ -1,6 +1,7 @@
 // Constraints of all types.
 #include <algorithm>
 
+#include "scene_file/kinds/joint_parts.hpp"
 #include "scene_file/kinds/kinds.hpp"
 
 namespace mbs {
@@ -21,20 +22,28 @@ void read_constraint(SceneReader& reader, const JsonNode& node) {
   reader.draft().constraints.push_back(std::move(constraint));
 }
 
-void lower_constraints(Lowering& scene) {
+RowMark::RowMark(const ModelData& data)
+    : dots_(data.dot_constraints.size()),
+      bilinears_(data.bilinear_constraints.size()),
+      linears_(data.linear_constraints.size()) {}
+
+std::vector<Lowering::Row> RowMark::rows(const ModelData& data) const {
   using Row = Lowering::Row;
-  const ModelData& data = scene.model();
+  std::vector<Row> result;
+  const auto add = [&result](Row::Kind kind, std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) result.push_back({kind, i});
+  };
+  add(Row::Kind::dot, dots_, data.dot_constraints.size());
+  add(Row::Kind::bilinear, bilinears_, data.bilinear_constraints.size());
+  add(Row::Kind::linear, linears_, data.linear_constraints.size());
+  return result;
+}
+
+void lower_constraints(Lowering& scene) {
   for (const DraftConstraint& constraint : scene.draft().constraints) {
-    const std::size_t dots = data.dot_constraints.size();
-    const std::size_t bilinears = data.bilinear_constraints.size();
-    const std::size_t linears = data.linear_constraints.size();
+    const RowMark before(scene.model());
     Lowering::Force force = constraint.kind->lower(scene, constraint);
-    const auto add = [&force](Row::Kind kind, std::size_t from, std::size_t to) {
-      for (std::size_t i = from; i < to; ++i) force.rows.push_back({kind, i});
-    };
-    add(Row::Kind::dot, dots, data.dot_constraints.size());
-    add(Row::Kind::bilinear, bilinears, data.bilinear_constraints.size());
-    add(Row::Kind::linear, linears, data.linear_constraints.size());
+    if (force.rows.empty()) force.rows = before.rows(scene.model());
     scene.remember(constraint.node, std::move(force));
   }
 }

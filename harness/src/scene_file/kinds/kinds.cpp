@@ -13,9 +13,9 @@ ReadItem read_point, read_vector, read_rod, read_mass, read_mass_matrix, read_bo
 LowerAll lower_rods, lower_masses, lower_mass_matrices, lower_bodies, lower_constraints, lower_springs,
     lower_torsion_springs, lower_force_laws, lower_torque_laws, lower_torques, lower_outputs;
 ReadConstraint read_distance, read_angle, read_coincident, read_perpendicular, read_on_line,
-    read_dot, read_linear;
+    read_dot, read_linear, read_prismatic, read_cylindrical, read_universal;
 LowerConstraint lower_distance, lower_angle, lower_coincident, lower_perpendicular, lower_on_line,
-    lower_dot, lower_linear;
+    lower_dot, lower_linear, lower_prismatic, lower_cylindrical, lower_universal;
 
 std::span<const ListKind> list_kinds() {
   static constexpr ListKind kKinds[] = {
@@ -46,6 +46,9 @@ std::span<const ConstraintKind> constraint_kinds() {
       {"on_line", read_on_line, lower_on_line},
       {"dot", read_dot, lower_dot},
       {"linear", read_linear, lower_linear},
+      {"prismatic", read_prismatic, lower_prismatic},
+      {"cylindrical", read_cylindrical, lower_cylindrical},
+      {"universal", read_universal, lower_universal},
   };
   return kKinds;
 }

@@ -25,7 +25,7 @@ struct ConstraintKind {
   std::string_view type;  ///< as the file has it, and the schema's "constraint"
   /// What the constraint has beside its name and type.
   void (*read)(SceneReader& reader, const JsonNode& node, DraftConstraint& constraint) = nullptr;
-  /// Writes its rows, and says what an output of their force is (but for which rows they are).
+  /// Writes its rows, and says what an output of their force is: of those it names, or else of all.
   Lowering::Force (*lower)(Lowering& lowering, const DraftConstraint& constraint) = nullptr;
 };
 

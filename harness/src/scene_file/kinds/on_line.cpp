@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "printable.hpp"
+#include "scene_file/kinds/joint_parts.hpp"
 #include "scene_file/kinds/kinds.hpp"
 
 namespace mbs {
@@ -29,7 +30,9 @@ void read_line_in_space(SceneReader& reader, const JsonNode& node, DraftConstrai
   constraint.normals[1] = reader.vector_across(body, local, &first);
 }
 
-void write_rows(Lowering& scene, const DraftConstraint& constraint) {
+}  // namespace
+
+void write_line_rows(Lowering& scene, const DraftConstraint& constraint) {
   const DraftDirection off{constraint.points[1], constraint.points[0]};
   if (scene.draft().dimension == 2) {
     const DraftDirection line{constraint.points[1], constraint.points[2]};
@@ -65,14 +68,7 @@ void write_rows(Lowering& scene, const DraftConstraint& constraint) {
                         scene.fixed_dot(cross(u, normal), off), 0.0);
 }
 
-}  // namespace
-
-void read_on_line(SceneReader& reader, const JsonNode& node, DraftConstraint& constraint) {
-  if (reader.is_spatial()) {
-    node.allow_keys({"type", "name", "point", "line", "direction"});
-  } else {
-    node.allow_keys({"type", "name", "point", "line"});
-  }
+void read_line(SceneReader& reader, const JsonNode& node, DraftConstraint& constraint) {
   const int at = reader.point(node.get("point"));
   const JsonNode line = node.get("line");
   if (reader.is_spatial()) {
@@ -89,8 +85,17 @@ void read_on_line(SceneReader& reader, const JsonNode& node, DraftConstraint& co
   reader.use_between(node, constraint.points);
 }
 
+void read_on_line(SceneReader& reader, const JsonNode& node, DraftConstraint& constraint) {
+  if (reader.is_spatial()) {
+    node.allow_keys({"type", "name", "point", "line", "direction"});
+  } else {
+    node.allow_keys({"type", "name", "point", "line"});
+  }
+  read_line(reader, node, constraint);
+}
+
 Lowering::Force lower_on_line(Lowering& scene, const DraftConstraint& constraint) {
-  write_rows(scene, constraint);
+  write_line_rows(scene, constraint);
   return {Output::Force::vector, {}, {constraint.points[1], constraint.points[0]}};
 }
 

@@ -79,21 +79,28 @@ function drawBody(pen, body, index) {
                  mix(hue, colours.ink, 0.6));
   pen.fillStyle = inside;
   pen.fill();
-  if (isSpatial && body.points.length > 3 && body.points.length < 9) drawEdges(pen, body, hue);
+  shadeFaces(pen, body.faces, hue);
 }
 
-/// All connections of a spatial body's points, so that its depth can be seen.
-function drawEdges(pen, body, hue) {
-  pen.beginPath();
-  body.points.forEach((a, k) => {
-    for (const b of body.points.slice(k + 1)) {
-      pen.moveTo(screenAt[3 * a], screenAt[3 * a + 1]);
-      pen.lineTo(screenAt[3 * b], screenAt[3 * b + 1]);
-    }
-  });
-  pen.lineWidth = 1;
-  pen.strokeStyle = mix(hue, colours.ink, 0.6);
-  pen.stroke();
+const LIGHT = [0.3, 0.65, 0.7];  // direction towards it: right, above, out of the picture
+
+/// The faces of a solid that are turned to the camera, each as light as it lies to the light.
+function shadeFaces(pen, faces, hue) {
+  const side = (a, b) => [0, 1, 2].map((axis) => now[3 * b + axis] - now[3 * a + axis]);
+  for (const [a, b, c] of faces) {
+    const [ax, ay] = screenAt.subarray(3 * a), [bx, by] = screenAt.subarray(3 * b), [cx, cy] = screenAt.subarray(3 * c);
+    if ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax) >= 0) continue;  // y is down: seen from inside
+    const normal = cross(side(a, b), side(a, c)), length = Math.hypot(...normal) || 1;
+    const shine = [camera.right, camera.above, camera.back].reduce((sum, axis, k) =>
+      sum + LIGHT[k] * axis.reduce((dot, x, i) => dot + x * normal[i], 0) / length, 0);
+    pen.beginPath();
+    for (const [x, y] of [[ax, ay], [bx, by], [cx, cy]]) pen.lineTo(x, y);
+    pen.closePath();
+    pen.fillStyle = pen.strokeStyle = mix(mix(hue, "#ffffff", 0.55), "#000000", 0.6 + 0.4 * Math.max(shine, 0));
+    pen.lineWidth = 1;  // over the seam between two triangles
+    pen.fill();
+    pen.stroke();
+  }
 }
 
 const COILS = 7;

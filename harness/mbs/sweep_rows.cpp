@@ -1,10 +1,14 @@
 // From lanes to rows.
-#include "mbs/sweep_file.hpp"
+#include "mbs/sweep_rows.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <optional>
+
+#include "mbs/csv_file.hpp"
+#include "printable.hpp"
+#include "usage_error.hpp"
 
 namespace mbs {
 namespace {
@@ -28,22 +32,30 @@ std::string cell(std::optional<double> value) {
 
 }  // namespace
 
-SweepFile::SweepFile(const std::string& path, const SweepGrid& grid)
-    : columns_(columns_of(grid).size()),
-      outputs_(OutputValues(grid.base()).columns().size()),
-      file_(path, columns_of(grid)) {}
+SweepRows::SweepRows(const SweepGrid& grid)
+    : columns_(columns_of(grid)), outputs_(OutputValues(grid.base()).columns().size()) {
+  for (std::size_t i = grid.axes().size(); i < columns_.size(); ++i) {
+    for (const SweepAxis& axis : grid.axes()) {
+      if (axis.path != columns_[i]) continue;
+      throw UsageError(fmt::format("--vary {}: found the name of a column of the table, allowed is {}",
+                                   in_quotes(axis.path), in_quotes("parameters/" + axis.path)));
+    }
+  }
+}
 
-void SweepFile::write_failed(const std::vector<double>& values, const std::string& status,
-                             const std::string& reason) {
+std::string SweepRows::head() const { return csv_line(columns_); }
+
+std::string SweepRows::failed_row(const std::vector<double>& values, const std::string& status,
+                                  const std::string& reason) const {
   std::vector<std::string> row;
   for (const double value : values) row.push_back(cell(value));
   row.push_back(status);
   row.push_back(reason);
-  row.resize(columns_);
-  file_.write(row);
+  row.resize(columns_.size());
+  return csv_line(row);
 }
 
-void SweepFile::write(const std::vector<double>& values, const Lane& lane) {
+std::string SweepRows::row(const std::vector<double>& values, const Lane& lane) const {
   const RunSummary& summary = lane.summary;
   const bool stepped = summary.steps > 0;
   std::vector<std::string> row;
@@ -67,7 +79,7 @@ void SweepFile::write(const std::vector<double>& values, const Lane& lane) {
       row.insert(row.end(), {cell(output.last), cell(output.least), cell(output.most)});
     }
   }
-  file_.write(row);
+  return csv_line(row);
 }
 
 }  // namespace mbs

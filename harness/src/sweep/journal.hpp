@@ -1,0 +1,55 @@
+// What a sweep has done so far, block by block, so that it can go on after any end.
+#pragma once
+
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace mbs {
+
+/// A file of a head, which says what sweep it is of, and of blocks in any order, each with a checksum.
+/// What is damaged is refused; a last block that was not written to its end is not there.
+class Journal {
+ public:
+  /// Reads what is there. Throws UsageError if it cannot be, is no journal or was changed.
+  explicit Journal(const std::string& path);
+  /// A new one, over what is there.
+  Journal(const std::string& path, const nlohmann::json& head);
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] const nlohmann::json& head() const { return head_; }
+  [[nodiscard]] bool has(long block) const { return blocks_.contains(block); }
+  [[nodiscard]] std::size_t size() const { return blocks_.size(); }
+  /// Whether the last block was written to its end.
+  [[nodiscard]] bool is_whole() const { return is_whole_; }
+  /// To go on writing: drops what is not whole; refuses a file that another program writes to.
+  void open();
+  /// Written when this returns. Throws UsageError on a full disk.
+  void add(long block, const std::string& text);
+  [[nodiscard]] std::string read(long block) const;
+
+ private:
+  struct Record {
+    std::size_t offset = 0, size = 0;
+  };
+  [[noreturn]] void fail(const std::string& what) const;
+  void scan();
+
+  std::string path_;
+  nlohmann::json head_;
+  std::map<long, Record> blocks_;
+  std::size_t end_ = 0;  // of the last whole block
+  bool is_whole_ = true;
+  mutable std::ifstream input_;
+  int file_ = -1;  // held until the program ends
+};
+
+inline constexpr std::size_t kLongestPath = 4096;  ///< bytes of one that a message shows
+
+/// zlib's CRC-32, as eight digits.
+std::string checksum(const std::string& text);
+/// Of the program that runs.
+std::string program_checksum();
+
+}  // namespace mbs

@@ -1,0 +1,58 @@
+// Uniform 64-bit numbers, then the inverse of the distribution function.
+#include "sweep/sample.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/math/distributions/normal.hpp>
+#include <boost/random/sobol.hpp>
+#include <random>
+
+#include "printable.hpp"
+#include "sweep/value_range.hpp"
+
+namespace mbs {
+namespace {
+
+/// Strictly between 0 and 1.
+double unit(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53; }
+
+double value_of(const Distribution& distribution, double share) {
+  if (distribution.kind == Distribution::Kind::uniform) {
+    return distribution.first + (distribution.second - distribution.first) * share;
+  }
+  return boost::math::quantile(boost::math::normal(distribution.first, distribution.second), share);
+}
+
+}  // namespace
+
+std::optional<Distribution> parse_distribution(const std::string& text, const std::string& path) {
+  const bool uniform = text.starts_with("uniform:");
+  if (!uniform && !text.starts_with("normal:")) return std::nullopt;
+  const std::string numbers = text.substr(text.find(':') + 1);
+  const auto colon = numbers.find(':');
+  const char* allowed = uniform ? "uniform:a:b, a below b" : "normal:mean:deviation, above 0";
+  if (colon == std::string::npos) refuse_vary(path, in_quotes(text), allowed);
+  const double first = parse_number(numbers.substr(0, colon), path);
+  const double second = parse_number(numbers.substr(colon + 1), path);
+  if (!(second > (uniform ? first : 0.0))) refuse_vary(path, in_quotes(text), allowed);
+  return Distribution{uniform ? Distribution::Kind::uniform : Distribution::Kind::normal, first,
+                      second};
+}
+
+std::vector<std::vector<double>> draw(const std::vector<Distribution>& distributions,
+                                      const Sampling& sampling) {
+  std::vector<std::vector<double>> values(distributions.size());
+  std::mt19937_64 random(sampling.seed);
+  boost::random::sobol sobol(std::max<std::size_t>(distributions.size(), 1));
+  std::vector<std::uint64_t> shifts(distributions.size());
+  for (auto& shift : shifts) shift = sampling.sobol ? random() : 0;
+  for (long i = 0; i < sampling.count; ++i) {
+    for (std::size_t k = 0; k < distributions.size(); ++k) {
+      const std::uint64_t bits = sampling.sobol ? sobol() ^ shifts[k] : random();
+      values[k].push_back(value_of(distributions[k], unit(bits)));
+    }
+  }
+  return values;
+}
+
+}  // namespace mbs

@@ -1,0 +1,30 @@
+// Random values for the numbers of a scene.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace mbs {
+
+struct Sampling {
+  long count = 0;  ///< 0: none
+  std::uint64_t seed = 1;
+  bool sobol = false;  ///< a Sobol sequence with a digital shift by the seed, else Mersenne Twister
+};
+
+struct Distribution {
+  enum class Kind { uniform, normal } kind = Kind::uniform;
+  double first = 0.0, second = 0.0;  ///< ends; mean and standard deviation
+};
+
+/// "uniform:a:b" or "normal:mean:deviation"; nothing if it does not begin so. `path` is for errors.
+/// Throws UsageError.
+std::optional<Distribution> parse_distribution(const std::string& text, const std::string& path);
+
+/// `count` values of each distribution; those of one index belong together.
+std::vector<std::vector<double>> draw(const std::vector<Distribution>& distributions,
+                                      const Sampling& sampling);
+
+}  // namespace mbs

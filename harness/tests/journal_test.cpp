@@ -1,0 +1,86 @@
+// A sweep's journal: what is in it after each way to end.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "support/folder.hpp"
+#include "sweep/journal.hpp"
+#include "usage_error.hpp"
+
+namespace mbs {
+namespace {
+
+const nlohmann::json kHead{{"sweep", "of a test"}};
+
+TEST(SweepJournal, HasWhatWasAdded) {
+  const test::Folder folder;
+  const std::string path = folder.file("j");
+  {
+    Journal journal(path, kHead);
+    journal.add(7, "seven\nlines");
+    journal.add(2, "");
+    EXPECT_EQ(journal.read(7), "seven\nlines");
+  }
+  const Journal journal(path);
+  EXPECT_EQ(journal.head(), kHead);
+  EXPECT_EQ(journal.size(), 2U);
+  EXPECT_TRUE(journal.is_whole());
+  EXPECT_EQ(journal.read(7), "seven\nlines");
+  EXPECT_EQ(journal.read(2), "");
+  EXPECT_FALSE(journal.has(1));
+}
+
+TEST(SweepJournal, LosesNoMoreThanTheBlockThatWasCut) {
+  const test::Folder folder;
+  const std::string path = folder.file("j");
+  {
+    Journal journal(path, kHead);
+    journal.add(0, "first");
+    journal.add(1, "second");
+  }
+  const std::string whole = test::file_text(path);
+  const std::size_t first = whole.find("block 1");
+  for (std::size_t length = first; length < whole.size(); ++length) {
+    std::ofstream(path, std::ios::binary) << whole.substr(0, length);
+    Journal journal(path);
+    EXPECT_TRUE(journal.has(0)) << length;
+    EXPECT_FALSE(journal.has(1)) << length;
+    EXPECT_EQ(journal.is_whole(), length == first);
+    journal.open();
+    journal.add(1, "second");
+    EXPECT_EQ(test::file_text(path), whole) << length;
+  }
+}
+
+TEST(SweepJournal, SeesAnyChange) {
+  const test::Folder folder;
+  const std::string path = folder.file("j");
+  {
+    Journal journal(path, kHead);
+    journal.add(0, "first");
+    journal.add(1, "second");
+  }
+  const std::string whole = test::file_text(path);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    std::string changed = whole;
+    changed[i] = static_cast<char>(changed[i] ^ 1);
+    std::ofstream(path, std::ios::binary) << changed;
+    try {
+      const Journal journal(path);  // a longer size looks like a block that was cut
+      EXPECT_FALSE(journal.is_whole() && journal.size() == 2 && journal.has(0) && journal.has(1)) << i;
+    } catch (const UsageError&) {
+    }
+  }
+}
+
+TEST(SweepJournal, HasOneWriter) {
+  const test::Folder folder;
+  Journal journal(folder.file("j"), kHead);
+  journal.add(0, "first");
+  Journal other(folder.file("j"));
+  EXPECT_THROW(other.open(), UsageError);
+  EXPECT_EQ(Journal(folder.file("j")).size(), 1U);
+}
+
+}  // namespace
+}  // namespace mbs

@@ -1,0 +1,177 @@
+// mbs sweep in jobs and parts, ended and gone on with: always the same table.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "support/folder.hpp"
+#include "support/program.hpp"
+
+namespace mbs {
+namespace {
+
+/// Lanes of three outcomes: some cannot be assembled, some are lost.
+const std::string kLanes =
+    "four-bar:1 --duration 0.1 --vary rods/A0-B0/length=1,3,1.1 --vary gravity/1=-12:-6:7 ";
+
+class SweepParts : public ::testing::Test {
+ protected:
+  [[nodiscard]] test::ProgramResult sweep(const std::string& arguments, const std::string& output,
+                                          const std::string& variant = "batch/lost_lane") const {
+    return test::run_program(MBS_CONTROLS, "sweep --implementation " + variant + " --output '" +
+                                               at(output) + "' " + arguments);
+  }
+  [[nodiscard]] test::ProgramResult merge(const std::string& parts) const {
+    return test::run_program(MBS_CONTROLS, "merge-sweep " + parts + " --output out.csv",
+                             "cd '" + folder_.file("") + "' &&");
+  }
+  void expect_refusal(const test::ProgramResult& run, const std::vector<std::string>& words) const {
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(std::ranges::count(run.errors, '\n'), 1) << run.errors;
+    for (const std::string& word : words) {
+      EXPECT_NE(run.errors.find(word), std::string::npos) << word << " is not in " << run.errors;
+    }
+    EXPECT_FALSE(std::filesystem::exists(at("out.csv")));
+  }
+  [[nodiscard]] std::string at(const std::string& name) const { return folder_.file(name); }
+  [[nodiscard]] std::string text(const std::string& name) const { return test::file_text(at(name)); }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(at(name), std::ios::binary) << text;
+  }
+  [[nodiscard]] std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_.file("")), {}));
+  }
+
+  test::Folder folder_;
+};
+
+TEST_F(SweepParts, AreWhatOneProcessWrites) {
+  const auto whole = sweep(kLanes, "whole.csv");
+  EXPECT_EQ(whole.status, 1) << whole.errors;
+  const auto jobs = sweep(kLanes + "--jobs 3", "jobs.csv");
+  EXPECT_EQ(jobs.errors, whole.errors);
+  EXPECT_EQ(text("jobs.csv"), text("whole.csv"));
+  for (const char* part : {"1", "2", "3"}) sweep(kLanes + "--shard " + part + "/3", part);
+  const auto merged = merge("3 1 2");
+  EXPECT_EQ(merged.errors, whole.errors);
+  EXPECT_EQ(merged.status, 1);
+  EXPECT_EQ(text("out.csv"), text("whole.csv"));
+  EXPECT_EQ(files(), 6U);  // three tables, three parts, nothing else
+}
+
+TEST_F(SweepParts, CompressedIsTheSameTable) {
+  sweep(kLanes, "whole.csv");
+  sweep(kLanes, "whole.csv.gz");
+  const std::string unpacked = test::run_program("zcat", "'" + at("whole.csv.gz") + "'").output;
+  EXPECT_EQ(unpacked, text("whole.csv"));
+  EXPECT_LT(text("whole.csv.gz").size(), unpacked.size() / 2);
+}
+
+TEST_F(SweepParts, GoOnAfterAKill) {
+  const std::string lanes = "four-bar:2 --duration 1 --vary gravity/1=-12:-6:400";
+  ASSERT_EQ(sweep(lanes, "whole.csv", "batch/sound").status, 0);
+  const std::string table = at("t.csv"), journal = table + ".journal";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::execl(MBS_CONTROLS, MBS_CONTROLS, "sweep", "four-bar:2", "--duration", "1", "--vary",
+            "gravity/1=-12:-6:400", "--implementation", "batch/sound", "--jobs", "2", "--output",
+            table.c_str(), nullptr);
+    ::_exit(127);
+  }
+  const auto size = [&] {
+    std::error_code none;
+    const auto bytes = std::filesystem::file_size(journal, none);
+    return none ? 0 : bytes;
+  };
+  while (size() < 5000 && ::waitpid(child, nullptr, WNOHANG) == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  ASSERT_FALSE(std::filesystem::exists(table)) << "it was too quick to be killed";
+  EXPECT_EQ(files(), 2U);  // the other table and the journal
+  const std::string before = test::file_text(journal);
+  EXPECT_EQ(sweep(lanes, "t.csv", "batch/sound").status, 2);  // without --resume
+  EXPECT_EQ(test::file_text(journal), before);
+  const auto run = sweep(lanes + " --jobs 2 --resume", "t.csv", "batch/sound");
+  EXPECT_EQ(run.output, "400 lanes: 400 plausible\n") << run.errors;
+  EXPECT_EQ(text("t.csv"), text("whole.csv"));
+  EXPECT_EQ(files(), 2U);
+}
+
+TEST_F(SweepParts, AFinishedPartIsNotDoneAgain) {
+  sweep(kLanes + "--shard 1/2", "1");
+  const auto before = std::filesystem::last_write_time(at("1"));
+  EXPECT_EQ(sweep(kLanes + "--shard 1/2 --resume", "1").status, 1);
+  EXPECT_EQ(std::filesystem::last_write_time(at("1")), before);
+  EXPECT_EQ(sweep(kLanes + "--shard 2/2 --resume", "1").status, 2);  // another part
+}
+
+TEST_F(SweepParts, AJobThatEndsIsSaid) {
+  const auto run = sweep("four-bar:1 --vary gravity/1=-12:-6:4 --jobs 2", "t.csv", "control/crashes");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_EQ(std::ranges::count(run.errors, '\n'), 1) << run.errors;
+  EXPECT_NE(run.errors.find("--resume"), std::string::npos) << run.errors;
+  EXPECT_FALSE(std::filesystem::exists(at("t.csv")));
+}
+
+TEST_F(SweepParts, RefuseWhatDoesNotBelongTogether) {
+  for (const char* part : {"1", "2"}) sweep(kLanes + "--shard " + part + "/2", part);
+  expect_refusal(merge("1"), {"part 2 of 2 is missing"});
+  expect_refusal(merge("1 2 1"), {"part 1 of 2 is given twice"});
+  expect_refusal(merge("1 nowhere"), {"nowhere"});
+  const std::string second = text("2");
+  std::string changed = second;
+  changed.replace(changed.find("plausible"), 9, "plausiblE");
+  write("changed", changed);
+  expect_refusal(merge("1 changed"), {"changed: block ", "damaged or was changed"});
+  changed = second;
+  changed.replace(changed.find("\"lanes\":21"), 10, "\"lanes\":22");
+  write("changed", changed);
+  expect_refusal(merge("1 changed"), {"its head is damaged"});
+  write("cut", second.substr(0, second.size() - 10));
+  expect_refusal(merge("1 cut"), {"cut: this part is not finished", "--resume"});
+  write("empty", "");
+  expect_refusal(merge("1 empty"), {"empty: it is no part of a sweep"});
+  sweep(kLanes + "--step 1e-3 --shard 2/2", "other");
+  expect_refusal(merge("1 other"), {"other: found another sweep (not the same: options)"});
+  sweep(kLanes + "--shard 2/3", "third");
+  expect_refusal(merge("1 third"), {"third: it is one of 3 parts"});
+  expect_refusal(test::run_program(MBS_CONTROLS, "sweep --implementation batch/sound --output '" +
+                                                     at("out.csv") + "' --shard 3/2 " + kLanes),
+                 {"--shard", "i from 1 to K"});
+}
+
+TEST_F(SweepParts, AnotherBuildIsRefused) {
+  sweep(kLanes + "--shard 1/2", "1");
+  const std::string copy = at("mbs");
+  std::filesystem::copy_file(MBS_CONTROLS, copy);
+  std::ofstream(copy, std::ios::app) << "another";
+  test::run_program(copy, "sweep --implementation batch/lost_lane --shard 2/2 --output '" + at("2") + "' " + kLanes);
+  expect_refusal(merge("1 2"), {"2: found another build of mbs"});
+}
+
+TEST_F(SweepParts, SamplesComeBesideGrids) {
+  const std::string lanes =
+      "four-bar:1 --duration 0.1 --vary gravity/1=-9,-8 --vary rods/A0-B0/mass=uniform:1:2 --sample 3 ";
+  ASSERT_EQ(sweep(lanes + "--seed 5", "a.csv", "batch/sound").status, 0);
+  sweep(lanes + "--seed 5 --jobs 2", "b.csv", "batch/sound");
+  sweep(lanes + "--seed 6", "c.csv", "batch/sound");
+  sweep(lanes + "--seed 5 --sobol", "d.csv", "batch/sound");
+  EXPECT_EQ(text("a.csv"), text("b.csv"));
+  EXPECT_NE(text("a.csv"), text("c.csv"));
+  EXPECT_NE(text("a.csv"), text("d.csv"));
+  expect_refusal(sweep("four-bar:1 --vary gravity/1=-9 --sample 3", "out.csv"), {"--sample", "uniform:a:b"});
+  expect_refusal(sweep("four-bar:1 --vary gravity/1=normal:1:2", "out.csv"), {"--sample N"});
+  expect_refusal(sweep("four-bar:1 --vary gravity/1=uniform:2:1 --sample 3", "out.csv"), {"a below b"});
+  expect_refusal(sweep("four-bar:1 --vary gravity/1=normal:2:0 --sample 3", "out.csv"), {"above 0"});
+}
+
+}  // namespace
+}  // namespace mbs

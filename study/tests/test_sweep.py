@@ -1,0 +1,69 @@
+# study/sweep: tables of mbs sweep as pictures.
+import gzip
+import subprocess
+
+import numpy
+import pytest
+
+from analysis.core.errors import StudyError
+from study.tests.conftest import ROOT
+from study.tools import sweep
+
+HEAD = ("k,m,status,status_reason,failed_at,steps,passes_per_step,position_error_estimate,local_error_sum,"
+        "energy_drift_max,constraint_violation_max,B.x.last,B.x.min,B.x.max\n")
+
+
+def table(path, lanes=12, head=HEAD):
+    rows = []
+    for lane in range(lanes):
+        k, m = lane % 4, lane // 4
+        rows.append(f"{k},{m},diverged,\"lost, early\",0.1,80,,,,,,,,\n" if lane == 5 else
+                    f"{k},{m},plausible,,,80,2,,1e-3,,1e-9,{k * m},0,{k + m}\n")
+    opened = gzip.open if path.suffix == ".gz" else open
+    with opened(path, "wt") as file:
+        file.write(head + "".join(rows))
+    return path
+
+
+@pytest.mark.parametrize("name", ["t.csv", "t.csv.gz"])
+def test_a_table_becomes_a_picture(tmp_path, name):
+    path = table(tmp_path / name)
+    done = subprocess.run([ROOT / "study" / "sweep", path], cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == "t.png: B.x.last of 12 lanes, 1 of them failed\n"
+    assert (tmp_path / "t.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_surface_has_medians_and_marks_failures(tmp_path):
+    from matplotlib import pyplot
+    found, parameters, result = sweep.read(table(tmp_path / "t.csv"), None)
+    assert (parameters, result) == (["k", "m"], "B.x.last")
+    figure, axes = pyplot.subplots()
+    sweep.surface(axes, found, ["k", "m"], result)
+    values = numpy.ma.filled(axes.collections[0].get_array(), numpy.nan).reshape(3, 4)
+    assert values[2, 3] == 6 and numpy.isnan(values[1, 1])
+    assert axes.lines[0].get_xydata().tolist() == [[1, 1]]
+    pyplot.close(figure)
+
+
+def test_cells_are_of_values_or_of_one_width():
+    assert [found.tolist() for found in sweep.cells(numpy.array([1.0, 4, 2]))] == [[0, 2, 1], [0.5, 1.5, 3, 5]]
+    for count, expected in ((10_000, sweep.CELLS), (400, 10), (50, 4)):
+        places, edges = sweep.cells(numpy.linspace(0, 1, count))
+        assert len(edges) == expected + 1 and numpy.ptp(numpy.bincount(places)) <= 1
+    assert [found.tolist() for found in sweep.cells(numpy.array([7.0, 7]))] == [[0, 0], [6.5, 7.5]]
+
+
+@pytest.mark.parametrize("text, options, words", [
+    (None, [], "no table can be read"), ("", [], "no table can be read"), ("a,b\n1,2\n", [], "found no lanes"),
+    (HEAD, [], "found no lanes"), (HEAD + "1,2,ok" + "," * 11 + "\n", ["--of", "B"], "--of: found 'B'"),
+    (HEAD + "x,2,ok" + ",0" * 11 + "\n", [], "k has something else"),
+    (HEAD + "1,2,ok" + ",0" * 11 + "\n", ["--over", "k", "q"], "--over: found 'q', allowed are k, m"),
+    (HEAD + "1,2,ok" + ",0" * 11 + "\n", ["--output", "t.pdf"], "ends with .png")])
+def test_what_cannot_be_drawn_is_said(tmp_path, text, options, words):
+    path = tmp_path / "t.csv"
+    if text is not None:
+        path.write_text(text)
+    with pytest.raises(StudyError, match=words):
+        sweep.sweep([str(path), *options])
+    assert [*tmp_path.iterdir()] == [path] * (text is not None)

@@ -1,0 +1,70 @@
+# What runs of a validation are held against: the motion of a scene on which two schemes agree.
+import math
+
+import numpy
+
+from analysis.core.outcomes import FINISHED, of_run
+from study.core.cell import Cell
+
+POINTS = 20     # whose positions are compared, spread over the scene
+DENSE = 400     # instants of the reference; between them cubics through positions and velocities
+INSTANTS = 150  # at which a run is compared, at least
+FIRST_STEP, HALVINGS = 5e-4, 4  # s, of the reference at most; how often it is halved until the schemes agree
+SCHEMES = ("saddle-point", "penalty")
+
+
+class Truth:
+    """`uncertainty`, m: by how much the two schemes differ at most; infinite if there is no reference."""
+
+    def __init__(self, lab, scene, described, contender, duration, enough):
+        self.duration, self.uncertainty = duration, math.inf
+        axes = "xyz"[:described["dimension"]]
+        points = [one["name"] for one in described["elements"]["points"] if one["kind"] == "free"]
+        points = points[::max(1, len(points) // POINTS)]
+        self.columns = tuple(f"{point}.{axis}" for point in points for axis in axes)
+        self.speeds = tuple(f"{point}.v{axis}" for point in points for axis in axes)
+        self.shape = (len(points), len(axes))
+        for halving in range(HALVINGS):
+            every = math.ceil(duration / DENSE / FIRST_STEP) * 2**halving
+            found = [self._extrapolated(lab, scene, contender, scheme, every) for scheme in SCHEMES]
+            if any(one is None for one in found):
+                continue
+            (self.t, self.q, self.v), other = found
+            self.uncertainty = self._distance(self.q, other[1])
+            if self.uncertainty <= enough:
+                return
+
+    def every(self, step, duration):
+        """Steps between two instants of a run."""
+        return max(1, int(duration / step / INSTANTS))
+
+    def error(self, series):
+        """The largest distance of a point at any instant, m."""
+        t = numpy.array(series["t"])
+        at = numpy.clip(numpy.searchsorted(self.t, t) - 1, 0, len(self.t) - 2)
+        h = (self.t[at + 1] - self.t[at])[:, None]
+        s = (t - self.t[at])[:, None] / h
+        known = ((1 + 2 * s) * (1 - s)**2 * self.q[at] + s * (1 - s)**2 * h * self.v[at]
+                 + s * s * (3 - 2 * s) * self.q[at + 1] - s * s * (1 - s) * h * self.v[at + 1])
+        return self._distance(known, self._of(series, self.columns))
+
+    def _extrapolated(self, lab, scene, contender, scheme, every):
+        """(t, q, v) by steps of duration/DENSE/every and half of that, to fourth order; None where a run was lost."""
+        cells = [Cell("simulate", scene, (contender,), (
+            "--step", f"{self.duration / DENSE / more:.12g}", "--duration", f"{self.duration:g}", "--scheme", scheme),
+            "reference", seconds=600, keep=self.columns + self.speeds, every=more) for more in (every, 2 * every)]
+        coarse, fine = lab.run(cells)
+        if any(of_run(one)[0] not in FINISHED for one in (coarse, fine)):
+            return None
+        length = min(len(coarse.series["t"]), len(fine.series["t"]))
+        q, v = ([self._of(one.series, names)[:length] for one in (coarse, fine)] for names in (self.columns, self.speeds))
+        return (numpy.array(fine.series["t"])[:length], *((4 * one[1] - one[0]) / 3 for one in (q, v)))
+
+    @staticmethod
+    def _of(series, columns):
+        return numpy.array([series[name] for name in columns], dtype=float).T
+
+    def _distance(self, one, other):
+        length = min(len(one), len(other))
+        apart = (one[:length] - other[:length]).reshape(length, *self.shape)
+        return float(numpy.sqrt((apart**2).sum(axis=2)).max())

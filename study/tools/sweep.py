@@ -1,0 +1,139 @@
+# study/sweep: what a table of `mbs sweep` shows. All parameters with one result, and that over two of them.
+import re
+import zlib
+from pathlib import Path
+
+import numpy
+
+from analysis.core.errors import StudyError
+from analysis.core.outcomes import FINISHED
+from study.core.main import need_modules
+from study.core.options import Parser
+
+LINES = 2000  # of parallel coordinates, at most, of finished lanes and of failed ones
+CELLS = 40    # of a surface along a parameter, at most
+FAILED = "#c9403a"
+
+
+def sweep(arguments):
+    parser = Parser(prog="study/sweep", description="Draws the table of `mbs sweep`: parallel coordinates of what was varied, "
+                    "and one result over two of the parameters. Lanes that failed are red.")
+    parser.add_argument("table", help="TABLE.csv or TABLE.csv.gz")
+    parser.add_argument("--output", metavar="FILE.png", help="the picture (TABLE.png, here)")
+    parser.add_argument("--of", metavar="COLUMN", help="the result that is shown (the first output, else the violation)")
+    parser.add_argument("--over", nargs=2, metavar="PARAMETER", help="of the surface (the first two that vary)")
+    options = parser.parse_args(arguments)
+    need_modules("pandas", "matplotlib")
+    table, parameters, result = read(options.table, options.of)
+    over = options.over or [name for name in parameters if table[name].nunique() > 1][:2] or parameters[:1]
+    if unknown := [name for name in over if name not in parameters]:
+        raise StudyError(f"--over: found {unknown[0]!r}, allowed are {', '.join(parameters)}")
+    name = options.output or re.sub(r"(\.csv)?(\.gz)?$", "", Path(options.table).name) + ".png"
+    if not name.endswith(".png") or Path(name).resolve() == Path(options.table).resolve():
+        raise StudyError(f"--output: found {name!r}, allowed is another file that ends with .png")
+    draw(table, parameters, result, over, name)
+    failed = int((~table["finished"]).sum())
+    print(f"{name}: {result} of {len(table)} lanes" + (f", {failed} of them failed" if failed else ""))
+    return 0
+
+
+def read(path, of):
+    """(table with a column `finished`, names of parameters, name of the result). Raises StudyError."""
+    import pandas
+    try:
+        table = pandas.read_csv(path)
+    except (OSError, EOFError, ValueError, zlib.error) as error:
+        raise StudyError(f"{path}: no table can be read ({' '.join(str(error).split())[:150]})") from error
+    names = [*table.columns]
+    if "status" not in names[1:] or not len(table):
+        raise StudyError(f"{path}: found no lanes, allowed is a table of `mbs sweep`")
+    parameters = names[:names.index("status")]
+    results = [name for name in names[names.index("status"):] if pandas.api.types.is_numeric_dtype(table[name])]
+    outputs = names[names.index("constraint_violation_max") + 1:] if "constraint_violation_max" in names else []
+    result = of or next((name for name in outputs if name in results), "constraint_violation_max")
+    if result not in results:
+        raise StudyError(f"--of: found {result!r}, allowed are {', '.join(results)}")
+    if wrong := [name for name in parameters if not pandas.api.types.is_numeric_dtype(table[name])]:
+        raise StudyError(f"{path}: {wrong[0]} has something else than numbers")
+    table["finished"] = table["status"].isin(FINISHED)
+    return table, parameters, result
+
+
+def draw(table, parameters, result, over, path):
+    import matplotlib.pyplot as plt
+
+    from analysis.core import style
+    figure, (left, right) = plt.subplots(1, 2, figsize=(5 + 1.2 * len(parameters) + 6, 5), layout="constrained",
+                                         width_ratios=(4 + 1.2 * len(parameters), 6))
+    lines(left, table, [*parameters, result])
+    if len(over) == 2:
+        surface(right, table, over, result)
+    else:
+        curve(right, table, over[0], result)
+    style.save(figure, path)
+
+
+def lines(axes, table, columns):
+    """Each lane a line over axes of its own scale; the colour goes by the last column."""
+    import matplotlib.pyplot as plt
+    from matplotlib.collections import LineCollection
+    low, high = table[columns].min(), table[columns].max()
+    shares = (table[columns] - low) / (high - low).where(high > low, 1)
+    shares[columns[-1]] = shares[columns[-1]].fillna(-0.12)  # a lane without a result ends below
+    places = numpy.arange(len(columns))
+    for finished in (True, False):
+        chosen = shares[table["finished"] == finished]
+        chosen = chosen.iloc[numpy.unique(numpy.linspace(0, len(chosen) - 1, min(LINES, len(chosen))).astype(int))]
+        ways = numpy.stack([numpy.broadcast_to(places, chosen.shape), chosen.to_numpy()], axis=2)
+        look = {"array": chosen[columns[-1]].to_numpy(), "cmap": plt.get_cmap("viridis")} if finished else {"color": FAILED}
+        axes.add_collection(LineCollection(ways, linewidths=0.8, alpha=min(1, 0.15 + 30 / max(len(ways), 1)), **look,
+                                           zorder=1 if finished else 2))
+    axes.set(xlim=(-0.3, len(columns) - 0.7), ylim=(-0.2, 1.12), xticks=places, yticks=[])
+    axes.set_xticklabels(columns, rotation=20, ha="right")
+    for place, name in zip(places, columns):
+        axes.axvline(place, color="#444444", linewidth=0.8, zorder=3)
+        for y, value in ((1.03, high[name]), (-0.06, low[name])):
+            axes.text(place, y, f"{value:.4g}", ha="center", fontsize=8)
+    axes.spines[:].set_visible(False)
+    shown = min(LINES, int(table["finished"].sum()))
+    axes.set_title("Lanes" if shown == table["finished"].sum() else f"{shown} of the lanes that finished")
+
+
+def surface(axes, table, over, result):
+    """Median of the result in each cell of two parameters; a cross where a lane failed."""
+    places, edges = zip(*(cells(table[name].to_numpy()) for name in over))
+    groups = table.groupby([*places])
+    shape = [len(edge) - 1 for edge in edges]
+    values, failed = numpy.full(shape, numpy.nan), numpy.zeros(shape, bool)
+    for (x, y), value in groups[result].median().items():
+        values[x, y] = value
+    for (x, y), all_finished in groups["finished"].all().items():
+        failed[x, y] = not all_finished
+    mesh = axes.pcolormesh(*edges, values.T, cmap="viridis")
+    axes.figure.colorbar(mesh, ax=axes, label=result)
+    middles = [(edge[:-1] + edge[1:]) / 2 for edge in edges]
+    axes.plot(middles[0][failed.nonzero()[0]], middles[1][failed.nonzero()[1]], "x", color=FAILED, markersize=5)
+    axes.set(xlabel=over[0], ylabel=over[1])
+    axes.set_title(f"{result}, median of a cell" + ("; crosses: lanes failed" if failed.any() else ""))
+
+
+def cells(values):
+    """(the cell of each value, edges of the cells): one a value where these are few, else of one width, so many that
+    cells of two parameters have some values each."""
+    distinct = numpy.unique(values)
+    if 1 < len(distinct) <= CELLS:
+        inner = (distinct[:-1] + distinct[1:]) / 2
+        edges = numpy.concatenate([[2 * distinct[0] - inner[0]], inner, [2 * distinct[-1] - inner[-1]]])
+    else:
+        count = int(numpy.clip(numpy.sqrt(len(values) / 4), 4, CELLS))
+        edges = numpy.linspace(distinct[0], distinct[-1], count + 1) if len(distinct) > 1 else distinct[0] + numpy.array([-.5, .5])
+    return numpy.clip(numpy.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2), edges
+
+
+def curve(axes, table, name, result):
+    finished = table[table["finished"]]
+    axes.plot(finished[name], finished[result], ".", color="#0b5cad")
+    failed = table.loc[~table["finished"], name]
+    axes.plot(failed, numpy.zeros(len(failed)), "x", color=FAILED, transform=axes.get_xaxis_transform(), clip_on=False)
+    axes.set(xlabel=name, ylabel=result)
+    axes.set_title(result + ("; crosses: lanes failed" if len(failed) else ""))
