@@ -30,7 +30,7 @@ def run(lab, column):
         elsewhere(lab, Cell("bench", scene, role="penalty-look"))
         for scheme in SCHEMES:
             setting, step_s = Setting(scheme), expected(record, scheme)
-            before = looks.setdefault((scene.partition(":")[0], scheme), [])
+            before = looks.setdefault((shape(scene), scheme), [])
             chosen = [one for one in here if lab.registry.serves(one.variant, *setting.needs)]
             behind = [one for one in chosen if falling(one.name, before)]
             for one in chosen if step_s > MOST_S else behind:
@@ -46,6 +46,12 @@ def run(lab, column):
                            look=look, patience=max(1.0, 2 * look * step_s),
                            processes=min(lab.settings["processes"][scheme], PROCESSES if shorter < 1 else 99), samples=lab.settings["samples"])
             before.append(multiples(rows, lab.registry.libraries))
+
+
+def shape(scene):
+    """The family and its options, which make other machines of it: "flexible:2,nodes=100" is a "flexible,nodes=100"."""
+    name, _, rest = scene.partition(":")
+    return ",".join([name, *rest.split(",")[1:]])
 
 
 def expected(record, scheme):
