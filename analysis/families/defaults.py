@@ -67,7 +67,7 @@ def _row(rule, winners, rows):
         chosen[name] += 1
         if row.get("status") == "ok" and row.get("to_rival", 0) > 0:
             losses[scene] = row["to_rival"]
-        elif row.get("status") == "slower" and row["look_us"] > 0:
+        elif row.get("status") == "slower" and (row.get("look_us") or 0) > 0:  # who did not finish the look has none
             losses[scene] = row["look_us"] / about["look_us"]
             rough += 1
         records[scene] = row.get("record", "")
