@@ -1,6 +1,7 @@
 # What page.html.j2 shows of families of mechanisms.
+from analysis.core.text import number
 from analysis.families.bounds import bounds
-from analysis.families.rule import rule, summary
+from analysis.families.rule import missed, summary
 from analysis.families.tables import SCHEMES
 
 
@@ -17,9 +18,24 @@ def context(tables, view):
     return {"settings": view.settings, "schemes": SCHEMES, "ranked": ranked, "bounds": bounds(tables, view.registry),
             "times": {name: rows.to_dict("records") for name, rows in times.groupby(["scene", "scheme"], sort=False)},
             "lost": [(*what, list(names.items())) for what, names in lost.items()],
-            "rule": rule(tables, view.registry), "by_family": [(family, summary(rows)) for family, rows in held.groupby("family", sort=False)],
+            "formulas": _formulas(tables["steps"]), "judged": summary(held) if len(held) else None, "missed": missed(held).to_dict("records") if len(held) else [],
+            "by_family": [(family, summary(rows)) for family, rows in held.groupby("family", sort=False)],
             "alone": tables["alone"].to_dict("records"), "defaults": tables["defaults"].to_dict("records"), "growth": tables["growth"].to_dict("records"),
             "orderings": _wide(tables["orderings"])}
+
+
+def _formulas(steps):
+    """(form, library, its step in µs as text) of those that the rule compares."""
+    if steps.empty:
+        return []
+    compared = steps[steps.candidate.astype(bool)]
+    return [(scheme, name, f"passes × ({' + '.join(_product(*row) for row in zip(rows.us, rows.term))})")
+            for (scheme, name), rows in compared.groupby(["scheme", "implementation"], sort=False)]
+
+
+def _product(us, term):
+    _, *names = [name for name in term.split("*") if name != "1"]  # but passes
+    return " ".join([number(us), *names])
 
 
 def _wide(orderings):

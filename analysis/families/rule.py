@@ -1,121 +1,199 @@
-# A rule that predicts: which library is fastest, and how long a step takes, from numbers that need no factorization.
+# A rule that predicts: how long a step takes with each library, and so which to take, from numbers that need no factorization.
 #
-# The choice is a tree of few ends for each form of the step, grown where it saves most time; a step's time is a sum of
-# features with coefficients that are not negative (least squares of relative errors). Both are judged on families left out:
-# each family is predicted by what was fitted on all others.
+# At most CANDIDATES libraries are compared, over both forms of the step: of the predicted times (times.py) the least one's is taken.
+# Which are worth comparing is found by what the choice costs. All is judged on families left out: each family is predicted by
+# what was fitted on all others, its candidates too.
+from itertools import combinations, product
+
 import numpy
 import pandas
 
-SPLITS = ("n", "fill", "per_column", "flops", "height")  # features that a tree may ask for
-LEAVES = {"penalty": 3, "saddle-point": 2}  # of the two forms of the step: five ends in all
-LEAST = 2        # families on each side of a question, so that none is asked for one machine's sake
-WORTH = 0.003    # of the mean cost, that a further question must save
-SADDLE = "saddle"  # the feature that is 1 in the saddle-point form, 0 in the penalty form
+from analysis.families.times import FEATURES, PASSES, TERMS, model, predicted
+
+CANDIDATES = 5
+WORTH = 0.01    # of the mean cost, that one more candidate must save
+FAMILIES = 4     # at least, for a rule
+MUCH = 0.30      # a loss
 MISSED = 3.0     # loss of who has no time: excluded as far behind, or of no use there
-SPARSE = ("one", "n", "jacobian", "tangent", "factor", "flops")  # features of a step's time
-DENSE = ("one", "n", "jacobian", "n2", "n3")
-USUAL = 1.5      # times the passes of the mechanism in the middle: who takes more, at a singular position, is no guide to times
+USUAL = 1.5      # times the passes that are expected: who takes more, at a singular position, is no guide to times
 FEWEST = 8       # scenes that the time of a step is fitted on
 WITHIN = 1.5     # a predicted time is good within this factor
-RANGE = 5, 95    # percentiles of measured over predicted time
+OWN, ALL = (0.025, 0.975), (0.05, 0.95)  # shares of measured over predicted times, of an implementation and of all in its form, that a range covers
+ALONE = ("n", "fill", "tangent", "factor", "per_column", "flops", "dense", "height", "widest", "block")  # numbers that might decide alone
+NEAREST = ("n", "per_column", "flops", "tangent")  # what `mbs describe` takes distances in
 
 
-def rule(tables, registry):
-    """{"tree", "times", "held", "scenes"}: what `mbs describe` applies (harness/src/describe/README.md); None without data."""
+def judged(tables, registry):
+    """{"steps", "held", "alone"}: tables of the rule; without rows where there are too few families."""
     data = _Data(tables, registry)
-    if data.families < 2 * LEAST:
+    if len(set(data.family.values())) < FAMILIES:
+        return {"steps": pandas.DataFrame(), "held": pandas.DataFrame(), "alone": pandas.DataFrame()}
+    rests = {family: _Rule(data.without(family)) for family in dict.fromkeys(data.family.values())}
+    ratios = pandas.concat([_ratios(data, family, rest) for family, rest in rests.items()], ignore_index=True)
+    return {"steps": _steps(data, _Rule(data), ratios, registry), "held": _held(data, rests, ratios), "alone": _alone(data)}
+
+
+def summary(held):
+    """Families and scenes left out; mean and worst loss; step times that are known, shares of them within WITHIN and inside their range."""
+    timed = held[held.step_us.notna() & held.predicted_us.notna()]
+    ratio = timed.predicted_us / timed.step_us
+    return {"families": int(held.family.nunique()), "scenes": int(held.scene.nunique()), "timed": len(timed),
+            "mean_loss": float(held.loss.mean()), "worst_loss": float(held.loss.max()),
+            "within": float(ratio.between(1 / WITHIN, WITHIN).mean()), "inside": float(timed.step_us.between(timed.low_us, timed.high_us).mean())}
+
+
+def missed(held):
+    """Rows of `held` that lose much, or whose time is not within WITHIN or not inside its range."""
+    ratio = held.predicted_us / held.step_us
+    good = (held.loss <= MUCH) & (ratio.isna() | ratio.between(1 / WITHIN, WITHIN) & held.step_us.between(held.low_us, held.high_us))
+    return held[~good]
+
+
+def document(tables):
+    """What `mbs describe` applies: candidates, times, held, scenes (harness/src/describe/README.md); None without a rule."""
+    steps, known = tables["steps"], tables["mechanisms"].set_index("scene")
+    if steps.empty:
         return None
-    judged = held(tables, registry)
-    return {"tree": data.both(), "times": data.times(judged), "held": summary(judged),
-            "scenes": [{"scene": scene, "features": data.features.loc[scene].to_dict(), "fastest": fastest, "step_us": float(step)}
-                       for scene, (fastest, step) in data.fastest().items()]}
+    times, candidates = {}, {}
+    for (name, scheme), rows in steps.groupby(["implementation", "scheme"], sort=False):
+        times.setdefault(name, {"layer": rows.layer.iloc[0]})[scheme] = {
+            "coefficients": dict(zip(rows.term, rows.us)), "low": rows.low.iloc[0], "high": rows.high.iloc[0]}
+        if rows.candidate.iloc[0]:
+            candidates.setdefault(scheme, []).append(name)
+    fastest = tables["winners"][(tables["winners"].layer == "libraries") & (tables["winners"].winner != "")].drop_duplicates("scene")
+    names = list(dict.fromkeys((*FEATURES, *NEAREST, *ALONE)))
+    scenes = [{"scene": row.scene, "features": known.loc[row.scene, names].dropna().astype(float).to_dict(), "fastest": row.winner, "step_us": row.step_us}
+              for row in fastest.itertuples() if row.scene in known.index and known.loc[row.scene, list(NEAREST)].notna().all()]
+    return {"candidates": candidates, "times": times, "held": summary(tables["held"]), "scenes": scenes}
 
 
-def leaves(tables, registry):
-    """[(conditions, library, its losses where the tree ends there)] of the rule on all mechanisms; conditions: (feature, whether
-    below, number)."""
-    data = _Data(tables, registry)
-    if data.families < 2 * LEAST:
-        return []
-    found = []
-
-    def walk(node, conditions, rows):
-        if "take" in node:
-            here = [losses.get(node["take"], MISSED) for features, losses in rows
-                    if all((features[feature] < number) == below for feature, below, number in conditions)]
-            found.append((conditions, node["take"], here))
-        else:
-            walk(node["then"], [*conditions, (node["feature"], True, node["below"])], rows)
-            walk(node["else"], [*conditions, (node["feature"], False, node["below"])], rows)
-    for scheme, losses in data.losses.items():
-        rows = [({**data.features.loc[scene], SADDLE: float(scheme == "saddle-point")}, one) for scene, one in losses.iterrows()]
-        walk(data.tree(scheme), [(SADDLE, scheme == "penalty", 0.5)], rows)
-    return found
+def _ratios(data, family, rest):
+    """Measured over predicted times of a family left out, with all that have a model."""
+    rows = []
+    for (scheme, name), found in rest.models.items():
+        times = data.us[scheme][name].dropna()
+        times = times[[scene for scene in times.index if data.family[scene] == family and data.usual[scheme][scene]]]
+        rows += [{"family": family, "scheme": scheme, "implementation": name, "ratio": ratio}
+                 for ratio in times / predicted(found, data.features.loc[times.index])]
+    return pandas.DataFrame(rows, columns=["family", "scheme", "implementation", "ratio"])
 
 
-def alone(tables, registry):
-    """A row for each feature: what trees lose on families left out that may ask for it alone. [Which number decides?]"""
-    data, rows = _Data(tables, registry), []
-    for feature in SPLITS if data.families >= 2 * LEAST else ():
+def _range(ratios, scheme, name, without=None):
+    """(low, high), as factors of a predicted time."""
+    here = ratios[(ratios.scheme == scheme) & (ratios.family != without)]
+    groups = [(here[here.implementation == name].ratio, OWN), (here.ratio, ALL)]
+    ends = [numpy.quantile(found, shares) for found, shares in groups if len(found)] or [(1 / WITHIN, WITHIN)]
+    return float(min(low for low, _ in ends)), float(max(high for _, high in ends))
+
+
+def _steps(data, rule, ratios, registry):
+    rows = []
+    for (scheme, name), found in rule.models.items():
+        low, high = _range(ratios, scheme, name)
+        rows += [{"scheme": scheme, "implementation": name, "layer": "own" if name in registry.own else "library",
+                  "candidate": name in rule.candidates[scheme], "term": term, "us": us, "low": low, "high": high,
+                  "scenes": data.us[scheme][name].notna().sum(), "record": data.records} for term, us in found.items()]
+    return pandas.DataFrame(rows)
+
+
+def _held(data, rests, ratios):
+    """A row for each scene and form: what was chosen and predicted by what was fitted on the other families."""
+    rows = []
+    for family, rest in rests.items():
+        for scheme, losses in data.losses.items():
+            for scene in [one for one in losses.index if data.family[one] == family]:
+                name, us = rest.choice(scheme, data.features.loc[[scene]])
+                low, high = _range(ratios, scheme, name, family)
+                measured = data.us[scheme].loc[scene].get(name, numpy.nan) if data.usual[scheme][scene] else numpy.nan
+                rows.append({"family": family, "scene": scene, "scheme": scheme, "variables": data.features.loc[scene, "n"], "chosen": name,
+                             "fastest": losses.loc[scene].idxmin(), "loss": losses.loc[scene, name], "step_us": measured,
+                             "predicted_us": us, "low_us": low * us, "high_us": high * us, "record": data.record[scene]})
+    return pandas.DataFrame(rows)
+
+
+def _alone(data):
+    """A row for each number: what is lost on families left out if it alone decides, below a limit one library, above another. [Which
+    number decides?]"""
+    rows = []
+    for feature in [name for name in ALONE if name in data.features]:
         losses = []
         for family in dict.fromkeys(data.family.values()):
             rest = data.without(family)
-            trees = {scheme: rest.tree(scheme, (feature,)) for scheme in data.losses}
-            losses += [row.get(leaf(trees[scheme], data.features.loc[scene]), MISSED) for scheme, one in data.losses.items()
-                       for scene, row in one.iterrows() if data.family[scene] == family]
-        rows.append({"feature": feature, "mean_loss": numpy.mean(losses), "worst_loss": max(losses), "scenes": len(losses),
-                     "record": " ".join(data.records[scene] for scene in data.features.index)})
+            for scheme, one in data.losses.items():
+                left = one.index[[data.family[scene] == family for scene in one.index]]
+                if len(left) and len(rest.losses[scheme]):
+                    limit, below, above = _limit(rest.features.loc[rest.losses[scheme].index, feature].to_numpy(), rest.costs(scheme))
+                    losses += [one.loc[scene, below if data.features.loc[scene, feature] < limit else above] for scene in left]
+        rows.append({"feature": feature, "mean_loss": numpy.mean(losses), "worst_loss": max(losses), "scenes": len(losses), "record": data.records})
     return pandas.DataFrame(rows)
 
 
-def held(tables, registry):
-    """A row for each scene and form: what was chosen and predicted by what was fitted on the other families."""
-    data = _Data(tables, registry)
-    rows = []
-    for family in dict.fromkeys(data.family.values()) if data.families >= 2 * LEAST else ():
-        rest = data.without(family)
-        trees, models = {scheme: rest.tree(scheme) for scheme in data.losses}, {(scheme, name): rest.model(scheme, name) for scheme, name in data.timed}
-        for scene in [one for one in data.features.index if data.family[one] == family]:
-            for scheme, losses in data.losses.items():
-                if scene not in losses.index:
-                    continue
-                predicted = {one: _time(models[scheme, one], data.features.loc[scene]) for at, one in models if at == scheme}
-                name = leaf(trees[scheme], data.features.loc[scene])
-                measured = data.us[scheme].loc[scene].get(name, numpy.nan) if data.usual[scheme][scene] else numpy.nan
-                rows.append({"family": family, "scene": scene, "scheme": scheme, "variables": data.features.loc[scene, "n"],
-                             "chosen": name, "fastest": losses.loc[scene].idxmin(), "loss": losses.loc[scene].get(name, MISSED),
-                             "step_us": measured, "predicted_us": predicted.get(name, numpy.nan),
-                             "record": data.records[scene], "models": predicted})
-    return pandas.DataFrame(rows)
+def _limit(values, costs):
+    """(limit, who is taken below it, who above): of the least cost."""
+    order = numpy.argsort(values, kind="stable")
+    below = numpy.cumsum(costs.to_numpy()[order], axis=0)
+    total, values = below[-1], values[order]
+    places = [place for place in range(1, len(values)) if values[place] > values[place - 1]]
+    if not places:
+        return numpy.inf, *[costs.columns[total.argmin()]] * 2
+    best = min(places, key=lambda place: below[place - 1].min() + (total - below[place - 1]).min())
+    return (values[best] * values[best - 1]) ** 0.5, costs.columns[below[best - 1].argmin()], costs.columns[(total - below[best - 1]).argmin()]
 
 
-def summary(judged):
-    """Families and scenes left out; mean and worst loss; share of the step times within WITHIN."""
-    ratio = (judged.predicted_us / judged.step_us).dropna()
-    return {"families": int(judged.family.nunique()), "scenes": int(judged.scene.nunique()),
-            "mean_loss": float(judged.loss.mean()), "worst_loss": float(judged.loss.max()),
-            "within": float(((ratio <= WITHIN) & (ratio >= 1 / WITHIN)).mean())}
+class _Rule:
+    """Models of all and candidates, fitted on some families."""
+
+    def __init__(self, data):
+        self.models = {}
+        for scheme, us in data.us.items():
+            for name in us:
+                times = us[name].dropna()
+                times = times[[bool(data.usual[scheme][scene]) for scene in times.index]]
+                if len(times) >= FEWEST:
+                    dense = bool(data.registry.variants[name].get("dense"))
+                    self.models[scheme, name] = model(TERMS[scheme, dense], data.features.loc[times.index], times, data.weights(times.index) ** 0.5)
+        self.candidates = self._compared(data)
+
+    def choice(self, scheme, features):
+        """(name, µs) of the candidate that is expected to be the fastest on a scene."""
+        times = {name: predicted(self.models[scheme, name], features)[0] for name in self.candidates[scheme]}
+        name = min(times, key=times.get)
+        return name, times[name]
+
+    def _compared(self, data):
+        """{form: names} of the least cost, each name counting as WORTH."""
+        options = {}
+        for scheme in data.losses:
+            costs = data.costs(scheme)
+            names = [name for name in costs if (scheme, name) in self.models]
+            features = data.features.loc[costs.index]
+            times = numpy.array([predicted(self.models[scheme, name], features) for name in names]).T
+            options[scheme] = _best_of_each_size(names, times, costs[names].to_numpy())
+        return min((dict(zip(options, (names for _, names in some))) for some in product(*options.values())
+                    if sum(len(names) for _, names in some) <= CANDIDATES),
+                   key=lambda found: sum(options[scheme][len(names) - 1][0] + WORTH * len(names) for scheme, names in found.items()))
 
 
-def leaf(tree, features):
-    while "take" not in tree:
-        tree = tree["then"] if features[tree["feature"]] < tree["below"] else tree["else"]
-    return tree["take"]
-
-
-def _time(model, features):
-    return sum(value * features[name] for name, value in model.items()) if model else numpy.nan
+def _best_of_each_size(names, times, costs):
+    """[(cost, names)] of one, two, ... that are compared."""
+    found, rows = [], numpy.arange(len(times))
+    for size in range(1, CANDIDATES):
+        some = [(costs[rows, numpy.array(places)[times[:, places].argmin(axis=1)]].sum(), places) for places in combinations(range(len(names)), size)]
+        if some:
+            cost, places = min(some)
+            found.append((cost, [names[place] for place in places]))
+    return found
 
 
 class _Data:
-    """Times and losses of the scenes whose features are known."""
+    """Times and losses of the scenes whose features are known, by form."""
 
     def __init__(self, tables, registry):
-        self.registry = registry
-        known = tables["mechanisms"]
-        known = known.set_index("scene") if set(FEATURES) < set(known) else pandas.DataFrame(columns=[*FEATURES, "family", "record"])
-        self.family, self.records = known.family.to_dict(), known.record.to_dict()
-        self.features = known[list(FEATURES)].astype(float).dropna()
+        self.registry, known = registry, tables["mechanisms"]
+        names = [name for name in dict.fromkeys((*FEATURES, *ALONE)) if name in known]
+        complete = known[known[[name for name in FEATURES if name in known]].notna().all(axis=1)] if set(FEATURES) <= set(names) else known[:0]
+        self.features = complete.set_index("scene")[names].astype(float) if len(complete) else pandas.DataFrame(columns=names)
+        self.record = dict(zip(complete.scene, complete.record)) if len(complete) else {}
         self.us, self.losses, self.usual = {}, {}, {}
         for scheme, rows in tables["scenes"].groupby("scheme", sort=False) if len(self.features) else ():
             us = pandas.DataFrame({scene: _times(one, registry.libraries) for scene, one in rows.groupby("scene", sort=False)
@@ -124,75 +202,30 @@ class _Data:
             best = best[best.notna().any(axis=1)]
             self.us[scheme] = us.loc[best.index]
             passes = rows[rows.passes.notna()].groupby("scene").passes.median().reindex(best.index)
-            self.usual[scheme] = ~(passes > USUAL * passes.median())
+            self.usual[scheme] = ~(passes > USUAL * self.features.loc[best.index, PASSES[scheme]])
             self.losses[scheme] = best.div(best.min(axis=1), axis=0).sub(1.0).fillna(MISSED).clip(upper=MISSED)
+        families = dict(zip(known.scene, known.family)) if len(self.features) else {}
+        self.family = {scene: families[scene] for losses in self.losses.values() for scene in losses.index}
 
     @property
-    def families(self):
-        return len({self.family[scene] for losses in self.losses.values() for scene in losses.index})
-
-    @property
-    def timed(self):
-        """(scheme, implementation) with enough scenes for a model."""
-        return [(scheme, name) for scheme, us in self.us.items() for name in us if us[name].notna().sum() >= FEWEST]
+    def records(self):
+        return " ".join(self.record[scene] for scene in self.family)
 
     def without(self, family):
-        found = object.__new__(_Data)
-        keep = [scene for scene in self.features.index if self.family[scene] != family]
-        found.__dict__ |= self.__dict__ | {
-            "features": self.features.loc[keep],
-            **{name: {scheme: one[one.index.isin(keep)] for scheme, one in getattr(self, name).items()} for name in ("us", "losses")}}
-        return found
+        rest = object.__new__(_Data)
+        rest.__dict__ = self.__dict__ | {name: {scheme: rows[[self.family[scene] != family for scene in rows.index]]
+                                                for scheme, rows in getattr(self, name).items()} for name in ("us", "losses", "usual")}
+        return rest
 
-    def tree(self, scheme, splits=SPLITS):
+    def weights(self, scenes):
+        """Families count alike, whatever their sizes; 1 in all."""
+        families = pandas.Series([self.family[scene] for scene in scenes])
+        return (1 / families.map(families.value_counts()) / families.nunique()).to_numpy()
+
+    def costs(self, scheme):
+        """Of scenes and libraries, weighted: one loss of a fifth is worse than four of a twentieth."""
         losses = self.losses[scheme]
-        losses = losses.loc[:, (losses < MISSED).any()]
-        features = {name: self.features.loc[losses.index, name].to_numpy() for name in splits}
-        families = numpy.array([self.family[scene] for scene in losses.index])
-        counts = pandas.Series(families).value_counts()
-        weights = numpy.array([1 / counts[one] for one in families]) / len(counts)  # a family counts once, whatever its sizes
-        costs = losses * (1 + 4 * losses)  # one loss of a fifth is worse than four of a twentieth
-        return _grow(costs.mul(weights, axis=0), features, families, splits, LEAVES[scheme])
-
-    def both(self):
-        """The trees of both forms as one, which asks for the form first."""
-        trees = {scheme: self.tree(scheme) for scheme in self.losses}
-        first, *others = trees.values()
-        return {"feature": SADDLE, "below": 0.5, "then": first, "else": others[0]} if others else first
-
-    def model(self, scheme, name):
-        """{feature: µs}; None of too few scenes."""
-        times = self.us[scheme][name].dropna() if name in self.us.get(scheme, ()) else pandas.Series(dtype=float)
-        times = times[self.usual[scheme][times.index]] if len(times) else times
-        if len(times) < FEWEST:
-            return None
-        from scipy.optimize import nnls
-        chosen = DENSE if self.registry.variants[name].get("dense") else SPARSE
-        matrix = self.features.loc[times.index, list(chosen)].to_numpy(float) / times.to_numpy(float)[:, None]
-        scale = matrix.max(axis=0)
-        values, _ = nnls(matrix / scale, numpy.ones(len(times)))
-        return {feature: float(value / size) for feature, value, size in zip(chosen, values, scale) if value > 0}
-
-    def times(self, judged):
-        found = {}
-        for scheme, name in self.timed:
-            ratio = [self.us[scheme].loc[row.scene, name] / row.models[name] for row in judged.itertuples()
-                     if row.scheme == scheme and row.models.get(name, 0) > 0]
-            low, high = numpy.nanpercentile(ratio, RANGE) if numpy.isfinite(ratio).any() else (0.5, 2.0)
-            entry = found.setdefault(name, {"layer": "own" if name in self.registry.own else "library"})
-            entry[scheme] = {"coefficients": self.model(scheme, name), "low": float(min(low, 1)), "high": float(max(high, 1))}
-        return found
-
-    def fastest(self):
-        """{scene: (library, µs)}, in the first form in which one was timed."""
-        found = {}
-        for scheme, losses in self.losses.items():
-            for scene, row in losses.iterrows():
-                found.setdefault(scene, (row.idxmin(), self.us[scheme].loc[scene, row.idxmin()]))
-        return found
-
-
-FEATURES = tuple(dict.fromkeys((*SPLITS, *SPARSE, *DENSE)))
+        return (losses * (1 + 4 * losses)).mul(self.weights(losses.index), axis=0)
 
 
 def _times(rows, libraries):
@@ -207,55 +240,3 @@ def _times(rows, libraries):
     found = looks.where(rows.status.isin(["ok", "slower"]))
     found.update(timed.step_us[first] * timed.to_rival.astype(float))
     return found.astype(float)
-
-
-def _grow(costs, features, families, splits, most):
-    """A tree of at most `most` leaves: the question that saves most is asked first. `costs`: scenes by libraries, a data frame."""
-    names, costs = list(costs.columns), costs.to_numpy()
-    root = _node(numpy.ones(len(costs), bool), names, costs)
-    leaves = [root]
-    while len(leaves) < most:
-        options = [(saved, number, question) for number, one in enumerate(leaves)
-                   for saved, question in _questions(one, costs, features, families, splits)]
-        saved, number, (feature, below) = max(options, key=lambda one: one[0], default=(0.0, 0, ("", 0.0)))
-        if saved < WORTH:
-            break
-        one = leaves.pop(number)
-        yes = features[feature] < below
-        one |= {"feature": feature, "below": below, "then": _node(one["rows"] & yes, names, costs),
-                "else": _node(one["rows"] & ~yes, names, costs)}
-        leaves += [one["then"], one["else"]]
-    return _plain(root)
-
-
-def _node(rows, names, costs):
-    sums = costs[rows].sum(axis=0)
-    return {"rows": rows, "take": names[sums.argmin()], "cost": sums.min()}
-
-
-def _questions(node, costs, features, families, splits):
-    for feature in splits:
-        values = numpy.unique(features[feature][node["rows"]])
-        for low, high in zip(values, values[1:]):
-            below = _between(low, high)
-            yes = node["rows"] & (features[feature] < below)
-            no = node["rows"] & ~yes
-            if min(len(set(families[side])) for side in (yes, no)) >= LEAST:
-                yield node["cost"] - costs[yes].sum(axis=0).min() - costs[no].sum(axis=0).min(), (feature, below)
-
-
-def _between(low, high):
-    """A round number between two."""
-    middle = (low * high) ** 0.5 if low > 0 else (low + high) / 2
-    for digits in (1, 2, 3):
-        rounded = float(f"{middle:.{digits}g}")
-        if low < rounded <= high:
-            return rounded
-    return float(high)
-
-
-def _plain(node):
-    if "feature" not in node:
-        return {"take": node["take"]}
-    then, other = _plain(node["then"]), _plain(node["else"])
-    return then if then == other else {"feature": node["feature"], "below": node["below"], "then": then, "else": other}

@@ -1,15 +1,7 @@
 # The answer to "Which implementation is fastest on real mechanisms, at their own fill?", from the tables.
 from analysis.core.text import number
-from analysis.families.figures import best_form, fastest_own
-from analysis.families.rule import leaves, rule
-
-NAMES = {  # of features: from a number on, below it
-    "fill": ("fill of the tangent {} % or more", "fill of the tangent below {} %"),
-    "n": ("{} variables or more", "fewer than {} variables"),
-    "per_column": ("{} or more non-zeros a column of the factor", "fewer than {} non-zeros a column of the factor"),
-    "flops": ("factorizations of {} operations or more", "factorizations of fewer than {} operations"),
-    "height": ("an elimination tree of height {} or more", "an elimination tree lower than {}"),
-    "saddle": ("saddle-point form", "penalty form")}
+from analysis.families.figures import DECIDES, best_form, fastest_own
+from analysis.families.rule import document, summary
 
 
 def answers(tables, view):
@@ -20,12 +12,11 @@ def answers(tables, view):
     found = [{"anchor": "map", "text": f"On {len(real)} mechanisms of {real.family.nunique()} families (n = {number(real.variables.min(), 5)} to "
               f"{number(real.variables.max(), 5)}), in front among libraries, or as fast to 5 %: {_shares(real)}. Of {_said(real)} of the "
               f"{len(real)} this run says who is fastest."}]
-    chosen = rule(tables, view.registry)
-    if chosen:
-        held = chosen["held"]
-        found.append({"anchor": "rule", "text": f"A rule of at most five answers chooses a library that takes {100 * held['mean_loss']:.1f} % longer than the "
-                      f"fastest on average, {100 * held['worst_loss']:.0f} % at worst, on families that it was not fitted on; {100 * held['within']:.0f} % of the "
-                      "step times are within 1.5 times of the predicted."})
+    if len(tables["held"]):
+        held = summary(tables["held"])
+        found.append({"anchor": "rule", "text": f"A rule that compares the predicted times of at most five libraries chooses one that takes {100 * held['mean_loss']:.1f} % longer "
+                      f"than the fastest on average, {100 * held['worst_loss']:.0f} % at worst, on families that it was not fitted on; {100 * held['within']:.0f} % of "
+                      "the step times are within 1.5 times of the predicted."})
     own = scenes[scenes.implementation.isin(view.registry.own) & (scenes.status == "ok") & scenes.to_rival.notna() & (scenes.scheme == "penalty")]
     for name, rows in own.groupby("implementation", sort=False):
         ahead, behind = rows[rows.to_rival_high < 1], rows[rows.to_rival_low > 1]
@@ -47,10 +38,16 @@ def _defaults(rows):
 
 
 def cases(tables, view):
-    """Rows of the front page's table: the ends of the rule, each with what it costs there."""
-    found = [{"case": _asked(conditions), "link": "families.html#rule",
-              "take": f"{name}: {100 * sum(losses) / len(losses):.1f} % longer than the fastest library on average, {100 * max(losses):.0f} % at worst ({len(losses)} cases)"}
-             for conditions, name, losses in leaves(tables, view.registry)]
+    """Rows of the front page's table: what the rule takes, and what that costs on families left out."""
+    found, held = [], tables["held"]
+    if len(held):
+        held = held.merge(tables["mechanisms"][["scene", DECIDES]], on="scene")
+        for (scheme, name), rows in held.groupby(["scheme", "chosen"], sort=False):
+            low, high = (number(value) for value in (rows[DECIDES].min(), rows[DECIDES].max()))
+            found.append({"case": f"{scheme.capitalize()} form, and `mbs describe` expects {name} to be the fastest (here with {low} to {high} non-zeros a "
+                                  "column of the factor)", "link": "families.html#rule",
+                          "take": f"{name}: {100 * rows.loss.mean():.1f} % longer than the fastest library on average, {100 * rows.loss.max():.0f} % at "
+                                  f"worst ({len(rows)} cases)"})
     ahead = fastest_own(tables["scenes"], view.registry)
     if len(ahead):
         names = ", ".join(f"{name} on {count}" for name, count in ahead.implementation.value_counts().items())
@@ -60,15 +57,9 @@ def cases(tables, view):
     return found
 
 
-def _asked(conditions):
-    """"Fill below 30 %, 50 variables or more": of a leaf."""
-    said = [NAMES[feature][below].format(number(value)) for feature, below, value in conditions]
-    return ", ".join(said)[:1].upper() + ", ".join(said)[1:] if said else "Any mechanism"
-
-
 def files(tables, view):
     """rule.json, which `mbs describe` applies: harness/src/describe/README.md."""
-    found = rule(tables, view.registry)
+    found = document(tables)
     return {"rule.json": {key: view.context[name] for key, name in (("machine", "cpu_model"), ("commit", "commit"))} | found} if found else {}
 
 

@@ -3,9 +3,10 @@ import pandas
 
 from analysis.core import timing
 from analysis.core.contest import agreed, by_scene, cells_of, contests, grouped, ratio_to, rival_of
+from analysis.core.schema import of_part
 from analysis.families import defaults
 from analysis.families.growth import growth, orderings
-from analysis.families.rule import alone, held
+from analysis.families.rule import judged
 
 SCHEMES = ("penalty", "saddle-point")  # the two forms of the step; roles of their records begin with them
 COLUMNS = ("implementation", "status", "reason", "verdict", "processes", "step_us", "low_us", "high_us", "passes", "pass_us", "record")
@@ -28,14 +29,16 @@ def build(records, view):
                        | {"look_us": looks[scene].get(name, {}).get("step_us")}
                        | ratio_to("to_rival", rows, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
             winners += [known | {"layer": layer} | _winner(rows, cells, names) for layer, names in layers.items()]
+    numbers = of_part("families")["mechanisms"]
     mechanisms = [{"family": family_of(scene), "scene": scene, "dimension": record.output.get("dimension")}
-                  | record.output.get("features", {}) | {"record": record.name} for scene, record in about.items()]
+                  | {name: value for name, value in record.output.get("features", {}).items() if name in numbers} | {"record": record.name}
+                  for scene, record in about.items()]
     tables = {name: pandas.DataFrame(sorted(rows, key=lambda row: place.get(row["scene"], len(place))))
               for name, rows in (("mechanisms", mechanisms), ("scenes", scenes), ("winners", winners))}
     fills, first = {row["scene"]: row.get("fill") for row in mechanisms}, SCHEMES[0]
     filled = [row | {"fill": fills[row["scene"]]} for row in scenes if row["scheme"] == first and fills.get(row["scene"]) is not None]
     return tables | {"defaults": defaults.table(filled, [row for row in winners if row["scheme"] == first and fills.get(row["scene"]) is not None]), "growth": growth(tables["scenes"], tables["mechanisms"]) if len(scenes) else pandas.DataFrame(),
-                     "orderings": orderings(about), "alone": alone(tables, registry), "held": held(tables, registry).drop(columns="models", errors="ignore")}
+                     "orderings": orderings(about)} | judged(tables, registry)
 
 
 def family_of(scene):

@@ -12,7 +12,7 @@ SETTINGS = {"scenes": list,     # families with their sizes, as the program take
 FAR = 8.0  # times the fastest library
 STEPS = 100  # of the stretch that is timed, but on the four-bar: others take about the same passes all along
 LOOK, PROCESSES = 40, 3  # steps of a look; processes where a step takes long
-LONG_S = 0.01  # of a step: above it stretches are shorter
+SHORT_S, LONG_S = 0.002, 0.01  # of a step: up to the one the four-bar keeps its stretch, above the other stretches are shorter
 MOST_S = 1.0   # of a step, beyond which a form is not timed: 40 of them would take longer than all else
 FLOPS, ENTRIES = 2e-9, 2e-8  # s a step, about, for one operation of `mbs describe` and one non-zero of L
 
@@ -30,26 +30,35 @@ def run(lab, column):
         elsewhere(lab, Cell("bench", scene, role="penalty-look"))
         for scheme in SCHEMES:
             setting, step_s = Setting(scheme), expected(record, scheme)
-            before = looks.setdefault((scene.partition(":")[0], scheme), [])
+            before = looks.setdefault((shape(scene), scheme), [])
             chosen = [one for one in here if lab.registry.serves(one.variant, *setting.needs)]
             behind = [one for one in chosen if falling(one.name, before)]
             for one in chosen if step_s > MOST_S else behind:
                 lab.skip(Cell("bench", scene, (one,), role=f"{scheme}-look{LEFT_OUT}"), "excluded",
-                         f"a step would take about {step_s:.0f} s" if step_s > MOST_S else
+                         f"a step would take above {MOST_S:g} s" if step_s > MOST_S else
                          f"on smaller ones of the family more than {FAR:g} times as slow as the fastest library, and more so with size")
             if step_s > MOST_S:
                 continue
-            shorter = min(1.0, LONG_S / step_s)
+            shorter = LONG_S / max(step_s, LONG_S)
+            look = max(4, round(LOOK * shorter))
             rows = contest(lab, scene, [one for one in chosen if one not in behind], scheme, setting.words(), own=lab.registry.own,
-                           stretch=() if scene.startswith("four-bar:") and shorter == 1 else ("--steps", max(4, round(STEPS * shorter))),
-                           look=max(4, round(LOOK * shorter)), patience=max(1.0, 16 * step_s),
+                           stretch=() if scene.startswith("four-bar:") and step_s < SHORT_S else ("--steps", max(4, round(STEPS * shorter))),
+                           look=look, patience=max(1.0, 2 * look * step_s),
                            processes=min(lab.settings["processes"][scheme], PROCESSES if shorter < 1 else 99), samples=lab.settings["samples"])
             before.append(multiples(rows, lab.registry.libraries))
 
 
+def shape(scene):
+    """The family and its options, which make other machines of it: "flexible:2,nodes=100" is a "flexible,nodes=100"."""
+    name, _, rest = scene.partition(":")
+    return ",".join([name, *rest.split(",")[1:]])
+
+
 def expected(record, scheme):
-    """s a step, about: by what the program counts of the factorization."""
-    order = record.output.get("elimination", {}).get("orderings", {}).get("AMD" if scheme == "penalty" else "saddle-point") if record.done else None
+    """s a step, about: by what the program counts of the factorization; infinite where that was too much to count."""
+    if not record.done:
+        return 0.0
+    order = record.output["elimination"]["orderings"]["AMD" if scheme == "penalty" else "saddle-point"]
     return FLOPS * order["flops"] + ENTRIES * order["factor_nonzeros"] if order else float("inf")
 
 

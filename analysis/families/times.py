@@ -1,0 +1,47 @@
+# What a step takes, from numbers that need no factorization: passes times a sum of products of features, with coefficients that are
+# not negative.
+#
+# Terms are what a pass does: something for each variable, constraint entry, non-zero of the matrix and of its factor, and the
+# operations of the factorization. Passes are the same for all: when times are compared only counts decide. Coefficients are those of
+# the least squares of log(predicted/measured), of relative errors made so by weights.
+import numpy
+
+PASSES = {"penalty": "passes", "saddle-point": "saddle_passes"}
+OF_A_PASS = {  # by form and whether the implementation's matrices are dense
+    ("penalty", False): "1 n jacobian tangent factor flops",
+    ("penalty", True): "1 n jacobian n*n n*n*n",
+    ("saddle-point", False): "1 n jacobian saddle_factor saddle_flops",
+    ("saddle-point", True): "1 n jacobian n*m m*m*m n*n*m n*m*m stiff*n*n*n"}
+TERMS = {(form, dense): tuple(f"{PASSES[form]}*{term}" for term in terms.split()) for (form, dense), terms in OF_A_PASS.items()}
+ROUNDS = 8  # of weights
+
+
+def features_of(term):
+    return [name for name in term.split("*") if name != "1"]
+
+
+FEATURES = tuple(dict.fromkeys(name for terms in TERMS.values() for term in terms for name in features_of(term)))
+
+
+def model(terms, features, times, weights):
+    """{term: µs} of scenes: their features, µs a step and weights."""
+    from scipy.optimize import nnls
+    matrix = _matrix(terms, features) / times.to_numpy(float)[:, None]
+    scale = numpy.maximum(matrix.max(axis=0), numpy.finfo(float).tiny)
+    matrix, relative = matrix / scale, numpy.ones(len(times))
+    for _ in range(ROUNDS):  # w (p − 1)² with w = (log p / (p − 1))² is (log p)²
+        root = numpy.sqrt(weights * relative)
+        values, _ = nnls(matrix * root[:, None], root)
+        ratio = numpy.maximum(matrix @ values, 1e-9)
+        away = numpy.where(numpy.abs(ratio - 1) > 1e-6, ratio - 1, 1e-6)
+        relative = (numpy.log1p(away) / away) ** 2
+    return {term: float(value / size) for term, value, size in zip(terms, values, scale) if value > 0}
+
+
+def predicted(found, features):
+    """µs a step on scenes."""
+    return _matrix(found, features) @ numpy.array(list(found.values()))
+
+
+def _matrix(terms, features):
+    return numpy.array([features[features_of(term)].prod(axis=1) for term in terms], float).T
