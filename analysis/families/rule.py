@@ -201,7 +201,7 @@ class _Data:
             best = us[[name for name in registry.libraries if name in us]]
             best = best[best.notna().any(axis=1)]
             self.us[scheme] = us.loc[best.index]
-            passes = rows[rows.passes.notna()].groupby("scene").passes.median().reindex(best.index)
+            passes = rows[(rows.status == "ok") & rows.passes.notna()].groupby("scene").passes.median().reindex(best.index)
             self.usual[scheme] = ~(passes > USUAL * self.features.loc[best.index, PASSES[scheme]])
             self.losses[scheme] = best.div(best.min(axis=1), axis=0).sub(1.0).fillna(MISSED).clip(upper=MISSED)
         families = dict(zip(known.scene, known.family)) if len(self.features) else {}

@@ -17,27 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-struct Walk {
-  std::string leaf;
-  std::vector<std::string> path;
-};
-
-Walk walk(const RuleTree& tree, const Features& scene) {
-  Walk result;
-  const RuleTree* node = &tree;
-  while (node->take.empty()) {
-    const double value = scene.at(node->feature);
-    const bool is_below = value < node->below;
-    if (node->feature != "saddle") {  // which form is taken stands beside the path
-      result.path.push_back(fmt::format("{} {:.4g} {} {:.4g}", feature_text(node->feature), value,
-                                        is_below ? "<" : ">=", node->below));
-    }
-    node = is_below ? node->yes.get() : node->no.get();
-  }
-  result.leaf = node->take;
-  return result;
-}
-
 double step_us(const StepTime& time, const Features& scene) {
   double sum = 0.0;
   for (const TimeTerm& term : time.terms) {
@@ -60,9 +39,14 @@ std::string refusal(const TimedVariant& variant, Scheme scheme, const Features& 
   return why_not(variant.name, scheme);
 }
 
-/// By layer, the leaf first, then by time.
-json ranked(const Rule& rule, Scheme scheme, const Features& scene, const WhyNot& why_not,
-            const std::string& leaf) {
+bool is_candidate(const Rule& rule, Scheme scheme, const std::string& variant) {
+  const auto found = rule.candidates.find(scheme);
+  return found != rule.candidates.end() &&
+         std::ranges::find(found->second, variant) != found->second.end();
+}
+
+/// By layer; the fastest candidate first, then by time.
+json ranked(const Rule& rule, Scheme scheme, const Features& scene, const WhyNot& why_not) {
   std::vector<json> result;
   for (const TimedVariant& variant : rule.variants) {
     if (!refusal(variant, scheme, scene, why_not).empty()) continue;
@@ -75,11 +59,13 @@ json ranked(const Rule& rule, Scheme scheme, const Features& scene, const WhyNot
                       {"low_us", us * time.low},
                       {"high_us", us * time.high}});
   }
-  const auto key = [&leaf](const json& one) {
-    return std::tuple(one["layer"] == "own", one["implementation"] != leaf,
-                      one["step_us"].get<double>());
+  const auto layer_and_time = [](const json& one) {
+    return std::tuple(one["layer"] == "own", one["step_us"].get<double>());
   };
-  std::ranges::stable_sort(result, {}, key);
+  std::ranges::stable_sort(result, {}, layer_and_time);
+  const auto fastest = std::ranges::find_if(
+      result, [&](const json& one) { return is_candidate(rule, scheme, one["implementation"]); });
+  if (fastest != result.end()) std::rotate(result.begin(), fastest, fastest + 1);
   return result;
 }
 
@@ -114,6 +100,23 @@ json outside(const std::vector<MeasuredScene>& scenes, const Features& scene) {
   return result;
 }
 
+/// What is compared: {implementation, step_us, refused}, step_us null where it is refused.
+json candidates(const Rule& rule, Scheme scheme, const Features& scene, const WhyNot& why_not) {
+  json result = json::array();
+  for (const TimedVariant& variant : rule.variants) {
+    if (!is_candidate(rule, scheme, variant.name)) continue;
+    const std::string refused = refusal(variant, scheme, scene, why_not);
+    result.push_back(
+        {{"implementation", variant.name}, {"step_us", nullptr}, {"refused", nullptr}});
+    if (refused.empty()) {
+      result.back()["step_us"] = step_us(variant.times.at(scheme), scene);
+    } else {
+      result.back()["refused"] = refused;
+    }
+  }
+  return result;
+}
+
 json nothing(const std::string& reason) {
   return {{"recommendation", json::array()},
           {"no_recommendation", reason},
@@ -122,11 +125,8 @@ json nothing(const std::string& reason) {
 }
 
 json held_json(const HeldOut& held) {
-  return {{"families", held.families},
-          {"scenes", held.scenes},
-          {"mean_loss", held.mean_loss},
-          {"worst_loss", held.worst_loss},
-          {"within", held.within}};
+  return {{"families", held.families},     {"scenes", held.scenes}, {"mean_loss", held.mean_loss},
+          {"worst_loss", held.worst_loss}, {"within", held.within}, {"inside", held.inside}};
 }
 
 }  // namespace
@@ -146,8 +146,7 @@ json recommendation_json(const std::optional<Rule>& rule, const json& descriptio
   }
   const bool is_penalty = description["scheme"]["take"] == name_of(Scheme::penalty);
   const Scheme scheme = is_penalty ? Scheme::penalty : Scheme::saddle_point;
-  const Walk found = walk(rule->tree, scene);
-  const json list = ranked(*rule, scheme, scene, why_not, found.leaf);
+  const json list = ranked(*rule, scheme, scene, why_not);
   json result = {{"recommendation", list},
                  {"no_recommendation", nullptr},
                  {"nearest", nearest(rule->scenes, scene)},
@@ -156,16 +155,10 @@ json recommendation_json(const std::optional<Rule>& rule, const json& descriptio
                    {"machine", rule->machine},
                    {"commit", rule->commit},
                    {"held", held_json(rule->held)},
-                   {"path", found.path},
-                   {"leaf", found.leaf},
-                   {"leaf_refused", nullptr},
+                   {"candidates", candidates(*rule, scheme, scene, why_not)},
                    {"outside", outside(rule->scenes, scene)}}}};
-  const auto leaf = std::ranges::find(rule->variants, found.leaf, &TimedVariant::name);
-  const std::string refused = refusal(*leaf, scheme, scene, why_not);
-  if (!refused.empty()) result["rule"]["leaf_refused"] = refused;
   if (list.empty()) {
-    result["no_recommendation"] =
-        fmt::format("nothing that was measured can run this: {}: {}", found.leaf, refused);
+    result["no_recommendation"] = "nothing that was measured can run this";
   }
   return result;
 }

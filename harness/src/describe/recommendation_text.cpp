@@ -29,29 +29,31 @@ std::string variant_text(const json& one) {
 }
 
 std::string why_text(const json& d) {
-  const json& rule = d["rule"];
-  std::vector<std::string> reasons = rule["path"];
-  if (!rule["leaf_refused"].is_null()) {
-    reasons.push_back(fmt::format("that asks for {}, but {}: the next by time",
-                                  rule["leaf"].get<std::string>(),
-                                  rule["leaf_refused"].get<std::string>()));
+  std::vector<std::string> compared;
+  for (const json& one : d["rule"]["candidates"]) {
+    const std::string name = one["implementation"];
+    compared.push_back(one["refused"].is_null()
+                           ? fmt::format("{} {:.3g} us", name, one["step_us"].get<double>())
+                           : fmt::format("{}: {}", name, one["refused"].get<std::string>()));
   }
-  reasons.push_back(d["scheme"]["reason"]);
-  return fmt::format("{}", fmt::join(reasons, "; "));
+  return fmt::format("the fastest of those compared: {}; {}", fmt::join(compared, ", "),
+                     d["scheme"]["reason"].get<std::string>());
 }
 
 std::string certainty_text(const json& rule) {
   const json& held = rule["held"];
   std::string text = fmt::format(
       "{} families ({} scenes) left out in turn: {:.0f} % slower than their fastest in the mean, "
-      "{:.0f} % at worst; {:.0f} % of the times right to a factor of 1.5",
+      "{:.0f} % at worst; {:.0f} % of the times right to a factor of 1.5, {:.0f} % inside their "
+      "range",
       held["families"].get<int>(), held["scenes"].get<int>(),
       100.0 * held["mean_loss"].get<double>(), 100.0 * held["worst_loss"].get<double>(),
-      100.0 * held["within"].get<double>());
+      100.0 * held["within"].get<double>(), 100.0 * held["inside"].get<double>());
   json names = json::array();
   for (const json& name : rule["outside"]) names.push_back(feature_text(name));
   if (!names.empty())
-    text += fmt::format("; this scene is outside of all measured ones in {}", listed(names));
+    text += fmt::format("; extrapolated, as this scene is outside of all measured ones in {}",
+                        listed(names));
   return text;
 }
 

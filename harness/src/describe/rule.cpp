@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
-#include <utility>
 
 #include "describe/features.hpp"
 #include "registry/setting_names.hpp"
@@ -17,8 +16,6 @@ namespace mbs {
 namespace {
 
 using nlohmann::json;
-
-constexpr int kMostLeaves = 5;
 
 void require(bool holds, const std::string& wanted) {
   if (!holds) throw std::runtime_error(wanted);
@@ -54,20 +51,6 @@ TimeTerm read_term(const json& values, const std::string& name) {
   return result;
 }
 
-RuleTree read_tree(const json& node, int& leaves) {
-  RuleTree result;
-  if (node.contains("take")) {
-    result.take = node.at("take");
-    require(++leaves <= kMostLeaves, fmt::format("the tree has more than {} leaves", kMostLeaves));
-    return result;
-  }
-  result.feature = known_feature(node.at("feature"));
-  result.below = read_number(node, "below", 0.0);
-  result.yes = std::make_unique<RuleTree>(read_tree(node.at("then"), leaves));
-  result.no = std::make_unique<RuleTree>(read_tree(node.at("else"), leaves));
-  return result;
-}
-
 TimedVariant read_variant(const std::string& name, const json& value) {
   const std::string layer = value.at("layer");
   require(layer == "library" || layer == "own",
@@ -97,30 +80,39 @@ MeasuredScene read_scene(const json& value) {
   return result;
 }
 
-void require_leaves(const RuleTree& node, const std::vector<TimedVariant>& variants) {
-  if (!node.take.empty()) {
-    require(std::ranges::any_of(variants,
-                                [&](const auto& one) { return one.name == node.take && !one.own; }),
-            fmt::format("the leaf {} is not among the times of the library layer", node.take));
-    return;
+void read_candidates(const json& value, Rule& rule) {
+  std::size_t count = 0;
+  for (const Scheme scheme : {Scheme::penalty, Scheme::saddle_point}) {
+    const auto found = value.find(name_of(scheme));
+    if (found == value.end()) continue;
+    for (const std::string name : *found) {
+      const auto variant = std::ranges::find(rule.variants, name, &TimedVariant::name);
+      require(variant != rule.variants.end() && !variant->own && variant->times.contains(scheme),
+              fmt::format("the candidate {} is no library with times in the {} form", name,
+                          name_of(scheme)));
+      rule.candidates[scheme].push_back(name);
+      ++count;
+    }
   }
-  require_leaves(*node.yes, variants);
-  require_leaves(*node.no, variants);
+  require(count > 0 && count <= kMostCandidates,
+          fmt::format("there are {} candidates, allowed are 1 to {}", count, kMostCandidates));
 }
 
 Rule read_rule(const json& value) {
   Rule result{value.at("set"), value.at("machine"), value.at("commit"), {}, {}, {}, {}};
-  int leaves = 0;
-  result.tree = read_tree(value.at("tree"), leaves);
   const json& held = value.at("held");
-  result.held = {held.at("families"), held.at("scenes"), read_number(held, "mean_loss", 0.0),
-                 read_number(held, "worst_loss", 0.0), read_number(held, "within", 0.0)};
+  result.held = {held.at("families"),
+                 held.at("scenes"),
+                 read_number(held, "mean_loss", 0.0),
+                 read_number(held, "worst_loss", 0.0),
+                 read_number(held, "within", 0.0),
+                 read_number(held, "inside", 0.0)};
   for (const auto& [name, times] : value.at("times").items()) {
     result.variants.push_back(read_variant(name, times));
   }
   for (const json& scene : value.at("scenes")) result.scenes.push_back(read_scene(scene));
   require(!result.scenes.empty(), "there are no scenes");
-  require_leaves(result.tree, result.variants);
+  read_candidates(value.at("candidates"), result);
   return result;
 }
 

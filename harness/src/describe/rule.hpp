@@ -2,7 +2,6 @@
 #pragma once
 
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,19 +31,12 @@ struct TimedVariant {
   std::map<Scheme, StepTime> times;
 };
 
-/// A leaf, or the question whether a feature is below a number.
-struct RuleTree {
-  std::string take;  ///< a variant; empty: ask
-  std::string feature;
-  double below = 0.0;
-  std::unique_ptr<RuleTree> yes, no;
-};
-
-/// How the tree did on families of scenes that it was not fitted to.
+/// How the choice did on families of scenes that it was not fitted to.
 struct HeldOut {
   int families = 0, scenes = 0;
   double mean_loss = 0.0, worst_loss = 0.0;  ///< time over that of the fastest, less 1
   double within = 0.0;                       ///< share of step times within a factor of 1.5
+  double inside = 0.0;                       ///< share of them inside their range
 };
 
 struct MeasuredScene {
@@ -56,7 +48,9 @@ struct MeasuredScene {
 
 struct Rule {
   std::string set, machine, commit;
-  RuleTree tree;  ///< of the variants of libraries
+  /// Variants of libraries with a time in that form, at most kMostCandidates in all: the one that
+  /// is predicted to be the fastest is taken.
+  std::map<Scheme, std::vector<std::string>> candidates;
   HeldOut held;
   std::vector<TimedVariant> variants;
   std::vector<MeasuredScene> scenes;  ///< at least one
@@ -64,6 +58,8 @@ struct Rule {
 
 /// What a scene's distance to a measured one is taken in; every measured scene has them, above 0.
 inline constexpr const char* kDistanceFeatures[] = {"n", "per_column", "flops", "tangent"};
+
+inline constexpr int kMostCandidates = 5;
 
 /// None from an empty object, {}: no rule has been measured. Throws std::runtime_error, with the
 /// reason on one line, if `text` is no rule; README.md has the format.
