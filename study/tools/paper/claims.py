@@ -77,8 +77,8 @@ def _rule(known):
     if held.empty:
         return None, ""
     found = rule.summary(held)
-    kept = all(found[name] <= most for name, most in bounds.LOSS.items()) and found["within"] >= bounds.SHARE
-    return kept, (f"mean loss at most {percent(bounds.LOSS['mean_loss'])}, worst {percent(bounds.LOSS['worst_loss'])}, {percent(bounds.SHARE)} of the times; "
+    kept = found["mean_loss"] <= bounds.MEAN and found["worst_loss"] <= rule.MUCH and found["within"] >= bounds.SHARE
+    return kept, (f"mean loss at most {percent(bounds.MEAN)}, worst {percent(rule.MUCH)}, {percent(bounds.SHARE)} of the times; "
                   f"here {percent(found['mean_loss'])}, {percent(found['worst_loss'])}, {percent(found['within'])}")
 
 
