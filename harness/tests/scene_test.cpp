@@ -107,11 +107,15 @@ TEST(FourBar, RefusesBadNumbers) {
                  {"four-bar:", "for N, allowed is a whole number from 1 to 100000"});
   }
   for (const char* text : {"", "0", "0.0", "1.01", "-0.5", "+0.5", "nan", "inf", "1e-1", "30%",
-                           "0.5x", " 0.5", "0.5,fill=0.5", "."}) {
+                           "0.5x", " 0.5", "."}) {
     expect_parts(error_of(std::string("four-bar:3,fill=") + text),
                  {"for F, allowed is a decimal number above 0, up to 1"});
   }
   expect_parts(error_of("four-bar:3,"), {"found the option \"\", allowed is fill=F"});
+  expect_parts(error_of("four-bar:3,fill=0.5,fill=0.5"), {"found the option \"fill=0.5\""});
+  for (const char* text : {"", "0", "-1", "1.5", "01", "2147483648"}) {
+    expect_parts(error_of(std::string("four-bar:3,fill=0.9,seed=") + text), {"for S, allowed is a whole number"});
+  }
   expect_parts(error_of("four-bar:3,fil=0.5"), {"found the option \"fil=0.5\""});
   expect_parts(error_of("four-bar:9,fill=0.01"), {"four-bar:9,fill=0.01", "not reached"});
   expect_parts(error_of("four-bar:9999,fill=1"), {"20000 x 20000", "at most 50000000"});

@@ -74,13 +74,13 @@ TEST_F(SweepParts, CompressedIsTheSameTable) {
 }
 
 TEST_F(SweepParts, GoOnAfterAKill) {
-  const std::string lanes = "four-bar:2 --duration 1 --vary gravity/1=-12:-6:400";
+  const std::string lanes = "four-bar:2 --duration 0.5 --vary gravity/1=-12:-6:120";
   ASSERT_EQ(sweep(lanes, "whole.csv", "batch/sound").status, 0);
   const std::string table = at("t.csv"), journal = table + ".journal";
   const pid_t child = ::fork();
   if (child == 0) {
-    ::execl(MBS_CONTROLS, MBS_CONTROLS, "sweep", "four-bar:2", "--duration", "1", "--vary",
-            "gravity/1=-12:-6:400", "--implementation", "batch/sound", "--jobs", "2", "--output",
+    ::execl(MBS_CONTROLS, MBS_CONTROLS, "sweep", "four-bar:2", "--duration", "0.5", "--vary",
+            "gravity/1=-12:-6:120", "--implementation", "batch/sound", "--jobs", "2", "--output",
             table.c_str(), nullptr);
     ::_exit(127);
   }
@@ -89,7 +89,7 @@ TEST_F(SweepParts, GoOnAfterAKill) {
     const auto bytes = std::filesystem::file_size(journal, none);
     return none ? 0 : bytes;
   };
-  while (size() < 5000 && ::waitpid(child, nullptr, WNOHANG) == 0) {
+  while (size() < 3000 && ::waitpid(child, nullptr, WNOHANG) == 0) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   ::kill(child, SIGKILL);
@@ -100,7 +100,7 @@ TEST_F(SweepParts, GoOnAfterAKill) {
   EXPECT_EQ(sweep(lanes, "t.csv", "batch/sound").status, 2);  // without --resume
   EXPECT_EQ(test::file_text(journal), before);
   const auto run = sweep(lanes + " --jobs 2 --resume", "t.csv", "batch/sound");
-  EXPECT_EQ(run.output, "400 lanes: 400 plausible\n") << run.errors;
+  EXPECT_EQ(run.output, "120 lanes: 120 plausible\n") << run.errors;
   EXPECT_EQ(text("t.csv"), text("whole.csv"));
   EXPECT_EQ(files(), 2U);
 }

@@ -41,12 +41,12 @@ Features read_features(const json& values) {
   return result;
 }
 
-/// From a name such as "n*n*m", or "1".
+/// From a name such as "n*n*m", "passes*1" or "1".
 TimeTerm read_term(const json& values, const std::string& name) {
   TimeTerm result{{}, read_number(values, name.c_str(), 0.0)};
-  std::istringstream words(name == "1" ? "" : name);
+  std::istringstream words(name);
   for (std::string word; std::getline(words, word, '*');) {
-    result.features.push_back(known_feature(word));
+    if (word != "1") result.features.push_back(known_feature(word));
   }
   return result;
 }

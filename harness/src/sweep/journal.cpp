@@ -58,13 +58,10 @@ Journal::Journal(const std::string& path) : path_(path), input_(path, std::ios::
 }
 
 Journal::Journal(const std::string& path, const nlohmann::json& head) : path_(path), head_(head) {
-  const int file = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (file < 0) fail(std::strerror(errno));
-  file_ = file;
-  open();
+  take(::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
   const std::string text = head.dump();
   const std::string line = fmt::format("{} {} {}\n", kBegin, checksum(text), text);
-  if (::write(file_, line.data(), line.size()) != static_cast<ssize_t>(line.size())) {
+  if (::write(::fileno(file_.get()), line.data(), line.size()) != static_cast<ssize_t>(line.size())) {
     fail(std::strerror(errno));
   }
   end_ = line.size();
@@ -101,12 +98,14 @@ void Journal::scan() {
   }
 }
 
-void Journal::open() {
-  if (file_ < 0) file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
-  if (file_ < 0) fail(std::strerror(errno));
-  if (::flock(file_, LOCK_EX | LOCK_NB) != 0) fail("another mbs sweep is writing it");
-  if (::ftruncate(file_, static_cast<off_t>(end_)) != 0 ||
-      ::lseek(file_, static_cast<off_t>(end_), SEEK_SET) < 0) {
+void Journal::open() { take(::open(path_.c_str(), O_WRONLY | O_CLOEXEC)); }
+
+void Journal::take(int file) {
+  if (file < 0) fail(std::strerror(errno));
+  file_.reset(::fdopen(file, "w"));
+  if (::flock(file, LOCK_EX | LOCK_NB) != 0) fail("another mbs sweep is writing it");
+  if (::ftruncate(file, static_cast<off_t>(end_)) != 0 ||
+      ::lseek(file, static_cast<off_t>(end_), SEEK_SET) < 0) {
     fail(std::strerror(errno));
   }
   is_whole_ = true;
@@ -116,7 +115,7 @@ void Journal::add(long block, const std::string& text) {
   const std::string head = fmt::format("block {} {} {}\n", block, text.size(), checksum_of_block(block, text));
   const std::string all = head + text;
   for (std::size_t done = 0; done < all.size();) {
-    const ssize_t count = ::write(file_, all.data() + done, all.size() - done);
+    const ssize_t count = ::write(::fileno(file_.get()), all.data() + done, all.size() - done);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) fail(fmt::format("{} (what is done stays: --resume)", std::strerror(errno)));
     done += static_cast<std::size_t>(count);

@@ -1,8 +1,10 @@
 // What a sweep has done so far, block by block, so that it can go on after any end.
 #pragma once
 
+#include <cstdio>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -33,7 +35,11 @@ class Journal {
   struct Record {
     std::size_t offset = 0, size = 0;
   };
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
   [[noreturn]] void fail(const std::string& what) const;
+  void take(int file);
   void scan();
 
   std::string path_;
@@ -42,7 +48,7 @@ class Journal {
   std::size_t end_ = 0;  // of the last whole block
   bool is_whole_ = true;
   mutable std::ifstream input_;
-  int file_ = -1;  // held until the program ends
+  std::unique_ptr<std::FILE, Close> file_;  // to write to, locked; null: only read
 };
 
 inline constexpr std::size_t kLongestPath = 4096;  ///< bytes of one that a message shows
