@@ -17,7 +17,7 @@ pytestmark = [pytest.mark.skipif(not (BUILD / "harness/library/libmbs.so").exist
 
 def run(*command, **options):
     """Its output; a failure shows all of it."""
-    found = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300,
+    found = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=600,
                            env={"PATH": "/usr/bin:/bin", "HOME": "/nonexistent"} | options.pop("env", {}), **options)
     assert found.returncode == 0, found.stdout + found.stderr
     return found.stdout
