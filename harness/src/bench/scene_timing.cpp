@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "bench/paired_ratio.hpp"
@@ -51,6 +52,7 @@ class SceneTiming {
   const TimingWishes& wishes_;
   const Watch& watch_;
   SceneResult result_;
+  RandomOrder random_;
   std::vector<Contender> contenders_;
 
   /// What the contender is compared with: 0 or 1.
@@ -84,9 +86,14 @@ SceneTiming::SceneTiming(std::span<const PlannedCell> cells, const TimingWishes&
     : wishes_(wishes),
       watch_(watch),
       result_{cells.front().scene, {}, 0, {}},
+      random_(wishes.seed),
       slower_than_(wishes.slower_than.value_or(kNever)) {
   for (const PlannedCell& cell : cells) result_.contenders.emplace_back().cell = &cell;
-  for (ContenderResult& result : result_.contenders) contenders_.emplace_back().result = &result;
+  // Whoever is set up first has other places in memory: another one in each process.
+  std::vector<std::size_t> order(cells.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  shuffle(order, random_);
+  for (const std::size_t i : order) contenders_.emplace_back().result = &result_.contenders[i];
   if (!wishes.by_layer) return;
   // The likely fast first.
   std::ranges::stable_sort(contenders_, {}, [](const Contender& contender) {
@@ -208,13 +215,12 @@ void SceneTiming::plan() {
 }
 
 void SceneTiming::take_samples() {
-  RandomOrder random(wishes_.seed);
   for (int j = 1; j <= result_.samples; ++j) {
     say(fmt::format("sample {} of {}", j, result_.samples));
     for (Contender& contender : contenders_) {
       if (contender.result->timed()) contender.result->samples.emplace_back();
     }
-    take_turns(result_.turns, random, [this](const Turn& turn) {
+    take_turns(result_.turns, random_, [this](const Turn& turn) {
       Contender& contender = contenders_[turn.contender];
       attempt(contender, [&] {
         Sample& sample = contender.result->samples.back();

@@ -23,7 +23,7 @@ inline constexpr int kLeastByLayer = 6;  ///< as kLeastSamples: with fewer there
 struct TimingWishes {
   double slice = kSlice;              ///< s, see plan_turns()
   int samples = 0;                    ///< of each contender; 0: kSceneTime decides
-  std::uint64_t seed = kSeed;         ///< of the orders
+  std::uint64_t seed = kSeed;         ///< of the orders: set-up, turns
   std::optional<double> slower_than;  ///< times the fastest; whoever takes longer is not timed
   std::optional<double> patience;     ///< s for the steps of the first stretch
   /// For an answer soon: `slower_than` is within a layer (libraries, own code), so that both have
@@ -66,7 +66,7 @@ struct SceneResult {
   std::vector<ContenderResult> contenders;  ///< in the order of the cells
 };
 
-/// Sets all contenders up and warms them up one after the other; then takes samples, all of them
+/// Sets all contenders up, in a shuffled order, and warms them up one after the other; then takes samples, all of them
 /// by turns. A sample of a contender is its time over the whole stretch, from the same start. All
 /// are alive at once, none afterwards. A contender that fails, or is too slow, costs the others
 /// nothing but its samples.

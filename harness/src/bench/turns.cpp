@@ -7,14 +7,10 @@
 #include <utility>
 
 namespace mbs {
-namespace {
 
-/// Fisher and Yates; std::shuffle may differ from one library to the next.
 void shuffle(std::vector<std::size_t>& order, RandomOrder& random) {
   for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
 }
-
-}  // namespace
 
 Turns plan_turns(int steps, std::span<const double> seconds, double typical, double slice) {
   constexpr double kShortest = 1e-6;  // s; reading the clocks takes as long

@@ -39,6 +39,9 @@ struct Turn {
 
 using RandomOrder = std::mt19937_64;
 
+/// Fisher and Yates; std::shuffle may differ from one library to the next.
+void shuffle(std::vector<std::size_t>& order, RandomOrder& random);
+
 /// Calls `take` for every turn of one sample, chunk by chunk: every contender once in each, in an
 /// order that is shuffled anew. The same `random` gives the same orders on every machine.
 void take_turns(const Turns& turns, RandomOrder& random,
