@@ -220,6 +220,7 @@ def test_sweeps_are_projected_from_the_lanes_that_were_run():
     assert list(rows.lanes_per_s) == [500, 1000] and list(rows.gain) == [1, 2] and list(rows.work) == [1, 2]
     assert rows.million_s[2] == pytest.approx(1000 + 100) and rows.nodes_s[2] == pytest.approx(10 + 100)
     assert (rows.least[1], rows.most[1], rows.lane_us[1]) == (250, 500, 2000)
+    assert any("2 times as many lanes a second as one job" in one["text"] for one in sentences.answers(found, VIEW))
     assert made(swept(1, 1.0, 1.0, "dropped"))["sweeps"].reason.tolist() == ["why"]
 
 
