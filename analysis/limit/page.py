@@ -1,7 +1,7 @@
 # What page.html.j2 shows of the limit.
 from analysis.core.rows import grouped
 from analysis.core.timing import PHASES
-from analysis.limit.tables import KINDS
+from analysis.limit.tables import KINDS, NODES
 
 
 def context(tables, view):
@@ -12,7 +12,8 @@ def context(tables, view):
             "sizes": grouped(_timed(wide["penalty"]).sort_values(["loops", "step_us"]), "variables"),
             "growth": grouped(_own(wide, view), "form"), "scenes": by_scene(tables["scenes"]),
             "batches": tables["batches"][tables["batches"].status != "unsupported"].sort_values(["variables", "sets"]).to_dict("records"),
-            "alone": sorted(set(tables["batches"].implementation[tables["batches"].status == "unsupported"])), "lost": lost(tables)}
+            "alone": sorted(set(tables["batches"].implementation[tables["batches"].status == "unsupported"])), "lost": lost(tables),
+            "sweeps": tables["sweeps"].to_dict("records"), "nodes": NODES}
 
 
 def _timed(rows):

@@ -1,4 +1,4 @@
-# Rows of bounds, steps, growth, scenes, leads, batches, and of what own code is held to.
+# Rows of bounds, steps, growth, scenes, leads, batches, sweeps, and of what own code is held to.
 import pandas
 
 from analysis.core import timing
@@ -7,6 +7,7 @@ from analysis.core.statistics import median
 from analysis.limit.held import must_hold
 
 LIMIT = "limit/limit"
+LANES, NODES = 1e6, 100  # what sweeps are projected to
 KINDS = ("problem", "fill", "example")  # of scenes; roles of their records too
 FORMS = {"size": "penalty", "growth": "saddle-point"}  # roles of the N-four-bar's records
 
@@ -18,7 +19,8 @@ def build(records, view):
     about = {record.cell["scene"]: record.output for record in by_role.get("about", []) if record.done}
     found = {"bounds": [row | {"status": record.status, "reason": record.reason, "record": record.name}
                         for record in by_role.get("bounds", []) for row in record.output.get("rows", [{}])],
-             "steps": [], "scenes": [], "leads": [], "batches": _batches(by_role.get("batch", []))}
+             "steps": [], "scenes": [], "leads": [], "batches": _batches(by_role.get("batch", [])),
+             "sweeps": _sweeps(by_role.get("sweep", []))}
     for role in FORMS:
         said = verdicts_of(by_role.get(f"{role}-gate", []))
         for scene, rows in by_scene(by_role.get(role, [])):
@@ -96,3 +98,30 @@ def _batch(record):
         elif record.done:
             row |= {"status": "ok"} | {key: found[key] for key in ("variables", "lanes", "step_us", "alone_us", "gain")}
         yield row
+
+
+def _sweeps(records):
+    """A row for each scene and number of jobs."""
+    found = []
+    for scene in dict.fromkeys(record.cell["scene"] for record in records):
+        mine = [record for record in records if record.cell["scene"] == scene]
+        good = [record for record in mine if record.done]
+        lost = next((record for record in mine if not record.done), None)
+        known = {"scene": scene, "implementation": mine[0].cell["contenders"][0]}
+        if not good:
+            found.append(known | {"status": lost.status, "reason": lost.reason, "record": lost.name})
+            continue
+        lanes = good[0].output["lanes"]
+        processes = [{row["jobs"]: row for row in record.output["rows"]} for record in good]
+        merge = lanes / median([row["merge_s"] for process in processes for row in process.values()])
+        for jobs in processes[0]:
+            rates = [lanes / process[jobs]["wall_s"] for process in processes]
+            rate = median(rates)
+            found.append(known | {
+                "jobs": jobs, "status": "ok", "reason": "", "processes": len(good), "lanes": lanes, "lanes_per_s": rate,
+                "least": min(rates), "most": max(rates), "lane_us": 1e6 / lanes * median([process[jobs]["cpu_s"] for process in processes]),
+                "gain": median([process[1]["wall_s"] / process[jobs]["wall_s"] for process in processes]),
+                "work": median([process[jobs]["cpu_s"] / process[1]["cpu_s"] for process in processes]),
+                "memory_mb": max(process[jobs]["memory_mb"] for process in processes), "merged_per_s": merge,
+                "million_s": LANES / rate + LANES / merge, "nodes_s": LANES / rate / NODES + LANES / merge, "record": good[0].name})
+    return found

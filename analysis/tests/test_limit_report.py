@@ -208,6 +208,22 @@ def test_batches_have_gains_with_intervals_for_each_number_of_sets():
     assert page.context(found, VIEW)["alone"] == ["one/a"]
 
 
+def swept(number, one, two, status="done"):
+    rows = [{"jobs": jobs, "wall_s": wall, "cpu_s": 2.0 * jobs, "memory_mb": 9.0, "merge_s": 0.1} for jobs, wall in ((1, one), (2, two))]
+    return Record(f"sweep/{number}", {"scene": "four-bar:10", "contenders": ["own/x"], "number": number, "role": "sweep", "settings": []}, status,
+                  "why", 1.0, [], {}, {"lanes": 1000, "bytes": 5, "rows": rows} if status == "done" else {})
+
+
+def test_sweeps_are_projected_from_the_lanes_that_were_run():
+    found = made(swept(1, 2.0, 1.0), swept(2, 4.0, 2.0), swept(3, 2.0, 1.0))
+    rows = found["sweeps"].set_index("jobs")
+    assert list(rows.lanes_per_s) == [500, 1000] and list(rows.gain) == [1, 2] and list(rows.work) == [1, 2]
+    assert rows.million_s[2] == pytest.approx(1000 + 100) and rows.nodes_s[2] == pytest.approx(10 + 100)
+    assert (rows.least[1], rows.most[1], rows.lane_us[1]) == (250, 500, 2000)
+    assert any("2 times as many lanes a second as one job" in one["text"] for one in sentences.answers(found, VIEW))
+    assert made(swept(1, 1.0, 1.0, "dropped"))["sweeps"].reason.tolist() == ["why"]
+
+
 def test_a_folder_is_led_by_the_fastest_of_those_timed_everywhere():
     rows = figures.everyone(made(*(bench("size", f"four-bar:{size}", number, limit_limit=1.0, one_a=3.0,
                                          one_b=2.0 if size == 10 else "slower: much", two_c=5.0, own_x=1.5, own_y=1.2)

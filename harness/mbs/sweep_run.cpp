@@ -75,6 +75,21 @@ void require_no_other(const std::string& path) {
                                printable(path, kLongestPath)));
 }
 
+/// What was left beside `path` by a process that was killed while it wrote the table.
+void remove_partial(const std::string& path) {
+  std::error_code ignored;
+  const fs::path table = fs::weakly_canonical(fs::absolute(path), ignored);
+  const std::string begin = table.filename().string() + ".", end = ".partial";
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::directory_iterator(table.parent_path(), ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() <= begin.size() + end.size() || !name.starts_with(begin) || !name.ends_with(end)) continue;
+    const std::string between = name.substr(begin.size(), name.size() - begin.size() - end.size());
+    if (between.find_first_not_of("0123456789-") == std::string::npos) left.push_back(entry.path());
+  }
+  for (const fs::path& file : left) fs::remove(file, ignored);
+}
+
 /// To go on with: what was done if it is of this sweep, or a new one.
 Journal open_journal(const std::string& output, const nlohmann::json& head) {
   if (!is_file(output)) {  // a pipe, a device: kept where nobody finds it
@@ -90,7 +105,8 @@ Journal open_journal(const std::string& output, const nlohmann::json& head) {
   if (!fs::exists(path, ignored)) return {path, head};
   Journal journal(path);
   require_same_sweep(journal, head);
-  journal.open();
+  journal.open();  // nobody else writes this table
+  remove_partial(output);
   return journal;
 }
 

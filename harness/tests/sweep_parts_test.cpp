@@ -99,10 +99,13 @@ TEST_F(SweepParts, GoOnAfterAKill) {
   const std::string before = test::file_text(journal);
   EXPECT_EQ(sweep(lanes, "t.csv", "batch/sound").status, 2);  // without --resume
   EXPECT_EQ(test::file_text(journal), before);
+  write("t.csv.4711-0.partial", "as a kill leaves it that comes when the table is written");
+  write("t.csv.gz.4711-0.partial", "of another table");
   const auto run = sweep(lanes + " --jobs 2 --resume", "t.csv", "batch/sound");
   EXPECT_EQ(run.output, "120 lanes: 120 plausible\n") << run.errors;
   EXPECT_EQ(text("t.csv"), text("whole.csv"));
-  EXPECT_EQ(files(), 2U);
+  EXPECT_EQ(text("t.csv.gz.4711-0.partial"), "of another table");
+  EXPECT_EQ(files(), 3U);
 }
 
 TEST_F(SweepParts, AFinishedPartIsNotDoneAgain) {

@@ -1,4 +1,4 @@
-# Steps beside the limit code and its bounds; own code beside libraries, scene by scene; growth; batches.
+# Steps beside the limit code and its bounds; own code beside libraries, scene by scene; growth; batches; sweeps.
 from dataclasses import dataclass, replace
 
 from analysis.core.files import ROOT
@@ -18,12 +18,17 @@ SETTINGS = {"loops": list,     # sizes of the N-four-bar for everyone
             "fills": list,     # ... and fills of the four-bar of 100 variables, on which own code meets libraries
             "batches": list,   # sizes of the N-four-bar for batches
             "sets": list,      # of parameters in a batch
+            "swept": int,      # lanes of a sweep
             "patience": float, # s of the first stretch of a size: whoever is slower is not timed
             "processes": int,  # of a scene
             "samples": int}    # of a process and contender
-SHARES = {"sizes": 0.33, "growth": 0.1, "scenes": 0.47, "batches": 0.1}  # of the budget
+SHARES = {"sizes": 0.27, "growth": 0.08, "scenes": 0.39, "batches": 0.08, "sweeps": 0.18}  # of the budget
 FIRST = ("--start", 0, "--steps", 40)  # the same passes at all sizes
 BATCH_S = 0.02  # a process of batches lasts about ten times that
+SWEPT = {  # scene: the implementation that sweeps it, and what varies; lanes of a tenth of a second
+    "four-bar:10": ("compiled_chains/sweeps", "rods/A0-B0/mass=uniform:0.5:2", "gravity/1=normal:-9.81:0.5"),
+    "vehicle:4": ("csc_ldl/uplooking", "springs/0/stiffness=uniform:120e3:180e3", "bodies/chassis/mass=normal:8000:400")}
+SWEEP = "../study/limit/sweep_process"  # as seen from the build
 
 
 def columns(settings, studyset):
@@ -31,7 +36,7 @@ def columns(settings, studyset):
 
 
 def run(lab, column):
-    {"sizes": sizes, "growth": growth, "scenes": scenes, "batches": batches}[column](lab)
+    {"sizes": sizes, "growth": growth, "scenes": scenes, "batches": batches, "sweeps": sweeps}[column](lab)
 
 
 def sizes(lab):
@@ -99,6 +104,17 @@ def batches(lab):
         lab.run([Cell("bench", f"four-bar:{loops}", here, ("--batch", "--sets", sets, f"--benchmark_min_time={BATCH_S}"),
                       "batch", number, timed=True)
                  for loops in lab.settings["batches"] for sets in lab.settings["sets"] if here], drop=True)
+
+
+def sweeps(lab):
+    """Processes take turns over the scenes, and each has both numbers of jobs."""
+    for number in range(1, lab.settings["processes"] + 1):
+        for scene, (name, *varied) in SWEPT.items():
+            one = lab.contender(name)
+            if one:
+                words = [word for each in varied for word in ("--vary", each)]
+                lab.run([Cell("", scene, (one,), (*words, "--lanes", lab.settings["swept"], "--duration", 0.1), "sweep", number,
+                              SWEEP, timed=True, seconds=600)], drop=True)
 
 
 def timed(lab, scene, contenders, role, settings=()):

@@ -1,4 +1,7 @@
 # The limit: what is asked for, of whom, and who is left out; a tiny run on the real program.
+import json
+import os
+import subprocess
 from types import SimpleNamespace
 
 import pandas
@@ -15,7 +18,7 @@ REGISTRY = Registry({"implementations": [
     {"folder": "own", "available": True, "library": "none", "variants": [{"name": "own/x", "settings": ["saddle-point"]},
                                                                          {"name": "own/y", "settings": []}]}]})
 SETTINGS = {"loops": [10, 40], "large": [49], "problems": ["A01"], "examples": ["coupler"], "fills": [0.5], "batches": [10],
-            "sets": [8, 64], "patience": 0.1, "processes": 2, "samples": 3}
+            "sets": [8, 64], "swept": 100, "patience": 0.1, "processes": 2, "samples": 3}
 
 
 class Asked:
@@ -25,6 +28,9 @@ class Asked:
     def __init__(self, names=("one/a", "one/b", "own/x", "own/y"), **changes):
         self.contenders = [Contender(name, name, "openblas") for name in names]
         self.settings, self.registry, self.cells, self.skipped = SETTINGS | changes, REGISTRY, [], []
+
+    def contender(self, name):
+        return next((one for one in self.contenders if one.name == name), None)
 
     def run(self, cells, drop=False):
         self.cells += cells
@@ -112,6 +118,27 @@ def test_processes_of_batches_take_turns_over_all_cells():
     assert [cell.settings[2] for cell in lab.cells[:4]] == [8, 64, 8, 64] and all(cell.timed for cell in lab.cells)
     assert len({cell.settled().file_name() for cell in lab.cells}) == 8
     assert not Asked(names=()).cells
+
+
+def test_sweeps_are_asked_of_those_that_take_part():
+    lab = Asked(names=("compiled_chains/sweeps", "one/a"))
+    plan.run(lab, "sweeps")
+    assert [(cell.scene, cell.number, cell.program) for cell in lab.cells] == [("four-bar:10", 1, plan.SWEEP), ("four-bar:10", 2, plan.SWEEP)]
+    assert ("--lanes", 100) == lab.cells[0].settings[-4:-2] and lab.cells[0].timed
+
+
+@pytest.mark.parametrize("table, agree", [("table", True), ("$*", False)])
+def test_a_sweep_by_one_and_by_two_jobs_must_give_one_table(tmp_path, table, agree):
+    program = tmp_path / "mbs"  # stands in: the last word is the output
+    program.write_text(f"#!/bin/sh\nfor out; do :; done\necho {table} > $out\n")
+    program.chmod(0o755)
+    done = subprocess.run([ROOT / "study/limit/sweep_process", "four-bar:1", "--implementation", "a/b", "--vary", "x=1:2:3", "--lanes", "5",
+                           "--duration", "0.1"], env=os.environ | {"MBS_PROGRAM": str(program)}, capture_output=True, text=True, check=False)
+    if not agree:
+        assert (done.returncode, done.stderr) == (1, "the tables by one and two jobs differ\n")
+        return
+    found = json.loads(done.stdout)
+    assert [row["jobs"] for row in found["rows"]] == [1, 2] and all(row["wall_s"] > 0 < row["merge_s"] for row in found["rows"])
 
 
 def test_nothing_is_asked_where_nobody_takes_part(measured):

@@ -96,7 +96,8 @@ def lines(axes, table, columns):
             axes.text(place, y, f"{value:.4g}", ha="center", fontsize=8)
     axes.spines[:].set_visible(False)
     shown = min(LINES, int(table["finished"].sum()))
-    axes.set_title("Lanes" if shown == table["finished"].sum() else f"{shown} of the lanes that finished")
+    title = "Lanes" if shown == table["finished"].sum() else f"{shown} of the lanes that finished"
+    axes.set_title(title + ("" if table["finished"].all() else "; red: failed"))
 
 
 def surface(axes, table, over, result):

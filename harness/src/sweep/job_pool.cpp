@@ -171,7 +171,10 @@ void for_blocks(int jobs, std::span<const long> blocks,
       busy.push_back(job.get());
     }
     if (busy.empty()) break;
-    if (::poll(waited.data(), waited.size(), -1) < 0) continue;
+    if (::poll(waited.data(), waited.size(), -1) < 0) {
+      if (errno == EINTR) continue;
+      throw std::runtime_error(fmt::format("--jobs: {}", std::strerror(errno)));
+    }
     for (std::size_t i = 0; i < busy.size(); ++i) {
       if (waited[i].revents == 0) continue;
       auto [block, text] = busy[i]->finish();
