@@ -1,16 +1,16 @@
 # A rule that predicts: how long a step takes with each library, and so which to take, from numbers that need no factorization.
 #
-# At most CANDIDATES libraries are compared, over both forms of the step: of the predicted times (times.py) the least one's is taken.
+# A few libraries are compared in each form of the step: of the predicted times (times.py) the least one's is taken.
 # Which are worth comparing is found by what the choice costs. All is judged on families left out: each family is predicted by
 # what was fitted on all others, its candidates too.
-from itertools import combinations, product
+from itertools import combinations
 
 import numpy
 import pandas
 
 from analysis.families.times import FEATURES, PASSES, TERMS, model, predicted
 
-CANDIDATES = 5
+CANDIDATES = 4   # at most, in each form
 WORTH = 0.01    # of the mean cost, that one more candidate must save
 FAMILIES = 4     # at least, for a rule
 MUCH = 0.30      # a loss
@@ -162,27 +162,17 @@ class _Rule:
 
     def _compared(self, data):
         """{form: names} of the least cost, each name counting as WORTH."""
-        options = {}
+        found = {}
         for scheme in data.losses:
             costs = data.costs(scheme)
             names = [name for name in costs if (scheme, name) in self.models]
-            features = data.features.loc[costs.index]
+            features, rows = data.features.loc[costs.index], numpy.arange(len(costs))
             times = numpy.array([predicted(self.models[scheme, name], features) for name in names]).T
-            options[scheme] = _best_of_each_size(names, times, costs[names].to_numpy())
-        return min((dict(zip(options, (names for _, names in some))) for some in product(*options.values())
-                    if sum(len(names) for _, names in some) <= CANDIDATES),
-                   key=lambda found: sum(options[scheme][len(names) - 1][0] + WORTH * len(names) for scheme, names in found.items()))
-
-
-def _best_of_each_size(names, times, costs):
-    """[(cost, names)] of one, two, ... that are compared."""
-    found, rows = [], numpy.arange(len(times))
-    for size in range(1, CANDIDATES):
-        some = [(costs[rows, numpy.array(places)[times[:, places].argmin(axis=1)]].sum(), places) for places in combinations(range(len(names)), size)]
-        if some:
-            cost, places = min(some)
-            found.append((cost, [names[place] for place in places]))
-    return found
+            costs = costs[names].to_numpy()
+            _, places = min((costs[rows, numpy.array(some)[times[:, some].argmin(axis=1)]].sum() + WORTH * size, some)
+                            for size in range(1, CANDIDATES + 1) for some in combinations(range(len(names)), size))
+            found[scheme] = [names[place] for place in places]
+        return found
 
 
 class _Data:

@@ -14,7 +14,7 @@ def answers(tables, view):
               f"{len(real)} this run says who is fastest."}]
     if len(tables["held"]):
         held = summary(tables["held"])
-        found.append({"anchor": "rule", "text": f"A rule that compares the predicted times of at most five libraries chooses one that takes {100 * held['mean_loss']:.1f} % longer "
+        found.append({"anchor": "rule", "text": f"A rule that compares the predicted times of a few libraries chooses one that takes {100 * held['mean_loss']:.1f} % longer "
                       f"than the fastest on average, {100 * held['worst_loss']:.0f} % at worst, on families that it was not fitted on; {100 * held['within']:.0f} % of "
                       "the step times are within 1.5 times of the predicted."})
     own = scenes[scenes.implementation.isin(view.registry.own) & (scenes.status == "ok") & scenes.to_rival.notna() & (scenes.scheme == "penalty")]
