@@ -1,5 +1,4 @@
 # The common look of all figures.
-import string
 from pathlib import Path
 
 import matplotlib
@@ -18,7 +17,6 @@ ALTERNATIVES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#8A8A00", "#4D4D4D"
 SHADES = ((None, 0.0), ("white", 0.42), ("black", 0.38), ("white", 0.68), ("black", 0.62))
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", "p", ">", "h", "d")
 DASHES = ("-", (0, (4, 1.5)), (0, (1, 1)), (0, (6, 1.5, 1, 1.5)), (0, (3, 1, 1, 1, 1, 1)))
-LETTERS = string.ascii_uppercase + string.ascii_lowercase
 GREY = "#777777"
 
 matplotlib.rcParams.update({

@@ -39,10 +39,10 @@ function chosen(state) {
   return new Set(DATA.names.filter((one) => !out(one)).map((one) => one.name));
 }
 
-// Forms of the step that are left, the first one in which the case was measured before the other.
+// Forms of the step that are left, the first one in which somebody who is left was measured on the case before the other.
 const forms = (state) => {
-  const order = state.mine?.form === "saddle-point" ? [...FORMS].reverse() : FORMS;
-  const measured = (form) => setOf(state).contests.some((one) => one.scene === state.scene && one.form === form);
+  const names = chosen(state), order = state.mine?.form === "saddle-point" ? [...FORMS].reverse() : FORMS;
+  const measured = (form) => setOf(state).contests.some((one) => one.scene === state.scene && one.form === form && one.able.some((name) => names.has(name)));
   return order.filter((form) => !state.no.includes(form === "penalty" ? "penalty" : "saddle")).sort((a, b) => measured(b) - measured(a));
 };
 

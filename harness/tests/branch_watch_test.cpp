@@ -15,13 +15,6 @@
 namespace mbs {
 namespace {
 
-Variant reference() {
-  for (const Variant& variant : test::controls().variants) {
-    if (variant.name == "reference") return variant;
-  }
-  throw std::logic_error("the controls have no reference");
-}
-
 TEST(ClosedParts, FindTheLoopsOfAFourBar) {
   const Scene scene = load_scene(MBS_ROOT "/harness/scenes/four_bar_2.json");
   const State start = initial_state(scene.model);
@@ -64,12 +57,12 @@ TEST(BranchWatch, LetsALoopPassItsSingularPositions) {
   RunSettings settings;
   settings.step.penalty = automatic_penalty(scene.model, settings.step);
   settings.duration = 2.0;
-  const RunSummary summary = run(scene, reference(), settings);
+  const RunSummary summary = run(scene, test::reference(), settings);
   EXPECT_EQ(summary.status, RunStatus::plausible) << summary.reason;
   settings.half_step = settings.step;
   settings.half_step->step /= 2;
   settings.half_step->penalty = automatic_penalty(scene.model, *settings.half_step);
-  const RunSummary estimated = run(scene, reference(), settings);
+  const RunSummary estimated = run(scene, test::reference(), settings);
   EXPECT_EQ(estimated.status, RunStatus::plausible) << estimated.reason;
   EXPECT_NE(estimated.reason.find("singular position"), std::string::npos) << estimated.reason;
 }

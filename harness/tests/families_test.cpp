@@ -68,20 +68,13 @@ double pendulum(double lean, double moment, double inertia) {
   return -kG * moment * std::sin(lean) / inertia;
 }
 
-Variant reference() {
-  for (const Variant& variant : test::controls().variants) {
-    if (variant.name == "reference") return variant;
-  }
-  throw std::logic_error("the controls have no reference");
-}
-
 RunSummary simulate(const Scene& scene, double duration, const Observer& observer = {}) {
   RunSettings settings;
   settings.step.step = 2e-3;
   settings.step.penalty = automatic_penalty(scene.model, settings.step);
   settings.step.tolerance = automatic_tolerance(scene.model, settings.step);
   settings.duration = duration;
-  return run(scene, reference(), settings, observer);
+  return run(scene, test::reference(), settings, observer);
 }
 
 /// A few values of all parameters, the least ones first.

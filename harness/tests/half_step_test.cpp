@@ -12,13 +12,6 @@
 namespace mbs {
 namespace {
 
-Variant reference() {
-  for (const Variant& variant : test::controls().variants) {
-    if (variant.name == "reference") return variant;
-  }
-  throw std::logic_error("the controls have no reference");
-}
-
 RunSettings with_half_step(const Scene& scene, Scheme scheme, double step, double duration) {
   const auto resolved = [&](double h) {
     StepSettings settings;
@@ -49,7 +42,7 @@ TEST(HalfStep, EstimatesTheExactError) {
                {Scheme::multistep6, 1e-2, 0.6}};
   for (const auto& [scheme, step, duration] : cases) {
     const RunSummary summary =
-        run(scene, reference(), with_half_step(scene, scheme, step, duration));
+        run(scene, test::reference(), with_half_step(scene, scheme, step, duration));
     ASSERT_TRUE(summary.position_error_estimate && summary.position_error_max);
     EXPECT_NEAR(*summary.position_error_estimate / *summary.position_error_max, 1.0, 0.1)
         << static_cast<int>(scheme);
@@ -60,13 +53,13 @@ TEST(HalfStep, EstimatesTheExactError) {
 TEST(HalfStep, DegradesARunWithoutAnExactSolution) {
   const Scene scene = load_scene(MBS_ROOT "/harness/scenes/double_pendulum.json");
   RunSettings settings = with_half_step(scene, Scheme::penalty, 2e-2, 5.0);
-  const RunSummary estimated = run(scene, reference(), settings);
+  const RunSummary estimated = run(scene, test::reference(), settings);
   EXPECT_EQ(estimated.status, RunStatus::degraded);
   EXPECT_NE(estimated.reason.find("estimated position error"), std::string::npos)
       << estimated.reason;
   EXPECT_FALSE(estimated.position_error_max);
   settings.half_step.reset();
-  EXPECT_FALSE(run(scene, reference(), settings).position_error_estimate);
+  EXPECT_FALSE(run(scene, test::reference(), settings).position_error_estimate);
 }
 
 TEST(LocalErrors, DegradeARunThatEnergyAndConstraintsCallSound) {
@@ -76,7 +69,7 @@ TEST(LocalErrors, DegradeARunThatEnergyAndConstraintsCallSound) {
   const auto with_step = [&](double step) {
     settings.step.step = step;
     settings.step.penalty = automatic_penalty(scene.model, settings.step);
-    return run(scene, reference(), settings);
+    return run(scene, test::reference(), settings);
   };
   const RunSummary coarse = with_step(1.25e-3);
   EXPECT_EQ(coarse.status, RunStatus::degraded);
@@ -88,7 +81,7 @@ TEST(HalfStep, IsInfiniteWhereTheHalfStepIsLost) {
   const Scene scene = load_scene("four-bar:5");
   RunSettings settings = with_half_step(scene, Scheme::penalty, 1e-3, 2.0);
   settings.half_step->penalty = 1e30;
-  const RunSummary summary = run(scene, reference(), settings);
+  const RunSummary summary = run(scene, test::reference(), settings);
   EXPECT_EQ(summary.status, RunStatus::degraded) << summary.reason;
   EXPECT_FALSE(*summary.position_error_estimate < 1e-2);
 }
@@ -98,11 +91,11 @@ TEST(Deadline, CountsTheStepsBeyondIt) {
   RunSettings settings;
   settings.step.penalty = automatic_penalty(scene.model, settings.step);
   settings.duration = 0.25;
-  EXPECT_FALSE(run(scene, reference(), settings).step_us.deadline_misses);
+  EXPECT_FALSE(run(scene, test::reference(), settings).step_us.deadline_misses);
   settings.deadline_us = 1e-6;
-  EXPECT_EQ(run(scene, reference(), settings).step_us.deadline_misses, 200);
+  EXPECT_EQ(run(scene, test::reference(), settings).step_us.deadline_misses, 200);
   settings.deadline_us = 1e12;
-  const RunSummary summary = run(scene, reference(), settings);
+  const RunSummary summary = run(scene, test::reference(), settings);
   EXPECT_EQ(summary.step_us.deadline_misses, 0);
   EXPECT_LE(summary.step_us.p99, summary.step_us.p999);
   EXPECT_GT(summary.step_us.mean, 0.0);
@@ -114,9 +107,9 @@ TEST(Repeats, TellEachStepsLeastTime) {
   settings.step.penalty = automatic_penalty(scene.model, settings.step);
   settings.duration = 0.25;
   settings.deadline_us = 1e-6;
-  EXPECT_FALSE(run(scene, reference(), settings).least_us);
+  EXPECT_FALSE(run(scene, test::reference(), settings).least_us);
   settings.repeats = 3;
-  const RunSummary summary = run(scene, reference(), settings);
+  const RunSummary summary = run(scene, test::reference(), settings);
   ASSERT_TRUE(summary.least_us);
   EXPECT_EQ(summary.steps, 200);
   EXPECT_EQ(summary.least_us->deadline_misses, 200);

@@ -30,15 +30,20 @@ TEST(SweepJournal, HasWhatWasAdded) {
   EXPECT_FALSE(journal.has(1));
 }
 
-TEST(SweepJournal, LosesNoMoreThanTheBlockThatWasCut) {
-  const test::Folder folder;
-  const std::string path = folder.file("j");
+/// The text of a journal of two blocks, left at `path`.
+std::string two_blocks(const std::string& path) {
   {
     Journal journal(path, kHead);
     journal.add(0, "first");
     journal.add(1, "second");
   }
-  const std::string whole = test::file_text(path);
+  return test::file_text(path);
+}
+
+TEST(SweepJournal, LosesNoMoreThanTheBlockThatWasCut) {
+  const test::Folder folder;
+  const std::string path = folder.file("j");
+  const std::string whole = two_blocks(path);
   const std::size_t first = whole.find("block 1");
   for (std::size_t length = first; length < whole.size(); ++length) {
     std::ofstream(path, std::ios::binary) << whole.substr(0, length);
@@ -55,12 +60,7 @@ TEST(SweepJournal, LosesNoMoreThanTheBlockThatWasCut) {
 TEST(SweepJournal, SeesAnyChange) {
   const test::Folder folder;
   const std::string path = folder.file("j");
-  {
-    Journal journal(path, kHead);
-    journal.add(0, "first");
-    journal.add(1, "second");
-  }
-  const std::string whole = test::file_text(path);
+  const std::string whole = two_blocks(path);
   for (std::size_t i = 0; i < whole.size(); ++i) {
     std::string changed = whole;
     changed[i] = static_cast<char>(changed[i] ^ 1);

@@ -12,13 +12,6 @@
 namespace mbs {
 namespace {
 
-Variant reference() {
-  for (const Variant& variant : test::controls().variants) {
-    if (variant.name == "reference") return variant;
-  }
-  throw std::logic_error("the controls have no reference");
-}
-
 Scene shipped(const char* name) {
   return load_scene(std::string(MBS_ROOT "/harness/scenes/") + name);
 }
@@ -45,26 +38,26 @@ TEST(LocalErrors, AddUpToTheLagOfLongSteps) {
   const Scene scene = shipped("pendulum.json");
   RunSettings settings = settings_for(scene, Scheme::penalty, 5e-3, 4.0);
   settings.half_step = half_of(scene, settings.step);
-  const double error = *run(scene, reference(), settings).position_error_estimate;
+  const double error = *run(scene, test::reference(), settings).position_error_estimate;
   settings.half_step.reset();
-  const RunSummary summary = run(scene, reference(), settings);
+  const RunSummary summary = run(scene, test::reference(), settings);
   ASSERT_TRUE(summary.local_error_sum);
   EXPECT_GT(*summary.local_error_sum, 0.5 * error);
   EXPECT_LT(*summary.local_error_sum, 5 * error);
   const Scene exact = load_scene("four-bar:1");
-  EXPECT_FALSE(run(exact, reference(), settings).local_error_sum);
+  EXPECT_FALSE(run(exact, test::reference(), settings).local_error_sum);
 }
 
 TEST(LocalErrors, OfHigherOrdersAreFoundByHalfSteps) {
   const Scene scene = shipped("point_mass_pendulum.json");
   for (const Scheme scheme : {Scheme::rattle4, Scheme::rattle6}) {
-    const RunSummary coarse = run(scene, reference(), settings_for(scene, scheme, 0.15, 60.0));
+    const RunSummary coarse = run(scene, test::reference(), settings_for(scene, scheme, 0.15, 60.0));
     EXPECT_EQ(coarse.status, RunStatus::degraded) << static_cast<int>(scheme);
     RunSettings fine = settings_for(scene, scheme, 0.02, 5.0);
-    const RunSummary sound = run(scene, reference(), fine);
+    const RunSummary sound = run(scene, test::reference(), fine);
     EXPECT_EQ(sound.status, RunStatus::plausible) << sound.reason;
     fine.half_step = half_of(scene, fine.step);
-    const double error = *run(scene, reference(), fine).position_error_estimate;
+    const double error = *run(scene, test::reference(), fine).position_error_estimate;
     EXPECT_GT(*sound.local_error_sum, 0.1 * error) << static_cast<int>(scheme);
     EXPECT_LT(*sound.local_error_sum, 30 * error) << static_cast<int>(scheme);
   }
@@ -105,10 +98,10 @@ TEST(LocalErrors, AMotionInStepWithTheJudgeIsSeen) {
   settings.step.step = 1e-3;
   settings.duration = 0.096;
   settings.judge_every = 32;
-  EXPECT_EQ(run(scene, reference(), settings).status, RunStatus::degraded);
+  EXPECT_EQ(run(scene, test::reference(), settings).status, RunStatus::degraded);
   settings.half_step = settings.step;
   settings.half_step->step /= 2;
-  const RunSummary estimated = run(scene, reference(), settings);
+  const RunSummary estimated = run(scene, test::reference(), settings);
   // The lag of the trapezoidal rule, (w dt)^2/12 of w t, at the fastest point of the way.
   const double turn = 2 * std::acos(-1.0) / 32;
   EXPECT_NEAR(*estimated.position_error_estimate, turn * turn / 12 * turn * 96, 0.1 * turn);
@@ -120,11 +113,11 @@ TEST(Run, IsNotLostBecauseItWasJudgedSeldom) {
   const Scene scene = shipped("point_mass_pendulum.json");
   RunSettings settings = settings_for(scene, Scheme::penalty, 0.07, 20.0);
   settings.judge_every = 1;
-  const RunSummary often = run(scene, reference(), settings);
+  const RunSummary often = run(scene, test::reference(), settings);
   EXPECT_EQ(often.status, RunStatus::degraded) << often.reason;
   for (const int every : {8, 16, 32, 64}) {
     settings.judge_every = every;
-    const RunSummary seldom = run(scene, reference(), settings);
+    const RunSummary seldom = run(scene, test::reference(), settings);
     EXPECT_EQ(seldom.status, often.status) << every << ": " << seldom.reason;
     EXPECT_EQ(seldom.steps, often.steps);
   }

@@ -13,13 +13,6 @@
 namespace mbs {
 namespace {
 
-Variant reference() {
-  for (const Variant& variant : test::controls().variants) {
-    if (variant.name == "reference") return variant;
-  }
-  throw std::logic_error("the controls have no reference");
-}
-
 Scene shipped(const std::string& name) { return load_scene(MBS_ROOT "/harness/scenes/" + name); }
 
 TEST(PowerBalance, HoldsInSoundRuns) {
@@ -37,7 +30,7 @@ TEST(PowerBalance, HoldsInSoundRuns) {
     settings.step.step = step;
     settings.step.penalty = automatic_penalty(scene.model, settings.step);
     settings.duration = duration;
-    const RunSummary summary = run(scene, reference(), settings);
+    const RunSummary summary = run(scene, test::reference(), settings);
     ASSERT_TRUE(summary.imbalance_max) << name << summary.reason;
     EXPECT_LT(*summary.imbalance_max, 1e-2) << name;
     EXPECT_FALSE(summary.energy_drift_max) << name;
@@ -62,7 +55,7 @@ TEST(PowerBalance, IsNoQuestionWhereEnergyIsConservedOrDriversSetAll) {
     RunSettings settings;
     settings.step.penalty = automatic_penalty(scene.model, settings.step);
     settings.duration = 0.1;
-    EXPECT_FALSE(run(scene, reference(), settings).imbalance_max) << name;
+    EXPECT_FALSE(run(scene, test::reference(), settings).imbalance_max) << name;
   }
 }
 

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from study.tests.browser import Browser
+
 ROOT = Path(__file__).resolve().parent.parent.parent
 PROGRAM = ROOT / "build" / "mbs"
 FAKE = Path(__file__).with_name("fake_mbs.py")
@@ -44,6 +46,12 @@ def smoke(tmp_path_factory, worker_id):
         done = study("run", "--profile", "smoke", "--results", folder, seconds=900)
         assert done.returncode == 0, done.stderr + (folder / "run.log").read_text()[-3000:]
     return once(tmp_path_factory, worker_id, "smoke", make)
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    with Browser(tmp_path_factory.mktemp("profile")) as browser:
+        yield browser
 
 
 # What takes longest begins first, so that no worker is left alone with it in the end.

@@ -11,7 +11,6 @@ from analysis.accuracy.winners import fastest, meeting
 from analysis.core import site, timing
 from analysis.core.files import ROOT, read_json, write_json
 from analysis.explorer import data
-from study.tests.browser import Browser
 from study.tests.test_site import BEYOND, HIDDEN
 
 STORED = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))[0]
@@ -48,12 +47,6 @@ def folder(tmp_path_factory):
 @pytest.fixture(scope="module")
 def found(folder):
     return data.read(folder)
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    with Browser(tmp_path_factory.mktemp("profile")) as browser:
-        yield browser
 
 
 @pytest.fixture

@@ -1,8 +1,9 @@
 # The site of a whole run in headless Chromium: every page, light and dark, narrow and wide, every link.
+from urllib.parse import parse_qs
+
 import pytest
 
 from analysis.core.parts import parts
-from study.tests.browser import Browser
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("smoke")]
 PAGES = ["index", "explore", *parts()]
@@ -17,12 +18,6 @@ CONTRAST = """(() => {
     .map(Number).reduce((sum, one) => sum + one, 0) / 3;
   return Math.abs(brightness(colour.color) - brightness(colour.backgroundColor));
 })()"""
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    with Browser(tmp_path_factory.mktemp("profile")) as browser:
-        yield browser
 
 
 @pytest.mark.parametrize("name", PAGES)
@@ -48,7 +43,7 @@ def test_it_can_be_read_in_light_and_dark(browser, smoke, name):
 
 
 def test_every_link_leads_somewhere(browser, smoke):
-    broken = []
+    broken, questions = [], set()
     for name in PAGES:
         browser.open(smoke / f"{name}.html")
         for link in browser.value(LINKS):
@@ -56,9 +51,15 @@ def test_every_link_leads_somewhere(browser, smoke):
             target = smoke / (file or f"{name}.html")
             if not target.exists():
                 broken.append((name, link))
+            elif file == "explore.html":  # what follows '#' is a question there
+                questions.add(anchor)
             elif anchor and f'id="{anchor}"' not in target.read_text(encoding="utf-8"):
                 broken.append((name, link))
     assert broken == []
+    browser.open(smoke / "explore.html")
+    for question in filter(None, questions):  # the page writes what it understood into its address
+        browser.value(f"new Promise((done) => {{ addEventListener('hashchange', done); location.hash = {question!r}; }})")
+        assert parse_qs(question).items() <= parse_qs(browser.value("location.hash.slice(1)")).items(), question
 
 
 def test_one_clicks_through_all_parts_without_a_complaint(browser, smoke):

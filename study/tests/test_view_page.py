@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pytest
 
-from study.tests.browser import Browser
 from study.tests.test_view import view
 
 # The pixels of the picture, from a copy: reading the page's own canvas would slow it down.
@@ -31,12 +30,6 @@ def pages(tmp_path_factory):
         done = view(folder, scene, "--duration", "4", *more)
         assert done.returncode == 0, done.stderr
     return folder
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    with Browser(tmp_path_factory.mktemp("profile")) as browser:
-        yield browser
 
 
 @pytest.fixture

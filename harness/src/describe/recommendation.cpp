@@ -1,4 +1,4 @@
-// The tree, the times and the nearest scene of a rule, asked about one scene.
+// The times and the nearest scene of a rule, asked about one scene.
 #include "describe/recommendation.hpp"
 
 #include <fmt/format.h>

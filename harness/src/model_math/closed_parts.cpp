@@ -117,6 +117,11 @@ class Pattern {
   [[nodiscard]] bool is_tight(int row, const std::vector<bool>& loose) const {
     return col_of_[at(row)] >= 0 && !loose[at(col_of_[at(row)])];
   }
+  [[nodiscard]] std::size_t tight_rows(const std::vector<bool>& loose) const {
+    std::size_t count = 0;
+    for (int row = 0; row < static_cast<int>(cols_of_.size()); ++row) count += is_tight(row, loose);
+    return count;
+  }
   [[nodiscard]] int col_of(int row) const { return col_of_[at(row)]; }
 
  private:
@@ -183,6 +188,7 @@ ClosedParts closed_parts(const Model& model, const std::vector<double>& q, int l
   const auto loose = pattern.loose();
   const auto most = static_cast<std::size_t>(largest);
   if (is_driven(model)) {
+    if (pattern.tight_rows(loose) > most) return result;
     for (const auto& group : pattern.groups(loose)) {
       ConstraintBlock block;
       for (const int row : group) {
@@ -194,7 +200,6 @@ ClosedParts closed_parts(const Model& model, const std::vector<double>& q, int l
       result.blocks.push_back(sorted(std::move(block)));
     }
     result.driven = sorted(std::move(result.driven));
-    if (result.driven.rows.size() > most) result.driven = {}, result.blocks.clear();
     return result;
   }
   constexpr std::size_t kLeastLoop = 3;  // rows; with fewer nothing is closed

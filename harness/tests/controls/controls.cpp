@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <stdexcept>
 
 #include "controls/wrong_endings.hpp"
 #include "controls/wrong_results.hpp"
@@ -15,6 +16,13 @@ Implementation controls() {
   std::ranges::move(wrong_endings(), std::back_inserter(result.variants));
   for (Variant& one : result.variants) one.serves.terms = all_terms();
   return result;
+}
+
+Variant reference() {
+  for (const Variant& variant : controls().variants) {
+    if (variant.name == "reference") return variant;
+  }
+  throw std::logic_error("the controls have no reference");
 }
 
 }  // namespace mbs::test

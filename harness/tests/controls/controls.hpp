@@ -9,4 +9,7 @@ namespace mbs::test {
 /// the stated defect, so that nothing else can be what the gate objects to.
 Implementation controls();
 
+/// The one of them that has no defect.
+Variant reference();
+
 }  // namespace mbs::test

@@ -7,6 +7,7 @@ from analysis.core.site import template
 from study.core.main import need_modules
 from study.core.options import Parser, directory
 from study.core.studyset import opened
+from study.tools.merge import agreement
 
 ALIKE = ("commit", "compiler", "flags", "build_type", "libraries")  # of sets that may be merged
 
@@ -28,7 +29,6 @@ def merge(arguments):
         need_alike(sets[0], one)
     if options.to.exists() and any(options.to.iterdir()) and not (options.to / "agreement.csv").exists():
         raise StudyError(f"{options.to} is not empty and holds no merged sets: name another directory with --to")
-    from study.tools.merge import agreement
     agreed, alone = agreement.agreements(sets)
     if not agreed:
         raise StudyError("the sets have no question in common: each needs the map or the families")
@@ -73,7 +73,6 @@ def row(one, machines):
     found = {"part": one.question.part, "scene": one.question.scene, "form": one.question.form, "layer": one.question.layer,
              "variables": one.question.variables, "verdict": one.verdict, "common": " ".join(one.common), "robust": one.robust,
              "worst": one.worst.get(one.robust)}
-    from study.tools.merge import agreement
     for place, label in enumerate(machines):
         margin = agreement.pair(one, place)
         found |= {f"winner: {label}": one.winners[place], f"margin: {label}": margin.value, f"low: {label}": margin.low,

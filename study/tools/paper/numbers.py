@@ -36,7 +36,7 @@ def numbers(known):
     for query in (_set, _design, _gate, _real, _size, _fill, _claims, _price, _rule, _error, _window, _latency, _own, _limits, _minutes):
         made = {f"{query.__name__[1:]}.{name}": one for name, one in query(known).items()}
         found |= made
-    return {name: one if isinstance(one, Number) and one.text not in ("", "–", "nan") else Number(NOT_MEASURED, one.table if one else "")
+    return {name: Number(one.text, one.table, tuple(dict.fromkeys(one.records))) if isinstance(one, Number) and one.text not in ("", "–", "nan") else Number(NOT_MEASURED, one.table if one else "")
             for name, one in found.items()}
 
 
