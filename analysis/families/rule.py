@@ -1,20 +1,23 @@
 # A rule that predicts: how long a step takes with each library, and so which to take, from numbers that need no factorization.
 #
-# At most CANDIDATES libraries are compared, over both forms of the step: of the predicted times (times.py) the least one's is taken.
+# A few libraries are compared in each form of the step: of the predicted times (times.py) the least one's is taken.
 # Which are worth comparing is found by what the choice costs. All is judged on families left out: each family is predicted by
-# what was fitted on all others, its candidates too.
-from itertools import combinations, product
+# what was fitted on all others, its candidates too. A loss is of times taken in turns, else of the first look, else of the look at the next
+# smaller machine of the shape, after which who had fallen far behind was not asked again. Where there is none of these a loss is not known:
+# such scenes are counted, in no mean, and say nothing of who is worth comparing.
+from itertools import combinations
 
 import numpy
 import pandas
 
 from analysis.families.times import FEATURES, PASSES, TERMS, model, predicted
 
-CANDIDATES = 5
+CANDIDATES = {"penalty": 3, "saddle-point": 2}  # at most; five in all
 WORTH = 0.01    # of the mean cost, that one more candidate must save
 FAMILIES = 4     # at least, for a rule
 MUCH = 0.30      # a loss
-MISSED = 3.0     # loss of who has no time: excluded as far behind, or of no use there
+FAILED = 3.0     # loss of who is of no use there: it disagrees, crashes, ...
+MOST = 3.0       # what a loss counts at most, where candidates are chosen
 USUAL = 1.5      # times the passes that are expected: who takes more, at a singular position, is no guide to times
 FEWEST = 8       # scenes that the time of a step is fitted on
 WITHIN = 1.5     # a predicted time is good within this factor
@@ -30,7 +33,8 @@ def judged(tables, registry):
         return {"steps": pandas.DataFrame(), "held": pandas.DataFrame(), "alone": pandas.DataFrame()}
     rests = {family: _Rule(data.without(family)) for family in dict.fromkeys(data.family.values())}
     ratios = pandas.concat([_ratios(data, family, rest) for family, rest in rests.items()], ignore_index=True)
-    return {"steps": _steps(data, _Rule(data), ratios, registry), "held": _held(data, rests, ratios), "alone": _alone(data)}
+    whole = _Rule(data)
+    return {"steps": _steps(data, whole, ratios, registry), "held": _held(data, whole, rests, ratios), "alone": _alone(data)}
 
 
 def summary(held):
@@ -38,7 +42,7 @@ def summary(held):
     timed = held[held.step_us.notna() & held.predicted_us.notna()]
     ratio = timed.predicted_us / timed.step_us
     return {"families": int(held.family.nunique()), "scenes": int(held.scene.nunique()), "timed": len(timed),
-            "mean_loss": float(held.loss.mean()), "worst_loss": float(held.loss.max()),
+            "mean_loss": float(held.loss.mean()), "worst_loss": float(held.loss.max()), "unknown": int(held.loss.isna().sum()),
             "within": float(ratio.between(1 / WITHIN, WITHIN).mean()), "inside": float(timed.step_us.between(timed.low_us, timed.high_us).mean())}
 
 
@@ -96,7 +100,7 @@ def _steps(data, rule, ratios, registry):
     return pandas.DataFrame(rows)
 
 
-def _held(data, rests, ratios):
+def _held(data, whole, rests, ratios):
     """A row for each scene and form: what was chosen and predicted by what was fitted on the other families."""
     rows = []
     for family, rest in rests.items():
@@ -106,7 +110,8 @@ def _held(data, rests, ratios):
                 low, high = _range(ratios, scheme, name, family)
                 measured = data.us[scheme].loc[scene].get(name, numpy.nan) if data.usual[scheme][scene] else numpy.nan
                 rows.append({"family": family, "scene": scene, "scheme": scheme, "variables": data.features.loc[scene, "n"], "chosen": name,
-                             "fastest": losses.loc[scene].idxmin(), "loss": losses.loc[scene, name], "step_us": measured,
+                             "taken": whole.choice(scheme, data.features.loc[[scene]])[0], "fastest": losses.loc[scene].idxmin(),
+                             "loss": losses.loc[scene, name], "known_by": data.known_by[scheme].loc[scene, name], "step_us": measured,
                              "predicted_us": us, "low_us": low * us, "high_us": high * us, "record": data.record[scene]})
     return pandas.DataFrame(rows)
 
@@ -122,9 +127,10 @@ def _alone(data):
             for scheme, one in data.losses.items():
                 left = one.index[[data.family[scene] == family for scene in one.index]]
                 if len(left) and len(rest.losses[scheme]):
-                    limit, below, above = _limit(rest.features.loc[rest.losses[scheme].index, feature].to_numpy(), rest.costs(scheme))
+                    costs = rest.costs(scheme).fillna(MOST * (1 + 4 * MOST))
+                    limit, below, above = _limit(rest.features.loc[costs.index, feature].to_numpy(), costs.mul(rest.weights(costs.index), axis=0))
                     losses += [one.loc[scene, below if data.features.loc[scene, feature] < limit else above] for scene in left]
-        rows.append({"feature": feature, "mean_loss": numpy.mean(losses), "worst_loss": max(losses), "scenes": len(losses), "record": data.records})
+        rows.append({"feature": feature, "mean_loss": numpy.nanmean(losses), "worst_loss": numpy.nanmax(losses), "scenes": len(losses), "record": data.records})
     return pandas.DataFrame(rows)
 
 
@@ -161,28 +167,20 @@ class _Rule:
         return name, times[name]
 
     def _compared(self, data):
-        """{form: names} of the least cost, each name counting as WORTH."""
-        options = {}
+        """{form: names} of the least cost, each name counting as WORTH; of those who are the fastest somewhere."""
+        found = {}
         for scheme in data.losses:
-            costs = data.costs(scheme)
-            names = [name for name in costs if (scheme, name) in self.models]
-            features = data.features.loc[costs.index]
-            times = numpy.array([predicted(self.models[scheme, name], features) for name in names]).T
-            options[scheme] = _best_of_each_size(names, times, costs[names].to_numpy())
-        return min((dict(zip(options, (names for _, names in some))) for some in product(*options.values())
-                    if sum(len(names) for _, names in some) <= CANDIDATES),
-                   key=lambda found: sum(options[scheme][len(names) - 1][0] + WORTH * len(names) for scheme, names in found.items()))
-
-
-def _best_of_each_size(names, times, costs):
-    """[(cost, names)] of one, two, ... that are compared."""
-    found, rows = [], numpy.arange(len(times))
-    for size in range(1, CANDIDATES):
-        some = [(costs[rows, numpy.array(places)[times[:, places].argmin(axis=1)]].sum(), places) for places in combinations(range(len(names)), size)]
-        if some:
-            cost, places = min(some)
-            found.append((cost, [names[place] for place in places]))
-    return found
+            costs, weights = data.costs(scheme), data.weights(data.losses[scheme].index)
+            names = [name for name in costs if (scheme, name) in self.models and (costs[name] == 0).any()]
+            features, rows = data.features.loc[costs.index], numpy.arange(len(costs))
+            times, costs = numpy.array([predicted(self.models[scheme, name], features) for name in names]).T, costs[names].to_numpy()
+            best = {}
+            for places in (some for size in range(1, CANDIDATES[scheme] + 1) for some in combinations(range(len(names)), size)):
+                cost = costs[rows, numpy.array(places)[times[:, places].argmin(axis=1)]]
+                tried = ~numpy.isnan(cost)
+                best[places] = numpy.average(cost[tried], weights=weights[tried]) + WORTH * len(places) if tried.any() else numpy.inf
+            found[scheme] = [names[place] for place in min(best, key=best.get)]
+        return found
 
 
 class _Data:
@@ -194,7 +192,8 @@ class _Data:
         complete = known[known[[name for name in FEATURES if name in known]].notna().all(axis=1)] if set(FEATURES) <= set(names) else known[:0]
         self.features = complete.set_index("scene")[names].astype(float) if len(complete) else pandas.DataFrame(columns=names)
         self.record = dict(zip(complete.scene, complete.record)) if len(complete) else {}
-        self.us, self.losses, self.usual = {}, {}, {}
+        self.us, self.losses, self.known_by, self.usual = {}, {}, {}, {}
+        shapes = {row.scene: shape(row.scene) for row in known.sort_values("n").itertuples()} if len(self.features) else {}
         for scheme, rows in tables["scenes"].groupby("scheme", sort=False) if len(self.features) else ():
             us = pandas.DataFrame({scene: _times(one, registry.libraries) for scene, one in rows.groupby("scene", sort=False)
                                    if scene in self.features.index}).T
@@ -203,7 +202,8 @@ class _Data:
             self.us[scheme] = us.loc[best.index]
             passes = rows[(rows.status == "ok") & rows.passes.notna()].groupby("scene").passes.median().reindex(best.index)
             self.usual[scheme] = ~(passes > USUAL * self.features.loc[best.index, PASSES[scheme]])
-            self.losses[scheme] = best.div(best.min(axis=1), axis=0).sub(1.0).fillna(MISSED).clip(upper=MISSED)
+            status = rows.pivot(index="scene", columns="implementation", values="status").reindex(index=best.index, columns=best.columns).fillna("")
+            self.losses[scheme], self.known_by[scheme] = _losses(best.div(best.min(axis=1), axis=0).sub(1.0), status, shapes)
         families = dict(zip(known.scene, known.family)) if len(self.features) else {}
         self.family = {scene: families[scene] for losses in self.losses.values() for scene in losses.index}
 
@@ -223,9 +223,30 @@ class _Data:
         return (1 / families.map(families.value_counts()) / families.nunique()).to_numpy()
 
     def costs(self, scheme):
-        """Of scenes and libraries, weighted: one loss of a fifth is worse than four of a twentieth."""
-        losses = self.losses[scheme]
-        return (losses * (1 + 4 * losses)).mul(self.weights(losses.index), axis=0)
+        """Of scenes and libraries: one loss of a fifth is worse than four of a twentieth."""
+        losses = self.losses[scheme].clip(upper=MOST)
+        return losses * (1 + 4 * losses)
+
+
+def shape(scene):
+    """The family and its options, which make other machines of it: "flexible:2,nodes=100" is a "flexible,nodes=100"."""
+    name, _, rest = scene.partition(":")
+    return ",".join([name, *rest.split(",")[1:]])
+
+
+def _losses(losses, status, shapes):
+    """Losses, with those that only the look at a smaller one of the shape tells or that are of a failure; and what each is known by."""
+    by, last = status.replace({"ok": "turns", "slower": "look"}).where(losses.notna(), ""), {}
+    for scene in [one for one in shapes if one in losses.index]:
+        smaller = last.setdefault(shapes[scene], {})
+        for name, loss in losses.loc[scene].items():
+            if not numpy.isnan(loss):
+                smaller[name] = loss
+            elif status.loc[scene, name] not in ("excluded", "slower", "dropped", ""):
+                losses.loc[scene, name], by.loc[scene, name] = FAILED, "failed"
+            elif status.loc[scene, name] in ("excluded", "slower") and name in smaller:
+                losses.loc[scene, name], by.loc[scene, name] = smaller[name], "smaller"
+    return losses, by
 
 
 def _times(rows, libraries):

@@ -14,8 +14,9 @@ def answers(tables, view):
               f"{len(real)} this run says who is fastest."}]
     if len(tables["held"]):
         held = summary(tables["held"])
-        found.append({"anchor": "rule", "text": f"A rule that compares the predicted times of at most five libraries chooses one that takes {100 * held['mean_loss']:.1f} % longer "
-                      f"than the fastest on average, {100 * held['worst_loss']:.0f} % at worst, on families that it was not fitted on; {100 * held['within']:.0f} % of "
+        found.append({"anchor": "rule", "text": f"A rule that compares the predicted times of at most three libraries in a form of the step, five in all, chooses one that takes {100 * held['mean_loss']:.1f} % longer "
+                      f"than the fastest on average, {100 * held['worst_loss']:.0f} % at worst, on families that it was not fitted on"
+                      f"{_unknown(held['unknown'])}; {100 * held['within']:.0f} % of "
                       "the step times are within 1.5 times of the predicted."})
     own = scenes[scenes.implementation.isin(view.registry.own) & (scenes.status == "ok") & scenes.to_rival.notna() & (scenes.scheme == "penalty")]
     for name, rows in own.groupby("implementation", sort=False):
@@ -24,6 +25,10 @@ def answers(tables, view):
                       f"{len(rows)} mechanisms that it serves, slower on {len(behind)} (time over the library's: {number(rows.to_rival.min())} to "
                       f"{number(rows.to_rival.max())})."})
     return found + _defaults(tables["defaults"])
+
+
+def _unknown(count):
+    return f" (of {count} choices not known: not timed there)" if count else ""
 
 
 def _defaults(rows):
@@ -38,16 +43,16 @@ def _defaults(rows):
 
 
 def cases(tables, view):
-    """Rows of the front page's table: what the rule takes, and what that costs on families left out."""
+    """Rows of the front page's table: whom the rule takes, and what its choices there cost on families left out."""
     found, held = [], tables["held"]
     if len(held):
         held = held.merge(tables["mechanisms"][["scene", DECIDES]], on="scene")
-        for (scheme, name), rows in held.groupby(["scheme", "chosen"], sort=False):
+        for (scheme, name), rows in held.groupby(["scheme", "taken"], sort=False):
             low, high = (number(value) for value in (rows[DECIDES].min(), rows[DECIDES].max()))
             found.append({"case": f"{scheme.capitalize()} form, and `mbs describe` expects {name} to be the fastest (here with {low} to {high} non-zeros a "
                                   "column of the factor)", "link": "families.html#rule",
-                          "take": f"{name}: {100 * rows.loss.mean():.1f} % longer than the fastest library on average, {100 * rows.loss.max():.0f} % at "
-                                  f"worst ({len(rows)} cases)"})
+                          "take": f"{name}; on families left out the rule's choice takes {100 * rows.loss.mean():.1f} % longer than the fastest library "
+                                  f"on average, {100 * rows.loss.max():.0f} % at worst ({len(rows)} cases{_unknown(rows.loss.isna().sum())})"})
     ahead = fastest_own(tables["scenes"], view.registry)
     if len(ahead):
         names = ", ".join(f"{name} on {count}" for name, count in ahead.implementation.value_counts().items())

@@ -127,7 +127,8 @@ def test_the_front_page_tells_whom_the_rule_takes_and_what_it_costs_there():
     tables = mechanisms()
     first, second, own = sentences.cases(tables, VIEW)
     assert first["case"] == ("Penalty form, and `mbs describe` expects one/a to be the fastest (here with 2 to 6 non-zeros a column of the factor)")
-    assert first["take"] == "one/a: 0.0 % longer than the fastest library on average, 0 % at worst (9 cases)" and "one/b" in second["take"]
+    assert first["take"] == ("one/a; on families left out the rule's choice takes 0.0 % longer than the fastest library on average, 0 % at worst "
+                             "(9 cases)") and "one/b" in second["take"]
     assert own["take"].startswith("fastest: own/x on 18")
 
 
@@ -144,6 +145,40 @@ def test_who_takes_far_more_passes_than_expected_is_no_guide_to_times():
     tables["scenes"].loc[tables["scenes"].scene == "grid:10", ["passes", "step_us"]] = [7.0, 1e4]
     held = rule.judged(tables, REGISTRY)["held"].set_index("scene")
     assert numpy.isnan(held.step_us["grid:10"]) and held.loss["grid:10"] == 0 and held.step_us.notna().sum() == 17
+
+
+def without(tables, rows, **changed):
+    """The tables, where rows of contenders have no times."""
+    scenes = tables["scenes"].copy()
+    where = [(row.scene, row.implementation) in rows for row in scenes.itertuples()]
+    scenes.loc[where, ["step_us", "look_us", "to_rival"]] = numpy.nan
+    for name, value in changed.items():
+        scenes.loc[where, name] = value
+    return tables | {"scenes": scenes}
+
+
+def test_a_loss_is_of_the_look_where_there_are_no_other_times():
+    tables = mechanisms(lambda family, name: 3.0 if (family, name) == ("tree", "one/a") else 1.0)
+    odd = (tables["scenes"].family == "tree") & (tables["scenes"].implementation == "one/a")
+    tables["scenes"].loc[odd, ["status", "verdict"]] = "slower", ""
+    looked = rule.judged(tables, REGISTRY)["held"].set_index("scene")
+    assert set(looked.known_by[looked.family == "tree"]) == {"look"} and set(looked.known_by[looked.family != "tree"]) == {"turns"}
+    assert looked.loss["tree:10"] > 0.2 and looked.chosen["tree:10"] == "one/a"
+    left = rule.judged(without(tables, [("tree:1000", "one/a")], status="excluded", verdict=""), REGISTRY)["held"].set_index("scene")
+    assert left.known_by["tree:1000"] == "smaller" and left.loss["tree:1000"] == left.loss["tree:100"]
+
+
+def test_a_loss_of_what_was_never_tried_is_not_known_and_that_of_a_failure_is_large():
+    tables = mechanisms()
+    everywhere = [(f"tree:{size}", "one/a") for size in (10, 100, 1000)]
+    found = rule.judged(without(tables, everywhere, status="excluded", verdict=""), REGISTRY)
+    held = found["held"].set_index("scene")
+    assert held.loc["tree:10", ["chosen", "taken", "known_by"]].to_list() == ["one/a", "one/a", ""] and numpy.isnan(held.loss["tree:10"])
+    assert rule.summary(found["held"])["unknown"] == 3 and set(rule.missed(found["held"]).scene) == {scene for scene, _ in everywhere}
+    mean, worst, *_ = bounds._rule(found["held"])
+    assert mean[3] is None and worst[3] is None and "of 15 of 18 choices" in mean[2]  # neither held nor broken
+    wrong = rule.judged(without(tables, everywhere, status="disagrees", verdict="disagrees"), REGISTRY)["held"].set_index("scene")
+    assert wrong.known_by["tree:10"] == "failed" and wrong.loss["tree:10"] == rule.FAILED
 
 
 def test_numbers_alone_are_compared():

@@ -8,28 +8,30 @@ from study.core.gate import agreeing
 from study.core.timing import measure
 
 NEAR = 2.0  # times the fastest library: who takes longer has no further times
+WIDE = 4.0  # the same, of those that are named
 STEPS = 40  # of a look
 CHECK_S = 60  # of a contender, in the gate
 
 
-def contest(lab, scene, contenders, role, settings=(), *, own, always=False, processes, samples, patience=1.0, stretch=(), look=STEPS):
+def contest(lab, scene, contenders, role, settings=(), *, own, always=False, wide=(), processes, samples, patience=1.0, stretch=(),
+            look=STEPS):
     """Rows of the look. Roles of the records: `role`-look, `role`-gate and `role`. `own`: names of those that are no libraries;
-    `always`: they are gated and timed whatever they take; `settings`: of the step; `stretch`: that is timed, else the scene's; `look`: steps of the look."""
+    `always`: they are gated and timed whatever they take; `wide`: names of those that are up to WIDE; `settings`: of the step; `stretch`: that is timed, else the scene's; `look`: steps of the look."""
     rows = rows_of(measure(lab, scene, contenders, processes=1, repetitions=1, drop=True, role=f"{role}-look",
                            settings=("--steps", look, "--patience", patience, *settings)))
-    asked = near(rows, contenders, own, always)
+    asked = near(rows, contenders, own, always, wide)
     here = agreeing(lab, scene, asked, f"{role}-gate", settings, each=CHECK_S, seconds=CHECK_S * (1 + len(asked)), drop=True)
     measure(lab, scene, here, processes=processes, repetitions=samples, settings=(*settings, *stretch), role=role, drop=True)
     return rows
 
 
-def near(rows, contenders, own, always=False):
-    """Those on whom an answer may stand: who takes at most NEAR times as long as the fastest library, and with `always` all
-    that are no libraries."""
+def near(rows, contenders, own, always=False, wide=()):
+    """Those on whom an answer may stand: who takes at most NEAR times as long as the fastest library (of those in `wide`, WIDE
+    times), and with `always` all that are no libraries."""
     times = rows[rows.status == "ok"].groupby("implementation").step_us.median()
     best = min((time for name, time in times.items() if name not in own), default=0.0 if always else min(times, default=0.0))
     return [one for one in contenders if one.name in times
-            and (always and one.name in own or times[one.name] <= NEAR * best)]
+            and (always and one.name in own or times[one.name] <= (WIDE if one.name in wide else NEAR) * best)]
 
 
 def usual(lab):

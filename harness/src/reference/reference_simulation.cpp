@@ -213,71 +213,6 @@ ReferenceSimulation::Vector ReferenceSimulation::transpose_times(const std::vect
   return y;
 }
 
-void ReferenceSimulation::set_up_matrix() {
-  // Which coordinates each constraint and element couples.
-  std::vector<std::vector<int>> constraints, elements;
-  const auto coordinates = [&](std::initializer_list<int> points) {
-    std::vector<int> result;
-    for (const int point : points) {
-      for (int k = 0; offset(point) >= 0 && k < model_.dimension(); ++k) {
-        result.push_back(offset(point) + k);
-      }
-    }
-    return result;
-  };
-  for_quadratic(model_, [&](const auto& c) {
-    constraints.push_back(coordinates({c.a, c.b, c.c, c.d}));
-  });
-  for (const LinearConstraint& c : model_.linear_constraints()) {
-    constraints.emplace_back();
-    for (const auto& term : c.terms) constraints.back().push_back(term.coordinate);
-  }
-  for (const Spring& s : model_.springs()) elements.push_back(coordinates({s.a, s.b}));
-  for (const TorsionSpring& s : model_.torsion_springs()) {
-    elements.push_back(coordinates({s.a, s.b, s.c, s.d}));
-  }
-  for (const ForceLaw& l : model_.force_laws()) elements.push_back(coordinates({l.a, l.b}));
-  for (const TorqueLaw& l : model_.torque_laws()) {
-    elements.push_back(coordinates({l.a, l.b, l.c, l.d}));
-  }
-
-  // Each multiplier follows the last coordinate that it is coupled with.
-  std::vector<std::pair<int, int>> order;  // coordinate, and 0 or 1 + the multiplier
-  for (int i = 0; i < n_; ++i) order.emplace_back(i, 0);
-  for (int k = 0; is_saddle() && k < m_; ++k) {
-    int last = -1;
-    for (const int i : constraints[k]) last = std::max(last, i);
-    order.emplace_back(last, 1 + k);
-  }
-  std::sort(order.begin(), order.end());
-  place_.resize(order.size());
-  for (int place = 0; place < static_cast<int>(order.size()); ++place) {
-    const auto [coordinate, multiplier] = order[place];
-    place_[multiplier == 0 ? coordinate : n_ + multiplier - 1] = place;
-  }
-
-  std::vector<int> first(order.size());
-  std::iota(first.begin(), first.end(), 0);
-  const auto couple = [&](const std::vector<int>& unknowns) {
-    int lowest = std::numeric_limits<int>::max();
-    for (const int i : unknowns) lowest = std::min(lowest, place_[i]);
-    for (const int i : unknowns) first[place_[i]] = std::min(first[place_[i]], lowest);
-  };
-  for (const MassEntry& entry : model_.mass()) {
-    if (entry.value != 0.0) couple({entry.row, entry.col});
-  }
-  for (const auto& element : elements) couple(element);
-  for (int k = 0; k < m_; ++k) {
-    if (!is_saddle()) {
-      couple(constraints[k]);
-      continue;
-    }
-    for (const int i : constraints[k]) couple({i, n_ + k});
-    if (settings_.geometric_stiffness) couple(constraints[k]);
-  }
-  matrix_ = EnvelopeLdlt(std::move(first));
-}
-
 void ReferenceSimulation::assemble(const std::vector<Row>& rows) {
   const Real scale = Real{settings_.step} * settings_.step / 4 * settings_.penalty;  // 1 / eps
   const auto add = [this](int i, int k, Real value) {
@@ -321,17 +256,20 @@ ReferenceSimulation::Solution ReferenceSimulation::solve(const std::vector<Row>&
     const Vector term = transpose_times(rows, bottom);
     Vector x = top;
     for (int i = 0; i < n_; ++i) x[i] += scale * term[i];
-    matrix_.solve(x);
+    solve_matrix(x);
     return {x, {}};
   }
-  Vector both(n_ + m_);
-  for (int i = 0; i < n_; ++i) both[place_[i]] = top[i];
-  for (int k = 0; k < m_; ++k) both[place_[n_ + k]] = bottom[k];
-  matrix_.solve(both);
-  Solution result{Vector(n_), Vector(m_)};
-  for (int i = 0; i < n_; ++i) result.x[i] = both[place_[i]];
-  for (int k = 0; k < m_; ++k) result.y[k] = both[place_[n_ + k]];
-  return result;
+  Vector both = top;
+  both.insert(both.end(), bottom.begin(), bottom.end());
+  solve_matrix(both);
+  return {{both.begin(), both.begin() + n_}, {both.begin() + n_, both.end()}};
+}
+
+void ReferenceSimulation::solve_matrix(Vector& x) const {
+  Vector moved(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) moved[place_[i]] = x[i];
+  matrix_.solve(moved);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = moved[place_[i]];
 }
 
 void ReferenceSimulation::do_set_state(const State& state) {
@@ -394,7 +332,7 @@ double ReferenceSimulation::tangent_condition() {
   };
   const Real largest = iterate(multiply);
   const Real inverse_smallest = iterate([&](Vector x) {
-    penalty_form.matrix_.solve(x);
+    penalty_form.solve_matrix(x);
     return x;
   });
   return static_cast<double>(largest * inverse_smallest);

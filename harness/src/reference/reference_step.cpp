@@ -69,9 +69,10 @@ bool ReferenceSimulation::do_show_first_pass(FirstPass& pass) {
   }
   assemble(rows);
   pass.T.resize(n * n);
-  for (int i = 0; i < n_; ++i) {  // in the penalty form place_[i] is i
+  for (int i = 0; i < n_; ++i) {
     for (int j = 0; j <= i; ++j) {
-      pass.T[i * n + j] = pass.T[j * n + i] = static_cast<double>(matrix_.value(i, j));
+      const auto [low, high] = std::minmax(place_[i], place_[j]);
+      pass.T[i * n + j] = pass.T[j * n + i] = static_cast<double>(matrix_.value(high, low));
     }
   }
   return true;

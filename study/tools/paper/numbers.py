@@ -250,7 +250,7 @@ def _rule(known):
         found = dict.fromkeys(names)
     else:
         one = rules.summary(held)
-        worst = "it chose one that has no time there" if one["worst_loss"] >= rules.MISSED else percent(one["worst_loss"])
+        worst = percent(one["worst_loss"]) + (f" ({one['unknown']} choices were not timed and do not count)" if one["unknown"] else "")
         found = {name: of_rows(text, "families/held", held) for name, text in zip(names, (
             percent(one["mean_loss"], 1), worst, percent(one["within"]), one["families"], one["scenes"]))}
     rows = defaults[defaults["mean"].notna()].sort_values("mean")
