@@ -16,14 +16,14 @@ from analysis.core.outcomes import FINISHED
 from study.core.contender import Contender
 from study.core.setting import Setting
 from study.tools.advise import answer, timing
-from study.tools.advise.advice import Advice, Question, _what_helps, named
+from study.tools.advise.advice import Advice, Question, _try, _what_helps, named
 from study.tools.advise.choice import Next, Pilot, counts, interval, local_order, most, next_at, next_step, tidy
 from study.tools.advise.main import duration
 from study.tools.advise.runner import REPEATS, Runner, advised as advised_line, typed
 from study.tools.advise.search import Found, Search
 from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.truth import Truth
-from study.tools.advise.validate import by_kind, fastest, verdict
+from study.tools.advise.validate import _reference, by_kind, fastest, verdict
 from study.tools.advise.verify import verify
 from study.tests.conftest import ROOT, study
 
@@ -305,6 +305,22 @@ def test_who_is_tried_is_near_the_fastest_by_the_rule_or_needed():
     assert list(tried) == ["quick/b", "near/c", "new/d"] and left_out["slow/a"].startswith("9.0 times the time of quick/b")
     assert list(named(described, variants, [PENALTY, Setting("rattle")])[0])[-1] == "slow/a"
     assert list(named(described | {"recommendation": []}, variants, [PENALTY])[0]) == list(variants)
+
+
+def test_who_does_not_simulate_the_scene_is_no_measure_of_who_is_near():
+    described = {"scheme": {"take": "penalty"}, "recommendation": [
+        {"implementation": name, "step_us": us} for name, us in (("chains/a", 1.0), ("far/b", 5.0), ("near/c", 2.0))]}
+    variants = {name: {"settings": [], "dense": False} for name in ("chains/a", "far/b", "near/c")}
+    ran = []
+
+    def run(kind, setting, name, step, duration, limit):
+        ran.append(name)
+        status = "unsupported" if name == "chains/a" else "ok"
+        return {"implementation": name, "status": status, "step_us": 1.0 if name == "near/c" else 4.0}
+    advice = Advice(Question("bar", 1e-3, 1.0, None, 45.0))
+    speeds = _try(advice, described, variants, [PENALTY], run, 1e-2, lambda share: 1.0, lambda text: None)
+    assert list(speeds) == ["near/c", "far/b"] and ran == ["chains/a", "near/c", "far/b"]
+    assert _reference(described, {name: {"settings": ["saddle-point"]} for name in variants}, run) == "near/c"
 
 
 def test_runs_are_held_to_a_motion_between_its_instants():

@@ -16,7 +16,7 @@ from study.tools.advise import timing
 from study.tools.advise.advice import SLOWER, probe
 from study.tools.advise.runner import EXACT, describe, scene_name
 from study.tools.advise.settings import catalogue, fits, serving
-from study.tools.advise.truth import Truth
+from study.tools.advise.truth import FIRST_STEP, Truth
 
 PROBLEMS = "harness/scenes/problems"
 SCENES = {  # (kind, s): scenes
@@ -57,8 +57,8 @@ def validate(options, ask, runner_of, results):
                 variants, run = runner_of(folder, {"scene": scene, "duration": duration}, described["variables"], names, known)
                 if not scene.startswith("four-bar"):  # of which the exact motion is known
                     run.lab.tell(f"{scene}: reference")
-                    run.truth = Truth(run.lab, scene, described, run.contenders[_reference(described, variants)], duration,
-                                      CERTAIN * min(errors))
+                    run.truth = Truth(run.lab, scene, described, run.contenders[_reference(described, variants, run)],
+                                      duration, CERTAIN * min(errors))
                 asked = [error for error in errors if not run.truth or run.truth.uncertainty <= CERTAIN * error]
                 unknown += [f"{scene} at {error:g} m" for error in errors if error not in asked]
                 found, speeds = search(run, variants, described, duration, asked, scene) if asked else ([], {})
@@ -89,11 +89,15 @@ def questions(asked):
     return found
 
 
-def _reference(described, variants):
-    """Who simulates the reference: the fastest by the rule that serves both schemes."""
-    serves = serving(Setting("saddle-point"), variants)
-    able = [one for one in described["recommendation"] if one["implementation"] in serves]
-    return min(able, key=lambda one: one["step_us"])["implementation"]
+def _reference(described, variants, run):
+    """Who simulates the reference: the fastest by the rule that serves both schemes, and the scene, of which the rule knows
+    nothing."""
+    form = Setting("saddle-point")
+    able = sorted((one["step_us"], one["implementation"]) for one in described["recommendation"]
+                  if one["implementation"] in serving(form, variants))
+    names = [name for _, name in able]
+    return next((name for name in names[:-1] if run("serves", form, name, FIRST_STEP, FIRST_STEP, 60)["status"]
+                 != "unsupported"), names[-1])
 
 
 def write_results(results, rows, searched, unknown):
