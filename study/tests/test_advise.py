@@ -16,14 +16,14 @@ from analysis.core.outcomes import FINISHED
 from study.core.contender import Contender
 from study.core.setting import Setting
 from study.tools.advise import answer, timing
-from study.tools.advise.advice import Advice, Question, named
-from study.tools.advise.choice import Next, Pilot, counts, interval, local_order, next_at, next_step, tidy
+from study.tools.advise.advice import Advice, Question, _try, _what_helps, named
+from study.tools.advise.choice import Next, Pilot, counts, interval, local_order, most, next_at, next_step, tidy
 from study.tools.advise.main import duration
 from study.tools.advise.runner import REPEATS, Runner, advised as advised_line, typed
 from study.tools.advise.search import Found, Search
 from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.truth import Truth
-from study.tools.advise.validate import by_kind, fastest, verdict
+from study.tools.advise.validate import _reference, by_kind, fastest, verdict
 from study.tools.advise.verify import verify
 from study.tests.conftest import ROOT, study
 
@@ -248,6 +248,14 @@ def test_an_estimate_below_that_of_a_shorter_step_is_raised():
     assert advice.verified["estimate"] == 2e-4  # the pilot's at 5 ms
 
 
+def test_a_pilot_that_is_longer_than_half_a_step_bounds_it_by_the_order_that_it_shows():
+    found = pilots(1.6e-3, 4e-4, first=5e-3)
+    between = most(3.4e-3, 7.4e-4, found, 2, 1e-3)
+    half = most(2.5e-3, 4e-4, found, 2, 1e-3)
+    assert between == pytest.approx(0.75 * 7.4e-4 + half * (1.7 / 2.5) ** 1.7) and between < 9e-4 < 0.75 * 7.4e-4 + half
+    assert most(5e-3, 1.6e-3, found, 2, 1e-3) == pytest.approx(0.75 * 1.6e-3 + half)  # half the step itself: as it is
+
+
 def test_where_the_exact_error_is_known_it_counts_if_it_is_larger():
     assert verified(lambda step: 1e-5, exact=3e-4)[0].verified["estimate"] == 3e-4
     assert verified(lambda step: 1e-5, exact=1e-2)[0].chosen is None
@@ -299,6 +307,22 @@ def test_who_is_tried_is_near_the_fastest_by_the_rule_or_needed():
     assert list(named(described | {"recommendation": []}, variants, [PENALTY])[0]) == list(variants)
 
 
+def test_who_does_not_simulate_the_scene_is_no_measure_of_who_is_near():
+    described = {"scheme": {"take": "penalty"}, "recommendation": [
+        {"implementation": name, "step_us": us} for name, us in (("chains/a", 1.0), ("far/b", 5.0), ("near/c", 2.0))]}
+    variants = {name: {"settings": [], "dense": False} for name in ("chains/a", "far/b", "near/c")}
+    ran = []
+
+    def run(kind, setting, name, step, duration, limit):
+        ran.append(name)
+        status = "unsupported" if name == "chains/a" else "ok"
+        return {"implementation": name, "status": status, "step_us": 1.0 if name == "near/c" else 4.0}
+    advice = Advice(Question("bar", 1e-3, 1.0, None, 45.0))
+    speeds = _try(advice, described, variants, [PENALTY], run, 1e-2, lambda share: 1.0, lambda text: None)
+    assert list(speeds) == ["near/c", "far/b"] and ran == ["chains/a", "near/c", "far/b"]
+    assert _reference(described, {name: {"settings": ["saddle-point"]} for name in variants}, run) == "near/c"
+
+
 def test_runs_are_held_to_a_motion_between_its_instants():
     truth = object.__new__(Truth)
     truth.columns, truth.shape = ("p.x", "p.y"), (1, 2)
@@ -329,7 +353,7 @@ def test_the_search_keeps_the_fastest_row_of_each_setting_that_meets_an_error_an
     (["four-bar:2", "--error", "1", "--duration", "nan"], "nan is not a positive number"),
     (["nothing", "--error", "1"], 'scene "nothing": no such file'),
     (["four-bar:2", "--error", "1", "--only", "nobody"], "unknown implementation 'nobody'"),
-    (["nothing", "--validate"], "--validate has none of nothing"), (["four-bar:1", "four-bar:2", "--error", "1"], "one SCENE"),
+    (["nothing", "--validate"], 'scene "nothing": no such file'), (["four-bar:1", "four-bar:2", "--error", "1"], "one SCENE"),
     (["--validate", "--deadline-us", "9", "--duration", "1", "--budget", "3"],
      "its own: --deadline-us, --duration, --budget do not go"),
     (["--validate", "--json", "--error", "1"], "its own: --error, --json do not go"),
@@ -461,6 +485,15 @@ def test_a_line_that_ends_as_degraded_says_why_and_why_that_is_no_objection():
 
 def test_a_busy_machine_is_said():
     assert not answer._busy(SimpleNamespace(waited=0.01)) and "50 %" in answer._busy(SimpleNamespace(waited=0.5))[0]
+
+
+def test_a_shorter_step_is_said_to_help_only_where_it_was_seen_to():
+    def run(kind, setting, name, step, duration, seconds, checks):  # the order shows in steps below 2 ms only
+        return {"status": "ok", "estimate": 5e-2 if step > 2e-3 else 100 * step**2}
+    advice = Advice(Question("bar", 1e-3, 1.0, None, 45.0, step=1e-2), pilot_duration=1.0,
+                    found={PENALTY: Found(PENALTY, pilots(9e-3))})
+    _what_helps(advice, {"a/b": 1.0}, {"a/b": {"settings": []}}, run, lambda share: 1.0, lambda text: None)
+    assert advice.helps == ["--step 0.00125: in such steps penalty keeps the error"]
 
 
 def test_what_was_too_late_is_named_with_its_time():

@@ -63,8 +63,7 @@ def advise(question, settings, described, variants, run, tell):
     form = described["scheme"]["take"]  # goes first
     usable = [setting for setting in sorted(settings, key=lambda one: one.scheme != form)
               if not fits(setting, described) and serving(setting, variants)]
-    tried, advice.left_out = named(described, variants, usable)
-    advice.probe, speeds = probe({name: variants[name] for name in tried}, run, start, described, question, left, say)
+    speeds = _try(advice, described, dict(variants), usable, run, start, left, say)
     usable = [setting for setting in usable if set(serving(setting, variants)) & set(speeds)]
     if speeds:
         _pilots(advice, usable, speeds, variants, run, start, left, say)
@@ -74,6 +73,21 @@ def advise(question, settings, described, variants, run, tell):
             _what_helps(advice, speeds, variants, run, left, say)
     advice.seconds, advice.waited = time.monotonic() - began, run.waited
     return advice
+
+
+def _try(advice, described, able, settings, run, start, left, tell):
+    """{implementation: us a step} of those near the fastest that simulates the scene, fastest first. The rule does not know who
+    simulates it: whoever does not is no measure of who is near."""
+    speeds, seen = {}, set()
+    while True:
+        tried, advice.left_out = named(described, able, [one for one in settings if serving(one, able)])
+        rows, found = probe({name: able[name] for name in tried if name not in seen}, run, start, described,
+                            advice.question, left, tell)
+        advice.probe, speeds, seen = advice.probe + rows, speeds | found, seen | set(tried)
+        unable = [row["implementation"] for row in rows if row["status"] == "unsupported"]
+        if not unable:
+            return dict(sorted(speeds.items(), key=lambda item: item[1]))
+        able = {name: said for name, said in able.items() if name not in unable}
 
 
 def named(described, variants, settings):
@@ -188,13 +202,21 @@ def _what_helps(advice, speeds, variants, run, left, tell):
     if not valid:
         return
     setting, best = min(valid, key=lambda item: (not item[1].valid, item[1].estimate if item[1].valid else item[1].step))
-    name, error = fastest(setting, speeds, variants), question.error * advice.pilot_duration / question.duration
+    error = question.error * advice.pilot_duration / question.duration
     least = min(known(pilot, advice.found[one].pilots, error, one.order) for one, pilot in valid)
     if error < least < math.inf:
         advice.helps.append(f"--error {1.1 * question.error * least / error:.2g}: so much pilots were seen to keep")
+    name = fastest(setting, speeds, variants)
+
+    def keeps(step, duration):
+        return left(1.0) > 0 and _keeps(question.error, setting, name, step, duration, run, left)
     if question.step and best.valid and best.estimate > question.error:
-        parts = math.ceil((1.2 * best.estimate / question.error) ** (1 / setting.order))
-        advice.helps.append(f"--step {question.step / parts:g}: a {parts}-th of this one, by the order of {setting.name}")
+        fewest = math.ceil((1.2 * best.estimate / question.error) ** (1 / setting.order))
+        for parts in (fewest, 2 * fewest, 4 * fewest):  # the order may not show in steps this long
+            tell(f"what would help: --step {question.step / parts:g}")
+            if keeps(question.step / parts, question.duration):
+                advice.helps.append(f"--step {question.step / parts:g}: in such steps {setting.name} keeps the error")
+                break
     late = [one.late_us for one in advice.candidates if one.late_us]
     if late:
         advice.helps.append(f"--deadline-us {1.2 * min(late):.3g}: 99 % of the steps took up to {min(late):.3g} us at best")
@@ -202,15 +224,20 @@ def _what_helps(advice, speeds, variants, run, left, tell):
     for halving in range(1, HALVES + 1):
         duration = float(f"{question.duration / 2**halving:.3g}")
         step = question.step or best.step
-        if duration < LEAST_STEPS * step or left(1.0) < 0:
+        if duration < LEAST_STEPS * step:
             return
         tell(f"what would help: --duration {duration:g}")
-        pilots = []
-        for at in (step, step / 2):
-            row = run("shorter", setting, name, at, duration, max(2.0, left(1.0)), checks=HALVED)
-            pilots.append(Pilot(at, row["status"], row["estimate"]))
-            if not pilots[-1].valid:
-                break
-        if pilots[0] in enough(pilots, question.error, setting.order):
+        if keeps(step, duration):
             advice.helps.append(f"--duration {duration:g}: so long {setting.name} at step {step:g} s keeps the error")
             return
+
+
+def _keeps(error, setting, name, step, duration, run, left):
+    """Whether a run keeps the error, by half the step, which another one with half of both must show to be right."""
+    pilots = []
+    for at in (step, step / 2):
+        row = run("shorter", setting, name, at, duration, max(2.0, left(1.0)), checks=HALVED)
+        pilots.append(Pilot(at, row["status"], row["estimate"]))
+        if not pilots[-1].valid:
+            return False
+    return pilots[0] in enough(pilots, error, setting.order)

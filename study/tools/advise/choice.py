@@ -78,13 +78,15 @@ def local_order(step, pilots, order):
 
 def most(step, estimate, pilots, order, error):
     """The largest error, m, of a run with this estimate: its distance to the run with half the step, and what that one's
-    may be, of which pilots tell; where there are none, by the order that they show. None where they show none."""
+    may be, of which pilots tell, of the order that they show where theirs is longer; where there are none, by that order
+    alone. None where they show none."""
     halves = [pilot for pilot in pilots if pilot.valid and 0.499 * step < pilot.step < 0.9 * step]
     if halves:
         half = min(halves, key=lambda pilot: pilot.step)
         known = most(half.step, half.estimate, pilots, order, error)
         if known is not None:
-            return estimate * (1 - 2.0**-order) + known
+            shown = min(max(local_order(half.step, pilots, order) - SLACK, 1.0), order)
+            return estimate * (1 - 2.0**-order) + known * min(1.0, step / 2 / half.step) ** shown
     shown = counts(step, pilots, error)
     return interval(estimate, order, local_order(step, pilots, order))[1] if shown else None
 

@@ -98,7 +98,7 @@ def _parser():
                     "that very scene, under a minute for four-bar:40; exit status 1 if no setting is "
                     "good enough.")
     parser.add_argument("scene", nargs="*", metavar="SCENE", help="four-bar:N, one of mbs list --scenes, or a JSON file; "
-                        "with --validate scenes or kinds of its list")
+                        "with --validate kinds of its list and any scenes")
     parser.add_argument("--error", type=positive, metavar="E",
                         help="largest position error of any point over the whole time, m")
     parser.add_argument("--deadline-us", type=positive, metavar="D",
@@ -118,7 +118,7 @@ def _parser():
                         help="where raw files are kept (results/local/advice/, one folder a question)")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
     parser.add_argument("--validate", action="store_true", help="hold the advice against an exhaustive "
-                        "search on families of mechanisms and standard problems, all or those named; some minutes a mechanism")
+                        "search on families of mechanisms and standard problems, or those named; some minutes a mechanism")
     return parser
 
 

@@ -6,6 +6,7 @@ import numpy
 from analysis.core.outcomes import FINISHED, of_run
 from study.core.cell import Cell
 
+MOVING = ("free", "marker", "vector")  # of describe: what an error is of; markers are points of bodies, no coordinates
 POINTS = 20     # whose positions are compared, spread over the scene
 DENSE = 400     # instants of the reference; between them cubics through positions and velocities
 INSTANTS = 150  # at which a run is compared, at least
@@ -19,7 +20,7 @@ class Truth:
     def __init__(self, lab, scene, described, contender, duration, enough):
         self.duration, self.uncertainty = duration, math.inf
         axes = "xyz"[:described["dimension"]]
-        points = [one["name"] for one in described["elements"]["points"] if one["kind"] == "free"]
+        points = [one["name"] for one in described["elements"]["points"] if one["kind"] in MOVING]
         points = points[::max(1, len(points) // POINTS)]
         self.columns = tuple(f"{point}.{axis}" for point in points for axis in axes)
         self.speeds = tuple(f"{point}.v{axis}" for point in points for axis in axes)

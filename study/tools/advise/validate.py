@@ -14,9 +14,9 @@ from study.core.setting import Setting, read_settings
 from study.core.studyset import listed, select
 from study.tools.advise import timing
 from study.tools.advise.advice import SLOWER, probe
-from study.tools.advise.runner import EXACT, describe
+from study.tools.advise.runner import EXACT, describe, scene_name
 from study.tools.advise.settings import catalogue, fits, serving
-from study.tools.advise.truth import Truth
+from study.tools.advise.truth import FIRST_STEP, Truth
 
 PROBLEMS = "harness/scenes/problems"
 SCENES = {  # (kind, s): scenes
@@ -31,6 +31,7 @@ SCENES = {  # (kind, s): scenes
     ("standard problems", 0.03): (f"{PROBLEMS}/a03_andrews.json",),
     ("standard problems", 1): (f"{PROBLEMS}/chain_200.json", f"{PROBLEMS}/grid_10.json"),
     ("large, n about 2000", 1): ("tree:1000", "star:500", "ladder:500")}
+OTHERS, OTHERS_DURATION = "other scenes", 4.0  # kind; s
 SHARES = (1e-2, 1e-3, 1e-4)  # of the scene's length (describe: judged_length): the errors that are asked for
 CERTAIN = 0.1     # of an error: how well the motion must be known
 BEGUN = {".lock", "searched.csv", "validation.csv", "validation.html", "scenes"}  # its folder
@@ -56,8 +57,8 @@ def validate(options, ask, runner_of, results):
                 variants, run = runner_of(folder, {"scene": scene, "duration": duration}, described["variables"], names, known)
                 if not scene.startswith("four-bar"):  # of which the exact motion is known
                     run.lab.tell(f"{scene}: reference")
-                    run.truth = Truth(run.lab, scene, described, run.contenders[_reference(described, variants)], duration,
-                                      CERTAIN * min(errors))
+                    run.truth = Truth(run.lab, scene, described, run.contenders[_reference(described, variants, run)],
+                                      duration, CERTAIN * min(errors))
                 asked = [error for error in errors if not run.truth or run.truth.uncertainty <= CERTAIN * error]
                 unknown += [f"{scene} at {error:g} m" for error in errors if error not in asked]
                 found, speeds = search(run, variants, described, duration, asked, scene) if asked else ([], {})
@@ -79,20 +80,24 @@ def validate(options, ask, runner_of, results):
 
 
 def questions(asked):
-    """[(kind, scene, s)] of SCENES: the scenes and kinds that are asked for, or all."""
-    found = [(kind, scene, duration) for (kind, duration), scenes in SCENES.items() for scene in scenes
-             if not asked or scene in asked or kind in asked]
-    if not found:
-        raise StudyError(f"--validate has none of {', '.join(asked)}; it has {', '.join(dict.fromkeys(k for k, _ in SCENES))}"
-                         " and their scenes")
+    """[(kind, scene, s)]: all of SCENES, or the kinds and scenes of it that are asked for, and any other scene."""
+    listed_here = [(kind, scene, duration) for (kind, duration), scenes in SCENES.items() for scene in scenes]
+    known = {name for kind, scene, _ in listed_here for name in (kind, scene)}
+    found = [one for one in listed_here if not asked or one[0] in asked or one[1] in asked]
+    for scene in (scene_name(text) for text in asked if text not in known):
+        found.append((OTHERS, scene, min(OTHERS_DURATION, describe(scene)["drivers_end"] or OTHERS_DURATION)))
     return found
 
 
-def _reference(described, variants):
-    """Who simulates the reference: the fastest by the rule that serves both schemes."""
-    serves = serving(Setting("saddle-point"), variants)
-    able = [one for one in described["recommendation"] if one["implementation"] in serves]
-    return min(able, key=lambda one: one["step_us"])["implementation"]
+def _reference(described, variants, run):
+    """Who simulates the reference: the fastest by the rule that serves both schemes, and the scene, of which the rule knows
+    nothing."""
+    form = Setting("saddle-point")
+    able = sorted((one["step_us"], one["implementation"]) for one in described["recommendation"]
+                  if one["implementation"] in serving(form, variants))
+    names = [name for _, name in able]
+    return next((name for name in names[:-1] if run("serves", form, name, FIRST_STEP, FIRST_STEP, 60)["status"]
+                 != "unsupported"), names[-1])
 
 
 def write_results(results, rows, searched, unknown):

@@ -86,9 +86,9 @@ def _reconsider(one, row, advice):
         one.drop_late(row["step_us_p99"], " when verified")
         return
     failed = sum(other["setting"] == one.setting.name for other in advice.verifications)
-    step = one.step * 0.97 * excess ** (-1 / one.setting.order)
-    if failed > 1 and advice.pilot_duration == question.duration and found.rung() < one.step:
-        step = found.rung()  # its pilot was good enough
+    step = one.step * 0.97**failed * excess ** (-1 / one.setting.order)
+    if advice.pilot_duration == question.duration and found.rung() < one.step:  # a pilot that was good enough
+        step = found.rung() if failed > 2 else max(step, found.rung())
     for other in (other for other in advice.candidates if other.setting == one.setting):
         if question.step or failed > 4 or step < one.step / 8:
             other.drop(f"estimate {row['estimate']:.2g} m when verified over {row['duration']:g} s")
