@@ -111,15 +111,16 @@ class _Columns(Follower):
 def _end_jobs(folder, cluster):
     """Cancels the jobs that this run, or one that was killed, has left in the queue, and waits until they are gone."""
     path, end = home(folder) / "jobs", time.monotonic() + ENDING
-    ids = [one for one in path.read_text().split() if _status(cluster, one) == "running"] if path.exists() else []
+    ids = [one for one in path.read_text().split() if _runs(folder, cluster, one)] if path.exists() else []
     if ids:
-        subprocess.run([str(cluster / "cancel"), *ids], check=False)
-    while any(_status(cluster, one) == "running" for one in ids):
+        subprocess.run([str(cluster / "cancel"), *ids], cwd=folder, check=False)
+    while any(_runs(folder, cluster, one) for one in ids):
         if time.monotonic() > end:
             raise StudyError(f"jobs {' '.join(ids)} do not end: the cluster does not answer, or keeps them; try again later")
         time.sleep(1)
     path.unlink(missing_ok=True)
 
 
-def _status(cluster, job):
-    return subprocess.run([str(cluster / "status"), job], capture_output=True, text=True, check=False).stdout.strip()
+def _runs(folder, cluster, job):
+    return subprocess.run([str(cluster / "status"), job], cwd=folder, capture_output=True, text=True,
+                          check=False).stdout.strip() == "running"

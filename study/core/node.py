@@ -55,10 +55,13 @@ def admit(studyset):
         writable(Path(tempfile.gettempdir()))
         one = Contender(CONTROL.name, CONTROL.variant, usable(studyset.registry, studyset.profile.blas["all"]))
         context = context_of(one)
+        only = home(folder) / "only"
         reason = another(studyset, context)
-        if reason:
+        if only.exists() and only.read_text().strip() != name():
+            reason = f"it is that of {only.read_text().strip()} alone, whose A/A control failed"
+        elif reason:
             own = _beside(folder, f"{_slug(context['cpu_model'])}-{_kind(context)}")
-        elif not (home(folder) / "nodes" / name()).exists() and not (home(folder) / "only").exists():
+        elif not (home(folder) / "nodes" / name()).exists() and not only.exists():
             reason = uncontrolled(studyset)
             own, alone = _beside(folder, _slug(name())) if reason else None, True
     except (StudyError, OSError) as error:  # neither of this set nor of another one: its disk is full, its program does not run
