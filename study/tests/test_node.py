@@ -164,3 +164,10 @@ def test_a_dry_run_says_what_it_takes(profile, tmp_path):
 def test_bad_options_are_one_line(arguments, words, tmp_path):
     done = study("run", *RUN, "--results", tmp_path / "set", *arguments, program=FAKE)
     assert done.returncode == 2 and words in done.stderr and done.stderr.count("\n") == 1
+
+
+@pytest.mark.slow
+def test_a_program_that_does_not_run_is_one_line_and_the_folder_can_be_used(profile, tmp_path):
+    for _ in range(2):
+        done = study("run", *RUN, "--results", tmp_path / "set", "--cluster", profile, program="/bin/false", seconds=900)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1 and "/bin/false list" in done.stderr, done.stderr
