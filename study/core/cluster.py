@@ -49,7 +49,7 @@ def dry_run(columns, folder):
 def run(profile, only, chosen, folder, cluster, columns):
     """Runs a set to its end, then those that nodes of another kind began beside it. `cluster`: the profile's folder."""
     with locks.only_one(folder):
-        _end_jobs(folder, cluster)
+        end_jobs(folder, cluster)
         _plan(profile, only, chosen, folder, columns)
         if not (folder / "set.json").exists():
             _workflow(StudySet(folder), cluster, columns, "set.json")
@@ -89,7 +89,7 @@ def _workflow(studyset, cluster, columns, target):
         told = "; ".join(f"{host} is not of this set: {reason}" for host, reason in refusals(studyset.folder).items())
         raise StudyError(f"{error}; {told}" if told else str(error)) from error
     finally:
-        _end_jobs(studyset.folder, cluster)
+        end_jobs(studyset.folder, cluster)
 
 
 class _Columns(Follower):
@@ -108,19 +108,19 @@ class _Columns(Follower):
             self.display.show("cluster", f"{sum(stamp.exists() for stamp in self.stamps)} of {len(self.stamps)} columns")
 
 
-def _end_jobs(folder, cluster):
+def end_jobs(folder, cluster):
     """Cancels the jobs that this run, or one that was killed, has left in the queue, and waits until they are gone."""
     path, end = home(folder) / "jobs", time.monotonic() + ENDING
-    ids = [one for one in path.read_text().split() if _runs(folder, cluster, one)] if path.exists() else []
+    ids = [one for one in path.read_text().split() if runs(folder, cluster, one)] if path.exists() else []
     if ids:
         subprocess.run([str(cluster / "cancel"), *ids], cwd=folder, check=False)
-    while any(_runs(folder, cluster, one) for one in ids):
+    while any(runs(folder, cluster, one) for one in ids):
         if time.monotonic() > end:
             raise StudyError(f"jobs {' '.join(ids)} do not end: the cluster does not answer, or keeps them; try again later")
         time.sleep(1)
     path.unlink(missing_ok=True)
 
 
-def _runs(folder, cluster, job):
+def runs(folder, cluster, job):
     return subprocess.run([str(cluster / "status"), job], cwd=folder, capture_output=True, text=True,
                           check=False).stdout.strip() == "running"

@@ -99,3 +99,15 @@ def test_a_node_is_lost_and_the_run_interrupted(slurm, slower, folder, tmp_path)
         texts = [column for column in here if here[column].dtype == object]
         assert list(here.columns) == list(there.columns) and len(here) == len(there) and texts
     assert (folder / "index.html").stat().st_size and study("figures", folder, program=slower).returncode == 0
+
+
+def test_a_sweep_is_an_array_job(slurm, tmp_path):
+    words = ["four-bar:1", "--vary", "gravity/1=-12:-6:40", "--implementation", "csc_klu/refactor", "--duration", "0.1"]
+    alone = subprocess.run([PROGRAM, "sweep", *words, "--output", tmp_path / "one.csv"], capture_output=True, text=True)
+    assert alone.returncode in (0, 1), alone.stderr
+    made = study("sweep", tmp_path / "all.csv", "--output", tmp_path / "all.png", "--cluster", "slurm", "--parts", 3, "--", *words,
+                 **slurm.environment)
+    assert made.returncode == 0, made.stderr
+    assert (tmp_path / "all.csv").read_bytes() == (tmp_path / "one.csv").read_bytes() and (tmp_path / "all.png").stat().st_size
+    bad = study("sweep", tmp_path / "bad.csv", "--cluster", "slurm", "--parts", 2, "--", "nosuch:1", *words[1:], **slurm.environment)
+    assert bad.returncode == 2 and bad.stderr.startswith("study/sweep: part 1 of 2 is not done: ") and bad.stderr.count("\n") == 1

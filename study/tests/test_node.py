@@ -146,7 +146,7 @@ def test_jobs_of_a_killed_controller_are_ended(profile, tmp_path):
     process.send_signal(signal.SIGKILL)
     process.wait()
     [*_, last] = (folder / ".cluster" / "jobs").read_text().split()
-    cluster._end_jobs(folder, profile)
+    cluster.end_jobs(folder, profile)
     with pytest.raises(ProcessLookupError):
         os.kill(int(last), 0)
     assert run(profile, folder).returncode == 0
