@@ -55,6 +55,7 @@ def run(profile, only, chosen, folder, cluster, columns):
             _workflow(StudySet(folder), cluster, columns, "set.json")
         studyset = _continued(folder, profile, only, chosen)
         sets.reopen(studyset, columns)
+        sets.need_tables(studyset)
         _workflow(studyset, cluster, columns, "all")
     for host, reason in refusals(folder).items():
         print(f"{host} is not of this set: {reason}")

@@ -11,7 +11,7 @@ from analysis.core.errors import StudyError
 from study.core import child, locks, node
 from study.core.lab import Lab
 from study.core.profile import plan_of
-from study.core.studyset import StudySet, finish
+from study.core.studyset import StudySet, finish, need_records
 
 FRONT = "MBS_STUDY_FRONT"  # the process that everything here belongs to
 
@@ -22,7 +22,7 @@ def main(arguments):
     child.end_on_signals()
     folder, verb, *rest = arguments
     try:
-        {"run": run, "page": page, "index": index, "start": begin, "column": column}[verb](StudySet(Path(folder).resolve()), *rest)
+        {"run": run, "page": page, "index": index, "start": begin, "column": column, "draw": draw}[verb](StudySet(Path(folder).resolve()), *rest)
         return 0
     except StudyError as error:
         print(f"error: {error}", file=sys.stderr)
@@ -47,7 +47,7 @@ def run(studyset, part):
 
 def begin(studyset):
     """Of a cluster: the set, on the first node that is free."""
-    node.begin(studyset.folder)
+    node.first(studyset.folder)
 
 
 def column(studyset, part, name):
@@ -62,6 +62,13 @@ def _measure(studyset, part, name, seconds):
     lab = Lab(studyset, part, name, seconds)
     plan_of(part).run(lab, name)
     finish(studyset, part, name, lab.names)
+
+
+def draw(studyset, part):
+    """Of a cluster: the page of what nodes have measured, when all of it is seen here."""
+    need_records(studyset)
+    page(studyset, part)
+    index(studyset)
 
 
 def page(studyset, part):

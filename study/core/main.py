@@ -15,7 +15,7 @@ from study.core.disk import writable
 from study.core.front import Display, run_workflow
 from study.core.options import Parser, directory
 from study.core.progress import duration
-from study.core.studyset import StudySet, listed, need_own, need_records, opened, reopen, select, start
+from study.core.studyset import StudySet, listed, need_own, need_records, need_tables, opened, reopen, select, start
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
            "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
@@ -92,13 +92,6 @@ def run(arguments):
         run_workflow(studyset, columns)
     print(f"site: {folder / 'index.html'}")
     return 0
-
-
-def need_tables(studyset):
-    """StudyError naming a table that was changed."""
-    from analysis.core.schema import need_unchanged
-    for part in studyset.facts["parts"]:
-        need_unchanged(studyset.folder, part)
 
 
 def columns_of(profile, chosen, studyset=None):

@@ -48,6 +48,15 @@ def begin(folder):
     start(folder, profiles.load(plan["profile"], plan["parts"]), plan["only"], plan["parts"])
 
 
+def first(folder):
+    """Begins the set; a node on which that fails is not asked again."""
+    try:
+        begin(folder)
+    except StudyError as error:
+        write_text(home(folder) / "refused" / name(), f"{error}\n\n")
+        raise
+
+
 def admit(studyset):
     """StudyError unless this node is of the set's kind, has room and passes its A/A control; it is not asked again then."""
     folder, own, alone = studyset.folder, None, False

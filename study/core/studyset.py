@@ -240,6 +240,13 @@ def need_records(studyset):
             raise StudyError(f"{missing[0]} is missing: study/run measures it again")
 
 
+def need_tables(studyset):
+    """StudyError naming a table that was changed."""
+    from analysis.core.schema import need_unchanged  # needs pandas
+    for part in studyset.facts["parts"]:
+        need_unchanged(studyset.folder, part)
+
+
 def _missing(studyset, stamp):
     """Paths of a column's records that are not there; StudyError naming one that was changed or added."""
     found, known = [], read_object(stamp)
