@@ -22,7 +22,8 @@ def main(arguments):
     child.end_on_signals()
     folder, verb, *rest = arguments
     try:
-        {"run": run, "page": page, "index": index, "start": begin, "column": column, "draw": draw}[verb](StudySet(Path(folder).resolve()), *rest)
+        verbs = {"run": run, "page": page, "index": index, "start": begin, "column": column, "draw": draw}
+        verbs[verb](StudySet(Path(folder).resolve()), *rest)
         return 0
     except StudyError as error:
         print(f"error: {error}", file=sys.stderr)

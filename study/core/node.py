@@ -15,7 +15,7 @@ from study.core.cell import LAYOUT, Cell
 from study.core.contender import CONTROL, Contender, usable
 from study.core.disk import writable
 from study.core.executor import program_of
-from study.core.studyset import StudySet, context_of, start
+from study.core.studyset import context_of, start
 
 CONTROL_SCENE, CONTROL_WORDS = "four-bar:10", ("--steps", 20, "--benchmark_repetitions=5")
 TRIES = 2  # so often must an A/A control be decided to count as failed: once in twenty it is by chance

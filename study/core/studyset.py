@@ -16,7 +16,8 @@ from study.core.cell import Cell
 from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
 from study.core.executor import need_same, program_of
 
-BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml", ".cluster", ".snakemake", ".progress"}  # what is written before set.json
+BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml",  # what is written before set.json ...
+         ".cluster", ".snakemake", ".progress"}                             # ... and on a cluster
 
 
 @dataclass(frozen=True)

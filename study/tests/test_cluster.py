@@ -1,7 +1,5 @@
 # study/run --cluster on a real Slurm of two nodes on this machine: a node is lost, the run is interrupted, two controllers
 # meet. Run by `study/test --cluster`.
-import os
-import shutil
 import signal
 import subprocess
 

@@ -25,7 +25,8 @@ def run(words, table, count, cluster):
     with locks.only_one(folder):
         end_jobs(folder, cluster)
         command = shlex.join([program, "sweep", *words, "--resume"])
-        write_text(folder / "part.sh", f"# Runs one part; a lane that fails is a row, and no failure of the part.\ncd {shlex.quote(os.getcwd())}\n"
+        write_text(folder / "part.sh", "# Runs one part; a lane that fails is a row, and no failure of the part.\n"
+                   f"cd {shlex.quote(os.getcwd())}\n"
                    f'{command} --shard "$1/{count}" --output {shlex.quote(str(folder))}/part-"$1" || [ $? = 1 ]\n')
         try:
             _array(folder, cluster, parts)
