@@ -47,7 +47,7 @@ def write_text(path, text):
 def write(path, fill):
     """Calls `fill` with the path of a partial file, which then becomes `path`; StudyError if that fails."""
     path = Path(path)
-    partial = path.with_name(f".partial-{os.getpid()}-{threading.get_ident()}-{path.name}")
+    partial = path.with_name(f".partial-{os.uname().nodename}-{os.getpid()}-{threading.get_ident()}-{path.name}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         fill(partial)

@@ -41,10 +41,15 @@ def run_workflow(studyset, columns, stored=False):
     """Runs the workflow to its end. `columns`: {part: {column: seconds}}. Raises StudyError, or KeyboardInterrupt
     once all children are gone."""
     write_json(studyset.folder / ".parts.json", list(columns))
+    follow(studyset, _command(studyset, stored), lambda display: _Cells(studyset, columns, display))
+
+
+def follow(studyset, command, follower_of, ends=(signal.SIGTERM, signal.SIGKILL)):
+    """Runs Snakemake to its end, shown by a Follower. `ends`: signals that stop it, each after the one before."""
     display = Display()
     with open(studyset.log, "a", encoding="utf-8") as log:
-        follower = _Follower(studyset, columns, display)
-        process = subprocess.Popen(_command(studyset, stored), stdout=log, stderr=subprocess.STDOUT, cwd=studyset.folder,
+        follower = follower_of(display)
+        process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, cwd=studyset.folder,
                                    start_new_session=True, preexec_fn=lambda parent=os.getpid(): child.die_with(parent),
                                    env=os.environ | {FRONT: str(os.getpid())})
         try:
@@ -53,7 +58,7 @@ def run_workflow(studyset, columns, stored=False):
                 time.sleep(0.15)
             follower.update()
         finally:
-            _stop(process)
+            _stop(process, ends)
             display.end()
     if process.returncode != 0 and shutil.disk_usage(studyset.folder).free < 2**20:
         raise StudyError(f"no space is left for {studyset.folder}; what is finished is kept: make room and run it again")
@@ -68,26 +73,45 @@ def _command(studyset, stored):
             "--config", f"stored={int(stored)}"]
 
 
-class _Follower:
-    """Turns progress events and Snakemake's log into what the display shows."""
+class Follower:
+    """What the log says from here on."""
 
-    def __init__(self, studyset, columns, display):
-        self.columns, self.display = columns, display
-        self.events, self.log = Reader(studyset.progress), open(studyset.log, encoding="utf-8", errors="replace")
+    def __init__(self, studyset):
+        self.log, self.error, self.lines = open(studyset.log, encoding="utf-8", errors="replace"), None, []
         self.log.seek(0, os.SEEK_END)
-        self.done_columns = {(part, column) for part, names in columns.items() for column in names
-                             if studyset.stamp(part, column).exists()}
-        self.now, self.cells, self.expected, self.text = None, 0, 0, ""
-        self.error, self.lines, self.since = None, [], time.monotonic()
 
     def update(self):
         for line in self.log.readlines():
             self.lines = [*self.lines, line.strip()][-12:]
-            rule = re.match(r"rule (\w+):", line)
-            if rule and not self.now and not any(self.columns.values()):  # a stored set, of which nothing is run
-                self.display.show("pages")
+            self.take(line)
             if line.startswith("error: "):
                 self.error = self.error or line.removeprefix("error: ").strip()
+
+    def take(self, line):
+        """For those that show it."""
+
+    def last_words(self):
+        wrong = [line for line in self.lines if "rror" in line]
+        return f"a stage failed: {(wrong or self.lines or ['no word of it'])[-1][:300]}"
+
+
+class _Cells(Follower):
+    """Turns progress events and Snakemake's log into what the display shows."""
+
+    def __init__(self, studyset, columns, display):
+        super().__init__(studyset)
+        self.columns, self.display, self.events = columns, display, Reader(studyset.progress)
+        self.done_columns = {(part, column) for part, names in columns.items() for column in names
+                             if studyset.stamp(part, column).exists()}
+        self.now, self.cells, self.expected, self.text = None, 0, 0, ""
+        self.since = time.monotonic()
+
+    def take(self, line):
+        if re.match(r"rule (\w+):", line) and not self.now and not any(self.columns.values()):  # of a stored set nothing is run
+            self.display.show("pages")
+
+    def update(self):
+        super().update()
         events = self.events.events()
         for event in events:
             self._take(event)
@@ -113,14 +137,10 @@ class _Follower:
         self.display.show(f"[{place}/{len(self.columns)}] {part}", f"{column}: {self.cells} of {total} cells, "
                           f"at most {duration(left)} left" + (f"; {self.text}" if self.text else ""))
 
-    def last_words(self):
-        wrong = [line for line in self.lines if "rror" in line]
-        return f"a stage failed: {(wrong or self.lines or ['no word of it'])[-1][:300]}"
 
-
-def _stop(process):
-    """Ends Snakemake and everything it started."""
-    for sign in (signal.SIGTERM, signal.SIGKILL):
+def _stop(process, ends):
+    """Ends Snakemake and everything that it started here."""
+    for sign in ends:
         if process.poll() is not None:
             return
         os.killpg(process.pid, sign)

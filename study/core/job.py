@@ -1,4 +1,4 @@
-# One job of the workflow: the cells of a part, its page, or the front page.
+# One job of the workflow: the cells of a part or, on a cluster, of a column; a page; the front page.
 import os
 import select
 import signal
@@ -8,10 +8,10 @@ import traceback
 from pathlib import Path
 
 from analysis.core.errors import StudyError
-from study.core import child
+from study.core import child, locks, node
 from study.core.lab import Lab
 from study.core.profile import plan_of
-from study.core.studyset import StudySet, finish
+from study.core.studyset import StudySet, finish, need_records
 
 FRONT = "MBS_STUDY_FRONT"  # the process that everything here belongs to
 
@@ -22,7 +22,8 @@ def main(arguments):
     child.end_on_signals()
     folder, verb, *rest = arguments
     try:
-        {"run": run, "page": page, "index": index}[verb](StudySet(Path(folder).resolve()), *rest)
+        verbs = {"run": run, "page": page, "index": index, "start": begin, "column": column, "draw": draw}
+        verbs[verb](StudySet(Path(folder).resolve()), *rest)
         return 0
     except StudyError as error:
         print(f"error: {error}", file=sys.stderr)
@@ -38,14 +39,37 @@ def main(arguments):
 
 def run(studyset, part):
     """The columns of a part that are not done, and its page."""
-    plan = plan_of(part)
-    for column, seconds in plan.columns(studyset.profile.parts[part], studyset).items():
-        if not studyset.stamp(part, column).exists():
-            lab = Lab(studyset, part, column, seconds)
-            plan.run(lab, column)
-            finish(studyset, part, column, lab.names)
+    for name, seconds in plan_of(part).columns(studyset.profile.parts[part], studyset).items():
+        if not studyset.stamp(part, name).exists():
+            _measure(studyset, part, name, seconds)
     page(studyset, part)
     index(studyset)  # nothing else runs now
+
+
+def begin(studyset):
+    """Of a cluster: the set, on the first node that is free."""
+    node.first(studyset.folder)
+
+
+def column(studyset, part, name):
+    """Of a cluster: one column, on this node."""
+    with locks.only_one_study():
+        node.admit(studyset)
+        seconds = plan_of(part).columns(studyset.profile.parts[part], studyset)[name]
+        _measure(studyset, part, name, seconds)
+
+
+def _measure(studyset, part, name, seconds):
+    lab = Lab(studyset, part, name, seconds)
+    plan_of(part).run(lab, name)
+    finish(studyset, part, name, lab.names)
+
+
+def draw(studyset, part):
+    """Of a cluster: the page of what nodes have measured, when all of it is seen here."""
+    need_records(studyset)
+    page(studyset, part)
+    index(studyset)
 
 
 def page(studyset, part):

@@ -105,7 +105,8 @@ class Lab:
         data = executor.run(cell, context if cell.own and cell.contenders else None, self.set.scratch)
         if not data["context"]:
             data["context"] = self._context(cell, context)
-        records.write(self._path(cell), data)
+        if not self._path(cell).exists():  # a node that was given up may be at work still: the first record stays
+            records.write(self._path(cell), data)
         return self._keep(records.read(self._path(cell), self._name(cell)), at_once)
 
     def _asked_of(self, cell):

@@ -11,9 +11,14 @@ from analysis.core.errors import StudyError
 POLL = 0.5  # s
 
 
-def only_one(folder):
-    """Holds the results in `folder`."""
-    return _hold(Path(folder) / ".lock", f"another study is running in {folder}", 0)
+def only_one(folder, seconds=0):
+    """Holds the results in `folder`, also against other machines that share it."""
+    return _hold(Path(folder) / ".lock", f"another study is running in {folder}", seconds)
+
+
+def noting(folder):
+    """Holds the facts of the set in `folder` for a moment."""
+    return _hold(Path(folder) / ".noting", f"{folder}/.noting is held for longer than anybody needs it", 60)
 
 
 def only_one_study(wait=False, tell=print):
@@ -33,8 +38,7 @@ def only_one_timing():
 @contextlib.contextmanager
 def _hold(path, held, seconds, tell=lambda text: None):
     try:
-        # Another user's file in /tmp can be opened for reading only, and not with O_CREAT.
-        file = os.open(path, os.O_RDONLY | (0 if path.exists() else os.O_CREAT), 0o644)
+        file = _opened(path)
     except OSError as error:
         raise StudyError(f"cannot open the lock {path}: {error.strerror}") from error
     try:
@@ -51,9 +55,18 @@ def _hold(path, held, seconds, tell=lambda text: None):
         os.close(file)
 
 
+def _opened(path):
+    """For writing, which a lock in a folder of several machines (NFS) asks for; another user's file in /tmp can be opened
+    for reading only, and not with O_CREAT."""
+    try:
+        return os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
+    except PermissionError:
+        return os.open(path, os.O_RDONLY)
+
+
 def _taken(file):
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         return True
-    except OSError:
+    except BlockingIOError:
         return False

@@ -3,20 +3,19 @@ import importlib
 import importlib.util
 import os
 import shlex
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
 from analysis.core.parts import need_parts, parts
-from study.core import child, locks, profile as profiles
+from study.core import child, cluster, locks, profile as profiles
+from study.core.disk import writable
 from study.core.front import Display, run_workflow
 from study.core.options import Parser, directory
 from study.core.progress import duration
-from study.core.studyset import StudySet, listed, need_own, need_records, opened, reopen, select, start
+from study.core.studyset import StudySet, listed, need_own, need_records, need_tables, opened, reopen, select, start
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
            "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
@@ -58,6 +57,7 @@ def run(arguments):
     parser.add_argument("--dry-run", action="store_true", help="say what would run and for how long; build nothing")
     parser.add_argument("--list", action="store_true", help="list parts, profiles and implementations")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
+    parser.add_argument("--cluster", metavar="PROFILE", help="as jobs of a cluster: slurm, or a folder like study/cluster/slurm")
     options = parser.parse_args(arguments)
     if options.list:
         return list_choices()
@@ -68,9 +68,17 @@ def run(arguments):
     name = "-".join([profile.name, *(only.replace("/", ".") for only in options.only)])
     folder = options.results or ROOT / "results" / "local" / name
     need_own(folder)
+    way = cluster.profile_folder(options.cluster) if options.cluster is not None else None
+    if way and options.wait:
+        raise StudyError("--wait: found with --cluster, whose jobs wait in its queue: leave it out")
     if options.dry_run:
-        return dry_run(profile, chosen, folder, options.only)
+        return dry_run(profile, chosen, folder, options.only, way)
     writable(folder)
+    if way:
+        need_modules()
+        cluster.run(profile, options.only, chosen, folder, way, columns_of(profile, chosen))
+        print(f"site: {folder / 'index.html'}")
+        return 0
     with locks.only_one(folder), locks.only_one_study(options.wait):
         if "MBS_PROGRAM" not in os.environ:
             set_up(folder / "run.log")
@@ -84,13 +92,6 @@ def run(arguments):
         run_workflow(studyset, columns)
     print(f"site: {folder / 'index.html'}")
     return 0
-
-
-def need_tables(studyset):
-    """StudyError naming a table that was changed."""
-    from analysis.core.schema import need_unchanged
-    for part in studyset.facts["parts"]:
-        need_unchanged(studyset.folder, part)
 
 
 def columns_of(profile, chosen, studyset=None):
@@ -140,10 +141,13 @@ def list_choices():
     return 0
 
 
-def dry_run(profile, chosen, folder, only):
+def dry_run(profile, chosen, folder, only, way):
     if only and (ROOT / "build" / "mbs").exists():
         select(listed(), only)
     print(f"profile {profile.name}: {profile.title}\nresults: {folder}\nleft out: {profile.dropped}")
+    if way:
+        cluster.dry_run(columns_of(profile, chosen), folder)
+        return 0
     total = 0
     for part, columns in columns_of(profile, chosen).items():
         seconds = sum(0 if (folder / ".done" / part / column).exists() else most for column, most in columns.items())
@@ -175,17 +179,6 @@ def need_modules(*modules):
         if importlib.util.find_spec(module) is None:
             raise StudyError(f"Python module {module} is missing for /usr/bin/python3: run "
                              f"study/setup, or apt-get install {MODULES[module]}")
-
-
-def writable(folder):
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        raise StudyError(f"cannot write to {folder}: {error.strerror}") from error
-    if shutil.disk_usage(folder).free < 100 * 2**20:
-        raise StudyError(f"less than 100 MB free for {folder}")
 
 
 if __name__ == "__main__":

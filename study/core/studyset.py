@@ -11,12 +11,13 @@ from analysis.core.files import ROOT, digest, read_object, write_json, write_tex
 from analysis.core.parts import parts
 from analysis.core.registry import Registry
 from analysis.core.view import facts_of, registry_of
-from study.core import executor, profile as profiles
+from study.core import executor, locks, profile as profiles
 from study.core.cell import Cell
 from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
 from study.core.executor import need_same, program_of
 
-BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml"}  # what is written before set.json
+BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml",  # what is written before set.json ...
+         ".cluster", ".snakemake", ".progress"}                             # ... and on a cluster
 
 
 @dataclass(frozen=True)
@@ -52,12 +53,14 @@ class StudySet:
         known = self.facts["programs"]
         paths = {name: ROOT / program_of(*name.split("@")) for name in names}
         found = {name: digest(path)[:16] for name, path in paths.items() if path.exists()}
-        for name in found:
-            if known.get(name, found[name]) != found[name]:
-                raise _other(self.folder, f"programs: {name} was built anew")
         if set(found) - set(known):
-            known.update(found)
-            write_json(self.folder / "set.json", self.facts)
+            with locks.noting(self.folder):  # other nodes of a cluster note theirs
+                known.update(facts_of(self.folder)["programs"])
+                write_json(self.folder / "set.json", self.facts | {"programs": found | known})
+                known.update(found | known)
+        for name in found:
+            if known[name] != found[name]:
+                raise _other(self.folder, f"programs: {name} was built anew")
 
     def clear(self):
         """Removes what a process that was killed has left, in the set's own folders only."""
@@ -137,26 +140,34 @@ def start(folder, profile, only, chosen):
     record = {"profile": profile.name, "only": only, "parts": chosen, "context": context,
               "programs": {},
               "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M")}
-    text = (profiles.FOLDER / f"{profile.name}.yaml").read_text()
-    kept = folder / "profile.yaml"
     if (folder / "set.json").exists():
         known = opened(folder)
-        old = known.facts
-        need_same(old["context"], context, str(folder))
-        known.need_programs([*old["programs"]])
-        for key in ("profile", "only"):
-            if old[key] != record[key]:
-                raise _other(folder, key)
-        if kept.read_bytes() != text.encode():
-            raise _other(folder, "the profile's settings")
-        record |= {"date": old["date"], "programs": old["programs"], "parts": [*old["parts"], *(part for part in chosen if part not in old["parts"])]}
+        need_same(known.facts["context"], context, str(folder))
+        known.need_programs([*known.facts["programs"]])
+        record |= kept_facts(known, profile, only, chosen)
     found = StudySet(folder)
     found.clear()
     write_json(folder / "registry.json", registry.listed)
-    write_text(kept, text)
+    write_text(folder / "profile.yaml", _settings(profile))
     write_json(folder / "set.json", record)
     found.need_programs(["mbs"])  # a lab notes the others when it runs them
     return found
+
+
+def kept_facts(known, profile, only, chosen):
+    """What stays of a set's facts when it is continued, with its parts then; StudyError if it holds results of something else."""
+    old = known.facts
+    for key, asked in (("profile", profile.name), ("only", only)):
+        if old[key] != asked:
+            raise _other(known.folder, key)
+    if (known.folder / "profile.yaml").read_bytes() != _settings(profile).encode():
+        raise _other(known.folder, "the profile's settings")
+    return {"date": old["date"], "programs": old["programs"],
+            "parts": [*old["parts"], *(part for part in chosen if part not in old["parts"])]}
+
+
+def _settings(profile):
+    return (profiles.FOLDER / f"{profile.name}.yaml").read_text()
 
 
 def _other(folder, what):
@@ -228,6 +239,13 @@ def need_records(studyset):
         missing = _missing(studyset, stamp)
         if missing:
             raise StudyError(f"{missing[0]} is missing: study/run measures it again")
+
+
+def need_tables(studyset):
+    """StudyError naming a table that was changed."""
+    from analysis.core.schema import need_unchanged  # needs pandas
+    for part in studyset.facts["parts"]:
+        need_unchanged(studyset.folder, part)
 
 
 def _missing(studyset, stamp):

@@ -13,9 +13,10 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_json, write, write_json
 from study.core import locks, profile as profiles
 from study.core.contender import CONTROL, Contender, on_usual_pairs
+from study.core.disk import writable
 from study.core.executor import fingerprint, program_of
 from study.core.gate import verdicts
-from study.core.main import need_modules, set_up, writable
+from study.core.main import need_modules, set_up
 from study.core.options import Parser, directory
 from study.core.progress import duration
 from study.core.studyset import StudySet, context_of, listed, opened, select

@@ -13,8 +13,9 @@ from analysis.core.files import ROOT, digest, write
 from study.core import child, locks, profile as profiles
 from study.core.cell import Cell
 from study.core.contender import CONTROL, Contender, by_environment, on_usual_pairs, usable
+from study.core.disk import writable
 from study.core.executor import program_of
-from study.core.main import need_modules, set_up, writable
+from study.core.main import need_modules, set_up
 from study.core.options import Parser, directory, rounds
 from study.core.studyset import context_of, listed, need_own, select
 

@@ -7,8 +7,10 @@ import numpy
 
 from analysis.core.errors import StudyError
 from analysis.core.outcomes import FINISHED
+from study.core import cluster
 from study.core.main import need_modules
 from study.core.options import Parser
+from study.tools import sweep_cluster
 
 LINES = 2000  # of parallel coordinates, at most, of finished lanes and of failed ones
 CELLS = 40    # of a surface along a parameter, at most
@@ -22,8 +24,18 @@ def sweep(arguments):
     parser.add_argument("--output", metavar="FILE.png", help="the picture (TABLE.png, here)")
     parser.add_argument("--of", metavar="COLUMN", help="the result that is shown (the first output, else the violation)")
     parser.add_argument("--over", nargs=2, metavar="PARAMETER", help="of the surface (the first two that vary)")
-    options = parser.parse_args(arguments)
+    parser.add_argument("--cluster", metavar="PROFILE", help="make the table first, on a cluster (study/cluster/README.md): "
+                        "study/sweep TABLE --cluster slurm --parts K -- SCENE and what mbs sweep takes")
+    parser.add_argument("--parts", type=int, default=16, metavar="K", help="jobs of its array (16)")
+    here = arguments.index("--") if "--" in arguments else len(arguments)
+    options, words = parser.parse_args(arguments[:here]), arguments[here + 1:]
     need_modules("pandas", "matplotlib")
+    if (options.cluster is None) != (not words):
+        raise StudyError("found one of --cluster PROFILE and -- SCENE …, allowed are both or none (see study/sweep --help)")
+    if options.parts < 1:
+        raise StudyError(f"--parts: found {options.parts}, allowed is 1 or more")
+    if words and not Path(options.table).exists():
+        sweep_cluster.run(words, options.table, options.parts, cluster.profile_folder(options.cluster))
     table, parameters, result = read(options.table, options.of)
     over = options.over or [name for name in parameters if table[name].nunique() > 1][:2] or parameters[:1]
     if unknown := [name for name in over if name not in parameters]:

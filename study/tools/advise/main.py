@@ -9,8 +9,9 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write_json
 from study.core import locks, profile as profiles
 from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
+from study.core.disk import writable
 from study.core.executor import program_of
-from study.core.main import need_modules, writable
+from study.core.main import need_modules
 from study.core.options import Parser, directory, positive
 from study.core.studyset import context_of, listed, need_own, select
 

@@ -1,0 +1,127 @@
+# study/run --cluster: the columns of a set as jobs of a cluster. This machine measures nothing: it hands jobs over, watches
+# them and draws. What a node does is node.py's; how a cluster is spoken to is a profile's: study/cluster/README.md.
+import math
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, write_json
+from study.core import locks, studyset as sets
+from study.core.front import Follower, follow
+from study.core.node import home, own_sets, refusals
+from study.core.progress import duration
+from study.core.studyset import StudySet
+
+PROFILES = ROOT / "study" / "cluster"
+GRACE = 15  # minutes over a budget: the last cell's limit, at most 600 s, and what a node does first
+ENDING = 120  # s that jobs may take to end
+
+
+def profile_folder(name):
+    """Of a name in study/cluster, or a path; StudyError if it is no profile."""
+    folder = PROFILES / name if (PROFILES / name).is_dir() else Path(name).absolute()
+    missing = [one for one in ("config.yaml", "submit", "status", "cancel") if not (folder / one).is_file()]
+    if missing:
+        known = ", ".join(sorted(path.parent.name for path in PROFILES.glob("*/config.yaml")))
+        raise StudyError(f"--cluster: {folder} is no profile ({missing[0]} is missing); known: {known}")
+    return folder
+
+
+def minutes(columns):
+    """{part: {column: limit of its job}}"""
+    return {part: {column: math.ceil(seconds / 60) + GRACE for column, seconds in names.items()} for part, names in columns.items()}
+
+
+def dry_run(columns, folder):
+    """Prints the jobs that are not done, and the node-hours of their budgets."""
+    total = jobs = 0
+    for part, names in columns.items():
+        for column, seconds in names.items():
+            if not (folder / ".done" / part / column).exists():
+                print(f"  {part:10} {column:24} at most {duration(seconds)} of a node")
+                total, jobs = total + seconds, jobs + 1
+    print(f"{jobs} jobs, at most {total / 3600:.2f} node-hours")
+
+
+def run(profile, only, chosen, folder, cluster, columns):
+    """Runs a set to its end, then those that nodes of another kind began beside it. `cluster`: the profile's folder."""
+    with locks.only_one(folder):
+        end_jobs(folder, cluster)
+        _plan(profile, only, chosen, folder, columns)
+        if not (folder / "set.json").exists():
+            _workflow(StudySet(folder), cluster, columns, "set.json")
+        studyset = _continued(folder, profile, only, chosen)
+        sets.reopen(studyset, columns)
+        sets.need_tables(studyset)
+        _workflow(studyset, cluster, columns, "all")
+    for host, reason in refusals(folder).items():
+        print(f"{host} is not of this set: {reason}")
+    for own in own_sets(folder):
+        print(f"a set of its own: {own}")
+        run(profile, only, chosen, own, cluster, columns)
+
+
+def _plan(profile, only, chosen, folder, columns):
+    shutil.rmtree(home(folder) / "refused", ignore_errors=True)  # a node may be another one by now
+    (home(folder) / "refused").mkdir(parents=True)
+    write_json(home(folder) / "plan.json", {"profile": profile.name, "only": only, "parts": chosen, "columns": columns,
+                                            "minutes": minutes(columns), "grace": GRACE})
+    (folder / ".progress").write_text("")
+
+
+def _continued(folder, profile, only, chosen):
+    """The set, for a question that is still the same; that the nodes are its own they see themselves."""
+    known = sets.opened(folder)
+    write_json(folder / "set.json", known.facts | sets.kept_facts(known, profile, only, chosen))
+    found = StudySet(folder)
+    found.clear()
+    return found
+
+
+def _workflow(studyset, cluster, columns, target):
+    command = ["/usr/bin/python3", "-m", "snakemake", target, "--snakefile", str(PROFILES / "Snakefile"), "--directory",
+               str(studyset.folder), "--profile", str(cluster), "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor"]
+    try:
+        follow(studyset, command, lambda display: _Columns(studyset, columns, display), (signal.SIGINT, signal.SIGTERM, signal.SIGKILL))
+    except StudyError as error:
+        told = "; ".join(f"{host} is not of this set: {reason}" for host, reason in refusals(studyset.folder).items())
+        raise StudyError(f"{error}; {told}" if told else str(error)) from error
+    finally:
+        end_jobs(studyset.folder, cluster)
+
+
+class _Columns(Follower):
+    """How many columns are done."""
+
+    def __init__(self, studyset, columns, display):
+        super().__init__(studyset)
+        self.display = display
+        self.stamps = [studyset.stamp(part, column) for part, names in columns.items() for column in names]
+        self.looked = 0.0
+
+    def update(self):
+        super().update()
+        if time.monotonic() - self.looked > 1:
+            self.looked = time.monotonic()
+            self.display.show("cluster", f"{sum(stamp.exists() for stamp in self.stamps)} of {len(self.stamps)} columns")
+
+
+def end_jobs(folder, cluster):
+    """Cancels the jobs that this run, or one that was killed, has left in the queue, and waits until they are gone."""
+    path, end = home(folder) / "jobs", time.monotonic() + ENDING
+    ids = [one for one in path.read_text().split() if runs(folder, cluster, one)] if path.exists() else []
+    if ids:
+        subprocess.run([str(cluster / "cancel"), *ids], cwd=folder, check=False)
+    while any(runs(folder, cluster, one) for one in ids):
+        if time.monotonic() > end:
+            raise StudyError(f"jobs {' '.join(ids)} do not end: the cluster does not answer, or keeps them; try again later")
+        time.sleep(1)
+    path.unlink(missing_ok=True)
+
+
+def runs(folder, cluster, job):
+    return subprocess.run([str(cluster / "status"), job], cwd=folder, capture_output=True, text=True,
+                          check=False).stdout.strip() == "running"

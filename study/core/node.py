@@ -1,0 +1,136 @@
+# What a node of a cluster does in a set that several share: it sees whether it is of the set's kind, then runs a column.
+# One that is not begins a set of its own beside it, and is not asked again.
+import os
+import re
+import socket
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, digest, read_object, write_json, write_text
+from analysis.core.records import Record
+from study.core import executor, locks, profile as profiles
+from study.core.cell import LAYOUT, Cell
+from study.core.contender import CONTROL, Contender, usable
+from study.core.disk import writable
+from study.core.executor import program_of
+from study.core.studyset import context_of, start
+
+CONTROL_SCENE, CONTROL_WORDS = "four-bar:10", ("--steps", 20, "--benchmark_repetitions=5")
+TRIES = 2  # so often must an A/A control be decided to count as failed: once in twenty it is by chance
+
+
+def home(folder):
+    """Of what a cluster's run keeps besides the set."""
+    return Path(folder) / ".cluster"
+
+
+def name():
+    """This node's, as the cluster calls it."""
+    return os.environ.get("SLURMD_NODENAME") or socket.gethostname()
+
+
+def refusals(folder):
+    """{node: why it is not of the set}"""
+    return {path.name: path.read_text().splitlines()[0] for path in sorted((home(folder) / "refused").glob("*"))}
+
+
+def own_sets(folder):
+    """Folders of the sets that such nodes have begun."""
+    named = {path.read_text().splitlines()[1] for path in (home(folder) / "refused").glob("*")}
+    return sorted(Path(one) for one in named if one)
+
+
+def begin(folder):
+    """The set of what the plan says, of this node's kind."""
+    plan = read_object(home(folder) / "plan.json")
+    start(folder, profiles.load(plan["profile"], plan["parts"]), plan["only"], plan["parts"])
+
+
+def first(folder):
+    """Begins the set; a node on which that fails is not asked again."""
+    try:
+        begin(folder)
+    except StudyError as error:
+        write_text(home(folder) / "refused" / name(), f"{error}\n\n")
+        raise
+
+
+def admit(studyset):
+    """StudyError unless this node is of the set's kind, has room and passes its A/A control; it is not asked again then."""
+    folder, own, alone = studyset.folder, None, False
+    try:
+        writable(Path(tempfile.gettempdir()))
+        one = Contender(CONTROL.name, CONTROL.variant, usable(studyset.registry, studyset.profile.blas["all"]))
+        context = context_of(one)
+        only = home(folder) / "only"
+        reason = another(studyset, context)
+        if only.exists() and only.read_text().strip() != name():
+            reason = f"it is that of {only.read_text().strip()} alone, whose A/A control failed"
+        elif reason:
+            own = _beside(folder, f"{_slug(context['cpu_model'])}-{_kind(context)}")
+        elif not (home(folder) / "nodes" / name()).exists() and not only.exists():
+            reason = uncontrolled(studyset)
+            own, alone = _beside(folder, _slug(name())) if reason else None, True
+    except (StudyError, OSError) as error:  # neither of this set nor of another one: its disk is full, its program does not run
+        reason = str(error)
+    if reason:
+        if own:
+            _begin_beside(folder, own, alone)
+        write_text(home(folder) / "refused" / name(), f"{reason}\n{own or ''}\n")
+        raise StudyError(f"{name()} is not of this set: {reason}")
+    write_text(home(folder) / "nodes" / name(), "admitted\n")
+
+
+def another(studyset, context):
+    """In what this machine, its libraries or its build differ from the set's; "" if in nothing."""
+    known, found = executor.fingerprint(studyset.facts["context"]), executor.fingerprint(context)
+    for key in executor.FINGERPRINT:
+        if known[key] != found[key]:
+            return f"another machine or build ({key} is '{found[key]}' on {context['cpu_model']}, the set's is '{known[key]}')"
+    known, program = studyset.facts["programs"], ROOT / program_of()
+    return "another build (mbs)" if known.get("mbs") not in (None, digest(program)[:16]) else ""
+
+
+def uncontrolled(studyset):
+    """Why the A/A control of this node failed, in which a contender is timed beside itself; "" if it did not."""
+    from analysis.core.timing import TWIN, processes, ratio  # needs pandas
+    from study.core.timing import LAYOUTS
+    one = studyset.contenders[0]
+    twin = replace(one, name=one.name + TWIN, variant=one.variant + TWIN)
+    with locks.only_one_timing():
+        for _ in range(TRIES):
+            found = []
+            for number in range(1, LAYOUTS + 1):
+                cell = Cell("bench", CONTROL_SCENE, (one, twin), (*CONTROL_WORDS, "--seed", number), "control", number,
+                            f"{LAYOUT}{number}", timed=True).settled()
+                found.append(Record("control", **executor.run(cell, None, studyset.scratch)))
+            seen = ratio(processes(found), twin.name, one.name)
+            if not (seen.low > 1 or seen.high < 1):
+                return ""
+    return f"its A/A control failed: {one.name} takes {seen.low:.3f} to {seen.high:.3f} times its own time"
+
+
+def _beside(folder, slug):
+    """The folder of another set; None beside one that is itself beside another: that has the kinds which it left."""
+    return None if (home(folder) / "beside").exists() else folder.with_name(f"{folder.name}-{slug}")
+
+
+def _begin_beside(folder, own, alone):
+    writable(own)
+    if alone:  # whose control failed: no other node is measured with it
+        write_text(home(own) / "only", f"{name()}\n")
+    with locks.only_one(own, 60):
+        if not (own / "set.json").exists():
+            write_text(home(own) / "beside", f"{folder}\n")
+            write_json(home(own) / "plan.json", read_object(home(folder) / "plan.json"))
+            begin(own)
+
+
+def _slug(text):
+    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:40]
+
+
+def _kind(context):
+    return digest(f"{sorted(executor.fingerprint(context).items())} {digest(ROOT / program_of())}")[:6]
