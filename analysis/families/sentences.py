@@ -16,7 +16,7 @@ def answers(tables, view):
         held = summary(tables["held"])
         found.append({"anchor": "rule", "text": f"A rule that compares the predicted times of at most three libraries in a form of the step, five in all, chooses one that takes {100 * held['mean_loss']:.1f} % longer "
                       f"than the fastest on average, {100 * held['worst_loss']:.0f} % at worst, on families that it was not fitted on"
-                      f"{_unknown(held['unknown'])}; {100 * held['within']:.0f} % of "
+                      f"{_unknown(held['unknown'], ' ({})')}; {100 * held['within']:.0f} % of "
                       "the step times are within 1.5 times of the predicted."})
     own = scenes[scenes.implementation.isin(view.registry.own) & (scenes.status == "ok") & scenes.to_rival.notna() & (scenes.scheme == "penalty")]
     for name, rows in own.groupby("implementation", sort=False):
@@ -27,8 +27,8 @@ def answers(tables, view):
     return found + _defaults(tables["defaults"])
 
 
-def _unknown(count):
-    return f" (of {count} choices not known: not timed there)" if count else ""
+def _unknown(count, form):
+    return form.format(f"{count} choices that have no time there are left out") if count else ""
 
 
 def _defaults(rows):
@@ -47,12 +47,12 @@ def cases(tables, view):
     found, held = [], tables["held"]
     if len(held):
         held = held.merge(tables["mechanisms"][["scene", DECIDES]], on="scene")
-        for (scheme, name), rows in held.groupby(["scheme", "taken"], sort=False):
+        for (scheme, name), rows in held.sort_values("scheme", kind="stable").groupby(["scheme", "taken"], sort=False):
             low, high = (number(value) for value in (rows[DECIDES].min(), rows[DECIDES].max()))
             found.append({"case": f"{scheme.capitalize()} form, and `mbs describe` expects {name} to be the fastest (here with {low} to {high} non-zeros a "
                                   "column of the factor)", "link": "families.html#rule",
                           "take": f"{name}; on families left out the rule's choice takes {100 * rows.loss.mean():.1f} % longer than the fastest library "
-                                  f"on average, {100 * rows.loss.max():.0f} % at worst ({len(rows)} cases{_unknown(rows.loss.isna().sum())})"})
+                                  f"on average, {100 * rows.loss.max():.0f} % at worst ({len(rows)} cases{_unknown(rows.loss.isna().sum(), '; {}')})"})
     ahead = fastest_own(tables["scenes"], view.registry)
     if len(ahead):
         names = ", ".join(f"{name} on {count}" for name, count in ahead.implementation.value_counts().items())

@@ -1,6 +1,5 @@
-// The reference's matrix: which unknowns it couples, and an order of them with a small envelope.
+// The reference's matrix: which unknowns it couples, and an order of them with little work.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -12,11 +11,11 @@ namespace mbs {
 
 namespace {
 
-/// Of factorizing in an envelope, in proportion.
+/// Multiplications of a factorization in this envelope.
 double work(const std::vector<int>& first) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    sum += std::pow(static_cast<double>(i) - first[i] + 1.0, 2);
+  for (int i = 0; i < static_cast<int>(first.size()); ++i) {
+    for (int j = first[i]; j <= i; ++j) sum += j - std::max(first[i], first[j]) + 1;
   }
   return sum;
 }
