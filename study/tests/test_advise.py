@@ -496,6 +496,13 @@ def test_a_shorter_step_is_said_to_help_only_where_it_was_seen_to():
     assert advice.helps == ["--step 0.00125: in such steps penalty keeps the error"]
 
 
+def test_a_deadline_that_would_do_is_named_also_where_no_candidate_was_timed():
+    advice = Advice(Question("bar", 1e-3, 1.0, 2.0, 45.0), pilot_duration=1.0, found={PENALTY: Found(
+        PENALTY, pilots(9e-4, 2e-4), reason="a step takes 5 us, beyond the deadline", chosen_us=5.0)})
+    _what_helps(advice, {"a/b": 1.0}, {"a/b": {"settings": []}}, None, lambda share: 1.0, lambda text: None)
+    assert advice.helps == ["--deadline-us 7.2: at best 99 % of the steps take up to about 6 us"]
+
+
 def test_what_was_too_late_is_named_with_its_time():
     late = timing.Candidate(PENALTY, "a/b", 1e-3, [{"step_us": 1.0, "step_us_p99": 12.0}])
     assert timing.ranked([late], 10.0) == []

@@ -18,6 +18,7 @@ BEHIND = 3.0       # times the least time that the rule foresees: who is slower 
 DEAR = 100.0       # us a step from which probes are as short as they can be
 SLOWER = 1.7       # times the time of the most promising, by pilots and probe: who is slower is not timed
 PILOT_SHARE, TIMING_SHARE = 0.6, 0.8  # of the budget: when pilots, when timings must be done
+P99 = 1.2          # times the time of a step: its 99th percentile, about, where that was not measured
 HALVES = 6         # of the duration, to find for how long an error can be kept
 
 
@@ -218,8 +219,10 @@ def _what_helps(advice, speeds, variants, run, left, tell):
                 advice.helps.append(f"--step {question.step / parts:g}: in such steps {setting.name} keeps the error")
                 break
     late = [one.late_us for one in advice.candidates if one.late_us]
-    if late:
-        advice.helps.append(f"--deadline-us {1.2 * min(late):.3g}: 99 % of the steps took up to {min(late):.3g} us at best")
+    slow = [one.chosen_us for one in advice.found.values() if one.chosen_us > (question.deadline_us or math.inf)]
+    if late or slow:
+        soonest = min([*late, *(P99 * us for us in slow)])
+        advice.helps.append(f"--deadline-us {1.2 * soonest:.3g}: at best 99 % of the steps take up to about {soonest:.3g} us")
         return
     for halving in range(1, HALVES + 1):
         duration = float(f"{question.duration / 2**halving:.3g}")
