@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <nlohmann/json.hpp>
+
 #include "controls/controls.hpp"
 #include "model_math/closed_parts.hpp"
 #include "run/initial_state.hpp"
@@ -65,6 +68,88 @@ TEST(BranchWatch, LetsALoopPassItsSingularPositions) {
   const RunSummary estimated = run(scene, test::reference(), settings);
   EXPECT_EQ(estimated.status, RunStatus::plausible) << estimated.reason;
   EXPECT_NE(estimated.reason.find("singular position"), std::string::npos) << estimated.reason;
+}
+
+/// A crank-rocker 1e-7 m from its change point with a light rod hanging on it; how its feet are
+/// held.
+Scene crank_rocker(const std::string& held_a, const std::string& held_d, double speed) {
+  auto scene =
+      nlohmann::json::parse(R"({"gravity": [0, 0], "points": [{"name": "A", "position": [0, 0], )" +
+                            held_a + R"(}, {"name": "D", "position": [1, 0], )" + held_d + R"(},
+         {"name": "B", "position": [0.21612086831702532, 0.33658830977606014]},
+         {"name": "C", "position": [1.2161208683170182, 0.33658842861556915]},
+         {"name": "E", "position": [1.2161208683170182, 0.63658842861556915]}],
+         "rods": [{"name": "crank", "between": ["A", "B"], "mass": 1, "length": 0.3999999},
+                  {"name": "coupler", "between": ["B", "C"], "mass": 1, "length": 1},
+                  {"name": "rocker", "between": ["D", "C"], "mass": 1, "length": 0.4},
+                  {"name": "hanging", "between": ["C", "E"], "mass": 1e-6, "length": 0.3}]})");
+  scene["points"][2]["velocity"] = {speed - 0.33658830977606014, 0.21612086831702532};
+  scene["points"][3]["velocity"] = {speed - 0.33658830977605086, 0.21612079201106799};
+  scene["points"][4]["velocity"] = scene["points"][3]["velocity"];
+  return scene_of(scene, "test");
+}
+
+Scene crank_rocker() { return crank_rocker(R"("fixed": true)", R"("fixed": true)", 0.0); }
+
+Scene carried_crank_rocker() {
+  return crank_rocker(R"("driven": {"x": {"polynomial": [0, 0.5]}, "y": 0})",
+                      R"("driven": {"x": {"polynomial": [1, 0.5]}, "y": 0})", 0.5);
+}
+
+TEST(ClosedParts, LeaveOutWhatHangsOnALoop) {
+  for (const Scene& scene : {crank_rocker(), carried_crank_rocker()}) {
+    const ClosedParts parts = closed_parts(scene.model, initial_state(scene.model).q, 60);
+    ASSERT_EQ(parts.free.size(), 1U);
+    EXPECT_EQ(parts.free[0].rows.size(), 3U);
+    EXPECT_EQ(parts.free[0].cols.size(), 4U);
+  }
+}
+
+TEST(BranchWatch, FindsJumpsOfLoopsThatAreCarriedOrHaveSomethingHanging) {
+  for (const Scene& scene : {crank_rocker(), carried_crank_rocker()}) {
+    RunSettings settings;
+    settings.step.scheme = Scheme::saddle_point;
+    settings.step.step = 1e-2;
+    settings.step.penalty = automatic_penalty(scene.model, settings.step);
+    settings.duration = 3.2;
+    const RunSummary summary = run(scene, test::reference(), settings);
+    EXPECT_EQ(summary.status, RunStatus::wrong_branch) << summary.reason;
+    EXPECT_NE(summary.reason.find("another assembly"), std::string::npos) << summary.reason;
+  }
+}
+
+TEST(BranchWatch, DoesNotTakeTheOtherAssemblyForTheSameWhereTheyAreClose) {
+  // A slider-crank, its rod 1e-7 m too long to pass upright.
+  const Scene scene = scene_of(nlohmann::json::parse(R"({"gravity": [0, 0], "points": [
+      {"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "D", "position": [0, 0.15], "fixed": true},
+      {"name": "Dx", "position": [1, 0.15], "fixed": true},
+      {"name": "B", "position": [0.2161209223472559, 0.33658839392315865]},
+      {"name": "C", "position": [0.733503644568617, 0.15]}],
+      "rods": [{"name": "crank", "between": ["A", "B"], "mass": 1, "length": 0.4},
+               {"name": "rod", "between": ["B", "C"], "mass": 1, "length": 0.5500001}],
+      "masses": [{"point": "C", "mass": 1}],
+      "constraints": [{"name": "slides", "type": "on_line", "point": "C", "line": ["D", "Dx"]}]})"),
+                               "test");
+  State state = initial_state(scene.model);
+  const auto place = [&](double angle, double side) {
+    const auto at = [side](double phi) {
+      const double x = 0.4 * std::cos(phi), y = 0.4 * std::sin(phi);
+      const double slid = std::sqrt(0.5500001 * 0.5500001 - (y - 0.15) * (y - 0.15));
+      return std::vector<double>{x, y, x + side * slid, 0.15};
+    };
+    state.q = at(angle);
+    const std::vector<double> next = at(angle + 1e-7);
+    for (std::size_t i = 0; i < 4; ++i) state.v[i] = (next[i] - state.q[i]) / 1e-7;
+    return state;
+  };
+  constexpr double kChange = -1.5707963267948966;
+  for (const double side : {1.0, -1.0}) {
+    BranchWatch watch(scene, place(kChange - 0.3, 1.0), judged_length(scene.model), true);
+    EXPECT_EQ(watch.look(0.301, place(kChange + 1e-3, side)), "");
+    const std::string found = watch.look(0.6, place(kChange + 0.3, side));
+    EXPECT_EQ(found.empty(), side > 0.0) << found;
+  }
 }
 
 TEST(Rounding, ShakesLightPartsInThePenaltyForm) {

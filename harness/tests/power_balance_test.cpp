@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "controls/controls.hpp"
 #include "model_math/kinematics.hpp"
 #include "run/initial_state.hpp"
+#include "run/judge.hpp"
 #include "run/run.hpp"
 #include "run/settings.hpp"
 #include "scene_file/load_scene.hpp"
@@ -57,6 +60,40 @@ TEST(PowerBalance, IsNoQuestionWhereEnergyIsConservedOrDriversSetAll) {
     settings.duration = 0.1;
     EXPECT_FALSE(run(scene, test::reference(), settings).imbalance_max) << name;
   }
+}
+
+TEST(EvenCarriage, ConservesEnergyInItsFrame) {
+  const auto pendulum = [](const std::string& x, const std::string& held) {
+    return scene_of(nlohmann::json::parse(R"({"gravity": [0, -3], "points": [
+        {"name": "A", "position": [0, 0], )" +
+                                          held + R"(},
+        {"name": "B", "position": [0.6, 0.8], "velocity": [)" +
+                                          x + R"(, 0.6]}],
+        "rods": [{"name": "rod", "between": ["A", "B"], "mass": 1, "length": 1}]})"),
+                    "test");
+  };
+  const Scene even = pendulum("4.2", R"("driven": {"x": {"polynomial": [0, 5]}, "y": 0})");
+  const Scene uneven = pendulum("4.2", R"("driven": {"x": {"polynomial": [0, 5, 0.1]}, "y": 0})");
+  const Scene still = pendulum("-0.8", R"("fixed": true)");
+  RunSettings settings;
+  settings.step.scheme = Scheme::saddle_point;
+  settings.step.step = 1e-2;
+  settings.step.penalty = automatic_penalty(still.model, settings.step);
+  settings.duration = 1.0;
+  const auto drift = [&](const Scene& scene) {
+    return run(scene, test::reference(), settings).energy_drift_max;
+  };
+  ASSERT_TRUE(drift(even) && drift(still));
+  EXPECT_NEAR(*drift(even), *drift(still), 1e-6);
+  EXPECT_FALSE(drift(uneven));
+  // A rod that turns a tenth faster about its foot than it did.
+  const State start = initial_state(even.model);
+  Judge judge(even, start, 0.0);
+  State faster = start;
+  faster.v[0] = 5 + 1.1 * (faster.v[0] - 5);
+  faster.v[1] *= 1.1;
+  judge.judge(0.0, faster);
+  EXPECT_GT(*judge.energy_drift_max(), 0.1);
 }
 
 }  // namespace

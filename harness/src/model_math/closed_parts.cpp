@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
+#include <utility>
 
 #include "model_math/jacobian_rank.hpp"
 #include "model_math/kinematics.hpp"
@@ -83,6 +85,27 @@ class Pattern {
       if (is_tight(row, loose) && index[at(row)] < 0) visit(row);
     }
     return result;
+  }
+
+  /// Takes off what hangs on the rest: rows with two columns or more that are in no other row.
+  void take_off_hanging() {
+    std::vector<int> uses(rows_of_.size());
+    for (std::size_t col = 0; col < uses.size(); ++col) {
+      uses[col] = static_cast<int>(rows_of_[col].size());
+    }
+    const auto is_own = [&](int col) { return uses[at(col)] == 1; };
+    std::vector<int> stack(cols_of_.size());
+    std::iota(stack.begin(), stack.end(), 0);
+    while (!stack.empty()) {
+      const int row = stack.back();
+      stack.pop_back();
+      if (std::ranges::count_if(cols_of_[at(row)], is_own) < 2) continue;
+      for (const int col : std::exchange(cols_of_[at(row)], {})) {
+        --uses[at(col)];
+        std::erase(rows_of_[at(col)], row);
+        for (const int next : rows_of_[at(col)]) stack.push_back(next);
+      }
+    }
   }
 
   /// The loose columns in groups that share rows.
@@ -200,8 +223,8 @@ ClosedParts closed_parts(const Model& model, const std::vector<double>& q, int l
       result.blocks.push_back(sorted(std::move(block)));
     }
     result.driven = sorted(std::move(result.driven));
-    return result;
   }
+  pattern.take_off_hanging();
   constexpr std::size_t kLeastLoop = 3;  // rows; with fewer nothing is closed
   for (ConstraintBlock& piece : pattern.pieces(loose)) {
     const std::size_t size = piece.rows.size();

@@ -24,7 +24,9 @@ struct ClosedParts {
   /// Its strongly connected blocks: each is as many rows as columns, and the sign of the
   /// determinant of each stays along a motion that goes on without a jump.
   std::vector<ConstraintBlock> blocks;
-  /// Parts with one column more than rows, where nothing is driven.
+  /// Parts with one column more than rows, which no driver fixes though one may carry them along.
+  /// What hangs on a part by a row with two columns or more of its own, such as a wheel or a
+  /// pendulum, is none of it.
   std::vector<ConstraintBlock> free;
   /// Columns less independent rows.
   int freedoms = 0;

@@ -58,6 +58,20 @@ class PartCurve {
     return x;
   }
 
+  /// Takes time and the coordinates of other parts from between the two.
+  void move(const CurveEnd& from, const CurveEnd& to, double share) {
+    t_ = std::lerp(from.t, to.t, share);
+    for (std::size_t i = 0; i < q_.size(); ++i) q_[i] = std::lerp((*from.q)[i], (*to.q)[i], share);
+  }
+  /// All coordinates with those of the part.
+  [[nodiscard]] std::vector<double> all(const Vector& x) const {
+    std::vector<double> q = q_;
+    for (std::size_t i = 0; i < part_.cols.size(); ++i) {
+      q[at(part_.cols[i])] = x[static_cast<Eigen::Index>(i)];
+    }
+    return q;
+  }
+
   /// Phi of the rows and its derivative by x.
   void evaluate(const Vector& x, Vector& phi, Matrix& J) {
     for (std::size_t i = 0; i < part_.cols.size(); ++i) {
@@ -272,6 +286,32 @@ FollowedCurve follow_curve(const Model& model, const ConstraintBlock& part,
   const FollowedCurve back =
       follow(curve, from, to, -1.0, length, tolerance);  // it may have turned
   return back.end == FollowedCurve::End::reached ? back : onward;
+}
+
+std::optional<std::vector<double>> carry_along(const Model& model, const ConstraintBlock& part,
+                                               const CurveEnd& from, const CurveEnd& to,
+                                               double length) {
+  constexpr double kFirst = 0.25, kLeast = 1e-5;  // of the time
+  const std::vector<ConstraintBlock> none;
+  PartCurve curve(model, part, none, from);
+  Follower follower(curve, length);
+  auto place = follower.find(curve.coordinates(from), curve.direction(from).normalized());
+  double done = 0.0, now = kFirst;
+  while (place && done < 1.0) {
+    const double share = std::min(1.0, done + now);
+    curve.move(from, to, share);
+    const auto next = follower.find(place->x, place->tangent);
+    if (!next || place->tangent.dot(next->tangent) < kBend ||
+        next->determinants[0] * place->determinants[0] <= 0.0) {
+      now /= 2;
+      if (now < kLeast) return std::nullopt;
+      continue;
+    }
+    place = next;
+    done = share;
+  }
+  if (!place) return std::nullopt;
+  return curve.all(place->x);
 }
 
 }  // namespace mbs

@@ -47,4 +47,12 @@ FollowedCurve follow_curve(const Model& model, const ConstraintBlock& part,
                            const std::vector<ConstraintBlock>& blocks, const CurveEnd& from,
                            const CurveEnd& to, double length, double tolerance);
 
+/// Takes a part with one freedom, whose constraints move, along from `from.t` to `to.t`: in small
+/// steps of time, each across the curve of that instant, so that it stays on its assembly. `from.v`
+/// is along the curve; coordinates of other parts come from both. Returns q (n) with the part's
+/// coordinates at `to.t`; none if a bend is too sharp for that.
+std::optional<std::vector<double>> carry_along(const Model& model, const ConstraintBlock& part,
+                                               const CurveEnd& from, const CurveEnd& to,
+                                               double length);
+
 }  // namespace mbs

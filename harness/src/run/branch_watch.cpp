@@ -9,7 +9,6 @@
 #include <cmath>
 #include <utility>
 
-#include "model_math/follow_curve.hpp"
 #include "model_math/kinematics.hpp"
 #include "scene/row_names.hpp"
 
@@ -18,6 +17,8 @@ namespace {
 
 constexpr int kLargestPart = 60;   // rows; larger ones would cost more than steps
 constexpr double kUnknown = 1e-9;  // |determinant| over its rows' lengths: no sign
+constexpr double kSame = 1e-5;     // of the length: more than what constraints are violated by
+constexpr int kMostUncertain = 8;  // looks
 constexpr double kApart = 3e-3;    // of the length: less is not yet another assembly
 
 }  // namespace
@@ -32,11 +33,17 @@ BranchWatch::BranchWatch(const Scene& scene, const State& start, double length, 
   if (!parts.driven.rows.empty()) {
     add_part(std::move(parts.driven), std::move(parts.blocks), matrices);
   }
-  for (ConstraintBlock& part : parts.free) add_part(std::move(part), {}, matrices);
+  const bool is_driven =
+      !scene.model.driven_points().empty() || !scene.model.driven_values().empty();
+  for (ConstraintBlock& part : parts.free) {
+    add_part(std::move(part), {}, matrices);
+    parts_.back().is_carried = is_driven;
+  }
   if (!is_needed()) return;
   matrices_.emplace(scene.model, std::move(matrices));
   now_.resize(matrices_->size());
   tangent_ = start.v;
+  find_tangents(start);
   find_signs(0.0, start);
   moor(0.0, start);
 }
@@ -47,6 +54,21 @@ void BranchWatch::add_part(ConstraintBlock all, std::vector<ConstraintBlock> blo
   if (blocks.empty()) matrices.push_back(all);
   part_of_.resize(matrices.size(), parts_.size());
   parts_.push_back({std::move(all), std::move(blocks)});
+}
+
+/// Of the parts that are carried.
+void BranchWatch::find_tangents(const State& start) {
+  matrices_->evaluate(0.0, start.q);
+  for (std::size_t m = 0; m < matrices_->size(); ++m) {
+    if (!is_carried(m)) continue;
+    const auto& cols = matrices_->block(m).cols;
+    const auto rows = static_cast<Eigen::Index>(matrices_->block(m).rows.size());
+    const Eigen::VectorXd tangent =
+        matrices_->matrix(m).topRows(rows).fullPivLu().kernel().col(0).normalized();
+    for (std::size_t i = 0; i < cols.size(); ++i) {
+      tangent_[static_cast<std::size_t>(cols[i])] = tangent[static_cast<Eigen::Index>(i)];
+    }
+  }
 }
 
 /// 1 where the motion goes on as `tangent`, -1 where it has turned back.
@@ -66,10 +88,11 @@ void BranchWatch::find_signs(double t, const State& state) {
     Eigen::MatrixXd& square = matrices_->matrix(m);
     const Eigen::Index size = square.rows();
     if (BlockJacobian::is_open(block)) {  // one freedom: the direction of motion below
-      const double sign = turned(block, state);
+      const std::vector<double>& below = is_carried(m) ? tangent_ : state.v;
+      const double sign = is_carried(m) ? 1.0 : turned(block, state);
       for (Eigen::Index j = 0; j < size; ++j) {
         const int col = block.cols[static_cast<std::size_t>(j)];
-        square(size - 1, j) = sign * state.v[static_cast<std::size_t>(col)];
+        square(size - 1, j) = sign * below[static_cast<std::size_t>(col)];
       }
     }
     double lengths = 1.0;
@@ -97,6 +120,18 @@ void BranchWatch::moor(double t, const State& state) {
   for (std::size_t m = 0; m < now_.size(); ++m) {
     const ConstraintBlock& block = matrices_->block(m);
     if (!BlockJacobian::is_open(block)) continue;
+    if (is_carried(m)) {
+      if (now_[m] == 0) continue;
+      const Eigen::MatrixXd& square = matrices_->matrix(m);  // as find_signs() left it
+      const Eigen::VectorXd tangent =
+          square.partialPivLu()
+              .solve(Eigen::VectorXd::Unit(square.rows(), square.rows() - 1))
+              .normalized();
+      for (std::size_t i = 0; i < block.cols.size(); ++i) {
+        tangent_[static_cast<std::size_t>(block.cols[i])] = tangent[static_cast<Eigen::Index>(i)];
+      }
+      continue;
+    }
     const double sign = turned(block, state);
     for (const int col : block.cols) {
       const auto i = static_cast<std::size_t>(col);
@@ -105,6 +140,8 @@ void BranchWatch::moor(double t, const State& state) {
   }
   anchor_ = state;
   anchor_time_ = t;
+  uncertain_ = 0;
+  pending_.clear();
   anchor_signs_.resize(now_.size(), 0);
   for (std::size_t m = 0; m < now_.size(); ++m) {
     if (now_[m] != 0) anchor_signs_[m] = now_[m];
@@ -125,28 +162,56 @@ std::string BranchWatch::place_of(std::size_t matrix) const {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// From the anchor to `state`. A part that is carried is followed at one instant, to which the
+/// other end is taken along: at both, for its curve may fall apart in between. None if neither can
+/// be.
+std::optional<FollowedCurve> BranchWatch::follow(const Part& part, double t,
+                                                 const State& state) const {
+  const Model& model = scene_.model;
+  const CurveEnd from{anchor_time_, &anchor_.q, part.is_carried ? &tangent_ : &anchor_.v};
+  const CurveEnd to{t, &state.q, part.is_carried ? &tangent_ : &state.v};
+  const double tolerance = kApart * length_;
+  if (!part.is_carried)
+    return follow_curve(model, part.all, part.blocks, from, to, length_, tolerance);
+  const auto back = carry_along(model, part.all, to, from, length_);
+  if (!back) return std::nullopt;
+  const CurveEnd target{from.t, &*back, to.v};
+  const FollowedCurve then = follow_curve(model, part.all, {}, from, target, length_, tolerance);
+  if (then.end == FollowedCurve::End::reached) return then;
+  const auto onward = carry_along(model, part.all, from, to, length_);
+  if (!onward) return std::nullopt;
+  const CurveEnd begin{to.t, &*onward, from.v};
+  return follow_curve(model, part.all, {}, begin, to, length_, tolerance);
+}
+
 std::string BranchWatch::look(double t, const State& state) {
   find_signs(t, state);
   bool is_certain = true;
   for (std::size_t m = 0; m < now_.size(); ++m) {
     if (now_[m] * anchor_signs_[m] >= 0) continue;
     const Part& part = parts_[part_of_[m]];
-    const FollowedCurve curve =
-        follow_curve(scene_.model, part.all, part.blocks, {anchor_time_, &anchor_.q, &anchor_.v},
-                     {t, &state.q, &state.v}, length_, kApart * length_);
+    const std::optional<FollowedCurve> followed = follow(part, t, state);
+    const std::string lost = fmt::format(
+        "at t = {:g} s {} cannot be followed by their constraints alone", t, place_of(m));
+    if (!followed && uncertain_ < kMostUncertain) {
+      is_certain = false;
+      pending_ = lost;
+      continue;
+    }
+    const FollowedCurve curve = followed.value_or(FollowedCurve{});
     switch (curve.end) {
       case FollowedCurve::End::reached:
-        if (!curve.crossed && !part.blocks.empty()) is_certain = false;  // too close to tell
+        // Beside a singular position the other assembly is too close to tell.
+        if (!curve.crossed && (!part.blocks.empty() || curve.distance > kSame * length_)) {
+          is_certain = false;
+        }
         if (curve.crossed && passage_.empty() && !has_redundant_rows_) {
           passage_ =
               fmt::format("a singular position of {} was passed before t = {:g} s", place_of(m), t);
         }
         break;
       case FollowedCurve::End::lost:
-        if (doubt_.empty()) {
-          doubt_ = fmt::format("at t = {:g} s {} cannot be followed by their constraints alone", t,
-                               place_of(m));
-        }
+        if (doubt_.empty()) doubt_ = lost;
         break;
       case FollowedCurve::End::elsewhere:
         if (std::isfinite(curve.least_time)) step_needed_ = curve.least_time;
@@ -156,7 +221,11 @@ std::string BranchWatch::look(double t, const State& state) {
             place_of(m), curve.distance);
     }
   }
-  if (is_certain) moor(t, state);
+  if (is_certain) {
+    moor(t, state);
+  } else {
+    ++uncertain_;
+  }
   return "";
 }
 

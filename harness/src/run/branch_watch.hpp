@@ -8,6 +8,7 @@
 #include "mbs/simulation.hpp"
 #include "model_math/block_jacobian.hpp"
 #include "model_math/closed_parts.hpp"
+#include "model_math/follow_curve.hpp"
 #include "scene/scene.hpp"
 
 namespace mbs {
@@ -42,12 +43,13 @@ class BranchWatch {
   /// When, and where, an exact singular position was first passed, for people; empty if none was.
   [[nodiscard]] const std::string& passage() const { return passage_; }
   /// Where the constraints could not be followed; empty if nowhere.
-  [[nodiscard]] const std::string& doubt() const { return doubt_; }
+  [[nodiscard]] const std::string& doubt() const { return doubt_.empty() ? pending_ : doubt_; }
 
  private:
   struct Part {
     ConstraintBlock all;
     std::vector<ConstraintBlock> blocks;  // empty: one freedom
+    bool is_carried = false;              // one freedom, beside drivers
   };
   void add_part(ConstraintBlock all, std::vector<ConstraintBlock> blocks,
                 std::vector<ConstraintBlock>& matrices);
@@ -55,6 +57,12 @@ class BranchWatch {
   void find_signs(double t, const State& state);
   [[nodiscard]] std::string place_of(std::size_t matrix) const;
   [[nodiscard]] double turned(const ConstraintBlock& block, const State& state) const;
+  [[nodiscard]] bool is_carried(std::size_t matrix) const {
+    return parts_[part_of_[matrix]].is_carried;
+  }
+  void find_tangents(const State& start);
+  [[nodiscard]] std::optional<FollowedCurve> follow(const Part& part, double t,
+                                                    const State& state) const;
   void moor(double t, const State& state);
 
   const Scene& scene_;
@@ -65,11 +73,14 @@ class BranchWatch {
   State anchor_;
   double anchor_time_ = 0.0;             // s
   std::vector<int> anchor_signs_, now_;  // as of find_signs()
-  std::vector<double> tangent_;  // velocities as they were directed when signs were first known
+  // Velocities as they were directed when signs were first known; of a part that is carried, the
+  // direction that its constraints leave, unit length.
+  std::vector<double> tangent_;
   bool has_redundant_rows_ = false;
   int freedoms_ = 0;
-  std::optional<double> step_needed_;  // s
-  std::string passage_, doubt_;
+  int uncertain_ = 0;                      // looks since the anchor that could not tell
+  std::optional<double> step_needed_;      // s
+  std::string passage_, doubt_, pending_;  // pending_: a doubt that later looks may settle
 };
 
 }  // namespace mbs

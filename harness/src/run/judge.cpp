@@ -87,10 +87,18 @@ Judge::Judge(const Scene& scene, const State& initial, double start)
     : scene_(&scene),
       phi_(static_cast<std::size_t>(scene.model.constraints())),
       phi_scale_(constraint_scales(scene.model)),
-      conservative_(is_conservative(scene.model)) {
+      conservative_(is_conservative(scene.model)),
+      carriage_(EvenCarriage::of(scene.model)),
+      frame_velocity_(carriage_ ? carriage_->velocity() : std::vector<double>(initial.v.size())) {
   const Model& model = scene.model;
-  const double potential = potential_energy(model, start, initial.q);
+  conservative_ = conservative_ || carriage_;
+  double potential = potential_energy(model, start, initial.q);
   initial_energy_ = kinetic_energy(model, initial.v) + potential;
+  if (carriage_) {
+    move_with_feet(start, initial);
+    potential = potential_energy(model, 0.0, moved_q_);
+    initial_energy_ = kinetic_energy(model, moved_v_) + potential;
+  }
   double force = 0.0, in_springs = potential;
   for (std::size_t i = 0; i < initial.q.size(); ++i) {
     force += std::abs(model.force()[i]);
@@ -159,8 +167,7 @@ std::string Judge::judge(double t, const State& state) {
 
 void Judge::add_local_error(double local, const State& judged, double step, long steps) {
   if (conservative_ && so_far_.last_kinetic > 0.0) {
-    const std::vector<double> rest(judged.v.size(), 0.0);
-    local += step * largest_distance(*scene_, length_, judged.v, rest) *
+    local += step * largest_distance(*scene_, length_, judged.v, frame_velocity_) *
              (std::sqrt(1 + so_far_.last_energy_difference / so_far_.last_kinetic) - 1);
   }
   so_far_.local_error += static_cast<double>(steps) * local;
@@ -194,10 +201,25 @@ std::string Judge::judge_torsion(double t, const State& state) {
   return "";
 }
 
+void Judge::move_with_feet(double t, const State& state) {
+  moved_q_ = state.q;
+  moved_v_ = state.v;
+  for (std::size_t i = 0; i < moved_q_.size(); ++i) {
+    moved_q_[i] -= frame_velocity_[i] * t;
+    moved_v_[i] -= frame_velocity_[i];
+  }
+}
+
 std::string Judge::judge_energy(double t, const State& state) {
-  const double kinetic = kinetic_energy(scene_->model, state.v);
-  const double difference =
-      std::abs(kinetic + potential_energy(scene_->model, t, state.q) - initial_energy_);
+  if (carriage_ && !carriage_->holds(scene_->model, t)) {
+    carriage_.reset();
+    conservative_ = false;
+  }
+  if (carriage_) move_with_feet(t, state);
+  const double kinetic = kinetic_energy(scene_->model, carriage_ ? moved_v_ : state.v);
+  const double potential = carriage_ ? potential_energy(scene_->model, 0.0, moved_q_)
+                                     : potential_energy(scene_->model, t, state.q);
+  const double difference = std::abs(kinetic + potential - initial_energy_);
   if (!std::isfinite(kinetic) || !std::isfinite(difference)) {
     spoil();
     return "the state is too large to be judged";

@@ -6,6 +6,7 @@
 
 #include "exact/four_bar_exact.hpp"
 #include "mbs/simulation.hpp"
+#include "model_math/even_carriage.hpp"
 #include "scene/scene.hpp"
 
 namespace mbs {
@@ -100,14 +101,17 @@ class Judge {
   [[nodiscard]] std::optional<double> position_error_max() const { return so_far_.position_error; }
   /// Largest |E - E_0| over the energy scale: the largest kinetic energy so far, but at least a
   /// thousandth of the work that the applied forces do over the scene's extent and of what springs
-  /// hold at the start, and that of a millionth of the extent a second, which is rest.
-  /// Dimensionless; none if the model is not conservative.
+  /// hold at the start, and that of a millionth of the extent a second, which is rest; where feet
+  /// are carried along evenly, in their frame. Dimensionless; none if the model is not
+  /// conservative.
   [[nodiscard]] std::optional<double> energy_drift_max() const;
   /// Largest |Phi_k|, m^2 (m for linear constraints).
   [[nodiscard]] double constraint_violation_max() const { return so_far_.violation; }
 
  private:
   std::string judge_energy(double t, const State& state);
+  /// Into moved_, in the frame of feet that are carried along.
+  void move_with_feet(double t, const State& state);
   /// Whether Eqs. (11) and (18) still mean what they say: across the axis, and less than half a
   /// turn from s = 0.
   std::string judge_torsion(double t, const State& state);
@@ -117,8 +121,11 @@ class Judge {
   std::vector<double> phi_;
   std::vector<double> phi_scale_;
   bool conservative_;
-  double initial_energy_ = 0.0;  // J
-  double length_ = 1.0;          // m
+  std::optional<EvenCarriage> carriage_;
+  std::vector<double> frame_velocity_;     // n, m/s: 0 where feet rest
+  std::vector<double> moved_q_, moved_v_;  // n, where they are carried
+  double initial_energy_ = 0.0;            // J
+  double length_ = 1.0;                    // m
   Figures so_far_;
 };
 
