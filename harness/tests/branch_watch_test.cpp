@@ -131,6 +131,7 @@ TEST(BranchWatch, DoesNotTakeTheOtherAssemblyForTheSameWhereTheyAreClose) {
       "masses": [{"point": "C", "mass": 1}],
       "constraints": [{"name": "slides", "type": "on_line", "point": "C", "line": ["D", "Dx"]}]})"),
                                "test");
+  ASSERT_EQ(closed_parts(scene.model, initial_state(scene.model).q, 60).free.size(), 1U);
   State state = initial_state(scene.model);
   const auto place = [&](double angle, double side) {
     const auto at = [side](double phi) {

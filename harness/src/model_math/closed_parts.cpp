@@ -225,10 +225,9 @@ ClosedParts closed_parts(const Model& model, const std::vector<double>& q, int l
     result.driven = sorted(std::move(result.driven));
   }
   pattern.take_off_hanging();
-  constexpr std::size_t kLeastLoop = 3;  // rows; with fewer nothing is closed
   for (ConstraintBlock& piece : pattern.pieces(loose)) {
     const std::size_t size = piece.rows.size();
-    if (size < kLeastLoop || size > most || piece.cols.size() != size + 1) continue;
+    if (size == 0 || size > most || piece.cols.size() != size + 1) continue;
     result.free.push_back(sorted(std::move(piece)));
   }
   return result;

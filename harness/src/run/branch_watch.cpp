@@ -215,10 +215,10 @@ std::string BranchWatch::look(double t, const State& state) {
         break;
       case FollowedCurve::End::elsewhere:
         if (std::isfinite(curve.least_time)) step_needed_ = curve.least_time;
-        return fmt::format(
-            "{} jumped past a nearly singular position to another assembly, {:.1e} m from where "
-            "the constraints lead",
-            place_of(m), curve.distance);
+        return place_of(m) + " jumped past a nearly singular position to another assembly" +
+               (std::isfinite(curve.distance)
+                    ? fmt::format(", {:.1e} m from where the constraints lead", curve.distance)
+                    : "");
     }
   }
   if (is_certain) {
