@@ -2,6 +2,7 @@
 from analysis.core.text import number
 from analysis.families.bounds import bounds
 from analysis.families.rule import missed, summary
+from analysis.families.sentences import where
 from analysis.families.tables import SCHEMES
 
 
@@ -20,7 +21,7 @@ def context(tables, view):
             "lost": [(*what, list(names.items())) for what, names in lost.items()],
             "formulas": _formulas(tables["steps"]), "judged": summary(held) if len(held) else None, "missed": missed(held).to_dict("records") if len(held) else [],
             "by_family": [(family, summary(rows)) for family, rows in held.groupby("family", sort=False)],
-            "alone": tables["alone"].to_dict("records"), "defaults": tables["defaults"].to_dict("records"), "growth": tables["growth"].to_dict("records"),
+            "by_hand": tables["by_hand"].to_dict("records"), "where": where, "alone": tables["alone"].to_dict("records"), "defaults": tables["defaults"].to_dict("records"), "growth": tables["growth"].to_dict("records"),
             "orderings": _wide(tables["orderings"])}
 
 

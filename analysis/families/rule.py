@@ -10,6 +10,7 @@ from itertools import combinations
 import numpy
 import pandas
 
+from analysis.families import by_hand
 from analysis.families.times import FEATURES, PASSES, TERMS, model, predicted
 
 CANDIDATES = {"penalty": 3, "saddle-point": 2}  # at most; five in all
@@ -18,6 +19,7 @@ FAMILIES = 4     # at least, for a rule
 MUCH = 0.30      # a loss
 FAILED = 3.0     # loss of who is of no use there: it disagrees, crashes, ...
 MOST = 3.0       # what a loss counts at most, where candidates are chosen
+UNKNOWN = MOST * (1 + 4 * MOST)  # the cost of who has no loss, where someone is chosen by one or two numbers
 USUAL = 1.5      # times the passes that are expected: who takes more, at a singular position, is no guide to times
 FEWEST = 8       # scenes that the time of a step is fitted on
 WITHIN = 1.5     # a predicted time is good within this factor
@@ -27,14 +29,14 @@ NEAREST = ("n", "per_column", "flops", "tangent")  # what `mbs describe` takes d
 
 
 def judged(tables, registry):
-    """{"steps", "held", "alone"}: tables of the rule; without rows where there are too few families."""
+    """{"steps", "held", "alone", "by_hand"}: tables of the rule; without rows where there are too few families."""
     data = _Data(tables, registry)
     if len(set(data.family.values())) < FAMILIES:
-        return {"steps": pandas.DataFrame(), "held": pandas.DataFrame(), "alone": pandas.DataFrame()}
+        return {name: pandas.DataFrame() for name in ("steps", "held", "alone", "by_hand")}
     rests = {family: _Rule(data.without(family)) for family in dict.fromkeys(data.family.values())}
     ratios = pandas.concat([_ratios(data, family, rest) for family, rest in rests.items()], ignore_index=True)
-    whole = _Rule(data)
-    return {"steps": _steps(data, whole, ratios, registry), "held": _held(data, whole, rests, ratios), "alone": _alone(data)}
+    return {"steps": _steps(data, _Rule(data), ratios, registry), "held": _held(data, rests, ratios), "alone": _alone(data),
+            "by_hand": by_hand.table(data, WORTH, UNKNOWN)}
 
 
 def summary(held):
@@ -100,7 +102,7 @@ def _steps(data, rule, ratios, registry):
     return pandas.DataFrame(rows)
 
 
-def _held(data, whole, rests, ratios):
+def _held(data, rests, ratios):
     """A row for each scene and form: what was chosen and predicted by what was fitted on the other families."""
     rows = []
     for family, rest in rests.items():
@@ -110,7 +112,7 @@ def _held(data, whole, rests, ratios):
                 low, high = _range(ratios, scheme, name, family)
                 measured = data.us[scheme].loc[scene].get(name, numpy.nan) if data.usual[scheme][scene] else numpy.nan
                 rows.append({"family": family, "scene": scene, "scheme": scheme, "variables": data.features.loc[scene, "n"], "chosen": name,
-                             "taken": whole.choice(scheme, data.features.loc[[scene]])[0], "fastest": losses.loc[scene].idxmin(),
+                             "fastest": losses.loc[scene].idxmin(),
                              "loss": losses.loc[scene, name], "known_by": data.known_by[scheme].loc[scene, name], "step_us": measured,
                              "predicted_us": us, "low_us": low * us, "high_us": high * us, "record": data.record[scene]})
     return pandas.DataFrame(rows)
@@ -127,23 +129,11 @@ def _alone(data):
             for scheme, one in data.losses.items():
                 left = one.index[[data.family[scene] == family for scene in one.index]]
                 if len(left) and len(rest.losses[scheme]):
-                    costs = rest.costs(scheme).fillna(MOST * (1 + 4 * MOST))
-                    limit, below, above = _limit(rest.features.loc[costs.index, feature].to_numpy(), costs.mul(rest.weights(costs.index), axis=0))
+                    costs = rest.costs(scheme).fillna(UNKNOWN)
+                    _, limit, below, above = by_hand.limit(rest.features.loc[costs.index, feature].to_numpy(), costs.mul(rest.weights(costs.index), axis=0))
                     losses += [one.loc[scene, below if data.features.loc[scene, feature] < limit else above] for scene in left]
         rows.append({"feature": feature, "mean_loss": numpy.nanmean(losses), "worst_loss": numpy.nanmax(losses), "scenes": len(losses), "record": data.records})
     return pandas.DataFrame(rows)
-
-
-def _limit(values, costs):
-    """(limit, who is taken below it, who above): of the least cost."""
-    order = numpy.argsort(values, kind="stable")
-    below = numpy.cumsum(costs.to_numpy()[order], axis=0)
-    total, values = below[-1], values[order]
-    places = [place for place in range(1, len(values)) if values[place] > values[place - 1]]
-    if not places:
-        return numpy.inf, *[costs.columns[total.argmin()]] * 2
-    best = min(places, key=lambda place: below[place - 1].min() + (total - below[place - 1]).min())
-    return (values[best] * values[best - 1]) ** 0.5, costs.columns[below[best - 1].argmin()], costs.columns[(total - below[best - 1]).argmin()]
 
 
 class _Rule:

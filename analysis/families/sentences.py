@@ -1,6 +1,8 @@
 # The answer to "Which implementation is fastest on real mechanisms, at their own fill?", from the tables.
+import pandas
+
 from analysis.core.text import number
-from analysis.families.figures import DECIDES, best_form, fastest_own
+from analysis.families.figures import best_form, fastest_own
 from analysis.families.rule import document, summary
 
 
@@ -43,16 +45,15 @@ def _defaults(rows):
 
 
 def cases(tables, view):
-    """Rows of the front page's table: whom the rule takes, and what its choices there cost on families left out."""
+    """Rows of the front page's table: the rule by hand, that of `mbs describe`, and what code without a library gains."""
     found, held = [], tables["held"]
+    for row in tables["by_hand"].to_dict("records"):
+        found.append({"case": f"{row['scheme'].capitalize()} form{where(row)}", "link": "families.html#by-hand",
+                      "take": f"{row['library']}{_lost(row['mean_loss'], row['worst_loss'], row['scenes'], row['unknown'])}"})
     if len(held):
-        held = held.merge(tables["mechanisms"][["scene", DECIDES]], on="scene")
-        for (scheme, name), rows in held.sort_values("scheme", kind="stable").groupby(["scheme", "taken"], sort=False):
-            low, high = (number(value) for value in (rows[DECIDES].min(), rows[DECIDES].max()))
-            found.append({"case": f"{scheme.capitalize()} form, and `mbs describe` expects {name} to be the fastest (here with {low} to {high} non-zeros a "
-                                  "column of the factor)", "link": "families.html#rule",
-                          "take": f"{name}; on families left out the rule's choice takes {100 * rows.loss.mean():.1f} % longer than the fastest library "
-                                  f"on average, {100 * rows.loss.max():.0f} % at worst ({len(rows)} cases{_unknown(rows.loss.isna().sum(), '; {}')})"})
+        of = summary(held)
+        found.append({"case": "You have a scene file", "link": "families.html#rule",
+                      "take": f"what `build/mbs describe` names, by predicted times{_lost(of['mean_loss'], of['worst_loss'], len(held), of['unknown'])}"})
     ahead = fastest_own(tables["scenes"], view.registry)
     if len(ahead):
         names = ", ".join(f"{name} on {count}" for name, count in ahead.implementation.value_counts().items())
@@ -60,6 +61,20 @@ def cases(tables, view):
                       "take": f"fastest: {names}; {number(1 / ahead.to_rival.max())} to {number(1 / ahead.to_rival.min())} times as fast as the fastest "
                               f"library, {number(1 / ahead.to_rival.median())} in the middle"})
     return found
+
+
+def where(row):
+    """The limits of a case of the rule by hand; "" if it is the only one."""
+    ends = [(end, row[f"{end}_{name}"], what) for name, what in (("per_column", "non-zeros a column of the factor"), ("n", "variables"))
+            for end in ("least", "below") if not pandas.isna(row[f"{end}_{name}"])]
+    return "".join(f", {'from' if end == 'least' else 'below'} {number(value)} {what}{' on' if end == 'least' else ''}" for end, value, what in ends)
+
+
+def _lost(mean, worst, count, unknown):
+    if pandas.isna(mean):
+        return ""
+    return (f"; on families left out {100 * mean:.1f} % slower than the fastest library on average, {100 * worst:.0f} % at worst "
+            f"({count} cases{_unknown(unknown, '; {}')})")
 
 
 def files(tables, view):

@@ -8,7 +8,7 @@ import pandas
 import pytest
 
 from analysis.core.schema import conform, of_part
-from analysis.families import bounds, defaults, figures, page, rule, sentences, tables, times
+from analysis.families import bounds, by_hand, defaults, figures, page, rule, sentences, tables, times
 from analysis.tests.test_limit_report import REGISTRY, about, bench, gate
 
 SCENES = ["ladder:2", "grid:3x3"]
@@ -123,13 +123,18 @@ def test_a_time_is_the_sum_of_its_terms():
     assert times.predicted(found, features) == pytest.approx(us.to_numpy(), rel=1e-6) and min(found.values()) > 0
 
 
-def test_the_front_page_tells_whom_the_rule_takes_and_what_it_costs_there():
+def test_the_front_page_has_the_rule_by_hand_and_that_of_describe():
     tables = mechanisms()
-    first, second, own = sentences.cases(tables, VIEW)
-    assert first["case"] == ("Penalty form, and `mbs describe` expects one/a to be the fastest (here with 2 to 6 non-zeros a column of the factor)")
-    assert first["take"] == ("one/a; on families left out the rule's choice takes 0.0 % longer than the fastest library on average, 0 % at worst "
-                             "(9 cases)") and "one/b" in second["take"]
-    assert own["take"].startswith("fastest: own/x on 18")
+    *parted, described, own = sentences.cases(tables, VIEW)
+    assert [row["case"].partition(" non-zeros")[0] for row in parted] == ["Penalty form, below 10", "Penalty form, from 10"]
+    assert all("0.0 % slower than the fastest library on average, 0 % at worst" in row["take"] for row in (*parted, described))
+    assert described["take"].endswith("(18 cases)") and own["take"].startswith("fastest: own/x on 18")
+
+
+def test_cases_by_hand_part_where_the_fastest_changes():
+    cost, at, below, above = by_hand.limit(numpy.array([30.0, 1.0, 2.0, 20.0]), pandas.DataFrame({"a": [1.0, 0.0, 0.0, 1.0], "b": [0.0, 1.0, 1.0, 0.0]}))
+    assert (cost, at, below, above) == (0.0, 6.0, "a", "b")
+    assert by_hand.limit(numpy.array([2.0, 2.0]), pandas.DataFrame({"a": [1.0, 0.0], "b": [0.0, 0.5]}))[:3] == (0.5, numpy.inf, "b")
 
 
 def test_a_rule_is_judged_on_what_it_was_not_fitted_on():
@@ -173,7 +178,7 @@ def test_a_loss_of_what_was_never_tried_is_not_known_and_that_of_a_failure_is_la
     everywhere = [(f"tree:{size}", "one/a") for size in (10, 100, 1000)]
     found = rule.judged(without(tables, everywhere, status="excluded", verdict=""), REGISTRY)
     held = found["held"].set_index("scene")
-    assert held.loc["tree:10", ["chosen", "taken", "known_by"]].to_list() == ["one/a", "one/a", ""] and numpy.isnan(held.loss["tree:10"])
+    assert held.loc["tree:10", ["chosen", "known_by"]].to_list() == ["one/a", ""] and numpy.isnan(held.loss["tree:10"])
     assert rule.summary(found["held"])["unknown"] == 3 and set(rule.missed(found["held"]).scene) == {scene for scene, _ in everywhere}
     mean, worst, *_ = bounds._rule(found["held"])
     assert mean[3] is None and worst[3] is None and "of 15 of 18 choices" in mean[2]  # neither held nor broken
