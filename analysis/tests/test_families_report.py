@@ -126,7 +126,7 @@ def test_a_time_is_the_sum_of_its_terms():
 def test_the_front_page_has_the_rule_by_hand_and_that_of_describe():
     tables = mechanisms()
     *parted, described, own = sentences.cases(tables, VIEW)
-    assert [row["case"].partition(" non-zeros")[0] for row in parted] == ["Penalty form, below 10", "Penalty form, from 10"]
+    assert [row["case"].partition(" non-zeros")[0] for row in parted] == ["Penalty form: below 10", "Penalty form: from 10"]
     assert all("0.0 % slower than the fastest library on average, 0 % at worst" in row["take"] for row in (*parted, described))
     assert described["take"].endswith("(18 cases)") and own["take"].startswith("fastest: own/x on 18")
 
