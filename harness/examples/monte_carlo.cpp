@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <mbs/stepper.hpp>
 #include <random>
 #include <string>
@@ -48,13 +49,21 @@ int main(int argc, char** argv) try {
   task.options.settings.step = 1e-3;
   std::vector<double> results(runs);
   std::atomic<unsigned> next{0};
+  std::vector<std::exception_ptr> failures(std::max(1u, threads));
   {
     std::vector<std::jthread> pool;
-    for (unsigned i = 0; i < std::max(1u, threads); ++i) {
+    for (std::exception_ptr& failure : failures) {
       pool.emplace_back([&] {
-        for (unsigned run = next++; run < runs; run = next++) results[run] = highest(task, run);
+        try {
+          for (unsigned run = next++; run < runs; run = next++) results[run] = highest(task, run);
+        } catch (...) {
+          failure = std::current_exception();  // one that leaves a thread ends the program
+        }
       });
     }
+  }
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
   }
   double mean = 0.0, square = 0.0;
   for (const double result : results) mean += result / runs;

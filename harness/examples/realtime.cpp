@@ -66,6 +66,7 @@ int main(int argc, char** argv) try {
   const int wheel = car.input("road FL");
   const long period = std::lround(car.settings().step * kSecond);
   const auto steps = static_cast<std::size_t>(seconds / car.settings().step);
+  if (!(seconds >= car.settings().step)) throw mbs::Refused("SECONDS: a step or more");
   std::vector<long> working, waking;  // filled in the loop, so that it allocates nothing
   working.reserve(steps);
   waking.reserve(steps);

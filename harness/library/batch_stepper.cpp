@@ -1,4 +1,6 @@
 // Lanes of one batch, or one simulation each.
+#include <fmt/format.h>
+
 #include "library/content.hpp"
 #include "registry/factory.hpp"
 #include "run/initial_state.hpp"
@@ -57,7 +59,14 @@ BatchStepper::BatchStepper(std::span<const SceneDocument> scenes, const StepperO
     StepperOptions of_all = options;
     for (const SceneDocument& scene : scenes) {
       content_->lanes.push_back(std::make_unique<Stepper::Content>(*scene.content_, of_all));
-      const Choice& chosen = content_->lanes.front()->choice;
+      const Stepper::Content& first = *content_->lanes.front();
+      const Stepper::Content& last = *content_->lanes.back();
+      if (last.input_names != first.input_names || last.output_names() != first.output_names()) {
+        throw Refused(fmt::format(
+            "scene {} of the batch has other inputs or outputs than the first, allowed are the same",
+            content_->lanes.size()));
+      }
+      const Choice& chosen = first.choice;
       of_all.implementation = chosen.variant.name;
       of_all.settings = chosen.settings;
     }
@@ -108,7 +117,8 @@ std::span<const StepOutcome> BatchStepper::step() {
 
 const State& BatchStepper::state(int lane) {
   Stepper::Content& of = content_->lane(lane);
-  if (!of.is_current && content_->batch) content_->batch->get_state(lane, of.state);
+  const bool has_failed = content_->has_failed[static_cast<std::size_t>(lane)] != 0;
+  if (!of.is_current && content_->batch && !has_failed) content_->batch->get_state(lane, of.state);
   if (!of.is_current && of.simulation) of.simulation->get_state(of.state);
   of.is_current = true;
   return of.state;

@@ -19,6 +19,9 @@ using nlohmann::json;
 /// What `mbs describe --json` prints; with `scheme`, of this form whatever suits the scene.
 json description_of(const Scene& scene, const StepSettings& settings,
                     const char* scheme = nullptr) {
+  if (!(settings.step >= 1e-12 && settings.step <= 1e6)) {
+    throw UsageError(fmt::format("the step is {:g} s: it must be 1e-12 to 1e6 s", settings.step));
+  }
   json description = describe_json(scene, settings);
   if (scheme != nullptr) {
     description["scheme"]["take"] = scheme;
@@ -40,7 +43,9 @@ Choice choose_by_rule(const Scene& scene, StepSettings settings) {
                                  name_of(settings.scheme)));
   }
   const bool is_saddle = settings.scheme == Scheme::saddle_point;
-  const json found = description_of(scene, settings, is_saddle ? "saddle-point" : nullptr);
+  const bool may_choose = settings.penalty == 0.0 && settings.multipliers == MultiplierUpdate::every_pass;
+  const char* asked = is_saddle ? "saddle-point" : may_choose ? nullptr : "penalty";
+  const json found = description_of(scene, settings, asked);
   const json* fastest = nullptr;
   for (const json& one : found["recommendation"]) {
     if (fastest == nullptr || one["step_us"] < (*fastest)["step_us"]) fastest = &one;
@@ -98,8 +103,14 @@ SceneDocument SceneDocument::parse(std::string_view json, const std::string& nam
 }
 
 double SceneDocument::number(const std::string& path) const {
-  return refusing(
-      [&] { return content_->document[find_number(content_->document, path)].get<double>(); });
+  return refusing([&] {
+    const nlohmann::json& value = content_->document[find_number(content_->document, path)];
+    if (value.is_number()) return value.get<double>();
+    throw Refused(fmt::format(
+        "{}: found the expression {}, allowed is a number: ask for the parameters that it names, or "
+        "set one",
+        path, value.dump()));
+  });
 }
 
 void SceneDocument::set_number(const std::string& path, double value) {

@@ -44,7 +44,7 @@ Stepper::Content::Content(const SceneDocument::Content& from, const StepperOptio
 const std::vector<std::string>& Stepper::Content::output_names() const { return values.columns(); }
 
 void Stepper::Content::set_input(int input, double value, double rate, double acceleration) {
-  *scene.elements.inputs[static_cast<std::size_t>(input)].now = {value, rate, acceleration};
+  *scene.elements.inputs.at(static_cast<std::size_t>(input)).now = {value, rate, acceleration};
 }
 
 std::span<const double> Stepper::Content::outputs() {

@@ -148,6 +148,9 @@ int sweep(const SweepOptions& options) {
   const SweepBlocks blocks(options, grid, *variant.variant);
   const nlohmann::json head = head_of(options, grid, variant.name, blocks, shard);
   const bool is_part = !options.shard.empty();
+  if (is_part && !is_file(options.output)) {
+    throw UsageError("--output: found a device or a pipe, allowed with --shard is a file, for mbs merge-sweep");
+  }
   std::error_code ignored;
   if (is_part && options.resume && fs::exists(options.output, ignored)) {
     const Journal done(options.output);

@@ -18,6 +18,17 @@ static_assert(kHeader >= sizeof(std::size_t) && kHeader >= alignof(std::max_alig
 
 std::size_t rounded(std::size_t size) { return (size + kHeader - 1) / kHeader * kHeader; }
 
+/// What was there before.
+struct Functions {
+  decltype(SuiteSparse_config.malloc_func) malloc = SuiteSparse_config.malloc_func;
+  decltype(SuiteSparse_config.realloc_func) realloc = SuiteSparse_config.realloc_func;
+  decltype(SuiteSparse_config.free_func) free = SuiteSparse_config.free_func;
+};
+const Functions& before() {
+  static const Functions functions;
+  return functions;
+}
+
 void write_size(void* data, std::size_t size) {
   std::memcpy(static_cast<std::byte*>(data) - kHeader, &size, sizeof size);
 }
@@ -30,7 +41,7 @@ std::size_t read_size(const void* data) {
 
 }  // namespace
 
-NumericMemory* NumericMemory::active_ = nullptr;
+thread_local NumericMemory* NumericMemory::active_ = nullptr;
 
 void NumericMemory::reset() {
   used_ = 0;
@@ -49,6 +60,7 @@ bool NumericMemory::owns(const void* data) const {
 }
 
 void* NumericMemory::allocate(std::size_t size) {
+  if (active_ == nullptr) return before().malloc(size);
   NumericMemory& memory = *active_;
   const std::size_t needed = kHeader + rounded(size);
   memory.required_ += needed;
@@ -65,6 +77,7 @@ void* NumericMemory::allocate(std::size_t size) {
 }
 
 void* NumericMemory::reallocate(void* data, std::size_t size) {
+  if (active_ == nullptr) return before().realloc(data, size);
   if (data == nullptr) return allocate(size);
   if (size <= read_size(data)) return data;
   void* moved = allocate(size);
@@ -75,24 +88,23 @@ void* NumericMemory::reallocate(void* data, std::size_t size) {
 }
 
 void NumericMemory::release(void* data) {
+  if (active_ == nullptr) return before().free(data);
   if (data == nullptr || active_->owns(data)) return;  // the block is released as a whole
   std::free(static_cast<std::byte*>(data) - kHeader);
 }
 
-NumericMemory::Use::Use(NumericMemory& memory)
-    : malloc_(SuiteSparse_config.malloc_func),
-      realloc_(SuiteSparse_config.realloc_func),
-      free_(SuiteSparse_config.free_func) {
+NumericMemory::Use::Use(NumericMemory& memory) {
+  static const bool is_installed = [] {
+    static_cast<void>(before());
+    SuiteSparse_config.malloc_func = allocate;
+    SuiteSparse_config.realloc_func = reallocate;
+    SuiteSparse_config.free_func = release;
+    return true;
+  }();
+  static_cast<void>(is_installed);
   active_ = &memory;
-  SuiteSparse_config.malloc_func = allocate;
-  SuiteSparse_config.realloc_func = reallocate;
-  SuiteSparse_config.free_func = release;
 }
 
-NumericMemory::Use::~Use() {
-  SuiteSparse_config.malloc_func = malloc_;
-  SuiteSparse_config.realloc_func = realloc_;
-  SuiteSparse_config.free_func = free_;
-}
+NumericMemory::Use::~Use() { active_ = nullptr; }
 
 }  // namespace mbs::csc_umfpack

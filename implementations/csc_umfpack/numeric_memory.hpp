@@ -9,8 +9,8 @@ namespace mbs::csc_umfpack {
 /// One block that serves all allocations of a factorization, the same sequence every pass, by
 /// advancing through it. What does not fit comes from the heap, and the block is larger next time.
 ///
-/// UMFPACK asks SuiteSparse_config, which is global, for its functions: a Use puts this memory in
-/// their place for its lifetime, and no other thread may use SuiteSparse meanwhile.
+/// UMFPACK asks SuiteSparse_config, which is global, for its functions: the first Use puts some there
+/// that serve a thread from this memory while it has a Use, and others as before.
 class NumericMemory {
  public:
   NumericMemory() = default;
@@ -27,10 +27,6 @@ class NumericMemory {
     Use(const Use&) = delete;
     Use& operator=(const Use&) = delete;
 
-   private:
-    void* (*malloc_)(std::size_t);
-    void* (*realloc_)(void*, std::size_t);
-    void (*free_)(void*);
   };
 
  private:
@@ -40,7 +36,7 @@ class NumericMemory {
 
   [[nodiscard]] bool owns(const void* data) const;
 
-  static NumericMemory* active_;  ///< of the innermost Use
+  static thread_local NumericMemory* active_;  ///< of the innermost Use; null: none
 
   std::unique_ptr<std::byte[]> block_;
   std::size_t capacity_ = 0;

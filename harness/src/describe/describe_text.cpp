@@ -5,11 +5,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "describe/describe.hpp"
+#include "describe/elimination.hpp"
 #include "describe/terms.hpp"
 #include "run/judge.hpp"
 
@@ -84,12 +86,14 @@ std::string penalty_text(const json& window) {
 
 std::string elimination_text(const json& found) {
   if (found.is_null()) return "not computed, it is too much work";
+  const auto factor = found["factor_nonzeros"].get<long>();
+  const double mean = found["per_column"], flops = found["flops"];
+  const double columns = std::round(static_cast<double>(factor) / std::max(mean, 1.0));
   return fmt::format(
-      "{} non-zeros of L, {:.3g} a column, {} at most; {:.3g} operations; tree of height {}; {} "
-      "supernodes",
-      found["factor_nonzeros"].get<long>(), found["per_column"].get<double>(),
-      found["widest"].get<int>(), found["flops"].get<double>(), found["height"].get<int>(),
-      found["supernodes"].get<int>());
+      "{} non-zeros of L, {:.3g} a column, {} at most; {:.3g} operations, {:.3g} % of a full L's; "
+      "tree of height {}; {} supernodes",
+      factor, mean, found["widest"].get<int>(), flops, 100 * flops / std::max(full_flops(columns), 1.0),
+      found["height"].get<int>(), found["supernodes"].get<int>());
 }
 
 }  // namespace

@@ -46,6 +46,9 @@ struct Elimination {
 std::optional<Elimination> eliminate(const SymmetricPattern& pattern,
                                      const std::vector<int>& order);
 
+/// Flops of an L of n columns without zeros.
+constexpr double full_flops(double n) { return n * (n + 1) * (2 * n + 1) / 6; }
+
 /// 0, 1, 2, ...
 std::vector<int> natural_order(const SymmetricPattern& pattern);
 /// Approximate minimum degree [Amestoy, Davis, Duff, 1996].

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "describe/elimination.hpp"
+
 namespace mbs {
 namespace {
 
@@ -81,7 +83,7 @@ json features_json(const json& description) {
                  {"stiff", springs > 0 ? 1 : 0},
                  {"saddle", description.at("scheme").at("take") == "saddle-point" ? 1 : 0}};
   if (!elimination["flops"].is_null() && n > 0) {
-    result["dense"] = 600.0 * elimination["flops"].get<double>() / (n * (n + 1) * (2 * n + 1));
+    result["dense"] = 100.0 * elimination["flops"].get<double>() / full_flops(n);
     result["block"] = n / elimination["supernodes"].get<double>();
   }
   if (!saddle.is_null()) {

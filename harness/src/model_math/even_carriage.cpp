@@ -32,11 +32,14 @@ std::optional<EvenCarriage> EvenCarriage::of(const Model& model) {
     }
   }
   for (const LinearConstraint& c : model.linear_constraints()) {  // between coordinates alone
-    double rate = 0.0;
+    double rate = 0.0, size = 0.0;
     for (const auto& term : c.terms) {
-      rate += term.coefficient * result.velocity_[static_cast<std::size_t>(term.coordinate)];
+      const double part =
+          term.coefficient * result.velocity_[static_cast<std::size_t>(term.coordinate)];
+      rate += part;
+      size += std::abs(part);
     }
-    if (rate != 0.0) return std::nullopt;
+    if (std::abs(rate) > 1e-12 * size) return std::nullopt;
   }
   constexpr double kLongest = 1000.0;  // s
   for (double t = 0.01; t < kLongest; t *= 1.618) {

@@ -21,6 +21,9 @@ constexpr double kLeastStep = 1e-9;      // of a length
 constexpr double kBend = 0.98;           // cosine of the largest angle of two tangents
 constexpr int kMostSteps = 4000;
 
+/// Products of determinants of many short links underflow.
+bool have_same_sign(double a, double b) { return (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0); }
+
 /// The part's equations in x = (its coordinates, then, if driven, t times a speed).
 class PartCurve {
  public:
@@ -162,7 +165,7 @@ class Follower {
       const Vector dx = lu.solve(right);
       if (!dx.allFinite()) return std::nullopt;
       x += dx;
-      if (dx.cwiseAbs().maxCoeff() > 1e-11 * length_) continue;
+      if (dx.cwiseAbs().maxCoeff() > 1e-6 * length_) continue;  // what is left is its square
       right.setZero();
       right[curve_.size() - 1] = 1.0;
       Vector tangent = lu.solve(right);
@@ -180,7 +183,7 @@ class Follower {
     if (chord > kCrossingWidth * length_) return false;
     for (Eigen::Index k = 0; k < from.determinants.size(); ++k) {
       const double a = from.determinants[k], b = to.determinants[k];
-      if (a * b > 0.0) continue;
+      if (have_same_sign(a, b)) continue;
       const double s = a / (a - b);
       const double h00 = (1 + 2 * s) * (1 - s) * (1 - s), h10 = s * (1 - s) * (1 - s);
       const double h01 = s * s * (3 - 2 * s), h11 = s * s * (s - 1);
@@ -197,7 +200,9 @@ class Follower {
   Advance judge(const Place& from, const Place& to, double ds) {
     if ((to.x - from.x).norm() > 1.5 * ds) return Advance::too_long;
     if (from.tangent.dot(to.tangent) < kBend) return Advance::too_long;
-    if ((from.determinants.array() * to.determinants.array() > 0.0).all()) return Advance::done;
+    const bool is_same = std::equal(from.determinants.begin(), from.determinants.end(),
+                                    to.determinants.begin(), have_same_sign);
+    if (is_same) return Advance::done;
     return is_crossing(from, to) ? Advance::crossing : Advance::too_long;
   }
 
@@ -226,11 +231,12 @@ FollowedCurve follow(PartCurve& curve, const CurveEnd& from, const CurveEnd& to,
   if (!place) return result;
   const double reach = 3 * (target - place->x).norm() + 0.1 * length;
   double ds = std::min(0.1 * length, reach), gone = 0.0;
+  bool has_missed = false;  // the foot of the target, which is not on this curve
   for (int step = 0; step < kMostSteps; ++step) {
     if (curve.is_driven() && !(place->tangent[last] > 0.0)) return result;
     const double left = curve.is_driven() ? (target[last] - place->x[last]) / place->tangent[last]
                                           : (target - place->x).dot(place->tangent);
-    const bool lands = left >= 0.0 && left <= ds;
+    const bool lands = left >= (has_missed ? kLeastStep * length : 0.0) && left <= ds;
     const double now = lands ? left : ds;
     Vector border = place->tangent;
     if (lands && curve.is_driven()) border = Vector::Unit(curve.size(), last);
@@ -257,6 +263,7 @@ FollowedCurve follow(PartCurve& curve, const CurveEnd& from, const CurveEnd& to,
         return result;
       }
     } else if (lands) {
+      has_missed = true;
       result.distance = std::min(result.distance, largest(next->x, target, points));
       if (result.distance <= tolerance) {
         result.end = FollowedCurve::End::reached;
@@ -302,13 +309,14 @@ std::optional<std::vector<double>> carry_along(const Model& model, const Constra
     curve.move(from, to, share);
     const auto next = follower.find(place->x, place->tangent);
     if (!next || place->tangent.dot(next->tangent) < kBend ||
-        next->determinants[0] * place->determinants[0] <= 0.0) {
+        !have_same_sign(next->determinants[0], place->determinants[0])) {
       now /= 2;
       if (now < kLeast) return std::nullopt;
       continue;
     }
     place = next;
     done = share;
+    now = std::min(kFirst, 2 * now);
   }
   if (!place) return std::nullopt;
   return curve.all(place->x);

@@ -16,7 +16,7 @@ namespace mbs {
 namespace {
 
 constexpr int kLargestPart = 60;   // rows; larger ones would cost more than steps
-constexpr double kUnknown = 1e-9;  // |determinant| over its rows' lengths: no sign
+constexpr double kUnknown = 1e-9;  // smallest pivot, of rows of length 1: no sign
 constexpr double kSame = 1e-5;     // of the length: more than what constraints are violated by
 constexpr int kMostUncertain = 8;  // looks
 constexpr double kApart = 3e-3;    // of the length: less is not yet another assembly
@@ -42,6 +42,7 @@ BranchWatch::BranchWatch(const Scene& scene, const State& start, double length, 
   if (!is_needed()) return;
   matrices_.emplace(scene.model, std::move(matrices));
   now_.resize(matrices_->size());
+  for (std::size_t m = 0; m < now_.size(); ++m) lu_.emplace_back(matrices_->matrix(m).rows());
   tangent_ = start.v;
   find_tangents(start);
   find_signs(0.0, start);
@@ -101,9 +102,17 @@ void BranchWatch::find_signs(double t, const State& state) {
       square.row(i) /= length > 0.0 ? length : 1.0;
       if (!(length > 0.0)) lengths = 0.0;
     }
-    const double determinant = size == 2 ? square(0, 0) * square(1, 1) - square(0, 1) * square(1, 0)
-                                         : square.determinant();
-    now_[m] = !(std::abs(lengths * determinant) > kUnknown) ? 0 : determinant > 0.0 ? 1 : -1;
+    // A determinant of many rows is small wherever it is: the smallest pivot tells.
+    double determinant = 0.0, least = 0.0;
+    if (size == 2) {
+      determinant = square(0, 0) * square(1, 1) - square(0, 1) * square(1, 0);
+      least = std::abs(determinant);
+    } else {
+      determinant = lu_[m].compute(square).determinant();
+      least = lu_[m].matrixLU().diagonal().cwiseAbs().minCoeff();
+    }
+    const bool is_known = lengths * least > kUnknown && std::isfinite(determinant);
+    now_[m] = !is_known || determinant == 0.0 ? 0 : determinant > 0.0 ? 1 : -1;
   }
 }
 
@@ -188,14 +197,17 @@ std::string BranchWatch::look(double t, const State& state) {
   find_signs(t, state);
   bool is_certain = true;
   for (std::size_t m = 0; m < now_.size(); ++m) {
+    // Nobody can tell on which branch it is: the anchor stays where that is known.
+    if (now_[m] == 0 && anchor_signs_[m] != 0) is_certain = false;
     if (now_[m] * anchor_signs_[m] >= 0) continue;
     const Part& part = parts_[part_of_[m]];
     const std::optional<FollowedCurve> followed = follow(part, t, state);
-    const std::string lost = fmt::format(
-        "at t = {:g} s {} cannot be followed by their constraints alone", t, place_of(m));
+    const auto lost = [&] {
+      return fmt::format("at t = {:g} s {} cannot be followed by their constraints alone", t, place_of(m));
+    };
     if (!followed && uncertain_ < kMostUncertain) {
       is_certain = false;
-      pending_ = lost;
+      pending_ = lost();
       continue;
     }
     const FollowedCurve curve = followed.value_or(FollowedCurve{});
@@ -211,7 +223,7 @@ std::string BranchWatch::look(double t, const State& state) {
         }
         break;
       case FollowedCurve::End::lost:
-        if (doubt_.empty()) doubt_ = lost;
+        if (doubt_.empty()) doubt_ = lost();
         break;
       case FollowedCurve::End::elsewhere:
         if (std::isfinite(curve.least_time)) step_needed_ = curve.least_time;

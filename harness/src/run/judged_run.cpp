@@ -94,8 +94,10 @@ void JudgedRun::take(const StepOutcome& outcome) {
     access_.get_state(before_);
     judging_ += Clock::now() - begin;
   }
+  constexpr long kBetween = 8;  // steps: what a jump changed is still there a little later
   const bool is_looked_at =
-      watch_.is_needed() && (step >= next_look_ || is_judged || is_unusual(outcome));
+      watch_.is_needed() && (step >= next_look_ || step == steps_ ||
+                             (step >= last_look_ + kBetween && is_unusual(outcome)));
   if ((observer_ || half_ || is_looked_at) && !is_judged) access_.get_state(state_);
   const State& present = is_judged ? good_.state : state_;
   if (is_looked_at) look(present);
@@ -111,10 +113,15 @@ void JudgedRun::judge_present() {
   access_.get_state(state_);
   std::string lost = judge_.judge(time(step), state_);
   has_figures_ = true;
-  if (!lost.empty() && !locate_loss(lost)) {
-    // Where another simulation did the steps again, this state itself is still to be judged.
-    lost = judge_.judge(time(step), state_);
-    if (!lost.empty()) lose(judge_, lost, step);
+  Clock::duration redone{};  // steps that are done again are no judging
+  if (!lost.empty()) {
+    const auto redo = Clock::now();
+    if (!locate_loss(lost)) {
+      // Where another simulation did the steps again, this state itself is still to be judged.
+      lost = judge_.judge(time(step), state_);
+      if (!lost.empty()) lose(judge_, lost, step);
+    }
+    redone = Clock::now() - redo;
   }
   if (is_over_) return;
   if (samples_local_error_) {
@@ -124,7 +131,7 @@ void JudgedRun::judge_present() {
   good_.step = step;
   std::swap(good_.state, state_);
   good_.figures = judge_.figures();
-  judging_ += Clock::now() - begin;
+  judging_ += Clock::now() - begin - redone;
 }
 
 /// Whether the motion went on as another assembly.
@@ -143,6 +150,7 @@ void JudgedRun::look(const State& present) {
     lose(RunStatus::wrong_branch, std::move(reason), time(first));
     return;
   }
+  last_look_ = step;
   next_look_ = step + looked_after(present);
   judging_ += Clock::now() - begin;
 }

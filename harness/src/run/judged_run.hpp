@@ -81,6 +81,7 @@ class JudgedRun {
   long interval_;     // between two judgements
   long next_judged_;  // step
   long next_look_;    // step; beyond the last where there is nothing to look at
+  long last_look_ = 0;
   State state_;       // the last one that was looked at
   State before_;      // one step before the one that is judged next
   Judge judge_;

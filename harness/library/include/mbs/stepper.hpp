@@ -52,7 +52,8 @@ class SceneDocument {
 /// How a scene is stepped.
 struct StepperOptions {
   /// "folder/variant" of implementations(), or "auto": of those in this build, the one that the
-  /// measured rule of `mbs describe` expects to be fastest on the scene with this scheme.
+  /// measured rule of `mbs describe` expects to be fastest on the scene; where the scheme is
+  /// the penalty form and its factor is left to choose, in the form that suits the scene.
   std::string implementation = "auto";
   /// A penalty or tolerance of 0 is chosen from the scene, as `mbs simulate` does.
   StepSettings settings = {.penalty = 0.0, .tolerance = 0.0};
