@@ -186,4 +186,3 @@ def of_reuse(table):
 def rest(table, column):
     """Counts of a column's values, as {value: count}."""
     return {value: int(count) for value, count in table[column].value_counts().items()} if len(table) else {}
-

@@ -100,18 +100,17 @@ def missing(axes, text):
               fontsize=10, wrap=True)
 
 
-def size_ticks(axes, sizes, log=True, label="variables n"):
-    """Ticks at the measured sizes; labels that would touch their left neighbours are left out."""
-    if log:
-        axes.set_xscale("log")
-    place = numpy.log(sizes) if log else numpy.asarray(sizes, dtype=float)
+def size_ticks(axes, sizes):
+    """Ticks at the measured numbers of variables; labels that would touch their left neighbours are left out."""
+    axes.set_xscale("log")
+    place = numpy.log(sizes)
     gap, last, labels = 0.055 * (max(place, default=0) - min(place, default=0)), -numpy.inf, []
     for size, at in zip(sizes, place):
         labels.append(f"{size:g}" if at - last >= gap else "")
         last = at if labels[-1] else last
     axes.set_xticks(sizes, labels)
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_xlabel(label)
+    axes.set_xlabel("variables n")
 
 
 def number_axis(axis, unit=""):

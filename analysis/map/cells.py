@@ -75,4 +75,3 @@ def _row(results, cell, layer):
     return row | {"winner": ranking.winner, "second": ranking.second, "margin": margin.value, "low": margin.low,
                   "high": margin.high, "chance": ranking.chance, "holm": False, "equivalent": " ".join(ranking.equivalent), "open": " ".join(ranking.open),
                   "processes": len(mine), "record": " ".join(mine.record)}
-

@@ -104,4 +104,3 @@ def verification(records):
             rows += [base | {"check": check.get("name")} | {
                 key: check.get(key) for key in ("value", "tolerance", "passed", "detail")} for check in row["checks"] or [{}]]
     return pandas.DataFrame(rows)
-

@@ -290,8 +290,7 @@ def _latency(known):
 
 
 def _own(known):
-    tables, own = known.tables("families"), known.registry.own
-    ahead = fastest_own(tables["scenes"], known.registry)
+    ahead = fastest_own(known.tables("families")["scenes"], known.registry)
     found = {"mechanisms": of_rows(len(ahead), "families/scenes", ahead),
              "least": of_rows(number(1 / ahead.to_rival.max()), "families/scenes", ahead),
              "most": of_rows(number(1 / ahead.to_rival.min()), "families/scenes", ahead),

@@ -74,7 +74,7 @@ def contenders(known):
 def decided(known):
     """What the mechanisms were held to, and what was found."""
     rows = [{"what": what, "asked": asked, "found": found, "holds": {True: "yes", False: "no", None: "–"}[holds]}
-            for what, asked, found, holds in bounds.bounds(known.tables("families"), known.registry)]
+            for what, asked, found, holds in bounds.bounds(known.tables("families"))]
     held = known.tables("limit")["held"]
     rows += [{"what": row.what, "asked": f"{row.sign} {number(row.bound)}", "found": between(row.worst, row.low, row.high) if row.worst == row.worst
               else "not measured", "holds": {"held": "yes", "not held": "no"}.get(row.verdict, row.verdict)} for row in held.itertuples() if row.worst == row.worst]
