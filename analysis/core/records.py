@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from analysis.core.errors import StudyError
-from analysis.core.files import digest, write_text
+from analysis.core.files import digest, read_bytes, write_text
 
 RUN_ENDED = "done"  # status of a cell whose program ended as it should
 KINDS = {"cell": dict, "status": str, "reason": str, "seconds": (int, float), "command": list, "context": dict}
@@ -89,11 +89,7 @@ def write(path, data):
 
 
 def read(path, name):
-    try:
-        text = path.read_bytes().decode("utf-8", "replace")
-    except OSError as error:
-        raise StudyError(f"cannot read {path}: {error.strerror}") from error
-    return from_text(text, name, path)
+    return from_text(read_bytes(path).decode("utf-8", "replace"), name, path)
 
 
 def need_same_origin(record, context, where):
