@@ -2,6 +2,7 @@
 from pathlib import Path
 
 import matplotlib
+import matplotlib.pyplot as plt
 import numpy
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
@@ -91,6 +92,14 @@ def legend(axes, order=None, **more):
     if pairs:
         options = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "fontsize": 8.5} | more
         axes.legend(*zip(*pairs), **options)
+
+
+def nothing(text, size=(6, 1.2), title=""):
+    """A figure that says so."""
+    figure, axes = plt.subplots(figsize=size)
+    axes.set_title(title)
+    missing(axes, text)
+    return figure
 
 
 def missing(axes, text):

@@ -6,7 +6,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from analysis.core.outcomes import FINISHED
 from analysis.core.pareto import finished, pareto
-from analysis.core.style import GREY, MARKERS, missing
+from analysis.core.style import GREY, MARKERS, nothing
 from analysis.engines.equal_error import SIDES, of_side
 from analysis.engines.runs import NATIVE
 from analysis.engines.subjects import Subject
@@ -32,9 +32,7 @@ def draw(tables, view):
 def panels(tables, subjects, own):
     """The figure of some subjects."""
     if not subjects:
-        figure, axes = plt.subplots(figsize=(6, 1.2))
-        missing(axes, "Not measured.")
-        return figure
+        return nothing("Not measured.")
     engines, ours = tables["engines"], tables["ours"].rename(columns={"implementation": "name"})
     columns = 2 if len(subjects) == 4 else min(3, len(subjects))
     lines = -(-len(subjects) // columns)
