@@ -49,6 +49,12 @@ class Record:
     def done(self):
         return self.status == RUN_ENDED
 
+    @property
+    def options(self):
+        """{option: value} of a cell whose options all have one."""
+        words = self.cell["settings"]
+        return {key.removeprefix("--"): value for key, value in zip(words[::2], words[1::2])}
+
     def option(self, name):
         """The number behind an option of its cell; NaN without one."""
         words = [str(word) for word in self.cell["settings"]]

@@ -30,6 +30,11 @@ def rough(value):
     return f"about {number(float(f'{value:.2g}'))}"
 
 
+def span(values, digits=3):
+    """"1.2 to 3.4", or one number."""
+    return " to ".join(dict.fromkeys(number(value, digits) for value in (min(values), max(values))))
+
+
 def ends(low, high, digits=3):
     """"2.43 to 2.6", or that the interval says nothing; a dash if there is none."""
     if pandas.isna(low) or pandas.isna(high):

@@ -2,7 +2,7 @@
 
 from analysis.core.outcomes import FINISHED
 from analysis.core.pareto import finished
-from analysis.core.text import bounded, ends, number, rough
+from analysis.core.text import bounded, ends, number, rough, span
 from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import NOT_MADE, title
 from analysis.engines.runs import NATIVE
@@ -54,10 +54,8 @@ def _times(rows, side):
     timed = rows[rows.ratio.notna()]
     if timed.empty:
         return ""
-    least, most = number(timed.ratio.min(), 2), number(timed.ratio.max(), 2)
-    text = f"{least} to {most} times as long as {side}" if least != most else f"{least} times as long as {side}"
     missed = len(rows) - len(timed)
-    return text + (f", which does not reach {missed} of {len(rows)} of them" if missed else "")
+    return f"{span(timed.ratio, 2)} times as long as {side}" + (f", which does not reach {missed} of {len(rows)} of them" if missed else "")
 
 
 def of_native(native):

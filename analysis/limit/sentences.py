@@ -1,5 +1,5 @@
 # The answer to "How far is each step from code that was written by hand for one mechanism?", from the tables.
-from analysis.core.text import number
+from analysis.core.text import number, span
 from analysis.limit.figures import everyone
 from analysis.limit.held import HELD, NOT_HELD, NOT_MEASURED, OPEN, PARTLY
 from analysis.limit.tables import KINDS
@@ -63,8 +63,3 @@ def _held(held):
     if len(lost):
         text += f" Not measured: {'; '.join(lost.what)}."
     return [{"text": text, "anchor": "held"}]
-
-
-def span(values, digits=3):
-    """"1.2 to 3.4", or one number."""
-    return " to ".join(dict.fromkeys(number(value, digits) for value in (min(values), max(values))))

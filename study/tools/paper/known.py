@@ -21,7 +21,7 @@ class Known:
         if part not in self._tables:
             kept = read_object(self.folder / part / schema.DIGESTS, tables=dict)["tables"]
             self._tables[part] = {name: schema.read_table(self.folder, part, name) if name in kept else
-                                  schema.conform(pandas.DataFrame(columns=list(columns)), columns, f"{part}/{name}.csv")
+                                  schema.conform(pandas.DataFrame(), columns, f"{part}/{name}.csv")
                                   for name, columns in schema.of_part(part).items()}
         return self._tables[part]
 

@@ -10,7 +10,7 @@ import yaml
 from analysis.accuracy import sentences as accuracy
 from analysis.core import timing
 from analysis.core.files import ROOT
-from analysis.core.text import number
+from analysis.core.text import number, span
 from analysis.families import rule as rules
 from analysis.families.figures import best_form, fastest_own
 from analysis.map import carry, ledger, sentences as map_sentences, summary
@@ -101,8 +101,7 @@ def _design(known):
     return {"libraries": Number(str(len(registry.libraries)), file), "own": Number(str(len(registry.own)), file),
             "equal": Number(f"{100 * (timing.EQUIVALENT - 1):.0f} %", "analysis/core/timing.py"),
             "confidence": Number(f"{100 * timing.CONFIDENCE:.0f} %", "analysis/core/timing.py"),
-            "processes": of_rows(" to ".join(dict.fromkeys(number(one) for one in (processes.min(), processes.max()))), "families/scenes",
-                                 scenes[scenes.processes.notna()]) if len(processes) else None,
+            "processes": of_rows(span(processes), "families/scenes", scenes[scenes.processes.notna()]) if len(processes) else None,
             "tried": of_rows(timed.alternative.nunique(), "tuning/alternatives", timed),
             "compared": of_rows(len(timed), "tuning/alternatives", timed),
             "slower": of_rows((timed.low > 1).sum(), "tuning/alternatives", timed[timed.low > 1]),
@@ -215,10 +214,6 @@ def _hybrid(results, filled):
     found = {scene: one for scene in filled.scene for one in [results.ratio(scene, DENSE, HYBRID)] if one}
     rows = filled[filled.scene.isin(found)]
     return of_rows(span([one.value for one in found.values()]), "map/tidy", rows) if found else None
-
-
-def span(values, digits=3):
-    return " to ".join(dict.fromkeys(number(one, digits) for one in (min(values), max(values))))
 
 
 def _claims(known):
