@@ -14,10 +14,7 @@ BUSY = 0.05       # share of the time of runs in which other programs had the pr
 
 
 def as_json(advice, run, described, variants, folder):
-    question = advice.question
-    answer = {"question": {"scene": question.scene, "error": question.error,
-                           "duration": question.duration, "deadline_us": question.deadline_us,
-                           "step": question.step},
+    answer = {"question": {name: value for name, value in asdict(advice.question).items() if name != "budget"},
               "met": advice.verified is not None,
               "advice": _advised(advice, variants[advice.chosen.implementation]["library"]) if advice.verified
               else None,

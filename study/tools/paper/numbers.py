@@ -34,8 +34,7 @@ def numbers(known):
     """{name: Number}"""
     found = {}
     for query in (_set, _design, _gate, _real, _size, _fill, _claims, _price, _rule, _error, _window, _latency, _own, _limits, _minutes):
-        made = {f"{query.__name__[1:]}.{name}": one for name, one in query(known).items()}
-        found |= made
+        found |= {f"{query.__name__[1:]}.{name}": one for name, one in query(known).items()}
     return {name: Number(one.text, one.table, tuple(dict.fromkeys(one.records))) if isinstance(one, Number) and one.text not in ("", "–", "nan") else Number(NOT_MEASURED, one.table if one else "")
             for name, one in found.items()}
 
@@ -140,12 +139,11 @@ def machines_said(known):
 
 def _gate(known):
     found = {}
-    for part, table in (("families", known.tables("families")["scenes"]),
-                        ("map", known.tables("map")["verification"].drop_duplicates(["scene", "implementation"]))):
+    for part, name, table in (("families", "scenes", known.tables("families")["scenes"]),
+                              ("map", "verification", known.tables("map")["verification"].drop_duplicates(["scene", "implementation"]))):
         asked = table[~table.verdict.isin(["", "dropped"])]
-        found |= {f"{part}_asked": of_rows(len(asked), f"{part}/{'scenes' if part == 'families' else 'verification'}", asked),
-                  f"{part}_agree": of_rows((asked.verdict == "agrees").sum(), f"{part}/{'scenes' if part == 'families' else 'verification'}",
-                                           asked[asked.verdict == "agrees"])}
+        found |= {f"{part}_asked": of_rows(len(asked), f"{part}/{name}", asked),
+                  f"{part}_agree": of_rows((asked.verdict == "agrees").sum(), f"{part}/{name}", asked[asked.verdict == "agrees"])}
     return found
 
 
@@ -315,10 +313,5 @@ def _minutes(known):
     for name in ("quick", "full"):
         path = ROOT / "study" / "profiles" / f"{name}.yaml"
         parts = yaml.safe_load(path.read_text(encoding="utf-8"))["parts"]
-        found[name] = Number(f"{math.ceil(sum(map(seconds, parts.values())) / 60):d}", f"study/profiles/{name}.yaml")
+        found[name] = Number(f"{math.ceil(sum(part['seconds'] for part in parts.values()) / 60):d}", f"study/profiles/{name}.yaml")
     return found
-
-
-def seconds(settings):
-    """What a profile allows a part."""
-    return settings["seconds"]
