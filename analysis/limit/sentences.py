@@ -24,16 +24,12 @@ def _multiples(rows, view):
 
 
 def _leads(leads):
-    rows, found = _of_scenes(leads), []
+    rows, found = leads[(leads.status == "ok") & leads.kind.isin(KINDS)], []
     for name, mine in rows.groupby("implementation", sort=False):
         faster, slower = (mine.low > 1).sum(), (mine.high < 1).sum()
         found.append(f"{name} is shown to be faster than the fastest library in {faster} of {len(mine)} scenes that it "
                      f"serves and slower in {slower} ({span(mine.lead)} times)")
     return [{"text": f"Scene by scene: {'. '.join(found)}.", "anchor": "ahead"}] if found else []
-
-
-def _of_scenes(leads):
-    return leads[(leads.status == "ok") & leads.kind.isin(KINDS)]
 
 
 def _gains(batches):

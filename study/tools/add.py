@@ -174,10 +174,7 @@ def _begin(folder, column, lab):
         shutil.rmtree(lab.base / column, ignore_errors=True)
         (folder / "added" / f"{column}.csv").unlink(missing_ok=True)
     write_json(path, {"program": program})
-    shutil.rmtree(lab.set.scratch, ignore_errors=True)
-    lab.set.scratch.mkdir(parents=True)
-    for one in (lab.base / column).rglob(".partial-*"):  # of a process that was killed
-        one.unlink()
+    lab.set.clear()
 
 
 def _rivals(cells, newcomers, contenders):
