@@ -84,7 +84,7 @@ def run(arguments):
             set_up(folder / "run.log")
         need_modules()
         studyset = start(folder, profile, options.only, chosen)
-        columns = columns_of(profile, studyset.facts["parts"], studyset)
+        columns = columns_of(profile, studyset.facts["parts"])
         reopen(studyset, columns)
         need_tables(studyset)
         print(f"{len(studyset.contenders)} implementations, {len(columns)} parts: at most "
@@ -94,9 +94,9 @@ def run(arguments):
     return 0
 
 
-def columns_of(profile, chosen, studyset=None):
+def columns_of(profile, chosen):
     """{part: {column: seconds at most}}, in the order of the list."""
-    return {part: profiles.plan_of(part).columns(profile.parts[part], studyset) for part in parts() if part in chosen}
+    return {part: profiles.plan_of(part).columns(profile.parts[part]) for part in parts() if part in chosen}
 
 
 def figures(arguments):

@@ -31,7 +31,7 @@ NATIVE_PROGRAM = "../build-engines/study/engines/engine_ode"  # as seen from the
 SET_UP = "study/setup --engines"
 
 
-def columns(settings, studyset):
+def columns(settings):
     shares = {name: 1.0 if Subject(name).loops else 0.5 for name in settings["subjects"]}  # the others are small
     return {name: settings["seconds"] * share / sum(shares.values()) for name, share in shares.items()}
 

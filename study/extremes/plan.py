@@ -18,7 +18,7 @@ PREFERRED = {      # of each folder the first variant that serves a way stands f
     "eigen_sparse": ("eigen_sparse/ldlt", "eigen_sparse/superlu")}
 
 
-def columns(settings, studyset):
+def columns(settings):
     return {column: share * settings["seconds"] for column, share in SHARES.items()}
 
 

@@ -31,7 +31,7 @@ SWEPT = {  # scene: the implementation that sweeps it, and what varies; lanes of
 SWEEP = "../study/limit/sweep_process"  # as seen from the build
 
 
-def columns(settings, studyset):
+def columns(settings):
     return {name: share * settings["seconds"] for name, share in SHARES.items()}
 
 

@@ -26,7 +26,7 @@ SETTINGS = {"processes": int,      # of a timed scene
 CLOSEST = 0.04  # fills nearer than this have none put between them, share
 
 
-def columns(settings, studyset):
+def columns(settings):
     for entry in settings["columns"]:
         need_keys("profile: map", "a column", {key: 0 for key in entry if key != "slower"}, {"variables", "seconds", "fills"})
         if entry["variables"] < 4 or entry["variables"] % 2 or entry["fills"][:1] != [NATURAL]:

@@ -16,7 +16,7 @@ AUTOMATIC = "auto"
 MAPS = 0.7  # of the budget
 
 
-def columns(settings, studyset):
+def columns(settings):
     return {"maps": MAPS * settings["seconds"], "whole": (1 - MAPS) * settings["seconds"]}
 
 

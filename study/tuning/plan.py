@@ -11,7 +11,7 @@ SETTINGS = {"scenes": list,     # the most telling first
             "samples": int}     # of a process and contender
 
 
-def columns(settings, studyset):
+def columns(settings):
     return {"alternatives": settings["seconds"]}
 
 
