@@ -44,7 +44,7 @@ def _name(entry):
 
 def run(lab, column):
     [entry] = [one for one in lab.settings["columns"] if _name(one) == column]
-    natural, *filled = [Scene.of(entry["variables"], fill) for fill in entry["fills"]]
+    natural, *filled = [Scene(entry["variables"], None if fill == NATURAL else fill) for fill in entry["fills"]]
     if entry == lab.settings["columns"][0]:
         _unavailable(lab, natural)
     costs, own_fill = fit(lab, natural, [*lab.contenders, *alternatives(lab, natural)])

@@ -222,7 +222,5 @@ def _same(one):
 
 
 def _columns(prefix, one):
-    values = {"implementation": one.implementation, "setting": one.setting.name, "step": one.step,
-              "us_per_second": one.us_per_second()[0]} if one else dict.fromkeys(
-                  ("implementation", "setting", "step", "us_per_second"))
-    return {f"{prefix}_{key}": value for key, value in values.items()}
+    values = (one.implementation, one.setting.name, one.step, one.us_per_second()[0]) if one else (None,) * 4
+    return {f"{prefix}_{key}": value for key, value in zip(("implementation", "setting", "step", "us_per_second"), values)}
