@@ -111,7 +111,7 @@ def files_of(folder, part, column="."):
     base = Path(folder) / "raw" / part
     found = {path.relative_to(base).as_posix(): path for path in (base / column).rglob("*.json")
              if path.parent != base / "scenes" and not path.name.startswith(".")}
-    return dict(sorted(found.items()))  # by the same order as those of an archive
+    return dict(sorted(found.items()))  # as an archive has them
 
 
 def archive_of(folder, part):
@@ -122,7 +122,7 @@ def read_part(folder, part):
     """All records of a part, by name; of a stored set from its archive."""
     archive = archive_of(folder, part)
     if not archive.exists():
-        return [read(path, name) for name, path in sorted(files_of(folder, part).items())]  # as an archive sorts them
+        return [read(path, name) for name, path in files_of(folder, part).items()]
     try:
         with lzma.open(archive) as file:  # all of it, as tarfile would not miss the end of a file that was cut
             whole = io.BytesIO(file.read())

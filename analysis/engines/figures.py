@@ -22,11 +22,8 @@ NOT_MADE = ("unavailable", "not-reached", "dropped")
 
 def draw(tables, view):
     subjects = [Subject(name) for name in dict.fromkeys(tables["ours"].subject)]
-    found = {}
-    for name, chosen in (("singular", [one for one in subjects if not one.regular]),
-                         ("regular", [one for one in subjects if one.regular])):
-        found[name] = panels(tables, chosen, view.registry.own)
-    return found
+    return {name: panels(tables, [one for one in subjects if one.regular == regular], view.registry.own)
+            for name, regular in (("singular", False), ("regular", True))}
 
 
 def panels(tables, subjects, own):

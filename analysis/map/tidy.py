@@ -40,8 +40,7 @@ def scene_of(name):
 
 
 def _common(row, kind):
-    name, _, other = row["implementation"].partition("+")
-    folder, _, variant = name.partition("/")
+    folder, _, variant = row["implementation"].partition("+")[0].partition("/")
     build, _, blas = row["environment"].partition("|")
     samples = row.get("samples")
     timed = {"samples": len(samples), "samples_us": " ".join(f"{one:.6g}" for one in samples)} if isinstance(samples, tuple) else {}

@@ -54,9 +54,7 @@ def run(lab, column):
 def unavailable():
     """{engine: why its program cannot be run, or ""}"""
     path = ROOT / "build" / PROGRAMS / "engines.json"
-    if not path.exists():
-        return {engine: f"its program is not built: {SET_UP}" for engine in read_list()}
-    found = json.loads(path.read_text())
+    found = json.loads(path.read_text()) if path.exists() else {}
     return {engine: found.get(engine, f"its program is not built: {SET_UP}") for engine in read_list()}
 
 

@@ -82,8 +82,8 @@ def _reference(lab, cell, scene, factor, one=REFERENCE, program="mbs_reference")
 def way_out(lab):
     sizes, limit = lab.settings["loops"], lab.settings["limit"]
     served = []
-    for title, way in ways.WAYS.items():
-        for folder, names in PREFERRED.items():
+    for way in ways.WAYS.values():
+        for names in PREFERRED.values():
             present = [one for name in names for one in [lab.contender(name)] if one]
             one = next((one for one in present if lab.registry.serves(one.variant, *way.needs)), None)
             if one:
