@@ -42,11 +42,11 @@ def ends(low, high, digits=3):
     return f"{number(low, digits)} to {number(high, digits)}" if bounded(low, high) else "not bounded"
 
 
-def between(value, low, high, digits=3):
-    """"2.51 (2.43 to 2.6)", or "about 2.5 (not bounded)"; a dash if there is no value."""
+def between(value, low, high, digits=3, more=""):
+    """"2.51 (2.43 to 2.6)", or "about 2.5 (not bounded)"; a dash if there is no value. `more`: behind the interval."""
     if pandas.isna(value):
         return "–"
-    return f"{number(value, digits) if bounded(low, high) else rough(value)} ({ends(low, high, digits)})"
+    return f"{number(value, digits) if bounded(low, high) else rough(value)} ({ends(low, high, digits)}{more})"
 
 
 def interval(ratio, digits=3):

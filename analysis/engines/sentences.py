@@ -2,7 +2,7 @@
 
 from analysis.core.outcomes import FINISHED
 from analysis.core.pareto import finished
-from analysis.core.text import bounded, ends, number, rough, span
+from analysis.core.text import between, number, span
 from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import NOT_MADE, title
 from analysis.engines.runs import NATIVE
@@ -30,10 +30,9 @@ def of_side(table, side):
             "comparisons at equal error")
     if len(timed):
         worst = timed.loc[timed.ratio.idxmin()]
-        least = number(worst.ratio, 2) if bounded(worst.low, worst.high) else rough(worst.ratio)
-        text += (f", by {number(timed.ratio.median(), 2)} times in the median, at the least {least} "
-                 f"({ends(worst.low, worst.high, 2)}; {title(worst.engine)}, {Subject(worst.subject).title}, "
-                 f"{number(worst.engine_error, 2)} m)")
+        where = f"; {title(worst.engine)}, {Subject(worst.subject).title}, {number(worst.engine_error, 2)} m"
+        text += (f", by {number(timed.ratio.median(), 2)} times in the median, at the least "
+                 f"{between(worst.ratio, worst.low, worst.high, 2, where)}")
     if len(timed) < len(rows):
         text += f"; it does not reach {len(rows) - len(timed)} of these errors"
     return text + "."

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from analysis.core.registry import ANCHOR
-from analysis.core.timing import disturbed
+from analysis.core.timing import ALONE, LEFT_OUT, disturbed
 from study.core.cell import LAYOUT, Cell
 from study.core.contender import by_environment
 
@@ -48,7 +48,7 @@ def _environment(lab, cell, processes, drop):
         else:
             return [*lost, *found]
         culprits = _culprits(lab, cell, record)
-        lost += [lab.skip(replace(cell, contenders=(one,), role=f"{cell.role}-left-out"), status, reason)
+        lost += [lab.skip(replace(cell, contenders=(one,), role=f"{cell.role}{LEFT_OUT}"), status, reason)
                  for one, status, reason in culprits]
         names = {one.name for one, _, _ in culprits}
         cell = replace(cell, contenders=tuple(one for one in cell.contenders if one.name not in names))
@@ -67,6 +67,6 @@ def _culprits(lab, cell, record):
     chosen = [one for one in cell.contenders if named == f"{one.variant}/{cell.scene}"]
     if chosen or len(cell.contenders) == 1:
         return [(one, record.status, record.reason) for one in chosen or cell.contenders]
-    alone = [(one, lab.one(replace(cell, contenders=(one,), role=f"{cell.role}-alone"))) for one in cell.contenders]
+    alone = [(one, lab.one(replace(cell, contenders=(one,), role=f"{cell.role}{ALONE}"))) for one in cell.contenders]
     return [(one, found.status, found.reason) for one, found in alone if not found.done] or [
         (one, record.status, f"a process of all: {record.reason}") for one in cell.contenders]
