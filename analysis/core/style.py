@@ -79,7 +79,7 @@ class Look:
                 "markeredgecolor": "white" if solid else self.colour(name)}
 
 
-def legend(axes, order=None, **more):
+def legend(axes, order=None):
     """A legend right of the axes, entries in the order of their last points, slowest first, as the
     lines end; or sorted by `order(label)`. Entries without a line's label come last."""
     handles, labels = axes.get_legend_handles_labels()
@@ -90,12 +90,11 @@ def legend(axes, order=None, **more):
         return -values[-1] if len(values) else float("inf")
     pairs = sorted(zip(handles, labels), key=(lambda e: order(e[1])) if order else last)
     if pairs:
-        options = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "fontsize": 8.5} | more
-        axes.legend(*zip(*pairs), **options)
+        axes.legend(*zip(*pairs), loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
 
 
 def nothing(text, size=(6, 1.2), title=""):
-    """A figure that says so."""
+    """A figure that says what is missing, and no more."""
     figure, axes = plt.subplots(figsize=size)
     axes.set_title(title)
     missing(axes, text)

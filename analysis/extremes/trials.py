@@ -39,16 +39,16 @@ EXAMPLES = {  # and families in small: the length of the shortest link, m
     "vehicle:2": 0.4, "robot:6": 0.5, "star:3": 1.0, "clusters:2": 0.6, "flexible:2": 0.57}
 
 
-def four_bar(crank, coupler, rocker, ground, side=Side(), **more):
-    return Linkage((("A", (0.0, 0.0)), ("D", (ground, 0.0))), crank, (Dyad("C", ("B", "D"), (coupler, rocker), side),), **more)
+def four_bar(crank, coupler, rocker, ground, side=Side()):
+    return Linkage((("A", (0.0, 0.0)), ("D", (ground, 0.0))), crank, (Dyad("C", ("B", "D"), (coupler, rocker), side),))
 
 
-def slider_crank(crank, rod, offset=0.0, side=Side(), **more):
-    return Linkage((("A", (0.0, 0.0)), ("D", (0.0, offset))), crank, (Slider("C", "B", rod, "D", side),), **more)
+def slider_crank(crank, rod, offset=0.0, side=Side()):
+    return Linkage((("A", (0.0, 0.0)), ("D", (0.0, offset))), crank, (Slider("C", "B", rod, "D", side),))
 
 
-def quick_return(crank, ground, swing, **more):
-    return Linkage((("A", (0.0, 0.0)), ("D", (ground, 0.0))), crank, (Swing("C", "D", "B", swing),), **more)
+def quick_return(crank, ground, swing):
+    return Linkage((("A", (0.0, 0.0)), ("D", (ground, 0.0))), crank, (Swing("C", "D", "B", swing),))
 
 
 def _longer(base, foot, plate, gap, share):
