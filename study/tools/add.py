@@ -254,7 +254,7 @@ def _compared(timing, rows, name, ranking, before):
 def _finish(folder, column, lab, rows):
     import pandas
     from analysis.core import schema
-    table = schema.conform(pandas.DataFrame(rows, columns=list(CELLS)), CELLS, f"added/{column}.csv")
+    table = schema.conform(pandas.DataFrame(rows), CELLS, f"added/{column}.csv")
     path = folder / "added" / f"{column}.csv"
     write(path, lambda partial: table.to_csv(partial, index=False))
     write_json(path.with_suffix(".json"), read_json(path.with_suffix(".json")) | {
