@@ -5,7 +5,7 @@ from analysis.accuracy.pairs import same_class
 from analysis.core.style import number_axis, size_ticks
 
 
-def draw(rows, look, title, goal=None):
+def draw(rows, look, title, goal):
     """The time of the second setting over the first one's; hollow where the error class is another."""
     kinds = list(dict.fromkeys(zip(rows["first"], rows["second"])))
     figure, panels = plt.subplots(1, len(kinds), figsize=(3.4 * len(kinds) + 2.8, 4.2), sharey=True,

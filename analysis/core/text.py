@@ -49,6 +49,6 @@ def between(value, low, high, digits=3, more=""):
     return f"{number(value, digits) if bounded(low, high) else rough(value)} ({ends(low, high, digits)}{more})"
 
 
-def interval(ratio, digits=3):
+def interval(ratio):
     """`between` of a timing.Ratio."""
-    return between(ratio.value, ratio.low, ratio.high, digits)
+    return between(ratio.value, ratio.low, ratio.high)

@@ -120,7 +120,7 @@ def sweeps(lab):
 def timed(lab, scene, contenders, role, settings=()):
     """The rows of a scene's processes."""
     return rows_of(measure(lab, scene, contenders, processes=lab.settings["processes"], repetitions=lab.settings["samples"],
-                           settings=settings, role=role, drop=True))
+                           settings=settings, role=role))
 
 
 def own(lab):

@@ -84,14 +84,14 @@ def _seeds(lab, timed):
     chosen = [one for one in filled.costs if one.name in names]
     for seed in range(1, asked["seeds"] + 1) if len(chosen) > 1 else ():
         measure(lab, f"{filled.scene.name},seed={seed}", chosen, processes=asked["processes"], repetitions=3, role="seeds",
-                seconds=lab.settings["limits"]["time"], drop=True)
+                seconds=lab.settings["limits"]["time"])
 
 
 def _phases(lab, timed):
     asked = lab.settings["phases"]
     if timed.scene.variables in asked["columns"]:
         measure(lab, timed.scene.name, [one for one in timed.costs if one.ranked], processes=asked["processes"],
-                repetitions=1, role="phases", settings=("--phases",), seconds=lab.settings["limits"]["time"], drop=True)
+                repetitions=1, role="phases", settings=("--phases",), seconds=lab.settings["limits"]["time"])
 
 
 def _operations(lab, scene):

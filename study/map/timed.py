@@ -65,5 +65,5 @@ class TimedScene:
         sample = max(TURN * len(contenders),
                      1e-6 * BUSY * self.scene.steps * sum(self.costs.get(one, 0.0) for one in contenders))
         samples = min(max(round(lab.settings["process"] / sample), LEAST_SAMPLES), MOST_SAMPLES)
-        return measure(lab, self.scene.name, contenders, processes=count, role=role, drop=True, repetitions=samples,
+        return measure(lab, self.scene.name, contenders, processes=count, role=role, repetitions=samples,
                        seconds=limit, settings=("--patience", limit / 10))

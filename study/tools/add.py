@@ -123,7 +123,7 @@ def measured(folder, name, known):
             fit = [contenders[one] for one in newcomers if verdicts[scene][one][0] == "ok"]
             if fit and chosen[scene]:
                 records[scene] = measure(lab, scene, [*fit, *(contenders[one] for one in chosen[scene])], processes=count,
-                                         drop=True, **_size(lab, times.get(scene, {}), chosen[scene], steps.steps[scene], len(scenes)))
+                                         **_size(lab, times.get(scene, {}), chosen[scene], steps.steps[scene], len(scenes)))
     lab.progress.end()
     context = present[contenders[newcomers[0]].environment]
     rows = [row | {"commit": context["commit"], "dirty": context["dirty"]} for scene in scenes

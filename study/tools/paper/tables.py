@@ -48,10 +48,10 @@ def _records(one):
     return "" if not one.records else one.records[0] + (f" +{len(one.records) - 1}" if len(one.records) > 1 else "")
 
 
-def table(rows, columns, long=False, nothing="Not measured in this set."):
+def table(rows, columns, long=False):
     """Rows, dicts by the heads of `columns`, {head: LaTeX column}. `long`: over several pages."""
     if not rows:
-        return tex(nothing)
+        return tex("Not measured in this set.")
     frame = pandas.DataFrame(rows, columns=list(columns))
     style = frame.style.hide(axis="index").format(tex).format_index(tex, axis=1)
     return style.to_latex(column_format="".join(columns.values()), hrules=True, environment="longtable" if long else None)
