@@ -9,7 +9,7 @@ import sys
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
-from analysis.core.parts import need_parts, parts
+from analysis.core.parts import parts
 from study.core import child, cluster, locks, profile as profiles
 from study.core.disk import writable
 from study.core.front import Display, run_workflow
@@ -62,7 +62,8 @@ def run(arguments):
     if options.list:
         return list_choices()
     need_modules("yaml")
-    need_parts(options.part)
+    if unknown := [name for name in options.part if name not in parts()]:
+        raise StudyError(f"unknown part '{unknown[0]}'; known: {', '.join(parts())}")
     chosen = [part for part in parts() if not options.part or part in options.part]
     profile = profiles.load(options.profile, chosen)
     name = "-".join([profile.name, *(only.replace("/", ".") for only in options.only)])

@@ -45,8 +45,9 @@ def sizes(lab):
     every = sorted({*known, *lab.settings["large"]})
     if every:
         lab.one(Cell("limit", "", (), tuple(every), "bounds", timed=True, seconds=300))
+    limit_code = [replace(one, name=LIMIT, variant=LIMIT) for one in usual(lab)[:1]]  # in the processes of most others
     for loops in every:
-        here = [*limit_code(lab), *(lab.contenders if loops in known else own(lab))]
+        here = [*limit_code, *(lab.contenders if loops in known else own(lab))]
         scene = f"four-bar:{loops}"
         for one in here:
             if one.name in lost:
@@ -125,8 +126,3 @@ def timed(lab, scene, contenders, role, settings=()):
 
 def own(lab):
     return [one for one in lab.contenders if one.variant in lab.registry.own]
-
-
-def limit_code(lab):
-    """The code written for the N-four-bar alone, in the processes of most others."""
-    return [replace(one, name=LIMIT, variant=LIMIT) for one in usual(lab)[:1]]

@@ -28,16 +28,13 @@ MARKS = ("o", "s", "^", "D", "v", "P")
 def figures(known):
     """{name: figure}, each as wide as the paper's text"""
     matplotlib.rcParams["figure.max_open_warning"] = 0  # all of some parts, of which few are taken
-    drawn = {part: draw(known, part) for part in ("families", "map", "stability", "realtime", "engines")}
+    drawn = {part: importlib.import_module(f"analysis.{part}.figures").draw(known.tables(part), known.view(part)) for part in (
+        "families", "map", "stability", "realtime", "engines")}
     found = {"mechanisms": (mechanisms(known), None), "held": (drawn["families"]["held"], 2.4), "own_fill": (lower_notes(drawn["map"]["f4_sparse_solvers"]), 4.2),
              "map": (drawn["map"]["f7_map"], 4.1), "phases": (phases(known), None), "work": (work(known), 4.0),
              "window": (drawn["stability"].get("penalty-double") or nothing(NOTHING), 2.9), "steps": (drawn["realtime"]["steps"], None),
              "own": (own(drawn["families"]["map"]), 3.1), "engines": (engines(drawn["engines"]["regular"]), 3.2)}
     return {name: fit(figure, height, known.context["cpu_model"]) for name, (figure, height) in found.items()}
-
-
-def draw(known, part):
-    return importlib.import_module(f"analysis.{part}.figures").draw(known.tables(part), known.view(part))
 
 
 def work(known):
