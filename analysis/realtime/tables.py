@@ -10,18 +10,13 @@ END = "end of the search"
 
 
 def build(records, view):
-    nulls = {_after(one): one for one in records if one.role == "null"}
+    nulls = {one.options["after"]: one for one in records if one.role == "null"}  # by the run that each came after
     order = {name: place for place, name in enumerate(view.registry.variants)}
     found = {role: pandas.DataFrame([_run(one, nulls.get(one.name)) for one in records if one.role == role])
              for role in ("steps", "search")}
     found = {role: _sorted(table, order) if len(table) else table for role, table in found.items()}
     return {"steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"),
             "tried": found["search"], "largest": _largest(found["search"]), "machine": _machine(nulls.values())}
-
-
-def _after(null):
-    """The record of the run that a null process came after, or distributions."""
-    return null.options["after"] if "after" in null.options else null.options["beside"]  # as stored sets call it
 
 
 def _run(record, null):
@@ -82,6 +77,6 @@ def _counts(values):
 
 def _machine(nulls):
     return pandas.DataFrame([{
-        "after": _after(one), "step": float(f"{1e-6 * float(one.options['deadline-us']):g}"),
+        "after": one.options["after"], "step": float(f"{1e-6 * float(one.options['deadline-us']):g}"),
         "seconds": float(one.options["seconds"]), "status": one.status, "reason": one.reason, "record": one.name} | {
         key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for one in nulls])

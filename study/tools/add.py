@@ -3,7 +3,6 @@
 # The newcomer, the leader and the runner-up of the libraries and the leader of all take turns in fresh processes: what
 # the set has of the others is never paired with new samples. Records: SET/raw/added/NAME/, the result: SET/added/NAME.csv.
 import datetime
-import json
 import os
 import shutil
 from collections import Counter
@@ -161,10 +160,7 @@ def contexts(folder, contenders):
 
 def versions(context):
     """The libraries with their versions, as a set of texts."""
-    text = context.get("libraries", "")
-    if text.startswith("{"):
-        return {f"{name} {version}" for name, version in json.loads(text).items()}
-    return {one.strip() for one in text.split(";")} - {""}
+    return {one.strip() for one in context.get("libraries", "").split(";")} - {""}
 
 
 def _begin(folder, column, lab):
