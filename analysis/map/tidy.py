@@ -17,9 +17,8 @@ def tidy(records):
     lost = [row for row in pilots.to_dict("records")  # a pilot that ran out of time may tell enough to exclude it
             if row["status"] != "ok" and not (row["status"] == "timeout" and (row["scene"], row["implementation"]) in excluded)]
     rows = [_common(row, "timing") for row in timed_rows(records).to_dict("records")]
-    rows += [_common(row | {"process": None}, "timing") for row in [*lost, *_rejected(records)]]
-    rows += [_common(row | {"process": None}, "timing")
-             for row in processes([one for one in records if one.role in SKIPPED]).to_dict("records")]
+    skipped = processes([one for one in records if one.role in SKIPPED]).to_dict("records")
+    rows += [_common(row | {"process": None}, "timing") for row in [*lost, *_rejected(records), *skipped]]
     rows += [_common(row, kind) for kind in ("builds", "phases", "seeds")
              for row in processes([one for one in records if one.role == kind]).to_dict("records")]
     rows += [row for one in records if one.role == "operations" for row in _operations(one)]

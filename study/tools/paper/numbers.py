@@ -221,7 +221,7 @@ def _claims(known):
     return {"all": of_rows(len(by_id), "map/claims", table), "rows": of_rows(len(table), "map/claims", table),
             "counts": of_rows(", ".join(f"{len(names)} {'are' if len(names) > 1 else 'is'} {verdict}" for verdict, names in found.items() if names),
                               "map/claims", table),
-            "told": of_rows("; ".join(f"{verdict}: {', '.join(names)}" for verdict, names in found.items() if names), "map/claims", table)}
+            "told": of_rows(ledger.told(table), "map/claims", table)}
 
 
 def _price(known):
