@@ -69,7 +69,6 @@ def same_class(rows):
     return (rows.first_class == rows.second_class) & rows.first_class.notna()
 
 
-def gains(rows, goal=GAIN):
-    """Rows in which the second setting is at least `goal` times faster with the same error class, by the whole
-    interval."""
-    return rows[same_class(rows) & (rows.high <= 1 / goal)]
+def gains(rows):
+    """Rows in which the second setting is at least GAIN times faster with the same error class, by the whole interval."""
+    return rows[same_class(rows) & (rows.high <= 1 / GAIN)]

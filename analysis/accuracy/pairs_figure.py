@@ -5,7 +5,7 @@ from analysis.accuracy.pairs import same_class
 from analysis.core.style import number_axis, size_ticks
 
 
-def draw(rows, look, title, goal=None):
+def draw(rows, look, title, goal):
     """The time of the second setting over the first one's; hollow where the error class is another."""
     kinds = list(dict.fromkeys(zip(rows["first"], rows["second"])))
     figure, panels = plt.subplots(1, len(kinds), figsize=(3.4 * len(kinds) + 2.8, 4.2), sharey=True,
@@ -25,9 +25,7 @@ def draw(rows, look, title, goal=None):
         axes.set_title(f"{second} / {first}")
     number_axis(panels[0][0].yaxis)
     panels[0][0].set_ylabel("ratio of times of a step")
-    handles = {}
-    for axes in panels[0]:
-        handles |= dict(zip(*axes.get_legend_handles_labels()[::-1]))
+    handles = {label: handle for axes in panels[0] for handle, label in zip(*axes.get_legend_handles_labels())}
     panels[0][-1].legend(handles.values(), handles.keys(), loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
     figure.suptitle(title, x=0.01, ha="left", fontsize=12)
     return figure

@@ -29,18 +29,18 @@ def runs(records, subject, known):
         status, reason = of_run(record)
         row = {"scene": record.cell["scene"], "implementation": record.cell["contenders"][0], "setting": setting_of(record),
                "step": record.option("--step"), "duration": record.option("--duration"), "status": status,
-               "reason": reason, "seconds": record.seconds, "record": record.name}
+               "reason": reason, "record": record.name}
         found = record.output
         if record.done and found["steps"]:
             row |= {"variables": found["variables"], "fill": found["tangent_nonzeros"] / found["variables"]**2,
                     "passes": found["passes_per_step"], "factorizations": found["factorizations_per_step"],
-                    "steps": found["steps"], "time": 1e-6 * found["step_us"]["median"] / row["step"]}
+                    "time": 1e-6 * found["step_us"]["median"] / row["step"]}
         if status in FINISHED and known:
             error = subjects.error(subject, known, record)
             row |= {"error": max(error, known.own_error), "at_most": bool(error <= known.own_error)}
         rows.append(row)
-    return pandas.DataFrame(rows, columns=[*KEY, "duration", "status", "reason", "seconds", "record", "variables", "fill",
-                                           "passes", "factorizations", "steps", "time", "error", "at_most"])
+    return pandas.DataFrame(rows, columns=[*KEY, "duration", "status", "reason", "record", "variables", "fill", "passes", "factorizations",
+                                           "time", "error", "at_most"])
 
 
 def timed(records):

@@ -1,7 +1,7 @@
 # What the page and the front page say, computed from the tables.
 from analysis.accuracy import names, pairs
 from analysis.accuracy.winners import LAYERS, meeting, met
-from analysis.core.text import between, bounded, ends, number, rough
+from analysis.core.text import between, bounded, number
 
 WORDS = {"libraries": "Of the libraries", "all": "Of all, code without a library included,"}
 
@@ -128,8 +128,7 @@ def of_forms(table):
 
 
 def _cost(row):
-    value = number(row.ratio, 2) if bounded(row.low, row.high) else rough(row.ratio)
-    return f"{value} ({ends(row.low, row.high, 2)}; {row.implementation}, n = {row.variables:.0f})"
+    return between(row.ratio, row.low, row.high, 2, f"; {row.implementation}, n = {row.variables:.0f}")
 
 
 def of_precision(table):
@@ -186,4 +185,3 @@ def of_reuse(table):
 def rest(table, column):
     """Counts of a column's values, as {value: count}."""
     return {value: int(count) for value, count in table[column].value_counts().items()} if len(table) else {}
-

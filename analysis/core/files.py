@@ -11,14 +11,20 @@ from analysis.core.errors import StudyError
 ROOT = Path(__file__).resolve().parent.parent.parent
 
 
+def read_bytes(path):
+    """What is in a file; StudyError if it cannot be read."""
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        raise StudyError(f"cannot read {path}: {error.strerror}") from error
+
+
 def read_json(path):
     """The JSON in `path`; StudyError naming the file and the position if it is damaged."""
     try:
-        return json.loads(Path(path).read_bytes())
+        return json.loads(read_bytes(path))
     except (ValueError, RecursionError) as error:  # of JSON and of UTF-8
         raise StudyError(f"{path} is damaged ({error})") from error
-    except OSError as error:
-        raise StudyError(f"cannot read {path}: {error.strerror}") from error
 
 
 def read_object(path, **kinds):
@@ -61,9 +67,5 @@ def write(path, fill):
 
 def digest(data):
     """SHA-256 of bytes, of a text or of the file at a path."""
-    if isinstance(data, Path):
-        try:
-            data = data.read_bytes()
-        except OSError as error:
-            raise StudyError(f"cannot read {data}: {error.strerror}") from error
+    data = read_bytes(data) if isinstance(data, Path) else data
     return hashlib.sha256(data.encode() if isinstance(data, str) else data).hexdigest()

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from analysis.core.errors import StudyError
-from analysis.core.files import digest, write_text
+from analysis.core.files import digest, read_bytes, write_text
 
 RUN_ENDED = "done"  # status of a cell whose program ended as it should
 KINDS = {"cell": dict, "status": str, "reason": str, "seconds": (int, float), "command": list, "context": dict}
@@ -48,6 +48,12 @@ class Record:
     @property
     def done(self):
         return self.status == RUN_ENDED
+
+    @property
+    def options(self):
+        """{option: value} of a cell whose options all have one."""
+        words = self.cell["settings"]
+        return {key.removeprefix("--"): value for key, value in zip(words[::2], words[1::2])}
 
     def option(self, name):
         """The number behind an option of its cell; NaN without one."""
@@ -89,11 +95,7 @@ def write(path, data):
 
 
 def read(path, name):
-    try:
-        text = path.read_bytes().decode("utf-8", "replace")
-    except OSError as error:
-        raise StudyError(f"cannot read {path}: {error.strerror}") from error
-    return from_text(text, name, path)
+    return from_text(read_bytes(path).decode("utf-8", "replace"), name, path)
 
 
 def need_same_origin(record, context, where):
@@ -109,7 +111,7 @@ def files_of(folder, part, column="."):
     base = Path(folder) / "raw" / part
     found = {path.relative_to(base).as_posix(): path for path in (base / column).rglob("*.json")
              if path.parent != base / "scenes" and not path.name.startswith(".")}
-    return dict(sorted(found.items()))  # by the same order as those of an archive
+    return dict(sorted(found.items()))  # as an archive has them
 
 
 def archive_of(folder, part):
@@ -120,7 +122,7 @@ def read_part(folder, part):
     """All records of a part, by name; of a stored set from its archive."""
     archive = archive_of(folder, part)
     if not archive.exists():
-        return [read(path, name) for name, path in sorted(files_of(folder, part).items())]  # as an archive sorts them
+        return [read(path, name) for name, path in files_of(folder, part).items()]
     try:
         with lzma.open(archive) as file:  # all of it, as tarfile would not miss the end of a file that was cut
             whole = io.BytesIO(file.read())

@@ -64,9 +64,7 @@ def write_tables(folder, part, tables, records):
     found, base = {}, Path(folder) / part
     (base / DIGESTS).unlink(missing_ok=True)  # so that whoever is interrupted here is not told of changed tables
     for name, columns in schema.items():
-        frame = tables[name]
-        found[name] = conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(columns)), columns,
-                              f"{part}/{name}.csv")
+        found[name] = conform(tables[name], columns, f"{part}/{name}.csv")
         write(base / f"{name}.csv", lambda partial, table=found[name]: table.to_csv(partial, index=False))
     write_json(base / DIGESTS, {"records": digest_of(records),
                                 "tables": {name: digest(base / f"{name}.csv") for name in found}})

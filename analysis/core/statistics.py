@@ -1,6 +1,8 @@
 # One function a statistic; timing.py has those of timed cells.
 import numpy
 
+from analysis.core.timing import CONFIDENCE
+
 
 def median(values):
     """Median of finite values; NaN if there is none or one is not finite."""
@@ -17,7 +19,7 @@ def power_law_exponent(sizes, times):
     return float(numpy.polyfit(numpy.log(sizes), numpy.log(times), 1)[0])
 
 
-def power_law_interval(sizes, times, confidence=0.95):
+def power_law_interval(sizes, times):
     """(exponent, low, high): `power_law_exponent` with Student's interval of the slope, whose width also says how far the
     times are from a power law."""
     exponent = power_law_exponent(sizes, times)
@@ -25,7 +27,7 @@ def power_law_interval(sizes, times, confidence=0.95):
         return exponent, numpy.nan, numpy.nan
     from scipy import stats
     error = stats.linregress(numpy.log(sizes), numpy.log(times)).stderr
-    half = stats.t.ppf((1 + confidence) / 2, len(sizes) - 2) * error
+    half = stats.t.ppf((1 + CONFIDENCE) / 2, len(sizes) - 2) * error
     return exponent, exponent - half, exponent + half
 
 

@@ -2,6 +2,7 @@
 from pathlib import Path
 
 import matplotlib
+import matplotlib.pyplot as plt
 import numpy
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
@@ -78,7 +79,7 @@ class Look:
                 "markeredgecolor": "white" if solid else self.colour(name)}
 
 
-def legend(axes, order=None, **more):
+def legend(axes, order=None):
     """A legend right of the axes, entries in the order of their last points, slowest first, as the
     lines end; or sorted by `order(label)`. Entries without a line's label come last."""
     handles, labels = axes.get_legend_handles_labels()
@@ -89,8 +90,15 @@ def legend(axes, order=None, **more):
         return -values[-1] if len(values) else float("inf")
     pairs = sorted(zip(handles, labels), key=(lambda e: order(e[1])) if order else last)
     if pairs:
-        options = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "fontsize": 8.5} | more
-        axes.legend(*zip(*pairs), **options)
+        axes.legend(*zip(*pairs), loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
+
+
+def nothing(text, size=(6, 1.2), title=""):
+    """A figure that says what is missing, and no more."""
+    figure, axes = plt.subplots(figsize=size)
+    axes.set_title(title)
+    missing(axes, text)
+    return figure
 
 
 def missing(axes, text):
@@ -100,18 +108,17 @@ def missing(axes, text):
               fontsize=10, wrap=True)
 
 
-def size_ticks(axes, sizes, log=True, label="variables n"):
-    """Ticks at the measured sizes; labels that would touch their left neighbours are left out."""
-    if log:
-        axes.set_xscale("log")
-    place = numpy.log(sizes) if log else numpy.asarray(sizes, dtype=float)
+def size_ticks(axes, sizes):
+    """Ticks at the measured numbers of variables; labels that would touch their left neighbours are left out."""
+    axes.set_xscale("log")
+    place = numpy.log(sizes)
     gap, last, labels = 0.055 * (max(place, default=0) - min(place, default=0)), -numpy.inf, []
     for size, at in zip(sizes, place):
         labels.append(f"{size:g}" if at - last >= gap else "")
         last = at if labels[-1] else last
     axes.set_xticks(sizes, labels)
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_xlabel(label)
+    axes.set_xlabel("variables n")
 
 
 def number_axis(axis, unit=""):

@@ -30,6 +30,11 @@ def rough(value):
     return f"about {number(float(f'{value:.2g}'))}"
 
 
+def span(values, digits=3):
+    """"1.2 to 3.4", or one number."""
+    return " to ".join(dict.fromkeys(number(value, digits) for value in (min(values), max(values))))
+
+
 def ends(low, high, digits=3):
     """"2.43 to 2.6", or that the interval says nothing; a dash if there is none."""
     if pandas.isna(low) or pandas.isna(high):
@@ -37,13 +42,13 @@ def ends(low, high, digits=3):
     return f"{number(low, digits)} to {number(high, digits)}" if bounded(low, high) else "not bounded"
 
 
-def between(value, low, high, digits=3):
-    """"2.51 (2.43 to 2.6)", or "about 2.5 (not bounded)"; a dash if there is no value."""
+def between(value, low, high, digits=3, more=""):
+    """"2.51 (2.43 to 2.6)", or "about 2.5 (not bounded)"; a dash if there is no value. `more`: behind the interval."""
     if pandas.isna(value):
         return "–"
-    return f"{number(value, digits) if bounded(low, high) else rough(value)} ({ends(low, high, digits)})"
+    return f"{number(value, digits) if bounded(low, high) else rough(value)} ({ends(low, high, digits)}{more})"
 
 
-def interval(ratio, digits=3):
+def interval(ratio):
     """`between` of a timing.Ratio."""
-    return between(ratio.value, ratio.low, ratio.high, digits)
+    return between(ratio.value, ratio.low, ratio.high)

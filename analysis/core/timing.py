@@ -148,15 +148,15 @@ def ratio(rows, first, second):
     """Time of `first` over that of `second` in `rows` of one scene; NaN where they share no process. Of one
     layout, or process, there is no interval: it reaches from 0 to infinity."""
     rows = paired(rows)
-    return of_logs(by_layout(rows, log_ratios(rows, first, second)))
+    return of_logs([numpy.mean(one) for one in by_layout(rows, log_ratios(rows, first, second))])
 
 
 def by_layout(rows, logs):
-    """Means of `log_ratios` over the processes of each layout."""
+    """Of `log_ratios` those of each layout's processes."""
     found = {}
     for number, value in logs.items():
         found.setdefault(rows.layouts.get(number, number), []).append(value)
-    return numpy.array([numpy.mean(one) for one in found.values()])
+    return list(found.values())
 
 
 def of_logs(logs):

@@ -25,9 +25,9 @@ def registry_of(folder):
 
 
 @dataclass(frozen=True)
-class View:
+class Folder:
+    """A set's, with what the set says of itself."""
     folder: Path
-    part: str
 
     @cached_property
     def facts(self):
@@ -36,6 +36,11 @@ class View:
     @cached_property
     def registry(self):
         return registry_of(self.folder)
+
+
+@dataclass(frozen=True)
+class View(Folder):
+    part: str
 
     @cached_property
     def settings(self):

@@ -6,7 +6,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from analysis.core.outcomes import FINISHED
 from analysis.core.pareto import finished, pareto
-from analysis.core.style import GREY, MARKERS, missing
+from analysis.core.style import GREY, MARKERS, nothing
 from analysis.engines.equal_error import SIDES, of_side
 from analysis.engines.runs import NATIVE
 from analysis.engines.subjects import Subject
@@ -22,19 +22,14 @@ NOT_MADE = ("unavailable", "not-reached", "dropped")
 
 def draw(tables, view):
     subjects = [Subject(name) for name in dict.fromkeys(tables["ours"].subject)]
-    found = {}
-    for name, chosen in (("singular", [one for one in subjects if not one.regular]),
-                         ("regular", [one for one in subjects if one.regular])):
-        found[name] = panels(tables, chosen, view.registry.own)
-    return found
+    return {name: panels(tables, [one for one in subjects if one.regular == regular], view.registry.own)
+            for name, regular in (("singular", False), ("regular", True))}
 
 
 def panels(tables, subjects, own):
     """The figure of some subjects."""
     if not subjects:
-        figure, axes = plt.subplots(figsize=(6, 1.2))
-        missing(axes, "Not measured.")
-        return figure
+        return nothing("Not measured.")
     engines, ours = tables["engines"], tables["ours"].rename(columns={"implementation": "name"})
     columns = 2 if len(subjects) == 4 else min(3, len(subjects))
     lines = -(-len(subjects) // columns)

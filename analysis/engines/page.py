@@ -16,7 +16,8 @@ def context(tables, view):
     answers = [one["text"] for one in sentences.answers(tables, view)] if len(table) else []
     return {"answers": answers, "says": sentences.of_engines(engines), "measured": not table.empty, "setting_up": SETTING_UP,
             "sides": {side: what for side, what in SIDES.items() if (table.side == side).any()},
-            "engines": {name: title(name) for name in names}, "duration": DURATION_S, "subjects": titles(engines),
+            "engines": {name: title(name) for name in names}, "duration": DURATION_S, "subjects": {
+                name: Subject(name).title for name in dict.fromkeys(engines.subject)},
             "summaries": {side: summary(table[table.side == side], names) for side in SIDES},
             "behind": rows_of(table[(table.ratio < 1)].sort_values("ratio")),
             "unreached": unreached(table), "comparisons": {subject: rows_of(rows) for subject, rows in
@@ -24,10 +25,6 @@ def context(tables, view):
             "native": rows_of(tables["native"]), "native_says": sentences.of_native(tables["native"]),
             "reached": reached(engines), "complaints": complaints(engines), "value": sentences.value, "title": title,
             "dropped": {name: int((tables[name].status == "dropped").sum()) for name in ("engines", "ours", "rounds")}}
-
-
-def titles(engines):
-    return {name: Subject(name).title for name in dict.fromkeys(engines.subject)}
 
 
 def summary(rows, engines):

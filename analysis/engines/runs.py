@@ -17,7 +17,7 @@ def row(record):
     found = (_engine if engine else _ours)(record, subject)
     status, reason = of_run(record)
     found |= {"subject": subject.name, "status": status, "reason": reason, "round": record.cell["number"],
-              "side": ENGINE if engine else OURS, "seconds": record.seconds, "record": record.name}
+              "side": ENGINE if engine else OURS, "record": record.name}
     found["error"] = max(found["error"], FLOOR) if status in FINISHED and found["error"] is not None else math.nan
     if status not in FINISHED:
         return found

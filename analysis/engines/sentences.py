@@ -2,7 +2,7 @@
 
 from analysis.core.outcomes import FINISHED
 from analysis.core.pareto import finished
-from analysis.core.text import bounded, ends, number, rough
+from analysis.core.text import between, number, span
 from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import NOT_MADE, title
 from analysis.engines.runs import NATIVE
@@ -30,10 +30,9 @@ def of_side(table, side):
             "comparisons at equal error")
     if len(timed):
         worst = timed.loc[timed.ratio.idxmin()]
-        least = number(worst.ratio, 2) if bounded(worst.low, worst.high) else rough(worst.ratio)
-        text += (f", by {number(timed.ratio.median(), 2)} times in the median, at the least {least} "
-                 f"({ends(worst.low, worst.high, 2)}; {title(worst.engine)}, {Subject(worst.subject).title}, "
-                 f"{number(worst.engine_error, 2)} m)")
+        where = f"; {title(worst.engine)}, {Subject(worst.subject).title}, {number(worst.engine_error, 2)} m"
+        text += (f", by {number(timed.ratio.median(), 2)} times in the median, at the least "
+                 f"{between(worst.ratio, worst.low, worst.high, 2, where)}")
     if len(timed) < len(rows):
         text += f"; it does not reach {len(rows) - len(timed)} of these errors"
     return text + "."
@@ -54,10 +53,8 @@ def _times(rows, side):
     timed = rows[rows.ratio.notna()]
     if timed.empty:
         return ""
-    least, most = number(timed.ratio.min(), 2), number(timed.ratio.max(), 2)
-    text = f"{least} to {most} times as long as {side}" if least != most else f"{least} times as long as {side}"
     missed = len(rows) - len(timed)
-    return text + (f", which does not reach {missed} of {len(rows)} of them" if missed else "")
+    return f"{span(timed.ratio, 2)} times as long as {side}" + (f", which does not reach {missed} of {len(rows)} of them" if missed else "")
 
 
 def of_native(native):

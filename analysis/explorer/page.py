@@ -21,13 +21,14 @@ def context(folder):
     sets = {one: data.read(one) for one in (folder, *_others(folder))}
     names = list(dict.fromkeys(name for found in sets.values() for name in data.names_of(found)))
     number = {name: place for place, name in enumerate(names)}
-    about = [_about(name, sets) for name in names]
+    registries = [registry_of(one) for one in sets]
+    about = [_about(name, registries) for name in names]
     contests = [one for part in ("families", "map") for one in sets[folder][part]]
     known = {"sets": [data.as_json(one, found, number) for one, found in sets.items()], "names": about, "sizes": data.size_of(contests),
              "settings": _settings(), "equivalent": timing.EQUIVALENT, "near": NEAR,
              "quantiles": [float(stats.t.ppf((1 + timing.CONFIDENCE) / 2, freedom)) for freedom in range(1, MOST)]}
     text = json.dumps(known, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    return {"data": text.replace("<", "\\u003c"), "examples": examples(contests, registry_of(folder))}
+    return {"data": text.replace("<", "\\u003c"), "examples": examples(contests, registries[0])}
 
 
 def _others(folder):
@@ -41,11 +42,10 @@ def _others(folder):
             yield path.parent
 
 
-def _about(name, sets):
+def _about(name, registries):
     """What can be asked of a name: whether it is own code, dense, under the GPL; its licence and colour."""
-    for folder in sets:
-        registry = registry_of(folder)
-        plain = name.partition("+")[0]
+    plain = name.partition("+")[0]
+    for registry in registries:
         if plain in registry.variants:
             return {"name": name, "own": plain in registry.own, "dense": plain in registry.dense, "gpl": registry.gpl(plain),
                     "licence": registry.variants[plain]["licence"], "colour": Look(registry).colour(plain)}

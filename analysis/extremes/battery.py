@@ -11,7 +11,7 @@ NOT_RUN = ("unsupported", "refused", "excluded", "dropped", "unavailable")
 REFERENCE = "reference"  # the role of its runs
 
 
-def rows(records, registry):
+def table(records, registry):
     """A row a run, in the order of cells, settings and implementations."""
     every = [*trials.all_trials(), *cells.extremes()]
     known = {(cell.name, f"{cell.step:g}"): place for place, cell in enumerate(every)}
@@ -36,7 +36,7 @@ def rows(records, registry):
             if same not in truths:
                 truths[same] = judge.true_motion(cell, references.get(cell.name, {}), times)
             found.append((order, _row(record, cell, name, settings[record.role], *truths[same])))
-    return [row for _, row in sorted(found, key=lambda one: one[0])]
+    return pandas.DataFrame([row for _, row in sorted(found, key=lambda one: one[0])])
 
 
 def _row(record, cell, name, setting, solutions, own, truth):
@@ -81,7 +81,3 @@ def kind(row):
     if row.status in GOOD:
         return "ok" if row.true_error == row.true_error else "unjudged"
     return row.status
-
-
-def table(records, registry):
-    return pandas.DataFrame(rows(records, registry))

@@ -1,7 +1,7 @@
 # What a run is held to: the true motion, how far the run is from it, and how far it may be.
 import numpy
 
-from analysis.core.outcomes import FINISHED, GOOD, WHOLE, of_run
+from analysis.core.outcomes import FINISHED, WHOLE, of_run
 
 CLASS = 1e-2         # of a link's length, what "ok" allows: AccurateBounds of harness/src/run/judge.hpp
 PLACES = (".x", ".y", ".z")  # what columns of places end in
@@ -71,11 +71,6 @@ def harmless(cell, failed_at):
     """Outcomes that its motion does not deserve at `failed_at`, s: far from its change points it jumps nowhere."""
     clearance = getattr(cell.motion, "clearance", None)
     return ("wrong-branch",) if clearance and failed_at and clearance(failed_at) > FAR else cell.harmless
-
-
-def is_silent(status, error, limit):
-    """Whether a run is reported ok or plausible though its error is beyond what that allows; one without positions is."""
-    return status in GOOD and not error <= limit
 
 
 def distances(series, solution, length):

@@ -10,6 +10,14 @@ from analysis.extremes.motions import GRAVITY, Chain
 from study.scenes.references import CLOSED, KNOWN
 
 
+def _of_rods(motion, *rods):
+    """The scene of rods that hang from A, at rest where a motion of B and C begins."""
+    at = {key: float(values[0]) for key, values in motion.solutions([0.0])[0].items()}
+    return {"gravity": [0.0, -GRAVITY], "points": [
+        {"name": "A", "position": [0, 0], "fixed": True},
+        *({"name": name, "position": [at[f"{name}.x"], at[f"{name}.y"]]} for name in "BC")], "rods": list(rods)}
+
+
 @dataclass(frozen=True)
 class LightEnd:
     """A double pendulum of two rods of 1 m, the upper one of 1 kg, released at rest on a line. Its two equations of
@@ -39,12 +47,8 @@ class LightEnd:
         return [{"B.x": x, "B.y": y, "C.x": x + numpy.sin(b), "C.y": y - numpy.cos(b)}]
 
     def document(self):
-        at = {key: float(values[0]) for key, values in self.solutions([0.0])[0].items()}
-        return {"gravity": [0.0, -GRAVITY],
-                "points": [{"name": "A", "position": [0, 0], "fixed": True},
-                           *({"name": name, "position": [at[f"{name}.x"], at[f"{name}.y"]]} for name in "BC")],
-                "rods": [{"name": "upper", "between": ["A", "B"], "mass": 1.0, "length": 1.0},
-                         {"name": "lower", "between": ["B", "C"], "mass": self.mass, "length": 1.0}]}
+        return _of_rods(self, {"name": "upper", "between": ["A", "B"], "mass": 1.0, "length": 1.0},
+                        {"name": "lower", "between": ["B", "C"], "mass": self.mass, "length": 1.0})
 
 
 @dataclass(frozen=True)
@@ -89,12 +93,8 @@ class TwoPendulums:
         return [found]
 
     def document(self):
-        at = {key: float(values[0]) for key, values in self.solutions([0.0])[0].items()}
-        return {"gravity": [0.0, -GRAVITY],
-                "points": [{"name": "A", "position": [0, 0], "fixed": True},
-                           *({"name": name, "position": [at[f"{name}.x"], at[f"{name}.y"]]} for name in "BC")],
-                "rods": [{"name": "heavy", "between": ["A", "B"], "mass": 1.0, "length": 1.0},
-                         {"name": "light", "between": ["A", "C"], "mass": self.mass, "length": 0.5}]}
+        return _of_rods(self, {"name": "heavy", "between": ["A", "B"], "mass": 1.0, "length": 1.0},
+                        {"name": "light", "between": ["A", "C"], "mass": self.mass, "length": 0.5})
 
 
 @dataclass(frozen=True)

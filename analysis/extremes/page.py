@@ -55,11 +55,10 @@ def _ways(table, cost):
     if table.empty:
         return None
     rows = [{"way": way, "folder": folder, "share": ways.share(own), "reason": ways.not_served(own),
-             "costs": list(cost[(cost.folder == folder) & (cost.way == way)].itertuples())}
+             "costs": [(f"N = {one.loops:g}", ways.factor(one), one.passes_per_step, one.processes)
+                       for one in cost[(cost.folder == folder) & (cost.way == way)].itertuples()]}
             for way in dict.fromkeys(table.way) for folder in ways.folders(table)
             for own in [table[(table.way == way) & (table.folder == folder)]] if len(own)]
-    for row in rows:
-        row["costs"] = [(f"N = {one.loops:g}", ways.factor(one), one.passes_per_step, one.processes) for one in row["costs"]]
     return {"rows": rows, "silent": silent(table), "dropped": int((table.status == "dropped").sum())}
 
 

@@ -7,7 +7,7 @@ from functools import cache
 import numpy
 from scipy.optimize import minimize_scalar
 
-from analysis.extremes.cells import STEP, Extreme
+from analysis.extremes.cells import FORMS, STEP, Extreme
 from analysis.extremes.linkages import Dyad, Linkage, Plate, Side, Slider, Swing, Wheel
 from analysis.extremes.mechanisms import Damped, LightEnd, Standard, TwoDrives, TwoPendulums, Uneven
 from analysis.extremes.motions import Chain
@@ -23,12 +23,10 @@ DRAWN = 4                                         # four-bars whose lengths are 
 MORE = ("crank-rocker", "double crank", "offset", "Watt")  # of which two freedoms, and feet that move, are tried too
 LONG = 100.0                                      # s
 HALF = ("half-step", "")
-DRIVEN = (Setting("penalty"), Setting("saddle-point"), Setting("penalty", (HALF,)), Setting("saddle-point", (HALF,)),
-          Setting("penalty", (("tangent", "kept"),)), Setting("saddle-point", (("tangent", "kept"),)))
+DRIVEN = tuple(Setting(form.scheme, changes) for changes in ((), (HALF,), (("tangent", "kept"),)) for form in FORMS)
 FREE = (*DRIVEN, *map(Setting, ("rattle", "rattle4", "rattle6", "multistep6")))  # these take no drivers
 PASSAGE, REGULAR = ("wrong-branch",), ("wrong-branch", "diverged", "not-converged")  # what is no outcome of a motion that is right
 STANDARD = ("standard problem", "example or family")
-PLAIN = (Setting("penalty"), Setting("saddle-point"))
 LINKS = {"A01": 1.0, "A02": 1.0, "A03": 7e-3, "A04": 1.0, "A05": 1.0, "slider-crank": 0.5, "double four-bar": 1.0, "spatial slider-crank": 0.08,
          "chain": 0.1, "grid": 1.0, "half car": 0.4}  # m, the shortest link
 EXAMPLES = {  # and families in small: the length of the shortest link, m
@@ -41,16 +39,16 @@ EXAMPLES = {  # and families in small: the length of the shortest link, m
     "vehicle:2": 0.4, "robot:6": 0.5, "star:3": 1.0, "clusters:2": 0.6, "flexible:2": 0.57}
 
 
-def four_bar(crank, coupler, rocker, ground, side=Side(), **more):
-    return Linkage((("A", (0.0, 0.0)), ("D", (ground, 0.0))), crank, (Dyad("C", ("B", "D"), (coupler, rocker), side),), **more)
+def four_bar(crank, coupler, rocker, ground, side=Side()):
+    return Linkage((("A", (0.0, 0.0)), ("D", (ground, 0.0))), crank, (Dyad("C", ("B", "D"), (coupler, rocker), side),))
 
 
-def slider_crank(crank, rod, offset=0.0, side=Side(), **more):
-    return Linkage((("A", (0.0, 0.0)), ("D", (0.0, offset))), crank, (Slider("C", "B", rod, "D", side),), **more)
+def slider_crank(crank, rod, offset=0.0, side=Side()):
+    return Linkage((("A", (0.0, 0.0)), ("D", (0.0, offset))), crank, (Slider("C", "B", rod, "D", side),))
 
 
-def quick_return(crank, ground, swing, **more):
-    return Linkage((("A", (0.0, 0.0)), ("D", (ground, 0.0))), crank, (Swing("C", "D", "B", swing),), **more)
+def quick_return(crank, ground, swing):
+    return Linkage((("A", (0.0, 0.0)), ("D", (ground, 0.0))), crank, (Swing("C", "D", "B", swing),))
 
 
 def _longer(base, foot, plate, gap, share):
@@ -192,12 +190,12 @@ def _long():
 def _standard():
     """Standard problems, examples and families at their own steps."""
     found = [Extreme(STANDARD[1], scene.rpartition("/")[2].removesuffix(".json"), scene, None, steps=1600, length=length,
-                     kept=("all",), settings=PLAIN, harmless=REGULAR) for scene, length in EXAMPLES.items()]
+                     kept=("all",), settings=FORMS, harmless=REGULAR) for scene, length in EXAMPLES.items()]
     for one in read_list()[1]:
         motion = None if one.known == EXTRAPOLATED else Standard(one.known)
         own = tuple((option, f"{value}") for option, value, usual in (("penalty", one.penalty, "auto"), ("tolerance", one.tolerance, "auto"),
                                                                       ("max-passes", one.max_passes, 20)) if value != usual)
         found.append(Extreme(STANDARD[0], one.name, one.scene, motion, step=one.steps[0], steps=round(one.duration / one.steps[0]),
                              length=LINKS[one.name], kept=("B0.x", "B0.y") if one.scene.startswith("four-bar") else ("outputs",),
-                             settings=(Setting("penalty", own),) if own else PLAIN, harmless=REGULAR))
+                             settings=(Setting("penalty", own),) if own else FORMS, harmless=REGULAR))
     return found

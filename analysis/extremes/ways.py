@@ -83,7 +83,7 @@ def _outcome(record, place):
     if place is None:  # nobody of the folder serves it
         return {"status": status, "reason": reason, "record": record.name}
     error = judge.error_of(record, place.chain.solutions(record.series.get("t", [])), 1.0)
-    silent = judge.is_silent(status, error, judge.CLASS)
+    silent = status in GOOD and not error <= judge.CLASS  # so is one without positions
     return {"axis": place.axis, "value": place.value, "loops": place.loops, "status": status, "reason": reason,
             "true_error": error, "safe": status in GOOD and error <= judge.CLASS, "silent": silent,
             "passes_per_step": record.output.get("passes_per_step"),

@@ -87,6 +87,5 @@ def _frame(axes, folder, names, groups):
         label = {"step": f"Δt; rows N = {', '.join(f'{n:g}' for n in sizes)}"}.get(axis, axis.replace(" ", "\n"))
         axes.annotate(label, (left + len(values) / 2, bottom), xytext=(0, -20), textcoords="offset points", ha="center",
                       va="top", fontsize=8.5, annotation_clip=False)
-    for spine in axes.spines.values():
-        spine.set_visible(False)
+    axes.spines[:].set_visible(False)
     axes.tick_params(length=0)

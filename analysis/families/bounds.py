@@ -13,9 +13,9 @@ FASTER = 1.9    # times, hybrid_dense there than ...
 SMALL, SLOWER = 22, 1.1  # up to so many variables at most so many times as slow as eigen_dense
 
 
-def bounds(tables, registry):
+def bounds(tables):
     """[(what, asked, found, whether it holds; None: not measured)]"""
-    return [*_rule(tables["held"]), *_agreement(tables["scenes"]), *_hybrid(tables["scenes"]), *_compiled(tables["scenes"], registry)]
+    return [*_rule(tables["held"]), *_agreement(tables["scenes"]), *_hybrid(tables["scenes"]), *_compiled(tables["scenes"])]
 
 
 def _rule(held):
@@ -61,7 +61,7 @@ def _over(rows, other):
     return None
 
 
-def _compiled(scenes, registry):
+def _compiled(scenes):
     """The fastest compiled code of each mechanism and form."""
     own = scenes[scenes.implementation.str.startswith(COMPILED) & (scenes.status == "ok") & scenes.to_rival.notna()]
     fastest = own.sort_values("to_rival").drop_duplicates(["scene", "scheme"])

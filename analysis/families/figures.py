@@ -10,7 +10,7 @@ from analysis.families.tables import SCHEMES
 
 DECIDES = "per_column"  # beside n, the number that tells mechanisms apart; the page shows what each tells alone
 FORMS = (*((4, 1, 0) if mark == "h" else mark for mark in MARKERS), "h", (8, 1, 0))  # of families
-NAMED = {"per_column": "non-zeros a column of the factor L (AMD's order)"}
+LABEL = "non-zeros a column of the factor L (AMD's order)"  # of it
 
 
 def draw(tables, view):
@@ -21,8 +21,7 @@ def draw(tables, view):
 def best_form(winners, layer):
     """The rows of a layer in the paper's form of the step, or in the saddle-point form where that has no winner."""
     rows = winners[(winners.layer == layer) & (winners.winner != "")]
-    order = {scheme: place for place, scheme in enumerate(SCHEMES)}
-    return rows.assign(place=rows.scheme.map(order)).sort_values("place", kind="stable").drop_duplicates("scene").drop(columns="place")
+    return rows.sort_values("scheme", kind="stable").drop_duplicates("scene")  # SCHEMES are in the order of the alphabet
 
 
 def real_map(tables, look, registry):
@@ -45,7 +44,7 @@ def real_map(tables, look, registry):
         shown |= {name: look.colour(name) for name in members}
         left.plot(row.n, getattr(row, DECIDES), marker=marks[row.family], markersize=10.5, markeredgewidth=2.6, markeredgecolor=look.colour(members[0]),
                   markerfacecolor=look.colour(members[1] if len(members) > 1 else members[0]) if known else "white", linestyle="none")
-    _scales(left, rows.n, rows[DECIDES], NAMED[DECIDES])
+    _scales(left, rows.n, rows[DECIDES], LABEL)
     left.set_title("Fastest library, by size and sparsity of the factor")
     _lead(right, rows, scenes, look, marks, registry)
     colours = [Patch(facecolor=colour, label=name) for name, colour in shown.items()]
@@ -60,8 +59,7 @@ def real_map(tables, look, registry):
 def fastest_own(scenes, registry):
     """The row of the fastest code of our own on each mechanism, in the form that `best_form` takes."""
     own = scenes[scenes.implementation.isin(registry.own) & (scenes.status == "ok") & (scenes.verdict == "agrees") & scenes.to_rival.notna()]
-    order = {scheme: place for place, scheme in enumerate(SCHEMES)}
-    return own.assign(place=own.scheme.map(order)).sort_values(["place", "to_rival"]).drop_duplicates("scene").drop(columns="place")
+    return own.sort_values(["scheme", "to_rival"]).drop_duplicates("scene")
 
 
 def _lead(axes, rows, scenes, look, marks, registry):

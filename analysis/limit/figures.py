@@ -43,7 +43,7 @@ def leaders(rows, own=()):
     return [name for _, name in sorted(chosen)]
 
 
-def over_size(bounds, rows, look, own=()):
+def over_size(bounds, rows, look, own):
     """Above: µs a step; below: multiples of the limit code, with their intervals. `own`: as leaders() has it."""
     figure, (times, multiples) = plt.subplots(2, 1, sharex=True, figsize=(8.6, 8.4),
                                               gridspec_kw={"hspace": 0.08, "height_ratios": [1.5, 1]})
@@ -78,7 +78,7 @@ def over_size(bounds, rows, look, own=()):
     return figure
 
 
-def by_phase(rows, own=()):
+def by_phase(rows, own):
     """A panel a size (at most three that many were timed at): the share of each phase in a step of each of the
     leaders(), beside the step in multiples of the limit code."""
     rows = rows[rows.other_us.notna()]

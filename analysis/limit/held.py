@@ -20,9 +20,9 @@ def wanted(kind, dimension):
 
 
 def must_hold(own, tables):
-    """Rows of held.csv. `own`: variants of such code."""
-    steps, leads, batches = (_of(tables[name], own) for name in ("steps", "leads", "batches"))
-    ahead = leads[leads.status == "ok"] if len(leads) else leads
+    """Rows of held.csv. `own`: variants of such code; `tables`: as the schema has them."""
+    steps, leads, batches = (tables[name][tables[name].implementation.isin(own)] for name in ("steps", "leads", "batches"))
+    ahead = leads[leads.status == "ok"]
     found = [
         _worst("times faster than the fastest library, N-four-bar", LEAST, AHEAD,
                _fastest(_in(ahead, "kind", ["four-bar"], "variables", AHEAD_SIZES), "scene", "lead", False), "lead", len(AHEAD_SIZES)),
@@ -37,35 +37,25 @@ def must_hold(own, tables):
                _fastest(_in(ahead, "kind", ["fill"]), "scene", "lead", False), "lead", _count(leads, "fill", 2))]
     for form in ("penalty", "saddle-point"):
         found += _growth(_in(steps, "form", [form]), form)
-    for sets in sorted(set(batches.sets)) if len(batches) else []:
+    for sets in sorted(set(batches.sets)):
         rows = batches[(batches.sets == sets) & (batches.status != "unsupported")]
         found.append(_worst(f"throughput of batches ÷ that of their lanes alone, {sets:.0f} sets of parameters", LEAST, GAIN,
                             _fastest(rows, "scene", "step_us", True), "gain", rows.scene.nunique()))
     return found
 
 
-def _of(rows, own):
-    return rows[rows.implementation.isin(own)] if len(rows) else rows
-
-
 def _in(rows, key, values, other=None, among=()):
-    if rows.empty:
-        return rows
     chosen = rows[rows[key].isin(values)]
     return chosen[chosen[other].isin(among)] if other else chosen
 
 
 def _count(leads, kind, dimension):
     """How many scenes there are; one that could not be described is counted everywhere."""
-    if leads.empty:
-        return 0
     return leads[(leads.kind == kind) & (leads.dimension.isin([dimension]) | leads.dimension.isna())].scene.nunique()
 
 
 def _fastest(rows, key, column, least):
     """The row of the variant with the least (or most) of a column, by `key`."""
-    if rows.empty or column not in rows:
-        return rows[:0]
     rows = rows[rows[column].notna() & (rows.status == "ok")]
     return rows.sort_values(column, ascending=least).drop_duplicates(key)
 
@@ -98,21 +88,19 @@ def _verdict(sign, bound, value, low, high):
 def _growth(steps, form):
     """Exponents of the fastest variant at each size from GROWTH_FROM on, with Student's interval of the fit; and the
     largest one's set-up."""
-    rows = _fastest(steps[steps.variables >= GROWTH_FROM] if len(steps) and "variables" in steps else steps[:0],
-                    "loops", "step_us", True)
-    rows = rows.sort_values("variables") if len(rows) else rows
+    rows = _fastest(steps[steps.variables >= GROWTH_FROM], "loops", "step_us", True).sort_values("variables")
     whole = len(rows) > 2 and rows.variables.iloc[-1] >= GROWTH_TO
     what = {"a step's time": "step_us", "a pass's time": "pass_us", "memory": "memory_bytes"}
     for name, column in what.items():
         row = {"what": f"exponent of {name} over n, {form} form", "sign": MOST, "bound": EXPONENT, "cases": len(rows),
                "measured": len(rows) if whole else 0, "verdict": NOT_MEASURED, "record": ""}
         if whole and rows[column].notna().all():
-            exponent, low, high = power_law_interval(rows.variables.astype(float), rows[column].astype(float))
+            exponent, low, high = power_law_interval(rows.variables, rows[column])
             row |= {"worst": exponent, "low": low, "high": high,
                     "where": f"fit of {len(rows)} sizes, n = {rows.variables.iloc[0]:.0f} to {rows.variables.iloc[-1]:.0f}",
                     "variant": rows.implementation.iloc[-1], "record": " ".join(rows.record),
                     "verdict": _verdict(MOST, EXPONENT, exponent, low, high)}
         yield row
     if form == "penalty":
-        last = rows[rows.variables >= GROWTH_TO] if len(rows) else rows
-        yield _worst("set-up, s", MOST, SET_UP_S, last.assign(setup=last.setup_us / 1e6) if len(last) else last, "setup", 1)
+        last = rows[rows.variables >= GROWTH_TO]
+        yield _worst("set-up, s", MOST, SET_UP_S, last.assign(setup=last.setup_us / 1e6), "setup", 1)

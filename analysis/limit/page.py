@@ -6,11 +6,10 @@ from analysis.limit.tables import KINDS, NODES
 
 def context(tables, view):
     steps = tables["steps"]
-    wide = {"penalty": steps[steps.form == "penalty"], "saddle-point": steps[steps.form == "saddle-point"]}
     return {"phases": PHASES, "settings": view.settings,
             "held": tables["held"].to_dict("records"), "bounds": tables["bounds"].sort_values("loops").to_dict("records"),
-            "sizes": grouped(_timed(wide["penalty"]).sort_values(["loops", "step_us"]), "variables"),
-            "growth": grouped(_own(wide, view), "form"), "scenes": by_scene(tables["scenes"]),
+            "sizes": grouped(_timed(steps[steps.form == "penalty"]).sort_values(["loops", "step_us"]), "variables"),
+            "growth": grouped(_own(steps, view), "form"), "scenes": by_scene(tables["scenes"]),
             "batches": tables["batches"][tables["batches"].status != "unsupported"].sort_values(["variables", "sets"]).to_dict("records"),
             "alone": sorted(set(tables["batches"].implementation[tables["batches"].status == "unsupported"])), "lost": lost(tables),
             "sweeps": tables["sweeps"].to_dict("records"), "nodes": NODES}
@@ -20,10 +19,9 @@ def _timed(rows):
     return rows[(rows.status == "ok") & rows.step_us.notna()]
 
 
-def _own(wide, view):
+def _own(steps, view):
     """Own code from 100 variables on, in the form whose passes do not depend on the size first."""
-    import pandas
-    rows = _timed(pandas.concat([wide["saddle-point"], wide["penalty"]]))
+    rows = _timed(steps).sort_values("form", ascending=False, kind="stable")
     return rows[rows.implementation.isin(view.registry.own) & (rows.variables >= 100)]
 
 

@@ -1,5 +1,5 @@
 # The answer to "How far is each step from code that was written by hand for one mechanism?", from the tables.
-from analysis.core.text import number
+from analysis.core.text import number, span
 from analysis.limit.figures import everyone
 from analysis.limit.held import HELD, NOT_HELD, NOT_MEASURED, OPEN, PARTLY
 from analysis.limit.tables import KINDS
@@ -24,16 +24,12 @@ def _multiples(rows, view):
 
 
 def _leads(leads):
-    rows, found = _of_scenes(leads), []
+    rows, found = leads[(leads.status == "ok") & leads.kind.isin(KINDS)], []
     for name, mine in rows.groupby("implementation", sort=False):
         faster, slower = (mine.low > 1).sum(), (mine.high < 1).sum()
         found.append(f"{name} is shown to be faster than the fastest library in {faster} of {len(mine)} scenes that it "
                      f"serves and slower in {slower} ({span(mine.lead)} times)")
     return [{"text": f"Scene by scene: {'. '.join(found)}.", "anchor": "ahead"}] if found else []
-
-
-def _of_scenes(leads):
-    return leads[(leads.status == "ok") & leads.kind.isin(KINDS)]
 
 
 def _gains(batches):
@@ -63,8 +59,3 @@ def _held(held):
     if len(lost):
         text += f" Not measured: {'; '.join(lost.what)}."
     return [{"text": text, "anchor": "held"}]
-
-
-def span(values, digits=3):
-    """"1.2 to 3.4", or one number."""
-    return " to ".join(dict.fromkeys(number(value, digits) for value in (min(values), max(values))))

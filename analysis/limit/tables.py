@@ -3,6 +3,7 @@ import pandas
 
 from analysis.core import timing
 from analysis.core.contest import agreed, by_scene, cells_of, contests, grouped, ratio_to, rival_of, verdicts_of
+from analysis.core.schema import conform, of_part
 from analysis.core.statistics import median
 from analysis.limit.held import must_hold
 
@@ -37,9 +38,9 @@ def build(records, view):
             found["scenes"] += [known | cells[name] | ratio_to("to_rival", rows, name, rival, cells[name])
                                 for name in _ordered(cells, order)]
             found["leads"] += [known | one for one in _leads(rows, cells, registry)]
-    tables = {name: pandas.DataFrame(rows) for name, rows in found.items()}
-    tables["held"] = pandas.DataFrame(must_hold(registry.own, tables) if registry.own else [])
-    return tables
+    known = of_part("limit")
+    tables = {name: conform(pandas.DataFrame(rows), known[name], f"limit/{name}.csv") for name, rows in found.items()}
+    return tables | {"held": pandas.DataFrame(must_hold(registry.own, tables) if registry.own else [])}
 
 
 def _ordered(cells, order):

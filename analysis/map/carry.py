@@ -48,11 +48,7 @@ def components(timed, seeds):
         pair = _leaders(paired)
         if not pair:
             continue
-        logs = timing.log_ratios(paired, *pair)
-        groups = defaultdict(list)
-        for number, value in logs.items():
-            groups[paired.layouts.get(number, number)].append(value)
-        for source, variance in nested(list(groups.values()), _rounds(paired, *pair)).items():
+        for source, variance in nested(timing.by_layout(paired, timing.log_ratios(paired, *pair)), _rounds(paired, *pair)).items():
             parts[source].append(variance)
             records[source] += group[group.implementation == pair[0]].record.tolist()
     for _, group in seeds[seeds.status == "ok"].groupby(["variables", "fill_asked"]):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import pandas
 
-from analysis.core.timing import NONE, Ranking
+from analysis.core.timing import Ranking
 from analysis.map.timed import layers
 
 
@@ -71,8 +71,6 @@ def _row(results, cell, layer):
     if ranking is None:
         return row | {"record": next(iter(rows.record), "")}
     mine = rows[(rows.implementation == ranking.winner) & (rows.status == "ok")]
-    margin = ranking.margin if ranking.second else NONE
-    return row | {"winner": ranking.winner, "second": ranking.second, "margin": margin.value, "low": margin.low,
-                  "high": margin.high, "chance": ranking.chance, "holm": False, "equivalent": " ".join(ranking.equivalent), "open": " ".join(ranking.open),
+    return row | {"winner": ranking.winner, "second": ranking.second, "margin": ranking.margin.value, "low": ranking.margin.low,
+                  "high": ranking.margin.high, "chance": ranking.chance, "holm": False, "equivalent": " ".join(ranking.equivalent), "open": " ".join(ranking.open),
                   "processes": len(mine), "record": " ".join(mine.record)}
-

@@ -2,7 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy
 
-from analysis.core.style import legend, missing, number_axis
+from analysis.core.style import legend, missing, nothing, number_axis
 from analysis.map import paper
 from analysis.map.compare import best, crossing_interval
 from analysis.map.marks import NOTE, draw_lost, footnote, lost
@@ -42,10 +42,7 @@ def crossings(results, size):
 def draw(results, look):
     size = chosen_size(results)
     if size is None:
-        figure, axes = plt.subplots(figsize=(8.4, 3))
-        axes.set_title("Figure 5: time against tangent fill")
-        missing(axes, "no size was timed at three or more fills")
-        return figure
+        return nothing("no size was timed at three or more fills", (8.4, 3), "Figure 5: time against tangent fill")
     found = crossings(results, size)
     figure, (axes, below) = plt.subplots(2, 1, figsize=(8.4, 5.4 + 0.21 * max(3, len(found))), sharex=True, gridspec_kw={
         "hspace": 0.14, "height_ratios": [5, 0.3 + 0.21 * max(3, len(found))]})

@@ -27,7 +27,7 @@ def bounds(fills, own):
     return [*first, *edges[len(first) if own is not None else 0:], min(100.0, fills[-1] + gap / 2)]
 
 
-def draw_grid(axes, cells, draw_cell, size=9.0):
+def draw_grid(axes, cells, draw_cell):
     """Axes and what was not measured; draw_cell(axes, x, y, height, cell) for each cell: its lower left corner, its
     width is 1."""
     found = columns(cells)
@@ -48,11 +48,11 @@ def draw_grid(axes, cells, draw_cell, size=9.0):
     axes.set(xlim=(-0.5, len(found) - 0.5), ylim=(BAND[0], 100))
     axes.set_yticks([sum(BAND) / 2, 0, 20, 40, 60, 80, 100], ["own\nfill", "0", "20", "40", "60", "80", "100"])
     axes.set_xticks(range(len(found)), [f"{one:g}" for one in found])
-    axes.tick_params(axis="x", length=0, labelsize=size)
-    axes.tick_params(axis="y", labelsize=size)
+    axes.tick_params(axis="x", length=0, labelsize=9.0)
+    axes.tick_params(axis="y", labelsize=9.0)
     axes.spines["bottom"].set_visible(False)
-    axes.set_xlabel("variables n", fontsize=size + 0.5)
-    axes.set_ylabel("non-zeros of the tangent, % of n²", fontsize=size + 0.5)
+    axes.set_xlabel("variables n", fontsize=9.5)
+    axes.set_ylabel("non-zeros of the tangent, % of n²", fontsize=9.5)
 
 
 def handles():

@@ -90,7 +90,7 @@ def _line(axes, found, sizes):
                   path_effects=[effects.withStroke(linewidth=3, foreground="white")])
 
 
-def _legend(axes, cells, look, names, crossed, pairs=""):
+def _legend(axes, cells, look, names, crossed, pairs):
     wins = {name: [sum(cell.decided and cell.ranking.winner == name for cell in cells),
                    sum(not cell.decided and cell.settled and name in cell.winners for cell in cells),
                    sum(not cell.settled and not cell.decided and name in cell.winners for cell in cells)] for name in names}

@@ -13,7 +13,7 @@ def lost(rows):
     return found.drop_duplicates(["scene", "implementation"])
 
 
-def draw_lost(axes, cells, line, x="variables", scale=None):
+def draw_lost(axes, cells, line, x, scale=None):
     """`line(name)`: keywords of the series; `scale(row)`: what a time is divided by (None: not drawn)."""
     crosses = []
     for row in cells[cells[x].notna()].itertuples():
@@ -31,6 +31,6 @@ def draw_lost(axes, cells, line, x="variables", scale=None):
                   transform=axes.get_xaxis_transform(), clip_on=False)
 
 
-def footnote(figure, lines, y=0.0):
+def footnote(figure, lines, y):
     """Small text below all axes of a figure."""
     figure.text(figure.subplotpars.left, y, "\n".join(lines), fontsize=7.5, color="#777777", va="top", linespacing=1.35)

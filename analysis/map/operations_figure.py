@@ -1,7 +1,7 @@
 # Table 2: time per call of the three operations, not optimised and optimised, and their ratio.
 import matplotlib.pyplot as plt
 
-from analysis.core.style import GREY, missing, number_axis, size_ticks
+from analysis.core.style import GREY, missing, nothing, number_axis, size_ticks
 from analysis.core.text import bounded
 from analysis.map import paper
 from analysis.map.compare import operations
@@ -12,10 +12,7 @@ from analysis.map.operations import not_optimised, table
 def draw(results, look):
     rows = table(results)
     if all(operations(results, operation).empty for operation in paper.OPERATIONS):
-        figure, axes = plt.subplots(figsize=(8.4, 3))
-        axes.set_title("Table 2: operations without and with symbolic preprocessing")
-        missing(axes, "no operation of Table 2 was timed")
-        return figure
+        return nothing("no operation of Table 2 was timed", (8.4, 3), "Table 2: operations without and with symbolic preprocessing")
     figure, panels = plt.subplots(2, 3, figsize=(10.4, 6.4), sharex=True, gridspec_kw={
         "hspace": 0.3, "wspace": 0.27, "height_ratios": [1.25, 1]})
     for (operation, label), (times, ratios) in zip(paper.OPERATIONS.items(), panels.T):

@@ -63,8 +63,3 @@ def sparse(results, others=False):
 
 def _named(results, wanted):
     return [name for name in results.implementations if name in wanted or name.split("/")[0] in wanted]
-
-
-def starting(name):
-    """Whether it is one of the starting implementations that others are compared with."""
-    return name in STARTING.values()

@@ -133,4 +133,3 @@ def _legend(axes, fills, labels):
                for key, colour in fills.items()]
     axes.legend(handles=handles, ncol=len(handles), loc="lower left", fontsize=8.5,
                 bbox_to_anchor=(-0.01, 0.99), handlelength=1.2, columnspacing=1.2, borderpad=0.2)
-

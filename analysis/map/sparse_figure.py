@@ -55,7 +55,8 @@ def draw(results, look):
         axes.set_ylabel("time ÷ the least at that size")
     panels[0].set_ylim(0.96, LEADERS)
     panels[1].set_yscale("log")
-    outcomes = {cell.variables: outcome(cell) for cell in map_cells(results, order) if cell.fill_asked is None}
+    outcomes = {cell.variables: "" if cell.decided else "as fast" if cell.settled else "open"
+                for cell in map_cells(results, order) if cell.fill_asked is None}
     cells = lost(results.timing[results.timing.fill_asked.isna() & results.timing.implementation.isin(order)])
     times = {size: results.rows(results.natural(size)).groupby("implementation").pilot_us.first() for size in sizes}
     best = {size: results.fastest(results.natural(size), order) for size in sizes}
@@ -73,8 +74,3 @@ def draw(results, look):
                       "grey: beyond the paper's sizes",
                       f"open: not shown who of these is fastest; as fast: several are, to {100 * EQUIVALENT - 100:.0f} %", NOTE], 0.03)
     return figure
-
-
-def outcome(cell):
-    """Below a size: nothing where its winner is decided."""
-    return "" if cell.decided else "as fast" if cell.settled else "open"

@@ -13,7 +13,7 @@ def by_size(results, names):
         if cell.fill_asked is not None or cell.ranking is None:
             continue
         kind = "decided" if cell.decided else "equivalent" if cell.settled else "open"
-        margin = cell.ranking.margin.value if cell.ranking.second else float("nan")
+        margin = cell.ranking.margin.value  # not a number of who is alone
         if groups and groups[-1]["names"] == sorted(cell.winners) and groups[-1]["kind"] == kind:
             groups[-1] |= {"last": cell.variables, "margins": [*groups[-1]["margins"], margin]}
         else:

@@ -11,8 +11,7 @@ from analysis.map.results import Results, with_samples
 def build(records, view):
     found = {"tidy": tidy.tidy(records), "scenes": tidy.scenes(records), "verification": tidy.verification(records)}
     known = schema.of_part("map")
-    found = {name: schema.conform(frame if len(frame.columns) else pandas.DataFrame(columns=list(known[name])), known[name],
-                                  f"map/{name}.csv") for name, frame in found.items()}
+    found = {name: schema.conform(frame, known[name], f"map/{name}.csv") for name, frame in found.items()}
     results = Results(found, view)
     seeds = results.tidy[results.tidy.kind == "seeds"]
     return found | {"cells": cells(results), "claims": pandas.DataFrame(claims(results)), "controls": carry.controls(results.timing),

@@ -17,9 +17,8 @@ def tidy(records):
     lost = [row for row in pilots.to_dict("records")  # a pilot that ran out of time may tell enough to exclude it
             if row["status"] != "ok" and not (row["status"] == "timeout" and (row["scene"], row["implementation"]) in excluded)]
     rows = [_common(row, "timing") for row in timed_rows(records).to_dict("records")]
-    rows += [_common(row | {"process": None}, "timing") for row in [*lost, *_rejected(records)]]
-    rows += [_common(row | {"process": None}, "timing")
-             for row in processes([one for one in records if one.role in SKIPPED]).to_dict("records")]
+    skipped = processes([one for one in records if one.role in SKIPPED]).to_dict("records")
+    rows += [_common(row | {"process": None}, "timing") for row in [*lost, *_rejected(records), *skipped]]
     rows += [_common(row, kind) for kind in ("builds", "phases", "seeds")
              for row in processes([one for one in records if one.role == kind]).to_dict("records")]
     rows += [row for one in records if one.role == "operations" for row in _operations(one)]
@@ -40,8 +39,7 @@ def scene_of(name):
 
 
 def _common(row, kind):
-    name, _, other = row["implementation"].partition("+")
-    folder, _, variant = name.partition("/")
+    folder, _, variant = row["implementation"].partition("+")[0].partition("/")
     build, _, blas = row["environment"].partition("|")
     samples = row.get("samples")
     timed = {"samples": len(samples), "samples_us": " ".join(f"{one:.6g}" for one in samples)} if isinstance(samples, tuple) else {}
@@ -104,4 +102,3 @@ def verification(records):
             rows += [base | {"check": check.get("name")} | {
                 key: check.get(key) for key in ("value", "tolerance", "passed", "detail")} for check in row["checks"] or [{}]]
     return pandas.DataFrame(rows)
-

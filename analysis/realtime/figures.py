@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy
 
 from analysis.core.outcomes import FINISHED
-from analysis.core.style import GREY, missing, number_axis
+from analysis.core.style import GREY, nothing, number_axis
 
 FORMS = {"penalty": ("#0072B2", "o", -0.17), "saddle-point": ("#D55E00", "s", 0.17)}  # colour, marker, place in a line
 LEFT = 0.7  # of the axis of sizes
@@ -17,7 +17,7 @@ def draw(tables, view):
 def distributions(table, machine):
     """A panel a deadline and size: from the median to the longest step, a line an implementation."""
     if table.median_us.notna().sum() == 0:
-        return _nothing("No run of which there are step times.")
+        return nothing("No run of which there are step times.")
     steps, loops, names = sorted(table.step.unique(), reverse=True), sorted(table.loops.unique()), order(table)
     figure, panels = plt.subplots(len(steps), len(loops), sharey=True, squeeze=False, constrained_layout=True,
                                   figsize=(5.2 * len(loops) + 1.5, (0.27 * len(names) + 1.1) * len(steps) + 0.4))
@@ -74,7 +74,7 @@ def _panel(axes, rows, names):
 def sizes(table):
     """The largest size that was kept up with and the next one that was not, with the misses of both."""
     if table.empty:
-        return _nothing("No search was made.")
+        return nothing("No search was made.")
     steps = sorted(table.step.unique(), reverse=True)
     names = list(table.groupby("implementation").largest.max().sort_values(ascending=False, kind="stable").index)
     shown = [form for form in FORMS if form in set(table.scheme)]
@@ -126,9 +126,3 @@ def answer(row):
     if not row.complete or row.next != row.next:
         text += "; or more" + (", as the budget was spent" if not row.complete else "")
     return text
-
-
-def _nothing(text):
-    figure, axes = plt.subplots(figsize=(6, 1.2))
-    missing(axes, text)
-    return figure

@@ -10,7 +10,7 @@ END = "end of the search"
 
 
 def build(records, view):
-    nulls = {_after(one): one for one in records if one.role == "null"}
+    nulls = {one.options["after"]: one for one in records if one.role == "null"}  # by the run that each came after
     order = {name: place for place, name in enumerate(view.registry.variants)}
     found = {role: pandas.DataFrame([_run(one, nulls.get(one.name)) for one in records if one.role == role])
              for role in ("steps", "search")}
@@ -19,19 +19,8 @@ def build(records, view):
             "tried": found["search"], "largest": _largest(found["search"]), "machine": _machine(nulls.values())}
 
 
-def _words(record):
-    words = record.cell["settings"]
-    return {key.removeprefix("--"): value for key, value in zip(words[::2], words[1::2])}
-
-
-def _after(null):
-    """The record of the run that a null process came after, or distributions."""
-    words = _words(null)
-    return words["after"] if "after" in words else words["beside"]  # as stored sets call it
-
-
 def _run(record, null):
-    words, (status, reason) = _words(record), of_run(record)
+    words, (status, reason) = record.options, of_run(record)
     times = record.output.get("step_us") or {}
     row = {"implementation": record.cell["contenders"][0], "scheme": words["scheme"], "step": float(words["step"]),
            "loops": int(record.cell["scene"].partition(":")[2]), "run": record.cell["number"], "status": status,
@@ -88,6 +77,6 @@ def _counts(values):
 
 def _machine(nulls):
     return pandas.DataFrame([{
-        "after": _after(one), "step": float(f"{1e-6 * float(_words(one)['deadline-us']):g}"),
-        "seconds": float(_words(one)["seconds"]), "status": one.status, "reason": one.reason, "record": one.name} | {
+        "after": one.options["after"], "step": float(f"{1e-6 * float(one.options['deadline-us']):g}"),
+        "seconds": float(one.options["seconds"]), "status": one.status, "reason": one.reason, "record": one.name} | {
         key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for one in nulls])

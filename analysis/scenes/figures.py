@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy
 
 from analysis.core.outcomes import GOOD
-from analysis.core.style import ALTERNATIVES, GREY, MARKERS, missing, number_axis
+from analysis.core.style import ALTERNATIVES, GREY, MARKERS, missing, nothing, number_axis
 from study.scenes.metric import CLASSES
 
 
@@ -56,9 +56,7 @@ def modelling(table):
     sizes, names = sorted(table.loops.unique()), list(dict.fromkeys(table.implementation))
     cases = list(dict.fromkeys(table.case))
     if not cases:
-        figure, axes = plt.subplots(figsize=(8, 2))
-        missing(axes, "modelling was not measured")
-        return figure
+        return nothing("modelling was not measured", (8, 2))
     figure, panels = plt.subplots(1, 2 * len(sizes), sharey=True, squeeze=False, constrained_layout=True,
                                   figsize=(3.2 * 2 * len(sizes) + 1.6, 0.42 * len(cases) + 1.5))
     for place, loops in enumerate(sizes):

@@ -20,7 +20,8 @@ def context(tables, view):
             "convergence": grouped(convergence, "problem"), "digits": digits, "good": GOOD,
             "published": set(convergence.problem[convergence.published.notna()]),
             "modelling": grouped(tables["modelling"], ["implementation", "loops"]),
-            "outputs": tables["outputs"].to_dict("records"), "settings": view.settings, "sheets": sheets()}
+            "outputs": tables["outputs"].to_dict("records"), "settings": view.settings,
+            "sheets": {path.stem.replace("_", " "): base64.b64encode(path.read_bytes()).decode() for path in sorted(SHEETS.glob("*.png"))}}
 
 
 def gate(table):
@@ -39,10 +40,6 @@ def everyone(problems):
         if (~first.compared.fillna(False).astype(bool)).any():
             found.append((title, first.step.iloc[0], first.to_dict("records")))
     return found
-
-
-def sheets():
-    return {path.stem.replace("_", " "): base64.b64encode(path.read_bytes()).decode() for path in sorted(SHEETS.glob("*.png"))}
 
 
 def digits(value, count=8):

@@ -5,6 +5,7 @@ import numpy
 import pandas
 
 from analysis.core import timing
+from analysis.core.contest import grouped
 from analysis.core.errors import StudyError
 from analysis.core.outcomes import FINISHED, GOOD, of_run
 from analysis.core.statistics import median
@@ -124,9 +125,7 @@ def _loops(record):
 def modelling_rows(records):
     """One row for each implementation, size and case: error of the whole run, time of a step, and its ratio to the
     case that it is compared with, round by round."""
-    by_role = {}
-    for record in records:
-        by_role.setdefault(record.role, []).append(record)
+    by_role = grouped(records)
     motions = {(record.cell["contenders"][0], _loops(record), case.name): record
                for case in CASES for record in by_role.get(f"motion.{case.file_name}", [])}
     timed = pandas.concat([timing.processes(by_role.get(f"time.{case.file_name}", [])).assign(case=case.name)

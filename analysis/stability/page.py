@@ -17,7 +17,8 @@ def context(tables, view):
     return {"settings": view.settings, "maps": parts, "missed": missed, "limit": ACCURATE, "total": len(table),
             "least": scaled.min(), "most": scaled.max(), "dropped": len(tables["maps"]) - len(table),
             "statuses": list(dict.fromkeys(["ok", "degraded", *sorted(table.status.unique())])),
-            "inaccurate": inaccurate(table).to_dict("records"), "whole": whole.to_dict("records"),
+            "inaccurate": table[(table.status == "ok") & ~(table.position_error_max <= ACCURATE)].to_dict("records"),  # there must be none
+            "whole": whole.to_dict("records"),
             "sizes": [(*key, [round(one) for one in rows.loops])
                       for key, rows in whole.groupby(["scheme", "implementation"], sort=False)]}
 
@@ -29,11 +30,6 @@ def automatic(rows):
         valley = known.get(row["loops"], {}).get(row["step"])
         (missed if valley else none).append(row | {"valley": valley})
     return missed, none
-
-
-def inaccurate(table):
-    """Rows that are "ok" without a position error of at most ACCURATE: there must be none."""
-    return table[(table.status == "ok") & ~(table.position_error_max <= ACCURATE)]
 
 
 def valleys(rows):

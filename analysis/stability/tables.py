@@ -24,13 +24,8 @@ def build(records, view):
     return {name: table.sort_values([key for key in order if key in table], kind="stable") for name, table in tables.items()}
 
 
-def _options(record):
-    words = record.cell["settings"]
-    return {key.removeprefix("--"): value for key, value in zip(words[::2], words[1::2])}
-
-
 def _run(record):
-    asked, (status, reason) = _options(record), of_run(record)
+    asked, (status, reason) = record.options, of_run(record)
     penalty, step = asked["penalty"], float(asked["step"])
     alpha = record.output.get("penalty", None if penalty == "auto" else float(penalty))
     return {"loops": _loops(record), "scheme": asked["scheme"], "precision": asked["precision"],
@@ -40,7 +35,7 @@ def _run(record):
 
 
 def _window(record):
-    asked, window = _options(record), record.output["penalty_window"] if record.done else {}
+    asked, window = record.options, record.output["penalty_window"] if record.done else {}
     return {"loops": _loops(record), "precision": asked["precision"], "step": float(asked["step"]),
             "status": "ok" if record.done else record.status, "reason": record.reason, "record": record.name} | {
         key: window.get(key) for key in ("lower", "lower_from", "upper", "upper_from")}

@@ -196,8 +196,7 @@ def test_bounds_say_what_does_not_hold_and_where():
     scenes = found["scenes"].replace({"implementation": {"own/x": "compiled_own/x"}})
     scenes.loc[scenes.scene == "grid:10", "verdict"] = "disagrees"
     scenes.loc[(scenes.scene == "beam:100") & (scenes.implementation == "compiled_own/x"), "to_rival"] = 0.8
-    registry = SimpleNamespace(own={"compiled_own/x"})
-    rows = {what: (text, holds) for what, _, text, holds in bounds.bounds({"held": found["held"], "scenes": scenes}, registry)}
+    rows = {what: (text, holds) for what, _, text, holds in bounds.bounds({"held": found["held"], "scenes": scenes})}
     assert rows["they are inside the range that is given"] == ("100% of 18", True)
     assert rows["who is timed agrees with the reference, in both forms"][1] is False
     text, holds = rows["compiled code, up to n = 2000"]

@@ -26,8 +26,8 @@ def run(loops, missed, number=1, who="lib/a", status="ok", role="search", ended=
                   0.1, [], {}, output if ended == "done" else {})
 
 
-def null(after, lost, status="done", word="--after"):
-    cell = {"role": "null", "settings": ["--deadline-us", "1000", "--seconds", "1.3", word, after]}
+def null(after, lost, status="done"):
+    cell = {"role": "null", "settings": ["--deadline-us", "1000", "--seconds", "1.3", "--after", after]}
     output = {"lost": lost, "readings": 10, "largest_us": 7.0} if status == "done" else {}
     return Record(f"largest/null/{after}", cell, status, "", 1.3, [], {}, output)
 
@@ -67,7 +67,6 @@ def test_the_largest_is_a_size_all_of_whose_runs_were_kept():
     assert figures.answer(SimpleNamespace(**row)) == "32: 0 (0); 45: 2 (1)"
     assert list(found["tried"].kept) == [True, False, True, True, False, False]
     assert found["machine"].lost.sum() == 2
-    assert made(runs[1], null(runs[1].name, 5, word="--beside"))["machine"].after[0] == runs[1].name  # of a stored set
 
 
 def test_what_the_budget_ends_or_nothing_ends_is_said():

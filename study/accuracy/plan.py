@@ -10,7 +10,7 @@ SETTINGS = {"duration": float,  # s simulated of the N-four-bar
             "columns": list}
 
 
-def columns(settings, studyset):
+def columns(settings):
     found = {name: float(entry["seconds"]) for name, (_, entry) in listed(settings).items()}
     if sum(found.values()) > settings["seconds"]:
         raise StudyError(f"accuracy: its columns add up to {sum(found.values()):g} s, more than {settings['seconds']:g} s")

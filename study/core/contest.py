@@ -17,11 +17,11 @@ def contest(lab, scene, contenders, role, settings=(), *, own, always=False, wid
             look=STEPS):
     """Rows of the look. Roles of the records: `role`-look, `role`-gate and `role`. `own`: names of those that are no libraries;
     `always`: they are gated and timed whatever they take; `wide`: names of those that are up to WIDE; `settings`: of the step; `stretch`: that is timed, else the scene's; `look`: steps of the look."""
-    rows = rows_of(measure(lab, scene, contenders, processes=1, repetitions=1, drop=True, role=f"{role}-look",
+    rows = rows_of(measure(lab, scene, contenders, processes=1, repetitions=1, role=f"{role}-look",
                            settings=("--steps", look, "--patience", patience, *settings)))
     asked = near(rows, contenders, own, always, wide)
     here = agreeing(lab, scene, asked, f"{role}-gate", settings, each=CHECK_S, seconds=CHECK_S * (1 + len(asked)), drop=True)
-    measure(lab, scene, here, processes=processes, repetitions=samples, settings=(*settings, *stretch), role=role, drop=True)
+    measure(lab, scene, here, processes=processes, repetitions=samples, settings=(*settings, *stretch), role=role)
     return rows
 
 

@@ -39,7 +39,7 @@ def main(arguments):
 
 def run(studyset, part):
     """The columns of a part that are not done, and its page."""
-    for name, seconds in plan_of(part).columns(studyset.profile.parts[part], studyset).items():
+    for name, seconds in plan_of(part).columns(studyset.profile.parts[part]).items():
         if not studyset.stamp(part, name).exists():
             _measure(studyset, part, name, seconds)
     page(studyset, part)
@@ -55,8 +55,7 @@ def column(studyset, part, name):
     """Of a cluster: one column, on this node."""
     with locks.only_one_study():
         node.admit(studyset)
-        seconds = plan_of(part).columns(studyset.profile.parts[part], studyset)[name]
-        _measure(studyset, part, name, seconds)
+        _measure(studyset, part, name, plan_of(part).columns(studyset.profile.parts[part])[name])
 
 
 def _measure(studyset, part, name, seconds):

@@ -9,7 +9,7 @@ import sys
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
-from analysis.core.parts import need_parts, parts
+from analysis.core.parts import parts
 from study.core import child, cluster, locks, profile as profiles
 from study.core.disk import writable
 from study.core.front import Display, run_workflow
@@ -62,7 +62,8 @@ def run(arguments):
     if options.list:
         return list_choices()
     need_modules("yaml")
-    need_parts(options.part)
+    if unknown := [name for name in options.part if name not in parts()]:
+        raise StudyError(f"unknown part '{unknown[0]}'; known: {', '.join(parts())}")
     chosen = [part for part in parts() if not options.part or part in options.part]
     profile = profiles.load(options.profile, chosen)
     name = "-".join([profile.name, *(only.replace("/", ".") for only in options.only)])
@@ -84,7 +85,7 @@ def run(arguments):
             set_up(folder / "run.log")
         need_modules()
         studyset = start(folder, profile, options.only, chosen)
-        columns = columns_of(profile, studyset.facts["parts"], studyset)
+        columns = columns_of(profile, studyset.facts["parts"])
         reopen(studyset, columns)
         need_tables(studyset)
         print(f"{len(studyset.contenders)} implementations, {len(columns)} parts: at most "
@@ -94,9 +95,9 @@ def run(arguments):
     return 0
 
 
-def columns_of(profile, chosen, studyset=None):
+def columns_of(profile, chosen):
     """{part: {column: seconds at most}}, in the order of the list."""
-    return {part: profiles.plan_of(part).columns(profile.parts[part], studyset) for part in parts() if part in chosen}
+    return {part: profiles.plan_of(part).columns(profile.parts[part]) for part in parts() if part in chosen}
 
 
 def figures(arguments):

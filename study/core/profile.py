@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import yaml
 
 from analysis.core.errors import StudyError
-from analysis.core.files import ROOT
+from analysis.core.files import ROOT, read_bytes
 from analysis.core.parts import parts
 
 FOLDER = ROOT / "study" / "profiles"
@@ -35,11 +35,9 @@ def read(path, name, chosen=None):
     """The profile in a file; StudyError if a setting is missing, unknown or of another kind. A set may be older than a part:
     its profile needs the `chosen` ones."""
     try:
-        data = yaml.safe_load(path.read_bytes().decode())
+        data = yaml.safe_load(read_bytes(path).decode())
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise StudyError(f"{path}: not valid YAML: {' '.join(str(error).split())[:300]}") from error
-    except OSError as error:
-        raise StudyError(f"cannot read {path}: {error.strerror}") from error
     need_keys(path, "the profile", data, {"title", "blas", "dropped", "parts"})
     if not isinstance(data["blas"], dict) or "all" not in data["blas"]:
         raise StudyError(f"{path}: blas must name a pair for all")

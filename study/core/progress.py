@@ -13,8 +13,8 @@ class Progress:
         """So many more cells are known of."""
         self._event(expected=cells)
 
-    def done(self, cells=1):
-        self._event(expected=0, done=cells)
+    def done(self):
+        self._event(expected=0, done=1)
 
     def tell(self, text):
         self._event(text=text)

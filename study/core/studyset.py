@@ -1,16 +1,14 @@
 # A set: the results of one commit, one build, one machine; its folder, and whether it may be continued.
 import datetime
 import shutil
-from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 from analysis.core import records
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_object, write_json, write_text
 from analysis.core.parts import parts
 from analysis.core.registry import Registry
-from analysis.core.view import facts_of, registry_of
+from analysis.core.view import Folder, facts_of
 from study.core import executor, locks, profile as profiles
 from study.core.cell import Cell
 from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
@@ -20,18 +18,7 @@ BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml",  # wha
          ".cluster", ".snakemake", ".progress"}                             # ... and on a cluster
 
 
-@dataclass(frozen=True)
-class StudySet:
-    folder: Path
-
-    @cached_property
-    def facts(self):
-        return facts_of(self.folder)
-
-    @cached_property
-    def registry(self):
-        return registry_of(self.folder)
-
+class StudySet(Folder):
     @cached_property
     def profile(self):
         return profiles.read(self.folder / "profile.yaml", self.facts["profile"], self.facts["parts"])

@@ -3,20 +3,19 @@
 from dataclasses import replace
 
 from analysis.core.registry import ANCHOR
-from analysis.core.timing import disturbed
+from analysis.core.timing import ALONE, LEFT_OUT, disturbed
 from study.core.cell import LAYOUT, Cell
 from study.core.contender import by_environment
 
 LAYOUTS = 8  # of the program, which processes take in turn: harness/mbs/CMakeLists.txt
 
 
-def measure(lab, scene, contenders, *, processes=5, repetitions=None, settings=(), role="time", seconds=120.0,
-            drop=False):
-    """Records of a scene: a process a number and environment. Those on another BLAS pair or build have processes of
-    their own, with the ANCHOR in common. Who ends a process is left out with a record that says how, and the
-    environment is measured again without it. Several scenes: call for each."""
+def measure(lab, scene, contenders, *, processes, repetitions, settings=(), role="time", seconds=120.0):
+    """Records of a scene, as long as the budget lasts: a process a number and environment. Those on another BLAS pair or
+    build have processes of their own, with the ANCHOR in common. Who ends a process is left out with a record that says
+    how, and the environment is measured again without it. Several scenes: call for each."""
     groups = by_environment(contenders)
-    words = (*settings, *(("--benchmark_repetitions=%d" % repetitions,) if repetitions else ()))
+    words = (*settings, f"--benchmark_repetitions={repetitions}")
     main = max(groups, key=lambda name: len(groups[name]), default=None)
     common = next((one for one in groups.get(main, []) if one.variant == ANCHOR), None) or next(
         iter(groups.get(main, [])), None)
@@ -26,11 +25,11 @@ def measure(lab, scene, contenders, *, processes=5, repetitions=None, settings=(
             label = f"{common.variant}+{group[0].build or group[0].blas}"
             group = (replace(common, name=label, blas=group[0].blas, build=group[0].build), *group)
         cell = Cell("bench", scene, group, words, role, timed=True, seconds=seconds)
-        found += _environment(lab, cell, processes, drop)
+        found += _environment(lab, cell, processes)
     return found
 
 
-def _environment(lab, cell, processes, drop):
+def _environment(lab, cell, processes):
     """All processes of one environment, without those who end them."""
     lost = []
     while cell.contenders:
@@ -39,7 +38,7 @@ def _environment(lab, cell, processes, drop):
             number += 1
             program = cell.program if cell.contenders[0].build else f"{LAYOUT}{(number - 1) % LAYOUTS + 1}"
             record = lab.run([replace(cell, number=number, program=program,
-                                      settings=(*cell.settings, "--seed", number))], drop)[0]
+                                      settings=(*cell.settings, "--seed", number))], drop=True)[0]
             found.append(record)
             if record.status == "dropped":
                 return [*lost, *found]
@@ -48,7 +47,7 @@ def _environment(lab, cell, processes, drop):
         else:
             return [*lost, *found]
         culprits = _culprits(lab, cell, record)
-        lost += [lab.skip(replace(cell, contenders=(one,), role=f"{cell.role}-left-out"), status, reason)
+        lost += [lab.skip(replace(cell, contenders=(one,), role=f"{cell.role}{LEFT_OUT}"), status, reason)
                  for one, status, reason in culprits]
         names = {one.name for one, _, _ in culprits}
         cell = replace(cell, contenders=tuple(one for one in cell.contenders if one.name not in names))
@@ -67,6 +66,6 @@ def _culprits(lab, cell, record):
     chosen = [one for one in cell.contenders if named == f"{one.variant}/{cell.scene}"]
     if chosen or len(cell.contenders) == 1:
         return [(one, record.status, record.reason) for one in chosen or cell.contenders]
-    alone = [(one, lab.one(replace(cell, contenders=(one,), role=f"{cell.role}-alone"))) for one in cell.contenders]
+    alone = [(one, lab.one(replace(cell, contenders=(one,), role=f"{cell.role}{ALONE}"))) for one in cell.contenders]
     return [(one, found.status, found.reason) for one, found in alone if not found.done] or [
         (one, record.status, f"a process of all: {record.reason}") for one in cell.contenders]

@@ -31,7 +31,7 @@ NATIVE_PROGRAM = "../build-engines/study/engines/engine_ode"  # as seen from the
 SET_UP = "study/setup --engines"
 
 
-def columns(settings, studyset):
+def columns(settings):
     shares = {name: 1.0 if Subject(name).loops else 0.5 for name in settings["subjects"]}  # the others are small
     return {name: settings["seconds"] * share / sum(shares.values()) for name, share in shares.items()}
 
@@ -54,9 +54,7 @@ def run(lab, column):
 def unavailable():
     """{engine: why its program cannot be run, or ""}"""
     path = ROOT / "build" / PROGRAMS / "engines.json"
-    if not path.exists():
-        return {engine: f"its program is not built: {SET_UP}" for engine in read_list()}
-    found = json.loads(path.read_text())
+    found = json.loads(path.read_text()) if path.exists() else {}
     return {engine: found.get(engine, f"its program is not built: {SET_UP}") for engine in read_list()}
 
 

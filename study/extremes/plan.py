@@ -18,7 +18,7 @@ PREFERRED = {      # of each folder the first variant that serves a way stands f
     "eigen_sparse": ("eigen_sparse/ldlt", "eigen_sparse/superlu")}
 
 
-def columns(settings, studyset):
+def columns(settings):
     return {column: share * settings["seconds"] for column, share in SHARES.items()}
 
 
@@ -82,8 +82,8 @@ def _reference(lab, cell, scene, factor, one=REFERENCE, program="mbs_reference")
 def way_out(lab):
     sizes, limit = lab.settings["loops"], lab.settings["limit"]
     served = []
-    for title, way in ways.WAYS.items():
-        for folder, names in PREFERRED.items():
+    for way in ways.WAYS.values():
+        for names in PREFERRED.values():
             present = [one for name in names for one in [lab.contender(name)] if one]
             one = next((one for one in present if lab.registry.serves(one.variant, *way.needs)), None)
             if one:

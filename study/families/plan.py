@@ -20,7 +20,7 @@ MOST_S = 0.25  # of a step, beyond which a form is not timed: the gate, in long 
 FLOPS, ENTRIES = 2e-9, 2e-8  # s a step, about, for one operation of `mbs describe` and one non-zero of L
 
 
-def columns(settings, studyset):
+def columns(settings):
     if settings["processes"].keys() != set(SCHEMES):
         raise StudyError(f"profile: families: processes: has a number for each of {', '.join(SCHEMES)}")
     return {"mechanisms": settings["seconds"]}

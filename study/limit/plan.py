@@ -31,7 +31,7 @@ SWEPT = {  # scene: the implementation that sweeps it, and what varies; lanes of
 SWEEP = "../study/limit/sweep_process"  # as seen from the build
 
 
-def columns(settings, studyset):
+def columns(settings):
     return {name: share * settings["seconds"] for name, share in SHARES.items()}
 
 
@@ -45,8 +45,9 @@ def sizes(lab):
     every = sorted({*known, *lab.settings["large"]})
     if every:
         lab.one(Cell("limit", "", (), tuple(every), "bounds", timed=True, seconds=300))
+    limit_code = [replace(one, name=LIMIT, variant=LIMIT) for one in usual(lab)[:1]]  # in the processes of most others
     for loops in every:
-        here = [*limit_code(lab), *(lab.contenders if loops in known else own(lab))]
+        here = [*limit_code, *(lab.contenders if loops in known else own(lab))]
         scene = f"four-bar:{loops}"
         for one in here:
             if one.name in lost:
@@ -120,13 +121,8 @@ def sweeps(lab):
 def timed(lab, scene, contenders, role, settings=()):
     """The rows of a scene's processes."""
     return rows_of(measure(lab, scene, contenders, processes=lab.settings["processes"], repetitions=lab.settings["samples"],
-                           settings=settings, role=role, drop=True))
+                           settings=settings, role=role))
 
 
 def own(lab):
     return [one for one in lab.contenders if one.variant in lab.registry.own]
-
-
-def limit_code(lab):
-    """The code written for the N-four-bar alone, in the processes of most others."""
-    return [replace(one, name=LIMIT, variant=LIMIT) for one in usual(lab)[:1]]

@@ -26,7 +26,7 @@ SETTINGS = {"processes": int,      # of a timed scene
 CLOSEST = 0.04  # fills nearer than this have none put between them, share
 
 
-def columns(settings, studyset):
+def columns(settings):
     for entry in settings["columns"]:
         need_keys("profile: map", "a column", {key: 0 for key in entry if key != "slower"}, {"variables", "seconds", "fills"})
         if entry["variables"] < 4 or entry["variables"] % 2 or entry["fills"][:1] != [NATURAL]:
@@ -44,7 +44,7 @@ def _name(entry):
 
 def run(lab, column):
     [entry] = [one for one in lab.settings["columns"] if _name(one) == column]
-    natural, *filled = [Scene.of(entry["variables"], fill) for fill in entry["fills"]]
+    natural, *filled = [Scene(entry["variables"], None if fill == NATURAL else fill) for fill in entry["fills"]]
     if entry == lab.settings["columns"][0]:
         _unavailable(lab, natural)
     costs, own_fill = fit(lab, natural, [*lab.contenders, *alternatives(lab, natural)])
@@ -84,14 +84,14 @@ def _seeds(lab, timed):
     chosen = [one for one in filled.costs if one.name in names]
     for seed in range(1, asked["seeds"] + 1) if len(chosen) > 1 else ():
         measure(lab, f"{filled.scene.name},seed={seed}", chosen, processes=asked["processes"], repetitions=3, role="seeds",
-                seconds=lab.settings["limits"]["time"], drop=True)
+                seconds=lab.settings["limits"]["time"])
 
 
 def _phases(lab, timed):
     asked = lab.settings["phases"]
     if timed.scene.variables in asked["columns"]:
         measure(lab, timed.scene.name, [one for one in timed.costs if one.ranked], processes=asked["processes"],
-                repetitions=1, role="phases", settings=("--phases",), seconds=lab.settings["limits"]["time"], drop=True)
+                repetitions=1, role="phases", settings=("--phases",), seconds=lab.settings["limits"]["time"])
 
 
 def _operations(lab, scene):

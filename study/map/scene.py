@@ -9,10 +9,6 @@ class Scene:
     variables: int
     fill: float | None  # share of the tangent's n^2 positions; None: the mechanism's own
 
-    @classmethod
-    def of(cls, variables, fill):
-        return cls(variables, None if fill == NATURAL else fill)
-
     @property
     def name(self):
         return f"four-bar:{self.variables // 2 - 1}" + ("" if self.fill is None else f",fill={self.fill:.2f}")

@@ -2,7 +2,7 @@
 # more of those who lead.
 from dataclasses import dataclass, field, replace
 
-from analysis.core.timing import TWIN
+from analysis.core.timing import LEFT_OUT, TWIN
 from analysis.map import timed
 from analysis.map.timed import differing, layers, leaders, timed_rows
 from study.core.cell import Cell
@@ -32,7 +32,7 @@ class TimedScene:
                 return
             for one in [one for one in self.costs if one.name in wrong]:
                 del self.costs[one]
-                self.lab.skip(Cell("bench", self.scene.name, (one,), role="time-left-out"), "disagrees", wrong[one.name])
+                self.lab.skip(Cell("bench", self.scene.name, (one,), role=f"time{LEFT_OUT}"), "disagrees", wrong[one.name])
 
     def again(self, count):
         """Processes 1 … `count` of those who lead, among the libraries or among all, and of the fastest of all."""
@@ -65,5 +65,5 @@ class TimedScene:
         sample = max(TURN * len(contenders),
                      1e-6 * BUSY * self.scene.steps * sum(self.costs.get(one, 0.0) for one in contenders))
         samples = min(max(round(lab.settings["process"] / sample), LEAST_SAMPLES), MOST_SAMPLES)
-        return measure(lab, self.scene.name, contenders, processes=count, role=role, drop=True, repetitions=samples,
+        return measure(lab, self.scene.name, contenders, processes=count, role=role, repetitions=samples,
                        seconds=limit, settings=("--patience", limit / 10))

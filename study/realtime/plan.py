@@ -35,7 +35,7 @@ class Case:
             "--deadline-us", f"{1e6 * self.step:g}"), role, number, timed=True, seconds=PATIENCE * duration + SET_UP)
 
 
-def columns(settings, studyset):
+def columns(settings):
     return {"distributions": SHARE * settings["seconds"], "largest": (1 - SHARE) * settings["seconds"]}
 
 

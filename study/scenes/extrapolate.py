@@ -2,9 +2,9 @@
 import numpy
 
 
-def extrapolate(finer, finest, order=2):
-    """The limit of two runs of which the second has half the step of the first."""
-    return finest + (finest - finer) / (2**order - 1)
+def extrapolate(finer, finest):
+    """The limit of two runs of second order of which the second has half the step of the first."""
+    return finest + (finest - finer) / 3
 
 
 def observed_order(coarse, finer, finest):

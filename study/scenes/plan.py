@@ -12,7 +12,7 @@ SHARES = {"problems": 0.5, "modelling": 0.5}  # of the budget
 CHECK_S, RUN_S = 120, 600  # limits of a process
 
 
-def columns(settings, studyset):
+def columns(settings):
     return {name: share * settings["seconds"] for name, share in SHARES.items()}
 
 

@@ -13,7 +13,7 @@ from study.scenes.mechanics import GRAVITY
 def pendulum(times):
     """A point mass on 1 m, from rest at (-1, 0): theta'' = -g sin theta from -pi/2."""
     rate, parameter = GRAVITY**0.5, 0.5  # parameter sin^2(45 degrees)
-    sn, cn, dn, _ = ellipj(ellipk(parameter) - rate * times, parameter)
+    sn, cn, _, _ = ellipj(ellipk(parameter) - rate * times, parameter)
     half = parameter**0.5 * sn  # sin(|theta| / 2)
     theta = -2 * numpy.arcsin(half)
     theta_rate = 2 * rate * parameter**0.5 * cn

@@ -1,6 +1,4 @@
 # The N-four-bar over step and penalty factor: one untimed run a cell of the maps; whole runs with all automatic.
-from dataclasses import dataclass
-
 from study.core.cell import Cell
 from study.core.setting import Setting
 
@@ -16,7 +14,7 @@ AUTOMATIC = "auto"
 MAPS = 0.7  # of the budget
 
 
-def columns(settings, studyset):
+def columns(settings):
     return {"maps": MAPS * settings["seconds"], "whole": (1 - MAPS) * settings["seconds"]}
 
 
@@ -31,31 +29,21 @@ def maps(lab):
     lab.run([Cell("describe", f"four-bar:{loops}", (), ("--step", f"{step:g}", "--precision", precision), "window")
              for loops in lab.settings["loops"] for precision in dict.fromkeys(one for _, one in served)
              for step in steps])
-    lab.run([Cell("simulate", f"four-bar:{point.loops}", (one,), point.words(lab.settings["duration"]), "map")
-             for loops in lab.settings["loops"] for (scheme, precision), one in served.items()
-             for step in steps for value in scaled for point in [Point(loops, scheme, precision, step, value)]],
+    lab.run([Cell("simulate", f"four-bar:{loops}", (one,), words(scheme, precision, step, value, lab.settings["duration"]), "map")
+             for loops in lab.settings["loops"] for (scheme, precision), one in served.items() for step in steps for value in scaled],
             drop=True)
 
 
-@dataclass(frozen=True)
-class Point:
-    """One run of a map. `scaled`: alpha step^2 / 4, or AUTOMATIC."""
-    loops: int
-    scheme: str
-    precision: str
-    step: float
-    scaled: float | str
-
-    def words(self, duration):
-        penalty = AUTOMATIC if self.scaled == AUTOMATIC else f"{4 * self.scaled / self.step**2:.8g}"
-        return ("--scheme", self.scheme, "--precision", self.precision, "--penalty", penalty, "--step", f"{self.step:g}",
-                "--duration", f"{duration:g}", "--judge-every", "1")
+def words(scheme, precision, step, scaled, duration):
+    """Of one run. `scaled`: alpha step^2 / 4, or AUTOMATIC."""
+    penalty = AUTOMATIC if scaled == AUTOMATIC else f"{4 * scaled / step**2:.8g}"
+    return ("--scheme", scheme, "--precision", precision, "--penalty", penalty, "--step", f"{step:g}",
+            "--duration", f"{duration:g}", "--judge-every", "1")
 
 
 def whole(lab):
     one = lab.contender(IMPLEMENTATIONS["double"])
-    cells = [Cell("simulate", f"four-bar:{loops}", (one,),
-                  Point(loops, scheme, "double", STEP, AUTOMATIC).words(WHOLE), "whole", seconds=300)
+    cells = [Cell("simulate", f"four-bar:{loops}", (one,), words(scheme, "double", STEP, AUTOMATIC, WHOLE), "whole", seconds=300)
              for scheme, sizes in lab.settings["whole"].items()
              if one and lab.registry.serves(one.variant, *Setting(scheme).needs) for loops in sizes]
     lab.run(sorted(cells, key=lambda cell: int(cell.scene.partition(":")[2])), drop=True)

@@ -141,7 +141,7 @@ def test_pairs_share_processes_with_their_kind_only():
     (["loops"], "needs seconds"), ([{"problem": "A01", "seconds": 101}], "add up to 101 s, more than 100 s")])
 def test_wrong_columns_are_said_in_a_line(columns, what):
     with pytest.raises(StudyError, match=what):
-        plan.columns(SETTINGS | {"columns": columns}, None)
+        plan.columns(SETTINGS | {"columns": columns})
 
 
 def test_wrong_names_are_said_in_a_line():
@@ -157,7 +157,7 @@ def test_wrong_names_are_said_in_a_line():
 def test_profiles_keep_to_their_budget(name):
     assert name in names()
     settings = load(name, ["accuracy"]).parts["accuracy"]
-    assert set(plan.columns(settings, None)) and set(settings["settings"]) <= {one.name for one in read_settings()}
+    assert set(plan.columns(settings)) and set(settings["settings"]) <= {one.name for one in read_settings()}
 
 
 def test_settings_are_read_and_refused(tmp_path):

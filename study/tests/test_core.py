@@ -441,7 +441,7 @@ def test_a_damaged_profile_of_a_set_is_named(tmp_path, text):
 def test_profiles_fit_their_plans_and_keep_to_their_budgets(name):
     found = profile.load(name)
     for part, settings in found.parts.items():
-        columns = profile.plan_of(part).columns(settings, None)
+        columns = profile.plan_of(part).columns(settings)
         assert columns and sum(columns.values()) <= settings["seconds"] * 1.0001, part
         assert all(column.replace("-", "").replace("_", "").isalnum() for column in columns), part
 

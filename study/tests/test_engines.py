@@ -118,7 +118,7 @@ def test_a_scene_is_asked_of_solvers_alone(monkeypatch):
 
 
 def test_columns_share_the_budget_of_the_part():
-    found = plan.columns(SETTINGS | {"subjects": ["four-bar-10", "andrews"]}, None)
+    found = plan.columns(SETTINGS | {"subjects": ["four-bar-10", "andrews"]})
     assert found == pytest.approx({"four-bar-10": 200 / 3, "andrews": 100 / 3})
 
 

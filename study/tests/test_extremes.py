@@ -279,8 +279,8 @@ def test_roundoff_asks_for_a_reference_of_each_form_and_size():
 @pytest.mark.parametrize("name", profiles.names())
 def test_columns_keep_the_budget(name):
     settings = profiles.load(name, ["extremes"]).parts["extremes"]
-    assert set(plan.columns(settings, None)) == {"battery", "ways", "pivots", "roundoff"}
-    assert sum(plan.columns(settings, None).values()) <= settings["seconds"] * (1 + 1e-12)
+    assert set(plan.columns(settings)) == {"battery", "ways", "pivots", "roundoff"}
+    assert sum(plan.columns(settings).values()) <= settings["seconds"] * (1 + 1e-12)
 
 
 @pytest.fixture

@@ -149,7 +149,7 @@ def test_nothing_is_asked_where_nobody_takes_part(measured):
 
 
 def test_the_columns_share_the_budget():
-    assert sum(plan.columns({"seconds": 100.0}, None).values()) == pytest.approx(100)
+    assert sum(plan.columns({"seconds": 100.0}).values()) == pytest.approx(100)
 
 
 @pytest.mark.parametrize("profile", ["smoke", "quick", "full"])

@@ -123,13 +123,13 @@ def test_what_the_budget_does_not_allow_is_dropped_and_says_so(run):
     ([{"variables": 10, "seconds": 101, "fills": ["natural"]}], "its columns take 101 s")])
 def test_a_wrong_column_is_one_clear_line(columns, words):
     with pytest.raises(StudyError, match=words):
-        plan.columns(SETTINGS | {"columns": columns}, None)
+        plan.columns(SETTINGS | {"columns": columns})
 
 
 @pytest.mark.parametrize("name", ["smoke", "quick", "full"])
 def test_the_profiles_fit_their_budgets(name):
     settings = profiles.load(name, ["map"]).parts["map"]
-    assert sum(plan.columns(settings, None).values()) <= settings["seconds"]
+    assert sum(plan.columns(settings).values()) <= settings["seconds"]
 
 
 def cells(folder, *rows):

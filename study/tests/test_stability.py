@@ -43,4 +43,4 @@ def test_whole_runs_are_of_what_is_served_the_small_ones_first(served, schemes):
 
 
 def test_columns_share_the_budget():
-    assert sum(plan.columns(SETTINGS, None).values()) == pytest.approx(SETTINGS["seconds"])
+    assert sum(plan.columns(SETTINGS).values()) == pytest.approx(SETTINGS["seconds"])

@@ -3,7 +3,6 @@
 # The newcomer, the leader and the runner-up of the libraries and the leader of all take turns in fresh processes: what
 # the set has of the others is never paired with new samples. Records: SET/raw/added/NAME/, the result: SET/added/NAME.csv.
 import datetime
-import json
 import os
 import shutil
 from collections import Counter
@@ -123,7 +122,7 @@ def measured(folder, name, known):
             fit = [contenders[one] for one in newcomers if verdicts[scene][one][0] == "ok"]
             if fit and chosen[scene]:
                 records[scene] = measure(lab, scene, [*fit, *(contenders[one] for one in chosen[scene])], processes=count,
-                                         drop=True, **_size(lab, times.get(scene, {}), chosen[scene], steps.steps[scene], len(scenes)))
+                                         **_size(lab, times.get(scene, {}), chosen[scene], steps.steps[scene], len(scenes)))
     lab.progress.end()
     context = present[contenders[newcomers[0]].environment]
     rows = [row | {"commit": context["commit"], "dirty": context["dirty"]} for scene in scenes
@@ -161,10 +160,7 @@ def contexts(folder, contenders):
 
 def versions(context):
     """The libraries with their versions, as a set of texts."""
-    text = context.get("libraries", "")
-    if text.startswith("{"):
-        return {f"{name} {version}" for name, version in json.loads(text).items()}
-    return {one.strip() for one in text.split(";")} - {""}
+    return {one.strip() for one in context.get("libraries", "").split(";")} - {""}
 
 
 def _begin(folder, column, lab):
@@ -174,10 +170,7 @@ def _begin(folder, column, lab):
         shutil.rmtree(lab.base / column, ignore_errors=True)
         (folder / "added" / f"{column}.csv").unlink(missing_ok=True)
     write_json(path, {"program": program})
-    shutil.rmtree(lab.set.scratch, ignore_errors=True)
-    lab.set.scratch.mkdir(parents=True)
-    for one in (lab.base / column).rglob(".partial-*"):  # of a process that was killed
-        one.unlink()
+    lab.set.clear()
 
 
 def _rivals(cells, newcomers, contenders):
@@ -257,7 +250,7 @@ def _compared(timing, rows, name, ranking, before):
 def _finish(folder, column, lab, rows):
     import pandas
     from analysis.core import schema
-    table = schema.conform(pandas.DataFrame(rows, columns=list(CELLS)), CELLS, f"added/{column}.csv")
+    table = schema.conform(pandas.DataFrame(rows), CELLS, f"added/{column}.csv")
     path = folder / "added" / f"{column}.csv"
     write(path, lambda partial: table.to_csv(partial, index=False))
     write_json(path.with_suffix(".json"), read_json(path.with_suffix(".json")) | {

@@ -89,6 +89,8 @@ def _build(revision):
 
 def _measure(folder, options, revision, build):
     """The table of ratios."""
+    import pandas
+    from analysis.core.schema import conform
     from study.tools.shelf import ToolLab, open_shelf
     known, pairs = listed(), profiles.load("quick", []).blas
     contenders = on_usual_pairs(known, pairs, select(known, options.only))
@@ -103,7 +105,7 @@ def _measure(folder, options, revision, build):
         for group in groups.values():
             rows += _ratios(lab, scene, group, options.rounds, build, revision)
     lab.progress.end()
-    return _table(rows)
+    return conform(pandas.DataFrame(rows), RATIOS, "ratios.csv")
 
 
 def _variants_of(build):
@@ -155,12 +157,6 @@ def _row(name, scene, found):
     middle = both.groupby("implementation").clock_us.median()
     return row | {"old_us": middle["old"], "new_us": middle["new"], "ratio": ratio.value, "low": ratio.low,
                   "high": ratio.high, "pairs": len(found["old"])}
-
-
-def _table(rows):
-    import pandas
-    from analysis.core.schema import conform
-    return conform(pandas.DataFrame(rows, columns=list(RATIOS)), RATIOS, "ratios.csv")
 
 
 def _tell(table, revision):

@@ -72,7 +72,7 @@ def need_whole(studyset):
     missing = [part for part in parts() if part not in studyset.facts["parts"]]
     if missing:
         raise StudyError(f"{studyset.folder} lacks {', '.join(missing)}: a stored set has all parts")
-    for part, columns in columns_of(studyset.profile, studyset.facts["parts"], studyset).items():
+    for part, columns in columns_of(studyset.profile, studyset.facts["parts"]).items():
         known = {}
         for column in columns:
             stamp = studyset.stamp(part, column)

@@ -116,12 +116,9 @@ def surface(axes, table, over, result):
     """Median of the result in each cell of two parameters; a cross where a lane failed."""
     places, edges = zip(*(cells(table[name].to_numpy()) for name in over))
     groups = table.groupby([*places])
-    shape = [len(edge) - 1 for edge in edges]
-    values, failed = numpy.full(shape, numpy.nan), numpy.zeros(shape, bool)
-    for (x, y), value in groups[result].median().items():
-        values[x, y] = value
-    for (x, y), all_finished in groups["finished"].all().items():
-        failed[x, y] = not all_finished
+    rows, columns = (range(len(edge) - 1) for edge in edges)
+    values = groups[result].median().unstack().reindex(index=rows, columns=columns).to_numpy()
+    failed = ~groups["finished"].all().unstack(fill_value=True).reindex(index=rows, columns=columns, fill_value=True).to_numpy()
     mesh = axes.pcolormesh(*edges, values.T, cmap="viridis")
     axes.figure.colorbar(mesh, ax=axes, label=result)
     middles = [(edge[:-1] + edge[1:]) / 2 for edge in edges]

@@ -11,7 +11,7 @@ SETTINGS = {"scenes": list,     # the most telling first
             "samples": int}     # of a process and contender
 
 
-def columns(settings, studyset):
+def columns(settings):
     return {"alternatives": settings["seconds"]}
 
 
@@ -21,7 +21,7 @@ def run(lab, column):
     for scene in lab.settings["scenes"] if here else []:
         good = agreeing(lab, scene, here, each=CHECK_S, seconds=4 * CHECK_S, drop=True)
         measure(lab, scene, good, processes=lab.settings["processes"], repetitions=lab.settings["samples"],
-                settings=("--steps", lab.settings["steps"]), drop=True)
+                settings=("--steps", lab.settings["steps"]))
 
 
 def asked(lab):

@@ -14,10 +14,7 @@ BUSY = 0.05       # share of the time of runs in which other programs had the pr
 
 
 def as_json(advice, run, described, variants, folder):
-    question = advice.question
-    answer = {"question": {"scene": question.scene, "error": question.error,
-                           "duration": question.duration, "deadline_us": question.deadline_us,
-                           "step": question.step},
+    answer = {"question": {name: value for name, value in asdict(advice.question).items() if name != "budget"},
               "met": advice.verified is not None,
               "advice": _advised(advice, variants[advice.chosen.implementation]["library"]) if advice.verified
               else None,
@@ -157,10 +154,6 @@ def _spread(value, interval, unit):
     return f"{number(value)} {unit} ({number(interval['low'])} to {number(interval['high'])})"
 
 
-def _who(one):
-    return f"{one['implementation']}, {one['setting']}, step {one['step']:g} s"
-
-
 def _advice_lines(answer):
     told, times = answer["advice"], answer["advice"]["us_per_second"]
     error, step = told["error"], told["step_us"]
@@ -179,7 +172,7 @@ def _advice_lines(answer):
         lines.append(_row("deadline", f"{told['deadline_misses']} of {told['steps']} steps took longer"))
     second = answer["runner_up"]
     if second:
-        lines += [_row("runner-up", _who(second)), _row("", second["why"])]
+        lines += [_row("runner-up", f"{second['implementation']}, {second['setting']}, step {second['step']:g} s"), _row("", second["why"])]
     refused = answer["refused"][:MOST_REFUSED]
     lines += [_row("faster, but refused" * (one is refused[0]), f"{one['setting']}, step {one['step']:g} s: {one['why']}")
               for one in refused]

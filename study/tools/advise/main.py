@@ -25,7 +25,7 @@ def advise(arguments):
     need_modules("yaml", "pandas")
     if options.validate:
         _nothing_beside_validate(options)
-        need_modules("jinja2")
+        need_modules()
         from study.tools.advise.validate import BEGUN, questions, validate
         questions(options.scene)
         results = options.results or DEFAULT / "validation"

@@ -55,8 +55,8 @@ class Runner:
     """Runs simulations of one scene one after the other, and keeps a row of each. `truth`: where it is known, what a run's
     series is held against (truth.py)."""
 
-    def __init__(self, lab, scene, variables, contenders, deadline_us=None, truth=None):
-        self.lab, self.scene, self.variables, self.truth = lab, scene, variables, truth
+    def __init__(self, lab, scene, variables, contenders, deadline_us=None):
+        self.lab, self.scene, self.variables, self.truth = lab, scene, variables, None
         self.contenders = {one.name: one for one in contenders}
         self.deadline = ["--deadline-us", f"{deadline_us:g}"] if deadline_us else []
         self.rows, self.wall, self.processor = [], 0.0, 0.0  # s, of all runs

@@ -2,13 +2,12 @@
 from argparse import Namespace
 from pathlib import Path
 
-import jinja2
 import pandas
 
 from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, write, write_text
+from analysis.core.files import write, write_text
 from analysis.core.outcomes import FINISHED
-from analysis.core.text import number
+from analysis.core.site import template
 from study.core import locks
 from study.core.setting import Setting, read_settings
 from study.core.studyset import listed, select
@@ -104,10 +103,7 @@ def write_results(results, rows, searched, unknown):
     table = pandas.DataFrame(rows)
     for name, found in (("searched", pandas.DataFrame(searched)), ("validation", table)):
         write(results / f"{name}.csv", lambda partial, found=found: found.to_csv(partial, index=False))
-    loader = jinja2.FileSystemLoader([Path(__file__).parent, ROOT / "analysis" / "core"])
-    page = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, undefined=jinja2.StrictUndefined)
-    page.filters["number"] = number
-    write_text(results / "validation.html", page.get_template("validation.html.j2").render(
+    write_text(results / "validation.html", template(Path(__file__).with_name("validation.html.j2")).render(
         sentence=verdict(table, unknown)[1], kinds=by_kind(table), rows=table.to_dict("records"), unknown=unknown, most=MOST))
 
 
@@ -226,7 +222,5 @@ def _same(one):
 
 
 def _columns(prefix, one):
-    values = {"implementation": one.implementation, "setting": one.setting.name, "step": one.step,
-              "us_per_second": one.us_per_second()[0]} if one else dict.fromkeys(
-                  ("implementation", "setting", "step", "us_per_second"))
-    return {f"{prefix}_{key}": value for key, value in values.items()}
+    values = (one.implementation, one.setting.name, one.step, one.us_per_second()[0]) if one else (None,) * 4
+    return {f"{prefix}_{key}": value for key, value in zip(("implementation", "setting", "step", "us_per_second"), values)}

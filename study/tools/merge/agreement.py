@@ -59,7 +59,7 @@ class Agreement:
     @property
     def sets(self):
         """Of each machine, those inside."""
-        return [[name for name, one in ratios.items() if inside(one)] for ratios in self.machines]
+        return [[name for name, one in ratios.items() if one.value == 1 or not one.low > EQUIVALENT] for ratios in self.machines]
 
     @property
     def common(self):
@@ -91,10 +91,6 @@ class Agreement:
     @property
     def verdict(self):
         return "decided" if self.decided else "several" if self.common else "differs"
-
-
-def inside(ratio):
-    return ratio.value == 1 or not ratio.low > EQUIVALENT
 
 
 def agreements(sets):

@@ -24,9 +24,9 @@ def refresh(known, claimed):
     return after != before
 
 
-def stale(known, claimed=None):
+def stale(known, claimed):
     text = FILE.read_text(encoding="utf-8")
-    if filled(text, known, claimed or judged(known)) != text:
+    if filled(text, known, claimed) != text:
         yield f"paper/ARTIFACT.md is not of {known.folder.name} as it is now: study/paper --fill"
 
 

@@ -23,7 +23,7 @@ USED = {"value": re.compile(r"\\val\{([^{}]*)\}"), "holds": re.compile(r"\\holds
 def audit(known, text, found, claimed):
     """[what is wrong]; `found`: numbers by name; `claimed`: {claim: (whether it holds, what was found)}."""
     return [*of_set(known), *of_text(text, found, claimed), *of_references(text, (PAPER / "references.bib").read_text(encoding="utf-8")),
-            *built(known), *artifact.stale(known)]
+            *built(known), *artifact.stale(known, claimed)]
 
 
 def source():

@@ -4,11 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from analysis.accuracy import pairs
-from analysis.core.text import between, number
+from analysis.core.text import between, number, span
 from analysis.families import bounds, rule
 from analysis.families.figures import fastest_own
 from analysis.limit import held as limits
-from study.tools.paper.numbers import DENSE, HYBRID, losses, mean, of, percent, real_mechanisms, span
+from study.tools.paper.numbers import DENSE, HYBRID, losses, mean, of, percent, real_mechanisms
 
 PAPER_PENALTY = 1e8  # the factor of 2008, at 1.25 ms
 

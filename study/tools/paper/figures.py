@@ -8,7 +8,7 @@ from matplotlib.text import Text
 from matplotlib.ticker import LogLocator
 
 from analysis.accuracy import work_figure
-from analysis.core.style import SPARSE, GREY, Look, missing
+from analysis.core.style import GREY, SPARSE, Look, nothing
 from analysis.core.text import bounded
 from analysis.map.compare import profiled
 from analysis.map.phases_figure import all_panel
@@ -21,28 +21,20 @@ NAMED = 6        # libraries of the figure of mechanisms with marks of their own
 END = 2.0        # ratio at which it ends
 PHASES_OF = (DENSE, HYBRID, "csc_cholmod/supernodal", "csc_cholmod/simplicial", "csc_ldl/uplooking", "eigen_sparse/ldlt", "csc_klu/refactor",
              "compiled_ldl/fronts")
+NOTHING = "Not measured in this set."
 MARKS = ("o", "s", "^", "D", "v", "P")
 
 
 def figures(known):
     """{name: figure}, each as wide as the paper's text"""
     matplotlib.rcParams["figure.max_open_warning"] = 0  # all of some parts, of which few are taken
-    drawn = {part: draw(known, part) for part in ("families", "map", "stability", "realtime", "engines")}
+    drawn = {part: importlib.import_module(f"analysis.{part}.figures").draw(known.tables(part), known.view(part)) for part in (
+        "families", "map", "stability", "realtime", "engines")}
     found = {"mechanisms": (mechanisms(known), None), "held": (drawn["families"]["held"], 2.4), "own_fill": (lower_notes(drawn["map"]["f4_sparse_solvers"]), 4.2),
              "map": (drawn["map"]["f7_map"], 4.1), "phases": (phases(known), None), "work": (work(known), 4.0),
-             "window": (drawn["stability"].get("penalty-double") or nothing(), 2.9), "steps": (drawn["realtime"]["steps"], None),
+             "window": (drawn["stability"].get("penalty-double") or nothing(NOTHING), 2.9), "steps": (drawn["realtime"]["steps"], None),
              "own": (own(drawn["families"]["map"]), 3.1), "engines": (engines(drawn["engines"]["regular"]), 3.2)}
     return {name: fit(figure, height, known.context["cpu_model"]) for name, (figure, height) in found.items()}
-
-
-def draw(known, part):
-    return importlib.import_module(f"analysis.{part}.figures").draw(known.tables(part), known.view(part))
-
-
-def nothing(text="Not measured in this set."):
-    figure, axes = plt.subplots(figsize=(6, 1.2))
-    missing(axes, text)
-    return figure
 
 
 def work(known):
@@ -50,7 +42,7 @@ def work(known):
     tables = known.tables("accuracy")
     rows = tables["points"][tables["points"].loops.notna() & tables["points"].fill_asked.isna() & tables["points"].library.fillna(False).astype(bool)]
     if rows.empty:
-        return nothing()
+        return nothing(NOTHING)
     mine = rows[rows.loops == rows.loops.max()]
     won = tables["winners"][(tables["winners"].subject == mine.subject.iloc[0]) & tables["winners"].fill_asked.isna()]
     figure = work_figure.draw(mine, won, Look(known.registry), "largest of position, m", f"n = {mine.variables.max():.0f}, libraries")
@@ -99,7 +91,7 @@ def phases(known):
     results = of(known.tables("map"), known.view("map"))
     size = max(profiled(results).variables.unique(), default=None)
     if size is None:
-        return nothing()
+        return nothing(NOTHING)
     names = [name for name in PHASES_OF if len(profiled(results, name, size))]
     figure, axes = plt.subplots(figsize=(8.4, 0.6 + 0.25 * len(names)))
     all_panel(axes, results, size, names, True)
@@ -126,7 +118,7 @@ def mechanisms(known):
     rows = known.tables("families")["scenes"]
     mine = real_mechanisms(known).sort_values("variables")
     if mine.empty:
-        return nothing()
+        return nothing(NOTHING)
     rows = rows[(rows.status == "ok") & rows.implementation.isin(known.registry.libraries)].merge(mine[["scene", "scheme"]], on=["scene", "scheme"])
     chosen = list(led(mine))[:NAMED]
     figure, axes = plt.subplots(figsize=(8.4, 1.4 + min(7.2, 0.2 * len(mine))))

@@ -2,18 +2,16 @@
 import importlib
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 
 import pandas
 
 from analysis.core import schema
 from analysis.core.files import ROOT, read_object
-from analysis.core.view import View
+from analysis.core.view import Folder, View
 
 
 @dataclass(frozen=True)
-class Known:
-    folder: Path
+class Known(Folder):
     _tables: dict = field(default_factory=dict)
 
     def tables(self, part):
@@ -21,7 +19,7 @@ class Known:
         if part not in self._tables:
             kept = read_object(self.folder / part / schema.DIGESTS, tables=dict)["tables"]
             self._tables[part] = {name: schema.read_table(self.folder, part, name) if name in kept else
-                                  schema.conform(pandas.DataFrame(columns=list(columns)), columns, f"{part}/{name}.csv")
+                                  schema.conform(pandas.DataFrame(), columns, f"{part}/{name}.csv")
                                   for name, columns in schema.of_part(part).items()}
         return self._tables[part]
 
@@ -34,16 +32,8 @@ class Known:
         return [one["text"] for one in module.answers(self.tables(part), self.view(part))]
 
     @property
-    def facts(self):
-        return self.view().facts
-
-    @property
     def context(self):
         return self.facts["context"]
-
-    @property
-    def registry(self):
-        return self.view().registry
 
     @cached_property
     def others(self):

@@ -10,7 +10,7 @@ import yaml
 from analysis.accuracy import sentences as accuracy
 from analysis.core import timing
 from analysis.core.files import ROOT
-from analysis.core.text import number
+from analysis.core.text import number, span
 from analysis.families import rule as rules
 from analysis.families.figures import best_form, fastest_own
 from analysis.map import carry, ledger, sentences as map_sentences, summary
@@ -34,8 +34,7 @@ def numbers(known):
     """{name: Number}"""
     found = {}
     for query in (_set, _design, _gate, _real, _size, _fill, _claims, _price, _rule, _error, _window, _latency, _own, _limits, _minutes):
-        made = {f"{query.__name__[1:]}.{name}": one for name, one in query(known).items()}
-        found |= made
+        found |= {f"{query.__name__[1:]}.{name}": one for name, one in query(known).items()}
     return {name: Number(one.text, one.table, tuple(dict.fromkeys(one.records))) if isinstance(one, Number) and one.text not in ("", "–", "nan") else Number(NOT_MEASURED, one.table if one else "")
             for name, one in found.items()}
 
@@ -101,8 +100,7 @@ def _design(known):
     return {"libraries": Number(str(len(registry.libraries)), file), "own": Number(str(len(registry.own)), file),
             "equal": Number(f"{100 * (timing.EQUIVALENT - 1):.0f} %", "analysis/core/timing.py"),
             "confidence": Number(f"{100 * timing.CONFIDENCE:.0f} %", "analysis/core/timing.py"),
-            "processes": of_rows(" to ".join(dict.fromkeys(number(one) for one in (processes.min(), processes.max()))), "families/scenes",
-                                 scenes[scenes.processes.notna()]) if len(processes) else None,
+            "processes": of_rows(span(processes), "families/scenes", scenes[scenes.processes.notna()]) if len(processes) else None,
             "tried": of_rows(timed.alternative.nunique(), "tuning/alternatives", timed),
             "compared": of_rows(len(timed), "tuning/alternatives", timed),
             "slower": of_rows((timed.low > 1).sum(), "tuning/alternatives", timed[timed.low > 1]),
@@ -141,12 +139,11 @@ def machines_said(known):
 
 def _gate(known):
     found = {}
-    for part, table in (("families", known.tables("families")["scenes"]),
-                        ("map", known.tables("map")["verification"].drop_duplicates(["scene", "implementation"]))):
+    for part, name, table in (("families", "scenes", known.tables("families")["scenes"]),
+                              ("map", "verification", known.tables("map")["verification"].drop_duplicates(["scene", "implementation"]))):
         asked = table[~table.verdict.isin(["", "dropped"])]
-        found |= {f"{part}_asked": of_rows(len(asked), f"{part}/{'scenes' if part == 'families' else 'verification'}", asked),
-                  f"{part}_agree": of_rows((asked.verdict == "agrees").sum(), f"{part}/{'scenes' if part == 'families' else 'verification'}",
-                                           asked[asked.verdict == "agrees"])}
+        found |= {f"{part}_asked": of_rows(len(asked), f"{part}/{name}", asked),
+                  f"{part}_agree": of_rows((asked.verdict == "agrees").sum(), f"{part}/{name}", asked[asked.verdict == "agrees"])}
     return found
 
 
@@ -217,10 +214,6 @@ def _hybrid(results, filled):
     return of_rows(span([one.value for one in found.values()]), "map/tidy", rows) if found else None
 
 
-def span(values, digits=3):
-    return " to ".join(dict.fromkeys(number(one, digits) for one in (min(values), max(values))))
-
-
 def _claims(known):
     table = known.tables("map")["claims"]
     by_id = ledger.by_id(table)
@@ -228,7 +221,7 @@ def _claims(known):
     return {"all": of_rows(len(by_id), "map/claims", table), "rows": of_rows(len(table), "map/claims", table),
             "counts": of_rows(", ".join(f"{len(names)} {'are' if len(names) > 1 else 'is'} {verdict}" for verdict, names in found.items() if names),
                               "map/claims", table),
-            "told": of_rows("; ".join(f"{verdict}: {', '.join(names)}" for verdict, names in found.items() if names), "map/claims", table)}
+            "told": of_rows(ledger.told(table), "map/claims", table)}
 
 
 def _price(known):
@@ -290,8 +283,7 @@ def _latency(known):
 
 
 def _own(known):
-    tables, own = known.tables("families"), known.registry.own
-    ahead = fastest_own(tables["scenes"], known.registry)
+    ahead = fastest_own(known.tables("families")["scenes"], known.registry)
     found = {"mechanisms": of_rows(len(ahead), "families/scenes", ahead),
              "least": of_rows(number(1 / ahead.to_rival.max()), "families/scenes", ahead),
              "most": of_rows(number(1 / ahead.to_rival.min()), "families/scenes", ahead),
@@ -321,10 +313,5 @@ def _minutes(known):
     for name in ("quick", "full"):
         path = ROOT / "study" / "profiles" / f"{name}.yaml"
         parts = yaml.safe_load(path.read_text(encoding="utf-8"))["parts"]
-        found[name] = Number(f"{math.ceil(sum(map(seconds, parts.values())) / 60):d}", f"study/profiles/{name}.yaml")
+        found[name] = Number(f"{math.ceil(sum(part['seconds'] for part in parts.values()) / 60):d}", f"study/profiles/{name}.yaml")
     return found
-
-
-def seconds(settings):
-    """What a profile allows a part."""
-    return settings["seconds"]

@@ -48,10 +48,10 @@ def _records(one):
     return "" if not one.records else one.records[0] + (f" +{len(one.records) - 1}" if len(one.records) > 1 else "")
 
 
-def table(rows, columns, long=False, nothing="Not measured in this set."):
+def table(rows, columns, long=False):
     """Rows, dicts by the heads of `columns`, {head: LaTeX column}. `long`: over several pages."""
     if not rows:
-        return tex(nothing)
+        return tex("Not measured in this set.")
     frame = pandas.DataFrame(rows, columns=list(columns))
     style = frame.style.hide(axis="index").format(tex).format_index(tex, axis=1)
     return style.to_latex(column_format="".join(columns.values()), hrules=True, environment="longtable" if long else None)
@@ -74,7 +74,7 @@ def contenders(known):
 def decided(known):
     """What the mechanisms were held to, and what was found."""
     rows = [{"what": what, "asked": asked, "found": found, "holds": {True: "yes", False: "no", None: "–"}[holds]}
-            for what, asked, found, holds in bounds.bounds(known.tables("families"), known.registry)]
+            for what, asked, found, holds in bounds.bounds(known.tables("families"))]
     held = known.tables("limit")["held"]
     rows += [{"what": row.what, "asked": f"{row.sign} {number(row.bound)}", "found": between(row.worst, row.low, row.high) if row.worst == row.worst
               else "not measured", "holds": {"held": "yes", "not held": "no"}.get(row.verdict, row.verdict)} for row in held.itertuples() if row.worst == row.worst]

@@ -1,6 +1,7 @@
 # Reads the CSV of `mbs simulate --trajectory`, however long: only the rows that are shown are kept.
 import os
 from collections import Counter
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy
@@ -27,17 +28,13 @@ class Motion:
 def read(path, scene, frames):
     """About `frames` rows, equally spaced in the file, and its last. The constraint violation of a
     frame is the largest of all rows since the frame before. Raises StudyError."""
-    try:
-        with _open(path) as file:
-            columns = _header(path, _line(path, file))
-            places, curves = _places(path, columns, scene)
-            rows = _check_rows(path, file, len(columns))
-            file.seek(0)
-            file.readline()
-            times, table, violation = _kept_rows(path, file, _kept(rows, frames), len(columns),
-                                                 [*places, *curves], curves)
-    except OSError as error:
-        raise StudyError(f"cannot read {path}: {error.strerror}") from error
+    with _opened(path) as file:
+        columns = _header(path, _line(path, file))
+        places, curves = _places(path, columns, scene)
+        rows = _check_rows(path, file, len(columns))
+        file.seek(0)
+        file.readline()
+        times, table, violation = _kept_rows(path, file, _kept(rows, frames), len(columns), [*places, *curves], curves)
     positions = table[:, :len(places)].reshape(len(times), len(scene.points), scene.dimension)
     motion = Motion(times, positions, dict(zip(CURVES, table[:, len(places):].T)))
     if curves:
@@ -49,26 +46,29 @@ def read(path, scene, frames):
 def read_outputs(path, scene, frames):
     """Motion.outputs from the CSV of `mbs simulate --output`, of the run that `read` read the trajectory
     of: their rows are at the same times. Raises StudyError."""
-    try:
-        with _open(path) as file:
-            columns = _header(path, _line(path, file))
-            rows = _check_rows(path, file, len(columns))
-            kept = set(_kept(rows, frames))
-            file.seek(0)
-            file.readline()
-            table = numpy.array([_numbers(path, row, line, len(columns))
-                                 for row, line in enumerate(_lines(path, file)) if row in kept])
-    except OSError as error:
-        raise StudyError(f"cannot read {path}: {error.strerror}") from error
+    with _opened(path) as file:
+        columns = _header(path, _line(path, file))
+        rows = _check_rows(path, file, len(columns))
+        kept = set(_kept(rows, frames))
+        file.seek(0)
+        file.readline()
+        table = numpy.array([_numbers(path, row, line, len(columns))
+                             for row, line in enumerate(_lines(path, file)) if row in kept])
     return {name: {column: table[:, place] for place, column in enumerate(columns)
                    if name in (column, column.rpartition(".")[0])} for name in scene.outputs}
 
 
-def _open(path):
-    """The file at `path`; StudyError if it is a device or a pipe, which may have no end and cannot be read twice."""
+@contextmanager
+def _opened(path):
+    """The file at `path`; StudyError if it cannot be read, or is a device or a pipe, which may have no end and cannot be read
+    twice."""
     if os.path.exists(path) and not os.path.isfile(path):
         raise StudyError(f"{path} is no regular file")
-    return open(path, "rb")
+    try:
+        with open(path, "rb") as file:
+            yield file
+    except OSError as error:
+        raise StudyError(f"cannot read {path}: {error.strerror}") from error
 
 
 def _line(path, file):
