@@ -54,7 +54,7 @@ def cases(tables, view):
         known = rows.scenes - rows.unknown
         found.append({"case": f"{scheme.capitalize()} form: {'; or '.join(map(where, rows.to_dict('records')))}",
                       "link": "families.html#by-hand", "take": library + _lost((rows.mean_loss * known).sum() / known.sum() if known.sum() else None,
-                                                                             rows.worst_loss.max(), rows.scenes.sum(), rows.unknown.sum())})
+                                                                             rows.worst_loss.max(), int(rows.scenes.sum()), int(rows.unknown.sum()))})
     if len(held):
         of = summary(held)
         found.append({"case": "You have a scene file", "link": "families.html#rule",
