@@ -6,8 +6,8 @@ from analysis.limit.tables import KINDS
 
 
 def answers(tables, view):
-    found = [*_multiples(everyone(tables["steps"]), view), *_leads(tables["leads"]), *_gains(tables["batches"]),
-             *_sweeps(tables["sweeps"]), *_held(tables["held"])]
+    found = [*_multiples(everyone(tables["steps"]), view), *_leads(tables["leads"]),
+             *_many(tables["batches"], tables["sweeps"]), *_held(tables["held"])]
     return found or [{"text": "Not measured: no implementation that could be timed took part.", "anchor": ""}]
 
 
@@ -32,18 +32,24 @@ def _leads(leads):
     return [{"text": f"Scene by scene: {'. '.join(found)}.", "anchor": "ahead"}] if found else []
 
 
+def _many(batches, sweeps):
+    """Batches and sweeps, one answer."""
+    gains, rates = _gains(batches), _sweeps(sweeps)
+    return [{"text": " ".join([*gains, *rates]), "anchor": "batches" if gains else "sweeps"}] if gains or rates else []
+
+
 def _gains(batches):
     rows = batches[batches.status == "ok"]
     said = [f"{span(mine.gain)} times with {sets:.0f} sets (single processes {span([mine.least.min(), mine.most.max()])})"
             for sets, mine in rows.groupby("sets")]
-    return [{"text": f"Simulations side by side gain, over those alone: {'; '.join(said)}.", "anchor": "batches"}] if said else []
+    return [f"Simulations side by side gain, over those alone: {'; '.join(said)}."] if said else []
 
 
 def _sweeps(sweeps):
     rows = sweeps[(sweeps.status == "ok") & (sweeps.jobs == 2)]
     said = [f"of {row.scene} {number(row.gain)} times as many lanes a second as one job, a million lanes in {number(row.million_s)} s"
             for row in rows.itertuples()]
-    return [{"text": f"Sweeps by two jobs, projected from fewer lanes: {'; '.join(said)}.", "anchor": "sweeps"}] if said else []
+    return [f"Sweeps by two jobs, projected from fewer lanes: {'; '.join(said)}."] if said else []
 
 
 def _held(held):

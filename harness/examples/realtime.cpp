@@ -65,8 +65,8 @@ int main(int argc, char** argv) try {
   mbs::Stepper car(mbs::SceneDocument::load(argv[1]), options);
   const int wheel = car.input("road FL");
   const long period = std::lround(car.settings().step * kSecond);
-  const auto steps = static_cast<std::size_t>(seconds / car.settings().step);
   if (!(seconds >= car.settings().step)) throw mbs::Refused("SECONDS: a step or more");
+  const auto steps = static_cast<std::size_t>(seconds / car.settings().step);
   std::vector<long> working, waking;  // filled in the loop, so that it allocates nothing
   working.reserve(steps);
   waking.reserve(steps);

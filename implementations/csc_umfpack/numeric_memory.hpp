@@ -26,7 +26,6 @@ class NumericMemory {
     ~Use();
     Use(const Use&) = delete;
     Use& operator=(const Use&) = delete;
-
   };
 
  private:

@@ -34,11 +34,11 @@ def run(words, table, count, cluster):
             end_jobs(folder, cluster)
         for number, part in enumerate(parts, 1):
             if not part.exists():
-                raise StudyError(f"part {number} of {count} is not done: {_last(folder / f'log-{number}')}; "
+                raise StudyError(f"part {number} of {count} is not done: {_last(_text(folder / f'log-{number}'), 'it has said nothing')}; "
                                  "the same command goes on where it was")
         done = subprocess.run([program, "merge-sweep", *map(str, parts), "--output", str(table)], capture_output=True, text=True)
         if done.returncode >= USAGE or done.returncode < 0:
-            raise StudyError((done.stderr.strip().splitlines() or ["mbs merge-sweep does not work"])[-1])
+            raise StudyError(_last(done.stderr, "mbs merge-sweep does not work"))
         for path in [*parts, *folder.glob("log-*")]:
             path.unlink(missing_ok=True)
 
@@ -46,7 +46,7 @@ def run(words, table, count, cluster):
 def _array(folder, cluster, parts):
     given = subprocess.run([str(cluster / "array"), str(len(parts)), str(folder / "part.sh")], cwd=folder, capture_output=True, text=True)
     if given.returncode:
-        raise StudyError(f"{cluster / 'array'}: {(given.stderr.strip().splitlines() or ['failed'])[-1]}")
+        raise StudyError(f"{cluster / 'array'}: {_last(given.stderr, 'failed')}")
     display = Display()
     while runs(folder, cluster, given.stdout.strip()):
         display.show("sweep", f"{sum(part.exists() for part in parts)} of {len(parts)} parts")
@@ -54,6 +54,10 @@ def _array(folder, cluster, parts):
     display.end()
 
 
-def _last(path):
-    lines = path.read_text(errors="replace").strip().splitlines() if path.exists() else []
-    return lines[-1][:300] if lines else "it has said nothing"
+def _text(path):
+    return path.read_text(errors="replace") if path.exists() else ""
+
+
+def _last(text, otherwise):
+    """The last line of what a program said."""
+    return (text.strip().splitlines() or [otherwise])[-1][:300]

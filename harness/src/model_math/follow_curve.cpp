@@ -165,7 +165,7 @@ class Follower {
       const Vector dx = lu.solve(right);
       if (!dx.allFinite()) return std::nullopt;
       x += dx;
-      if (dx.cwiseAbs().maxCoeff() > 1e-6 * length_) continue;  // what is left is its square
+      if (dx.cwiseAbs().maxCoeff() > 1e-11 * length_) continue;
       right.setZero();
       right[curve_.size() - 1] = 1.0;
       Vector tangent = lu.solve(right);
