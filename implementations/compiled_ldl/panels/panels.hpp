@@ -36,6 +36,8 @@ class Panels {
 
  private:
   static constexpr int kMargin = 16;  // numbers before and behind, which vectors may touch
+  /// Two vectors of rows of a panel, and what becomes of them, need 32 registers.
+  static constexpr bool kPairs = kRegisterDoubles == 8;
   /// What start() copies: fronts, of large ones the columns from their panel's diagonal on. What
   /// lies between, if it is short, is copied along.
   struct Copied {
@@ -61,6 +63,7 @@ class Panels {
     int begin = 0, rows = 0;      // of the border
     int column = 0, columns = 0;  // of the border: what is updated
     int target = 0, stride = 0;   // storage of row `begin` in the first of these columns
+    bool paired = false;          // a whole vector, and the next strip's rows follow its own everywhere
   };
   /// Panels of the same shape that follow each other.
   struct Run {
@@ -105,9 +108,12 @@ class Panels {
   void update_two(const Panel& panel);
   template <int P, int L>
   void update_border(const Panel& panel);
-  template <int P, int L>
+  template <int P, int L, int R = 1>
   static void update_rows(const F* below, int stride, int rows, const F* g, int columns, F* target,
                           int target_stride);
+  template <int P>
+  static void update_pair(const F* below, int stride, int rows, const F* g, int first_columns,
+                          int columns, F* target, int target_stride);
 
   const Program& program_;
   bool definite_;
@@ -180,6 +186,10 @@ void Panels<F>::add_strips(const Front& front) {
       strip.columns = std::min(group.end, i) - group.begin;
       strip.target = group.base + places[strip.begin];
       strip.stride = group.stride;
+      if (kPairs && strip.begin > group.begin && strip.rows > 4) {
+        Strip& last = strips_.back();
+        last.paired = last.rows == kWidest<F> && last.target + last.rows == strip.target;
+      }
       strips_.push_back(strip);
     }
   }
@@ -411,25 +421,52 @@ void Panels<F>::subtract_below(const Panel& panel, const typename Short<F, lanes
   }
 }
 
-/// Columns from `target` on lose C D⁻¹ Cᵀ in `rows` rows, at most L, which lie at `below` in C and
-/// at `target` in the first column. The rows of W of these columns begin at g.
+/// Columns from `target` on lose C D⁻¹ Cᵀ in R vectors of L rows, of the last one in `rows` rows,
+/// which lie at `below` in C and at `target` in the first column. The rows of W of these columns
+/// begin at g.
 template <typename F>
-template <int P, int L>
+template <int P, int L, int R>
 void Panels<F>::update_rows(const F* below, int stride, int rows, const F* g, int columns,
                             F* target, int target_stride) {
   using W = typename Short<F, L>::Type;
   constexpr int N = lanes_for(P);
-  W c[P];
+  W c[R][P];
+#pragma GCC unroll 2
+  for (int r = 0; r < R; ++r) {
 #pragma GCC unroll 8
-  for (int j = 0; j < P; ++j) c[j] = first_lanes<F, L>(load<F, L>(below + j * stride), rows);
+    for (int j = 0; j < P; ++j) {
+      c[r][j] = load<F, L>(below + j * stride + r * L);
+      if (r == R - 1) c[r][j] = first_lanes<F, L>(c[r][j], rows);
+    }
+  }
   for (int k = 0; k < columns; ++k) {
-    W s = load<F, L>(target);
+    W s[R];
+#pragma GCC unroll 2
+    for (int r = 0; r < R; ++r) s[r] = load<F, L>(target + r * L);
 #pragma GCC unroll 8
-    for (int j = 0; j < P; ++j) s -= c[j] * g[j];
-    store<F, L>(target, s);
+    for (int j = 0; j < P; ++j) {
+      const F of_column = g[j];
+#pragma GCC unroll 2
+      for (int r = 0; r < R; ++r) s[r] -= c[r][j] * of_column;
+    }
+#pragma GCC unroll 2
+    for (int r = 0; r < R; ++r) store<F, L>(target + r * L, s[r]);
     g += N;
     target += target_stride;
   }
+}
+
+/// Two vectors of rows, the first whole: they share what multiplies them, which half of all loads
+/// would fetch. The diagonal ends the first one's columns before the second's.
+template <typename F>
+template <int P>
+void Panels<F>::update_pair(const F* below, int stride, int rows, const F* g, int first_columns,
+                            int columns, F* target, int target_stride) {
+  constexpr int L = kWidest<F>;
+  update_rows<P, L, 2>(below, stride, rows, g, first_columns, target, target_stride);
+  update_rows<P, L>(below + L, stride, rows, g + first_columns * lanes_for(P),
+                    columns - first_columns, target + L + first_columns * target_stride,
+                    target_stride);
 }
 
 /// Further columns of the front.
@@ -440,7 +477,14 @@ void Panels<F>::update_inside(const Panel& panel) {
   const F* below = matrix() + panel.columns + P;
   const F* g = factors_.data() + panel.factors + (2 * P + 1) * lanes_for(P);
   F* target = matrix() + panel.columns + P * panel.stride + P;
-  for (int i = 0; i < panel.below; i += L) {
+  int i = 0;
+  if constexpr (kPairs) {
+    for (; i + L < panel.below; i += 2 * L) {
+      update_pair<P>(below + i, panel.stride, L, g, std::min(panel.inside, i + L),
+                     std::min(panel.inside, i + 2 * L), target + i, panel.stride);
+    }
+  }
+  for (; i < panel.below; i += L) {
     update_rows<P, L>(below + i, panel.stride, L, g, std::min(panel.inside, i + L), target + i,
                       panel.stride);
   }
@@ -457,7 +501,11 @@ void Panels<F>::update_border(const Panel& panel) {
     const F* from = below + s.begin;
     const F* of_columns = g + s.column * lanes_for(P);
     F* target = matrix() + s.target;
-    if (L > 4 && s.rows > 4) {
+    if (L > 4 && s.paired) {
+      const Strip& next = strips_[++i];
+      update_pair<P>(from, panel.stride, next.rows, of_columns, s.columns, next.columns, target,
+                     s.stride);
+    } else if (L > 4 && s.rows > 4) {
       update_rows<P, std::min(L, kWidest<F>)>(from, panel.stride, s.rows, of_columns, s.columns,
                                               target, s.stride);
     } else if (L > 2 && s.rows > 2) {
