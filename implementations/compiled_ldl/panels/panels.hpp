@@ -47,6 +47,7 @@ class Panels {
     int first = 0;    // row of the first pivot
     int columns = 0;  // storage of its diagonal block
     int stride = 0;
+    int earlier = 0;          // panels of its front before it
     int inside = 0;           // further columns of its front
     int below = 0;            // rows below, those of these columns included
     int factors = 0;          // where M, Mᵀ, D⁻¹ and W are
@@ -103,7 +104,9 @@ class Panels {
   static typename Short<F, lanes_for(P)>::Type times_transposed(
       const F* columns, const typename Short<F, lanes_for(P)>::Type& z);
   template <int P>
-  void update_inside(const Panel& panel);
+  void take_up_earlier(const Panel& panel);
+  template <int P, int R>
+  void take_up_rows(const Panel& panel, int row);
   template <int P>
   void update_two(const Panel& panel);
   template <int P, int L>
@@ -151,6 +154,7 @@ void Panels<F>::add_front(const Front& front) {
     panel.first = front.first + from;
     panel.columns = front.base + from * front.stride + from;
     panel.stride = front.stride;
+    panel.earlier = from / kPanel;
     panel.inside = front.pivots - from - pivots;
     panel.below = panel.inside + front.border;
     panel.rows = static_cast<int>(rows_.size());
@@ -312,6 +316,7 @@ bool Panels<F>::eliminate_panel(const Panel& panel, F* y) {
   using V = typename Short<F, N>::Type;
   const F* columns = matrix() + panel.columns;
   F* factors = factors_.data() + panel.factors;
+  if (panel.earlier > 0) take_up_earlier<P>(panel);
   V a[P], l[P], m[P];
   F inverse[P];
 #pragma GCC unroll 8
@@ -335,9 +340,6 @@ bool Panels<F>::eliminate_panel(const Panel& panel, F* y) {
   store_first<P>(y + panel.first, z);
   if constexpr (L > 0) {
     subtract_below<P, L>(panel, z, y);
-    if constexpr (L == 8) {
-      if (panel.inside > 0) update_inside<P>(panel);
-    }
     update_border<P, L>(panel);
   }
   return accepted;
@@ -351,6 +353,7 @@ bool Panels<F>::eliminate_pair(const Panel& panel, F* y) {
   using V = typename Short<F, 2>::Type;
   const F* columns = matrix() + panel.columns;
   F* factors = factors_.data() + panel.factors;
+  if (panel.earlier > 0) take_up_earlier<2>(panel);
   const F x = columns[0], c = columns[1], w = columns[panel.stride + 1];
   const F of_pair = F(1) / determinant(x, c, w);
   const F inverse[2] = {F(1) / x, x * of_pair};
@@ -469,24 +472,52 @@ void Panels<F>::update_pair(const F* below, int stride, int rows, const F* g, in
                     target_stride);
 }
 
-/// Further columns of the front.
+/// The panel's columns lose what the earlier panels of its front subtract, in one go.
 template <typename F>
 template <int P>
-void Panels<F>::update_inside(const Panel& panel) {
+void Panels<F>::take_up_earlier(const Panel& panel) {
   constexpr int L = kWidest<F>;
-  const F* below = matrix() + panel.columns + P;
-  const F* g = factors_.data() + panel.factors + (2 * P + 1) * lanes_for(P);
-  F* target = matrix() + panel.columns + P * panel.stride + P;
+  const int rows = P + panel.below;
   int i = 0;
   if constexpr (kPairs) {
-    for (; i + L < panel.below; i += 2 * L) {
-      update_pair<P>(below + i, panel.stride, L, g, std::min(panel.inside, i + L),
-                     std::min(panel.inside, i + 2 * L), target + i, panel.stride);
+    for (; i + L < rows; i += 2 * L) take_up_rows<P, 2>(panel, i);
+  }
+  for (; i < rows; i += L) take_up_rows<P, 1>(panel, i);
+}
+
+/// R vectors of rows, from `row` of the panel on.
+template <typename F>
+template <int P, int R>
+void Panels<F>::take_up_rows(const Panel& panel, int row) {
+  constexpr int L = kWidest<F>;
+  using W = typename Short<F, L>::Type;
+  F* target = matrix() + panel.columns + row;
+  W s[P][R];
+#pragma GCC unroll 8
+  for (int k = 0; k < P; ++k) {
+#pragma GCC unroll 2
+    for (int r = 0; r < R; ++r) s[k][r] = load<F, L>(target + k * panel.stride + r * L);
+  }
+  for (const Panel* from = &panel - panel.earlier; from != &panel; ++from) {
+    const int behind = panel.first - from->first;
+    const F* below = matrix() + from->columns + behind + row;
+    const F* g = factors_.data() + from->factors + (kPanel + 1 + behind) * kPanel;
+    for (int j = 0; j < kPanel; ++j) {
+      W c[R];
+#pragma GCC unroll 2
+      for (int r = 0; r < R; ++r) c[r] = load<F, L>(below + j * panel.stride + r * L);
+#pragma GCC unroll 8
+      for (int k = 0; k < P; ++k) {
+        const F of_column = g[k * kPanel + j];
+#pragma GCC unroll 2
+        for (int r = 0; r < R; ++r) s[k][r] -= c[r] * of_column;
+      }
     }
   }
-  for (; i < panel.below; i += L) {
-    update_rows<P, L>(below + i, panel.stride, L, g, std::min(panel.inside, i + L), target + i,
-                      panel.stride);
+#pragma GCC unroll 8
+  for (int k = 0; k < P; ++k) {
+#pragma GCC unroll 2
+    for (int r = 0; r < R; ++r) store<F, L>(target + k * panel.stride + r * L, s[k][r]);
   }
 }
 
