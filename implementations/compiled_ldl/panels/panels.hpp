@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <type_traits>
 
 #include "panels/vectors.hpp"
 #include "program.hpp"
@@ -64,7 +65,6 @@ class Panels {
     int begin = 0, rows = 0;      // of the border
     int column = 0, columns = 0;  // of the border: what is updated
     int target = 0, stride = 0;   // storage of row `begin` in the first of these columns
-    bool paired = false;          // a whole vector, and the next strip's rows follow its own everywhere
   };
   /// Panels of the same shape that follow each other.
   struct Run {
@@ -111,12 +111,13 @@ class Panels {
   void update_two(const Panel& panel);
   template <int P, int L>
   void update_border(const Panel& panel);
-  template <int P, int L, int R = 1>
+  template <int P, int L>
   static void update_rows(const F* below, int stride, int rows, const F* g, int columns, F* target,
                           int target_stride);
   template <int P>
-  static void update_pair(const F* below, int stride, int rows, const F* g, int first_columns,
-                          int columns, F* target, int target_stride);
+  void update_border_at_once(const Panel& last);
+  template <int P, int K>
+  void update_columns(const Panel& last, const Strip& strip, int column);
 
   const Program& program_;
   bool definite_;
@@ -190,10 +191,6 @@ void Panels<F>::add_strips(const Front& front) {
       strip.columns = std::min(group.end, i) - group.begin;
       strip.target = group.base + places[strip.begin];
       strip.stride = group.stride;
-      if (kPairs && strip.begin > group.begin && strip.rows > 4) {
-        Strip& last = strips_.back();
-        last.paired = last.rows == kWidest<F> && last.target + last.rows == strip.target;
-      }
       strips_.push_back(strip);
     }
   }
@@ -424,52 +421,25 @@ void Panels<F>::subtract_below(const Panel& panel, const typename Short<F, lanes
   }
 }
 
-/// Columns from `target` on lose C D⁻¹ Cᵀ in R vectors of L rows, of the last one in `rows` rows,
-/// which lie at `below` in C and at `target` in the first column. The rows of W of these columns
-/// begin at g.
+/// Columns from `target` on lose C D⁻¹ Cᵀ in `rows` rows, at most L, which lie at `below` in C and
+/// at `target` in the first column. The rows of W of these columns begin at g.
 template <typename F>
-template <int P, int L, int R>
+template <int P, int L>
 void Panels<F>::update_rows(const F* below, int stride, int rows, const F* g, int columns,
                             F* target, int target_stride) {
   using W = typename Short<F, L>::Type;
   constexpr int N = lanes_for(P);
-  W c[R][P];
-#pragma GCC unroll 2
-  for (int r = 0; r < R; ++r) {
+  W c[P];
 #pragma GCC unroll 8
-    for (int j = 0; j < P; ++j) {
-      c[r][j] = load<F, L>(below + j * stride + r * L);
-      if (r == R - 1) c[r][j] = first_lanes<F, L>(c[r][j], rows);
-    }
-  }
+  for (int j = 0; j < P; ++j) c[j] = first_lanes<F, L>(load<F, L>(below + j * stride), rows);
   for (int k = 0; k < columns; ++k) {
-    W s[R];
-#pragma GCC unroll 2
-    for (int r = 0; r < R; ++r) s[r] = load<F, L>(target + r * L);
+    W s = load<F, L>(target);
 #pragma GCC unroll 8
-    for (int j = 0; j < P; ++j) {
-      const F of_column = g[j];
-#pragma GCC unroll 2
-      for (int r = 0; r < R; ++r) s[r] -= c[r][j] * of_column;
-    }
-#pragma GCC unroll 2
-    for (int r = 0; r < R; ++r) store<F, L>(target + r * L, s[r]);
+    for (int j = 0; j < P; ++j) s -= c[j] * g[j];
+    store<F, L>(target, s);
     g += N;
     target += target_stride;
   }
-}
-
-/// Two vectors of rows, the first whole: they share what multiplies them, which half of all loads
-/// would fetch. The diagonal ends the first one's columns before the second's.
-template <typename F>
-template <int P>
-void Panels<F>::update_pair(const F* below, int stride, int rows, const F* g, int first_columns,
-                            int columns, F* target, int target_stride) {
-  constexpr int L = kWidest<F>;
-  update_rows<P, L, 2>(below, stride, rows, g, first_columns, target, target_stride);
-  update_rows<P, L>(below + L, stride, rows, g + first_columns * lanes_for(P),
-                    columns - first_columns, target + L + first_columns * target_stride,
-                    target_stride);
 }
 
 /// The panel's columns lose what the earlier panels of its front subtract, in one go.
@@ -524,19 +494,17 @@ void Panels<F>::take_up_rows(const Panel& panel, int row) {
 template <typename F>
 template <int P, int L>
 void Panels<F>::update_border(const Panel& panel) {
+  if (panel.inside > 0) return;  // the last panel of the front does it for all
+  if (panel.earlier > 0) return update_border_at_once<P>(panel);
   if (L == 2 && panel.is_two) return update_two<P>(panel);
-  const F* below = matrix() + panel.columns + P + panel.inside;
-  const F* g = factors_.data() + panel.factors + (2 * P + 1 + panel.inside) * lanes_for(P);
+  const F* below = matrix() + panel.columns + P;
+  const F* g = factors_.data() + panel.factors + (2 * P + 1) * lanes_for(P);
   for (int i = panel.strips_begin; i < panel.strips_end; ++i) {
     const Strip& s = strips_[i];
     const F* from = below + s.begin;
     const F* of_columns = g + s.column * lanes_for(P);
     F* target = matrix() + s.target;
-    if (L > 4 && s.paired) {
-      const Strip& next = strips_[++i];
-      update_pair<P>(from, panel.stride, next.rows, of_columns, s.columns, next.columns, target,
-                     s.stride);
-    } else if (L > 4 && s.rows > 4) {
+    if (L > 4 && s.rows > 4) {
       update_rows<P, std::min(L, kWidest<F>)>(from, panel.stride, s.rows, of_columns, s.columns,
                                               target, s.stride);
     } else if (L > 2 && s.rows > 2) {
@@ -546,6 +514,49 @@ void Panels<F>::update_border(const Panel& panel) {
       update_rows<P, 2>(from, panel.stride, s.rows, of_columns, s.columns, target, s.stride);
     }
   }
+}
+
+/// What all panels of a front subtract from others, in one go. `last`: of its panels.
+template <typename F>
+template <int P>
+void Panels<F>::update_border_at_once(const Panel& last) {
+  constexpr int K = 8;  // columns
+  for (int i = last.strips_begin; i < last.strips_end; ++i) {
+    const Strip& strip = strips_[i];
+    int k = 0;
+    for (; k + K <= strip.columns; k += K) update_columns<P, K>(last, strip, k);
+    for (; k < strip.columns; ++k) update_columns<P, 1>(last, strip, k);
+  }
+}
+
+/// K columns of a strip, from `column` of it on.
+template <typename F>
+template <int P, int K>
+void Panels<F>::update_columns(const Panel& last, const Strip& strip, int column) {
+  constexpr int L = kWidest<F>, N = lanes_for(P);
+  using W = typename Short<F, L>::Type;
+  F* target = matrix() + strip.target + column * strip.stride;
+  W s[K];
+#pragma GCC unroll 8
+  for (int k = 0; k < K; ++k) s[k] = load<F, L>(target + k * strip.stride);
+  const auto subtract = [&](const F* below, const F* g, int pivots, auto lanes) {
+    for (int j = 0; j < pivots; ++j) {
+      const W c = first_lanes<F, L>(load<F, L>(below + j * last.stride), strip.rows);
+#pragma GCC unroll 8
+      for (int k = 0; k < K; ++k) s[k] -= c * g[k * lanes + j];
+    }
+  };
+  const int row = strip.begin, of_column = strip.column + column;
+  for (const Panel* from = &last - last.earlier; from != &last; ++from) {
+    subtract(matrix() + from->columns + kPanel + from->inside + row,
+             factors_.data() + from->factors + (2 * kPanel + 1 + from->inside + of_column) * kPanel,
+             kPanel, std::integral_constant<int, kPanel>());
+  }
+  subtract(matrix() + last.columns + P + row,
+           factors_.data() + last.factors + (2 * P + 1 + of_column) * N, P,
+           std::integral_constant<int, N>());
+#pragma GCC unroll 8
+  for (int k = 0; k < K; ++k) store<F, L>(target + k * strip.stride, s[k]);
 }
 
 /// The update of two border rows that are neighbours, in scalars.
