@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <type_traits>
 
 #include "panels/vectors.hpp"
 #include "program.hpp"
@@ -36,6 +37,8 @@ class Panels {
 
  private:
   static constexpr int kMargin = 16;  // numbers before and behind, which vectors may touch
+  /// Two vectors of rows of a panel, and what becomes of them, need 32 registers.
+  static constexpr bool kPairs = kRegisterDoubles == 8;
   /// What start() copies: fronts, of large ones the columns from their panel's diagonal on. What
   /// lies between, if it is short, is copied along.
   struct Copied {
@@ -45,6 +48,7 @@ class Panels {
     int first = 0;    // row of the first pivot
     int columns = 0;  // storage of its diagonal block
     int stride = 0;
+    int earlier = 0;          // panels of its front before it
     int inside = 0;           // further columns of its front
     int below = 0;            // rows below, those of these columns included
     int factors = 0;          // where M, Mᵀ, D⁻¹ and W are
@@ -100,7 +104,9 @@ class Panels {
   static typename Short<F, lanes_for(P)>::Type times_transposed(
       const F* columns, const typename Short<F, lanes_for(P)>::Type& z);
   template <int P>
-  void update_inside(const Panel& panel);
+  void take_up_earlier(const Panel& panel);
+  template <int P, int R>
+  void take_up_rows(const Panel& panel, int row);
   template <int P>
   void update_two(const Panel& panel);
   template <int P, int L>
@@ -108,6 +114,10 @@ class Panels {
   template <int P, int L>
   static void update_rows(const F* below, int stride, int rows, const F* g, int columns, F* target,
                           int target_stride);
+  template <int P>
+  void update_border_at_once(const Panel& last);
+  template <int P, int K>
+  void update_columns(const Panel& last, const Strip& strip, int column);
 
   const Program& program_;
   bool definite_;
@@ -145,6 +155,7 @@ void Panels<F>::add_front(const Front& front) {
     panel.first = front.first + from;
     panel.columns = front.base + from * front.stride + from;
     panel.stride = front.stride;
+    panel.earlier = from / kPanel;
     panel.inside = front.pivots - from - pivots;
     panel.below = panel.inside + front.border;
     panel.rows = static_cast<int>(rows_.size());
@@ -302,6 +313,7 @@ bool Panels<F>::eliminate_panel(const Panel& panel, F* y) {
   using V = typename Short<F, N>::Type;
   const F* columns = matrix() + panel.columns;
   F* factors = factors_.data() + panel.factors;
+  if (panel.earlier > 0) take_up_earlier<P>(panel);
   V a[P], l[P], m[P];
   F inverse[P];
 #pragma GCC unroll 8
@@ -325,9 +337,6 @@ bool Panels<F>::eliminate_panel(const Panel& panel, F* y) {
   store_first<P>(y + panel.first, z);
   if constexpr (L > 0) {
     subtract_below<P, L>(panel, z, y);
-    if constexpr (L == 8) {
-      if (panel.inside > 0) update_inside<P>(panel);
-    }
     update_border<P, L>(panel);
   }
   return accepted;
@@ -341,6 +350,7 @@ bool Panels<F>::eliminate_pair(const Panel& panel, F* y) {
   using V = typename Short<F, 2>::Type;
   const F* columns = matrix() + panel.columns;
   F* factors = factors_.data() + panel.factors;
+  if (panel.earlier > 0) take_up_earlier<2>(panel);
   const F x = columns[0], c = columns[1], w = columns[panel.stride + 1];
   const F of_pair = F(1) / determinant(x, c, w);
   const F inverse[2] = {F(1) / x, x * of_pair};
@@ -432,26 +442,63 @@ void Panels<F>::update_rows(const F* below, int stride, int rows, const F* g, in
   }
 }
 
-/// Further columns of the front.
+/// The panel's columns lose what the earlier panels of its front subtract, in one go.
 template <typename F>
 template <int P>
-void Panels<F>::update_inside(const Panel& panel) {
+void Panels<F>::take_up_earlier(const Panel& panel) {
   constexpr int L = kWidest<F>;
-  const F* below = matrix() + panel.columns + P;
-  const F* g = factors_.data() + panel.factors + (2 * P + 1) * lanes_for(P);
-  F* target = matrix() + panel.columns + P * panel.stride + P;
-  for (int i = 0; i < panel.below; i += L) {
-    update_rows<P, L>(below + i, panel.stride, L, g, std::min(panel.inside, i + L), target + i,
-                      panel.stride);
+  const int rows = P + panel.below;
+  int i = 0;
+  if constexpr (kPairs) {
+    for (; i + L < rows; i += 2 * L) take_up_rows<P, 2>(panel, i);
+  }
+  for (; i < rows; i += L) take_up_rows<P, 1>(panel, i);
+}
+
+/// R vectors of rows, from `row` of the panel on.
+template <typename F>
+template <int P, int R>
+void Panels<F>::take_up_rows(const Panel& panel, int row) {
+  constexpr int L = kWidest<F>;
+  using W = typename Short<F, L>::Type;
+  F* target = matrix() + panel.columns + row;
+  W s[P][R];
+#pragma GCC unroll 8
+  for (int k = 0; k < P; ++k) {
+#pragma GCC unroll 2
+    for (int r = 0; r < R; ++r) s[k][r] = load<F, L>(target + k * panel.stride + r * L);
+  }
+  for (const Panel* from = &panel - panel.earlier; from != &panel; ++from) {
+    const int behind = panel.first - from->first;
+    const F* below = matrix() + from->columns + behind + row;
+    const F* g = factors_.data() + from->factors + (kPanel + 1 + behind) * kPanel;
+    for (int j = 0; j < kPanel; ++j) {
+      W c[R];
+#pragma GCC unroll 2
+      for (int r = 0; r < R; ++r) c[r] = load<F, L>(below + j * panel.stride + r * L);
+#pragma GCC unroll 8
+      for (int k = 0; k < P; ++k) {
+        const F of_column = g[k * kPanel + j];
+#pragma GCC unroll 2
+        for (int r = 0; r < R; ++r) s[k][r] -= c[r] * of_column;
+      }
+    }
+  }
+#pragma GCC unroll 8
+  for (int k = 0; k < P; ++k) {
+#pragma GCC unroll 2
+    for (int r = 0; r < R; ++r) store<F, L>(target + k * panel.stride + r * L, s[k][r]);
   }
 }
 
 template <typename F>
 template <int P, int L>
 void Panels<F>::update_border(const Panel& panel) {
+  if (panel.inside > 0) return;  // the last panel of the front does it for all
+  if (panel.earlier > 0) return update_border_at_once<P>(panel);
   if (L == 2 && panel.is_two) return update_two<P>(panel);
-  const F* below = matrix() + panel.columns + P + panel.inside;
-  const F* g = factors_.data() + panel.factors + (2 * P + 1 + panel.inside) * lanes_for(P);
+  const F* below = matrix() + panel.columns + P;
+  const F* g = factors_.data() + panel.factors + (2 * P + 1) * lanes_for(P);
   for (int i = panel.strips_begin; i < panel.strips_end; ++i) {
     const Strip& s = strips_[i];
     const F* from = below + s.begin;
@@ -467,6 +514,49 @@ void Panels<F>::update_border(const Panel& panel) {
       update_rows<P, 2>(from, panel.stride, s.rows, of_columns, s.columns, target, s.stride);
     }
   }
+}
+
+/// What all panels of a front subtract from others, in one go. `last`: of its panels.
+template <typename F>
+template <int P>
+void Panels<F>::update_border_at_once(const Panel& last) {
+  constexpr int K = 8;  // columns
+  for (int i = last.strips_begin; i < last.strips_end; ++i) {
+    const Strip& strip = strips_[i];
+    int k = 0;
+    for (; k + K <= strip.columns; k += K) update_columns<P, K>(last, strip, k);
+    for (; k < strip.columns; ++k) update_columns<P, 1>(last, strip, k);
+  }
+}
+
+/// K columns of a strip, from `column` of it on.
+template <typename F>
+template <int P, int K>
+void Panels<F>::update_columns(const Panel& last, const Strip& strip, int column) {
+  constexpr int L = kWidest<F>, N = lanes_for(P);
+  using W = typename Short<F, L>::Type;
+  F* target = matrix() + strip.target + column * strip.stride;
+  W s[K];
+#pragma GCC unroll 8
+  for (int k = 0; k < K; ++k) s[k] = load<F, L>(target + k * strip.stride);
+  const auto subtract = [&](const F* below, const F* g, int pivots, auto lanes) {
+    for (int j = 0; j < pivots; ++j) {
+      const W c = first_lanes<F, L>(load<F, L>(below + j * last.stride), strip.rows);
+#pragma GCC unroll 8
+      for (int k = 0; k < K; ++k) s[k] -= c * g[k * lanes + j];
+    }
+  };
+  const int row = strip.begin, of_column = strip.column + column;
+  for (const Panel* from = &last - last.earlier; from != &last; ++from) {
+    subtract(matrix() + from->columns + kPanel + from->inside + row,
+             factors_.data() + from->factors + (2 * kPanel + 1 + from->inside + of_column) * kPanel,
+             kPanel, std::integral_constant<int, kPanel>());
+  }
+  subtract(matrix() + last.columns + P + row,
+           factors_.data() + last.factors + (2 * P + 1 + of_column) * N, P,
+           std::integral_constant<int, N>());
+#pragma GCC unroll 8
+  for (int k = 0; k < K; ++k) store<F, L>(target + k * strip.stride, s[k]);
 }
 
 /// The update of two border rows that are neighbours, in scalars.
