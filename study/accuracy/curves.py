@@ -4,9 +4,9 @@ import numpy
 
 from analysis.accuracy.pairs import STEP
 from analysis.core.outcomes import FINISHED
+from study.core.curves import of_no_use, too_long
 
 BEHIND = 4.0   # times the fastest with the default setting: who is slower is not tried in others
-FAR = 2.0      # a curve that is this far from the front, and comes no nearer, is not followed further
 BETWEEN = 2 / 3  # of the longer of two steps: half-way on a logarithmic scale, nearly; halvings that just miss a
 WORTH = 2.0      # required error would cost a factor of two; tried where the shorter step is so near the fastest
 
@@ -28,7 +28,8 @@ def follow(runs, speed):
     curves = dict.fromkeys(active, ())
     for step in runs.subject.steps:
         for key in list(active):
-            reason = _too_long(curves[key], runs.longest) or _of_no_use(curves, key, min(runs.lab.settings["errors"]))
+            layer = [row for (name, _), rows in curves.items() if name == key[0] for row in rows]
+            reason = too_long(curves[key], runs.longest, 2.0) or of_no_use(curves[key], layer, min(runs.lab.settings["errors"]))
             if reason:
                 runs.leave_out(active.pop(key), key[1], step, reason)
         runs.simulate([(one, name, step, runs.subject.scene, None) for (_, name), one in active.items()])
@@ -67,32 +68,3 @@ def _curves(runs, curves, active):
 def meeting(rows, error):
     """The row of the longest step that meets an error, or None."""
     return next((row for row in rows if row["status"] in FINISHED and row["error"] <= error), None)
-
-
-def _too_long(rows, limit):
-    """Why the run with half the step is not made."""
-    if not rows:
-        return ""
-    last = rows[-1]
-    if last["status"] == "timeout":
-        return "the run at twice the step did not end"
-    ahead = 2 * last["time"] * last["duration"]
-    return f"predicted to take {ahead:.1f} s, the limit is {limit:g} s" if ahead > limit else ""
-
-
-def _of_no_use(curves, key, least):
-    """Why a curve is not followed further: the last error is the least that is asked for or smaller, two halvings of the
-    step in turn have not made the error smaller, or it is far from its layer's front and no nearer than before."""
-    rows = curves[key][-3:]
-    if rows and rows[-1]["status"] in FINISHED and rows[-1]["error"] <= least:
-        return f"the error is at most {least:.2g}, the least that is asked for"
-    if len(rows) < 3 or any(row["status"] not in FINISHED for row in rows):
-        return ""
-    errors = [row["error"] for row in rows]
-    if errors[0] <= errors[1] <= errors[2]:
-        return "smaller steps do not make the error smaller"
-    layer = [row for (name, _), mine in curves.items() if name == key[0] for row in mine if row["status"] in FINISHED]
-    before, now = (row["time"] / min(one["time"] for one in layer if one["error"] <= row["error"]) for row in rows[1:])
-    if now > FAR and now > 0.8 * before:
-        return f"takes {now:.1f} times the least time at its error, and comes no nearer"
-    return ""

@@ -1,11 +1,8 @@
 # Curves of error against time, from coarse to fine: which runs are worth making.
-import math
 from dataclasses import dataclass, field
 
-from analysis.core.outcomes import FINISHED
 from analysis.engines.runs import row
-
-FAR = 2.0    # a curve that is this far from its family's front, and comes no nearer, is not followed further
+from study.core.curves import of_no_use, too_long
 
 
 @dataclass
@@ -27,7 +24,7 @@ def follow(lab, curves, limit, least, share):
             known[curve.family] += curve.rows
         chosen = []
         for curve in going:
-            status, reason = _end(curve, known[curve.family], limit, least)
+            status, reason = "not-reached", too_long(curve.rows, limit, curve.finer) or of_no_use(curve.rows, known[curve.family], least)
             if not reason and lab.left <= (1 - share) * lab.budget:
                 status, reason = "dropped", f"the curves' share of the budget, {share * lab.budget:.0f} s, was spent"
             if reason:
@@ -42,42 +39,5 @@ def follow(lab, curves, limit, least, share):
 
 
 def _note(curve, place, record):
-    curve.rows.append(row(record) | {"cell": curve.cells[place][1]})
-
-
-def _end(curve, known, limit, least):
-    """(status, reason) of what ends a curve, or two times ""."""
-    ahead = _ahead(curve)
-    if ahead > limit:
-        return "not-reached", (f"predicted to take {ahead:.1f} s, the limit is {limit:g} s" if math.isfinite(ahead) else
-                               "the run before it did not end")
-    reason = of_no_use(curve.rows, known, least)
-    return ("not-reached", reason) if reason else ("", "")
-
-
-def _ahead(curve):
-    """Predicted seconds of the next run; a run that was lost early counts as if it had ended."""
-    if not curve.rows:
-        return 0.0
-    last, cell = curve.rows[-1], curve.cells[0][1]
-    if last["status"] == "timeout":
-        return math.inf
-    duration = float(cell.settings[cell.settings.index("--duration") + 1])
-    return curve.finer * (last["time"] or 0.0) * duration
-
-
-def of_no_use(rows, known, least):
-    """Why a curve is not followed further, or "". `known`: the rows of its family."""
-    made = rows[-3:]
-    if made and made[-1]["error"] <= least:
-        return f"the error is at most {least:.2g} m, the least that is asked for"
-    if len(made) < 3 or any(one["status"] not in FINISHED for one in made):
-        return ""
-    if made[0]["error"] <= made[1]["error"] <= made[2]["error"]:
-        return "finer values do not make the error smaller"
-    before, now = (one["time"] / min(other["time"] for other in known
-                                     if other["status"] in FINISHED and other["error"] <= one["error"])
-                   for one in made[1:])
-    if now > FAR and now > 0.8 * before:
-        return f"takes {now:.1f} times the front's time at its error, and comes no nearer"
-    return ""
+    cell = curve.cells[place][1]
+    curve.rows.append(row(record) | {"cell": cell, "duration": float(cell.settings[cell.settings.index("--duration") + 1])})

@@ -96,24 +96,6 @@ def test_steps_between_are_tried_where_a_halving_just_misses(whole):
     assert steps["four-bar:10", 1e-3] == 0.02
 
 
-def test_where_a_curve_ends():
-    def row(step, error, time, status="ok"):
-        return {"step": step, "error": error, "time": time, "status": status, "duration": 5.0, "seconds": 0.1}
-    assert curves._too_long([row(1e-2, 1, 0.39)], 4) == "" and "5.0 s, the limit is 4 s" in curves._too_long(
-        [row(1e-2, 1, 0.5)], 4)
-    assert "did not end" in curves._too_long([row(1e-2, numpy.nan, numpy.nan, "timeout")], 4)
-    key = ("libraries", "kept")
-
-    def use(rows, others=(), least=0.0):
-        return curves._of_no_use({key: rows, ("libraries", "default"): list(others)}, key, least)
-    better = [row(1e-2, 1.0, 1), row(5e-3, 0.1, 2), row(2.5e-3, 0.01, 4)]
-    assert use(better) == "" and "the least that is asked for" in use(better, least=0.01)
-    assert "do not make the error smaller" in use([row(1e-2, 1.0, 1), row(5e-3, 1.0, 2), row(2.5e-3, 1.1, 4)])
-    front = [row(1e-2, 1.0, 0.25), row(5e-3, 0.1, 0.5), row(2.5e-3, 0.01, 1)]
-    assert use(better, front).startswith("takes 4.0 times the least time")
-    assert use(better, [row(1e-2, 0.1, 0.1), row(1e-3, 0.01, 1.9)]) == ""  # it comes nearer
-
-
 def test_a_stretch_is_a_matter_of_the_scene():
     runs = Runs(Lab("four-bar-10"), "loops", {"loops": 10})
     assert runs.stretch("four-bar:10", 1e-2) == 500  # all of it

@@ -12,6 +12,7 @@ from analysis.engines import andrews
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
 from analysis.engines.subjects import SOLVERS
 from study.core.contender import Contender
+from study.core.curves import of_no_use, too_long
 from study.engines import curves, plan, settings
 from study.engines.settings import EngineSetting, read_list
 from study.scenes.references import andrews_end
@@ -179,15 +180,23 @@ def test_curves_end_with_a_row_that_says_why():
 
 
 def point(error, time, status="ok"):
-    return {"error": error, "time": time, "status": status}
+    return {"error": error, "time": time, "status": status, "duration": 5.0}
+
+
+def test_a_run_that_would_take_too_long_is_not_made():
+    assert too_long([], 4, 2.0) == too_long([point(1, 0.39)], 4, 2.0) == too_long([point(1, None, "diverged")], 4, 2.0) == ""
+    assert "5.0 s, the limit is 4 s" in too_long([point(1, 0.5)], 4, 2.0)
+    assert "did not end" in too_long([point(numpy.nan, numpy.nan, "timeout")], 4, 2.0)
 
 
 def test_finer_values_of_no_use():
-    assert curves.of_no_use([point(1, 1), point(1, 2), point(2, 4)], [], 0.0).startswith("finer values")
+    assert of_no_use([point(1, 1), point(1, 2), point(2, 4)], [], 0.0).startswith("finer values")
     behind = [point(1, 10), point(0.1, 20), point(0.01, 40)]
-    assert "40.0 times the front" in curves.of_no_use(behind, [point(0.01, 1), *behind], 0.0)
-    assert curves.of_no_use([point(1, 10), point(0.1, 20), point(0.01, 1.5)], behind, 0.0) == ""
-    assert curves.of_no_use([point(1, 1), point(1, 2, "diverged"), point(1, 3)], [], 0.0) == ""
+    assert "40.0 times the front" in of_no_use(behind, [point(0.01, 1), *behind], 0.0)
+    assert of_no_use([point(1, 10), point(0.1, 20), point(0.01, 1.5)], behind, 0.0) == ""
+    assert of_no_use([point(1, 1), point(1, 2, "diverged"), point(1, 3)], [], 0.0) == ""
+    better = [point(1.0, 1), point(0.1, 2), point(0.01, 4)]
+    assert of_no_use(better, better, 0.0) == "" and "the least that is asked for" in of_no_use(better, better, 0.01)
 
 
 def test_settings_are_read_and_refused(tmp_path):
