@@ -20,7 +20,7 @@ def context(tables, view):
             "convergence": grouped(convergence, "problem"), "digits": digits, "good": GOOD,
             "published": set(convergence.problem[convergence.published.notna()]),
             "modelling": grouped(tables["modelling"], ["implementation", "loops"]),
-            "outputs": tables["outputs"].to_dict("records"), "settings": view.settings,
+            "settings": view.settings,
             "sheets": {path.stem.replace("_", " "): base64.b64encode(path.read_bytes()).decode() for path in sorted(SHEETS.glob("*.png"))}}
 
 
