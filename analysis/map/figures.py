@@ -1,7 +1,7 @@
 # All figures of the map.
 from analysis.core.style import Look
 from analysis.core.timing import TWIN
-from analysis.map import (dense_figure, fill_figure, maps, operations_figure, phases_figure, regret, sparse_figure)
+from analysis.map import dense_figure, fill_figure, maps, operations, phases_figure, regret, sparse_figure
 from analysis.map.cells import map_cells
 from analysis.map.results import of
 
@@ -16,4 +16,4 @@ def draw(tables, view):
             "regret": regret.draw(results, map_cells(results, libraries), libraries),
             "f4_sparse_solvers": sparse_figure.draw(results, look), "f5_fill": fill_figure.draw(results, look),
             "f2_dense_pairs": dense_figure.draw(results, look), "t1_phases": phases_figure.draw(results),
-            "t2_operations": operations_figure.draw(results, look)}
+            "t2_operations": operations.draw(results, look)}

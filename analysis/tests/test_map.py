@@ -11,8 +11,7 @@ from analysis.core.records import Record
 from analysis.core.style import Look
 from analysis.map import figures, losses, regret, sentences, summary, tables, tidy
 from analysis.map.cells import map_cells, table
-from analysis.map.grid import bounds
-from analysis.map.maps import crossings
+from analysis.map.maps import bounds, crossings
 from analysis.map.timed import AFTER, Scene, differing, timed_rows
 from analysis.tests.map_tables import cell, failed, registry, results, scene, view
 

@@ -5,11 +5,11 @@ import pandas
 import pytest
 
 from analysis.map import ledger, paper
-from analysis.map.claims import claims
 from analysis.map.claims_libraries import compilers, dense_pairs, tuned_blas
 from analysis.map.claims_maps import over_fill, regions
 from analysis.map.claims_solvers import pivoting, solvers, sparse_against_dense
 from analysis.map.claims_starting import starting_sparse, table1, table2_claims
+from analysis.map.tables import claims
 from analysis.map.ledger import (CONFIRMED, EXCEEDED, INCOMPARABLE, MIXED, REFUTED, UNDECIDED, UNMEASURED, Rule, at_least, at_most,
                                  factor, verdict)
 from analysis.tests.map_tables import build, cell, failed, operation, phases, results

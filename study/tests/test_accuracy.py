@@ -1,12 +1,11 @@
 # study/accuracy: which cells are asked for, on a lab whose answers are known; the order of the real program.
-import numpy
 import pytest
 
 from analysis.accuracy import subjects, tables
 from analysis.accuracy.points import runs as rows_of
 from analysis.core.errors import StudyError
 from analysis.core.records import Record
-from study.accuracy import curves, plan
+from study.accuracy import plan
 from study.accuracy.runs import Runs
 from study.core import executor
 from study.core.cell import Cell
