@@ -122,13 +122,23 @@ def size_ticks(axes, sizes):
 
 
 def number_axis(axis, unit=""):
-    """Plain numbers on a logarithmic axis that has its data, more a decade if it spans few."""
+    """Makes an axis that has its data logarithmic, with plain numbers, more a decade if it spans few."""
+    if axis.get_scale() != "log":
+        (axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale)("log")
     low, high = axis.get_view_interval()
     decades = numpy.log10(high / low)
     steps = (1, 1.5, 2, 3, 5, 7) if decades < 0.9 else (1, 2, 5) if decades < 3.3 else (1,)
     axis.set_major_locator(LogLocator(subs=steps))
     axis.set_major_formatter(FuncFormatter(lambda value, _: plain(value) + unit))
     axis.set_minor_formatter(NullFormatter())
+
+
+def line_each(axes, labels, **text):
+    """A line for each label, the first on top."""
+    axes.set_yticks(range(len(labels)), labels, **text)
+    axes.set_ylim(len(labels) - 0.4, -0.6)
+    axes.grid(axis="x")
+    axes.set_axisbelow(True)
 
 
 def plain(value):

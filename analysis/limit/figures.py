@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy
 from matplotlib.ticker import NullLocator
 
-from analysis.core.style import ALTERNATIVES, GREY, MARKERS, Look, legend, missing, number_axis, size_ticks
+from analysis.core.style import ALTERNATIVES, GREY, MARKERS, Look, legend, line_each, missing, number_axis, size_ticks
 from analysis.core.text import number
 from analysis.limit.held import wanted
 from analysis.limit.tables import KINDS, LIMIT
@@ -65,7 +65,6 @@ def over_size(bounds, rows, look, own):
     times.set_ylabel("time per step, µs")
     multiples.set_ylabel("multiple of the limit code")
     for axes, unit in ((times, ""), (multiples, "×")):
-        axes.set_yscale("log")
         number_axis(axes.yaxis, unit)
         axes.grid(True, which="major")
     size_ticks(multiples, sorted(rows.variables.unique()))
@@ -104,15 +103,11 @@ def ahead(leads):
     axes.plot([wanted(row.kind, row.dimension) for row in about.itertuples()], range(len(about)), linestyle="none", marker="|",
               markersize=15, markeredgewidth=2, color="black", label="at least")
     axes.axvline(1, color=GREY, linewidth=1)
-    axes.set_xscale("log")
     axes.margins(x=0.1)
     number_axis(axes.xaxis, "×")
     axes.yaxis.set_minor_locator(NullLocator())
-    axes.set_yticks(range(len(about)), [f"{row.scene.rpartition('/')[2].removesuffix('.json')} ({row.kind}, n = {row.variables:.0f}, "
-                                        f"{row.dimension:.0f}D)" for row in about.itertuples()], fontsize=8)
-    axes.set_ylim(len(about) - 0.4, -0.6)
-    axes.grid(axis="x")
-    axes.set_axisbelow(True)
+    line_each(axes, [f"{row.scene.rpartition('/')[2].removesuffix('.json')} ({row.kind}, n = {row.variables:.0f}, "
+                     f"{row.dimension:.0f}D)" for row in about.itertuples()], fontsize=8)
     axes.set_xlabel("time of the fastest library ÷ own time")
     axes.set_title("How far ahead of libraries")
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)

@@ -28,7 +28,7 @@ def draw(results, look):
         return figure
     labels = {name: _label(results, name) for name in found}
     side_by_side(axes, found, sizes, look, labels.get)
-    axes.set(yscale="log", ylabel=f"times as fast as {paper.STARTING['dense']}")
+    axes.set_ylabel(f"times as fast as {paper.STARTING['dense']}")
     number_axis(axes.yaxis, "×")
     legend(axes, order=list(labels.values()).index)
     tried = {results.usual(name) for name in results.tidy.implementation.unique()}

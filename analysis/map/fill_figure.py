@@ -34,7 +34,7 @@ def draw(results, look):
         who = "\n".join(dict.fromkeys(f"   {name}" for name in dense.values()))
         axes.plot(list(dense), [times[fill][name] for fill, name in dense.items()], label=f"fastest dense:\n{who}", **DENSE_LINE)
     axes.set_title(f"Figure 5: time against tangent fill, n = {size:g}")
-    axes.set(yscale="log", xlabel="non-zeros of the tangent, % of n²", ylabel="time per step, µs")
+    axes.set(xlabel="non-zeros of the tangent, % of n²", ylabel="time per step, µs")
     number_axis(axes.yaxis)
     axes.grid(True, which="major")
     legend(axes)

@@ -72,7 +72,6 @@ def _times(axes, samples, results, look):
         if len(middle):
             role = " (not optimised)" if name in slow else ""
             axes.plot(middle.index, middle, label=f"{name}{role}", **look.line(name))
-    axes.set_yscale("log")
     _ticks(axes, sorted(samples.variables.unique()))
     axes.set_xlabel("")
 
@@ -88,7 +87,6 @@ def _ratios(axes, rows, look, quoted):
     axes.axhline(quoted, color="black", linewidth=1, linestyle=(0, (6, 3)))
     axes.set_title(f"paper: {quoted}", fontsize=9)
     axes.axhline(1, color=GREY, linewidth=0.8)
-    axes.set_yscale("log")
     _ticks(axes, sorted({row["variables"] for row in rows}))
 
 

@@ -44,7 +44,6 @@ def draw(results, look):
             axes.axvspan(beyond[0] - 0.5, len(sizes) - 0.5, color="#f3f3f3", zorder=-1)
         axes.set_ylabel("time ÷ the least at that size")
     panels[0].set(xlabel="", ylim=(0.96, LEADERS))
-    panels[1].set_yscale("log")
     number_axis(panels[1].yaxis, "×")
     outcomes = {cell.variables: "" if cell.decided else "as fast" if cell.settled else "open"
                 for cell in map_cells(results, list(found)) if cell.fill_asked is None}

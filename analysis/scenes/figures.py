@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy
 
 from analysis.core.outcomes import GOOD
-from analysis.core.style import ALTERNATIVES, GREY, MARKERS, missing, nothing, number_axis
+from analysis.core.style import ALTERNATIVES, GREY, MARKERS, line_each, missing, nothing, number_axis
 from study.scenes.metric import CLASSES
 
 
@@ -41,11 +41,8 @@ def errors(problems):
         axes.axvline(limit, color=GREY, linewidth=0.9, linestyle="--")
         axes.text(limit, -0.62, f"{name} precision ", ha="right", va="bottom", fontsize=8, color=GREY)
     axes.set_xscale("log")
-    axes.set_yticks(range(len(titles)), titles)
-    axes.set_ylim(len(titles) - 0.4, -0.6)
+    line_each(axes, titles)
     axes.set_xlabel("error at each step, root mean square; the finest step is filled")
-    axes.grid(axis="x")
-    axes.set_axisbelow(True)
     axes.set_title("Errors of the standard problems", pad=18)
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
     return figure
@@ -83,11 +80,8 @@ def modelling(table):
         error_axes.set_xlabel("largest position error of B0, m")
         for axes in (time_axes, error_axes):
             axes.set_xscale("log")
-            axes.grid(axis="x")
-            axes.set_axisbelow(True)
-            axes.set_ylim(len(cases) - 0.5, -0.5)
+            line_each(axes, cases)
         number_axis(time_axes.xaxis, "×")
-    panels[0][0].set_yticks(range(len(cases)), cases)
     handles = {label: handle for row in panels[0] for handle, label in zip(*row.get_legend_handles_labels())}
     figure.legend(handles.values(), handles.keys(), loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=len(names), fontsize=9)
     return figure
