@@ -1,8 +1,7 @@
 # All figures of the map.
 from analysis.core.style import Look
 from analysis.core.timing import TWIN
-from analysis.map import dense_figure, fill_figure, maps, operations, phases_figure, regret, sparse_figure
-from analysis.map.cells import map_cells
+from analysis.map import dense_figure, fill_figure, maps, operations, phases_figure, sparse_figure
 from analysis.map.results import of
 
 
@@ -13,7 +12,6 @@ def draw(tables, view):
     return {"f6_map": maps.draw(results, look, "Figure 6: fastest library, 10 to 100 variables", libraries, 10, 100),
             "f7_map": maps.draw(results, look, "Figure 7: fastest library, all sizes", libraries),
             "map_all": maps.draw(results, look, "Fastest of all, code of our own included", everyone),
-            "regret": regret.draw(results, map_cells(results, libraries), libraries),
             "f4_sparse_solvers": sparse_figure.draw(results, look), "f5_fill": fill_figure.draw(results, look),
             "f2_dense_pairs": dense_figure.draw(results, look), "t1_phases": phases_figure.draw(results),
             "t2_operations": operations.draw(results, look)}
