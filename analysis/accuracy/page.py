@@ -1,6 +1,6 @@
 # What the page shows: sentences and tables beside the figures.
 from analysis.accuracy import names, pairs, sentences, work_figure
-from analysis.core.rows import rows_of
+from analysis.core.text import rows_of
 
 
 def context(tables, view):

@@ -9,8 +9,7 @@ from matplotlib.ticker import LogLocator
 from analysis.accuracy import names
 from analysis.accuracy.points import NOT_JUDGED
 from analysis.accuracy.winners import LAYERS, meeting, met
-from analysis.core.outcomes import FINISHED
-from analysis.core.pareto import near
+from analysis.core.outcomes import FINISHED, near
 from analysis.core.style import GREY, missing, number_axis
 
 CLOSE = 1.25  # times the front's time at its error

@@ -4,7 +4,7 @@
 import pandas
 
 from analysis.core import timing
-from analysis.core.pareto import finished
+from analysis.core.outcomes import finished
 from analysis.engines.runs import ENGINE, NATIVE, OURS, key
 
 LIMITS = tuple(10.0**-power for power in range(1, 14))

@@ -4,8 +4,7 @@ import numpy
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from analysis.core.outcomes import FINISHED
-from analysis.core.pareto import finished, pareto
+from analysis.core.outcomes import FINISHED, finished, pareto
 from analysis.core.style import GREY, MARKERS, nothing
 from analysis.engines.equal_error import SIDES, of_side
 from analysis.engines.runs import NATIVE

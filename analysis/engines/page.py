@@ -1,7 +1,6 @@
 # What the page says besides its figures.
-from analysis.core.outcomes import FINISHED
-from analysis.core.pareto import finished
-from analysis.core.rows import rows_of
+from analysis.core.outcomes import FINISHED, finished
+from analysis.core.text import rows_of
 from analysis.engines import sentences
 from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import NOT_MADE, title

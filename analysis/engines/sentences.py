@@ -1,7 +1,6 @@
 # What the front page says of the engines, computed from the tables.
 
-from analysis.core.outcomes import FINISHED
-from analysis.core.pareto import finished
+from analysis.core.outcomes import FINISHED, finished
 from analysis.core.text import between, number, span
 from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import NOT_MADE, title

@@ -5,7 +5,7 @@ import numpy
 
 from analysis.core.files import ROOT
 from analysis.core.outcomes import GOOD
-from analysis.core.rows import grouped
+from analysis.core.text import grouped
 from analysis.scenes.sentences import finest
 
 SHEETS = ROOT / "harness" / "scenes" / "pictures"

@@ -10,7 +10,7 @@ from analysis.core.errors import StudyError
 from analysis.core.outcomes import FINISHED, GOOD, of_run
 from analysis.core.statistics import median
 from study.scenes import metric
-from study.scenes.extrapolate import extrapolate, observed_order
+from study.scenes.metric import extrapolate, observed_order
 from study.scenes.modelling import CASES
 from study.scenes.problems import read_list
 from study.scenes.references import EXTRAPOLATED, KNOWN, PUBLISHED, four_bar, kind

@@ -8,8 +8,7 @@ from study.core.cell import Cell
 from study.core.contender import Contender, by_environment
 from study.core.profile import need_keys
 from study.core.timing import measure
-from study.map.scene import NATURAL, Scene
-from study.map.timed import TimedScene
+from study.map.timed import NATURAL, Scene, TimedScene
 from study.map.verify import alternatives, fit
 
 SETTINGS = {"processes": int,      # of a timed scene
