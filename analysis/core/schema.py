@@ -14,8 +14,11 @@ DIGESTS = "tables.json"  # of a part: those of its records and tables
 
 
 def of_part(part):
+    return read(ROOT / "analysis" / part / "schema.yaml")
+
+
+def read(path):
     """{table: {column: (type, unit, meaning)}}; every table has a `record`, the name of one that its row comes from."""
-    path = ROOT / "analysis" / part / "schema.yaml"
     found = yaml.safe_load(path.read_text(encoding="utf-8"))
     for table, columns in found.items():
         wrong = [name for name, one in columns.items()

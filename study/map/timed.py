@@ -1,5 +1,5 @@
-# A scene of the map, the N-four-bar at a size with its own fill or an artificial one, and how it is timed: a few processes of all, without those whose stretch takes another number of passes, and then
-# more of those who lead.
+# A scene of the map, the N-four-bar at a size with its own fill or an artificial one, and how it is timed: a few processes of all,
+# without those whose stretch takes another number of passes, and then more of those who lead.
 from dataclasses import dataclass, field, replace
 
 from analysis.core.timing import LEFT_OUT, TWIN

@@ -1,5 +1,6 @@
 # Where a tool keeps its records: a set without parts, so that cells run, resume and are refused as those of parts.
 import datetime
+from pathlib import Path
 
 from analysis.core.errors import StudyError
 from analysis.core.files import write_json
@@ -28,6 +29,13 @@ def open_shelf(folder, tool, context, only, **question):
     found.need_programs(["mbs"])
     found.clear()
     return StudySet(folder)
+
+
+def table(rows, name):
+    """Rows as the table of that name in schema.yaml."""
+    import pandas
+    from analysis.core import schema
+    return schema.conform(pandas.DataFrame(rows), schema.read(Path(__file__).with_name("schema.yaml"))[name], name)
 
 
 class ToolLab(Lab):
