@@ -84,12 +84,6 @@ class Results:
         return rows[(rows.status == "ok") & (rows.folder + "/" + rows.variant == variant) & rows.fill_asked.isna() &
                     ~rows.implementation.str.endswith(timing.TWIN)]
 
-    def builds(self, variant):
-        """Rows of `variant` in several builds. Their processes alternate: those of one number belong together."""
-        rows = self.tidy[(self.tidy.kind == "builds") & (self.tidy.status == "ok")]
-        rows = rows[rows.folder + "/" + rows.variant == variant]
-        return timing.apart(rows)
-
     def usual(self, variant):
         """The pair that a variant is ranked on."""
         return next(iter(self.tidy.blas[self.tidy.implementation == variant]), "")
