@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from analysis.core.files import ROOT
 from analysis.engines.equal_error import candidates, least_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
-from analysis.engines.subjects import Subject
+from analysis.engines.subjects import Subject, subject_of
 from analysis.engines.tables import frame
 from study.core.cell import Cell
 from study.core.setting import read_settings
@@ -32,12 +32,12 @@ SET_UP = "study/setup --engines"
 
 
 def columns(settings):
-    shares = {name: 1.0 if Subject(name).loops else 0.5 for name in settings["subjects"]}  # the others are small
+    shares = {name: 1.0 if subject_of(name).loops else 0.5 for name in settings["subjects"]}  # the others are small
     return {name: settings["seconds"] * share / sum(shares.values()) for name, share in shares.items()}
 
 
 def run(lab, column):
-    subject, missing = Subject(column), unavailable()
+    subject, missing = subject_of(column), unavailable()
     asked = [engine for engine in read_list() if subject.asks(engine)]
     for engine in asked:
         if missing[engine]:

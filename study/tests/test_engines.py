@@ -145,7 +145,7 @@ def test_the_build_with_our_flags_runs_what_was_chosen_of_the_packaged_one(monke
 
 def test_the_double_pendulum_is_sampled_for_its_error(fakes, monkeypatch):
     lab, asked = Lab("double-pendulum"), []
-    bench = plan.Bench(lab, plan.Subject("double-pendulum"))
+    bench = plan.Bench(lab, plan.subject_of("double-pendulum"))
     monkeypatch.setattr(plan, "follow", lambda lab, curves, *rest: asked.extend(curves) or [])
     bench.ours(0.0)
     cell = dict(asked[0].cells)[2.5e-3]
@@ -154,14 +154,14 @@ def test_the_double_pendulum_is_sampled_for_its_error(fakes, monkeypatch):
 
 
 def test_the_ladder_of_our_steps_is_fixed():
-    steps = plan.Bench(Lab(octave=2), plan.Subject("four-bar-2")).steps()
+    steps = plan.Bench(Lab(octave=2), plan.subject_of("four-bar-2")).steps()
     assert steps[0] == 2e-2 and steps[2] == 1e-2 and steps[-1] >= 1e-5
     assert steps == sorted(steps, reverse=True) and len(steps) == 22
-    assert plan.Bench(Lab(), plan.Subject("andrews")).steps()[:2] == [4e-4, 2e-4]
+    assert plan.Bench(Lab(), plan.subject_of("andrews")).steps()[:2] == [4e-4, 2e-4]
 
 
 def one_curve(lab, limit=10.0, least=0.0, share=1.0, **options):
-    bench = plan.Bench(lab, plan.Subject("four-bar-2"))
+    bench = plan.Bench(lab, plan.subject_of("four-bar-2"))
     setting = EngineSetting("able", "step", VALUES, tuple(options.items()))
     cells = [(value, bench.engine_cell("study/engines/engine_able", setting.words(value))) for value in VALUES]
     return curves.follow(lab, [curves.Curve("able", cells, 2.0)], limit, least, share)
@@ -269,7 +269,7 @@ def test_programs_refuse_bad_input(engine):
 
 def error(name, form, accuracy):
     """Of a run of IDA; its program reads scenes relative to the repository."""
-    subject = plan.Subject(name)
+    subject = plan.subject_of(name)
     words = (*map(str, subject.words), "--duration", f"{subject.duration:g}", "--setting", f"form={form}",
              f"accuracy={accuracy}", "--json")
     done = subprocess.run([program("ida"), *words], capture_output=True, text=True, cwd=ROOT)

@@ -86,7 +86,7 @@ def _measure(folder, options, revision, build):
     contenders = on_usual_pairs(known, pairs, select(known, options.only))
     context = context_of(Contender(CONTROL.name, CONTROL.variant, usable(known, pairs["all"])))
     lab = shelf.ToolLab(shelf.open_shelf(folder, "against", context, options.only, scenes=options.scenes,
-                             old=digest(ROOT / program_of(build=build))[:16]), "against", "runs")
+                                          old=digest(ROOT / program_of(build=build))[:16]), "against", "runs")
     there = _variants_of(build)
     rows = [{"implementation": one.name, "scene": scene, "reason": f"is not in {revision}"}
             for one in contenders if one.variant not in there for scene in options.scenes]
