@@ -4,7 +4,7 @@ import numpy
 
 from analysis.accuracy.pairs import STEP
 from analysis.core.outcomes import FINISHED
-from study.core.curves import of_no_use, too_long
+from study.core import curves
 
 BEHIND = 4.0   # times the fastest with the default setting: who is slower is not tried in others
 BETWEEN = 2 / 3  # of the longer of two steps: half-way on a logarithmic scale, nearly; halvings that just miss a
@@ -18,51 +18,33 @@ def first_look(runs, scene):
 
 
 def follow(runs, speed):
-    """Simulates all curves, a step after the other from the longest one on. `speed`: of first_look."""
-    active = {}
+    """{(layer, setting): rows in the order of steps}: all curves, followed from the longest step on. `speed`: of first_look."""
+    found = {}
     for layer, contenders in runs.layers.items():
         for name in runs.settings:
             serving = runs.serving(name, [*speed[layer], *(one for one in contenders if one not in speed[layer])])
             if serving:
-                active[layer, name] = serving[0]
-    curves = dict.fromkeys(active, ())
-    for step in runs.subject.steps:
-        for key in list(active):
-            layer = [row for (name, _), rows in curves.items() if name == key[0] for row in rows]
-            reason = too_long(curves[key], runs.longest, 2.0) or of_no_use(curves[key], layer, min(runs.lab.settings["errors"]))
-            if reason:
-                runs.leave_out(active.pop(key), key[1], step, reason)
-        runs.simulate([(one, name, step, runs.subject.scene, None) for (_, name), one in active.items()])
-        curves = _curves(runs, curves, active)
-    return curves
+                found[layer, name] = curves.Curve(layer, [(step, runs.run_cell(serving[0], name, step)) for step in runs.subject.steps], 2.0)
+    curves.follow(runs.lab, list(found.values()), runs.row, runs.longest, min(runs.lab.settings["errors"]), status="excluded")
+    return {key: curve.rows for key, curve in found.items()}
 
 
-def between(runs, curves):
-    """Runs between the two steps that bracket a required error, of curves near the fastest of their layer there."""
+def between(runs, found):
+    """The same with runs between the two steps that bracket a required error, of curves near the fastest of their layer there."""
     by_name = {one.name: one for group in runs.layers.values() for one in group}
-    jobs = []
+    cells = {}
     for error in runs.lab.settings["errors"]:
         for layer in runs.layers:
-            mine = {key: meeting(rows, error) for key, rows in curves.items() if key[0] == layer}
+            mine = {key: meeting(rows, error) for key, rows in found.items() if key[0] == layer}
             best = min((row["time"] for row in mine.values() if row), default=numpy.inf)
             for key, row in mine.items():
-                longer = [one["step"] for one in curves[key] if row and one["step"] > 1.001 * row["step"]]
+                longer = [one["step"] for one in found[key] if row and one["step"] > 1.001 * row["step"]]
                 if longer and row["time"] <= WORTH * best:
                     step = float(f"{BETWEEN * min(longer):g}")
-                    jobs.append((by_name[row["implementation"]], key[1], step, runs.subject.scene, None))
-    runs.simulate(dict.fromkeys(jobs))
-    return _curves(runs, curves, {})
-
-
-def _curves(runs, curves, active):
-    """{(layer, setting): rows in the order of steps}"""
-    made = {}
-    for row in runs.made().sort_values("step", ascending=False, kind="stable").to_dict("records"):
-        if row["status"] not in ("dropped", "excluded"):
-            made.setdefault((row["implementation"], row["setting"]), []).append(row)
-    names = {key: rows[0]["implementation"] for key, rows in curves.items() if rows} | {
-        key: one.name for key, one in active.items()}
-    return {key: made.get((names.get(key), key[1]), []) for key in curves}
+                    cells[key, step] = runs.run_cell(by_name[row["implementation"]], key[1], step)
+    for (key, _), record in zip(cells, runs.lab.run(list(cells.values()), drop=True)):
+        found[key] = sorted([*found[key], runs.row(record)], key=lambda one: -one["step"])
+    return found
 
 
 def meeting(rows, error):

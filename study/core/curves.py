@@ -1,8 +1,46 @@
-# How far a curve of error against time is followed, from coarse values to fine ones. Rows of runs: status, error, time (s for a
-# simulated second), duration.
+# Curves of error against time, followed from coarse values to fine ones: which runs are worth making.
+from dataclasses import dataclass, field
+
 from analysis.core.outcomes import FINISHED
 
 FAR = 2.0  # a curve that is this far from its family's front, and comes no nearer, is not followed further
+
+
+@dataclass
+class Curve:
+    family: str    # whose front it is measured by
+    cells: list    # (value, Cell), the coarsest first
+    finer: float   # predicted: how much longer the next value takes
+    rows: list = field(default_factory=list)  # of its runs: status, error, time (s for a simulated second), duration
+    ended: bool = False
+
+
+def follow(lab, curves, row, limit, least, share=None, status="not-reached"):
+    """Follows all curves at once, a value at a time. A curve ends with a row of this `status` that says why: a run would take longer
+    than `limit` s, `least` is reached, or finer values are of no use; or with one that is dropped, where the budget, or a `share` of
+    it, is spent. `row`: of a cell's record."""
+    for place in range(max((len(curve.cells) for curve in curves), default=0)):
+        known, chosen = {curve.family: [] for curve in curves}, []
+        for curve in curves:
+            known[curve.family] += curve.rows
+        for curve in (one for one in curves if not one.ended and place < len(one.cells)):
+            how, reason = status, too_long(curve.rows, limit, curve.finer) or of_no_use(curve.rows, known[curve.family], least)
+            if not reason and share and lab.left <= (1 - share) * lab.budget:
+                how, reason = "dropped", f"the curves' share of the budget, {share * lab.budget:.0f} s, was spent"
+            if reason:
+                curve.ended = True
+                _note(curve, row, place, lab.skip(curve.cells[place][1], how, reason))
+            else:
+                chosen.append(curve)
+        lab.tell(f"{len(chosen)} curves at value {place + 1}")
+        for curve, record in zip(chosen, lab.run([curve.cells[place][1] for curve in chosen], drop=not share)):
+            _note(curve, row, place, record)
+            curve.ended = record.status == "dropped"
+
+
+def _note(curve, row, place, record):
+    cell = curve.cells[place][1]
+    curve.rows.append(row(record) | {"cell": cell, "duration": float(cell.settings[cell.settings.index("--duration") + 1])})
 
 
 def too_long(rows, limit, finer):

@@ -12,8 +12,8 @@ from analysis.engines import andrews
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
 from analysis.engines.subjects import SOLVERS
 from study.core.contender import Contender
-from study.core.curves import of_no_use, too_long
-from study.engines import curves, plan, settings
+from study.core.curves import Curve, follow, of_no_use, too_long
+from study.engines import plan, settings
 from study.engines.settings import EngineSetting, read_list
 from study.scenes.references import andrews_end
 from study.tests.conftest import ROOT
@@ -164,7 +164,9 @@ def one_curve(lab, limit=10.0, least=0.0, share=1.0, **options):
     bench = plan.Bench(lab, plan.subject_of("four-bar-2"))
     setting = EngineSetting("able", "step", VALUES, tuple(options.items()))
     cells = [(value, bench.engine_cell("study/engines/engine_able", setting.words(value))) for value in VALUES]
-    return curves.follow(lab, [curves.Curve("able", cells, 2.0)], limit, least, share)
+    curve = Curve("able", cells, 2.0)
+    follow(lab, [curve], row, limit, least, share)
+    return curve.rows
 
 
 def test_curves_end_with_a_row_that_says_why():
