@@ -9,7 +9,7 @@ def context(tables, view):
     return {"settings": view.settings, "steps": steps.to_dict("records"), "finished": FINISHED, "hopeless": HOPELESS,
             "largest": searched.to_dict("records"), "not_searched": len(largest) - len(searched),
             "dropped": int((steps.status == "dropped").sum()), "incomplete": int((~searched.complete.astype(bool)).sum()),
-            "machine": losses(machine), "judging": judging(steps)}
+            "tried": len(tables["tried"]), "machine": losses(machine), "judging": judging(steps)}
 
 
 def losses(machine):

@@ -12,8 +12,16 @@ def answers(tables, view):
         said = [_best(name, one) for name, one in layers.items() if len(one)]
         if said:
             found.append({"anchor": "largest", "text": f"Steps of {number(1e3 * step)} ms: {'. '.join(said)}."})
-    return [*found, *_machine(tables["machine"])] or [
+    return [*found, *_clean(tables["steps"], view), *_machine(tables["machine"])] or [
         {"text": "Not measured: no implementation of this part took part.", "anchor": ""}]
+
+
+def _clean(steps, view):
+    """How many runs missed nothing."""
+    observed = steps[steps.missed.notna()]
+    text = (f"{(observed.missed == 0).sum()} of {len(observed)} runs of {number(view.settings['duration'])} s missed no "
+            "deadline at all.")
+    return [{"anchor": "steps", "text": text}] if len(observed) else []
 
 
 def _machine(machine):
