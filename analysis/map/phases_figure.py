@@ -56,24 +56,30 @@ def all_panel(axes, results, size, names, first):
         elif shares["other"] > WHOLE:
             axes.text(1, place, "all in the same sweeps", va="center", fontsize=7.5)
         else:
-            _bar(axes, place, shares)
+            bar(axes, place, [(phase, 100 * share) for phase, share in shares.items()], FILLS, False)
     axes.set_yticks(range(len(names)), names, fontsize=8.5)
     axes.set(xlim=(0, 100), ylim=(len(names) - 0.4, -0.6),
              xlabel=f"n = {size:g}: share of the time of a step, %")
     axes.tick_params(axis="y", length=0, labelleft=first)
     axes.spines["left"].set_visible(False)
     if first:
-        handles = [plt.Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor="white", label=LABELS[phase]) for phase, colour in FILLS.items()]
-        axes.legend(handles=handles, ncol=len(handles), loc="lower left", fontsize=8.5, bbox_to_anchor=(-0.01, 0.99), handlelength=1.2,
-                    columnspacing=1.2, borderpad=0.2)
+        legend(axes, FILLS, LABELS)
         axes.set_title("All phases, every variant", pad=26)
 
 
-def _bar(axes, place, shares):
+def bar(axes, place, shares, fills, outlined):
     left = 0.0
-    for phase, share in shares.items():
-        axes.barh(place, 100 * share, left=left, height=0.8, color=FILLS[phase], edgecolor="white", linewidth=0.5)
-        if share >= 0.035:
-            axes.text(left + 50 * share, place, f"{100 * share:.0f}", ha="center", va="center",
-                      fontsize=7.5, color="white" if FILLS[phase] == "#08519c" else "#222222")
-        left += 100 * share
+    for key, share in shares:
+        axes.barh(place, share, left=left, height=0.8, color=fills[key],
+                  edgecolor="black" if outlined else "white", linewidth=0.8 if outlined else 0.5)
+        if share >= 3.5:
+            axes.text(left + share / 2, place, f"{share:.0f}", ha="center", va="center",
+                      fontsize=7.5, color="white" if fills[key] == "#08519c" else "#222222")
+        left += share
+
+
+def legend(axes, fills, labels):
+    handles = [plt.Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor="white", label=labels[key])
+               for key, colour in fills.items()]
+    axes.legend(handles=handles, ncol=len(handles), loc="lower left", fontsize=8.5,
+                bbox_to_anchor=(-0.01, 0.99), handlelength=1.2, columnspacing=1.2, borderpad=0.2)
