@@ -30,7 +30,7 @@ def real_map(tables, look, registry):
     mechanisms, winners, scenes = (tables[name] for name in ("mechanisms", "winners", "scenes"))
     figure, (left, right) = plt.subplots(1, 2, figsize=(13.5, 5.6), gridspec_kw={"width_ratios": [1.25, 1.0], "wspace": 0.16})
     rows = best_form(winners, "libraries")
-    if rows.empty or DECIDES not in mechanisms or mechanisms[DECIDES].isna().all():
+    if rows.empty or mechanisms[DECIDES].isna().all():
         for axes in (left, right):
             missing(axes, "nobody was timed")
         return figure
