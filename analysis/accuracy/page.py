@@ -1,13 +1,12 @@
 # What the page shows: sentences and tables beside the figures.
 from analysis.accuracy import names, pairs, sentences, work_figure
-from analysis.core.rows import rows_of
+from analysis.core.text import rows_of
 
 
 def context(tables, view):
     points, winners, table = tables["points"], tables["winners"], tables["pairs"]
     by_subject = dict(list(points[points.fill_asked.isna()].groupby("subject", sort=False)))
     subjects = [{"about": about, "figure": work_figure.name(about["subject"]),
-                 "says": sentences.of_subject(by_subject[about["subject"]]),
                  "statuses": sentences.rest(by_subject[about["subject"]], "status")}
                 for about in rows_of(tables["references"]) if about["subject"] in by_subject]
     subjects = list({part["about"]["subject"]: part for part in subjects}.values())
@@ -17,7 +16,7 @@ def context(tables, view):
         "chains": [part for part in subjects if part["about"]["unit"] == "m"],
         "problems": [part for part in subjects if part["about"]["unit"] != "m"],
         "lost": [about for about in rows_of(tables["references"]) if about["own_error"] is None],
-        "problem_winners": rows_of(winners[winners.loops.isna()]), "regions_says": sentences.of_regions(winners),
+        "problem_winners": rows_of(winners[winners.loops.isna()]),
         "forms": kinds[pairs.FORMS], "forms_says": sentences.of_forms(table),
         "precision": kinds[pairs.PRECISION], "precision_says": sentences.of_precision(table),
         "reuse": sentences.reuse_rows(table), "reuse_says": sentences.of_reuse(table), "pairs_step": pairs.STEP,

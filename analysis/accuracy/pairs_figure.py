@@ -19,7 +19,6 @@ def draw(rows, look, title, goal):
             axes.axhline(1 / goal, color="black", linewidth=0.8, linestyle=(0, (4, 2)))
             axes.annotate(f"{goal:g} times faster", (0.99, 1 / goal), fontsize=8, ha="right", va="top",
                           xycoords=("axes fraction", "data"), xytext=(0, -2), textcoords="offset points")
-        axes.set_yscale("log")
         axes.grid(True, axis="y")
         size_ticks(axes, sorted(rows.variables.unique()))
         axes.set_title(f"{second} / {first}")

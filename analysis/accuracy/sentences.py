@@ -1,6 +1,6 @@
 # What the page and the front page say, computed from the tables.
-from analysis.accuracy import names, pairs
-from analysis.accuracy.winners import LAYERS, meeting, met
+from analysis.accuracy import pairs
+from analysis.accuracy.winners import LAYERS, met
 from analysis.core.text import between, bounded, number
 
 WORDS = {"libraries": "Of the libraries", "all": "Of all, code without a library included,"}
@@ -70,47 +70,6 @@ def summary(winners):
             row[layer] = [{"who": who, "sizes": ", ".join(sizes)} for who, sizes in groups.items()]
         found.append(row)
     return found
-
-
-def of_subject(rows):
-    """Who is on the fronts, and what the best of the default setting gives away."""
-    said = []
-    for layer in LAYERS:
-        front = rows[rows[f"front_{layer}"].astype(bool)]
-        mine = rows[rows.library.astype(bool)] if layer == "libraries" else rows
-        if front.empty:
-            said.append(f"{WORDS[layer]} nobody finished and was timed.")
-            continue
-        who, count = most(front.implementation)
-        settings = most(front.setting)
-        said.append(f"{WORDS[layer]} {who} makes {count} of the {len(front)} points of the front, most often with "
-                    f"{settings[0]} ({settings[1]}).")
-        best = front.loc[front.error.idxmin()]
-        said[-1] += (f" The smallest error there, {number(best.error, 2)}, is that of {best.implementation}, {best.setting}, "
-                     f"at a step of {names.step(best.step)}.")
-        default = meeting(mine[mine.setting == "default"], float("inf"))
-        if layer == "libraries" and len(default):
-            rival = default.loc[default.error.idxmin()]
-            same = meeting(mine, rival.error).iloc[0]
-            if same.setting != "default":
-                said[-1] += (f" The default setting gets to {number(rival.error, 2)}, for which {rival.implementation} takes "
-                             f"{number(rival.time / same.time, 2)} times as long as {same.implementation} with {same.setting}.")
-    return said
-
-
-def of_regions(winners):
-    chains = winners[winners.loops.notna()]
-    said = []
-    for layer in LAYERS:
-        rows = chains[chains.layer == layer]
-        won = met(rows)
-        if len(won):
-            settled, decided = ((won[flag] == True).sum() for flag in ("settled", "decided"))  # noqa: E712
-            who, often = most(won.implementation)
-            said.append(f"{WORDS[layer]} somebody is timed who meets the error in {len(won)} of {len(rows)} cells of size, fill and error; "
-                        f"{who} is fastest in {often}. {decided} are decided, {settled} settled: of each contender it is "
-                        "shown whether it is as fast.")
-    return said
 
 
 def of_forms(table):

@@ -11,7 +11,7 @@ import numpy
 from analysis.core.errors import StudyError
 from analysis.core.outcomes import FINISHED, of_run
 from study.scenes import mechanics, metric
-from study.scenes.extrapolate import extrapolate
+from study.scenes.metric import extrapolate
 from study.scenes.problems import read_list
 from study.scenes.references import CLOSED, EXTRAPOLATED, KNOWN, four_bar, kind
 

@@ -6,7 +6,7 @@ from analysis.accuracy.columns import columns
 from analysis.accuracy.points import points, runs, timed
 from analysis.accuracy.winners import LAYERS, meeting, winners
 from analysis.core.errors import StudyError
-from analysis.core.pareto import pareto
+from analysis.core.outcomes import pareto
 
 
 def build(records, view):

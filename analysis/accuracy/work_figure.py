@@ -9,8 +9,7 @@ from matplotlib.ticker import LogLocator
 from analysis.accuracy import names
 from analysis.accuracy.points import NOT_JUDGED
 from analysis.accuracy.winners import LAYERS, meeting, met
-from analysis.core.outcomes import FINISHED
-from analysis.core.pareto import near
+from analysis.core.outcomes import FINISHED, near
 from analysis.core.style import GREY, missing, number_axis
 
 CLOSE = 1.25  # times the front's time at its error
@@ -43,19 +42,18 @@ def draw(rows, won, look, unit, title):
         _ratios(ratios, mine, front, look)
         ratios.set_xlabel(f"error, {unit}")
         ratios.legend(handles=handles, fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
-        axes.set(xscale="log", yscale="log", xlabel="computation for a simulated second, s")
+        axes.set_xlabel("computation for a simulated second, s")
         axes.grid(True)
     if drawn:
         first = next(axes for axes in panels if axes.axison)
         first.set_ylabel(f"error, {unit}")
         lower = next(axes for axes in below if axes.axison)
-        lower.set(xscale="log", yscale="log", ylabel="time ÷ the least at that error")
+        lower.set(yscale="log", ylabel="time ÷ the least at that error")
         lower.set_ylim(0.95, min(lower.get_ylim()[1], SHOWN))
-        for axis, unit in ((lower.xaxis, ""), (lower.yaxis, "×")):
-            number_axis(axis, unit)
-        lower.invert_xaxis()
-        for axis in (first.xaxis, first.yaxis):
+        number_axis(lower.yaxis, "×")
+        for axis in (lower.xaxis, first.xaxis, first.yaxis):
             number_axis(axis)
+        lower.invert_xaxis()
         if numpy.ptp(numpy.log10(first.get_xlim())) > 1.5:
             first.xaxis.set_major_locator(LogLocator())
     figure.suptitle(title, x=0.01, ha="left", fontsize=12)

@@ -1,7 +1,10 @@
-# How runs end, and which of that counts as what; harness/src/run/README.md says what each means.
+# How runs end, and which of that counts as what (harness/src/run/README.md says what each means); the front of error and time.
+import numpy
+
 GOOD = ("ok", "plausible")       # nothing is known to be wrong
 FINISHED = (*GOOD, "degraded")   # has all of its motion
 WHOLE = (*FINISHED, "not-converged")  # got to the end
+SAME = 0.02  # errors that differ by so little are those of one motion
 
 
 def of_run(record):
@@ -9,3 +12,27 @@ def of_run(record):
     if not record.done:
         return record.status, record.reason
     return record.output["status"], record.output["status_reason"]
+
+
+def finished(rows):
+    """Rows (`status`, `error`, `time`) of runs that have all of their motion, an error and a time."""
+    return rows[rows.status.isin(FINISHED) & rows.error.notna() & rows.time.notna()]
+
+
+def pareto(rows):
+    """Index of the rows that nobody beats, the fastest first: every faster run has an error larger by more than
+    SAME."""
+    found, smallest = [], numpy.inf
+    for row in finished(rows).sort_values(["time", "error"], kind="stable").itertuples():
+        if row.error < (1 - SAME) * smallest:
+            found.append(row.Index)
+            smallest = row.error
+    return found
+
+
+def near(rows, factor):
+    """Index of the rows that take at most `factor` times as long as the front at their error."""
+    done = finished(rows)
+    front = done.loc[pareto(rows)]
+    return done.index[[row.time <= factor * front.time[(1 - SAME) * front.error <= row.error].min()
+                       for row in done.itertuples()]]

@@ -1,5 +1,6 @@
 # The one schema of all tables: analysis/PART/schema.yaml says of every table its columns, each [type, unit, meaning].
 # Tables are written and read through it, and the pages print it.
+import math
 from pathlib import Path
 
 import pandas
@@ -14,8 +15,11 @@ DIGESTS = "tables.json"  # of a part: those of its records and tables
 
 
 def of_part(part):
+    return read(ROOT / "analysis" / part / "schema.yaml")
+
+
+def read(path):
     """{table: {column: (type, unit, meaning)}}; every table has a `record`, the name of one that its row comes from."""
-    path = ROOT / "analysis" / part / "schema.yaml"
     found = yaml.safe_load(path.read_text(encoding="utf-8"))
     for table, columns in found.items():
         wrong = [name for name, one in columns.items()
@@ -34,25 +38,16 @@ def conform(frame, columns, what):
     frame = frame.reindex(columns=list(columns))
     for name, (kind, _, _) in columns.items():
         if kind == "number":
-            numbers = pandas.Series([_number(value) for value in frame[name]], frame.index, float)
-            wrong = frame.index[numbers.isna() & frame[name].notna() & (frame[name] != "")]
-            if len(wrong):
-                raise StudyError(f"{what}: line {frame.index.get_loc(wrong[0]) + 2}: {name} is no number: "
-                                 f"'{frame[name][wrong[0]]}'")
-            frame[name] = numbers
+            values = frame[name].astype(object)
+            try:  # as Python reads it: pandas.to_numeric is off by an ulp for a third of all texts
+                frame[name] = values.mask(values.isna() | (values == ""), math.nan).astype(float)
+            except ValueError as error:
+                raise StudyError(f"{what}: {name}: {error}") from error
         elif kind == "flag":
             frame[name] = frame[name].map({True: True, False: False, "True": True, "False": False}).astype("boolean")
         else:
             frame[name] = frame[name].fillna("").astype(str)
     return frame.reset_index(drop=True)
-
-
-def _number(value):
-    """As Python reads it: pandas.to_numeric is off by an ulp for a third of all texts."""
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        return float("nan")
 
 
 def write_tables(folder, part, tables, records):

@@ -1,9 +1,6 @@
 # The site of a set: a page a part, index.html with the answers, one look.
 import base64
 import importlib
-import multiprocessing
-import os
-import signal
 from pathlib import Path
 
 import jinja2
@@ -19,16 +16,16 @@ from analysis.core.view import View
 HERE = Path(__file__).parent
 
 
-def write_part(folder, part, started=lambda: None):
-    """Tables, figures and page of a part from its records. `started` is called in every process that this begins. The front
-    page is left to the caller: beside another part at work it would overwrite that one's page by one to come."""
+def write_part(folder, part):
+    """Tables, figures and page of a part from its records. The front page is left to the caller: beside another part at work it would
+    overwrite that one's page by one to come."""
     schema.need_unchanged(folder, part)
     view, found = View(folder, part), records.read_part(folder, part)
     schema.need_same_records(folder, part, found)
     for record in found:
         records.need_same_origin(record, view.context, f"{folder}/raw/{part}")
     tables = schema.write_tables(folder, part, _module(part, "tables").build(found, view), found)
-    figures = _saved(folder / part / "figures", _module(part, "figures").draw(tables, view), view, started)
+    figures = _saved(folder / part / "figures", _module(part, "figures").draw(tables, view), view)
     known = _module(part, "page").context(tables, view)
     _write(folder, part, template(ROOT / "analysis" / part / "page.html.j2").render(
         **_frame(folder, part), **known, figures=figures, schema=schema.of_part(part)))
@@ -81,27 +78,11 @@ def template(path):
     return environment.get_template(path.name)
 
 
-def _saved(base, figures, view, started):
-    """Writes NAME.svg of each figure into `base`, on all cores, and closes it; {name: the file in base 64}."""
+def _saved(base, figures, view):
+    """Writes NAME.svg of each figure into `base`; {name: the file in base 64}."""
     about = f"{view.context.get('cpu_model', '')} · {view.facts['date'][:10]} · {view.part}, profile {view.facts['profile']}"
-    base.mkdir(parents=True, exist_ok=True)
-    paths = {base / f"{name}.svg": figure for name, figure in figures.items()}
-    fork = multiprocessing.get_context("fork")  # figures go with it as they are
-    with fork.Pool(len(os.sched_getaffinity(0)), _begin, (started, paths, about)) as pool:
-        pool.map(_save, paths, chunksize=1)
+    for name, figure in figures.items():
+        stamp(figure, about)
+        save(figure, base / f"{name}.svg")
     plt.close("all")
     return {name: base64.b64encode((base / f"{name}.svg").read_bytes()).decode() for name in figures}
-
-
-def _begin(started, paths, about):
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # which is how a pool ends its processes
-    started()
-    _figures.update({path: (figure, about) for path, figure in paths.items()})
-
-
-def _save(path):
-    stamp(*_figures[path])
-    save(_figures[path][0], path)
-
-
-_figures = {}  # of a process that saves figures: {path: (figure, what is said above it)}

@@ -30,9 +30,8 @@ matplotlib.rcParams.update({
 
 class Look:
     """How each implementation is drawn, by its place in the registry: a colour a folder and a shade
-    of it a variant; a marker of its own; a dash a variant. An alternative
-    "folder/variant+gcc-O2" or "…+atlas-reference" has colour and marker by the first word behind
-    the plus, dash and fill by the second."""
+    of it a variant; a marker of its own; a dash a variant. Alternatives "folder/variant+pair" have
+    colours and markers of their own."""
 
     def __init__(self, registry, alternatives=()):
         self.place, self.shade, self.hue = {}, {}, {}
@@ -43,40 +42,27 @@ class Look:
                 self.hue[folder] = next(palettes[name in registry.dense])
             self.place[name] = len(self.place)
             self.shade[name] = sum(other.startswith(f"{folder}/") for other in self.shade)
-        self.words = sorted({name.partition("+")[2].split("-")[0] for name in alternatives} - {""})
-
-    def _alternative(self, name):
-        """(place of the first word, whether the second is not "reference" or "O2")."""
-        first, _, second = name.partition("+")[2].partition("-")
-        place = self.words.index(first) if first in self.words else len(self.words)
-        return place, second not in ("reference", "O2")
+        self.alternatives = {name: place for place, name in enumerate(sorted(alternatives))}
 
     def colour(self, name):
-        if "+" in name:
-            return ALTERNATIVES[self._alternative(name)[0] % len(ALTERNATIVES)]
+        if name in self.alternatives:
+            return ALTERNATIVES[self.alternatives[name] % len(ALTERNATIVES)]
         base, shade = self.hue[name.split("/")[0]], self.shade[name]
         towards, share = SHADES[shade % len(SHADES)]
         mixed = numpy.array(to_rgb(base)) * (1 - share)
         return to_hex(mixed + share if towards == "white" else mixed)
 
     def marker(self, name):
-        place = self._alternative(name)[0] if "+" in name else self.place[name]
-        return MARKERS[place % len(MARKERS)]
+        return MARKERS[(self.place | self.alternatives)[name] % len(MARKERS)]
 
     def dash(self, name):
-        if "+" in name:
-            return DASHES[0 if self._alternative(name)[1] else 1]
-        return DASHES[self.shade[name] % len(DASHES)]
+        return DASHES[self.shade[name] % len(DASHES)] if name in self.shade else DASHES[0]
 
     def line(self, name):
         """Keywords of `plot` for the series of an implementation or alternative."""
-        solid = "+" not in name or self._alternative(name)[1]
-        return {"color": self.colour(name), "linestyle": self.dash(name), "linewidth": 1.4,
-                "marker": self.marker(name),
-                "markersize": 8 if self.marker(name) in "*PX" else 5.5,
-                "markeredgewidth": 0.6 if solid else 1.2,
-                "markerfacecolor": self.colour(name) if solid else "white",
-                "markeredgecolor": "white" if solid else self.colour(name)}
+        return {"color": self.colour(name), "linestyle": self.dash(name), "linewidth": 1.4, "marker": self.marker(name),
+                "markersize": 8 if self.marker(name) in "*PX" else 5.5, "markeredgewidth": 0.6, "markerfacecolor": self.colour(name),
+                "markeredgecolor": "white"}
 
 
 def legend(axes, order=None):
@@ -122,13 +108,23 @@ def size_ticks(axes, sizes):
 
 
 def number_axis(axis, unit=""):
-    """Plain numbers on a logarithmic axis that has its data, more a decade if it spans few."""
+    """Makes an axis that has its data logarithmic, with plain numbers, more a decade if it spans few."""
+    if axis.get_scale() != "log":
+        (axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale)("log")
     low, high = axis.get_view_interval()
     decades = numpy.log10(high / low)
     steps = (1, 1.5, 2, 3, 5, 7) if decades < 0.9 else (1, 2, 5) if decades < 3.3 else (1,)
     axis.set_major_locator(LogLocator(subs=steps))
     axis.set_major_formatter(FuncFormatter(lambda value, _: plain(value) + unit))
     axis.set_minor_formatter(NullFormatter())
+
+
+def line_each(axes, labels, **text):
+    """A line for each label, the first on top."""
+    axes.set_yticks(range(len(labels)), labels, **text)
+    axes.set_ylim(len(labels) - 0.4, -0.6)
+    axes.grid(axis="x")
+    axes.set_axisbelow(True)
 
 
 def plain(value):

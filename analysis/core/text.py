@@ -1,4 +1,4 @@
-# Numbers as the report and the claims ledger print them.
+# Numbers and tables as pages show them.
 import math
 
 import pandas
@@ -52,3 +52,13 @@ def between(value, low, high, digits=3, more=""):
 def interval(ratio):
     """`between` of a timing.Ratio."""
     return between(ratio.value, ratio.low, ratio.high)
+
+
+def rows_of(table):
+    """The table as dictionaries, None where there is nothing."""
+    return table.astype(object).where(table.notna(), None).to_dict("records")
+
+
+def grouped(table, key):
+    """[(key, rows)], in the table's order; what is empty stays NaN."""
+    return [(name, group.to_dict("records")) for name, group in table.groupby(key, sort=False)]

@@ -20,10 +20,6 @@ def facts_of(folder):
     return found
 
 
-def registry_of(folder):
-    return Registry(read_object(folder / "registry.json", implementations=list))
-
-
 @dataclass(frozen=True)
 class Folder:
     """A set's, with what the set says of itself."""
@@ -35,7 +31,7 @@ class Folder:
 
     @cached_property
     def registry(self):
-        return registry_of(self.folder)
+        return Registry(read_object(self.folder / "registry.json", implementations=list))
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@
 import pandas
 
 from analysis.core import timing
-from analysis.core.pareto import finished
+from analysis.core.outcomes import finished
 from analysis.engines.runs import ENGINE, NATIVE, OURS, key
 
 LIMITS = tuple(10.0**-power for power in range(1, 14))
@@ -14,9 +14,6 @@ SIDES = {"chains": "our code for chains", "fronts": "our code for any scene", "l
          "paper": "the paper's scheme"}
 NEAR = 1.3   # untimed times are this uncertain
 MOST = 2     # candidates of a side for one run of an engine
-COLUMNS = ("subject", "engine", "limit", "side", "engine_setting", "over", "engine_value", "engine_status",
-           "engine_error", "engine_time", "implementation", "setting", "step", "error", "time", "ratio", "low", "high",
-           "reason", "record")
 
 
 def of_side(ours, side, own):
@@ -76,7 +73,7 @@ def table(engines, ours, rounds, own):
             for limit, best in _reached(of_engine):
                 for side, (every, compared) in sides.items():
                     rows.append(_row(subject, name, limit, best, side, _fastest(compared, best.error), every, timed))
-    return pandas.DataFrame(rows, columns=list(COLUMNS))
+    return pandas.DataFrame(rows)
 
 
 def native(engines, rounds):

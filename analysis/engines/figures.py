@@ -4,12 +4,11 @@ import numpy
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from analysis.core.outcomes import FINISHED
-from analysis.core.pareto import finished, pareto
+from analysis.core.outcomes import FINISHED, finished, pareto
 from analysis.core.style import GREY, MARKERS, nothing
 from analysis.engines.equal_error import SIDES, of_side
 from analysis.engines.runs import NATIVE
-from analysis.engines.subjects import Subject
+from analysis.engines.subjects import subject_of
 
 COLOURS = {"simbody": "#0072B2", "mujoco": "#D55E00", "ode": "#009E73", "bullet": "#CC79A7", "dart": "#56B4E9", "ida": "#B8860B"}
 NAMES = {"simbody": "Simbody", "mujoco": "MuJoCo", "ode": "Open Dynamics Engine", "bullet": "Bullet", "dart": "DART",
@@ -21,7 +20,7 @@ NOT_MADE = ("unavailable", "not-reached", "dropped")
 
 
 def draw(tables, view):
-    subjects = [Subject(name) for name in dict.fromkeys(tables["ours"].subject)]
+    subjects = [subject_of(name) for name in dict.fromkeys(tables["ours"].subject)]
     return {name: panels(tables, [one for one in subjects if one.regular == regular], view.registry.own)
             for name, regular in (("singular", False), ("regular", True))}
 

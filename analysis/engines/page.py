@@ -1,11 +1,10 @@
 # What the page says besides its figures.
-from analysis.core.outcomes import FINISHED
-from analysis.core.pareto import finished
-from analysis.core.rows import rows_of
+from analysis.core.outcomes import FINISHED, finished
+from analysis.core.text import rows_of
 from analysis.engines import sentences
 from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import NOT_MADE, title
-from analysis.engines.subjects import DURATION_S, Subject
+from analysis.engines.subjects import DURATION_S, subject_of
 
 SETTING_UP = "study/setup --engines"
 
@@ -17,7 +16,7 @@ def context(tables, view):
     return {"answers": answers, "says": sentences.of_engines(engines), "measured": not table.empty, "setting_up": SETTING_UP,
             "sides": {side: what for side, what in SIDES.items() if (table.side == side).any()},
             "engines": {name: title(name) for name in names}, "duration": DURATION_S, "subjects": {
-                name: Subject(name).title for name in dict.fromkeys(engines.subject)},
+                name: subject_of(name).title for name in dict.fromkeys(engines.subject)},
             "summaries": {side: summary(table[table.side == side], names) for side in SIDES},
             "behind": rows_of(table[(table.ratio < 1)].sort_values("ratio")),
             "unreached": unreached(table), "comparisons": {subject: rows_of(rows) for subject, rows in

@@ -3,7 +3,7 @@ import math
 from pathlib import PurePath
 
 from analysis.core.outcomes import FINISHED, of_run
-from analysis.engines.subjects import FLOOR, Subject
+from analysis.engines.subjects import FLOOR, subject_of
 
 ENGINE, OURS, ROUND = "engine", "ours", "round"  # roles of cells
 OVER = ("step", "accuracy")                      # what changes along a curve
@@ -12,7 +12,7 @@ NATIVE = "+native"                               # of an engine that was built w
 
 def row(record):
     """`name`: the engine or implementation; `time`: s of computation for a simulated second."""
-    subject = Subject(record.column)
+    subject = subject_of(record.column)
     engine = PurePath(record.cell["program"]).name.startswith("engine_")
     found = (_engine if engine else _ours)(record, subject)
     status, reason = of_run(record)

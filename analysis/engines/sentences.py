@@ -1,12 +1,11 @@
 # What the front page says of the engines, computed from the tables.
 
-from analysis.core.outcomes import FINISHED
-from analysis.core.pareto import finished
+from analysis.core.outcomes import FINISHED, finished
 from analysis.core.text import between, number, span
 from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import NOT_MADE, title
 from analysis.engines.runs import NATIVE
-from analysis.engines.subjects import ANDREWS, Subject
+from analysis.engines.subjects import ANDREWS, subject_of
 
 
 def answers(tables, view):
@@ -30,7 +29,7 @@ def of_side(table, side):
             "comparisons at equal error")
     if len(timed):
         worst = timed.loc[timed.ratio.idxmin()]
-        where = f"; {title(worst.engine)}, {Subject(worst.subject).title}, {number(worst.engine_error, 2)} m"
+        where = f"; {title(worst.engine)}, {subject_of(worst.subject).title}, {number(worst.engine_error, 2)} m"
         text += (f", by {number(timed.ratio.median(), 2)} times in the median, at the least "
                  f"{between(worst.ratio, worst.low, worst.high, 2, where)}")
     if len(timed) < len(rows):
@@ -83,7 +82,7 @@ def of_engines(engines):
         kinds = ", ".join(f"{count} {status}" for status, count in lost.status.value_counts().items())
         done = finished(made)
         best = "none finished" if done.empty else (
-            f"{number(done.error.min(), 2)} m is the smallest error ({Subject(done.loc[done.error.idxmin()].subject).title})")
+            f"{number(done.error.min(), 2)} m is the smallest error ({subject_of(done.loc[done.error.idxmin()].subject).title})")
         version = next((one for one in made.version if one), "")
         said.append(f"{title(engine)} {version}: {len(made)} runs; {best}; not finished: {kinds or 'none'}.")
     return said

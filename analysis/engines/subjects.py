@@ -16,7 +16,7 @@ from analysis.engines import andrews
 
 DURATION_S, REGULAR_S, PENDULUM_S = 5.0, 0.6, 2.0
 PENDULUM, ANDREWS = "double-pendulum", "andrews"
-SCENES = {PENDULUM: "study/engines/double_pendulum.json", ANDREWS: "harness/scenes/problems/a03_andrews.json"}
+ANDREWS_SCENE = "harness/scenes/problems/a03_andrews.json"
 SOLVERS = ("ida",)  # who is given our equations, and so any scene; engines have models of rods alone
 FLOOR = 1e-13      # m: no error is shown below it; the references' own are below 2e-14
 GRAVITY = 9.81
@@ -25,62 +25,25 @@ LONGEST = 1e-3     # s, a step of the integration of the double pendulum: roundi
 
 @dataclass(frozen=True)
 class Subject:
-    """`name`: "four-bar-10", "four-bar-10-regular", "double-pendulum" or "andrews", which is a column of the part too."""
-    name: str
-
-    @property
-    def loops(self):
-        return 0 if self.name in SCENES else int(self.name.split("-")[2])
+    name: str            # a column of the part too
+    title: str           # in tables and figures
+    scene: str           # of ours
+    duration: float      # s
+    words: tuple         # that tell an engine's program what to simulate
+    regular: bool = True  # whether the motion passes no singular position
+    loops: int = 0       # of the four-bar, whose error the programs tell
+    points: str = ""     # outputs that are compared where they do not
+    judged: float = 1e-2  # s: errors are evaluated so often, as the engines' programs do
+    steps: tuple = (2e-2, 1e-5)  # s, the longest and the shortest of ours
 
     @property
     def place(self):
         """In tables and figures."""
         return self.name == ANDREWS, self.name == PENDULUM, self.regular, self.loops
 
-    @property
-    def regular(self):
-        """Whether the motion passes no singular position."""
-        return self.name in SCENES or self.name.endswith("-regular")
-
-    @property
-    def duration(self):
-        known = {PENDULUM: PENDULUM_S, ANDREWS: andrews.DURATION_S}
-        return known.get(self.name, REGULAR_S if self.regular else DURATION_S)
-
-    @property
-    def judged(self):
-        """s: errors are evaluated so often, as the engines' programs do."""
-        return self.duration / 300 if self.name == ANDREWS else 1e-2
-
-    @property
-    def steps(self):
-        """s, the longest and the shortest of ours."""
-        return (4e-4, 1e-7) if self.name == ANDREWS else (2e-2, 1e-5)
-
-    @property
-    def title(self):
-        known = {PENDULUM: "double pendulum", ANDREWS: "Andrews' mechanism"}
-        return known.get(self.name) or f"N = {self.loops}" + (f", first {REGULAR_S:g} s" if self.regular else "")
-
-    @property
-    def scene(self):
-        """Of ours."""
-        return SCENES.get(self.name) or f"four-bar:{self.loops}"
-
-    @property
-    def points(self):
-        """Outputs of the scene that are compared, where not the program itself knows the motion."""
-        return {PENDULUM: "BC", ANDREWS: "EPSU"}.get(self.name, "")
-
     def asks(self, engine):
         """Whether an engine's program models it."""
         return self.name != ANDREWS or engine in SOLVERS
-
-    @property
-    def words(self):
-        """That tell an engine's program what to simulate."""
-        known = {PENDULUM: ("--pendulum",), ANDREWS: ("--scene", self.scene)}
-        return known.get(self.name) or ("--loops", self.loops)
 
     def engine_error(self, output):
         """Position error of an engine's run, m."""
@@ -101,6 +64,21 @@ class Subject:
         """Largest distance of `places` (point, axis, time) from where they should be."""
         known = (andrews.positions if self.name == ANDREWS else positions)(times)
         return float(numpy.hypot(*(places - known).swapaxes(0, 1)).max())
+
+
+OTHERS = {one.name: one for one in (
+    Subject(PENDULUM, "double pendulum", "study/engines/double_pendulum.json", PENDULUM_S, ("--pendulum",), points="BC"),
+    Subject(ANDREWS, "Andrews' mechanism", ANDREWS_SCENE, andrews.DURATION_S, ("--scene", ANDREWS_SCENE), points="EPSU",
+            judged=andrews.DURATION_S / 300, steps=(4e-4, 1e-7)))}
+
+
+def subject_of(name):
+    """The Subject called "four-bar-10", "four-bar-10-regular", "double-pendulum" or "andrews"."""
+    if name in OTHERS:
+        return OTHERS[name]
+    loops, regular = int(name.split("-")[2]), name.endswith("-regular")
+    return Subject(name, f"N = {loops}" + (f", first {REGULAR_S:g} s" if regular else ""), f"four-bar:{loops}",
+                   REGULAR_S if regular else DURATION_S, ("--loops", loops), regular, loops)
 
 
 def positions(times, longest=LONGEST):

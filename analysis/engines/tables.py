@@ -3,7 +3,7 @@ import pandas
 
 from analysis.engines import equal_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
-from analysis.engines.subjects import Subject
+from analysis.engines.subjects import subject_of
 
 COLUMNS = ("subject", "side", "name", "setting", "over", "value", "status", "reason", "error", "time", "round", "repeats",
            "record")
@@ -20,7 +20,7 @@ def build(records, view):
 
 
 def _sorted(table):
-    places = {name: place for place, name in enumerate(sorted(table.subject.unique(), key=lambda one: Subject(one).place))}
+    places = {name: place for place, name in enumerate(sorted(table.subject.unique(), key=lambda one: subject_of(one).place))}
     return table.sort_values(["subject", "name", "setting", "over", "value", "round"], kind="stable", key=lambda column:
                              column.map(places) if column.name == "subject" else -column if column.name == "value" else column)
 

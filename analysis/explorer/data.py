@@ -14,7 +14,7 @@ from analysis.accuracy.winners import meeting
 from analysis.core import records, schema, timing
 from analysis.core.contest import by_scene, grouped
 from analysis.core.files import read_object
-from analysis.core.view import View, facts_of, registry_of
+from analysis.core.view import Folder, View, facts_of
 from analysis.families.tables import SCHEMES, family_of
 from analysis.map.results import FAILURES, Results
 from analysis.map.timed import AFTER
@@ -48,7 +48,7 @@ def of_families(folder):
     """Contests on mechanisms, in both forms."""
     about, table = (schema.read_table(folder, "families", name) for name in ("mechanisms", "scenes"))
     about = about[about.n.notna() & about.fill.notna()].set_index("scene")
-    table = table[table.scene.isin(about.index) & ~table.implementation.isin(registry_of(folder).examples)]
+    table = table[table.scene.isin(about.index) & ~table.implementation.isin(Folder(folder).registry.examples)]
     by_role, found = grouped(records.read_part(folder, "families")), []
     for form in SCHEMES:
         timed = dict(by_scene(by_role.get(form, [])))

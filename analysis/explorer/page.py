@@ -8,7 +8,7 @@ from analysis.accuracy.winners import NEAR
 from analysis.core import timing
 from analysis.core.files import ROOT
 from analysis.core.style import Look
-from analysis.core.view import facts_of, registry_of
+from analysis.core.view import Folder, facts_of
 from analysis.explorer import data
 
 SETTINGS = ROOT / "study" / "settings.yaml"
@@ -21,7 +21,7 @@ def context(folder):
     sets = {one: data.read(one) for one in (folder, *_others(folder))}
     names = list(dict.fromkeys(name for found in sets.values() for name in data.names_of(found)))
     number = {name: place for place, name in enumerate(names)}
-    registries = [registry_of(one) for one in sets]
+    registries = [Folder(one).registry for one in sets]
     about = [_about(name, registries) for name in names]
     contests = [one for part in ("families", "map") for one in sets[folder][part]]
     known = {"sets": [data.as_json(one, found, number) for one, found in sets.items()], "names": about, "sizes": data.size_of(contests),

@@ -30,7 +30,7 @@ def real_map(tables, look, registry):
     mechanisms, winners, scenes = (tables[name] for name in ("mechanisms", "winners", "scenes"))
     figure, (left, right) = plt.subplots(1, 2, figsize=(13.5, 5.6), gridspec_kw={"width_ratios": [1.25, 1.0], "wspace": 0.16})
     rows = best_form(winners, "libraries")
-    if rows.empty or DECIDES not in mechanisms or mechanisms[DECIDES].isna().all():
+    if rows.empty or mechanisms[DECIDES].isna().all():
         for axes in (left, right):
             missing(axes, "nobody was timed")
         return figure
@@ -84,8 +84,6 @@ def _scales(axes, n, values, label):
         low, high = float(min(found)), float(max(found))
         room = (high / low) ** 0.05 if high > low else 1.5
         (axes.set_xlim if axis is axes.xaxis else axes.set_ylim)(low / room, high * room)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
     number_axis(axes.xaxis)
     number_axis(axes.yaxis)
     axes.set_xlabel("variables n")
@@ -108,14 +106,11 @@ def held_figure(held):
         right.plot(some.variables, 100 * some.loss, mark, markersize=5.5, label=scheme, linestyle="none")
     for bound in (1 / WITHIN, WITHIN):
         left.axhline(bound, color=GREY, linewidth=0.9, linestyle="--")
-    left.set_xscale("log")
-    left.set_yscale("log")
     number_axis(left.xaxis)
     number_axis(left.yaxis)
     left.set_xlabel("measured step, µs")
     left.set_ylabel("predicted ÷ measured")
     left.set_title(f"Time of a step; dashed: within {number(WITHIN)} times")
-    right.set_xscale("log")
     number_axis(right.xaxis)
     right.set_xlabel("variables n")
     right.set_ylabel("loss of the choice, %")

@@ -122,7 +122,7 @@ def _alone(data):
     """A row for each number: what is lost on families left out if it alone decides, below a limit one library, above another. [Which
     number decides?]"""
     rows = []
-    for feature in [name for name in ALONE if name in data.features]:
+    for feature in ALONE:
         losses = []
         for family in dict.fromkeys(data.family.values()):
             rest = data.without(family)
@@ -177,16 +177,13 @@ class _Data:
     """Times and losses of the scenes whose features are known, by form."""
 
     def __init__(self, tables, registry):
-        self.registry, known = registry, tables["mechanisms"]
-        names = [name for name in dict.fromkeys((*FEATURES, *ALONE)) if name in known]
-        complete = known[known[[name for name in FEATURES if name in known]].notna().all(axis=1)] if set(FEATURES) <= set(names) else known[:0]
-        self.features = complete.set_index("scene")[names].astype(float) if len(complete) else pandas.DataFrame(columns=names)
-        self.record = dict(zip(complete.scene, complete.record)) if len(complete) else {}
+        self.registry, known = registry, tables["mechanisms"].set_index("scene")
+        complete = known[known[list(FEATURES)].notna().all(axis=1)]
+        self.features, self.record = complete[list(dict.fromkeys((*FEATURES, *ALONE)))].astype(float), complete.record
         self.us, self.losses, self.known_by, self.usual = {}, {}, {}, {}
-        shapes = {row.scene: shape(row.scene) for row in known.sort_values("n").itertuples()} if len(self.features) else {}
-        for scheme, rows in tables["scenes"].groupby("scheme", sort=False) if len(self.features) else ():
-            us = pandas.DataFrame({scene: _times(one, registry.libraries) for scene, one in rows.groupby("scene", sort=False)
-                                   if scene in self.features.index}).T
+        shapes = {scene: shape(scene) for scene in known.sort_values("n").index}
+        for scheme, rows in tables["scenes"][tables["scenes"].scene.isin(complete.index)].groupby("scheme", sort=False):
+            us = pandas.DataFrame({scene: _times(one, registry.libraries) for scene, one in rows.groupby("scene", sort=False)}).T
             best = us[[name for name in registry.libraries if name in us]]
             best = best[best.notna().any(axis=1)]
             self.us[scheme] = us.loc[best.index]
@@ -194,8 +191,7 @@ class _Data:
             self.usual[scheme] = ~(passes > USUAL * self.features.loc[best.index, PASSES[scheme]])
             status = rows.pivot(index="scene", columns="implementation", values="status").reindex(index=best.index, columns=best.columns).fillna("")
             self.losses[scheme], self.known_by[scheme] = _losses(best.div(best.min(axis=1), axis=0).sub(1.0), status, shapes)
-        families = dict(zip(known.scene, known.family)) if len(self.features) else {}
-        self.family = {scene: families[scene] for losses in self.losses.values() for scene in losses.index}
+        self.family = {scene: known.family[scene] for losses in self.losses.values() for scene in losses.index}
 
     @property
     def records(self):

@@ -97,14 +97,7 @@ def _said(rows):
     return int((rows.decided.astype(bool) | rows.settled.astype(bool)).sum())
 
 
-def _led(rows):
-    """{library: scenes on which it is the winner or in the equivalence set}, most first."""
-    counts = {}
-    for row in rows.itertuples():
-        for name in row.equivalent.split():  # the winner among them
-            counts[name] = counts.get(name, 0) + 1
-    return dict(sorted(counts.items(), key=lambda one: (-one[1], one[0])))
-
-
 def _shares(rows):
-    return ", ".join(f"{name} on {count}" for name, count in _led(rows).items())
+    """Libraries with the number of scenes on which each is the winner or in the equivalence set, most first."""
+    counts = rows.equivalent.str.split().explode().value_counts()  # the winner among them
+    return ", ".join(f"{name} on {count}" for name, count in sorted(counts.items(), key=lambda one: (-one[1], one[0])))

@@ -1,19 +1,20 @@
-# Rows of mechanisms, of contenders and of winners, scene by scene and form by form.
+# Rows of mechanisms, of contenders and of winners, scene by scene and form by form; how time grows with size; what each order of
+# elimination leaves to do.
 import pandas
 
 from analysis.core import timing
 from analysis.core.contest import agreed, by_scene, cells_of, contests, grouped, ratio_to, rival_of
-from analysis.core.schema import of_part
+from analysis.core.schema import conform, of_part
+from analysis.core.statistics import power_law_exponent, power_law_interval
 from analysis.families import defaults
-from analysis.families.growth import growth, orderings
 from analysis.families.rule import judged
 
 SCHEMES = ("penalty", "saddle-point")  # the two forms of the step; roles of their records begin with them
-COLUMNS = ("implementation", "status", "reason", "verdict", "processes", "step_us", "low_us", "high_us", "passes", "pass_us", "record")
+LEAST = 3  # sizes, that a power is fitted to
 
 
 def build(records, view):
-    registry, by_role = view.registry, grouped(records)
+    registry, by_role, schema = view.registry, grouped(records), of_part("families")
     order = {name: place for place, name in enumerate(registry.variants)}
     place = {scene: at for at, scene in enumerate(view.settings["scenes"])}
     about = {record.cell["scene"]: record for record in by_role.get("about", []) if record.done}
@@ -25,19 +26,18 @@ def build(records, view):
             known = {"family": family_of(scene), "scene": scene, "scheme": scheme,
                      "variables": about[scene].output.get("variables") if scene in about else None}
             rival = rival_of(rows, cells, registry)
-            scenes += [known | {key: value for key, value in cells[name].items() if key in COLUMNS}
+            scenes += [known | {key: value for key, value in cells[name].items() if key in schema["scenes"]}
                        | {"look_us": looks[scene].get(name, {}).get("step_us")}
                        | ratio_to("to_rival", rows, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
             winners += [known | {"layer": layer} | _winner(rows, cells, names) for layer, names in layers.items()]
-    numbers = of_part("families")["mechanisms"]
     mechanisms = [{"family": family_of(scene), "scene": scene, "dimension": record.output.get("dimension")}
-                  | {name: value for name, value in record.output.get("features", {}).items() if name in numbers} | {"record": record.name}
-                  for scene, record in about.items()]
-    tables = {name: pandas.DataFrame(sorted(rows, key=lambda row: place.get(row["scene"], len(place))))
+                  | {name: value for name, value in record.output.get("features", {}).items() if name in schema["mechanisms"]}
+                  | {"record": record.name} for scene, record in about.items()]
+    tables = {name: conform(pandas.DataFrame(sorted(rows, key=lambda row: place.get(row["scene"], len(place)))), schema[name], f"families/{name}.csv")
               for name, rows in (("mechanisms", mechanisms), ("scenes", scenes), ("winners", winners))}
-    fills, first = {row["scene"]: row.get("fill") for row in mechanisms}, SCHEMES[0]
-    filled = [row | {"fill": fills[row["scene"]]} for row in scenes if row["scheme"] == first and fills.get(row["scene"]) is not None]
-    return tables | {"defaults": defaults.table(filled, [row for row in winners if row["scheme"] == first and fills.get(row["scene"]) is not None]), "growth": growth(tables["scenes"], tables["mechanisms"]) if len(scenes) else pandas.DataFrame(),
+    fills = tables["mechanisms"][["scene", "fill"]].dropna()
+    first = {name: tables[name][tables[name].scheme == SCHEMES[0]].merge(fills, on="scene").to_dict("records") for name in ("scenes", "winners")}
+    return tables | {"defaults": defaults.table(first["scenes"], first["winners"]), "growth": growth(tables["scenes"], tables["mechanisms"]),
                      "orderings": orderings(about)} | judged(tables, registry)
 
 
@@ -59,3 +59,31 @@ def _winner(rows, cells, names):
             "margin": found.margin.value, "low": found.margin.low, "high": found.margin.high, "decided": found.decided,
             "settled": found.settled, "equivalent": " ".join(found.equivalent),
             "record": " ".join(dict.fromkeys(cells[name]["record"] for name in both))}
+
+
+def growth(scenes, mechanisms):
+    """A row for each family, form and implementation with at least LEAST sizes: t ~ n^a, t ~ flops^b."""
+    known = mechanisms.set_index("scene")
+    timed = scenes[scenes.status.isin(["ok", "slower"]) & scenes.step_us.notna() & ~scenes.family.str.contains("filled")]
+    rows = []
+    for (family, scheme, name), group in timed.groupby(["family", "scheme", "implementation"], sort=False):
+        group = group[group.scene.isin(known.index)]
+        sizes = known.loc[group.scene, ["n", "flops"]].astype(float)
+        if sizes.n.nunique() < LEAST:
+            continue
+        exponent, low, high = power_law_interval(sizes.n.to_numpy(), group.step_us.to_numpy())
+        rows.append({"family": family, "scheme": scheme, "implementation": name, "sizes": len(group),
+                     "least": sizes.n.min(), "most": sizes.n.max(), "exponent": exponent, "low": low, "high": high,
+                     "per_flop": power_law_exponent(sizes.flops.to_numpy(), group.step_us.to_numpy()),
+                     "record": " ".join(dict.fromkeys(group.record))})
+    return pandas.DataFrame(rows)
+
+
+def orderings(about):
+    """A row for each scene and order of elimination, as `mbs describe` computes them."""
+    return pandas.DataFrame([
+        {"scene": scene, "n": record.output.get("variables"), "ordering": name, "factor": one["factor_nonzeros"],
+         "per_column": one["factor_nonzeros"] / record.output["variables"], "flops": one["flops"], "height": one["height"],
+         "record": record.name}
+        for scene, record in about.items()
+        for name, one in (record.output.get("elimination") or {}).get("orderings", {}).items() if one])

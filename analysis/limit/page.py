@@ -1,5 +1,5 @@
 # What page.html.j2 shows of the limit.
-from analysis.core.rows import grouped
+from analysis.core.text import grouped
 from analysis.core.timing import PHASES
 from analysis.limit.tables import KINDS, NODES
 

@@ -1,12 +1,10 @@
 # Claims about solvers at the mechanism's own fill: F4, C1, C4.
 from analysis.core.text import number
 from analysis.map import paper
-from analysis.map.compare import best, over_sizes, versus
-from analysis.map.explain import difference
+from analysis.map.compare import COVERED, difference, over_sizes, versus
 from analysis.map.ledger import INCOMPARABLE, UNDECIDED, Rule, at_least, compared, factor, judged, of, row, unmeasured
 
 FIGURE4 = 160        # variables; the last of Figure 4
-COVERED = 82         # variables that a run has to reach to speak of Figure 4
 CHOLMOD_OF_KLU = 85  # %, of KLU's speed
 SPEED_BAND = 10      # points around it that still confirm it
 PIVOTING = 1.5       # times the cost of refactor
@@ -24,34 +22,27 @@ def solvers(results):
             _behind(results, "SuperLU", superlu, "WSMP", wsmp)]
 
 
-def _covering(results, slow, fast, high=FIGURE4):
-    """[Versus] by size, if they reach COVERED variables."""
-    found = over_sizes(results, slow, fast, 0, high)
-    return found if found and found[-1].size >= COVERED else []
-
-
 def _needed(pair):
     return f"{pair} were not both timed at {COVERED} to {FIGURE4} variables."
 
 
 def _fastest(results, klu, others, low, high):
     span = f"to {high} variables" if low == 0 else f"from {low} to {high} variables"
-    head = "F4", f"KLU with refactor is the fastest sparse solver, {span}", "fastest"
-    found = [one for one in _covering(results, others, klu, high) if one.size >= low]
-    if not found:
-        return unmeasured(head, f"KLU and another of the paper's solvers were not both timed at {max(low, COVERED)} variables or more.",
-                          at_least(1))
-    worst = min(found, key=lambda one: one.value)
-    today = results.rank(results.natural(worst.size), paper.sparse(results, others=True))
-    return compared(head, found, at_least(1),
-                    f"Second ÷ KLU, least at n = {worst.size:g}: {difference(results, worst.slow, worst.fast, worst.size)} Of all sparse "
-                    f"solvers of libraries {today.winner} has the least time there, {'decided' if today.decided else 'not decided'}.")
+    found = over_sizes(results, others, klu, low, high, COVERED)
+
+    def why(_):
+        worst = min(found, key=lambda one: one.value)
+        today = results.rank(results.natural(worst.size), paper.sparse(results, others=True))
+        return (f"Second ÷ KLU, least at n = {worst.size:g}: {difference(results, worst.slow, worst.fast, worst.size)} Of all sparse "
+                f"solvers of libraries {today.winner} has the least time there, {'decided' if today.decided else 'not decided'}.")
+    return compared(("F4", f"KLU with refactor is the fastest sparse solver, {span}", "fastest"), found, at_least(1), why,
+                    f"KLU and another of the paper's solvers were not both timed at {max(low, COVERED)} variables or more.")
 
 
 def _share_of_speed(results, klu, cholmod):
     head = "F4", f"CHOLMOD performs at {CHOLMOD_OF_KLU} % of KLU", f"{CHOLMOD_OF_KLU} %"
     rule = Rule(CHOLMOD_OF_KLU - SPEED_BAND, CHOLMOD_OF_KLU + SPEED_BAND)
-    found = _covering(results, klu, cholmod)
+    found = over_sizes(results, klu, cholmod, high=FIGURE4, reaching=COVERED)
     if not found:
         return unmeasured(head, _needed("KLU and CHOLMOD"), rule, " %")
     last = found[-1]
@@ -66,27 +57,22 @@ def _behind(results, slow_system, slow, fast_system, fast):
     both = sorted(set(slow) & set(fast))
     if any(results.fastest(results.natural(size), slow) in both for size in results.sizes if size <= FIGURE4):
         return row(head, INCOMPARABLE, f"{', '.join(both)} stands for both, and is {slow_system}'s fastest stand-in.", at_least(1).text("×"))
-    found = _covering(results, slow, fast)
-    if not found:
-        return unmeasured(head, _needed(f"{slow_system}'s and {fast_system}'s stand-ins"), at_least(1))
-    last = found[-1]
-    return compared(head, found, at_least(1), difference(results, last.slow, last.fast, last.size))
+    return compared(head, over_sizes(results, slow, fast, high=FIGURE4, reaching=COVERED), at_least(1),
+                    lambda last: difference(results, last.slow, last.fast, last.size), _needed(f"{slow_system}'s and {fast_system}'s stand-ins"))
 
 
 def pivoting(results):
     """C1. Rules: full pivoting ÷ refactor within the band around PIVOTING at every size; position error of refactor ÷ that
     of full pivoting at least ERROR_GROWS in some scene, or refactor alone fails."""
     klu, full = paper.SYSTEMS["KLU"][0], paper.FULL_PIVOTING
-    found = _covering(results, [full], [klu], float("inf"))
-    head = "C1", "KLU with full pivoting costs 50 % more than with refactor", f"{PIVOTING}×"
-    if not found:
-        first = unmeasured(head, f"{full} and {klu} were not both timed at {COVERED} variables or more.", factor(PIVOTING))
-    else:
-        last = found[-1]
+
+    def why(last):
         guarded = versus(results, results.natural(last.size), paper.GUARDED, klu)
         price = f" Pivoting only when needed ({paper.GUARDED}) costs {number(guarded.value)}×." if guarded else ""
-        first = compared(head, found, factor(PIVOTING), f"{difference(results, last.slow, last.fast, last.size)}{price}")
-    return [first, _stale_pivots(results, klu, full)]
+        return f"{difference(results, last.slow, last.fast, last.size)}{price}"
+    return [compared(("C1", "KLU with full pivoting costs 50 % more than with refactor", f"{PIVOTING}×"),
+                     over_sizes(results, [full], [klu], reaching=COVERED), factor(PIVOTING), why,
+                     f"{full} and {klu} were not both timed at {COVERED} variables or more."), _stale_pivots(results, klu, full)]
 
 
 def _stale_pivots(results, klu, full):
@@ -116,12 +102,7 @@ def _stale_pivots(results, klu, full):
 
 def sparse_against_dense(results):
     """C4. Rule: best dense, on any pair, ÷ best sparse within the band around the paper's factor."""
-    rows = []
-    for size, quoted in C4_SIZES.items():
-        head = "C4", f"sparse beats dense {quoted} times at {size} variables", f"{quoted}×"
-        found = best(results, results.natural(size), paper.dense(results), paper.sparse(results))
-        rows.append(unmeasured(head, f"Dense and sparse versions were not both timed at n = {size}.", factor(quoted))
-                    if found is None else
-                    compared(head, found, factor(quoted), f"{difference(results, found.slow, found.fast, size)} Dense on: "
-                             f"{paper.dense_pairs(results)}."))
-    return rows
+    return [compared(("C4", f"sparse beats dense {quoted} times at {size} variables", f"{quoted}×"),
+                     over_sizes(results, paper.dense(results), paper.sparse(results), size, size), factor(quoted),
+                     lambda found: f"{difference(results, found.slow, found.fast, found.size)} Dense on: {paper.dense_pairs(results)}.",
+                     f"Dense and sparse versions were not both timed at n = {size}.") for size, quoted in C4_SIZES.items()]

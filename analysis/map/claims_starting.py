@@ -4,8 +4,7 @@ import numpy
 from analysis.core.statistics import phase_shares, power_law_exponent
 from analysis.core.text import interval, number
 from analysis.map import paper
-from analysis.map.compare import best, group_shares, profiled, share_interval
-from analysis.map.explain import difference, split
+from analysis.map.compare import difference, group_shares, over_sizes, profiled, share_interval, split
 from analysis.map.ledger import Rule, compared, factor, judged, unmeasured
 from analysis.map.operations import not_optimised, table as table2
 from analysis.map.tidy import PHASES
@@ -112,12 +111,8 @@ def _variants(rows):
 
 def starting_sparse(results):
     """C2. Rule: starting ÷ best optimised sparse within the band around the paper's factor."""
-    rows = []
-    for size, quoted in C2_SIZES.items():
-        head = "C2", f"the best sparse version beats the starting one {quoted} times ({size} variables)", f"{quoted}×"
-        found = best(results, results.natural(size), [paper.STARTING["sparse"]], paper.sparse(results))
-        rows.append(unmeasured(head, f"n = {size} lacks samples of {paper.STARTING['sparse']} or of an optimised one.",
-                             factor(quoted)) if found is None else
-                    compared(head, found, factor(quoted), f"{difference(results, found.slow, found.fast, size)} "
-                             "MUMPS stands for MA27: what it costs a call, whatever the size, is its own."))
-    return rows
+    return [compared(("C2", f"the best sparse version beats the starting one {quoted} times ({size} variables)", f"{quoted}×"),
+                     over_sizes(results, [paper.STARTING["sparse"]], paper.sparse(results), size, size), factor(quoted),
+                     lambda found: f"{difference(results, found.slow, found.fast, found.size)} MUMPS stands for MA27: what it costs a call, "
+                                   "whatever the size, is its own.",
+                     f"n = {size} lacks samples of {paper.STARTING['sparse']} or of an optimised one.") for size, quoted in C2_SIZES.items()]

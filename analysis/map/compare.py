@@ -1,10 +1,14 @@
-# Comparisons within a scene that figures and claims share, and what can be read off a series of them.
+# Comparisons within a scene that figures and claims share, and sentences that say where the time of a step goes.
 from dataclasses import dataclass
 
 import numpy
 
 from analysis.core.statistics import phase_shares
+from analysis.core.text import number
+from analysis.map.results import with_samples
 from analysis.map.tidy import PHASES
+
+COVERED = 82  # variables that a run has to reach to speak of the paper's figures of 10 to 160
 
 
 @dataclass(frozen=True)
@@ -36,17 +40,18 @@ def best(results, scene, slow, fast):
     return versus(results, scene, results.fastest(scene, slow), results.fastest(scene, fast))
 
 
-def over_sizes(results, slow, fast, low=0, high=float("inf")):
-    """[Versus] of the best of two groups at natural fill, by size."""
+def over_sizes(results, slow, fast, low=0, high=float("inf"), reaching=0):
+    """[Versus] of the best of two groups at natural fill, by size; none if they do not reach so many variables."""
     found = [best(results, results.natural(size), slow, fast) for size in results.sizes if low <= size <= high]
-    return [one for one in found if one]
+    found = [one for one in found if one]
+    return found if found and found[-1].size >= reaching else []
 
 
 def operations(results, operation):
     """Rows of an operation of Table 2 that was timed; `step_us` is the time of a call here."""
     tidy = results.tidy
     rows = tidy[(tidy.kind == "operations") & (tidy.status == "ok") & (tidy.operation == operation)]
-    return rows.assign(step_us=rows.operation_us, samples=[tuple(map(float, text.split())) for text in rows.samples_us])
+    return with_samples(rows).assign(step_us=rows.operation_us)
 
 
 def profiled(results, name=None, size=None):
@@ -80,19 +85,34 @@ def step_us(results, name, size):
     return results.medians(results.natural(size)).get(name, numpy.nan)
 
 
-def crossing(places, values):
-    """Where `values` (ratios) first fall below 1, log values interpolated over `places`; -inf if they are below from
-    the start, inf if nowhere."""
-    with numpy.errstate(divide="ignore"):  # of a single process an interval reaches from 0 to infinity
-        logs = numpy.log(values)
-    if logs[0] < 0:
-        return -numpy.inf
-    for left, right, before, after in zip(places, places[1:], logs, logs[1:]):
-        if after < 0:
-            return left + (right - left) * before / (before - after)
-    return numpy.inf
+def phase_times(results, name, size):
+    """{phase: µs a step}: shares of the profiled processes times the median of the timed ones; empty if one of them is
+    missing."""
+    rows, total = profiled(results, name, size), step_us(results, name, size)
+    if not len(rows) or total != total:
+        return {}
+    return {phase: share * total for phase, share in phase_shares(rows, PHASES).items()}
 
 
-def crossing_interval(places, ratios):
-    """(crossing, low, high) of a series of ratios: between low and high their intervals, interpolated, include 1."""
-    return tuple(crossing(places, [getattr(ratio, bound) for ratio in ratios]) for bound in ("value", "low", "high"))
+def split(results, name, size):
+    """"X takes 14.2 µs a step at n = 22, of which assembly 45 %, factorization 30 %, ..."."""
+    times, total = phase_times(results, name, size), step_us(results, name, size)
+    text = f"{name} takes {number(total)} µs a step at n = {size:g}"
+    if not times:
+        return f"{text} (not profiled at this size)."
+    largest = sorted(times, key=times.get, reverse=True)[:3]
+    return f"{text}, of which " + ", ".join(f"{phase} {100 * times[phase] / total:.0f} %" for phase in largest) + "."
+
+
+def difference(results, slow, fast, size):
+    """Which two phases make up most of the difference between two contenders."""
+    slow_us, fast_us = (step_us(results, name, size) for name in (slow, fast))
+    text = f"{slow} {number(slow_us)} µs a step at n = {size:g}, {fast} {number(fast_us)} µs"
+    before, after = (phase_times(results, name, size) for name in (slow, fast))
+    if not before or not after:
+        return f"{text} (phases not profiled for both at this size)."
+    apart = {phase: before[phase] - after[phase] for phase in PHASES}
+    sign = 1 if slow_us >= fast_us else -1
+    largest = sorted(PHASES, key=lambda phase: -sign * apart[phase])[:2]
+    parts = " and ".join(f"{phase} ({number(before[phase])} against {number(after[phase])} µs)" for phase in largest)
+    return f"{text}; most of the difference lies in {parts}."

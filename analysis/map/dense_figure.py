@@ -1,12 +1,10 @@
 # Figure 2: dense implementations on every BLAS + LAPACK pair against the starting dense version.
 import matplotlib.pyplot as plt
 
-from analysis.core.style import GREY, legend, missing, number_axis
+from analysis.core.style import legend, missing, number_axis
 from analysis.map import paper
 from analysis.map.compare import versus
-from analysis.map.marks import footnote
-
-DODGE = 0.6
+from analysis.map.marks import footnote, side_by_side
 
 
 def series(results):
@@ -28,20 +26,11 @@ def draw(results, look):
     if not found:
         missing(axes, f"{paper.STARTING['dense']} and another dense version were not both timed")
         return figure
-    for name, mine in found.items():
-        shift = DODGE * ((list(found).index(name) + 0.5) / len(found) - 0.5)
-        places = [sizes.index(size) + shift for size in mine]
-        style = look.line(name) | {"linestyle": "none", "markersize": 6.5}
-        axes.plot(places, [one.value for one in mine.values()], label=_label(results, name), **style)
-        axes.vlines(places, [one.low for one in mine.values()], [one.high for one in mine.values()], color=style["color"],
-                    linewidth=2.5, alpha=0.5)
-    axes.axhline(1, color=GREY, linewidth=0.8)
-    axes.set(yscale="log", xlim=(-0.5, len(sizes) - 0.5), xlabel="variables n, own fill",
-             ylabel=f"times as fast as {paper.STARTING['dense']}")
-    axes.set_xticks(range(len(sizes)), [f"{size:g}" for size in sizes])
+    labels = {name: _label(results, name) for name in found}
+    side_by_side(axes, found, sizes, look, labels.get)
+    axes.set_ylabel(f"times as fast as {paper.STARTING['dense']}")
     number_axis(axes.yaxis, "×")
-    axes.grid(True, axis="y", which="major")
-    legend(axes, order=[_label(results, name) for name in found].index)
+    legend(axes, order=list(labels.values()).index)
     tried = {results.usual(name) for name in results.tidy.implementation.unique()}
     gone = [f"{name}: {reason}" for name, reason in results.registry.pairs.items() if reason]
     notes = ["bars: 95 % interval over processes"]

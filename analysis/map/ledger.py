@@ -87,11 +87,13 @@ def places(names):
     return f"{heads.pop()}= {', '.join(short)}" if len(heads) == 1 and all(short) else ", ".join(names)
 
 
-def compared(head, found, rule, why):
-    """A row of one compare.Versus or of several, at different sizes."""
-    found = found if isinstance(found, list) else [found]
+def compared(head, found, rule, why, lacking=""):
+    """A row of compare.Versus of several sizes. `why`: a sentence, or what makes one of the last; without any the row says what is
+    `lacking`."""
+    if not found:
+        return unmeasured(head, lacking, rule)
     return judged(head, [(f"n = {one.size:g}", of(one), one.record) for one in found], rule,
-                  ", ".join(dict.fromkeys(f"{one.slow} ÷ {one.fast}" for one in found)), why)
+                  ", ".join(dict.fromkeys(f"{one.slow} ÷ {one.fast}" for one in found)), why(found[-1]) if callable(why) else why)
 
 
 def row(head, found, reason, rule="", why=""):

@@ -1,17 +1,22 @@
 # Maps of the fastest over size and fill: the paper's Figures 6 and 7, for libraries and for all.
+from itertools import groupby
+
 import matplotlib.patheffects as effects
 import matplotlib.pyplot as plt
+import numpy
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
-from analysis.core.style import missing
+from analysis.core.style import GREY, missing
 from analysis.map import paper
 from analysis.map.cells import map_cells
-from analysis.map.compare import best, crossing_interval
-from analysis.map.grid import EDGE, columns, draw_grid, handles
+from analysis.map.compare import best
 
 LINE = "#111111"
 OPAQUE, PALE = 0.85, 0.4
+BAND = (-19.0, -3.0)  # where cells of own fill stand, in % of the axis above
+NOTHING = {"facecolor": "white", "edgecolor": "#c4c4c4", "hatch": "...", "linewidth": 0}
+EDGE = {"edgecolor": "white", "linewidth": 1.0}
 
 
 def draw(results, look, title, names, smallest=0, largest=float("inf")):
@@ -23,11 +28,56 @@ def draw(results, look, title, names, smallest=0, largest=float("inf")):
     if not any(cell.ranking for cell in cells):
         missing(axes, "nobody of these was timed")
         return figure
-    draw_grid(axes, cells, lambda axes, x, y, height, cell: _cell(axes, x, y, height, cell, look))
     found = crossings(results, cells)
-    _line(axes, found, list(columns(cells)))
+    for place, (size, mine) in enumerate(columns(cells).items()):
+        _column(axes, place - 0.5, mine, look)
+        if size in found:
+            fill, low, high = found[size]
+            axes.fill_between([place - 0.5, place + 0.5], low, high, color=LINE, alpha=0.12, linewidth=0, zorder=3)
+            axes.plot([place - 0.5, place + 0.5], [fill, fill], color=LINE, linewidth=1.6, zorder=4,
+                      path_effects=[effects.withStroke(linewidth=3, foreground="white")])
+    axes.axhline(0, color="#444444", linewidth=0.8)
+    axes.set(xlim=(-0.5, count - 0.5), ylim=(BAND[0], 100))
+    axes.set_yticks([sum(BAND) / 2, 0, 20, 40, 60, 80, 100], ["own\nfill", "0", "20", "40", "60", "80", "100"])
+    axes.set_xticks(range(count), [f"{one:g}" for one in columns(cells)])
+    axes.tick_params(axis="x", length=0, labelsize=9.0)
+    axes.tick_params(axis="y", labelsize=9.0)
+    axes.spines["bottom"].set_visible(False)
+    axes.set_xlabel("variables n", fontsize=9.5)
+    axes.set_ylabel("non-zeros of the tangent, % of n²", fontsize=9.5)
     _legend(axes, cells, look, names, found, paper.dense_pairs(results))
     return figure
+
+
+def columns(cells):
+    """{size: its cells by ascending fill}."""
+    return {size: list(mine) for size, mine in groupby(cells, key=lambda cell: cell.variables)}
+
+
+def bounds(fills, own):
+    """Lower edge of each cell of artificial fill and the last one's upper edge, %: neighbours meet half-way, the first
+    begins half-way to the own fill, the last ends half the last gap above. Nothing is claimed of fills beyond."""
+    if not fills:
+        return []
+    places = [own, *fills] if own is not None else fills
+    edges = [(low + high) / 2 for low, high in zip(places, places[1:])]
+    gap = places[-1] - places[-2] if len(places) > 1 else 0.0
+    return [*(edges if own is not None else [fills[0], *edges]), min(100.0, fills[-1] + gap / 2)]
+
+
+def _column(axes, left, cells, look):
+    """The cells of a size, and what was not measured."""
+    natural = [cell for cell in cells if cell.fill_asked is None]
+    filled = [cell for cell in cells if cell.fill_asked is not None]
+    own = natural[0].fill_percent if natural else None
+    edges = bounds([cell.fill_percent for cell in filled], own)
+    axes.add_patch(Rectangle((left, 0), 1, 100, **NOTHING))
+    if own is not None:  # below the own fill there is no tangent of this mechanism
+        axes.add_patch(Rectangle((left, 0), 1, own, facecolor="white", linewidth=0))
+        axes.plot([left, left + 1], [own, own], color=GREY, linewidth=1.2, zorder=5)
+        _cell(axes, left, BAND[0], BAND[1] - BAND[0], natural[0], look)
+    for cell, low, high in zip(filled, edges, edges[1:]):
+        _cell(axes, left, low, high - low, cell, look)
 
 
 def _cell(axes, x, y, height, cell, look):
@@ -76,18 +126,23 @@ def crossings(results, cells):
         known = [(cell.fill_percent, ratio) for cell, ratio in zip(mine, ratios) if ratio]
         if len(known) > 1:
             fills = [fill for fill, _ in known]
-            fill, low, high = crossing_interval(fills, [ratio for _, ratio in known])
+            fill, low, high = (crossing(fills, [getattr(ratio, end) for _, ratio in known]) for end in ("value", "low", "high"))
             if fills[0] < fill < fills[-1]:
                 found[size] = (fill, max(low, fills[0]), min(high, fills[-1]))
     return found
 
 
-def _line(axes, found, sizes):
-    for size, (fill, low, high) in found.items():
-        place = sizes.index(size)
-        axes.fill_between([place - 0.5, place + 0.5], low, high, color=LINE, alpha=0.12, linewidth=0, zorder=3)
-        axes.plot([place - 0.5, place + 0.5], [fill, fill], color=LINE, linewidth=1.6, zorder=4,
-                  path_effects=[effects.withStroke(linewidth=3, foreground="white")])
+def crossing(places, values):
+    """Where `values` (ratios) first fall below 1, log values interpolated over `places`; -inf if they are below from
+    the start, inf if nowhere."""
+    with numpy.errstate(divide="ignore"):  # of a single process an interval reaches from 0 to infinity
+        logs = numpy.log(values)
+    if logs[0] < 0:
+        return -numpy.inf
+    for left, right, before, after in zip(places, places[1:], logs, logs[1:]):
+        if after < 0:
+            return left + (right - left) * before / (before - after)
+    return numpy.inf
 
 
 def _legend(axes, cells, look, names, crossed, pairs):
@@ -99,7 +154,7 @@ def _legend(axes, cells, look, names, crossed, pairs):
         word.format(count) for word, count in zip(words, wins[name]) if count)) for name in names if any(wins[name])]
     shown += [Patch(facecolor="#dddddd", edgecolor="#555555", hatch="////", linewidth=0,
                     label="open: two of those that may be the fastest")]
-    shown += handles()
+    shown += [Patch(**NOTHING, label="not measured"), Patch(facecolor="white", edgecolor=GREY, label="white: below the own fill (line)")]
     if crossed:
         shown.append(Line2D([], [], color=LINE, linewidth=1.6, label=f"best of the paper's dense kind (on {pairs})\novertakes best sparse library; 95 % band"))
     shown += [Patch(facecolor="none", label=text) for text in ("1.32×: the second behind the winner", "= 2 more: as fast, within 5 %",

@@ -1,34 +1,22 @@
-# How figures show what has no time: rough pilots hollow, failures as crosses at the top. The page has the reasons.
-import numpy
+# What figures of ratios over sizes share.
+from analysis.core.text import bounded
 
-TOP = 0.985  # share of the axes' height at which the first row of crosses stands
-NOTE = "hollow: excluded, rough time of the pilot; crosses: failed (reasons: table of failures)"
-
-
-def lost(rows):
-    """One row a scene and contender of what was not timed, in their order."""
-    found = rows[~rows.status.isin(["ok", "dropped"])]
-    timed = rows[rows.status == "ok"].set_index(["scene", "implementation"]).index
-    found = found[~found.set_index(["scene", "implementation"]).index.isin(timed)]
-    return found.drop_duplicates(["scene", "implementation"])
+DODGE = 0.6  # width over which the contenders of a size are spread
 
 
-def draw_lost(axes, cells, line, x, scale=None):
-    """`line(name)`: keywords of the series; `scale(row)`: what a time is divided by (None: not drawn)."""
-    crosses = []
-    for row in cells[cells[x].notna()].itertuples():
-        divisor = 1.0 if scale is None else scale(row)
-        if row.status not in ("excluded", "slower") or not row.pilot_us > 0:
-            crosses.append(row)
-        elif divisor and numpy.isfinite(getattr(row, x)):
-            axes.plot(getattr(row, x), row.pilot_us / divisor, linestyle="none", marker=line(row.implementation)["marker"],
-                      markersize=6, label="_", markerfacecolor="none", markeredgecolor=line(row.implementation)["color"],
-                      markeredgewidth=1.1)
-    places = {name: place for place, name in enumerate(dict.fromkeys(row.implementation for row in crosses))}
-    for row in crosses:
-        axes.plot(getattr(row, x), TOP - 0.035 * places[row.implementation], linestyle="none", marker="x", markersize=6,
-                  markeredgewidth=1.8, color=line(row.implementation)["color"], label="_",
-                  transform=axes.get_xaxis_transform(), clip_on=False)
+def side_by_side(axes, found, sizes, look, label=str):
+    """Marks and intervals of {name: {size: Versus, or None of the one that all are compared with}}, at their places among `sizes`."""
+    for number, (name, series) in enumerate(found.items()):
+        shift = DODGE * ((number + 0.5) / len(found) - 0.5)
+        places = [sizes.index(size) + shift for size in series]
+        known = [(place, one) for place, one in zip(places, series.values()) if one and bounded(one.low, one.high)]
+        axes.plot(places, [one.value if one else 1.0 for one in series.values()], label=label(name), **look.line(name) | {"linestyle": "none"})
+        axes.vlines([place for place, _ in known], [one.low for _, one in known], [one.high for _, one in known],
+                    color=look.colour(name), linewidth=2.2, alpha=0.6)
+    axes.axhline(1, color="#444444", linewidth=0.8)
+    axes.set(xlabel="variables n, own fill", xlim=(-0.5, len(sizes) - 0.5))
+    axes.set_xticks(range(len(sizes)), [f"{size:g}" for size in sizes])
+    axes.grid(True, axis="y", which="major")
 
 
 def footnote(figure, lines, y):

@@ -1,5 +1,5 @@
 # What figures, claims and pages ask the tables of a set: who was timed, ratios and rankings of a scene.
-from functools import cached_property
+from functools import cache, cached_property
 
 from analysis.core import timing
 from analysis.core.registry import NULL
@@ -27,7 +27,6 @@ class Results:
     def __init__(self, tables, view):
         self.tidy, self.verification, self.view = tables["tidy"], tables["verification"], view
         self.registry, self.variants = view.registry, view.registry.variants
-        self._timed, self._ranked, self._ratios = {}, {}, {}
 
     @cached_property
     def implementations(self):
@@ -48,11 +47,10 @@ class Results:
         """All timing rows of a scene, whatever their status."""
         return self._scenes.get(scene, self.timing[:0])
 
+    @cache
     def _paired(self, scene):
         """What statistics need of a scene's rows: wide tables are slow to walk through."""
-        if scene not in self._timed:
-            self._timed[scene] = timed.Scene(self.rows(scene))
-        return self._timed[scene]
+        return timed.Scene(self.rows(scene))
 
     @cached_property
     def _statuses(self):
@@ -84,33 +82,26 @@ class Results:
         return rows[(rows.status == "ok") & (rows.folder + "/" + rows.variant == variant) & rows.fill_asked.isna() &
                     ~rows.implementation.str.endswith(timing.TWIN)]
 
-    def builds(self, variant):
-        """Rows of `variant` in several builds. Their processes alternate: those of one number belong together."""
-        rows = self.tidy[(self.tidy.kind == "builds") & (self.tidy.status == "ok")]
-        rows = rows[rows.folder + "/" + rows.variant == variant]
-        return timing.apart(rows)
-
     def usual(self, variant):
         """The pair that a variant is ranked on."""
         return next(iter(self.tidy.blas[self.tidy.implementation == variant]), "")
 
     def rank(self, scene, names):
-        key = scene, frozenset(names)
-        if key not in self._ranked:
-            self._ranked[key] = self._paired(scene).rank(set(names) - {NULL})
-        return self._ranked[key]
+        return self._rank(scene, frozenset(names) - {NULL})
+
+    @cache
+    def _rank(self, scene, names):
+        return self._paired(scene).rank(names)
 
     def fastest(self, scene, names):
         """The one of least time; None if nobody was timed."""
         found = self.rank(scene, names)
         return found.winner if found else None
 
+    @cache
     def ratio(self, scene, slow, fast):
         """Time of `slow` over that of `fast`; None if they cannot be compared."""
-        key = scene, slow, fast
-        if key not in self._ratios:
-            self._ratios[key] = self._paired(scene).ratio(slow, fast)
-        found = self._ratios[key]
+        found = self._paired(scene).ratio(slow, fast)
         return None if found.value != found.value else found
 
     def medians(self, scene):

@@ -1,8 +1,9 @@
 # What a reader should choose: the fastest library by size, dense or sparse by fill, the price of one choice.
+import numpy
+
 from analysis.map import paper
 from analysis.map.cells import map_cells
 from analysis.map.compare import best
-from analysis.map.regret import regrets
 
 
 def by_size(results, names):
@@ -60,12 +61,22 @@ def dense_from(results):
 
 
 def prices(results, names):
-    """The price of always using one: [{"implementation", "mean", "worst", "where", "cells", "of", "rough", "failed"}]."""
-    cells = map_cells(results, names)
-    count = sum(bool(cell.ranking) for cell in cells)
-    return [{"implementation": one.name, "mean": one.mean, "worst": one.worst, "where": one.where, "cells": len(one.ratios),
-             "rough": len(one.rough), "failed": len(one.failed), "of": count}
-            for one in regrets(results, cells, names) if one.ratios]
+    """The price of always using one: [{"implementation", "mean", "worst", "where", "cells", "of", "rough", "failed"}] of times over the
+    best of each cell, the lowest geometric mean first; after all others those that fail in some cell or lack a ratio in one, as
+    nobody can always use them."""
+    rows, cells = [], [cell for cell in map_cells(results, names) if cell.ranking]
+    pilots = {cell.scene: results.rows(cell.scene).groupby("implementation").pilot_us.first() for cell in cells}
+    for name in names:
+        ratios = {cell.scene: cell.ranking.ratios[name].value for cell in cells if name in cell.ranking.ratios}
+        failed = [cell.scene for cell in cells if name in cell.failed and cell.scene not in ratios]
+        rough = {cell.scene: pilots[cell.scene].get(name) / pilots[cell.scene].get(cell.ranking.winner) for cell in cells
+                 if cell.scene not in (*ratios, *failed) and pilots[cell.scene].reindex([name, cell.ranking.winner]).notna().all()}
+        known = ratios | rough
+        if known:
+            where = max(known, key=known.get)
+            rows.append({"implementation": name, "mean": float(numpy.exp(numpy.mean(numpy.log(list(known.values()))))), "worst": known[where],
+                         "where": where, "cells": len(known), "of": len(cells), "rough": len(rough), "failed": len(failed)})
+    return sorted(rows, key=lambda row: (row["failed"] > 0, -row["cells"], row["mean"]))
 
 
 def settled(table, layer):

@@ -19,7 +19,7 @@ def tidy(records):
     rows = [_common(row, "timing") for row in timed_rows(records).to_dict("records")]
     skipped = processes([one for one in records if one.role in SKIPPED]).to_dict("records")
     rows += [_common(row | {"process": None}, "timing") for row in [*lost, *_rejected(records), *skipped]]
-    rows += [_common(row, kind) for kind in ("builds", "phases", "seeds")
+    rows += [_common(row, kind) for kind in ("phases", "seeds")
              for row in processes([one for one in records if one.role == kind]).to_dict("records")]
     rows += [row for one in records if one.role == "operations" for row in _operations(one)]
     timed = {(row["scene"], row["implementation"]) for row in rows if row["status"] == "ok" and row["kind"] == "timing"}

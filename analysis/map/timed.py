@@ -60,9 +60,7 @@ def _numbered(record):
 def differing(rows):
     """{name: reason} of one scene: the passes over its stretch must be equal. The most common number among ranked
     contenders (others are copies of one code) stands; without one nobody can be trusted."""
-    totals = {}
-    for row in rows[(rows.status == "ok") & (rows.implementation != NULL)].itertuples():
-        totals.setdefault(row.implementation, set()).add(row.passes)
+    totals = rows[(rows.status == "ok") & (rows.implementation != NULL)].groupby("implementation", sort=False).passes.agg(set).to_dict()
     votes = Counter(min(values) for name, values in totals.items() if len(values) == 1 and "+" not in name)
     ranked = votes.most_common(2)
     tie = bool(totals) and (not ranked or len(ranked) > 1 and ranked[0][1] == ranked[1][1])

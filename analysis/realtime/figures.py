@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy
 
 from analysis.core.outcomes import FINISHED
-from analysis.core.style import GREY, nothing, number_axis
+from analysis.core.style import GREY, line_each, nothing, number_axis
 
 FORMS = {"penalty": ("#0072B2", "o", -0.17), "saddle-point": ("#D55E00", "s", 0.17)}  # colour, marker, place in a line
 LEFT = 0.7  # of the axis of sizes
@@ -66,9 +66,7 @@ def _panel(axes, rows, names):
         axes.plot([row.p99_us, row.p999_us], [y, y], "|", color=colour, markersize=8)
         axes.plot(row.max_us, y, "x", color=colour, markersize=4.5)
     axes.set_xscale("log")
-    axes.set_yticks(range(len(names)), names)
-    axes.set_ylim(len(names) - 0.4, -0.6)
-    axes.grid(axis="x")
+    line_each(axes, names)
 
 
 def sizes(table):
@@ -83,15 +81,12 @@ def sizes(table):
     for axes, step in zip(panels[0], steps):
         for row in table[table.step == step].itertuples():
             _search(axes, row, names.index(row.implementation), len(shown) > 1)
-        axes.set_xscale("log")
         known = [size for size in (*table.largest.dropna(), *table.next.dropna()) if size > 0]
         axes.set_xlim(LEFT if (table.largest == 0).any() else 0.6 * min(known, default=1), 1.6 * max(known, default=1))
         number_axis(axes.xaxis)
         axes.set_title(f"step and deadline {1e3 * step:g} ms")
         axes.set_xlabel("N of the four-bar (n = 2N + 2 variables)")
-        axes.set_yticks(range(len(names)), names)
-        axes.set_ylim(len(names) - 0.4, -0.6)
-        axes.grid(axis="x")
+        line_each(axes, names)
     figure.suptitle("Largest N in real time", x=0.01, ha="left", fontsize=12)
     handles = [plt.Line2D([], [], color=FORMS[form][0], marker=FORMS[form][1], linestyle="none",
                           label=f"{form}: kept up with") for form in shown]

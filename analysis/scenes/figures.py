@@ -1,54 +1,12 @@
-# Errors of the standard problems; time and error of each way of modelling, beside the plain model.
+# Time and error of each way of modelling, beside the plain model.
 import matplotlib.pyplot as plt
 import numpy
 
-from analysis.core.outcomes import GOOD
-from analysis.core.style import ALTERNATIVES, GREY, MARKERS, missing, nothing, number_axis
-from study.scenes.metric import CLASSES
+from analysis.core.style import ALTERNATIVES, GREY, MARKERS, line_each, nothing, number_axis
 
 
 def draw(tables, view):
-    return {"errors": errors(tables["problems"]), "modelling": modelling(tables["modelling"])}
-
-
-def errors(problems):
-    """A line a problem: the errors of the two that are compared, each step a mark, the finest filled."""
-    rows = problems[problems.compared.fillna(False).astype(bool)]
-    titles, names = list(dict.fromkeys(rows.title)), list(dict.fromkeys(rows.implementation))
-    figure, axes = plt.subplots(figsize=(8.6, 0.36 * max(len(titles), 2) + 1.5), constrained_layout=True)
-    if rows.error_rms.isna().all():
-        missing(axes, "no run has a reference that it is judged by")
-        return figure
-    for number, name in enumerate(names):
-        shift = (number - (len(names) - 1) / 2) * 0.26
-        look = {"marker": MARKERS[number], "color": ALTERNATIVES[number % len(ALTERNATIVES)], "markersize": 5.5}
-        axes.plot([], [], linestyle="none", label=name, **look)
-        for place, title in enumerate(titles):
-            mine = rows[(rows.implementation == name) & (rows.title == title)].sort_values("step", ascending=False)
-            at = place + shift
-            done = mine[mine.error_rms.notna()]
-            axes.plot(done.error_rms, [at] * len(done), linewidth=0.8, markerfacecolor="white", **look)
-            axes.plot(done.error_rms[-1:], [at] * len(done[-1:]), **look)
-            for row in mine[~mine.status.isin(GOOD)].itertuples():
-                where, how = ((row.error_rms, at), "data") if row.error_rms == row.error_rms else (
-                    (0.01, at), axes.get_yaxis_transform())
-                axes.annotate(f"{row.status} at {1e3 * row.step:g} ms", where, (7, 0), how, "offset points", va="center",
-                              fontsize=7.5, color=look["color"])
-            if mine.error_rms.isna().all() and mine.status.isin(GOOD).all():
-                axes.annotate("not judged", (0.01, at), xycoords=axes.get_yaxis_transform(), va="center", fontsize=7.5,
-                              color=look["color"])
-    for name, limit in CLASSES:
-        axes.axvline(limit, color=GREY, linewidth=0.9, linestyle="--")
-        axes.text(limit, -0.62, f"{name} precision ", ha="right", va="bottom", fontsize=8, color=GREY)
-    axes.set_xscale("log")
-    axes.set_yticks(range(len(titles)), titles)
-    axes.set_ylim(len(titles) - 0.4, -0.6)
-    axes.set_xlabel("error at each step, root mean square; the finest step is filled")
-    axes.grid(axis="x")
-    axes.set_axisbelow(True)
-    axes.set_title("Errors of the standard problems", pad=18)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
-    return figure
+    return {"modelling": modelling(tables["modelling"])}
 
 
 def modelling(table):
@@ -83,11 +41,8 @@ def modelling(table):
         error_axes.set_xlabel("largest position error of B0, m")
         for axes in (time_axes, error_axes):
             axes.set_xscale("log")
-            axes.grid(axis="x")
-            axes.set_axisbelow(True)
-            axes.set_ylim(len(cases) - 0.5, -0.5)
+            line_each(axes, cases)
         number_axis(time_axes.xaxis, "×")
-    panels[0][0].set_yticks(range(len(cases)), cases)
     handles = {label: handle for row in panels[0] for handle, label in zip(*row.get_legend_handles_labels())}
     figure.legend(handles.values(), handles.keys(), loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=len(names), fontsize=9)
     return figure

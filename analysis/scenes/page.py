@@ -1,11 +1,9 @@
 # What page.html.j2 shows of the standard problems and of modelling.
 import base64
 
-import numpy
-
 from analysis.core.files import ROOT
 from analysis.core.outcomes import GOOD
-from analysis.core.rows import grouped
+from analysis.core.text import grouped
 from analysis.scenes.sentences import finest
 
 SHEETS = ROOT / "harness" / "scenes" / "pictures"
@@ -17,10 +15,10 @@ def context(tables, view):
     rows = finest(problems)
     return {"compared": list(dict.fromkeys(rows.implementation)), "finest": grouped(rows, "title"),
             "gate": gate(tables["gate"]), "everyone": everyone(problems), "conserved_limit": CONSERVED,
-            "convergence": grouped(convergence, "problem"), "digits": digits, "good": GOOD,
+            "convergence": grouped(convergence, "problem"), "good": GOOD,
             "published": set(convergence.problem[convergence.published.notna()]),
             "modelling": grouped(tables["modelling"], ["implementation", "loops"]),
-            "outputs": tables["outputs"].to_dict("records"), "settings": view.settings,
+            "settings": view.settings,
             "sheets": {path.stem.replace("_", " "): base64.b64encode(path.read_bytes()).decode() for path in sorted(SHEETS.glob("*.png"))}}
 
 
@@ -40,13 +38,3 @@ def everyone(problems):
         if (~first.compared.fillna(False).astype(bool)).any():
             found.append((title, first.step.iloc[0], first.to_dict("records")))
     return found
-
-
-def digits(value, count=8):
-    """`value` with `count` significant digits, never in powers of ten for positions."""
-    if not numpy.isfinite(value):
-        return "–"
-    if value == 0:
-        return "0"
-    places = max(0, count - 1 - int(numpy.floor(numpy.log10(abs(value)))))
-    return f"{value:.{places}f}"

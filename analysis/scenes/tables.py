@@ -10,8 +10,8 @@ from analysis.core.errors import StudyError
 from analysis.core.outcomes import FINISHED, GOOD, of_run
 from analysis.core.statistics import median
 from study.scenes import metric
-from study.scenes.extrapolate import extrapolate, observed_order
-from study.scenes.modelling import CASES, OUTPUTS, slug
+from study.scenes.metric import extrapolate, observed_order
+from study.scenes.modelling import CASES
 from study.scenes.problems import read_list
 from study.scenes.references import EXTRAPOLATED, KNOWN, PUBLISHED, four_bar, kind
 
@@ -37,7 +37,7 @@ def build(records, view):
     for problem in listed.values():
         found["problems"] += problem_rows(problem, runs.get(problem.name, {}))
         found["convergence"] += convergence_rows(problem, runs.get(problem.name, {}))
-    found["modelling"], found["outputs"] = modelling_rows(records), output_rows(records)
+    found["modelling"] = modelling_rows(records)
     order = {name: place for place, name in enumerate([*(problem.name for problem in listed.values()), *view.registry.variants])}
     for rows in found.values():  # as the lists have problems and implementations; steps and cases stay as they are
         rows.sort(key=lambda row: [order.get(row.get(key), 0) for key in ("problem", "implementation")])
@@ -156,26 +156,3 @@ def _error(record, loops):
     """Largest distance of B0 from the exact motion along an axis, m; over all instants that are kept."""
     exact = four_bar(_values(record, "t"), loops)
     return max(float(numpy.max(numpy.abs(_values(record, column) - exact[column]))) for column in ("B0.x", "B0.y"))
-
-
-def output_rows(records):
-    """One row for each size and kind of output: seconds of the whole process, and the ratio to writing nothing."""
-    result = []
-    runs = [record for record in records if record.role.startswith("output.")]
-    first = next(iter(OUTPUTS))
-    for loops in sorted({_loops(record) for record in runs}):
-        rows = pandas.DataFrame([
-            {"implementation": name, "environment": "", "process": record.cell["number"], "samples": (record.seconds,),
-             "status": "ok" if of_run(record)[0] in FINISHED else of_run(record)[0], "reason": of_run(record)[1],
-             "seconds": record.seconds, "who": record.cell["contenders"][0], "record": record.name}
-            for name in OUTPUTS for record in runs if record.role == f"output.{slug(name)}" and _loops(record) == loops])
-        for name in OUTPUTS:
-            mine = rows[rows.implementation == name]
-            good, wrong = mine[mine.status == "ok"], mine[~mine.status.isin(["ok", "dropped"])]
-            cost = timing.ratio(rows, name, first) if name != first else timing.Ratio(1.0, 1.0, 1.0)
-            result.append({"implementation": rows.who.iloc[0], "loops": loops, "output": name, "rounds": len(good),
-                           "status": wrong.status.iloc[0] if len(wrong) else "ok" if len(good) else "dropped",
-                           "reason": wrong.reason.iloc[0] if len(wrong) else "", "seconds": median(good.seconds),
-                           "record": " ".join(mine.record[:1])}
-                          | ({"ratio": cost.value, "ratio_low": cost.low, "ratio_high": cost.high} if len(good) else {}))
-    return result

@@ -39,12 +39,6 @@ def failed(name, variables, status, reason="because", fill=None, pilot=None, **m
                 pilot_us=pilot, **more)
 
 
-def build(name, variables, word, *times):
-    """Rows of processes in another build; of the study's own without a word."""
-    return cell(name, variables, *times, kind="builds", build=word, environment=f"{word or 'own'}|openblas",
-                implementation=f"{name}+{word}" if word else name)
-
-
 def operation(name, variables, what, *times):
     return [row | {"kind": "operations", "operation": what, "operation_us": row["step_us"]}
             for row in cell(name, variables, *times)]

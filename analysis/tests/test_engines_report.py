@@ -10,7 +10,7 @@ from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
 from analysis.engines import andrews, equal_error, figures, page, sentences, tables
 from analysis.engines.runs import row
-from analysis.engines.subjects import FLOOR, PENDULUM_S, Subject, positions
+from analysis.engines.subjects import FLOOR, PENDULUM_S, positions, subject_of
 
 LONG, SHORT = "four-bar-2", "four-bar-2-regular"
 VIEW = SimpleNamespace(registry=Registry({"implementations": [
@@ -180,7 +180,7 @@ def test_the_motion_of_the_double_pendulum():
         energy += mass / 6 * (va * va + va * vb + vb * vb).sum(0) + mass * 9.81 * (a[1] + b[1]) / 2
     assert numpy.ptp(energy[2:-2]) < 5e-3 * 20  # differences of positions give the velocities
     assert numpy.hypot(*(positions(times) - positions(times, 2e-3)).swapaxes(0, 1)).max() < FLOOR
-    subject = Subject("double-pendulum")
+    subject = subject_of("double-pendulum")
     series = {"t": list(times)} | {f"{point}.{axis}": list(places[place]) for point, places in (
         ("B", first), ("C", second)) for place, axis in enumerate("xy")}
     record = SimpleNamespace(series=series)
@@ -200,5 +200,5 @@ def test_the_motion_of_the_double_pendulum():
     ("four-bar-10", 10, False, 5.0, "N = 10"), ("four-bar-40-regular", 40, True, 0.6, "N = 40, first 0.6 s"),
     ("double-pendulum", 0, True, 2.0, "double pendulum"), ("andrews", 0, True, 0.03, "Andrews' mechanism")])
 def test_subjects_are_known_by_their_column(name, loops, regular, duration, title):
-    subject = Subject(name)
+    subject = subject_of(name)
     assert (subject.loops, subject.regular, subject.duration, subject.title) == (loops, regular, duration, title)

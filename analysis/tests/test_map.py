@@ -9,10 +9,9 @@ from analysis.core import records, schema
 from analysis.core.files import write_json
 from analysis.core.records import Record
 from analysis.core.style import Look
-from analysis.map import figures, losses, regret, sentences, summary, tables, tidy
+from analysis.map import figures, losses, sentences, summary, tables, tidy
 from analysis.map.cells import map_cells, table
-from analysis.map.grid import bounds
-from analysis.map.maps import crossings
+from analysis.map.maps import bounds, crossings
 from analysis.map.timed import AFTER, Scene, differing, timed_rows
 from analysis.tests.map_tables import cell, failed, registry, results, scene, view
 
@@ -108,11 +107,10 @@ def test_a_size_at_which_nobody_was_timed_says_nothing_of_dense_and_sparse():
 def test_the_price_counts_pilots_and_puts_those_that_fail_last():
     rows = cell(A, 10, 1.0, 1.0, pilot_us=1.0) + cell(B, 10, 2.0, 2.0, pilot_us=2.0) + failed(C, 10, "crashed")
     rows += cell(A, 22, 1.0, 1.0, pilot_us=1.0) + failed(B, 22, "excluded", pilot=8.0) + cell(C, 22, 1.5, 1.5)
-    found = some(rows)
-    ordered = regret.regrets(found, map_cells(found, [A, B, C]), [A, B, C])
-    assert [one.name for one in ordered] == [A, B, C]
-    assert ordered[1].ratios == {scene(10): pytest.approx(2), scene(22): pytest.approx(8)}
-    assert ordered[1].mean == pytest.approx(4) and ordered[1].rough == {scene(22)} and ordered[2].failed == {scene(10)}
+    ordered = summary.prices(some(rows), [A, B, C])
+    assert [one["implementation"] for one in ordered] == [A, B, C]
+    assert [(one["cells"], one["of"], one["rough"], one["failed"]) for one in ordered] == [(2, 2, 0, 0), (2, 2, 1, 0), (1, 2, 0, 1)]
+    assert (ordered[1]["mean"], ordered[1]["worst"], ordered[1]["where"]) == (pytest.approx(4), pytest.approx(8), scene(22))
 
 
 def test_neighbouring_sizes_with_one_outcome_are_one_line():
@@ -139,7 +137,7 @@ def test_exclusions_of_one_are_one_line_of_what_was_not_timed():
 def test_every_figure_can_be_drawn(rows):
     found = some(rows)
     drawn = figures.draw({"tidy": found.tidy, "verification": found.verification}, found.view)
-    assert set(drawn) >= {"f4_sparse_solvers", "f5_fill", "f6_map", "f7_map", "map_all", "regret", "t1_phases", "t2_operations"}
+    assert set(drawn) >= {"f4_sparse_solvers", "f5_fill", "f6_map", "f7_map", "map_all", "t1_phases"}
     for figure in drawn.values():
         assert figure.get_size_inches()[1] < 16  # two screens
         plt.close(figure)

@@ -129,16 +129,6 @@ def test_a_motion_that_is_lost_has_a_time_and_no_error():
     assert plain.rounds == 0 and numpy.isnan(plain.ratio) and numpy.isnan(plain.step_us)
 
 
-def test_outputs_are_compared_with_writing_nothing():
-    def written(kind, number, seconds):
-        cell = {"scene": "10-plain.json", "contenders": ["one/a"], "role": f"output.{kind}", "number": number, "settings": []}
-        return Record(f"modelling/{kind}-{number}.json", cell, "done", "", seconds, [], {}, {"status": "ok", "status_reason": ""})
-    rows = made(*(written(kind, number, factor * number) for number in (1, 2)
-                  for kind, factor in (("nothing", 1.0), ("everything-at-every-step", 1.5))))["outputs"].set_index("output")
-    assert rows.ratio["everything at every step"] == pytest.approx(1.5) and rows.seconds["nothing"] == 1.5
-    assert rows.status["a point in every 25 ms"] == "dropped"
-
-
 def test_figures_sentences_and_page_of_a_small_set_and_of_none():
     records = [run(name, who, step, role="compared" if who != "three/c" else "everyone", status=status)
                for name in ("A01", "double four-bar") for who in NAMES for step, status in ((1e-3, "degraded"), (5e-4, "ok"))]
@@ -153,9 +143,3 @@ def test_figures_sentences_and_page_of_a_small_set_and_of_none():
         assert all(one["text"].endswith(".") for one in said)
         assert bool(known["finest"]) == ("Not measured" not in said[0]["text"])
     assert [title for title, _, _ in page.everyone(made(*records)["problems"])] == ["Simple pendulum", "Double four-bar"]
-
-
-@pytest.mark.parametrize("value, text", [(0.5, "0.50000000"), (-1234.5, "-1234.5000"), (0.0, "0"), (numpy.nan, "–"),
-                                         (1.2e-3, "0.0012000000")])
-def test_positions_have_eight_digits(value, text):
-    assert page.digits(value) == text

@@ -4,9 +4,9 @@ import numpy
 
 from analysis.accuracy.pairs import STEP
 from analysis.core.outcomes import FINISHED
+from study.core import curves
 
 BEHIND = 4.0   # times the fastest with the default setting: who is slower is not tried in others
-FAR = 2.0      # a curve that is this far from the front, and comes no nearer, is not followed further
 BETWEEN = 2 / 3  # of the longer of two steps: half-way on a logarithmic scale, nearly; halvings that just miss a
 WORTH = 2.0      # required error would cost a factor of two; tried where the shorter step is so near the fastest
 
@@ -18,81 +18,35 @@ def first_look(runs, scene):
 
 
 def follow(runs, speed):
-    """Simulates all curves, a step after the other from the longest one on. `speed`: of first_look."""
-    active = {}
+    """{(layer, setting): rows in the order of steps}: all curves, followed from the longest step on. `speed`: of first_look."""
+    found = {}
     for layer, contenders in runs.layers.items():
         for name in runs.settings:
             serving = runs.serving(name, [*speed[layer], *(one for one in contenders if one not in speed[layer])])
             if serving:
-                active[layer, name] = serving[0]
-    curves = dict.fromkeys(active, ())
-    for step in runs.subject.steps:
-        for key in list(active):
-            reason = _too_long(curves[key], runs.longest) or _of_no_use(curves, key, min(runs.lab.settings["errors"]))
-            if reason:
-                runs.leave_out(active.pop(key), key[1], step, reason)
-        runs.simulate([(one, name, step, runs.subject.scene, None) for (_, name), one in active.items()])
-        curves = _curves(runs, curves, active)
-    return curves
+                found[layer, name] = curves.Curve(layer, [(step, runs.run_cell(serving[0], name, step)) for step in runs.subject.steps], 2.0)
+    curves.follow(runs.lab, list(found.values()), runs.row, runs.longest, min(runs.lab.settings["errors"]), status="excluded")
+    return {key: curve.rows for key, curve in found.items()}
 
 
-def between(runs, curves):
-    """Runs between the two steps that bracket a required error, of curves near the fastest of their layer there."""
+def between(runs, found):
+    """The same with runs between the two steps that bracket a required error, of curves near the fastest of their layer there."""
     by_name = {one.name: one for group in runs.layers.values() for one in group}
-    jobs = []
+    cells = {}
     for error in runs.lab.settings["errors"]:
         for layer in runs.layers:
-            mine = {key: meeting(rows, error) for key, rows in curves.items() if key[0] == layer}
+            mine = {key: meeting(rows, error) for key, rows in found.items() if key[0] == layer}
             best = min((row["time"] for row in mine.values() if row), default=numpy.inf)
             for key, row in mine.items():
-                longer = [one["step"] for one in curves[key] if row and one["step"] > 1.001 * row["step"]]
+                longer = [one["step"] for one in found[key] if row and one["step"] > 1.001 * row["step"]]
                 if longer and row["time"] <= WORTH * best:
                     step = float(f"{BETWEEN * min(longer):g}")
-                    jobs.append((by_name[row["implementation"]], key[1], step, runs.subject.scene, None))
-    runs.simulate(dict.fromkeys(jobs))
-    return _curves(runs, curves, {})
-
-
-def _curves(runs, curves, active):
-    """{(layer, setting): rows in the order of steps}"""
-    made = {}
-    for row in runs.made().sort_values("step", ascending=False, kind="stable").to_dict("records"):
-        if row["status"] not in ("dropped", "excluded"):
-            made.setdefault((row["implementation"], row["setting"]), []).append(row)
-    names = {key: rows[0]["implementation"] for key, rows in curves.items() if rows} | {
-        key: one.name for key, one in active.items()}
-    return {key: made.get((names.get(key), key[1]), []) for key in curves}
+                    cells[key, step] = runs.run_cell(by_name[row["implementation"]], key[1], step)
+    for (key, _), record in zip(cells, runs.lab.run(list(cells.values()), drop=True)):
+        found[key] = sorted([*found[key], runs.row(record)], key=lambda one: -one["step"])
+    return found
 
 
 def meeting(rows, error):
     """The row of the longest step that meets an error, or None."""
     return next((row for row in rows if row["status"] in FINISHED and row["error"] <= error), None)
-
-
-def _too_long(rows, limit):
-    """Why the run with half the step is not made."""
-    if not rows:
-        return ""
-    last = rows[-1]
-    if last["status"] == "timeout":
-        return "the run at twice the step did not end"
-    ahead = 2 * last["time"] * last["duration"]
-    return f"predicted to take {ahead:.1f} s, the limit is {limit:g} s" if ahead > limit else ""
-
-
-def _of_no_use(curves, key, least):
-    """Why a curve is not followed further: the last error is the least that is asked for or smaller, two halvings of the
-    step in turn have not made the error smaller, or it is far from its layer's front and no nearer than before."""
-    rows = curves[key][-3:]
-    if rows and rows[-1]["status"] in FINISHED and rows[-1]["error"] <= least:
-        return f"the error is at most {least:.2g}, the least that is asked for"
-    if len(rows) < 3 or any(row["status"] not in FINISHED for row in rows):
-        return ""
-    errors = [row["error"] for row in rows]
-    if errors[0] <= errors[1] <= errors[2]:
-        return "smaller steps do not make the error smaller"
-    layer = [row for (name, _), mine in curves.items() if name == key[0] for row in mine if row["status"] in FINISHED]
-    before, now = (row["time"] / min(one["time"] for one in layer if one["error"] <= row["error"]) for row in rows[1:])
-    if now > FAR and now > 0.8 * before:
-        return f"takes {now:.1f} times the least time at its error, and comes no nearer"
-    return ""

@@ -47,13 +47,19 @@ class Runs:
 
     def simulate(self, jobs):
         """Runs of (contender, setting, step, scene, duration), on all cores, as long as the budget lasts."""
-        self.records += self.lab.run([self._cell(one, name, step, scene, f"run/{self.settings[name].file_name}", duration)
-                                      for one, name, step, scene, duration in jobs], drop=True)
+        self.records += self.lab.run([self.run_cell(*job) for job in jobs], drop=True)
+
+    def run_cell(self, one, name, step, scene=None, duration=None):
+        return self._cell(one, name, step, scene or self.subject.scene, f"run/{self.settings[name].file_name}", duration)
+
+    def row(self, record):
+        """What a run came to; its record is kept."""
+        self.records.append(record)
+        return points.runs([record], self.subject, self.known).to_dict("records")[0]
 
     def leave_out(self, one, name, step, reason):
         """The record of a run that is not made."""
-        cell = self._cell(one, name, step, self.subject.scene, f"run/{self.settings[name].file_name}")
-        self.records.append(self.lab.skip(cell, "excluded", reason))
+        self.records.append(self.lab.skip(self.run_cell(one, name, step), "excluded", reason))
 
     def _cell(self, one, name, step, scene, role, duration=None, seconds=None):
         words = (*self.settings[name].words(self.subject.base), *self.subject.words(step, duration))

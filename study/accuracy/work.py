@@ -6,8 +6,7 @@
 from analysis.accuracy import subjects
 from analysis.accuracy.points import NOT_JUDGED
 from analysis.accuracy.winners import NEAR, meeting, winners
-from analysis.core.outcomes import FINISHED
-from analysis.core.pareto import pareto
+from analysis.core.outcomes import FINISHED, pareto
 from study.accuracy import curves
 from study.accuracy.runs import Runs
 

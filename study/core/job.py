@@ -73,7 +73,7 @@ def draw(studyset, part):
 
 def page(studyset, part):
     from analysis.core import site  # these need modules that take a second to load
-    site.write_part(studyset.folder, part, lambda: end_with(os.environ.get(FRONT)))
+    site.write_part(studyset.folder, part)
 
 
 def index(studyset):

@@ -122,11 +122,8 @@ def start(folder, profile, only, chosen):
     """Records what a folder is for, or continues it; StudyError if it holds results of something else."""
     registry = listed()
     select(registry, only)
-    control = Contender(CONTROL.name, CONTROL.variant, usable(registry, profile.blas["all"]))
-    context = context_of(control)
-    record = {"profile": profile.name, "only": only, "parts": chosen, "context": context,
-              "programs": {},
-              "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M")}
+    context = context_of(Contender(CONTROL.name, CONTROL.variant, usable(registry, profile.blas["all"])))
+    record = begun(profile.name, only, chosen, context)
     if (folder / "set.json").exists():
         known = opened(folder)
         need_same(known.facts["context"], context, str(folder))
@@ -141,12 +138,23 @@ def start(folder, profile, only, chosen):
     return found
 
 
+def begun(profile, only, chosen, context, **question):
+    """The facts of a set that begins now."""
+    now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M")
+    return {"profile": profile, "only": only, "parts": chosen, "context": context, "programs": {}, "date": now, **question}
+
+
+def need_question(known, **asked):
+    """StudyError if a set holds results of something else."""
+    for key, value in asked.items():
+        if known.facts.get(key) != value:
+            raise _other(known.folder, key)
+
+
 def kept_facts(known, profile, only, chosen):
     """What stays of a set's facts when it is continued, with its parts then; StudyError if it holds results of something else."""
     old = known.facts
-    for key, asked in (("profile", profile.name), ("only", only)):
-        if old[key] != asked:
-            raise _other(known.folder, key)
+    need_question(known, profile=profile.name, only=only)
     if (known.folder / "profile.yaml").read_bytes() != _settings(profile).encode():
         raise _other(known.folder, "the profile's settings")
     return {"date": old["date"], "programs": old["programs"],

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from analysis.core.files import ROOT
 from analysis.engines.equal_error import candidates, least_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
-from analysis.engines.subjects import Subject
+from analysis.engines.subjects import Subject, subject_of
 from analysis.engines.tables import frame
 from study.core.cell import Cell
+from study.core.curves import Curve, follow
 from study.core.setting import read_settings
-from study.engines.curves import Curve, follow
 from study.engines.settings import read_list
 
 SETTINGS = {"subjects": list,      # names: analysis/engines/subjects.py
@@ -32,12 +32,12 @@ SET_UP = "study/setup --engines"
 
 
 def columns(settings):
-    shares = {name: 1.0 if Subject(name).loops else 0.5 for name in settings["subjects"]}  # the others are small
+    shares = {name: 1.0 if subject_of(name).loops else 0.5 for name in settings["subjects"]}  # the others are small
     return {name: settings["seconds"] * share / sum(shares.values()) for name, share in shares.items()}
 
 
 def run(lab, column):
-    subject, missing = Subject(column), unavailable()
+    subject, missing = subject_of(column), unavailable()
     asked = [engine for engine in read_list() if subject.asks(engine)]
     for engine in asked:
         if missing[engine]:
@@ -66,12 +66,12 @@ class Bench:
 
     def engines(self, names):
         """Their curves, all settings at once; then, of ODE, the candidates in the build with our flags."""
-        listed, limit = read_list(), self.lab.settings["time_limit"]
+        listed = read_list()
         curves = [Curve(engine, [(value, self.engine_cell(f"{PROGRAMS}/engine_{engine}", setting.words(value)))
                                  for value in setting.values], {"step": 2.0, "accuracy": 2.5}[setting.over])
                   for place in range(self.lab.settings["engine_settings"]) for engine in names
                   for setting in listed[engine][place:place + 1]]
-        found = frame(follow(self.lab, curves, limit, 0.0, CURVES[0]))
+        found = self._followed(curves, 0.0, CURVES[0])
         if "ode" not in names:
             return found
         if not (ROOT / "build" / NATIVE_PROGRAM).exists():
@@ -94,7 +94,12 @@ class Bench:
                         2 ** (1 / self.lab.settings["octave"]))
                   for name in self.lab.settings["settings"] for variant in self.lab.settings["implementations"]
                   for one in [self.lab.contender(variant)] if one and self.lab.registry.serves(variant, *wanted[name].needs)]
-        return frame(follow(self.lab, curves, self.lab.settings["time_limit"], least, CURVES[1]))
+        return self._followed(curves, least, CURVES[1])
+
+    def _followed(self, curves, least, share):
+        """The rows of all curves."""
+        follow(self.lab, curves, row, self.lab.settings["time_limit"], least, share)
+        return frame([one for curve in curves for one in curve.rows])
 
     def steps(self):
         """A fixed ladder."""

@@ -8,8 +8,7 @@ from study.core.cell import Cell
 from study.core.contender import Contender, by_environment
 from study.core.profile import need_keys
 from study.core.timing import measure
-from study.map.scene import NATURAL, Scene
-from study.map.timed import TimedScene
+from study.map.timed import NATURAL, Scene, TimedScene
 from study.map.verify import alternatives, fit
 
 SETTINGS = {"processes": int,      # of a timed scene
@@ -18,7 +17,7 @@ SETTINGS = {"processes": int,      # of a timed scene
             "between": int,        # fills to be put half-way where the winner changes, a column
             "slower": dict,        # natural, filled: whoever is so many times slower than the fastest library is not timed
             "limits": dict,        # s: pilot, check, time
-            "alternatives": list,  # the same on other BLAS pairs or in other builds, at natural fill; never ranked
+            "alternatives": list,  # the same on other BLAS pairs, at natural fill; never ranked
             "phases": dict,        # columns, processes: shares of a step by phase
             "operations": dict,    # columns, processes: Table 2's operations one by one
             "seeds": dict,         # columns, seeds, processes: the leaders of a filled scene with other artificial positions
@@ -48,7 +47,7 @@ def run(lab, column):
     if entry == lab.settings["columns"][0]:
         _unavailable(lab, natural)
     costs, own_fill = fit(lab, natural, [*lab.contenders, *alternatives(lab, natural)])
-    timed = [TimedScene(lab, natural, {one: cost for one, cost in costs.items() if not one.build}, own_fill)]
+    timed = [TimedScene(lab, natural, costs, own_fill)]
     for scene in filled:
         if 100 * scene.fill <= own_fill:
             lab.skip(Cell("bench", scene.name, role="not-reached"), "not-reached", f"the mechanism's own fill is {own_fill:.3g} %")
@@ -60,7 +59,6 @@ def run(lab, column):
         one.again(lab.settings["again"])
     _phases(lab, timed[0])
     _operations(lab, natural)
-    _builds(lab, natural, costs)
     for _ in range(lab.settings["between"]):
         _add_between(lab, timed)
     _seeds(lab, timed)
@@ -102,16 +100,6 @@ def _operations(lab, scene):
         lab.run([Cell("bench", scene.name, group, ("--operations", "--benchmark_repetitions=3", "--benchmark_min_time=0.01"),
                       "operations", number, timed=True, seconds=lab.settings["limits"]["time"])
                  for number in range(1, asked["processes"] + 1)], drop=True)
-
-
-def _builds(lab, scene, costs):
-    """Processes of all builds alternate, so that those of one number are near in time: no contender is the same in two
-    builds."""
-    variants = {one.variant for one in costs if one.build}
-    groups = by_environment(one for one in costs if one.variant in variants and (one.build or one.ranked))
-    for number in range(1, lab.settings["processes"] + 1):
-        for group in groups.values():
-            TimedScene(lab, scene, {one: costs[one] for one in group}, 0.0).processes(list(group), number, "builds")
 
 
 def _add_between(lab, timed):

@@ -1,5 +1,5 @@
-# A scene that is timed: a few processes of all, without those whose stretch takes another number of passes, and then
-# more of those who lead.
+# A scene of the map, the N-four-bar at a size with its own fill or an artificial one, and how it is timed: a few processes of all,
+# without those whose stretch takes another number of passes, and then more of those who lead.
 from dataclasses import dataclass, field, replace
 
 from analysis.core.timing import LEFT_OUT, TWIN
@@ -8,11 +8,26 @@ from analysis.map.timed import differing, layers, leaders, timed_rows
 from study.core.cell import Cell
 from study.core.contender import CONTROL, Contender
 from study.core.timing import measure
-from study.map.scene import Scene
 
 LEAST_SAMPLES, MOST_SAMPLES = 1, 40
 BUSY = 1.5     # passes a step of a stretch, which crosses the singular position, over those of a pilot, about
 TURN = 0.005   # s, the least that a sample takes
+NATURAL = "natural"  # a scene with the mechanism's own fill
+
+
+@dataclass(frozen=True)
+class Scene:
+    variables: int
+    fill: float | None  # share of the tangent's n^2 positions; None: the mechanism's own
+
+    @property
+    def name(self):
+        return f"four-bar:{self.variables // 2 - 1}" + ("" if self.fill is None else f",fill={self.fill:.2f}")
+
+    @property
+    def steps(self):
+        """About those of its stretch, which `mbs bench` chooses by the size."""
+        return max(40, min(800, 800 * 400 // self.variables))
 
 
 @dataclass

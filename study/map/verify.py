@@ -8,7 +8,6 @@ import math
 from dataclasses import dataclass
 
 from study.core import gate
-from study.core.builds import BUILDS, build
 from study.core.cell import Cell
 from study.core.contender import Contender
 
@@ -98,30 +97,16 @@ class Rule:
 
 
 def alternatives(lab, scene):
-    """Contenders of the profile's other pairs and builds at this size; what is missing gets a record that says why."""
+    """Contenders of the profile's other pairs at this size; what is missing gets a record that says why."""
     found = {}
     for entry in lab.settings["alternatives"]:
         usual = [one for one in lab.contenders if one.variant in entry["implementations"]
                  or one.variant.split("/")[0] in entry["implementations"]]
         for one in usual if scene.variables in entry["columns"] else []:
-            for pair in entry.get("blas", []):
+            for pair in entry["blas"]:
                 if pair != one.blas:
                     found[Contender(f"{one.name}+{pair}", one.variant, pair)] = lab.registry.pairs.get(pair, "unknown pair")
-            for name in entry.get("builds", []):
-                found[Contender(f"{one.name}+{name}", one.variant, one.blas, name)] = _missing(lab, name)
     for one, reason in found.items():
         if reason:
             lab.skip(Cell("bench", scene.name, (one,), role="unavailable"), "unavailable", reason)
     return [one for one, reason in found.items() if not reason]
-
-
-_built = {}  # {build: why it failed, or ""}
-
-
-def _missing(lab, name):
-    if name not in _built:
-        if name not in BUILDS:
-            return f"unknown build; known: {', '.join(BUILDS)}"
-        with open(lab.set.log, "a", encoding="utf-8") as log:
-            _built[name] = build(name, log, lab.tell)
-    return _built[name]

@@ -46,9 +46,6 @@ CASES = (
     Case(BEFORE, "early", steps=EARLY, base=BEFORE),
     Case("velocities only, before singular", "early", options=("--projections", "velocity"), steps=EARLY, base=BEFORE),
     Case("no projections, before singular", "early", options=("--projections", "none"), steps=EARLY, base=BEFORE))
-# Of whole processes of one implementation: what is written. The file system takes no part in "everything".
-OUTPUTS = {"nothing": {}, "a point in every 25 ms": {"keep": ("outputs",), "every": 20},
-           "everything at every step": {"settings": ("--trajectory", "/dev/null")}}
 
 
 def scenes(loops):
@@ -100,7 +97,6 @@ def run(lab):
         for case in CASES:
             motions += [_motion(case, paths[case.scene], one) for one in those]
             timed += [_timed(case, paths[case.scene], group, lab.settings["samples"]) for group in groups.values()]
-        timed += [_written(name, paths[PLAIN], those[0]) for name in OUTPUTS if those]
     lab.run(motions)
     for number in range(1, lab.settings["rounds"] + 1):
         lab.tell(f"round {number} of {lab.settings['rounds']}")
@@ -119,10 +115,3 @@ def _timed(case, scene, group, samples):
     words = ("--step", f"{STEP:g}", "--steps", case.steps, *case.options, f"--benchmark_repetitions={samples}")
     return lambda number: Cell("bench", scene, group, (*words, "--seed", number), f"time.{case.file_name}", number,
                                timed=True, seconds=60)
-
-
-def _written(name, scene, one):
-    words = ("--step", f"{STEP:g}", "--duration", f"{DURATION:g}")
-    more = OUTPUTS[name] | {"settings": (*words, *OUTPUTS[name].get("settings", ()))}
-    return lambda number: Cell("simulate", scene, (one,), role=f"output.{slug(name)}", number=number, timed=True,
-                               seconds=120, **more)

@@ -1,12 +1,11 @@
 # study/accuracy: which cells are asked for, on a lab whose answers are known; the order of the real program.
-import numpy
 import pytest
 
 from analysis.accuracy import subjects, tables
 from analysis.accuracy.points import runs as rows_of
 from analysis.core.errors import StudyError
 from analysis.core.records import Record
-from study.accuracy import curves, plan
+from study.accuracy import plan
 from study.accuracy.runs import Runs
 from study.core import executor
 from study.core.cell import Cell
@@ -94,24 +93,6 @@ def test_steps_between_are_tried_where_a_halving_just_misses(whole):
     # 10 h^2 <= 1e-3: 10 ms, the halving itself.  2 h^2 <= 1e-3: 20 ms; between 20 and 40 it misses.
     steps = found["winners"][found["winners"].layer == "libraries"].set_index(["scene", "required"]).step
     assert steps["four-bar:10", 1e-3] == 0.02
-
-
-def test_where_a_curve_ends():
-    def row(step, error, time, status="ok"):
-        return {"step": step, "error": error, "time": time, "status": status, "duration": 5.0, "seconds": 0.1}
-    assert curves._too_long([row(1e-2, 1, 0.39)], 4) == "" and "5.0 s, the limit is 4 s" in curves._too_long(
-        [row(1e-2, 1, 0.5)], 4)
-    assert "did not end" in curves._too_long([row(1e-2, numpy.nan, numpy.nan, "timeout")], 4)
-    key = ("libraries", "kept")
-
-    def use(rows, others=(), least=0.0):
-        return curves._of_no_use({key: rows, ("libraries", "default"): list(others)}, key, least)
-    better = [row(1e-2, 1.0, 1), row(5e-3, 0.1, 2), row(2.5e-3, 0.01, 4)]
-    assert use(better) == "" and "the least that is asked for" in use(better, least=0.01)
-    assert "do not make the error smaller" in use([row(1e-2, 1.0, 1), row(5e-3, 1.0, 2), row(2.5e-3, 1.1, 4)])
-    front = [row(1e-2, 1.0, 0.25), row(5e-3, 0.1, 0.5), row(2.5e-3, 0.01, 1)]
-    assert use(better, front).startswith("takes 4.0 times the least time")
-    assert use(better, [row(1e-2, 0.1, 0.1), row(1e-3, 0.01, 1.9)]) == ""  # it comes nearer
 
 
 def test_a_stretch_is_a_matter_of_the_scene():

@@ -367,7 +367,7 @@ def test_tables_come_back_to_the_last_bit(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("frame, words", [
-    ({"x": ["1", "two"]}, "line 3: x is no number: 'two'"), ({"y": [1]}, "its schema does not know: y")])
+    ({"x": ["1", "two"]}, "x: could not convert string to float: 'two'"), ({"y": [1]}, "its schema does not know: y")])
 def test_what_is_not_of_the_schema_is_refused(frame, words):
     with pytest.raises(StudyError, match=words):
         schema.conform(pandas.DataFrame(frame), COLUMNS, "one.csv")

@@ -12,7 +12,8 @@ from analysis.engines import andrews
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
 from analysis.engines.subjects import SOLVERS
 from study.core.contender import Contender
-from study.engines import curves, plan, settings
+from study.core.curves import Curve, follow, of_no_use, too_long
+from study.engines import plan, settings
 from study.engines.settings import EngineSetting, read_list
 from study.scenes.references import andrews_end
 from study.tests.conftest import ROOT
@@ -144,7 +145,7 @@ def test_the_build_with_our_flags_runs_what_was_chosen_of_the_packaged_one(monke
 
 def test_the_double_pendulum_is_sampled_for_its_error(fakes, monkeypatch):
     lab, asked = Lab("double-pendulum"), []
-    bench = plan.Bench(lab, plan.Subject("double-pendulum"))
+    bench = plan.Bench(lab, plan.subject_of("double-pendulum"))
     monkeypatch.setattr(plan, "follow", lambda lab, curves, *rest: asked.extend(curves) or [])
     bench.ours(0.0)
     cell = dict(asked[0].cells)[2.5e-3]
@@ -153,17 +154,19 @@ def test_the_double_pendulum_is_sampled_for_its_error(fakes, monkeypatch):
 
 
 def test_the_ladder_of_our_steps_is_fixed():
-    steps = plan.Bench(Lab(octave=2), plan.Subject("four-bar-2")).steps()
+    steps = plan.Bench(Lab(octave=2), plan.subject_of("four-bar-2")).steps()
     assert steps[0] == 2e-2 and steps[2] == 1e-2 and steps[-1] >= 1e-5
     assert steps == sorted(steps, reverse=True) and len(steps) == 22
-    assert plan.Bench(Lab(), plan.Subject("andrews")).steps()[:2] == [4e-4, 2e-4]
+    assert plan.Bench(Lab(), plan.subject_of("andrews")).steps()[:2] == [4e-4, 2e-4]
 
 
 def one_curve(lab, limit=10.0, least=0.0, share=1.0, **options):
-    bench = plan.Bench(lab, plan.Subject("four-bar-2"))
+    bench = plan.Bench(lab, plan.subject_of("four-bar-2"))
     setting = EngineSetting("able", "step", VALUES, tuple(options.items()))
     cells = [(value, bench.engine_cell("study/engines/engine_able", setting.words(value))) for value in VALUES]
-    return curves.follow(lab, [curves.Curve("able", cells, 2.0)], limit, least, share)
+    curve = Curve("able", cells, 2.0)
+    follow(lab, [curve], row, limit, least, share)
+    return curve.rows
 
 
 def test_curves_end_with_a_row_that_says_why():
@@ -179,15 +182,23 @@ def test_curves_end_with_a_row_that_says_why():
 
 
 def point(error, time, status="ok"):
-    return {"error": error, "time": time, "status": status}
+    return {"error": error, "time": time, "status": status, "duration": 5.0}
+
+
+def test_a_run_that_would_take_too_long_is_not_made():
+    assert too_long([], 4, 2.0) == too_long([point(1, 0.39)], 4, 2.0) == too_long([point(1, None, "diverged")], 4, 2.0) == ""
+    assert "5.0 s, the limit is 4 s" in too_long([point(1, 0.5)], 4, 2.0)
+    assert "did not end" in too_long([point(numpy.nan, numpy.nan, "timeout")], 4, 2.0)
 
 
 def test_finer_values_of_no_use():
-    assert curves.of_no_use([point(1, 1), point(1, 2), point(2, 4)], [], 0.0).startswith("finer values")
+    assert of_no_use([point(1, 1), point(1, 2), point(2, 4)], [], 0.0).startswith("finer values")
     behind = [point(1, 10), point(0.1, 20), point(0.01, 40)]
-    assert "40.0 times the front" in curves.of_no_use(behind, [point(0.01, 1), *behind], 0.0)
-    assert curves.of_no_use([point(1, 10), point(0.1, 20), point(0.01, 1.5)], behind, 0.0) == ""
-    assert curves.of_no_use([point(1, 1), point(1, 2, "diverged"), point(1, 3)], [], 0.0) == ""
+    assert "40.0 times the front" in of_no_use(behind, [point(0.01, 1), *behind], 0.0)
+    assert of_no_use([point(1, 10), point(0.1, 20), point(0.01, 1.5)], behind, 0.0) == ""
+    assert of_no_use([point(1, 1), point(1, 2, "diverged"), point(1, 3)], [], 0.0) == ""
+    better = [point(1.0, 1), point(0.1, 2), point(0.01, 4)]
+    assert of_no_use(better, better, 0.0) == "" and "the least that is asked for" in of_no_use(better, better, 0.01)
 
 
 def test_settings_are_read_and_refused(tmp_path):
@@ -260,7 +271,7 @@ def test_programs_refuse_bad_input(engine):
 
 def error(name, form, accuracy):
     """Of a run of IDA; its program reads scenes relative to the repository."""
-    subject = plan.Subject(name)
+    subject = plan.subject_of(name)
     words = (*map(str, subject.words), "--duration", f"{subject.duration:g}", "--setting", f"form={form}",
              f"accuracy={accuracy}", "--json")
     done = subprocess.run([program("ida"), *words], capture_output=True, text=True, cwd=ROOT)

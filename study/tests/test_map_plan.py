@@ -17,7 +17,7 @@ from study.core import profile as profiles, studyset
 from study.core.contender import Contender
 from study.core.lab import Lab
 from study.map import plan, verify
-from study.map.scene import Scene
+from study.map.timed import Scene
 from study.tests.conftest import FAKE, TEMPORARY
 from study.tools import compare
 

@@ -1,6 +1,5 @@
 """The installed package: examples and Python against a fresh prefix, from an empty folder; without GPL parts."""
 import csv
-import os
 import re
 import shutil
 import subprocess

@@ -104,9 +104,10 @@ DAMAGES = {
     "which is no commit of this repository":
         lambda folder: edit(folder / "set.json", lambda found: found["context"].update(commit="0" * 40)),
     "is not finished": lambda folder: next((folder / ".done" / PART).iterdir()).unlink(),
-    "is not the one that was measured": change_record,
-    "is missing: run study/run again": lambda folder: a_record(folder).unlink(),
-    "belongs to no column that has ended": lambda folder: shutil.copy(a_record(folder), a_record(folder).with_name("x.json")),
+    "is changed: remove it": change_record,
+    "is missing: study/run measures it again": lambda folder: a_record(folder).unlink(),
+    "is no record of this study: remove it": lambda folder: shutil.copy(a_record(folder), a_record(folder).with_name("x.json")),
+    "belongs to no column that has ended": lambda folder: shutil.copytree(a_record(folder).parent, folder / "raw" / PART / "gone" / "x"),
     "is not as it was written": change_table,
     "its tables are not those of its records": lambda folder: (folder / PART / "tables.json").unlink(),
     "lacks stability: a stored set has all parts":

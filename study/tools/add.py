@@ -20,6 +20,7 @@ from study.core.options import Parser, directory
 from study.core.progress import duration
 from study.core.studyset import StudySet, context_of, listed, opened, select
 from study.core.timing import measure
+from study.tools import shelf
 
 SHARE = 0.2     # of the time that all parts of the set's profile have
 PASSES = (3, 5)  # processes of all scenes before there are more of any
@@ -30,18 +31,6 @@ PATIENT = 8     # times the slowest rival's stretch: whose first takes longer is
 RESULTS = ROOT / "results"
 LOG = RESULTS / "local" / "add.log"  # of setting up
 SAME = ("machine", "compiler", "flags", "build_type")  # of two contexts
-CELLS = {
-    "scene": ("text", "", "of the set's map"), "variables": ("number", "", "n"),
-    "layer": ("text", "", "libraries, or all: own code too"), "implementation": ("text", "", "the newcomer"),
-    "before": ("text", "", "who led the cell in the set"), "rival": ("text", "", "the fastest of the others, timed anew"),
-    "step_us": ("number", "µs", "of the newcomer, median over processes"),
-    "rival_us": ("number", "µs", "of the rival, median over processes"),
-    "ratio": ("number", "", "time of the newcomer over the rival's"), "low": ("number", "", "lower end of its 95 % interval"),
-    "high": ("number", "", "upper end"), "processes": ("number", "", "in which both were timed"),
-    "hands": ("text", "", "changes, stays, open (the interval includes 1) or not timed"),
-    "status": ("text", "", "of the newcomer: ok, or why it was not timed"), "reason": ("text", "", "in words"),
-    "commit": ("text", "", "of the newcomer's tree"), "dirty": ("text", "", "whether that had changes beside"),
-    "record": ("text", "", "first record of the scene, in raw/added")}
 
 
 def add(arguments):
@@ -100,7 +89,6 @@ class _Present(StudySet):
 def measured(folder, name, known):
     """The table of one newcomer, or several variants of one, which is written."""
     from analysis.core import schema
-    from study.tools.shelf import ToolLab
     newcomers = select(known, [name], "")
     cells = schema.read_table(folder, "map", "cells")
     cells = cells[cells.winner != ""]
@@ -111,7 +99,7 @@ def measured(folder, name, known):
     contenders = {one.name: one for one in on_usual_pairs(known, blas, [*newcomers, *sorted(rivals - set(newcomers))])}
     present = contexts(folder, contenders.values())
     column = name.replace("/", ".")
-    lab = ToolLab(_Present(folder, present), "added", column, seconds=SHARE * budget_of(folder))
+    lab = shelf.ToolLab(_Present(folder, present), "added", column, seconds=SHARE * budget_of(folder))
     _begin(folder, column, lab)
     scenes = list(dict.fromkeys(cells.scene))
     chosen = {scene: _rivals(cells[cells.scene == scene], newcomers, contenders) for scene in scenes}
@@ -248,9 +236,7 @@ def _compared(timing, rows, name, ranking, before):
 
 
 def _finish(folder, column, lab, rows):
-    import pandas
-    from analysis.core import schema
-    table = schema.conform(pandas.DataFrame(rows), CELLS, f"added/{column}.csv")
+    table = shelf.table(rows, "added")
     path = folder / "added" / f"{column}.csv"
     write(path, lambda partial: table.to_csv(partial, index=False))
     write_json(path.with_suffix(".json"), read_json(path.with_suffix(".json")) | {

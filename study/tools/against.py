@@ -18,19 +18,12 @@ from study.core.executor import program_of
 from study.core.main import need_modules, set_up
 from study.core.options import Parser, directory, rounds
 from study.core.studyset import context_of, listed, need_own, select
+from study.tools import shelf
 
 SECONDS = 120.0  # of a process
 # Google's option makes the programs of older revisions take turns too; later ones do so anyway.
 WORDS = ("--benchmark_repetitions=20", "--benchmark_min_time=0.005", "--benchmark_enable_random_interleaving=true")
 ORDER = (("old", 1), ("new", 1), ("new", 2), ("old", 2))  # of a round
-RATIOS = {
-    "implementation": ("text", "", "variant"), "scene": ("text", "", "scene"),
-    "old_us": ("number", "µs", "time of a step of the revision, median over processes"),
-    "new_us": ("number", "µs", "time of a step of this tree, median over processes"),
-    "ratio": ("number", "", "of this tree over the revision"),
-    "low": ("number", "", "lower end of the 95 % interval over pairs of processes"),
-    "high": ("number", "", "upper end of it"), "pairs": ("number", "", "pairs of processes"),
-    "reason": ("text", "", "why there is no ratio"), "record": ("text", "", "the first record of each program")}
 
 
 def against(arguments):
@@ -89,14 +82,11 @@ def _build(revision):
 
 def _measure(folder, options, revision, build):
     """The table of ratios."""
-    import pandas
-    from analysis.core.schema import conform
-    from study.tools.shelf import ToolLab, open_shelf
     known, pairs = listed(), profiles.load("quick", []).blas
     contenders = on_usual_pairs(known, pairs, select(known, options.only))
     context = context_of(Contender(CONTROL.name, CONTROL.variant, usable(known, pairs["all"])))
-    lab = ToolLab(open_shelf(folder, "against", context, options.only, scenes=options.scenes,
-                             old=digest(ROOT / program_of(build=build))[:16]), "against", "runs")
+    lab = shelf.ToolLab(shelf.open_shelf(folder, "against", context, options.only, scenes=options.scenes,
+                                          old=digest(ROOT / program_of(build=build))[:16]), "against", "runs")
     there = _variants_of(build)
     rows = [{"implementation": one.name, "scene": scene, "reason": f"is not in {revision}"}
             for one in contenders if one.variant not in there for scene in options.scenes]
@@ -105,7 +95,7 @@ def _measure(folder, options, revision, build):
         for group in groups.values():
             rows += _ratios(lab, scene, group, options.rounds, build, revision)
     lab.progress.end()
-    return conform(pandas.DataFrame(rows), RATIOS, "ratios.csv")
+    return shelf.table(rows, "ratios")
 
 
 def _variants_of(build):

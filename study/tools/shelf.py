@@ -1,33 +1,33 @@
 # Where a tool keeps its records: a set without parts, so that cells run, resume and are refused as those of parts.
-import datetime
+from pathlib import Path
 
-from analysis.core.errors import StudyError
 from analysis.core.files import write_json
 from study.core.executor import need_same
 from study.core.front import Display
 from study.core.lab import Lab
-from study.core.studyset import StudySet, need_own
+from study.core.studyset import StudySet, begun, need_own, need_question
 
 
 def open_shelf(folder, tool, context, only, **question):
     """The StudySet in `folder`, new or continued; StudyError if it holds results of something else. `question`:
     what must be equal for the records to be of use."""
-    facts = {"profile": tool, "only": only, "parts": [], "context": context,
-             "programs": {},
-             "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M"), **question}
     need_own(folder)
     found = StudySet(folder)
     if (folder / "set.json").exists():
         need_same(found.facts["context"], context, str(folder))
-        for key in facts:
-            if key not in ("context", "date", "programs") and found.facts.get(key) != facts[key]:
-                raise StudyError(f"{folder} holds results of something else ({key}); results are never merged: name "
-                                 "another directory, or move this one away")
+        need_question(found, profile=tool, only=only, parts=[], **question)
     else:
-        write_json(folder / "set.json", facts)
+        write_json(folder / "set.json", begun(tool, only, [], context, **question))
     found.need_programs(["mbs"])
     found.clear()
     return StudySet(folder)
+
+
+def table(rows, name):
+    """Rows as the table of that name in schema.yaml."""
+    import pandas
+    from analysis.core import schema
+    return schema.conform(pandas.DataFrame(rows), schema.read(Path(__file__).with_name("schema.yaml"))[name], name)
 
 
 class ToolLab(Lab):

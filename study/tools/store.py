@@ -7,12 +7,12 @@ import shutil
 import subprocess
 
 from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, digest, read_json
+from analysis.core.files import ROOT, read_json
 from analysis.core.parts import parts
 from study.core import locks
 from study.core.main import columns_of, need_modules
 from study.core.options import Parser, directory
-from study.core.studyset import StudySet, opened
+from study.core.studyset import StudySet, need_records, opened
 
 RESULTS = ROOT / "results"
 MOST = 3  # sets
@@ -72,21 +72,14 @@ def need_whole(studyset):
     missing = [part for part in parts() if part not in studyset.facts["parts"]]
     if missing:
         raise StudyError(f"{studyset.folder} lacks {', '.join(missing)}: a stored set has all parts")
+    need_records(studyset)
     for part, columns in columns_of(studyset.profile, studyset.facts["parts"]).items():
-        known = {}
         for column in columns:
-            stamp = studyset.stamp(part, column)
-            if not stamp.exists():
+            if not studyset.stamp(part, column).exists():
                 raise StudyError(f"{studyset.folder} is not finished: {part}/{column} has not ended; run study/run again")
-            known |= read_json(stamp)
-        found = records.files_of(studyset.folder, part)
-        for name, path in found.items():
-            if name not in known:
+        for name, path in records.files_of(studyset.folder, part).items():
+            if name.partition("/")[0] not in columns:
                 raise StudyError(f"{path} belongs to no column that has ended: remove it, and run study/run again")
-        for name, expected in known.items():
-            if name not in found or digest(found[name]) != expected:
-                raise StudyError(f"{studyset.folder / 'raw' / part / name} is "
-                                 f"{'not the one that was measured' if name in found else 'missing'}: run study/run again")
         schema.need_unchanged(studyset.folder, part)
         tables = studyset.folder / part / schema.DIGESTS
         if not tables.exists() or read_json(tables)["records"] != schema.digest_of(records.read_part(studyset.folder, part)):

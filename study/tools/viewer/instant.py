@@ -1,6 +1,7 @@
 # One instant of the motion on matplotlib axes, from far to near.
 import numpy
 from matplotlib.colors import to_rgb
+from scipy.spatial import ConvexHull, QhullError
 
 INK, ROD, GROUND, DRIVEN, SPRING, ACCENT = ("#1b2330", "#49627c", "#6d7683", "#b0479a", "#c4501b",
                                             "#0b5cad")
@@ -88,18 +89,12 @@ def _mixed(colour, share, other):
 
 
 def hull(corners):
-    """Corners of the convex hull in order (monotone chain); fewer than three stay as they are."""
-    ordered = sorted(map(tuple, corners))
-
-    def half(items):
-        chain = []
-        for x, y in items:
-            while len(chain) > 1 and ((chain[-1][0] - chain[-2][0]) * (y - chain[-2][1])
-                                      <= (chain[-1][1] - chain[-2][1]) * (x - chain[-2][0])):
-                chain.pop()
-            chain.append((x, y))
-        return chain[:-1]
-    return numpy.array(ordered if len(ordered) < 3 else half(ordered) + half(ordered[::-1]))
+    """Corners of the convex hull in order; of those on one line the ends."""
+    try:
+        return corners[ConvexHull(corners).vertices]
+    except QhullError:  # flat, or too few
+        ordered = numpy.unique(corners, axis=0)
+        return ordered[[0, -1]] if len(ordered) > 1 else ordered
 
 
 def _spring(axes, ends, colour, width, order):

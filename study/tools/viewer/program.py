@@ -1,12 +1,8 @@
-# Runs `mbs describe` and `mbs simulate` for the viewer, showing progress and passing errors on.
+# Runs `mbs describe` and `mbs simulate` for the viewer, passing errors on.
 import json
 import math
 import os
-import pty
-import re
 import subprocess
-import sys
-import tempfile
 from pathlib import Path
 
 from analysis.core.errors import StudyError
@@ -19,7 +15,6 @@ STEPS_AT_MOST = 8000     # of an automatic step: 10 s of the first
 SECONDS_AT_MOST = 60     # of computing, where the duration is not asked for
 TRIAL_STEPS = 20
 STEPS_OF_A_RUN = 1e8     # at most: mbs refuses more
-PROGRESS = re.compile(r"\s*\d+ %  t = \S+ s")
 
 
 def describe(scene):
@@ -86,41 +81,12 @@ def _simulate(scene, implementation, step, duration, more):
 
 
 def _run(arguments):
-    """(exit status, standard output, lines of standard error); its progress is shown meanwhile."""
+    """(exit status, standard output, lines of standard error)"""
     executable = ROOT / program_of()  # an absolute MBS_PROGRAM stays as it is
     if not os.access(executable, os.X_OK):
         raise StudyError(f"{program_of()} is not built yet: run study/setup")
-    ours, its = pty.openpty()  # mbs shows its progress to terminals only
-    with tempfile.TemporaryFile("w+", encoding="utf-8") as out:
-        process = subprocess.Popen([executable, *map(str, arguments)], stdin=subprocess.DEVNULL,
-                                   stdout=out, stderr=its)
-        os.close(its)
-        try:
-            words = _listen(ours)
-        finally:
-            os.close(ours)
-            if sys.exc_info()[0]:
-                process.kill()
-            code = process.wait()
-        out.seek(0)
-        return code, out.read(), words
-
-
-def _listen(terminal):
-    """Lines that came before the other side closed; progress goes to our own terminal instead."""
-    shows, lines, rest = sys.stderr.isatty(), [], ""
-    while True:
-        try:
-            text = os.read(terminal, 4096).decode("utf-8", "replace")
-        except OSError:  # EIO: the other side is closed
-            break
-        *whole, rest = re.split(r"[\r\n]", rest + text)
-        lines += [line for line in whole if line.strip() and not PROGRESS.fullmatch(line)]
-        if shows and PROGRESS.match(rest):
-            print(f"\r{rest[:78]}", end="", file=sys.stderr, flush=True)
-    if shows:
-        print("\r\033[K", end="", file=sys.stderr, flush=True)
-    return lines + ([rest] if rest.strip() else [])
+    done = subprocess.run([executable, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
+    return done.returncode, done.stdout, [line for line in done.stderr.splitlines() if line.strip()]
 
 
 def _last(words):

@@ -80,12 +80,8 @@ def _pair(index, element):
 
 def _facts(description):
     """One line on the size of the scene; what the program does not say is left out."""
-    names = (("variables", "coordinate"), ("constraints", "constraint"),
-             ("degrees_of_freedom", "degree of freedom"))
-    plurals = {"degree of freedom": "degrees of freedom"}
-    counts = [(description.get(key), name) for key, name in names]
-    return ", ".join(f"{count} {name if count == 1 else plurals.get(name, name + 's')}"
-                     for count, name in counts if count is not None)
+    names = {"n = {}": "variables", "m = {}": "constraints", "degrees of freedom: {}": "degrees_of_freedom"}
+    return ", ".join(text.format(description[key]) for text, key in names.items() if description.get(key) is not None)
 
 
 def upward(path):

@@ -9,8 +9,7 @@ import numpy
 from analysis.core.errors import StudyError
 
 CURVES = ("kinetic_energy", "potential_energy", "constraint_violation")
-NUMBERS = b"0123456789+-.eE,"
-LONGEST = 2**24  # bytes of a line: a hundred times what the largest scenes need
+LONGEST = 2**24  # bytes that are read of a line: a hundred times what the largest scenes need
 START_TOLERANCE = 1e-3  # of the scene's extent: a start farther off is another scene's
 
 
@@ -29,16 +28,22 @@ def read(path, scene, frames):
     """About `frames` rows, equally spaced in the file, and its last. The constraint violation of a
     frame is the largest of all rows since the frame before. Raises StudyError."""
     with _opened(path) as file:
-        columns = _header(path, _line(path, file))
+        columns = _header(path, file)
         places, curves = _places(path, columns, scene)
-        rows = _check_rows(path, file, len(columns))
-        file.seek(0)
-        file.readline()
-        times, table, violation = _kept_rows(path, file, _kept(rows, frames), len(columns), [*places, *curves], curves)
+        kept, times, table, violation, largest = _kept(path, file, frames), [], [], [], 0.0
+        for row, values in _rows(path, file, columns):
+            if curves:
+                largest = max(largest, values[curves[-1]])
+            if row in kept:
+                times.append(values[0])
+                table.append(values[[*places, *curves]])
+                violation.append(largest)
+                largest = 0.0
+    table = numpy.array(table)
     positions = table[:, :len(places)].reshape(len(times), len(scene.points), scene.dimension)
-    motion = Motion(times, positions, dict(zip(CURVES, table[:, len(places):].T)))
+    motion = Motion(numpy.array(times), positions, dict(zip(CURVES, table[:, len(places):].T)))
     if curves:
-        motion.curves["constraint_violation"] = violation
+        motion.curves["constraint_violation"] = numpy.array(violation)
     _same_start(path, motion, scene)
     return motion
 
@@ -47,13 +52,9 @@ def read_outputs(path, scene, frames):
     """Motion.outputs from the CSV of `mbs simulate --output`, of the run that `read` read the trajectory
     of: their rows are at the same times. Raises StudyError."""
     with _opened(path) as file:
-        columns = _header(path, _line(path, file))
-        rows = _check_rows(path, file, len(columns))
-        kept = set(_kept(rows, frames))
-        file.seek(0)
-        file.readline()
-        table = numpy.array([_numbers(path, row, line, len(columns))
-                             for row, line in enumerate(_lines(path, file)) if row in kept])
+        columns = _header(path, file)
+        kept = _kept(path, file, frames)
+        table = numpy.array([values for row, values in _rows(path, file, columns) if row in kept])
     return {name: {column: table[:, place] for place, column in enumerate(columns)
                    if name in (column, column.rpartition(".")[0])} for name in scene.outputs}
 
@@ -71,18 +72,8 @@ def _opened(path):
         raise StudyError(f"cannot read {path}: {error.strerror}") from error
 
 
-def _line(path, file):
-    line = file.readline(LONGEST + 1)
-    if len(line) > LONGEST:
-        raise StudyError(f"{path} is no trajectory: it has a line of more than {LONGEST} bytes")
-    return line
-
-
-def _lines(path, file):
-    return iter(lambda: _line(path, file), b"")
-
-
-def _header(path, line):
+def _header(path, file):
+    line = file.readline(LONGEST)
     if not line.strip():
         raise StudyError(f"{path} is empty: it must be the CSV of `mbs simulate --trajectory`")
     columns = line.decode("utf-8", "replace").rstrip("\r\n").split(",")
@@ -116,60 +107,35 @@ def _places(path, columns, scene):
     return [place[name] for name in wanted], [place[name] for name in found]
 
 
-def _check_rows(path, file, columns):
-    """The number of rows, all complete, all of finite numbers."""
-    rows = 0
-    for rows, line in enumerate(_lines(path, file), 1):
-        if line.count(b",") != columns - 1:
-            raise StudyError(f"{path}, line {rows + 1}: {line.count(b',') + 1} values, but the "
-                             f"header has {columns} columns: is the file complete?")
-        odd = line.rstrip(b"\r\n").translate(None, NUMBERS)
-        if odd:
-            values = line.decode("utf-8", "replace").strip().split(",")
-            bad = next(value for value in values if set(value.encode()) - set(NUMBERS))
-            raise StudyError(f"{path}, line {rows + 1}: {bad[:40]!r} is no finite number")
+def _lines(file):
+    """Of the rows below the header. One that is too long comes in pieces, which are no rows."""
+    file.seek(0)
+    file.readline(LONGEST)
+    return iter(lambda: file.readline(LONGEST), b"")
+
+
+def _kept(path, file, frames):
+    """Numbers of the rows to show, the first is 0."""
+    rows = sum(1 for _ in _lines(file))
     if rows < 2:
         raise StudyError(f"{path} has {rows} row(s): a motion needs two at least")
-    return rows
+    return {*range(0, rows, max(1, -(-(rows - 1) // frames))), rows - 1}
 
 
-def _kept(rows, frames):
-    """Indices of the rows to show."""
-    kept = list(range(0, rows, max(1, -(-(rows - 1) // frames))))
-    return kept if kept[-1] == rows - 1 else [*kept, rows - 1]
-
-
-def _kept_rows(path, file, kept, columns, places, curves):
-    """Times (frames), the columns `places` (frames, places) and the constraint violation (frames)
-    of the rows `kept`; `curves` is empty if there is no violation."""
-    times, table = numpy.empty(len(kept)), numpy.empty((len(kept), len(places)))
-    violation = numpy.zeros(len(kept))
-    last, frame = -numpy.inf, 0
-    for row, line in enumerate(_lines(path, file)):
-        t = _numbers(path, row, line.split(b",", 1)[0], 1)[0]
-        if t <= last:
-            raise StudyError(f"{path}, line {row + 2}: the time {t:g} s does not come after "
-                             f"{last:g} s")
-        last = t
-        if curves:  # columns before a place are never split: rows may have thousands
-            text = line.rsplit(b",", columns - curves[-1])[1]
-            violation[frame] = max(violation[frame], _numbers(path, row, text, 1)[0])
-        if row == kept[frame]:
-            times[frame] = t
-            table[frame] = _numbers(path, row, line, columns)[places]
-            frame += 1
-    return times, table, violation
-
-
-def _numbers(path, row, text, count):
-    try:
-        values = numpy.array([float(value) for value in text.split(b",")])
-    except ValueError:
-        values = numpy.empty(0)
-    if len(values) != count or not numpy.isfinite(values).all():
-        raise StudyError(f"{path}, line {row + 2}: not {count} finite number(s), from "
-                         f"{text[:40].decode('utf-8', 'replace').strip()!r} on")
-    return values
+def _rows(path, file, columns):
+    """(number, values) of all rows; StudyError naming the line of one that is not whole or does not come after the one before."""
+    last = -numpy.inf
+    for row, line in enumerate(_lines(file)):
+        try:
+            values = numpy.array(line.split(b","), dtype=float)
+        except ValueError:
+            values = numpy.empty(0)
+        if len(values) != len(columns) or not numpy.isfinite(values).all():
+            raise StudyError(f"{path}, line {row + 2}: not {len(columns)} finite numbers, as the header has columns: is the file complete?")
+        if values[0] <= last:
+            raise StudyError(f"{path}, line {row + 2}: the time {values[0]:g} s does not come after {last:g} s")
+        last = values[0]
+        yield row, values
 
 
 def _same_start(path, motion, scene):
