@@ -1,4 +1,5 @@
 # One `mbs simulate` of the advice as a cell, and its row; what `mbs describe` says of the scene.
+import math
 import resource
 import shlex
 import time
@@ -52,11 +53,12 @@ def advised(command, library, duration):
 
 
 class Runner:
-    """Runs simulations of one scene one after the other, and keeps a row of each. `truth`: where it is known, what a run's
-    series is held against (truth.py)."""
+    """Runs simulations of one scene one after the other, and keeps a row of each. It has the clock of the question: `budget`,
+    s, which began at `began` (of time.monotonic). `truth`: where it is known, what a run's series is held against (truth.py)."""
 
-    def __init__(self, lab, scene, variables, contenders, deadline_us=None):
+    def __init__(self, lab, scene, variables, contenders, deadline_us=None, budget=math.inf, began=None):
         self.lab, self.scene, self.variables, self.truth = lab, scene, variables, None
+        self.budget, self.began = budget, time.monotonic() if began is None else began
         self.contenders = {one.name: one for one in contenders}
         self.deadline = ["--deadline-us", f"{deadline_us:g}"] if deadline_us else []
         self.rows, self.wall, self.processor = [], 0.0, 0.0  # s, of all runs
@@ -89,6 +91,18 @@ class Runner:
         return Pilot(row["step"], row["status"], row["estimate"], row["step_us_median"] or float("nan"), row["reason"])
 
     @property
+    def seconds(self):
+        """Since the question began; runs that are read from files count as when they were made, so that they decide alike."""
+        return time.monotonic() - self.began
+
+    def left(self, share=1.0):
+        """Seconds of a share of the budget."""
+        return share * self.budget - self.seconds
+
+    def tell(self, text):
+        self.lab.tell(f"{self.seconds:.0f} of {self.budget:g} s, {text}" if math.isfinite(self.budget) else text)
+
+    @property
     def waited(self):
         """Share of the time of all runs in which they had no processor: other programs had it."""
         return min(0.9, max(0.0, 1.0 - self.processor / self.wall)) if self.wall > 1.0 else 0.0
@@ -116,8 +130,11 @@ class Runner:
     def _timed(self, cell):
         known, began, used = len(self.lab.names), time.monotonic(), _children()
         record = self.lab.one(cell)
-        if len(self.lab.names) > known and time.monotonic() - began > 0.9 * record.seconds:  # not read from a file
-            self.wall, self.processor = self.wall + record.seconds, self.processor + _children() - used
+        if len(self.lab.names) > known:
+            if time.monotonic() - began > 0.9 * record.seconds:
+                self.wall, self.processor = self.wall + record.seconds, self.processor + _children() - used
+            else:  # read from a file
+                self.began -= record.seconds
         return record
 
 
