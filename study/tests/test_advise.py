@@ -189,6 +189,11 @@ def test_slow_candidates_drop_out_and_close_ones_get_more_rounds():
     assert len(found["b"].rows) == 3  # the rounds tell them apart
 
 
+def test_a_timing_is_short_where_steps_are_dear():
+    assert timing.stretch(20.0, 1e5, 10.0, 0.1) == timing.STRETCH and timing.stretch(1.0, 1e5, 10.0, 0.1) == 1.0
+    assert timing.stretch(20.0, 2e6, 10.0, 0.1) == 0.5 and timing.stretch(20.0, 2e6, -1.0, 0.1) == 0.1
+
+
 def test_a_deadline_is_for_the_99th_percentile():
     assert not race({"a": [1.0] * 5}, p99=12.0, deadline_us=10.0)[2]
     assert race({"a": [1.0] * 5}, p99=9.0, deadline_us=10.0)[2]
@@ -301,13 +306,16 @@ def test_without_the_automatic_tolerance_none_is_made_up():
         found = {"tolerance": 1e-6, "status": "ok", "status_reason": ""} if works else {}
         return records.Record("runs/x", cell.settled().document(), "done" if works else "crashed", "" if works else "SIGSEGV",
                               0.1, ["build/mbs"], {}, found)
-    run = Runner(SimpleNamespace(one=one, names={}), "four-bar:1", 4, [Contender("one/a", "one/a")])
     works = True
+    run = Runner(SimpleNamespace(one=one, names={}), "four-bar:1", 4, [Contender("one/a", "one/a")])
     assert run("search", LOOSE, "one/a", 1e-2, 1.0, 60)["status"] == "ok" and len(asked) == 2
     assert asked[1][asked[1].index("--tolerance") + 1] == "0.001"
+    run("search", SADDLE, "one/a", 5e-3, 1.0, 60)
+    run("search", LOOSE, "one/a", 5e-3, 1.0, 60)
+    assert len(asked) == 4  # the scheme's own run has told it
     works = False
-    row = run("search", LOOSE, "one/a", 1e-2, 1.0, 60)
-    assert (row["status"], row["reason"], row["step_us"]) == ("crashed", "SIGSEGV", None) and len(asked) == 3
+    row = run("search", LOOSE, "one/a", 2e-2, 1.0, 60)
+    assert (row["status"], row["reason"], row["step_us"]) == ("crashed", "SIGSEGV", None) and len(asked) == 5
 
 
 def test_settings_are_served_by_name_and_fit_the_scene():

@@ -136,7 +136,8 @@ def _race(advice, run):
         advice.candidates.append(one)
         if promise > SLOWER * least:
             one.drop(f"promises {promise / least:.2f} times the least time, by pilots and probe")
-    length = timing.stretch(question.duration, least)
+    length = timing.stretch(question.duration, least, run.left(TIMING_SHARE) / (run.slowdown * REPEATS),
+                            LEAST_STEPS * max(one.step for one in advice.candidates if not one.out))
     limit = max(5.0, 1e-5 * run.slowdown * REPEATS * least * length)
 
     def timed(one, number):

@@ -41,7 +41,7 @@ def keep(results, scene, rows, searched):
 
 
 def read(results, name=QUESTIONS):
-    return pandas.read_csv(results / name, compression="xz" if name == SEARCHED else None)
+    return pandas.read_csv(results / name, dtype={"commit": str}, compression="xz" if name == SEARCHED else None)
 
 
 def held(table):

@@ -62,6 +62,7 @@ class Runner:
         self.contenders = {one.name: one for one in contenders}
         self.deadline = ["--deadline-us", f"{deadline_us:g}"] if deadline_us else []
         self.rows, self.wall, self.processor = [], 0.0, 0.0  # s, of all runs
+        self.automatic = {}  # {(scheme, step): the automatic tolerance, m}
 
     def __call__(self, kind, setting, variant, step, duration, seconds, checks="", repeats=REPEATS):
         """The row of a run: kind, setting, implementation, step, outcome, times, command, raw_file. `checks`: EXACT
@@ -74,6 +75,8 @@ class Runner:
             record = self._simulate(kind, variant, step, duration, seconds, words, self.truth if checks == EXACT else None)
         status, reason = of_run(record)
         found = record.output
+        if not setting.changes:
+            self._learn(setting, step, found)
         times, least = found.get("step_us", {}), found.get("least_us") or {}
         row = {"kind": kind, "setting": setting.name, "implementation": variant, "step": step, "duration": duration,
                "status": status, "reason": reason, "estimate": found.get("position_error_estimate"),
@@ -122,10 +125,17 @@ class Runner:
             "--step", f"{step:g}", "--duration", f"{duration:g}", *words), kind, timed=True, seconds=round(seconds, 3), **seen))
 
     def _tolerance(self, setting, variant, step):
-        """(record of a run of one step, which tells the automatic tolerance; what that is loosened to, m, or None)"""
-        record = self._simulate("automatic", variant, step, step, 60, setting.parent.words())
-        found = record.output.get("tolerance")
-        return record, setting.loosened * found if found else None
+        """(record of a run of one step, if that must tell the automatic tolerance; what that is loosened to, m, or None)"""
+        record = None
+        if (setting.scheme, step) not in self.automatic:
+            record = self._simulate("automatic", variant, step, step, 60, setting.parent.words())
+            self._learn(setting, step, record.output)
+        known = self.automatic.get((setting.scheme, step))
+        return record, known and setting.loosened * known
+
+    def _learn(self, setting, step, found):
+        if found.get("tolerance"):
+            self.automatic[setting.scheme, step] = found["tolerance"]
 
     def _timed(self, cell):
         known, began, used = len(self.lab.names), time.monotonic(), _children()

@@ -10,6 +10,7 @@ SLOWER = (2.0, 1.25, 1.1)  # this times the best one's time drops out after the 
 STRETCH = 2.0              # simulated s of a timing: past singular positions, as far as there are such
 LOST_AT_MOST = 4           # times a candidate's step may become shorter
 SHORTEST = 0.05            # wall s of its steps at least, if the whole duration has as many
+TIMINGS = 10               # so many are expected
 
 
 @dataclass
@@ -44,9 +45,10 @@ class Candidate:
         self.reason, self.late_us = f"99th percentile {p99_us:.3g} us{when}: beyond the deadline", p99_us
 
 
-def stretch(duration, us_per_second):
-    """Simulated time of a timing."""
-    return min(duration, max(STRETCH, 1e6 * SHORTEST / max(us_per_second, 1.0)))
+def stretch(duration, us_per_second, seconds, least):
+    """Simulated time of a timing of which all runs may take so many seconds; `least` of it, however long that takes."""
+    wanted = min(duration, max(STRETCH, 1e6 * SHORTEST / max(us_per_second, 1.0)))
+    return max(least, min(wanted, 1e6 * seconds / TIMINGS / us_per_second))
 
 
 def race(candidates, run, left, deadline_us=None, shorter=False):
