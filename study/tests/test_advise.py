@@ -15,17 +15,17 @@ from analysis.core.outcomes import FINISHED
 from study.core.contender import Contender
 from study.core.setting import Setting
 from study.tools.advise import answer, evidence, timing
-from study.tools.advise.advice import Advice, Question
+from study.tools.advise.advice import Advice, Question, advise as seek
 from study.tools.advise.choice import Next, Pilot, apart, by_order, counts, local_order, most, next_at, next_step, tidy
-from study.tools.advise.exhaustive import fastest
+from study.tools.advise.exhaustive import fastest, search as exhaustive
 from study.tools.advise.helps import what_helps
 from study.tools.advise.main import duration
 from study.tools.advise.probe import find_speeds, named
-from study.tools.advise.runner import REPEATS, Runner, advised as advised_line, typed
+from study.tools.advise.runner import EXACT, HALVED, REPEATS, Runner, advised as advised_line, typed
 from study.tools.advise.search import Found, Search
 from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.truth import Truth
-from study.tools.advise.validate import _reference
+from study.tools.advise.validate import _compare, _reference
 from study.tools.advise.verify import verify
 from study.tests.conftest import ROOT, study
 
@@ -227,6 +227,50 @@ def asked(**more):
     given = {name: more.pop(name) for name in (*question, "step") if name in more}
     return Advice(Question(**question | given), **({"described": {}, "variants": {"a/b": {"settings": []}}, "speeds": {"a/b": 1.0},
                                                     "pilot_duration": 1.0} | more))
+
+
+class Invented(Runs):
+    """A scene on which errors are a power of the step, and which costs what its setting and its implementation cost."""
+
+    DESCRIBED = {"scheme": {"take": "penalty"}, "terms": {"driven_constraints": 0, "factors": 0, "damping": False},
+                 "driven_points": 0, "driven_vectors": 0,
+                 "recommendation": [{"implementation": name, "step_us": us} for name, us in (("one/a", 2.0), ("two/b", 3.0))]}
+    VARIANTS = {"one/a": {"settings": ["saddle-point"], "dense": False, "library": "none"},
+                "two/b": {"settings": ["saddle-point", "rattle", "multistep6"], "dense": False, "library": "none"}}
+    ERRORS, COSTS = {"penalty": 40.0, "saddle-point": 10.0}, {"penalty": 1.0, "saddle-point": 1.5}
+    seconds, waited = 1.0, 0.0
+
+    def __init__(self):
+        super().__init__(None)
+        self.rows = []
+
+    def __call__(self, kind, setting, name, step, duration, limit, checks="", repeats=REPEATS):
+        error = self.ERRORS.get(setting.scheme, 1e3) * step**setting.order * (1 + 2 * len(setting.changes))
+        us = {"one/a": 2.0, "two/b": 3.0}[name] * self.COSTS.get(setting.scheme, 4.0) * (1 - 0.1 * len(setting.changes))
+        self.rows.append({"kind": kind, "setting": setting.name, "implementation": name, "step": step, "duration": duration,
+                          "status": "ok", "reason": "", "estimate": error if checks == HALVED else None,
+                          "exact": error if checks == EXACT else None, "step_us": us, "step_us_median": us, "step_us_p99": 2 * us,
+                          "deadline_misses": None, "steps": round(duration / step), "penalty": 1e7, "tolerance": 1e-9,
+                          "command": f"build/mbs simulate bar --step {step:g} --duration {duration:g}", "raw_file": "raw"})
+        return self.rows[-1]
+
+    def pilot(self, setting, name, step, duration, limit):
+        return Pilot(step, "ok", self("pilots", setting, name, step, duration, limit, HALVED)["estimate"], 1.0)
+
+
+@pytest.mark.parametrize("error", [1e-2, 1e-4, 1e-8])
+def test_on_an_invented_scene_the_advice_is_about_the_best_of_an_exhaustive_search(error):
+    run, duration = Invented(), 2.0
+    advice = seek(Question("bar", error, duration, None, 45.0), catalogue(), run.DESCRIBED, run.VARIANTS, run)
+    told = answer.as_json(advice, run, "folder")
+    assert told["met"] and told["advice"]["error"]["estimate"] <= error and not told["cut_short"]
+    assert f"--step {told['advice']['step']:g} --duration 2\n" in answer.text(told)
+    found, speeds = exhaustive(run, run.VARIANTS, run.DESCRIBED, duration, [error])
+    assert list(speeds) == ["one/a", "two/b"]
+    row = _compare(error, duration, told, run, run.VARIANTS, found, speeds)
+    assert row["meets"] and 1.0 <= row["ratio"] <= evidence.MOST and row["best_us_per_second"] > 0
+    assert _compare(error, duration, told | {"met": False, "advice": None, "why_not": "no"}, run, run.VARIANTS, found, speeds)[
+        "ratio"] is None
 
 
 def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=None, plain=()):
