@@ -158,8 +158,8 @@ void add_simulate_command(CLI::App& app, int& status) {
                       "count the steps that take longer, in microseconds");
   command
       ->add_option("--repeats", options->repeats,
-                   "simulate R times, and tell each step's least time too: what the machine "
-                   "interrupts falls out")
+                   "run the same motion R times. The summary then also has times in which every "
+                   "step counts with the least of its R: interruptions hardly reach these")
       ->capture_default_str();
   command->add_flag("--json", options->json, "print the summary as JSON");
   command->callback([options, &status] { status = simulate(*options); });

@@ -10,10 +10,11 @@ namespace mbs {
 namespace {
 
 constexpr const char* kVary =
-    "a number of the scene and its values, repeatable (the full grid, the last varies fastest). "
-    "PATH: keys, and items by name or index, as springs/s/stiffness, points/B/velocity/0, "
-    "gravity/1 (in names ~1 stands for /), or the name of a parameter. RANGE: a:b:K (K values from "
-    "a to b), a:b:K:log, or v1,v2,...; with --sample uniform:a:b or normal:mean:deviation";
+    "a number of the scene and its values. May be repeated: all combinations are run, and the last "
+    "PATH varies fastest. PATH is the name of a parameter, or keys with items by name or index: "
+    "springs/s/stiffness, points/B/velocity/0, gravity/1 (in names ~1 stands for /). RANGE is "
+    "a:b:K (K values from a to b), a:b:K:log or v1,v2,...; with --sample also uniform:a:b or "
+    "normal:mean:deviation";
 
 }  // namespace
 
@@ -34,9 +35,11 @@ void add_sweep_command(CLI::App& app, int& status) {
   command->add_flag("--half-step", options->half_step,
                     "also simulate with half the step, and estimate the error by the difference");
   command->add_option("--sample", options->sampling.count,
-                      "as many random lanes, for each point of the grid of what is not sampled")
+                      "draw N sets of all numbers whose RANGE is a distribution. The other numbers "
+                      "make a grid, and each of its points gets these N sets")
       ->check(CLI::Range(1L, kMostLanes));
-  command->add_option("--seed", options->sampling.seed, "of --sample")->capture_default_str();
+  command->add_option("--seed", options->sampling.seed, "of the random numbers of --sample")
+      ->capture_default_str();
   command->add_flag("--sobol", options->sampling.sobol,
                     "sample by a Sobol sequence, shifted by the seed, instead of at random");
   std::vector<CLI::Option*> apart;  // what the rows do not depend on

@@ -36,13 +36,6 @@ class Next:
     reason: str = ""
 
 
-def interval(estimate, order, shown):
-    """(least, most) error of a run whose estimate assumes `order` while halving the step showed another one: that of
-    all orders from SLACK below the shown one on, but not below 1."""
-    difference = estimate * (1 - 2.0**-order)  # to the run with half the step
-    return difference, difference / (1 - 2.0 ** -min(max(shown - SLACK, 1.0), order))
-
-
 def halvings(pilots):
     """{step: log2(estimate there / estimate at half of it)}, where both runs are valid."""
     valid = {pilot.step: max(pilot.estimate, 1e-300) for pilot in pilots if pilot.valid}
@@ -58,43 +51,52 @@ def counts(step, pilots, error=0.0):
     """Whether the estimate at a step counts: the halving that begins there, or if that is not known the one
     that ends there, shows an order of at least 1, or leaves both estimates below a hundredth of `error` (a
     motion that steps hardly change shows no order)."""
-    small = {pilot.step for pilot in pilots if pilot.valid and pilot.estimate <= NEGLIGIBLE * error}
-    begins = ends = None
-    for at, order in halvings(pilots).items():
-        shown = order >= 1 or (at in small and any(close(at / 2, other) for other in small))
-        begins = shown if close(at, step) else begins
-        ends = shown if close(at, 2 * step) else ends
-    return bool(ends if begins is None else begins)
+    orders = halvings(pilots)
+    at = next((at for start in (step, 2 * step) for at in orders if close(at, start)), None)
+    if at is None:
+        return False
+    small = [pilot.step for pilot in pilots if pilot.valid and pilot.estimate <= NEGLIGIBLE * error]
+    return orders[at] >= 1 or all(any(close(one, other) for other in small) for one in (at, at / 2))
 
 
 def local_order(step, pilots, order):
     """The order observed at a step or nearest above it, or below it; the scheme's own where none is."""
     found = halvings(pilots)
-    longer = [at for at in found if at > step * 0.999]
-    shorter = [at for at in found if at <= step * 0.999]
-    at = min(longer) if longer else max(shorter) if shorter else None
+    at = min(found, key=lambda at: (at <= step * 0.999, abs(at - step)), default=None)
     return order if at is None else min(max(found[at], 1.0), order + 2.0)
+
+
+def trusted(step, pilots, order):
+    """The order that is reckoned with at a step: SLACK below the observed one, but at least 1 and at most the scheme's."""
+    return min(max(local_order(step, pilots, order) - SLACK, 1.0), order)
+
+
+def apart(estimate, order):
+    """How far a run is from the one with half the step, m: of that its estimate is made, by the scheme's order."""
+    return estimate * (1 - 2.0**-order)
+
+
+def by_order(step, estimate, pilots, order):
+    """The largest error of a run with this estimate, m, if only the order that its setting shows is known."""
+    return apart(estimate, order) / (1 - 2.0 ** -trusted(step, pilots, order))
 
 
 def most(step, estimate, pilots, order, error):
     """The largest error, m, of a run with this estimate: its distance to the run with half the step, and what that one's
     may be, of which pilots tell, of the order that they show where theirs is longer; where there are none, by that order
-    alone. None where they show none."""
+    alone. Infinite where they show none."""
     halves = [pilot for pilot in pilots if pilot.valid and 0.499 * step < pilot.step < 0.9 * step]
     if halves:
         half = min(halves, key=lambda pilot: pilot.step)
-        known = most(half.step, half.estimate, pilots, order, error)
-        if known is not None:
-            shown = min(max(local_order(half.step, pilots, order) - SLACK, 1.0), order)
-            return estimate * (1 - 2.0**-order) + known * min(1.0, step / 2 / half.step) ** shown
-    shown = counts(step, pilots, error)
-    return interval(estimate, order, local_order(step, pilots, order))[1] if shown else None
+        rest = most(half.step, half.estimate, pilots, order, error)
+        if math.isfinite(rest):
+            return apart(estimate, order) + rest * min(1.0, step / 2 / half.step) ** trusted(half.step, pilots, order)
+    return by_order(step, estimate, pilots, order) if counts(step, pilots, error) else math.inf
 
 
 def known(pilot, pilots, error, order):
-    """`most` of a pilot; infinite where it is not shown."""
-    found = most(pilot.step, pilot.estimate, pilots, order, error) if pilot.valid else None
-    return math.inf if found is None else found
+    """`most` of a pilot; infinite for one that is lost."""
+    return most(pilot.step, pilot.estimate, pilots, order, error) if pilot.valid else math.inf
 
 
 def enough(pilots, error, order):
@@ -178,7 +180,7 @@ def _shorter(pilots, error, order, duration):
         halvings_left = math.log2(valid[0].estimate / error) / local_order(least, pilots, order)
         factor = min(JUMP, 2.0 ** max(1, math.floor(halvings_left)))
     if not possible(least / factor, duration):
-        lost = max(pilots, key=lambda pilot: -pilot.step)
+        lost = min(pilots, key=lambda pilot: pilot.step)
         return Next(reason=f"no step down to {least:g} s: {lost.reason or lost.status}")
     return Next(step=least / factor)
 

@@ -3,6 +3,7 @@ import json
 import math
 import re
 import sys
+import time
 from pathlib import Path
 
 from analysis.core.errors import StudyError
@@ -24,37 +25,39 @@ def advise(arguments):
     options = _parser().parse_args(arguments)
     need_modules("yaml", "pandas")
     if options.validate:
-        _nothing_beside_validate(options)
-        need_modules()
-        from study.tools.advise.validate import BEGUN, questions, validate
-        questions(options.scene)
-        results = options.results or DEFAULT / "validation"
-        need_own(results, BEGUN)
-        writable(results)
-        return validate(options, ask, runner_of, results)
+        return _validate(options)
     if options.results:
         need_own(options.results)
     if len(options.scene) != 1 or options.error is None:
         raise StudyError("one SCENE and --error E are needed (see study/advise --help)")
-    answer, _ = ask(options)
     from study.tools.advise.answer import text
+    answer = ask(options)
     print(json.dumps(answer, indent=1) if options.json else text(answer))
     return 0 if answer["met"] else 1
 
 
-def _nothing_beside_validate(options):
-    given = [name for name in OF_A_QUESTION if getattr(options, name.strip("-").replace("-", "_").lower())]
+def _validate(options):
+    given = [name for name in OF_A_QUESTION if getattr(options, name.strip("-").replace("-", "_"))]
     if given:
         raise StudyError(f"--validate asks questions of its own: {', '.join(given)} "
                          f"do{'es' * (len(given) == 1)} not go with it, only --only and --results do")
+    need_modules()
+    from study.tools.advise.evidence import BEGUN
+    from study.tools.advise.validate import questions, validate
+    questions(options.scene)  # before anything is written
+    results = options.results or DEFAULT / "validation"
+    need_own(results, BEGUN)
+    writable(results)
+    return validate(options, ask, runner_of, results)
 
 
 def ask(options, folder=None):
-    """(answer, Advice) of one question; its records and advice.json are kept."""
+    """The answer to one question; its records and advice.json are kept."""
     from study.tools.advise.advice import Question, advise as seek  # these need the modules
     from study.tools.advise.answer import as_json
     from study.tools.advise.runner import REPEATS, describe, scene_name
     from study.tools.advise.settings import catalogue
+    began = time.monotonic()
     known = listed()
     names = select(known, options.only)
     scene = scene_name(options.scene[0])
@@ -67,14 +70,15 @@ def ask(options, folder=None):
               "budget": question.budget, "step": question.step, "repeats": REPEATS}
     folder = folder or options.results or DEFAULT / _folder(inputs, names)
     writable(folder)
+    spent = time.monotonic() - began
     with locks.only_one(folder), locks.only_one_study(options.wait, say):
-        variants, runner = runner_of(folder, inputs, described["variables"], names, known, question.deadline_us,
-                                     options.json)
-        advice = seek(question, catalogue(), described, variants, runner, runner.lab.tell)
-        runner.lab.progress.end()
-        answer = as_json(advice, runner, described, variants, folder)
+        clock = {"budget": question.budget, "began": time.monotonic() - spent}  # without the time of waiting
+        run = runner_of(folder, inputs, described["variables"], names, known, question.deadline_us, options.json, **clock)
+        advice = seek(question, catalogue(), described, {name: known.variants[name] for name in names}, run)
+        run.lab.progress.end()
+        answer = as_json(advice, run, folder)
         write_json(folder / "advice.json", answer)
-    return answer, advice
+    return answer
 
 
 def say(text):
@@ -82,22 +86,20 @@ def say(text):
     print(text, file=sys.stderr, flush=True)
 
 
-def runner_of(folder, inputs, variables, names, known, deadline_us=None, quiet=False):
-    """({name: what `mbs list --json` says of a variant that takes part}, Runner)"""
+def runner_of(folder, inputs, variables, names, known, deadline_us=None, quiet=False, **clock):
+    """The Runner of a scene and its records in `folder`; `clock`: `budget` and `began`."""
     from study.tools.advise.runner import Runner  # these need the modules
     from study.tools.shelf import ToolLab, open_shelf
     pairs = profiles.load("quick", []).blas
     context = context_of(Contender(CONTROL.name, CONTROL.variant, usable(known, pairs["all"])))
     lab = ToolLab(open_shelf(folder, "advise", context, names, question=inputs), "advise", "runs", quiet=quiet)
-    return ({name: known.variants[name] for name in names},
-            Runner(lab, inputs["scene"], variables, on_usual_pairs(known, pairs, names), deadline_us))
+    return Runner(lab, inputs["scene"], variables, on_usual_pairs(known, pairs, names), deadline_us, **clock)
 
 
 def _parser():
     parser = Parser(prog="study/advise", description="Which implementation, step and settings "
                     "simulate SCENE with positions as accurate as E, in the least time? Runs pilots of "
-                    "that very scene, under a minute for four-bar:40; exit status 1 if no setting is "
-                    "good enough.")
+                    "that very scene; takes about a minute. Exit status 1: no setting is good enough.")
     parser.add_argument("scene", nargs="*", metavar="SCENE", help="four-bar:N, one of mbs list --scenes, or a JSON file; "
                         "with --validate kinds of its list and any scenes")
     parser.add_argument("--error", type=positive, metavar="E",
@@ -105,18 +107,18 @@ def _parser():
     parser.add_argument("--deadline-us", type=positive, metavar="D",
                         help="99 %% of the steps must be done within D microseconds")
     parser.add_argument("--step", type=seconds, metavar="S",
-                        help="only steps of S seconds, also as a fraction (1/60): for a loop with a fixed frame. A "
-                        "frame of 1/60 s is one step of 1/60 s, or k steps of 1/(60 k) s, each of which then has a "
-                        "k-th of the frame's time as its deadline")
+                        help="only steps of S seconds, also as a fraction (1/60): for a loop with a fixed frame. If a frame "
+                        "takes k steps, give a k-th of it (1/240 for four of them), and a k-th of its time as --deadline-us")
     parser.add_argument("--duration", type=positive, metavar="T",
                         help=f"simulated time ({DURATION:g} s, or up to where the drivers end)")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME",
                         help="only these implementations (folder or folder/variant)")
     parser.add_argument("--budget", type=positive, metavar="S",
-                        help=f"for pilots and timings ({BUDGET:g} s); what is left out then is said")
+                        help=f"seconds for all pilots and timings ({BUDGET:g}). The answer says what did not fit")
     parser.add_argument("--json", action="store_true", help="print everything as JSON (study/tools/advise/README.md)")
     parser.add_argument("--results", type=directory, metavar="DIR",
-                        help="where raw files are kept (results/local/advice/, one folder a question)")
+                        help="where raw files are kept (results/local/advice/, one folder a question); with --validate its "
+                        "tables and page, too")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
     parser.add_argument("--validate", action="store_true", help="hold the advice against an exhaustive "
                         "search on families of mechanisms and standard problems, or those named; some minutes a mechanism")
@@ -126,9 +128,7 @@ def _parser():
 def seconds(text):
     """A number or a fraction of numbers; ValueError, which argparse tells, for others."""
     over, _, under = text.partition("/")
-    if not under:
-        return positive(text)
-    return positive(str(positive(over) / positive(under)))
+    return positive(str(positive(over) / positive(under))) if under else positive(text)
 
 
 def _need_possible(question):

@@ -1,4 +1,5 @@
 # One `mbs simulate` of the advice as a cell, and its row; what `mbs describe` says of the scene.
+import math
 import resource
 import shlex
 import time
@@ -52,14 +53,16 @@ def advised(command, library, duration):
 
 
 class Runner:
-    """Runs simulations of one scene one after the other, and keeps a row of each. `truth`: where it is known, what a run's
-    series is held against (truth.py)."""
+    """Runs simulations of one scene one after the other, and keeps a row of each. It has the clock of the question: `budget`,
+    s, which began at `began` (of time.monotonic). `truth`: where it is known, what a run's series is held against (truth.py)."""
 
-    def __init__(self, lab, scene, variables, contenders, deadline_us=None):
+    def __init__(self, lab, scene, variables, contenders, deadline_us=None, budget=math.inf, began=None):
         self.lab, self.scene, self.variables, self.truth = lab, scene, variables, None
+        self.budget, self.began = budget, time.monotonic() if began is None else began
         self.contenders = {one.name: one for one in contenders}
         self.deadline = ["--deadline-us", f"{deadline_us:g}"] if deadline_us else []
         self.rows, self.wall, self.processor = [], 0.0, 0.0  # s, of all runs
+        self.automatic = {}  # {(scheme, step): the automatic tolerance, m}
 
     def __call__(self, kind, setting, variant, step, duration, seconds, checks="", repeats=REPEATS):
         """The row of a run: kind, setting, implementation, step, outcome, times, command, raw_file. `checks`: EXACT
@@ -72,6 +75,8 @@ class Runner:
             record = self._simulate(kind, variant, step, duration, seconds, words, self.truth if checks == EXACT else None)
         status, reason = of_run(record)
         found = record.output
+        if not setting.changes:
+            self._learn(setting, step, found)
         times, least = found.get("step_us", {}), found.get("least_us") or {}
         row = {"kind": kind, "setting": setting.name, "implementation": variant, "step": step, "duration": duration,
                "status": status, "reason": reason, "estimate": found.get("position_error_estimate"),
@@ -87,6 +92,18 @@ class Runner:
     def pilot(self, setting, variant, step, duration, seconds):
         row = self("pilots", setting, variant, step, duration, seconds, checks=HALVED)
         return Pilot(row["step"], row["status"], row["estimate"], row["step_us_median"] or float("nan"), row["reason"])
+
+    @property
+    def seconds(self):
+        """Since the question began; runs that are read from files count as when they were made, so that they decide alike."""
+        return time.monotonic() - self.began
+
+    def left(self, share=1.0):
+        """Seconds of a share of the budget."""
+        return share * self.budget - self.seconds
+
+    def tell(self, text):
+        self.lab.tell(f"{self.seconds:.0f} of {self.budget:g} s, {text}" if math.isfinite(self.budget) else text)
 
     @property
     def waited(self):
@@ -108,16 +125,26 @@ class Runner:
             "--step", f"{step:g}", "--duration", f"{duration:g}", *words), kind, timed=True, seconds=round(seconds, 3), **seen))
 
     def _tolerance(self, setting, variant, step):
-        """(record of a run of one step, which tells the automatic tolerance; what that is loosened to, m, or None)"""
-        record = self._simulate("automatic", variant, step, step, 60, setting.parent.words())
-        found = record.output.get("tolerance")
-        return record, setting.loosened * found if found else None
+        """(record of a run of one step, if that must tell the automatic tolerance; what that is loosened to, m, or None)"""
+        record = None
+        if (setting.scheme, step) not in self.automatic:
+            record = self._simulate("automatic", variant, step, step, 60, setting.parent.words())
+            self._learn(setting, step, record.output)
+        known = self.automatic.get((setting.scheme, step))
+        return record, known and setting.loosened * known
+
+    def _learn(self, setting, step, found):
+        if found.get("tolerance"):
+            self.automatic[setting.scheme, step] = found["tolerance"]
 
     def _timed(self, cell):
         known, began, used = len(self.lab.names), time.monotonic(), _children()
         record = self.lab.one(cell)
-        if len(self.lab.names) > known and time.monotonic() - began > 0.9 * record.seconds:  # not read from a file
-            self.wall, self.processor = self.wall + record.seconds, self.processor + _children() - used
+        if len(self.lab.names) > known:
+            if time.monotonic() - began > 0.9 * record.seconds:
+                self.wall, self.processor = self.wall + record.seconds, self.processor + _children() - used
+            else:  # read from a file
+                self.began -= record.seconds
         return record
 
 

@@ -10,6 +10,7 @@ SLOWER = (2.0, 1.25, 1.1)  # this times the best one's time drops out after the 
 STRETCH = 2.0              # simulated s of a timing: past singular positions, as far as there are such
 LOST_AT_MOST = 4           # times a candidate's step may become shorter
 SHORTEST = 0.05            # wall s of its steps at least, if the whole duration has as many
+TIMINGS = 10               # so many are expected
 
 
 @dataclass
@@ -19,34 +20,35 @@ class Candidate:
     implementation: str
     step: float
     rows: list = field(default_factory=list)
-    reason: str = ""  # why it dropped out
-    out: bool = False
-    slower: bool = False  # than others as they were then: that is why it is out
-    kept: bool = False  # it is timed in every round, however slow
-    late_us: float = 0.0  # its 99th percentile, where that is why it is out
+    reason: str = ""       # why it dropped out
+    slower: bool = False   # than others as they were then: that is why
+    late_us: float = 0.0   # its 99th percentile, where that is why
+    kept: bool = False     # it is timed in every round, however slow
 
-    def times(self, key="step_us"):
-        return [row[key] for row in self.rows if row[key] is not None]
+    @property
+    def out(self):
+        return bool(self.reason)
 
     def us_per_second(self):
         """(median, least, most) over the rounds of the time of a simulated second."""
-        found = [value / self.step for value in self.times()]
+        found = [row["step_us"] / self.step for row in self.rows]
         return (median(found), min(found), max(found)) if found else (math.inf,) * 3
 
     def p99_us(self):
         """Median over the rounds."""
-        return median(self.times("step_us_p99")) if self.rows else math.inf
+        return median(row["step_us_p99"] for row in self.rows) if self.rows else math.inf
 
-    def drop(self, reason, late_us=0.0):
-        self.out, self.reason, self.late_us = True, reason, late_us
+    def drop(self, reason):
+        self.reason = reason
 
     def drop_late(self, p99_us, when=""):
-        self.drop(f"99th percentile {p99_us:.3g} us{when}: beyond the deadline", p99_us)
+        self.reason, self.late_us = f"99th percentile {p99_us:.3g} us{when}: beyond the deadline", p99_us
 
 
-def stretch(duration, us_per_second):
-    """Simulated time of a timing."""
-    return min(duration, max(STRETCH, 1e6 * SHORTEST / max(us_per_second, 1.0)))
+def stretch(duration, us_per_second, seconds, least):
+    """Simulated time of a timing of which all runs may take so many seconds; `least` of it, however long that takes."""
+    wanted = min(duration, max(STRETCH, 1e6 * SHORTEST / max(us_per_second, 1.0)))
+    return max(least, min(wanted, 1e6 * seconds / TIMINGS / us_per_second))
 
 
 def race(candidates, run, left, deadline_us=None, shorter=False):
@@ -54,12 +56,13 @@ def race(candidates, run, left, deadline_us=None, shorter=False):
     there was time for all; slow ones have dropped out, with the reason. `shorter`: a candidate that is lost, as its pilot
     covered less of the motion, gets a shorter step."""
     for number in range(1, ROUNDS + TIE_BREAKS + 1):
-        running = [one for one in candidates if not one.out]
+        running = _running(candidates)
         if number > ROUNDS and (len(running) < 2 or decided(running)):
             break
         for one in running:
             if left() <= 0 and any(other.rows for other in candidates):
-                _not_timed(candidates)
+                for other in _running(candidates):
+                    other.reason = "" if other.rows else "no time was left to time it"
                 return False
             row = run(one, number)
             for _ in range(LOST_AT_MOST if shorter else 0):
@@ -77,27 +80,24 @@ def race(candidates, run, left, deadline_us=None, shorter=False):
     return True
 
 
-def _not_timed(candidates):
-    for one in candidates:
-        if not one.out and not one.rows:
-            one.drop("no time was left to time it")
+def _running(candidates):
+    return [one for one in candidates if not one.out]
 
 
 def drop_slow(candidates, factor, number):
-    running = [one for one in candidates if not one.out]
+    running = _running(candidates)
     best = min((one.us_per_second()[0] for one in running), default=math.inf)
     for one in running:
         ratio = one.us_per_second()[0] / best
         if ratio > factor and not one.kept:
-            one.drop(f"{ratio:.2f} times slower after round {number}")
-            one.slower = True
+            one.reason, one.slower = f"{ratio:.2f} times slower after round {number}", True
 
 
 def take_back(candidates):
     """The timed ones that only were slower: what beat them has become slower itself."""
     for one in candidates:
         if one.slower and one.rows:
-            one.out, one.slower, one.reason = False, False, ""
+            one.slower, one.reason = False, ""
 
 
 def decided(running):
@@ -108,8 +108,7 @@ def decided(running):
 
 def ranked(candidates, deadline_us=None):
     """Those that may be advised, fastest first; a 99th percentile beyond the deadline is a reason to drop."""
-    for one in candidates:
-        if deadline_us and not one.out and one.p99_us() > deadline_us:
+    for one in _running(candidates):
+        if deadline_us and one.p99_us() > deadline_us:
             one.drop_late(one.p99_us())
-    return sorted((one for one in candidates if not one.out and one.rows),
-                  key=lambda one: one.us_per_second()[0])
+    return sorted((one for one in _running(candidates) if one.rows), key=lambda one: one.us_per_second()[0])

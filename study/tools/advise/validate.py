@@ -1,20 +1,17 @@
 # study/advise --validate: the advice against an exhaustive search, on families of mechanisms and standard problems.
+import math
 from argparse import Namespace
 from pathlib import Path
 
-import pandas
-
 from analysis.core.errors import StudyError
-from analysis.core.files import write, write_text
-from analysis.core.outcomes import FINISHED
-from analysis.core.site import template
 from study.core import locks
-from study.core.setting import Setting, read_settings
+from study.core.setting import Setting
 from study.core.studyset import listed, select
-from study.tools.advise import timing
-from study.tools.advise.advice import SLOWER, probe
+from study.tools.advise import evidence, timing
+from study.tools.advise.advice import SLOWER
+from study.tools.advise.exhaustive import everything, fastest, meets, search
 from study.tools.advise.runner import EXACT, describe, scene_name
-from study.tools.advise.settings import catalogue, fits, serving
+from study.tools.advise.settings import serving
 from study.tools.advise.truth import FIRST_STEP, Truth
 
 PROBLEMS = "harness/scenes/problems"
@@ -32,12 +29,7 @@ SCENES = {  # (kind, s): scenes
     ("large, n about 2000", 1): ("tree:1000", "star:500", "ladder:500")}
 OTHERS, OTHERS_DURATION = "other scenes", 4.0  # kind; s
 SHARES = (1e-2, 1e-3, 1e-4)  # of the scene's length (describe: judged_length): the errors that are asked for
-CERTAIN = 0.1     # of an error: how well the motion must be known
-BEGUN = {".lock", "searched.csv", "validation.csv", "validation.html", "scenes"}  # its folder
-LEAST_STEPS, MOST_STEPS, RATIO = 20, 2e5, 2**-0.5  # of a run of the search; of a step to the next longer one
-NEAR = 1.5        # settings this times the fastest one's time, by one implementation each, are timed with all
-MOST, LATEST = 1.3, 60.0  # times the best found that an advised run may take; s, of an answer
-TOO_LONG = 20.0   # s, of a run of the search
+CERTAIN = 0.1             # of an error: how well the motion must be known
 ROUNDS_AT_MOST = 600.0    # s of timing a question
 
 
@@ -45,37 +37,33 @@ def validate(options, ask, runner_of, results):
     """`ask` and `runner_of` are those of main.py, which calls this. `options.scene`: only these; empty: all."""
     known = listed()
     names = select(known, options.only)
-    chosen = questions(options.scene)
-    rows, searched, unknown = [], [], []
+    variants = {name: known.variants[name] for name in names}
     with locks.only_one(results):
-        for kind, scene, duration in chosen:
+        for kind, scene, duration in questions(options.scene):
             folder = results / "scenes" / Path(scene).stem.replace(":", "-")
             described = describe(scene)
             errors = [float(f"{share * described['judged_length']:.2g}") for share in SHARES]
             with locks.only_one_study(options.wait):
-                variants, run = runner_of(folder, {"scene": scene, "duration": duration}, described["variables"], names, known)
-                if not scene.startswith("four-bar"):  # of which the exact motion is known
-                    run.lab.tell(f"{scene}: reference")
+                run = runner_of(folder, {"scene": scene, "duration": duration}, described["variables"], names, known)
+                if not scene.startswith("four-bar:"):  # of which the exact motion is known
+                    run.tell(f"{scene}: reference")
                     run.truth = Truth(run.lab, scene, described, run.contenders[_reference(described, variants, run)],
                                       duration, CERTAIN * min(errors))
                 asked = [error for error in errors if not run.truth or run.truth.uncertainty <= CERTAIN * error]
-                unknown += [f"{scene} at {error:g} m" for error in errors if error not in asked]
-                found, speeds = search(run, variants, described, duration, asked, scene) if asked else ([], {})
-            searched += [{"scene": scene} | row for row in found]
-            for error in asked:
-                question = Namespace(scene=[scene], error=error, duration=duration, deadline_us=None, only=options.only,
+                found, speeds = search(run, variants, described, duration, asked) if asked else ([], {})
+            rows = [{"kind": kind, "n": described["variables"], "error": error, "asked": error in asked}
+                    | evidence.origin(run.lab.set.facts["context"]) for error in errors]
+            for row in (row for row in rows if row["asked"]):
+                question = Namespace(scene=[scene], error=row["error"], duration=duration, deadline_us=None, only=options.only,
                                      budget=None, step=None, results=None, wait=options.wait, json=False)
-                answer, advice = ask(question, folder=folder / f"error-{error:g}")
+                answer = ask(question, folder=folder / f"error-{row['error']:g}")
                 with locks.only_one_study(options.wait):
-                    rows.append({"kind": kind, "n": described["variables"]}
-                                | _compare(scene, error, duration, answer, advice, run, variants, found, speeds))
-                write_results(results, rows, searched, unknown)
+                    row |= _compare(row["error"], duration, answer, run, variants, found, speeds)
+            evidence.keep(results, scene, rows, found)
             run.lab.progress.end()
-    if not rows:
-        raise StudyError(f"no motion is known well enough to ask a question: {', '.join(unknown)}")
-    held, sentence = verdict(pandas.DataFrame(rows), unknown)
-    print(f"{sentence}\npage: {results / 'validation.html'}")
-    return 0 if held else 1
+    table = evidence.read(results)
+    print(f"{evidence.sentence(table)}\npage: {results / evidence.PAGE}")
+    return 0 if evidence.held(table[table.asked]).all(axis=None) and table.asked.any() else 1
 
 
 def questions(asked):
@@ -92,129 +80,36 @@ def _reference(described, variants, run):
     """Who simulates the reference: the fastest by the rule that serves both schemes, and the scene, of which the rule knows
     nothing."""
     form = Setting("saddle-point")
-    able = sorted((one["step_us"], one["implementation"]) for one in described["recommendation"]
-                  if one["implementation"] in serving(form, variants))
-    names = [name for _, name in able]
-    return next((name for name in names[:-1] if run("serves", form, name, FIRST_STEP, FIRST_STEP, 60)["status"]
-                 != "unsupported"), names[-1])
+    foreseen = {one["implementation"]: one["step_us"] for one in described["recommendation"]}
+    for name in sorted(serving(form, variants), key=lambda name: foreseen.get(name, math.inf)):
+        if run("serves", form, name, FIRST_STEP, FIRST_STEP, 60)["status"] != "unsupported":
+            return name
+    raise StudyError(f"{run.scene}: no implementation that takes part simulates it in both forms, to know its motion by")
 
 
-def write_results(results, rows, searched, unknown):
-    table = pandas.DataFrame(rows)
-    for name, found in (("searched", pandas.DataFrame(searched)), ("validation", table)):
-        write(results / f"{name}.csv", lambda partial, found=found: found.to_csv(partial, index=False))
-    write_text(results / "validation.html", template(Path(__file__).with_name("validation.html.j2")).render(
-        sentence=verdict(table, unknown)[1], kinds=by_kind(table), rows=table.to_dict("records"), unknown=unknown, most=MOST))
-
-
-def by_kind(table):
-    """Questions of a kind are one row: {"kind", "mechanisms", "questions", "met", "ratio" (the worst), "seconds" (the longest),
-    "settings" and who ran them, the most frequent first}."""
-    return [{"kind": kind, "mechanisms": rows.scene.nunique(), "sizes": sorted(set(rows.n)), "questions": len(rows),
-             "met": int(rows.meets.sum()), "ratio": rows.ratio.max(), "within": int((rows.ratio <= MOST).sum()),
-             "seconds": rows.seconds.max(), "settings": rows.advised_setting.dropna().value_counts().to_dict()}
-            for kind, rows in table.groupby("kind", sort=False)]
-
-
-def verdict(table, unknown=()):
-    """(whether all held, a sentence)."""
-    late = ~(table.ratio <= MOST)  # no ratio is too late as well
-    named = [f"{row.scene} at {row.error:g} m" for row in table[~table.meets | late | (table.seconds > LATEST)].itertuples()]
-    return not named, (f"{len(table)} questions on {table.scene.nunique()} mechanisms of {table.kind.nunique()} kinds: "
-                       f"{int(table.meets.sum())} advised runs are as accurate as asked; {int((~late).sum())} take at most "
-                       f"{MOST:g} times the best found, the slowest {table.ratio.max():.2f}; answers took up to "
-                       f"{table.seconds.max():.0f} s" + (f"; not so: {', '.join(named)}" if named else "")
-                       + (f"; not asked, as two schemes do not agree on the motion: {len(unknown)}" if len(unknown) else ""))
-
-
-def everything():
-    """All settings that advice considers, and all of study/settings.yaml whose tolerances suit any scene."""
-    found = catalogue()
-    stored = [Setting(one.scheme, one.changes) for one in read_settings() if not {"penalty", "tolerance"} & set(dict(one.changes))]
-    return found + [one for one in stored if one not in found]
-
-
-def search(run, variants, described, duration, errors, scene):
-    """Rows of every setting at every step by its fastest implementation, and {implementation: us a step}.
-    A setting's steps end where two in succession meet the smallest error or where they cost too much."""
-    longest = duration / LEAST_STEPS
-    asked = Namespace(duration=duration, step=None)
-    _, speeds = probe(variants, run, longest / 8, described, asked, lambda share: 20.0, run.lab.tell)
-    rows, least = [], {}  # least time of a simulated second that meets the smallest error
-    for setting in (one for one in everything() if not fits(one, described)):
-        served = [name for name in speeds if name in serving(setting, variants)]
-        step, met = longest, 0
-        while served and met < 2 and step >= duration / MOST_STEPS:
-            run.lab.tell(f"search: {scene}, {setting.name}, step {step:.3g} s")
-            at = float(f"{step:.3g}")
-            row = run("search", setting, served[0], at, duration, 4 * TOO_LONG, checks=EXACT, repeats=1)
-            if row["status"] in ("unsupported", "timeout", "crashed", "out-of-memory"):
-                break
-            timed = meets(row, max(errors)) and run("speed", setting, served[0], at, duration, 8 * TOO_LONG)
-            row |= {"us_per_second": timed["step_us"] / at if timed and timed["step_us"] else None, "pruned": ""}
-            rows.append(row)
-            met = met + 1 if meets(row, min(errors)) else 0
-            if met and row["us_per_second"]:
-                least[setting] = min(least.get(setting, row["us_per_second"]), row["us_per_second"])
-            usual = row["us_per_second"] or (row["step_us_median"] or 0.0) / at
-            if usual > (2 * NEAR * min(least.values()) if least else 1e6 * TOO_LONG / duration):
-                row["pruned"] = "shorter steps are left out: " + (
-                    "far slower than a setting that meets all errors" if least else f"they take more than {TOO_LONG:g} s")
-                break
-            step *= RATIO
-    return rows, speeds
-
-
-def meets(row, error):
-    return row["status"] in FINISHED and row["exact"] is not None and row["exact"] <= error
-
-
-def sustained(found, error):
-    """The rows that meet an error, if the two next shorter steps of their setting, down to half of theirs, do too, or were
-    left out: else it is luck, which half the step cannot show."""
-    return [row for at, row in enumerate(found) if row["us_per_second"] and all(
-        meets(other, error) for other in found[at:at + 3] if other["setting"] == row["setting"])]
-
-
-def fastest(found, error):
-    """The fastest row of each setting that meets an error, fastest first, as far as they are near the best."""
-    best = {}
-    for row in sustained(found, error):
-        known = best.setdefault(row["setting"], row)
-        if row["us_per_second"] < known["us_per_second"]:
-            best[row["setting"]] = row
-    rows = sorted(best.values(), key=lambda row: row["us_per_second"])
-    return [row for row in rows if row["us_per_second"] <= NEAR * rows[0]["us_per_second"]]
-
-
-def _compare(scene, error, duration, answer, advice, run, variants, found, speeds):
+def _compare(error, duration, answer, run, variants, found, speeds):
     """The row of validation.csv of one question."""
-    settings, candidates = {setting.name: setting for setting in everything()}, []
+    settings, told, candidates = {setting.name: setting for setting in everything()}, answer["advice"], []
     for row in fastest(found, error):
         serves = serving(settings[row["setting"]], variants)
         served = {name: us for name, us in speeds.items() if name in serves}
         candidates += [timing.Candidate(settings[row["setting"]], name, row["step"])
                        for name, us in served.items() if us <= SLOWER * min(served.values())]
-    advised = advice.chosen and timing.Candidate(advice.chosen.setting, advice.chosen.implementation,
-                                                 advice.chosen.step, kept=True)
-    _time(run, [one for one in candidates if advised is None or _same(one) != _same(advised)]
-          + [advised] * bool(advised), duration, error)
-    held = advised and run("advised", advised.setting, advised.implementation, advised.step, duration, 300, EXACT, 1)
-    best = min((one for one in [*timing.ranked(candidates), advised] if one and one.rows), default=None,
-               key=lambda one: one.us_per_second()[0])
-    return {"scene": scene, "error": error, "met": answer["met"],
-            "estimate": answer["advice"] and answer["advice"]["error"]["estimate"], "exact": held["exact"] if held else None,
-            "meets": bool(held and meets(held, error)), "seconds": answer["seconds"], "why_not": answer["why_not"] or ""
-            } | _columns("advised", advised) | _columns("best", best) | {
-            "ratio": advised.us_per_second()[0] / best.us_per_second()[0] if advised and best else None}
+    advised = told and timing.Candidate(settings[told["setting"]], told["implementation"], told["step"], kept=True)
+    if advised:
+        candidates = [one for one in candidates if _same(one) != _same(advised)] + [advised]
 
-
-def _time(run, candidates, duration, error):
-    """Times all in the same rounds."""
     def timed(one, number):
-        run.lab.tell(f"timing: error {error:g} m, round {number}, {one.implementation}, {one.setting.name}")
+        run.tell(f"timing: error {error:g} m, round {number}, {one.implementation}, {one.setting.name}")
         return run(f"timing-{error:g}/round{number}", one.setting, one.implementation, one.step, duration, 60)
     timing.race(candidates, timed, lambda: ROUNDS_AT_MOST)
+    held = advised and run("advised", advised.setting, advised.implementation, advised.step, duration, 300, EXACT, 1)
+    best = min((one for one in candidates if one.rows and (one is advised or not one.out)), default=None,
+               key=lambda one: one.us_per_second()[0])
+    return {"met": answer["met"], "estimate": told and told["error"]["estimate"], "exact": held and held["exact"],
+            "meets": bool(held and meets(held, error)), "seconds": answer["seconds"], "others": answer["waited"],
+            "why_not": answer["why_not"] or "", **_columns("advised", advised), **_columns("best", best),
+            "ratio": advised.us_per_second()[0] / best.us_per_second()[0] if advised and best else None}
 
 
 def _same(one):

@@ -1,14 +1,16 @@
 # The last stage of an advice: the fastest candidate over the whole time, and what follows if it fails.
+import math
+
 from analysis.core.outcomes import FINISHED
 from study.tools.advise import timing
-from study.tools.advise.choice import interval, local_order, most, tidy
+from study.tools.advise.choice import apart, by_order, most, tidy
 from study.tools.advise.runner import HALVED
 
 VERIFICATIONS = 20
 LEAST_SHARE = 0.3  # of the budget that a first verification may take, however little of it is left
 
 
-def verify(advice, run, left, tell):
+def verify(advice, run):
     """Whole runs of the fastest candidate, until one is as accurate as asked: `advice.chosen`, its row
     `advice.verified`, and that of the line as it is advised, without a check. `run` is a Runner."""
     question = advice.question
@@ -17,19 +19,19 @@ def verify(advice, run, left, tell):
         if not order:
             return
         one = order[0]
-        seconds = max(left(1.0), 0.0 if advice.verifications else LEAST_SHARE * question.budget)
+        seconds = max(run.left(), 0.0 if advice.verifications else LEAST_SHARE * question.budget)
         duration = _affordable(one, question, seconds / run.slowdown)
         if not duration:
-            advice.cut_short.append("no time was left to verify another candidate")
+            advice.hurry("no time was left to verify another candidate")
             return
-        tell(f"verification: {one.implementation}, {one.setting.name}, step {one.step:g} s")
+        run.tell(f"verification: {one.implementation}, {one.setting.name}, step {one.step:g} s")
         row = {} | run("verification", one.setting, one.implementation, one.step, duration, 1.5 * seconds + 2, checks=HALVED)
         row |= {"estimate": _at_least(row, advice)}
         advice.verifications.append(row)
         if not accepted(row, advice, one):
             _reconsider(one, row, advice)
             continue
-        tell("the advised line itself")
+        run.tell("the advised line itself")
         advice.outcome = run("outcome", one.setting, one.implementation, one.step, duration, seconds + 2, repeats=1)
         if advice.outcome["status"] not in FINISHED:
             one.drop(f"{advice.outcome['status']} as it would be advised: {advice.outcome['reason']}")
@@ -98,8 +100,9 @@ def _reconsider(one, row, advice):
 
 def expected_error(advice, one, row):
     """(least, most) of a verified candidate's error, m, by its setting's pilots."""
-    pilots, order = advice.found[one.setting].pilots, one.setting.order
-    low, high = interval(row["estimate"], order, local_order(one.step, pilots, order))
+    estimate, pilots, order = row["estimate"], advice.found[one.setting].pilots, one.setting.order
     covered = advice.pilot_duration == row["duration"]  # else theirs are the errors of less motion
-    found = most(one.step, row["estimate"], pilots, order, advice.question.error) if covered else None
-    return low, max(row["estimate"], high if found is None else found)
+    high = most(one.step, estimate, pilots, order, advice.question.error) if covered else math.inf
+    if math.isinf(high):
+        high = by_order(one.step, estimate, pilots, order)
+    return apart(estimate, order), max(estimate, high)

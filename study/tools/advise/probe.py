@@ -1,0 +1,76 @@
+# Who is tried: implementations near the fastest by the rule of `mbs describe`, and how long a step of each takes.
+import math
+
+from analysis.core.outcomes import FINISHED
+from study.core.setting import Setting
+from study.tools.advise.choice import LEAST_STEPS
+from study.tools.advise.runner import QUICK
+from study.tools.advise.search import LOST
+from study.tools.advise.settings import serving
+
+BEHIND = 3.0  # times the least time that the rule foresees: who is slower is not tried; its times are right to a factor of
+              # 1.5, mostly
+DEAR = 100.0  # us a step from which probes are as short as they can be
+LONGEST = 20.0  # s, of the first probe
+
+
+def find_speeds(advice, settings, run):
+    """Fills `advice.speeds`. The rule does not know who simulates the scene: whoever does not is no measure of who is near."""
+    able, seen = dict(advice.variants), set()
+    while True:
+        tried, advice.left_out = named(advice.described, able, [one for one in settings if serving(one, able)])
+        rows, found = probe({name: able[name] for name in tried if name not in seen}, advice.described, run,
+                            advice.question.first_step, advice.question.duration)
+        advice.probe += rows
+        advice.speeds, seen = _sorted(advice.speeds | found), seen | set(tried)
+        unable = [row["implementation"] for row in rows if row["status"] == "unsupported"]
+        if not unable:
+            return
+        able = {name: said for name, said in able.items() if name not in unable}
+
+
+def named(described, variants, settings):
+    """({implementation: foreseen us a step or nan} to try, fastest first; {implementation: why it is left out}): those
+    near the fastest by the rule of `mbs describe`, who is sparse and unknown to it, as it was fitted to general code, and who
+    else is needed for a setting; all without a rule."""
+    foreseen = _foreseen(described, variants)
+    if not foreseen:
+        return dict.fromkeys(variants, math.nan), {}
+    order = sorted(foreseen, key=foreseen.get)
+    tried = [name for name in order if foreseen[name] <= BEHIND * foreseen[order[0]]]
+    form = Setting(described["scheme"]["take"])
+    tried += [name for name in serving(form, variants) if name not in foreseen and not variants[name]["dense"]]
+    for setting in settings:
+        serves = serving(setting, variants)
+        if not set(serves) & set(tried):
+            tried.append(min(serves, key=lambda name: foreseen.get(name, math.inf)))
+    return {name: foreseen.get(name, math.nan) for name in tried}, {
+        name: f"{foreseen[name] / foreseen[order[0]]:.1f} times the time of {order[0]} by the rule of mbs describe"
+        if name in foreseen else "the rule of mbs describe does not name it" for name in variants if name not in tried}
+
+
+def probe(variants, described, run, step, duration):
+    """(rows, {implementation: us a step} of those that simulate the scene, fastest first), in the form that the rule is of;
+    where the step is too long for it, times are those foreseen."""
+    rows, speeds, foreseen = [], {}, _foreseen(described, variants)
+    form = Setting(described["scheme"]["take"])
+    for name in variants:
+        run.tell(f"probe: {name}")
+        usual = min([*speeds.values(), foreseen.get(name, math.inf)])
+        limit = 1.0 + 20e-6 * QUICK * usual if speeds else max(2.0, min(LONGEST, run.left(0.3)))
+        setting = form if name in serving(form, variants) else Setting()
+        steps = QUICK if usual < DEAR else LEAST_STEPS
+        rows.append(run("probe", setting, name, step, min(duration, steps * step), limit))
+        if rows[-1]["status"] in FINISHED:
+            speeds[name] = rows[-1]["step_us"]
+        elif rows[-1]["status"] in LOST:  # passes of steps that are too long say little
+            speeds[name] = foreseen.get(name, rows[-1]["step_us"] or 10.0 * len(rows))
+    return rows, _sorted(speeds)
+
+
+def _foreseen(described, variants):
+    return {one["implementation"]: one["step_us"] for one in described["recommendation"] if one["implementation"] in variants}
+
+
+def _sorted(speeds):
+    return dict(sorted(speeds.items(), key=lambda item: item[1]))
