@@ -78,7 +78,7 @@ def _paper_panel(axes, rows):
     for row, before in zip(rows, [None, *rows]):
         place += 1.0 if before is None or before["variables"] == row["variables"] else 1.6
         places.append(place)
-        _bar(axes, place, list(row["shares"].items()), GROUP_FILLS, row["paper"])
+        bar(axes, place, list(row["shares"].items()), GROUP_FILLS, row["paper"])
         if not row["shares"]:
             axes.text(1, place, row["why"], va="center", fontsize=8, color=GREY)
     axes.set_yticks(places, [f"n = {row['variables']}   {row['label']}" for row in rows],
@@ -88,7 +88,7 @@ def _paper_panel(axes, rows):
     axes.set(xlim=(0, 100), ylim=(place + 0.6, 0.4), xlabel="share of the time of a step, %")
     axes.tick_params(axis="y", length=0)
     axes.spines["left"].set_visible(False)
-    _legend(axes, GROUP_FILLS, {group: group for group in GROUP_FILLS})
+    legend(axes, GROUP_FILLS, {group: group for group in GROUP_FILLS})
     axes.set_title("Table 1: share of CPU time by phase, the paper's groups", pad=26)
 
 
@@ -101,7 +101,7 @@ def all_panel(axes, results, size, names, first):
         rows = profiled(results, name, size)
         shares = phase_shares(rows, PHASES) if len(rows) else {}
         whole = shares.get("other", 0) > WHOLE
-        _bar(axes, place, [(phase, 100 * share) for phase, share in shares.items() if not whole], FILLS, False)
+        bar(axes, place, [(phase, 100 * share) for phase, share in shares.items() if not whole], FILLS, False)
         if whole:
             axes.text(1, place, "all in the same sweeps", va="center", fontsize=7.5)
         elif not shares:
@@ -113,11 +113,11 @@ def all_panel(axes, results, size, names, first):
     axes.tick_params(axis="y", length=0, labelleft=first)
     axes.spines["left"].set_visible(False)
     if first:
-        _legend(axes, FILLS, LABELS)
+        legend(axes, FILLS, LABELS)
         axes.set_title("All phases, every variant", pad=26)
 
 
-def _bar(axes, place, shares, fills, outlined):
+def bar(axes, place, shares, fills, outlined):
     left = 0.0
     for key, share in shares:
         axes.barh(place, share, left=left, height=0.8, color=fills[key],
@@ -128,7 +128,7 @@ def _bar(axes, place, shares, fills, outlined):
         left += share
 
 
-def _legend(axes, fills, labels):
+def legend(axes, fills, labels):
     handles = [plt.Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor="white", label=labels[key])
                for key, colour in fills.items()]
     axes.legend(handles=handles, ncol=len(handles), loc="lower left", fontsize=8.5,

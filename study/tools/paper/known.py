@@ -8,6 +8,7 @@ import pandas
 from analysis.core import schema
 from analysis.core.files import ROOT, read_object
 from analysis.core.view import Folder, View
+from study.tools.merge import agreement
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,23 @@ class Known(Folder):
         return self.facts["context"]
 
     @cached_property
-    def others(self):
+    def beside(self):
         """The stored sets of other machines, as Known."""
         found = [Known(path.parent) for path in sorted((ROOT / "results").glob("*/set.json")) if path.parent != self.folder]
         return [one for one in found if one.context["cpu_model"] != self.context["cpu_model"]]
+
+    @cached_property
+    def others(self):
+        """Those beside it that may be compared with it: of the same commit and build."""
+        return [one for one in self.beside if not agreement.unlike(self, one)]
+
+    @property
+    def machines(self):
+        """This set and the others."""
+        return [self, *self.others]
+
+    @cached_property
+    def agreed(self):
+        """What they say together of libraries; [] of one machine."""
+        found = agreement.agreements(self.machines)[0] if self.others else []
+        return [one for one in found if one.question.layer == "libraries"]

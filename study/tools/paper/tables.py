@@ -5,7 +5,7 @@ from textwrap import shorten
 
 import pandas
 
-from analysis.core.text import between, bounded, ends, number
+from analysis.core.text import between, bounded, ends, interval, number
 from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import title
 from analysis.engines.runs import NATIVE
@@ -14,7 +14,9 @@ from analysis.families.figures import best_form, fastest_own
 from analysis.families.sentences import cases
 from analysis.map import summary
 from analysis.map.results import of
-from study.tools.paper.numbers import led, losses, mean, real_mechanisms
+from study.tools.merge import machine
+from study.tools.paper import numbers
+from study.tools.paper.numbers import HYBRID, SCALAR, led, losses, mean, real_mechanisms
 
 ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}",
            "^": r"\textasciicircum{}", "$": r"\$", "<": r"\textless{}", ">": r"\textgreater{}", "/": r"/\allowbreak{}", ":": r":\allowbreak{}", "@": r"@\allowbreak{}", "µ": r"\textmu{}", "÷": r"\(\div\)", "×": r"\(\times\)", "≥": r"\(\ge\)",
@@ -28,7 +30,9 @@ def tex(text):
 
 
 CHEAPEST = 8  # libraries of the table of prices
-TABLES = ("contenders", "decided", "ranking", "claims", "prices", "leaves", "defaults", "largest", "engines", "mechanisms")
+DIFFERING = 12  # scenes of the table of those that differ by machine
+GAINED = (SCALAR, "csc_klu/refactor", "csc_cholmod/supernodal", HYBRID, "compiled_ldl/fronts")  # whose steps are compared between machines
+TABLES = ("contenders", "decided", "ranking", "machines", "differs", "claims", "prices", "leaves", "defaults", "largest", "engines", "mechanisms")
 
 
 def tables(known):
@@ -37,11 +41,9 @@ def tables(known):
 
 
 def of_numbers(found):
-    """The appendix: a line a number, to which its uses link."""
-    rows = "".join(rf"\hypertarget{{where:{name}}}{{{tex(name)}}} & {tex(shorten(one.text, 40, placeholder=' …'))} & {tex(one.table)} & {tex(_records(one))} \\" + "\n"
-                   for name, one in found.items())
-    return (r"\begin{longtable}{P{28mm}P{44mm}P{30mm}P{68mm}}\toprule number & value & table & record \\\midrule\endhead\bottomrule\endfoot" + "\n"
-            + rows + r"\end{longtable}" + "\n")
+    """The appendix: an entry a number, to which its uses link."""
+    return "".join(rf"\numberentry{{\hypertarget{{where:{name}}}{{{tex(name)}}}}}{{{tex(shorten(one.text, 28, placeholder=' …'))}}}"
+                   rf"{{{tex('; '.join(filter(None, (one.table, _records(one)))))}}}" + "\n" for name, one in found.items())
 
 
 def _records(one):
@@ -91,14 +93,16 @@ def ranking(known):
 
 def claims(known):
     """The claims of 2008, each with theirs, ours on each machine and the verdict."""
-    sets = [known, *known.others]
+    sets = known.machines
     others = [one.tables("map")["claims"].set_index(["id", "claim"]) for one in sets[1:]]
     rows = []
     for row in known.tables("map")["claims"].itertuples():
-        mine = {"": row.id, "claim": row.claim, "2008": row.paper, sets[0].context["cpu_model"]: _ours(row)}
+        mine, verdicts = {"": row.id, "claim": row.claim, "2008": row.paper, sets[0].folder.name: _ours(row)}, [row.verdict]
         for one, its in zip(sets[1:], others):
-            mine[one.context["cpu_model"]] = _ours(its.loc[(row.id, row.claim)]) if (row.id, row.claim) in its.index else "–"
-        rows.append(mine | {"verdict": row.verdict})
+            there = its.loc[(row.id, row.claim)] if (row.id, row.claim) in its.index else None
+            mine[one.folder.name] = "–" if there is None else _ours(there)
+            verdicts += [] if there is None else [there.verdict]
+        rows.append(mine | {"verdict": "; ".join(dict.fromkeys(verdicts))})
     width = 44 / len(sets)
     heads = {head: r"P{%.0fmm}" % width for head in rows[0] if head not in ("", "claim", "2008", "verdict")} if rows else {}
     return table(rows, {"": "l", "claim": r"P{61mm}", "2008": r"P{18mm}"} | heads | {"verdict": r"P{21mm}"}, long=True)
@@ -106,6 +110,41 @@ def claims(known):
 
 def _ours(row):
     return "–" if not row.ours else row.ours + (f" ({row.low} to {row.high})" if row.low else "")
+
+
+def machines(known):
+    """What was measured on each machine, a column each."""
+    found, gained = [_machine(one) for one in known.machines], machine.gains(known.machines)
+    rows = [{"": what} | {one.folder.name: mine[what] for one, mine in zip(known.machines, found)} for what in found[0]]
+    rows += [{"": f"a step with {name}, times that on {known.folder.name}"} | {one.folder.name: number(value) for one, value in zip(known.machines, gained[name])}
+             for name in GAINED if name in gained and known.others]
+    return table(rows, {"": r"P{72mm}"} | {one.folder.name: r"P{%.0fmm}" % (96 / len(known.machines)) for one in known.machines})
+
+
+def _machine(one):
+    real, cells, control = numbers.real(one), summary.settled(one.tables("map")["cells"], "libraries"), machine.controls(one)
+    measured = machine.rates(one)
+    return {"processor": one.context["cpu_model"], "measured on": one.facts["date"][:10],
+            "pairs timed against themselves, of these decided, which is false": f"{control['pairs']}, {control['false']}",
+            "mechanisms that are settled": f"{real['said'].text} of {real['mechanisms'].text}",
+            "library that is fastest or as fast most often": f"{real['leader'].text} on {real['leads'].text}",
+            "best single library: mean and worst loss": f"{real['single'].text}: {real['mean'].text}, {real['worst'].text}",
+            "cells of the map: decided, several as fast, open": f"{cells['decided']}, {cells['equivalent']}, {cells['open']}"} | {
+        text: number(measured.get(name)) for name, text in machine.RATES.items()}
+
+
+def differs(known):
+    """Where no library is among the best on all machines: on each who is fastest, and what those take who are so elsewhere."""
+    rows, found = [], sorted((one for one in known.agreed if one.verdict == "differs"), key=lambda one: -one.worst.get(one.robust, math.inf))
+    for one in found[:DIFFERING]:
+        row = {"scene": one.question.scene, "form": one.question.form.partition("-")[0], "n": number(one.question.variables, 5)}
+        for place, (there, ratios) in enumerate(zip(known.machines, one.machines)):
+            others = [f"{name} {interval(ratios[name])}" for name in dict.fromkeys(one.winners) if name != one.winners[place] and name in ratios]
+            row[there.folder.name] = "; ".join([one.winners[place], *others])
+        rows.append(row | {"robust": f"{one.robust} {number(one.worst.get(one.robust))}"})
+    width = 88 / len(known.machines)
+    return table(rows, {"scene": r"P{30mm}", "form": "l", "n": "r"} | {one.folder.name: r"P{%.0fmm}" % width for one in known.machines}
+                 | {"robust": r"P{32mm}"}) if rows else tex("None." if known.others else "Not measured in this set.")
 
 
 def prices(known):
