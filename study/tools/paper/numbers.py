@@ -19,7 +19,7 @@ from study.tools.merge import agreement, machine
 
 NOT_MEASURED = "not measured"
 DENSE, HYBRID = "eigen_dense/llt", "hybrid_dense/llt"  # the same factorization, assembled densely and sparsely
-SCALAR = "csc_ldl/uplooking"  # which works number by number
+SCALAR, BLOCKS = "csc_ldl/uplooking", "csc_cholmod/supernodal"  # which works number by number; by calls of BLAS
 
 
 @dataclass(frozen=True)
@@ -130,14 +130,14 @@ def _machines(known):
     """What machines say together, and what makes them differ."""
     if not known.others:
         return dict.fromkeys(("count", "names", "all", "same", "common", "differ", "cells", "decided", "several", "differs", "rate", "latency", "vector",
-                              "scalar"))
+                              "scalar", "blocks"))
     count = agreement.shares(agreement.mechanisms(known.machines, known.agreed))
     kinds = [one.verdict for one in known.agreed if one.question.part == "map"]
     verdicts = {"cells": len(kinds)} | {verdict: kinds.count(verdict) for verdict in ("decided", "several", "differs")}
     rates, gained = [machine.rates(one) for one in known.machines], machine.gains(known.machines)
     beside = {name: [one[rate] / rates[0][rate] for one in rates[1:] if rate in one and rate in rates[0]]
               for name, rate in (("rate", "flops_per_ns"), ("latency", "add_ns"))}
-    steps = {name: gained.get(variant, [])[1:] for name, variant in (("vector", HYBRID), ("scalar", SCALAR))}
+    steps = {name: gained.get(variant, [])[1:] for name, variant in (("vector", HYBRID), ("scalar", SCALAR), ("blocks", BLOCKS))}
     told = [f"{one.folder.name} is {one.context['cpu_model']}, {one.facts['date'][:10]}" for one in known.machines]
     on = lambda values: listed(f"{number(value, 2)} on {one.folder.name}" for value, one in zip(values, known.others))
     where = "of " + ", ".join(one.folder.name for one in known.machines)

@@ -16,7 +16,7 @@ from analysis.map import summary
 from analysis.map.results import of
 from study.tools.merge import machine
 from study.tools.paper import numbers
-from study.tools.paper.numbers import HYBRID, SCALAR, led, losses, mean, real_mechanisms
+from study.tools.paper.numbers import BLOCKS, HYBRID, SCALAR, led, losses, mean, real_mechanisms
 
 ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}",
            "^": r"\textasciicircum{}", "$": r"\$", "<": r"\textless{}", ">": r"\textgreater{}", "/": r"/\allowbreak{}", ":": r":\allowbreak{}", "@": r"@\allowbreak{}", "µ": r"\textmu{}", "÷": r"\(\div\)", "×": r"\(\times\)", "≥": r"\(\ge\)",
@@ -30,8 +30,9 @@ def tex(text):
 
 
 CHEAPEST = 8  # libraries of the table of prices
+MOST_FOUND = 110  # letters of what was found; the page of the families has the rest
 DIFFERING = 12  # scenes of the table of those that differ by machine
-GAINED = (SCALAR, "csc_klu/refactor", "csc_cholmod/supernodal", HYBRID, "compiled_ldl/fronts")  # whose steps are compared between machines
+GAINED = (SCALAR, "csc_klu/refactor", BLOCKS, HYBRID, "compiled_ldl/fronts")  # whose steps are compared between machines
 TABLES = ("contenders", "decided", "ranking", "machines", "differs", "claims", "prices", "leaves", "defaults", "largest", "engines", "mechanisms")
 
 
@@ -75,12 +76,12 @@ def contenders(known):
 
 def decided(known):
     """What the mechanisms were held to, and what was found."""
-    rows = [{"what": what, "asked": asked, "found": found, "holds": {True: "yes", False: "no", None: "–"}[holds]}
+    rows = [{"what": what, "asked": asked, "found": shorten(found, MOST_FOUND, placeholder=" …"), "holds": {True: "yes", False: "no", None: "–"}[holds]}
             for what, asked, found, holds in bounds.bounds(known.tables("families"))]
     held = known.tables("limit")["held"]
     rows += [{"what": row.what, "asked": f"{row.sign} {number(row.bound)}", "found": between(row.worst, row.low, row.high) if row.worst == row.worst
               else "not measured", "holds": {"held": "yes", "not held": "no"}.get(row.verdict, row.verdict)} for row in held.itertuples() if row.worst == row.worst]
-    return table(rows, {"what": r"P{62mm}", "asked": r"P{27mm}", "found": r"P{52mm}", "holds": r"P{18mm}"})
+    return table(rows, {"what": r"P{64mm}", "asked": r"P{36mm}", "found": r"P{52mm}", "holds": r"P{14mm}"})
 
 
 def ranking(known):
@@ -169,15 +170,16 @@ def defaults(known):
 
 
 def largest(known):
-    """Who keeps up with which size."""
-    rows = []
-    for row in known.tables("realtime")["largest"].itertuples():
+    """Who keeps up with which size: a row an implementation, a column a form and deadline."""
+    found, heads = {}, {}
+    for row in known.tables("realtime")["largest"].sort_values(["scheme", "step"]).itertuples():
         if row.largest == row.largest:
-            rows.append({"implementation": row.implementation, "form": row.scheme, "deadline": f"{1e3 * row.step:g} ms", "largest N": number(row.largest, 5),
-                         "missed": f"{row.missed} of {row.steps}", "longest": f"{number(row.max_us)} µs",
-                         "next N": number(row.next, 5), "missed there": row.next_reason.split(":")[0] if row.next_reason else "–"})
-    return table(rows, {"implementation": "l", "form": "l", "deadline": "r", "largest N": "r", "missed": "r", "longest": "r", "next N": "r",
-                        "missed there": "l"})
+            head = f"{row.scheme}, {1e3 * row.step:g} ms"
+            heads[head] = "l"
+            found.setdefault(row.implementation, {})[head] = f"{number(row.largest, 5)} ({number(row.max_us)} µs)" + (
+                f"; not {number(row.next, 5)}" if row.next == row.next else "")
+    order = [name for name in known.registry.variants if name in found]
+    return table([{"implementation": name} | {head: found[name].get(head, "–") for head in heads} for name in order], {"implementation": "l"} | heads)
 
 
 def engines(known):
