@@ -30,6 +30,8 @@ def tex(text):
 
 
 CHEAPEST = 8  # libraries of the table of prices
+RANKED = 12     # libraries of the table of ranks
+DEFAULTS = 6    # of other tools: the least costly and the two most costly
 MOST_FOUND = 110  # letters of what was found; the page of the families has the rest
 DIFFERING = 12  # scenes of the table of those that differ by machine
 GAINED = (SCALAR, "csc_klu/refactor", BLOCKS, HYBRID, "compiled_ldl/fronts")  # whose steps are compared between machines
@@ -88,7 +90,7 @@ def ranking(known):
     """Libraries over the mechanisms at their own fill."""
     mine, lost = led(real_mechanisms(known)), losses(known)
     rows = [{"library": name, "first or as fast": str(mine.get(name, 0)), "timed on": str(len(one)), "mean": number(mean(one)),
-             "worst": number(one.max()), "where": one.idxmax()} for name, one in lost.items()]
+             "worst": number(one.max()), "where": one.idxmax()} for name, one in [*lost.items()][:RANKED]]
     return table(rows, {"library": "l", "first or as fast": "r", "timed on": "r", "mean": "r", "worst": "r", "where": "l"})
 
 
@@ -131,7 +133,7 @@ def _machine(one):
             "library that is fastest or as fast most often": f"{real['leader'].text} on {real['leads'].text}",
             "best single library: mean and worst loss": f"{real['single'].text}: {real['mean'].text}, {real['worst'].text}",
             "cells of the map: decided, several as fast, open": f"{cells['decided']}, {cells['equivalent']}, {cells['open']}"} | {
-        text: number(measured.get(name)) for name, text in machine.RATES.items()}
+        text: number(measured.get(name)) for name, text in machine.RATES.items() if name not in ("L2", "L3")}
 
 
 def differs(known):
@@ -166,6 +168,7 @@ def defaults(known):
     """Defaults of other tools, as rules for our contenders."""
     rows = [{"default": row["rule"], "chooses": row["chooses"], "mean": ("about " if row["rough"] else "") + number(row["mean"]), "worst": number(row["worst"])}
             for row in known.tables("families")["defaults"].sort_values("mean").to_dict("records") if row["mean"] == row["mean"]]
+    rows = rows[:DEFAULTS - 2] + rows[-2:] if len(rows) > DEFAULTS else rows
     return table(rows, {"default": r"P{40mm}", "chooses": r"P{92mm}", "mean": "r", "worst": "r"})
 
 
