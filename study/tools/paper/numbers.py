@@ -142,7 +142,7 @@ def _machines(known):
     on = lambda values: listed(f"{number(value, 2)} on {one.folder.name}" for value, one in zip(values, known.others))
     where = "of " + ", ".join(one.folder.name for one in known.machines)
     return {name: Number(text, f"{table} {where}") for table, found in (
-        ("set.json", {"count": str(len(told)), "names": listed(told)}),
+        ("set.json", {"count": str(len(told)), "names": "; ".join(told)}),
         ("families/scenes", {name: str(one) for name, one in count.items()} | {name: on(one) for name, one in steps.items()}),
         ("map/tidy", {name: str(one) for name, one in verdicts.items()}),
         ("raw/limit", {name: on(one) for name, one in beside.items()})) for name, text in found.items()}
