@@ -31,7 +31,7 @@ def figures(known):
         "families", "map", "stability", "realtime", "engines")}
     found = {"mechanisms": (mechanisms(known), 6.3), "held": (drawn["families"]["held"], 1.9), "own_fill": (lower_notes(drawn["map"]["f4_sparse_solvers"]), 3.1),
              "map": (drawn["map"]["f7_map"], 3.4), "phases": (phases(known), None), "work": (work(known), 2.9),
-             "window": (drawn["stability"].get("penalty-double") or nothing(NOTHING), 2.4), "steps": (drawn["realtime"]["steps"], None),
+             "window": (drawn["stability"].get("penalty-double") or nothing(NOTHING), 2.4), "steps": (drawn["realtime"]["steps"], 2.4),
              "own": (own(drawn["families"]["map"]), 2.3), "engines": (engines(drawn["engines"]["regular"]), 2.6)}
     return {name: fit(figure, height, known.context["cpu_model"]) for name, (figure, height) in found.items()}
 
