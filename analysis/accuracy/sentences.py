@@ -18,14 +18,17 @@ def answers(tables, view):
 
 
 def cases(tables, view):
-    """Row of the front page's table: at the largest size what each error takes; a setting is worth nothing without its
-    step."""
+    """Row of the front page's table: at the largest size what each error takes, those that take the same together; a setting is
+    worth nothing without its step."""
     won = met(own_fill(tables["winners"]))
     rows = won[(won.layer == "libraries") & (won.variables == won.variables.max())].sort_values("required", ascending=False)
     if rows.empty:
         return []
-    said = [f"{number(one.required)} m: {one.implementation}, {one.setting}, step {number(1e3 * one.step, 2)} ms"
-            + ("" if one.settled else " (not decided)") for one in rows.itertuples()]
+    errors = {}
+    for one in rows.itertuples():
+        take = f"{one.implementation}, {one.setting}, step {number(1e3 * one.step, 2)} ms" + ("" if one.settled else " (not decided)")
+        errors.setdefault(take, []).append(number(one.required))
+    said = [f"{', '.join(mine)} m: {take}" for take, mine in errors.items()]
     return [{"case": f"You know the error that the motion may have (four-bar, {rows.variables.iloc[0]:.0f} variables)",
              "link": "accuracy.html#short", "take": "; ".join(said) + ". study/advise finds it for your scene"}]
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from analysis.core.errors import StudyError
 
 ROOT = Path(__file__).resolve().parent.parent.parent
+RULE = ROOT / "harness" / "src" / "describe" / "rule.json"  # what `mbs describe` applies: that of the set it names
 
 
 def read_bytes(path):

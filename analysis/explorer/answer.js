@@ -132,6 +132,16 @@ function fillError(found, state) {
                ["error, m", (row) => short(row.point.error)], ["s a simulated second", (row) => short(row.point.time)]]);
 }
 
+// What the sets of other machines say of the same contest.
+function elsewhere(found, contest, winner) {
+  return DATA.sets.filter((set) => set !== found.set).map((set) => {
+    const there = set.contests.find((one) => one.part === contest.part && one.scene === contest.scene && one.form === contest.form);
+    const ranking = there && rankContest(there, found.names), mine = ranking?.ratios.find(([name]) => name === winner)?.[1];
+    if (!ranking) return "";
+    return ` On ${set.machine} ${ranking.winner === winner ? "it leads too" : `${ranking.winner} leads${mine ? `, and ${winner} takes ${times(mine)}` : ""}`}.`;
+  });
+}
+
 function fillAnswer(found, state) {
   const lines = [], [first, second] = found.near, bold = (name) => element("b", {}, name), [best] = found.predicted, point = found.error?.ranking?.winner;
   if (!first) lines.push(["Nobody of those that are left was measured on such a mechanism."]);
@@ -139,7 +149,8 @@ function fillAnswer(found, state) {
     const others = ranking.equivalent.filter((name) => name !== ranking.winner), known = ranking.decided || others.length && ranking.settled;
     lines.push([bold(ranking.winner), ` ${known ? "is fastest" : "leads, not decided,"} on ${about(contest)}, measured: `
                 + `${short(stepOf(contest, ranking.winner))} µs a step`, others.length ? `; as fast: ${others.join(", ")}` : "",
-                ranking.open.length ? `; open: ${ranking.open.join(", ")}` : "", ranking.second ? `. Next is ${ranking.second}: ${times(ranking.margin)}.` : "."]);
+                ranking.open.length ? `; open: ${ranking.open.join(", ")}` : "", ranking.second ? `. Next is ${ranking.second}: ${times(ranking.margin)}.` : ".",
+                ...elsewhere(found, contest, ranking.winner)]);
   }
   if (first && !first.exact)
     lines.push([!second ? "This is the nearest that was measured." : first.ranking.winner === second.ranking.winner ?

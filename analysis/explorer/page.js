@@ -167,7 +167,10 @@ function save(name, kind, text) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-place("machine").addEventListener("change", (event) => change({machine: event.target.value, scene: ""}));
+place("machine").addEventListener("change", (event) => {
+  const there = setOf({machine: event.target.value}).contests.some((one) => one.scene === state.scene);
+  change({machine: event.target.value, scene: there ? state.scene : ""});
+});
 place("scene").addEventListener("change", (event) => change({scene: event.target.value, mine: null}));
 place("family").addEventListener("change", (event) =>
   change({...numbers(), family: event.target.value, fill: event.target.value.includes("filled") ? 50 : null, scene: "", mine: null}));

@@ -55,10 +55,10 @@ def run(lab, column):
             timed.append(TimedScene(lab, scene, *fit(lab, scene, lab.contenders)))
     for one in timed:
         one.time(lab.settings["processes"])
+    _phases(lab, timed[0])  # before `again`, which takes all that is left
+    _operations(lab, natural)
     for one in timed:
         one.again(lab.settings["again"])
-    _phases(lab, timed[0])
-    _operations(lab, natural)
     for _ in range(lab.settings["between"]):
         _add_between(lab, timed)
     _seeds(lab, timed)

@@ -211,8 +211,10 @@ def test_the_case_can_be_chosen_and_stands_in_the_address(page):
     assert said(browser) == before and browser.value("location.hash") == address
     put(browser, "scene", "four-bar:49", "change")
     assert browser.value("explorer.shown.near[0].exact") and browser.value("document.getElementById('n').value") == "100"
+    assert f"On {SECOND} it leads too." in said(browser)
     put(browser, "machine", "second", "change")
     assert browser.value("explorer.shown.set.machine") == SECOND and "machine=second" in browser.value("location.hash")
+    assert browser.value("explorer.state.scene") == "four-bar:49" and f"On {SECOND}" not in said(browser)
 
 
 def test_damaged_addresses_do_no_harm(page):

@@ -3,11 +3,10 @@ import shutil
 
 import pytest
 
-from analysis.core import fragments
 from analysis.core.files import ROOT, read_json, write_json
-from study.core.main import newest
 from study.tests.conftest import study
-from study.tools.paper import artifact, audit
+from study.tools import fragments
+from study.tools.paper import artifact, audit, known as known_sets, tables
 from study.tools.paper.claims import claims
 from study.tools.paper.known import Known
 from study.tools.paper.numbers import NOT_MEASURED, Number, numbers
@@ -20,7 +19,7 @@ pytestmark = pytest.mark.xdist_group("test_paper.py")
 
 @pytest.fixture(scope="module")
 def known():
-    return Known(newest())
+    return Known(fragments.main_set())
 
 
 @pytest.fixture(scope="module")
@@ -37,16 +36,17 @@ def in_text(addition):
     return TEXT.replace(r"\section{Threats", addition + "\n" + r"\section{Threats")
 
 
-def test_the_paper_is_of_the_newest_set(known, found):
+def test_the_paper_is_of_the_set_that_the_rule_names(known, found):
     claimed = artifact.judged(known)
     assert [one for one in audit.audit(known, TEXT, found, claimed)] == []
     assert f"`{known.folder.name}`" in artifact.FILE.read_text(encoding="utf-8")
 
 
 def test_readme_rule_and_paper_are_of_one_commit(known):
-    named = {name for path in fragments.texts() for _, name, *_ in fragments.MARKED.findall(path.read_text(encoding="utf-8"))}
-    named |= {read_json(fragments.RULE).get("set")} - {None}
-    assert {read_json(ROOT / "results" / name / "set.json")["context"]["commit"] for name in named} == {known.context["commit"]}
+    named = [names.split(", ") for path in fragments.texts() for _, names, *_ in fragments.MARKED.findall(path.read_text(encoding="utf-8"))]
+    assert {names[0] for names in named} == {known.folder.name} == {read_json(fragments.RULE)["set"]}
+    there = {*(name for names in named for name in names), *(one.folder.name for one in known.machines)}
+    assert {read_json(ROOT / "results" / name / "set.json")["context"]["commit"] for name in there} == {known.context["commit"]}
 
 
 def test_every_number_has_a_source_and_most_are_measured(found):
@@ -104,6 +104,40 @@ def test_a_dirty_or_mixed_or_stale_set_is_found(known, tmp_path):
     said = "\n".join(audit.of_set(copy))
     for part in ("with changes", "another commit", "not those of its records", "windows.csv is not as it was written"):
         assert part in said
+
+
+@pytest.fixture
+def beside(known, tmp_path, monkeypatch):
+    """The set in a results folder of its own, with one of another processor beside it; the other's facts can be changed."""
+    monkeypatch.setattr(known_sets, "ROOT", tmp_path)
+    for name in ("first", "second"):
+        (tmp_path / "results" / name).mkdir(parents=True)
+        for path in known.folder.iterdir():
+            (tmp_path / "results" / name / path.name).symlink_to(path)
+
+    def change(**context):
+        facts = read_json(known.folder / "set.json")
+        write_json(tmp_path / "results" / "second" / "set.json", facts | {"context": facts["context"] | {"cpu_model": "Another processor"} | context})
+        return Known(tmp_path / "results" / "first")
+    return change
+
+
+def test_a_set_of_another_machine_and_the_same_build_is_compared(beside):
+    both = beside()
+    assert list(audit.of_sets(both)) == [] and [one.folder.name for one in both.others] == ["second"]
+    assert all(len(set(one.winners)) == 1 for one in both.agreed) and both.agreed
+    count = numbers(both)
+    assert count["machines.same"].text == count["machines.all"].text != "0" and count["machines.differ"].text == "0"
+    assert (count["machines.rate"].text, count["machines.vector"].text) == ("1 on second", "1 on second")
+    assert "Another processor" in tables.machines(both) and tables.differs(both) == "None."
+    assert {"first", "second"} == set(audit.stamp(both)["tables"])
+
+
+@pytest.mark.parametrize("context, said", [
+    ({"commit": "0" * 40}, "commit is '0000"), ({"libraries": "Eigen 9"}, "libraries is 'Eigen 9'"), ({"dirty": "true"}, "tree with changes")])
+def test_a_set_of_another_build_beside_it_is_refused(beside, context, said):
+    other = beside(**context)
+    assert other.others == [] and any(said in line and "remove it" in line for line in audit.of_sets(other))
 
 
 def test_built_files_of_another_set_are_found(known, tmp_path, monkeypatch):

@@ -6,10 +6,11 @@ import subprocess
 import pandas
 import pytest
 
-from analysis.core import fragments, records, schema
+from analysis.core import records, schema
 from analysis.core.files import ROOT, read_json
 from analysis.core.parts import parts
 from study.tests.conftest import study
+from study.tools import fragments
 
 TRACKED = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\n")[:-1]
 SETS = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from analysis.core import fragments, records, schema
+from analysis.core import records, schema
 from analysis.core.errors import StudyError
 from analysis.core.files import read_json, write_json
 from study.tests.conftest import ROOT, study
-from study.tools import store
+from study.tools import fragments, store
 
 pytestmark = pytest.mark.slow
 PART = "stability"

@@ -113,7 +113,8 @@ def _build(studyset, name):
 
 
 def _fill(studyset, building):
-    from analysis.core import fragments, records, schema
+    from analysis.core import records, schema
+    from study.tools import fragments
     building.mkdir(parents=True)
     for name in OF_ALL:
         source = studyset.folder / name
@@ -134,7 +135,7 @@ def _fill(studyset, building):
 
 
 def _tell(folder, name, pictures):
-    from analysis.core import fragments
+    from study.tools import fragments
     files = [path for path in (RESULTS / name).rglob("*") if path.is_file()]
     print(f"results/{name}: {len(files)} files, {sum(path.stat().st_size for path in files) / 2**20:.1f} MB")
     if (folder / "added").exists():
@@ -147,4 +148,4 @@ def _tell(folder, name, pictures):
     print(f"to commit it: git add results/{name}")
     if pictures:  # others that study/figures draws are ignored
         print("              git add -f " + " ".join(f"results/{name}/{tail}" for tail in pictures))
-    print("the newest set is the paper's: study/paper --fill")
+    print("the paper's set is the one that harness/src/describe/rule.json names; for its files: study/paper --fill")

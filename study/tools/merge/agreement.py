@@ -7,6 +7,7 @@ from analysis.core.view import View
 from analysis.map.results import Results
 
 LAYERS = {"libraries": "libraries", "all": "all, own code included"}
+ALIKE = ("commit", "compiler", "flags", "build_type", "libraries")  # of sets that may be compared
 
 
 @dataclass(frozen=True)
@@ -16,6 +17,18 @@ class Question:
     form: str  # of the step
     layer: str
     variables: float
+
+
+def unlike(first, other):
+    """What differs between two sets that are not to be compared, in words; "" if they may be."""
+    for one in (first, other):
+        if str(one.facts["context"].get("dirty")).lower() != "false":
+            return f"{one.folder} was measured from a tree with changes"
+    for key in ALIKE:
+        mine, its = (str(one.facts["context"].get(key, "missing")) for one in (first, other))
+        if mine != its:
+            return f"{other.folder} is of another build than {first.folder}: {key} is '{its}', not '{mine}'"
+    return ""
 
 
 def questions(studyset):
@@ -93,12 +106,32 @@ class Agreement:
         return "decided" if self.decided else "several" if self.common else "differs"
 
 
-def agreements(sets):
+def agreements(sets, asked=questions):
     """Agreements on the questions that all sets answer; and how many only some of them have."""
-    found = [questions(one) for one in sets]
+    found = [asked(one) for one in sets]
     shared = [one for one in found[0] if all(one in other for other in found)]
     everything = {one for other in found for one in other}
     return [Agreement(one, tuple(other[one] for other in found)) for one in shared], len(everything) - len(shared)
+
+
+def mechanisms(sets, agreed=None):
+    """Agreements on libraries on mechanisms at their own fill, one a mechanism: in the penalty form, or in the saddle-point form
+    where not all have that. `agreed`: all, if they are known."""
+    if agreed is None:
+        agreed, _ = agreements(sets, lambda one: dict(_families(one)))
+    found = {}
+    for one in sorted(agreed, key=lambda one: one.question.form):
+        if one.question.part == "families" and "fill=" not in one.question.scene:
+            found.setdefault(one.question.scene, one)
+    return list(found.values())
+
+
+def shares(agreed):
+    """{"all", "same", "common", "differ"}: on how many all machines have the same winner, another one within the margin on all
+    of them, none."""
+    same = sum(len(set(one.winners)) == 1 for one in agreed)
+    differ = sum(one.verdict == "differs" for one in agreed)
+    return {"all": len(agreed), "same": same, "common": len(agreed) - same - differ, "differ": differ}
 
 
 def held(agreed, fresh):

@@ -7,9 +7,9 @@ from analysis.core.site import template
 from study.core.main import need_modules
 from study.core.options import Parser, directory
 from study.core.studyset import opened
-from study.tools.merge import agreement
+from study.tools.merge import agreement, machine
 
-ALIKE = ("commit", "compiler", "flags", "build_type", "libraries")  # of sets that may be merged
+ORDER = {"differs": 0, "several": 1, "decided": 2}  # of rows: what a reader looks for comes first
 
 
 def merge(arguments):
@@ -39,9 +39,12 @@ def merge(arguments):
     found = agreement.held(agreed, fresh) if fresh else {}
     options.to.mkdir(parents=True, exist_ok=True)
     write_text(options.to / "agreement.csv", table.to_csv(index=False))
+    about = [{"label": label, "facts": one.facts, "rates": machine.rates(one), "controls": machine.controls(one)} for label, one in zip(machines, sets)]
     write_text(options.to / "index.html", template(ROOT / "study" / "tools" / "merge" / "page.html.j2").render(
-        machines=[{"label": label, "facts": one.facts} for label, one in zip(machines, sets)], counts=counts, layers=agreement.LAYERS,
-        rows=table.to_dict("records"), alone=alone, held=found, fresh=fresh.facts if fresh else None))
+        machines=about, counts=counts, layers=agreement.LAYERS, alone=alone, held=found, fresh=fresh.facts if fresh else None, rates=machine.RATES,
+        rows=table.sort_values("verdict", key=lambda one: one.map(ORDER), kind="stable").to_dict("records"), own=sets[0].registry.own,
+        gains={name: one for name, one in machine.gains(sets).items() if name in sets[0].registry.variants},
+        mechanisms=agreement.shares(agreement.mechanisms(sets, agreed))))
     for layer, count in counts.items():
         total = sum(count.values())
         print(f"{agreement.LAYERS[layer]}: {total} common cells, {count['decided']} with one winner everywhere, {count['several']} with several, "
@@ -54,13 +57,9 @@ def merge(arguments):
 
 def need_alike(first, other):
     """StudyError naming what differs between two sets that are not to be merged."""
-    for one in (first, other):
-        if str(one.facts["context"].get("dirty")).lower() != "false":
-            raise StudyError(f"{one.folder} was measured from a tree with changes: such sets are not merged")
-    for key in ALIKE:
-        mine, its = (str(one.facts["context"].get(key, "missing")) for one in (first, other))
-        if mine != its:
-            raise StudyError(f"{other.folder} is not to be merged with {first.folder}: {key} is '{its}', not '{mine}'")
+    what = agreement.unlike(first, other)
+    if what:
+        raise StudyError(f"{what}: such sets are not merged")
 
 
 def labels(sets):

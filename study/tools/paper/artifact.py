@@ -36,7 +36,8 @@ def judged(known):
 
 
 def _set(known):
-    return f"Set `{known.folder.name}` of {known.facts['date'][:10]}, commit `{known.context['commit'][:10]}`, {known.context['cpu_model']}.\n"
+    said = [f"`{one.folder.name}` of {one.facts['date'][:10]}, {one.context['cpu_model']}" for one in known.machines]
+    return f"Set {said[0]}, commit `{known.context['commit'][:10]}`." + "".join(f" Beside it, of the same commit: {one}." for one in said[1:]) + "\n"
 
 
 def _claims(known, claimed):
@@ -47,5 +48,6 @@ def _claims(known, claimed):
 
 
 def _archives(known):
-    rows = [f"| `raw/{path.name}` | {path.stat().st_size / 2**20:.2f} | `{digest(path)}` |\n" for path in sorted((known.folder / "raw").glob("*.tar.xz"))]
+    rows = [f"| `{one.folder.name}/raw/{path.name}` | {path.stat().st_size / 2**20:.2f} | `{digest(path)}` |\n"
+            for one in known.machines for path in sorted((one.folder / "raw").glob("*.tar.xz"))]
     return "| archive | MB | SHA-256 |\n|---|---|---|\n" + "".join(rows)

@@ -5,6 +5,7 @@ from analysis.core import records, schema
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_json
 from analysis.core.parts import parts
+from study.tools.merge import agreement
 from study.tools.paper import artifact
 from study.tools.paper.tables import TABLES
 
@@ -22,13 +23,21 @@ USED = {"value": re.compile(r"\\val\{([^{}]*)\}"), "holds": re.compile(r"\\holds
 
 def audit(known, text, found, claimed):
     """[what is wrong]; `found`: numbers by name; `claimed`: {claim: (whether it holds, what was found)}."""
-    return [*of_set(known), *of_text(text, found, claimed), *of_references(text, (PAPER / "references.bib").read_text(encoding="utf-8")),
+    return [*of_sets(known), *of_text(text, found, claimed), *of_references(text, (PAPER / "references.bib").read_text(encoding="utf-8")),
             *built(known), *artifact.stale(known, claimed)]
 
 
 def source():
     """The paper without comments."""
     return re.sub(r"(?<!\\)%.*", "", (PAPER / "paper.tex").read_text(encoding="utf-8"))
+
+
+def of_sets(known):
+    """What is wrong with the set, and with those of other machines beside it."""
+    yield from of_set(known)
+    for one in known.beside:
+        what = agreement.unlike(known, one)
+        yield from [f"{what}: machines are compared by sets of one build; measure it anew, or remove it"] if what else of_set(one)
 
 
 def of_set(known):
@@ -89,8 +98,8 @@ def of_references(text, bibliography):
 
 
 def stamp(known):
-    """What the built files are of: the set, its commit and its tables."""
-    kept = {part: digest(known.folder / part / schema.DIGESTS) for part in known.facts["parts"]}
+    """What the built files are of: the set, its commit, its tables and those of other machines."""
+    kept = {one.folder.name: {part: digest(one.folder / part / schema.DIGESTS) for part in one.facts["parts"]} for one in known.machines}
     return {"set": known.folder.name, "commit": known.context["commit"], "tables": kept}
 
 

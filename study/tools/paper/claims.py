@@ -8,7 +8,8 @@ from analysis.core.text import between, number, span
 from analysis.families import bounds, rule
 from analysis.families.figures import fastest_own
 from analysis.limit import held as limits
-from study.tools.paper.numbers import DENSE, HYBRID, losses, mean, of, percent, real_mechanisms
+from study.tools.merge import agreement, machine
+from study.tools.paper.numbers import DENSE, HYBRID, SCALAR, losses, mean, of, percent, real_mechanisms
 
 PAPER_PENALTY = 1e8  # the factor of 2008, at 1.25 ms
 
@@ -29,6 +30,10 @@ def claims():
         Claim("single", "The best single library is within 1.3 times of the fastest on average over mechanisms", "families", "real", _single),
         Claim("assembly", "Sparse assembly makes dense Cholesky faster in every filled cell", "map", "fill", _assembly),
         Claim("overtakes", "Somewhere a dense factorization is as fast as the fastest library, or it is that one", "map", "fill", _overtakes),
+        Claim("compared", "Full sets of several processors are stored, all of this commit", "families", "machines", _compared),
+        Claim("machines", "On nine of ten mechanisms all stored machines have a library in common that is fastest or within 5 % of it", "families", "machines",
+              _machines),
+        Claim("vector", "Dense kernels gain more than code that works number by number on machines whose widest vectors do more", "limit", "machines", _vector),
         Claim("rule", "The rule keeps its bounds on families left out", "families", "price", _rule),
         Claim("automatic", "The automatic penalty factor is ok in every cell of size and step", "stability", "window", _automatic),
         Claim("below", "At the largest size and the step of 2008 the factor of 2008 lies below the estimated window", "stability", "window", _below),
@@ -70,6 +75,28 @@ def _overtakes(known):
     rows = cells[(cells.layer == "libraries") & (cells.winner != "")]
     count = sum(bool(set(text.split()) & known.registry.dense) for text in rows.equivalent)
     return (count > 0 if len(rows) else None), f"at least one cell; here {count} of {len(rows)}"
+
+
+def _compared(known):
+    return (True if known.others else None), f"two or more; here {len(known.machines)}"
+
+
+def _machines(known):
+    if not known.others:
+        return None, ""
+    count = agreement.shares(agreement.mechanisms(known.machines, known.agreed))
+    return (10 * (count["all"] - count["differ"]) >= 9 * count["all"] if count["all"] else None), (
+        f"nine of ten; here {count['same'] + count['common']} of {count['all']}")
+
+
+def _vector(known):
+    """Of each other machine: whether the one with the higher rate is the one where the dense step gained more than the scalar one."""
+    gained, rates = machine.gains(known.machines), [machine.rates(one).get("flops_per_ns") for one in known.machines]
+    if not known.others or None in rates or HYBRID not in gained or SCALAR not in gained:
+        return None, ""
+    dense = [vector / scalar for vector, scalar in zip(gained[HYBRID][1:], gained[SCALAR][1:])]
+    return (all((one < 1) == (rate > rates[0]) for one, rate in zip(dense, rates[1:])),
+            f"time of the dense step over the other's falls where the rate rises; here {span(dense)} times, rates {span(rates)} operations a ns")
 
 
 def _rule(known):

@@ -9,11 +9,10 @@ from matplotlib.ticker import LogLocator
 
 from analysis.accuracy import work_figure
 from analysis.core.style import GREY, SPARSE, Look, nothing
-from analysis.core.text import bounded
-from analysis.map.compare import profiled
-from analysis.map.phases_figure import all_panel
-from analysis.map.results import of
-from study.tools.paper.numbers import DENSE, HYBRID, led, real_mechanisms
+from analysis.core.text import bounded, number
+from analysis.map import phases_figure
+from study.tools.paper import numbers
+from study.tools.paper.numbers import DENSE, HYBRID, led, profiled, real_mechanisms
 
 TEXT = 6.69      # inches, width of the paper's text
 SCALE = 0.78     # of letters and lines on paper: what figures have at 9.5 is 7.4 points
@@ -30,10 +29,10 @@ def figures(known):
     matplotlib.rcParams["figure.max_open_warning"] = 0  # all of some parts, of which few are taken
     drawn = {part: importlib.import_module(f"analysis.{part}.figures").draw(known.tables(part), known.view(part)) for part in (
         "families", "map", "stability", "realtime", "engines")}
-    found = {"mechanisms": (mechanisms(known), None), "held": (drawn["families"]["held"], 2.4), "own_fill": (lower_notes(drawn["map"]["f4_sparse_solvers"]), 4.2),
-             "map": (drawn["map"]["f7_map"], 4.1), "phases": (phases(known), None), "work": (work(known), 4.0),
-             "window": (drawn["stability"].get("penalty-double") or nothing(NOTHING), 2.9), "steps": (drawn["realtime"]["steps"], None),
-             "own": (own(drawn["families"]["map"]), 3.1), "engines": (engines(drawn["engines"]["regular"]), 3.2)}
+    found = {"mechanisms": (mechanisms(known), 6.3), "held": (drawn["families"]["held"], 1.9), "own_fill": (lower_notes(drawn["map"]["f4_sparse_solvers"]), 3.1),
+             "map": (drawn["map"]["f7_map"], 3.4), "phases": (phases(known), None), "work": (work(known), 2.9),
+             "window": (drawn["stability"].get("penalty-double") or nothing(NOTHING), 2.4), "steps": (drawn["realtime"]["steps"], 2.4),
+             "own": (own(drawn["families"]["map"]), 2.3), "engines": (engines(drawn["engines"]["regular"]), 2.6)}
     return {name: fit(figure, height, known.context["cpu_model"]) for name, (figure, height) in found.items()}
 
 
@@ -87,15 +86,21 @@ def below(figure, legend, columns):
 
 
 def phases(known):
-    """What a step of some variants consists of, at the largest size that was profiled."""
-    results = of(known.tables("map"), known.view("map"))
-    size = max(profiled(results).variables.unique(), default=None)
-    if size is None:
+    """What a step of some variants consists of, and how long it takes, at the largest size that was timed phase by phase."""
+    rows = profiled(known).set_index("implementation")
+    if rows.empty:
         return nothing(NOTHING)
-    names = [name for name in PHASES_OF if len(profiled(results, name, size))]
+    names = [name for name in PHASES_OF if name in rows.index]
     figure, axes = plt.subplots(figsize=(8.4, 0.6 + 0.25 * len(names)))
-    all_panel(axes, results, size, names, True)
-    axes.set_title("")
+    for place, name in enumerate(names):
+        phases_figure.bar(axes, place, [(phase, 100 * share) for phase, share in numbers.phases(rows.loc[name]).items()], phases_figure.FILLS, False)
+        axes.text(101, place, f"{number(rows.step_us[name])} µs", va="center", fontsize=7.5)
+    axes.set_yticks(range(len(names)), names, fontsize=8.5)
+    axes.set(xlim=(0, 108), ylim=(len(names) - 0.4, -0.6), xlabel=f"n = {rows.variables.max():g}: share of the time of a step, %")
+    axes.set_xticks(range(0, 101, 20))
+    axes.tick_params(axis="y", length=0)
+    axes.spines["left"].set_visible(False)
+    phases_figure.legend(axes, phases_figure.FILLS, phases_figure.LABELS)
     return figure
 
 
@@ -141,7 +146,7 @@ def mechanisms(known):
     axes.set(xlim=(0.93, END), ylim=(len(mine) - 0.4, -0.6), xlabel="time ÷ that of the fastest library; grey band: as fast, to 5 %")
     marks = {True: "", False: "  open"}
     said = mine.decided.fillna(False).astype(bool) | mine.settled.fillna(False).astype(bool)
-    axes.set_yticks(range(len(mine)), [f"{row.scene}, n = {row.variables:.0f}{marks[one]}" for row, one in zip(mine.itertuples(), said)], fontsize=8)
+    axes.set_yticks(range(len(mine)), [f"{row.scene}, n = {row.variables:.0f}{marks[one]}" for row, one in zip(mine.itertuples(), said)], fontsize=7.3)
     axes.plot([], [], "|", color="#9a9a9a", markersize=6, label="other libraries")
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=4, fontsize=8.5)
     return figure

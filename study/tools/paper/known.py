@@ -8,6 +8,21 @@ import pandas
 from analysis.core import schema
 from analysis.core.files import ROOT, read_object
 from analysis.core.view import Folder, View
+from study.tools.merge import agreement
+
+
+class Tables(dict):
+    """{table: DataFrame} of a part of a set; a table that a set of an older schema lacks is empty."""
+
+    def __init__(self, folder, part):
+        super().__init__()
+        self.folder, self.part = folder, part
+
+    def __missing__(self, name):
+        kept = read_object(self.folder / self.part / schema.DIGESTS, tables=dict)["tables"]
+        self[name] = schema.read_table(self.folder, self.part, name) if name in kept else schema.conform(
+            pandas.DataFrame(), schema.of_part(self.part)[name], f"{self.part}/{name}.csv")
+        return self[name]
 
 
 @dataclass(frozen=True)
@@ -15,13 +30,8 @@ class Known(Folder):
     _tables: dict = field(default_factory=dict)
 
     def tables(self, part):
-        """{table: DataFrame} of a part; a table that a set of an older schema lacks is empty."""
-        if part not in self._tables:
-            kept = read_object(self.folder / part / schema.DIGESTS, tables=dict)["tables"]
-            self._tables[part] = {name: schema.read_table(self.folder, part, name) if name in kept else
-                                  schema.conform(pandas.DataFrame(), columns, f"{part}/{name}.csv")
-                                  for name, columns in schema.of_part(part).items()}
-        return self._tables[part]
+        """{table: DataFrame} of a part, each read when it is asked for."""
+        return self._tables.setdefault(part, Tables(self.folder, part))
 
     def view(self, part="map"):
         return View(self.folder, part)
@@ -36,7 +46,23 @@ class Known(Folder):
         return self.facts["context"]
 
     @cached_property
-    def others(self):
+    def beside(self):
         """The stored sets of other machines, as Known."""
         found = [Known(path.parent) for path in sorted((ROOT / "results").glob("*/set.json")) if path.parent != self.folder]
         return [one for one in found if one.context["cpu_model"] != self.context["cpu_model"]]
+
+    @cached_property
+    def others(self):
+        """Those beside it that may be compared with it: of the same commit and build."""
+        return [one for one in self.beside if not agreement.unlike(self, one)]
+
+    @property
+    def machines(self):
+        """This set and the others."""
+        return [self, *self.others]
+
+    @cached_property
+    def agreed(self):
+        """What they say together of libraries; [] of one machine."""
+        found = agreement.agreements(self.machines)[0] if self.others else []
+        return [one for one in found if one.question.layer == "libraries"]

@@ -6,7 +6,7 @@ import subprocess
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, write_json, write_text
-from study.core.main import need_modules, newest
+from study.core.main import need_modules
 from study.core.options import Parser, directory
 
 LATEX = ("latexmk", "biber")
@@ -16,15 +16,16 @@ LEAST, MOST = 10, 14  # pages
 def paper(arguments):
     parser = Parser(prog="study/paper", description="Builds paper/build/paper.pdf from a stored set. The build fails where the paper types a number, "
                     "names one that is not there, or claims what the set does not say.")
-    parser.add_argument("set", nargs="?", type=directory, help="its directory (the newest in results/)")
+    parser.add_argument("set", nargs="?", type=directory, help="its directory (the one that the rule of `mbs describe` names)")
     parser.add_argument("--audit", action="store_true", help="only say what is wrong, a line each; needs no LaTeX")
     parser.add_argument("--fill", action="store_true", help="only fill paper/ARTIFACT.md anew")
     options = parser.parse_args(arguments)
     need_modules()
+    from study.tools.fragments import main_set
     from study.tools.paper import artifact, audit
     from study.tools.paper.known import Known
     from study.tools.paper.numbers import numbers
-    known = Known((options.set or newest()).resolve())
+    known = Known((options.set or main_set()).resolve())
     if known.folder.parent != ROOT / "results":
         raise StudyError(f"{known.folder} is no stored set: the paper is built from one of results/ (study/store)")
     claimed = artifact.judged(known)

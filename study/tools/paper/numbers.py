@@ -14,13 +14,12 @@ from analysis.core.text import number, span
 from analysis.families import rule as rules
 from analysis.families.figures import best_form, fastest_own
 from analysis.map import carry, ledger, sentences as map_sentences, summary
-from analysis.map.compare import profiled
-from analysis.core.statistics import phase_shares
 from analysis.map.results import of
-from study.tools.merge import agreement
+from study.tools.merge import agreement, machine
 
 NOT_MEASURED = "not measured"
 DENSE, HYBRID = "eigen_dense/llt", "hybrid_dense/llt"  # the same factorization, assembled densely and sparsely
+SCALAR, BLOCKS = "csc_ldl/uplooking", "csc_cholmod/supernodal"  # which works number by number; by calls of BLAS
 
 
 @dataclass(frozen=True)
@@ -33,8 +32,9 @@ class Number:
 def numbers(known):
     """{name: Number}"""
     found = {}
-    for query in (_set, _design, _gate, _real, _size, _fill, _claims, _price, _rule, _error, _window, _latency, _own, _limits, _minutes):
-        found |= {f"{query.__name__[1:]}.{name}": one for name, one in query(known).items()}
+    for query in (_set, _design, _gate, real, _size, _fill, _machines, _claims, _price, _rule, _error, _window, _latency, _own, _limits,
+                  _minutes):
+        found |= {f"{query.__name__.lstrip('_')}.{name}": one for name, one in query(known).items()}
     return {name: Number(one.text, one.table, tuple(dict.fromkeys(one.records))) if isinstance(one, Number) and one.text not in ("", "–", "nan") else Number(NOT_MEASURED, one.table if one else "")
             for name, one in found.items()}
 
@@ -107,8 +107,7 @@ def _design(known):
             "faster": of_rows((timed.high < 1).sum(), "tuning/alternatives", timed[timed.high < 1]),
             "least": of_rows(number(timed.ratio.min()), "tuning/alternatives", timed.nsmallest(1, "ratio")) if len(timed) else None,
             "controls": Number(_controls(known), "map/controls", tuple(known.tables("map")["controls"].record)),
-            "spread": Number(_spread(known), "map/spread"),
-            "machines": Number(machines_said(known), "map/cells, families/scenes")}
+            "spread": Number(_spread(known), "map/spread")}
 
 
 def _controls(known):
@@ -127,14 +126,26 @@ def _spread(known):
         f"{carry.SOURCES.get(row.source, row.source)} alone make {number(row.percent, 2)} %" for row in rows.itertuples()) + "."
 
 
-def machines_said(known):
-    """What other machines say of the same cells; or that there is none."""
+def _machines(known):
+    """What machines say together, and what makes them differ."""
     if not known.others:
-        return "Agreement between machines is not measured: the stored sets are of one machine."
-    agreed, _ = agreement.agreements([known, *known.others])
-    kinds = [one.verdict for one in agreed if one.question.layer == "libraries"]
-    return (f"Of {len(kinds)} cells that {1 + len(known.others)} machines measured, {kinds.count('decided')} have one fastest library on all of them, "
-            f"{kinds.count('several')} have several that are within the margin on all, and {kinds.count('differs')} differ by machine.")
+        return dict.fromkeys(("count", "names", "all", "same", "common", "differ", "cells", "decided", "several", "differs", "rate", "latency", "vector",
+                              "scalar", "blocks"))
+    count = agreement.shares(agreement.mechanisms(known.machines, known.agreed))
+    kinds = [one.verdict for one in known.agreed if one.question.part == "map"]
+    verdicts = {"cells": len(kinds)} | {verdict: kinds.count(verdict) for verdict in ("decided", "several", "differs")}
+    rates, gained = [machine.rates(one) for one in known.machines], machine.gains(known.machines)
+    beside = {name: [one[rate] / rates[0][rate] for one in rates[1:] if rate in one and rate in rates[0]]
+              for name, rate in (("rate", "flops_per_ns"), ("latency", "add_ns"))}
+    steps = {name: gained.get(variant, [])[1:] for name, variant in (("vector", HYBRID), ("scalar", SCALAR), ("blocks", BLOCKS))}
+    told = [f"{one.folder.name} is {one.context['cpu_model']}, {one.facts['date'][:10]}" for one in known.machines]
+    on = lambda values: listed(f"{number(value, 2)} on {one.folder.name}" for value, one in zip(values, known.others))
+    where = "of " + ", ".join(one.folder.name for one in known.machines)
+    return {name: Number(text, f"{table} {where}") for table, found in (
+        ("set.json", {"count": str(len(told)), "names": "; ".join(told)}),
+        ("families/scenes", {name: str(one) for name, one in count.items()} | {name: on(one) for name, one in steps.items()}),
+        ("map/tidy", {name: str(one) for name, one in verdicts.items()}),
+        ("raw/limit", {name: on(one) for name, one in beside.items()})) for name, text in found.items()}
 
 
 def _gate(known):
@@ -147,7 +158,7 @@ def _gate(known):
     return found
 
 
-def _real(known):
+def real(known):
     rows, table = real_mechanisms(known), "families/winners"
     if rows.empty:
         return dict.fromkeys(("mechanisms", "families", "least", "most", "said", "margin", "leader", "leads", "shares", "saddle", "saddle_of", "single", "single_on", "mean", "worst", "where"))
@@ -192,12 +203,26 @@ def _fill(known):
              "equal": of_rows(count["equivalent"], "map/cells", rows), "open": of_rows(count["open"], "map/cells", rows),
              "holm": _holm(rows), "filled": of_rows(len(filled), "map/cells", filled),
              "hybrid": of_rows(len(hybrid), "map/cells", hybrid)}
-    size = max(profiled(results).variables.unique(), default=None)
+    rows = profiled(known)
     for name, variant in (("dense", DENSE), ("hybrid", HYBRID)):
-        here = profiled(results, variant, size) if size else cells[:0]
-        shares = phase_shares(here, timing.PHASES) if len(here) else {}
-        found |= {f"assembly_{name}": of_rows(percent(shares["assembly"]), "map/tidy", here) if shares else None}
-    return found | {"profiled": of_rows(number(size), "map/tidy", profiled(results, DENSE, size)) if size else None, "faster": _hybrid(results, filled)}
+        mine = rows[rows.implementation == variant]
+        found |= {f"assembly_{name}": of_rows(percent(phases(mine.iloc[0])["assembly"]), "limit/steps", mine) if len(mine) else None}
+    return found | {"profiled": of_rows(number(rows.variables.max()), "limit/steps", rows) if len(rows) else None, "faster": _hybrid(results, filled)}
+
+
+def profiled(known):
+    """Rows of steps of the four-bar at its own fill that were timed phase by phase, at the largest size at which both of the same
+    factorization were."""
+    rows = known.tables("limit")["steps"]
+    rows = rows[(rows.form == "penalty") & (rows.status == "ok") & rows.assembly_us.notna()]
+    sizes = [size for size, mine in rows.groupby("variables") if {DENSE, HYBRID} <= set(mine.implementation)]
+    return rows[rows.variables == max(sizes)] if sizes else rows[:0]
+
+
+def phases(row):
+    """{phase: share of the step}"""
+    times = {phase: row[f"{phase}_us"] for phase in timing.PHASES}
+    return {phase: one / sum(times.values()) for phase, one in times.items()}
 
 
 def _holm(rows):
@@ -304,7 +329,8 @@ def _own(known):
 
 def _limits(known):
     battery = known.tables("extremes")["battery"]
-    return {"extremes": of_rows(" ".join(known.said("extremes")[:1]), "extremes/battery", battery)}
+    said = " ".join(known.said("extremes")[:1]).partition(" Other false alarms:")[0]  # which the part's page names, run by run
+    return {"extremes": of_rows(said.partition(" Silent wrongs:")[0], "extremes/battery", battery)}
 
 
 def _minutes(known):

@@ -5,7 +5,7 @@ from textwrap import shorten
 
 import pandas
 
-from analysis.core.text import between, bounded, ends, number
+from analysis.core.text import between, bounded, ends, interval, number
 from analysis.engines.equal_error import SIDES
 from analysis.engines.figures import title
 from analysis.engines.runs import NATIVE
@@ -14,7 +14,9 @@ from analysis.families.figures import best_form, fastest_own
 from analysis.families.sentences import cases
 from analysis.map import summary
 from analysis.map.results import of
-from study.tools.paper.numbers import led, losses, mean, real_mechanisms
+from study.tools.merge import machine
+from study.tools.paper import numbers
+from study.tools.paper.numbers import BLOCKS, HYBRID, SCALAR, led, losses, mean, real_mechanisms
 
 ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}",
            "^": r"\textasciicircum{}", "$": r"\$", "<": r"\textless{}", ">": r"\textgreater{}", "/": r"/\allowbreak{}", ":": r":\allowbreak{}", "@": r"@\allowbreak{}", "µ": r"\textmu{}", "÷": r"\(\div\)", "×": r"\(\times\)", "≥": r"\(\ge\)",
@@ -28,7 +30,12 @@ def tex(text):
 
 
 CHEAPEST = 8  # libraries of the table of prices
-TABLES = ("contenders", "decided", "ranking", "claims", "prices", "leaves", "defaults", "largest", "engines", "mechanisms")
+RANKED = 12     # libraries of the table of ranks
+DEFAULTS = 6    # of other tools: the least costly and the two most costly
+MOST_FOUND = 110  # letters of what was found; the page of the families has the rest
+DIFFERING = 12  # scenes of the table of those that differ by machine
+GAINED = (SCALAR, "csc_klu/refactor", BLOCKS, HYBRID, "compiled_ldl/fronts")  # whose steps are compared between machines
+TABLES = ("contenders", "decided", "ranking", "machines", "differs", "claims", "prices", "leaves", "defaults", "largest", "engines", "mechanisms")
 
 
 def tables(known):
@@ -37,11 +44,9 @@ def tables(known):
 
 
 def of_numbers(found):
-    """The appendix: a line a number, to which its uses link."""
-    rows = "".join(rf"\hypertarget{{where:{name}}}{{{tex(name)}}} & {tex(shorten(one.text, 40, placeholder=' …'))} & {tex(one.table)} & {tex(_records(one))} \\" + "\n"
-                   for name, one in found.items())
-    return (r"\begin{longtable}{P{28mm}P{44mm}P{30mm}P{68mm}}\toprule number & value & table & record \\\midrule\endhead\bottomrule\endfoot" + "\n"
-            + rows + r"\end{longtable}" + "\n")
+    """The appendix: an entry a number, to which its uses link."""
+    return "".join(rf"\numberentry{{\hypertarget{{where:{name}}}{{{tex(name)}}}}}{{{tex(shorten(one.text, 28, placeholder=' …'))}}}"
+                   rf"{{{tex('; '.join(filter(None, (one.table, _records(one)))))}}}" + "\n" for name, one in found.items())
 
 
 def _records(one):
@@ -73,32 +78,34 @@ def contenders(known):
 
 def decided(known):
     """What the mechanisms were held to, and what was found."""
-    rows = [{"what": what, "asked": asked, "found": found, "holds": {True: "yes", False: "no", None: "–"}[holds]}
+    rows = [{"what": what, "asked": asked, "found": shorten(found, MOST_FOUND, placeholder=" …"), "holds": {True: "yes", False: "no", None: "–"}[holds]}
             for what, asked, found, holds in bounds.bounds(known.tables("families"))]
     held = known.tables("limit")["held"]
     rows += [{"what": row.what, "asked": f"{row.sign} {number(row.bound)}", "found": between(row.worst, row.low, row.high) if row.worst == row.worst
               else "not measured", "holds": {"held": "yes", "not held": "no"}.get(row.verdict, row.verdict)} for row in held.itertuples() if row.worst == row.worst]
-    return table(rows, {"what": r"P{62mm}", "asked": r"P{27mm}", "found": r"P{52mm}", "holds": r"P{18mm}"})
+    return table(rows, {"what": r"P{64mm}", "asked": r"P{36mm}", "found": r"P{52mm}", "holds": r"P{14mm}"})
 
 
 def ranking(known):
     """Libraries over the mechanisms at their own fill."""
     mine, lost = led(real_mechanisms(known)), losses(known)
     rows = [{"library": name, "first or as fast": str(mine.get(name, 0)), "timed on": str(len(one)), "mean": number(mean(one)),
-             "worst": number(one.max()), "where": one.idxmax()} for name, one in lost.items()]
+             "worst": number(one.max()), "where": one.idxmax()} for name, one in [*lost.items()][:RANKED]]
     return table(rows, {"library": "l", "first or as fast": "r", "timed on": "r", "mean": "r", "worst": "r", "where": "l"})
 
 
 def claims(known):
     """The claims of 2008, each with theirs, ours on each machine and the verdict."""
-    sets = [known, *known.others]
+    sets = known.machines
     others = [one.tables("map")["claims"].set_index(["id", "claim"]) for one in sets[1:]]
     rows = []
     for row in known.tables("map")["claims"].itertuples():
-        mine = {"": row.id, "claim": row.claim, "2008": row.paper, sets[0].context["cpu_model"]: _ours(row)}
+        mine, verdicts = {"": row.id, "claim": row.claim, "2008": row.paper, sets[0].folder.name: _ours(row)}, [row.verdict]
         for one, its in zip(sets[1:], others):
-            mine[one.context["cpu_model"]] = _ours(its.loc[(row.id, row.claim)]) if (row.id, row.claim) in its.index else "–"
-        rows.append(mine | {"verdict": row.verdict})
+            there = its.loc[(row.id, row.claim)] if (row.id, row.claim) in its.index else None
+            mine[one.folder.name] = "–" if there is None else _ours(there)
+            verdicts += [] if there is None else [there.verdict]
+        rows.append(mine | {"verdict": "; ".join(dict.fromkeys(verdicts))})
     width = 44 / len(sets)
     heads = {head: r"P{%.0fmm}" % width for head in rows[0] if head not in ("", "claim", "2008", "verdict")} if rows else {}
     return table(rows, {"": "l", "claim": r"P{61mm}", "2008": r"P{18mm}"} | heads | {"verdict": r"P{21mm}"}, long=True)
@@ -106,6 +113,41 @@ def claims(known):
 
 def _ours(row):
     return "–" if not row.ours else row.ours + (f" ({row.low} to {row.high})" if row.low else "")
+
+
+def machines(known):
+    """What was measured on each machine, a column each."""
+    found, gained = [_machine(one) for one in known.machines], machine.gains(known.machines)
+    rows = [{"": what} | {one.folder.name: mine[what] for one, mine in zip(known.machines, found)} for what in found[0]]
+    rows += [{"": f"a step with {name}, times that on {known.folder.name}"} | {one.folder.name: number(value) for one, value in zip(known.machines, gained[name])}
+             for name in GAINED if name in gained and known.others]
+    return table(rows, {"": r"P{72mm}"} | {one.folder.name: r"P{%.0fmm}" % (96 / len(known.machines)) for one in known.machines})
+
+
+def _machine(one):
+    real, cells, control = numbers.real(one), summary.settled(one.tables("map")["cells"], "libraries"), machine.controls(one)
+    measured = machine.rates(one)
+    return {"processor": one.context["cpu_model"], "measured on": one.facts["date"][:10],
+            "pairs timed against themselves, of these decided, which is false": f"{control['pairs']}, {control['false']}",
+            "mechanisms that are settled": f"{real['said'].text} of {real['mechanisms'].text}",
+            "library that is fastest or as fast most often": f"{real['leader'].text} on {real['leads'].text}",
+            "best single library: mean and worst loss": f"{real['single'].text}: {real['mean'].text}, {real['worst'].text}",
+            "cells of the map: decided, several as fast, open": f"{cells['decided']}, {cells['equivalent']}, {cells['open']}"} | {
+        text: number(measured.get(name)) for name, text in machine.RATES.items() if name not in ("L2", "L3")}
+
+
+def differs(known):
+    """Where no library is among the best on all machines: on each who is fastest, and what those take who are so elsewhere."""
+    rows, found = [], sorted((one for one in known.agreed if one.verdict == "differs"), key=lambda one: -one.worst.get(one.robust, math.inf))
+    for one in found[:DIFFERING]:
+        row = {"scene": one.question.scene, "form": one.question.form.partition("-")[0], "n": number(one.question.variables, 5)}
+        for place, (there, ratios) in enumerate(zip(known.machines, one.machines)):
+            others = [f"{name} {interval(ratios[name])}" for name in dict.fromkeys(one.winners) if name != one.winners[place] and name in ratios]
+            row[there.folder.name] = "; ".join([one.winners[place], *others])
+        rows.append(row | {"robust": f"{one.robust} {number(one.worst.get(one.robust))}"})
+    width = 88 / len(known.machines)
+    return table(rows, {"scene": r"P{30mm}", "form": "l", "n": "r"} | {one.folder.name: r"P{%.0fmm}" % width for one in known.machines}
+                 | {"robust": r"P{32mm}"}) if rows else tex("None." if known.others else "Not measured in this set.")
 
 
 def prices(known):
@@ -126,19 +168,22 @@ def defaults(known):
     """Defaults of other tools, as rules for our contenders."""
     rows = [{"default": row["rule"], "chooses": row["chooses"], "mean": ("about " if row["rough"] else "") + number(row["mean"]), "worst": number(row["worst"])}
             for row in known.tables("families")["defaults"].sort_values("mean").to_dict("records") if row["mean"] == row["mean"]]
+    rows = rows[:DEFAULTS - 2] + rows[-2:] if len(rows) > DEFAULTS else rows
     return table(rows, {"default": r"P{40mm}", "chooses": r"P{92mm}", "mean": "r", "worst": "r"})
 
 
 def largest(known):
-    """Who keeps up with which size."""
-    rows = []
-    for row in known.tables("realtime")["largest"].itertuples():
+    """Who keeps up with which size: a row an implementation, a column a form and deadline; those that keep up with most."""
+    found, heads, most = {}, {}, {}
+    for row in known.tables("realtime")["largest"].sort_values(["scheme", "step"]).itertuples():
         if row.largest == row.largest:
-            rows.append({"implementation": row.implementation, "form": row.scheme, "deadline": f"{1e3 * row.step:g} ms", "largest N": number(row.largest, 5),
-                         "missed": f"{row.missed} of {row.steps}", "longest": f"{number(row.max_us)} µs",
-                         "next N": number(row.next, 5), "missed there": row.next_reason.split(":")[0] if row.next_reason else "–"})
-    return table(rows, {"implementation": "l", "form": "l", "deadline": "r", "largest N": "r", "missed": "r", "longest": "r", "next N": "r",
-                        "missed there": "l"})
+            head = f"{row.scheme}, {1e3 * row.step:g} ms"
+            heads[head] = "l"
+            most[row.implementation] = max(most.get(row.implementation, 0), row.largest)
+            found.setdefault(row.implementation, {})[head] = f"{number(row.largest, 5)} ({number(row.max_us)} µs)" + (
+                f"; not {number(row.next, 5)}" if row.next == row.next else "")
+    order = sorted(found, key=most.get, reverse=True)[:RANKED]
+    return table([{"implementation": name} | {head: found[name].get(head, "–") for head in heads} for name in order], {"implementation": "l"} | heads)
 
 
 def engines(known):

@@ -1,0 +1,74 @@
+# Numbers in texts: a README has places between marks that are filled from stored sets, and nowhere else a measured
+# number.
+#
+#   <!-- from SET: cases -->          or of several machines: <!-- from SET, SET: cases -->
+#   …
+#   <!-- end -->
+import json
+import re
+
+from analysis.core import site
+from analysis.core.errors import StudyError
+from analysis.core.files import ROOT, RULE, as_json, read_json, write_text
+from analysis.core.view import Folder
+from study.tools.merge import agreement
+
+MARKED = re.compile(r"(<!-- from ([\w.+-]+(?:, [\w.+-]+)*): (\S+) -->\n)(.*?)(<!-- end -->)", re.S)
+
+
+def main_set():
+    """The stored set that the rule of `mbs describe` names: README and paper are of it, too."""
+    name = read_json(RULE).get("set")
+    if not name or not (ROOT / "results" / name / "set.json").exists():
+        raise StudyError(f"{RULE.relative_to(ROOT)} names no stored set (set is {name!r}): name the one that rule, README and paper are of")
+    return ROOT / "results" / name
+
+
+def filled(text):
+    """A text with its marked places as their sets say them now."""
+    return MARKED.sub(lambda one: one[1] + fragment(one[2].split(", "), one[3]) + one[5], text)
+
+
+def fragment(names, what):
+    """"cases": the table of the first set, with a row about the machines of all of them; a part's name: its answers as a list."""
+    folders = [ROOT / "results" / name for name in names]
+    known = site.answers_of(folders[0])
+    if what == "cases":
+        rows = [case for one in known.values() if one for case in one["cases"]] + _machines(folders)
+        return "".join(["| your case | take this |\n|---|---|\n", *(f"| {row['case']} | {row['take']} |\n" for row in rows)])
+    if known.get(what) is None:
+        raise StudyError(f"{folders[0]} has no answers of '{what}'")
+    return "".join(f"- {one['text']}\n" for one in known[what]["answers"])
+
+
+def _machines(folders):
+    """The row that says what holds on several machines; none of one."""
+    if len(folders) < 2:
+        return []
+    count = agreement.shares(agreement.mechanisms([Folder(one) for one in folders]))
+    return [{"case": "Your processor is another one",
+             "take": f"what `build/mbs bench` names there; on {len(folders)} processors the same library is fastest on {count['same']} of {count['all']} "
+                     f"mechanisms, on {count['common']} more one is nowhere shown to be over 5 % slower than the fastest, {count['differ']} differ"}]
+
+
+def refresh():
+    """Fills all texts of the repository anew, and the rule; the paths of those that changed."""
+    changed = []
+    for path, made in ((RULE, of_set), *((text, filled) for text in texts())):
+        before = path.read_text(encoding="utf-8")
+        if made(before) != before:
+            write_text(path, made(before))
+            changed.append(path)
+    return changed
+
+
+def of_set(rule):
+    """The rule of the stored set that the text of one names; of none, {}, itself."""
+    name = json.loads(rule).get("set")
+    return as_json({"set": name} | read_json(ROOT / "results" / name / "families" / RULE.name)) if name else rule
+
+
+def texts():
+    """All READMEs and the like."""
+    return sorted(path for path in ROOT.rglob("*.md") if not {".git", "local", "node_modules"} & set(path.parts)
+                  and not path.relative_to(ROOT).parts[0].startswith("build"))

@@ -1,0 +1,47 @@
+# What was measured of a machine itself, beside the winners on it: rates of the processor, controls, and how long a step takes
+# each library beside another machine.
+import numpy
+import pandas
+
+from analysis.core import records, schema
+from analysis.map import carry
+
+RATES = {"flops_per_ns": "multiply-adds in the widest vectors, operations a ns", "divisions_per_ns": "divisions in the widest vectors, a ns",
+         "add_ns": "latency of an addition, ns", "fused_ns": "latency of a multiply-add, ns", "divide_ns": "latency of a division, ns",
+         "L1": "loads and stores in L1, bytes a ns", "L2": "in L2", "L3": "in L3", "memory": "in memory"}
+
+
+def rates(studyset):
+    """{name of RATES: value}, as `mbs limit` measured them; {} of a set without."""
+    found = [one for one in records.read_part(studyset.folder, "limit") if one.role == "bounds" and "machine" in one.output]
+    if not found:
+        return {}
+    known = found[0].output["machine"]
+    known |= {one["name"]: one["bytes_per_ns"] for one in known.get("levels", [])}
+    return {name: known[name] for name in RATES if name in known}
+
+
+def controls(studyset):
+    """carry.judged of a set's map."""
+    return carry.judged(table(studyset, "map", "controls"))
+
+
+def gains(sets):
+    """{contender: [for each machine the mean over scenes of a step's time ÷ that on the first machine]}: geometric, over the scenes of
+    the families that all timed, in the penalty form."""
+    times = []
+    for one in sets:
+        rows = table(one, "families", "scenes")
+        rows = rows[(rows.status == "ok") & (rows.scheme == "penalty")]
+        times.append(rows.set_index(["implementation", "scene"]).step_us)
+    shared = set.intersection(*(set(one.index) for one in times))
+    scenes = {name: sorted(scene for who, scene in shared if who == name) for name, _ in shared}
+    found = {name: [float(numpy.exp(numpy.mean([numpy.log(one[name, scene] / times[0][name, scene]) for scene in mine]))) for one in times]
+             for name, mine in scenes.items()}
+    return dict(sorted(found.items(), key=lambda one: one[1][-1]))
+
+
+def table(studyset, part, name):
+    if not (studyset.folder / part / schema.DIGESTS).exists():
+        return schema.conform(pandas.DataFrame(), schema.of_part(part)[name], f"{part}/{name}.csv")
+    return schema.read_table(studyset.folder, part, name)
