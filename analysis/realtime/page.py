@@ -1,4 +1,4 @@
-# What the page says besides its figures: who is late, what judging costs.
+# What the page says besides its figures: who is late, what the machine loses.
 from analysis.core.outcomes import FINISHED
 from analysis.realtime.verdict import HOPELESS
 
@@ -9,7 +9,7 @@ def context(tables, view):
     return {"settings": view.settings, "steps": steps.to_dict("records"), "finished": FINISHED, "hopeless": HOPELESS,
             "largest": searched.to_dict("records"), "not_searched": len(largest) - len(searched),
             "dropped": int((steps.status == "dropped").sum()), "incomplete": int((~searched.complete.astype(bool)).sum()),
-            "tried": len(tables["tried"]), "machine": losses(machine), "judging": judging(steps)}
+            "tried": len(tables["tried"]), "machine": losses(machine), "judging": tables["judging"].to_dict("records")}
 
 
 def losses(machine):
@@ -17,12 +17,3 @@ def losses(machine):
     done = machine[machine.status == "done"]
     return [(step, len(rows), rows.seconds.sum(), rows.lost.sum(), rows.largest_us.max())
             for step, rows in done.groupby("step")]
-
-
-def judging(steps):
-    """The row of the largest share of a step that judging takes; None without times."""
-    rows = steps[steps.judge_us.notna() & steps.mean_us.notna()]
-    if rows.empty:
-        return None
-    share = rows.judge_us / rows.mean_us
-    return rows.loc[share.idxmax()].to_dict() | {"share": share.max()}

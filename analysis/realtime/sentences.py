@@ -1,5 +1,6 @@
 # The answer to "Which mechanism keeps its deadlines?", from the tables.
 from analysis.core.text import number
+from analysis.realtime.tables import BOUNDS, LARGE
 
 
 def answers(tables, view):
@@ -12,23 +13,32 @@ def answers(tables, view):
         said = [_best(name, one) for name, one in layers.items() if len(one)]
         if said:
             found.append({"anchor": "largest", "text": f"Steps of {number(1e3 * step)} ms: {'. '.join(said)}."})
-    return [*found, *_clean(tables["steps"], view), *_machine(tables["machine"])] or [
+    return [*found, *_clean(tables["steps"], tables["machine"], view), *_judging(tables["judging"])] or [
         {"text": "Not measured: no implementation of this part took part.", "anchor": ""}]
 
 
-def _clean(steps, view):
-    """How many runs missed nothing."""
+def _clean(steps, machine, view):
+    """How many runs missed nothing, and what the null processes lost: how far this machine allows real time."""
     observed = steps[steps.missed.notna()]
-    text = (f"{(observed.missed == 0).sum()} of {len(observed)} runs of {number(view.settings['duration'])} s missed no "
-            "deadline at all.")
-    return [{"anchor": "steps", "text": text}] if len(observed) else []
-
-
-def _machine(machine):
-    """What the null processes lost: how far this machine allows real time."""
+    missed = (f"{(observed.missed == 0).sum()} of {len(observed)} runs of {number(view.settings['duration'])} s missed no "
+              "deadline at all.") if len(observed) else ""
     said = [f"{number(rows.lost.sum(), 5)} deadlines of {number(1e3 * step)} ms in {number(rows.seconds.sum())} s"
             for step, rows in machine[machine.status == "done"].groupby("step")]
-    return [{"anchor": "machine", "text": f"The machine itself lost {' and '.join(said)}."}] if said else []
+    lost = f"The machine itself lost {' and '.join(said)}." if said else ""
+    text = " ".join(filter(None, (missed, lost)))
+    return [{"anchor": "steps" if missed else "machine", "text": text}] if text else []
+
+
+def _judging(judging):
+    """Whether judging costs no more of a step than it may."""
+    known = judging[judging.share.notna()]
+    if known.empty:
+        return []
+    beyond, most = known[~known.held.astype(bool)], known.loc[(known.share / known.bound).idxmax()]
+    held = f"not held, {len(beyond)} scenes ({', '.join(beyond.scene)})" if len(beyond) else "held"
+    return [{"anchor": "judging", "text": f"Judging the motion costs at most {number(100 * known.share.max(), 2)} % of a step on {len(known)} scenes, beside "
+             f"the fastest implementation. Bound “{number(100 * BOUNDS[True])} % from {LARGE} variables on, {number(100 * BOUNDS[False])} % below”: {held}. "
+             f"Nearest to it: {most.scene}, {number(100 * most.share, 2)} %."}]
 
 
 def _best(layer, rows):

@@ -1,12 +1,13 @@
-# Distributions, what the search tried and what it came to, and the losses of null processes, from their records.
+# Distributions, what judging costs, what the search tried and what it came to, and the losses of null processes, from their records.
 import pandas
 
-from analysis.core.outcomes import of_run
+from analysis.core.outcomes import FINISHED, of_run
 from analysis.core.text import number
 from analysis.realtime.verdict import judge, lost, missed
 
 TIMES = ("mean", "median", "p99", "p999", "max")
 END = "end of the search"
+LARGE, BOUNDS = 22, {True: 0.02, False: 0.04}  # variables; what judging may cost of a step from there on, and below
 
 
 def build(records, view):
@@ -16,7 +17,7 @@ def build(records, view):
              for role in ("steps", "search")}
     found = {role: _sorted(table, order) if len(table) else table for role, table in found.items()}
     return {"steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"),
-            "tried": found["search"], "largest": _largest(found["search"]), "machine": _machine(nulls.values())}
+            "judging": _judging([one for one in records if one.role == "judging"]), "tried": found["search"], "largest": _largest(found["search"]), "machine": _machine(nulls.values())}
 
 
 def _run(record, null):
@@ -31,6 +32,26 @@ def _run(record, null):
         return row
     verdict = judge(record, null)
     return row | {"null_missed": None if null is None else lost(null), "kept": verdict.kept, "reason_not": verdict.reason}
+
+
+def _judging(records):
+    """A row a scene, of the implementation whose steps are fastest there: the middle one of its runs."""
+    runs = pandas.DataFrame([{
+        "scene": one.cell["scene"], "implementation": one.cell["contenders"][0], "status": of_run(one)[0], "reason": of_run(one)[1],
+        "variables": one.output.get("variables"), "mean_us": (one.output.get("step_us") or {}).get("mean"),
+        "judge_us": one.output.get("judge_us"), "record": one.name} for one in records])
+    rows = []
+    for scene, tried in runs.groupby("scene", sort=False) if len(runs) else ():
+        whole = tried[tried.status.isin(FINISHED)]
+        if whole.empty:
+            rows.append(tried.iloc[0].to_dict() | {"mean_us": None, "judge_us": None})
+            continue
+        own = whole[whole.implementation == whole.groupby("implementation", sort=False).mean_us.median().idxmin()]
+        shares = own.judge_us / own.mean_us
+        row = own.loc[shares.sort_values().index[len(own) // 2]].to_dict()
+        share, bound = row["judge_us"] / row["mean_us"], BOUNDS[row["variables"] >= LARGE]
+        rows.append(row | {"share": share, "bound": bound, "held": share <= bound, "record": " ".join(own.record)})
+    return pandas.DataFrame(rows)
 
 
 def _sorted(table, order):

@@ -98,12 +98,31 @@ def test_figures_page_and_answers():
     for figure in drawn.values():
         plt.close(figure)
     known = page.context(found, VIEW)
-    assert known["machine"] == [(1e-3, 1, 1.3, 1, 7.0)] and known["judging"]["share"] == pytest.approx(0.005)
+    assert known["machine"] == [(1e-3, 1, 1.3, 1, 7.0)] and known["judging"] == []
     texts = [one["text"] for one in sentences.answers(found, VIEW)]
     assert texts[0] == ("Steps of 1 ms: Of libraries lib/a keeps up with N = 8 (0 of 1300 steps missed, – lost by the null process), "
                         "and not with N = 16 (90 of 1300 steps missed, 0 by the null process). "
                         "Of own code own/a keeps up with N = 64 (0 of 1300 steps missed, – lost by the null process).")
-    assert texts[1:] == ["1 of 2 runs of 5 s missed no deadline at all.", "The machine itself lost 1 deadlines of 1 ms in 1.3 s."]
+    assert texts[1:] == ["1 of 2 runs of 5 s missed no deadline at all. The machine itself lost 1 deadlines of 1 ms in 1.3 s."]
+
+
+def judged(scene, variables, judge_us, who="own/a", mean=10.0, status="ok", number=1):
+    output = {"status": status, "status_reason": "because", "variables": variables, "judge_us": judge_us, "step_us": {"mean": mean}}
+    return Record(f"judging/judging/{who}-{scene}-{number}.json", {"scene": scene, "contenders": [who], "role": "judging", "number": number, "settings": []},
+                  "done", "", 0.1, [], {}, output)
+
+
+def test_judging_is_held_to_its_bound_beside_the_fastest():
+    runs = [*(judged("small", 6, cost, number=place) for place, cost in enumerate((0.9, 0.3, 0.1))), judged("small", 6, 0.1, "lib/a", 90.0),
+            judged("large", 22, 0.3), judged("lost", 30, 0.1, status="diverged")]
+    found = made(*runs)
+    small, large, lost = found["judging"].to_dict("records")
+    assert (small["implementation"], small["share"], small["bound"], small["held"]) == ("own/a", pytest.approx(0.03), 0.04, True)
+    assert (large["share"], large["bound"], large["held"]) == (pytest.approx(0.03), 0.02, False)
+    assert lost["share"] != lost["share"] and lost["status"] == "diverged"
+    [answer] = sentences.answers(found, VIEW)
+    assert "not held, 1 scenes (large)" in answer["text"] and answer["anchor"] == "judging"
+    assert ": held." in sentences.answers(made(*runs[:4]), VIEW)[0]["text"]
 
 
 def test_without_records_all_says_so():
@@ -111,4 +130,4 @@ def test_without_records_all_says_so():
     assert sentences.answers(found, VIEW)[0]["text"].startswith("Not measured")
     assert all(len(figures.draw(found, VIEW)[name].axes) == 1 for name in ("steps", "largest"))
     plt.close("all")
-    assert page.context(found, VIEW)["judging"] is None
+    assert page.context(found, VIEW)["judging"] == []

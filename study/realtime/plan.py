@@ -1,5 +1,5 @@
-# Steps against the deadline that real time sets them, their own length: distributions of their times, and the search
-# for the largest N-four-bar that keeps it.
+# Steps against the deadline that real time sets them, their own length: distributions of their times, what judging them costs,
+# and the search for the largest N-four-bar that keeps it.
 from dataclasses import dataclass
 
 from analysis.realtime.verdict import judge, needs_null, observed
@@ -19,7 +19,12 @@ GRID = sorted({round(2 ** (power / 4)) for power in range(60)})  # the sizes of 
 JUMP = 8             # places on the grid, of the search's first steps: a factor of four
 PATIENCE = 2.0       # times real time that a run may take, besides its set-up
 SET_UP = 4.0         # s
-SHARE = 0.25         # of the budget, for distributions
+SHARES = {"distributions": 0.23, "judging": 0.12, "largest": 0.65}
+JUDGED = ("harness/scenes/double_pendulum.json", "harness/scenes/four_bar_2.json", "harness/scenes/problems/spatial_slider_crank.json",
+          "harness/scenes/problems/half_car.json", "four-bar:10", "scissors:5", "loop:12", "ladder:12", "harness/scenes/problems/a04_bricard.json",
+          "vehicle:4", "four-bar:40", "scissors:20", "robot:10", "grid:5x5", "bodies:10")  # scenes, from small to large
+JUDGED_STEP, JUDGED_STEPS, JUDGED_RUNS = 1e-3, 16000, 3
+FASTEST = ("compiled_chains/sweeps", "compiled_ldl/fronts")  # what judging costs most beside
 NULL = "../study/realtime/null_process"  # as seen from the build
 
 
@@ -36,11 +41,11 @@ class Case:
 
 
 def columns(settings):
-    return {"distributions": SHARE * settings["seconds"], "largest": (1 - SHARE) * settings["seconds"]}
+    return {column: share * settings["seconds"] for column, share in SHARES.items()}
 
 
 def run(lab, column):
-    {"distributions": distributions, "largest": largest}[column](lab)
+    {"distributions": distributions, "judging": judging, "largest": largest}[column](lab)
 
 
 def cases(lab):
@@ -57,6 +62,14 @@ def distributions(lab):
     for step in lab.settings["steps"]:
         null(lab, step, duration, "distributions")
     lab.run([case.cell("steps", loops, duration) for case in cases(lab) for loops in lab.settings["loops"]], drop=True)
+
+
+def judging(lab):
+    """The fastest that take part: beside their steps judging costs most."""
+    fastest = [one for one in map(lab.contender, (*FASTEST, *lab.settings["implementations"])) if one][:len(FASTEST)]
+    words = ("--step", f"{JUDGED_STEP:g}", "--duration", f"{JUDGED_STEPS * JUDGED_STEP:g}")
+    lab.run([Cell("simulate", scene, (one,), words, "judging", number, timed=True, seconds=PATIENCE * JUDGED_STEPS * JUDGED_STEP + SET_UP)
+             for number in range(1, JUDGED_RUNS + 1) for scene in JUDGED for one in fastest], drop=True)
 
 
 def null(lab, step, seconds, name):
