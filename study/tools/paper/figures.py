@@ -29,10 +29,10 @@ def figures(known):
     matplotlib.rcParams["figure.max_open_warning"] = 0  # all of some parts, of which few are taken
     drawn = {part: importlib.import_module(f"analysis.{part}.figures").draw(known.tables(part), known.view(part)) for part in (
         "families", "map", "stability", "realtime", "engines")}
-    found = {"mechanisms": (mechanisms(known), 6.3), "held": (drawn["families"]["held"], 1.9), "own_fill": (lower_notes(drawn["map"]["f4_sparse_solvers"]), 3.1),
-             "map": (drawn["map"]["f7_map"], 3.4), "phases": (phases(known), None), "work": (work(known), 2.9),
-             "window": (drawn["stability"].get("penalty-double") or nothing(NOTHING), 2.4), "steps": (drawn["realtime"]["steps"], 2.4),
-             "own": (own(drawn["families"]["map"]), 2.3), "engines": (engines(drawn["engines"]["regular"]), 2.6)}
+    found = {"mechanisms": (mechanisms(known), 6.3), "held": (drawn["families"]["held"], 2.2), "own_fill": (lower_notes(drawn["map"]["f4_sparse_solvers"]), 4.2),
+             "map": (drawn["map"]["f7_map"], 4.6), "phases": (phases(known), None), "work": (work(known), 5.2),
+             "window": (drawn["stability"].get("penalty-double") or nothing(NOTHING), 2.9), "steps": (drawn["realtime"]["steps"], 5.0),
+             "own": (own(drawn["families"]["map"]), 2.6), "engines": (engines(drawn["engines"]["regular"]), 3.2)}
     return {name: fit(figure, height, known.context["cpu_model"]) for name, (figure, height) in found.items()}
 
 
