@@ -60,7 +60,9 @@ def _numbered(record):
 def differing(rows):
     """{name: reason} of one scene: the passes over its stretch must be equal. The most common number among ranked
     contenders (others are copies of one code) stands; without one nobody can be trusted."""
-    totals = rows[(rows.status == "ok") & (rows.implementation != NULL)].groupby("implementation", sort=False).passes.agg(set).to_dict()
+    totals = {}
+    for row in rows[(rows.status == "ok") & (rows.implementation != NULL)].itertuples():
+        totals.setdefault(row.implementation, set()).add(row.passes)
     votes = Counter(min(values) for name, values in totals.items() if len(values) == 1 and "+" not in name)
     ranked = votes.most_common(2)
     tie = bool(totals) and (not ranked or len(ranked) > 1 and ranked[0][1] == ranked[1][1])
