@@ -1,6 +1,8 @@
 # What page.html.j2 shows of the standard problems and of modelling.
 import base64
 
+import numpy
+
 from analysis.core.files import ROOT
 from analysis.core.outcomes import GOOD
 from analysis.core.text import grouped
@@ -15,7 +17,7 @@ def context(tables, view):
     rows = finest(problems)
     return {"compared": list(dict.fromkeys(rows.implementation)), "finest": grouped(rows, "title"),
             "gate": gate(tables["gate"]), "everyone": everyone(problems), "conserved_limit": CONSERVED,
-            "convergence": grouped(convergence, "problem"), "good": GOOD,
+            "convergence": grouped(convergence, "problem"), "digits": digits, "good": GOOD,
             "published": set(convergence.problem[convergence.published.notna()]),
             "modelling": grouped(tables["modelling"], ["implementation", "loops"]),
             "settings": view.settings,
@@ -38,3 +40,13 @@ def everyone(problems):
         if (~first.compared.fillna(False).astype(bool)).any():
             found.append((title, first.step.iloc[0], first.to_dict("records")))
     return found
+
+
+def digits(value, count=8):
+    """`value` with `count` significant digits, never in powers of ten for positions."""
+    if not numpy.isfinite(value):
+        return "–"
+    if value == 0:
+        return "0"
+    places = max(0, count - 1 - int(numpy.floor(numpy.log10(abs(value)))))
+    return f"{value:.{places}f}"

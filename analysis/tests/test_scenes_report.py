@@ -143,3 +143,9 @@ def test_figures_sentences_and_page_of_a_small_set_and_of_none():
         assert all(one["text"].endswith(".") for one in said)
         assert bool(known["finest"]) == ("Not measured" not in said[0]["text"])
     assert [title for title, _, _ in page.everyone(made(*records)["problems"])] == ["Simple pendulum", "Double four-bar"]
+
+
+@pytest.mark.parametrize("value, text", [(0.5, "0.50000000"), (-1234.5, "-1234.5000"), (0.0, "0"), (numpy.nan, "–"),
+                                         (1.2e-3, "0.0012000000")])
+def test_positions_have_eight_digits(value, text):
+    assert page.digits(value) == text
