@@ -89,6 +89,6 @@ def test_a_stored_set_is_drawn_again_as_it_was(folder, tmp_path):
     assert done.returncode == 0, done.stderr
     for part in parts():
         assert (copy / f"{part}.html").exists()
-        for table in schema.of_part(part):  # an ulp may differ from one processor to the next
+        for table in schema.of_part(part):  # references are integrated anew: another processor takes other steps, to their tolerance
             pandas.testing.assert_frame_equal(schema.read_table(copy, part, table), schema.read_table(folder, part, table),
-                                              rtol=1e-9, obj=f"{part}/{table}")
+                                              rtol=1e-4, atol=1e-9, obj=f"{part}/{table}")
