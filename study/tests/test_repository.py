@@ -89,6 +89,8 @@ def test_a_stored_set_is_drawn_again_as_it_was(folder, tmp_path):
     assert done.returncode == 0, done.stderr
     for part in parts():
         assert (copy / f"{part}.html").exists()
-        for table in schema.of_part(part):  # references are integrated anew: another processor takes other steps, to their tolerance
-            pandas.testing.assert_frame_equal(schema.read_table(copy, part, table), schema.read_table(folder, part, table),
-                                              rtol=1e-4, atol=1e-9, obj=f"{part}/{table}")
+        # References are integrated anew: another processor takes other steps, so errors differ to their tolerance, and what
+        # two tolerances differ by in any digit.
+        for table in read_json(folder / part / schema.DIGESTS)["tables"]:
+            drawn, stored = (schema.read_table(one, part, table).drop(columns="own_error", errors="ignore") for one in (copy, folder))
+            pandas.testing.assert_frame_equal(drawn, stored, rtol=1e-4, atol=1e-9, obj=f"{part}/{table}")
