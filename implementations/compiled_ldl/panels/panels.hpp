@@ -533,7 +533,7 @@ void Panels<F>::update_border_at_once(const Panel& last) {
 template <typename F>
 template <int P, int K>
 void Panels<F>::update_columns(const Panel& last, const Strip& strip, int column) {
-  constexpr int L = kWidest<F>, N = lanes_for(P);
+  constexpr int L = std::max(4, kWidest<F>), N = lanes_for(P);  // a strip may have four rows
   using W = typename Short<F, L>::Type;
   F* target = matrix() + strip.target + column * strip.stride;
   W s[K];
