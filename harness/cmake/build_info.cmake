@@ -27,4 +27,5 @@ function(mbs_build_info target)
     VERBATIM)
   add_dependencies(${target} mbs_build_info)
   target_sources(${target} PRIVATE ${output})
+  set_source_files_properties(${output} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # it changes with each commit
 endfunction()

@@ -18,7 +18,7 @@ namespace {
 
 const StepSettings kSettings;  // a step of 1.25e-3 s
 
-Scene scene_of(const std::string& json) {
+Scene scene_of_text(const std::string& json) {
   SceneData data = parse_scene(json, "test");
   return {"test", Model(data.model), {}, {}, data.elements, data.assembly};
 }
@@ -170,7 +170,7 @@ TEST(Describe, LargeScenesHaveTheirRank) {
 }
 
 TEST(Describe, NamesRedundantConstraints) {
-  const Scene scene = scene_of(kRedundant);
+  const Scene scene = scene_of_text(kRedundant);
   const auto d = describe_json(scene, kSettings);
   EXPECT_EQ(d["variables"], 6);
   EXPECT_EQ(d["constraints"], 6);
@@ -210,7 +210,7 @@ TEST(Describe, TellsASingularStartFromRedundancy) {
 
 TEST(Describe, RankShowsDegreesOfFreedomThatCountingMisses) {
   // Two points on one rail each, and a third constraint that follows from the rails.
-  const Scene scene = scene_of(R"({"gravity": [0, 0], "points": [
+  const Scene scene = scene_of_text(R"({"gravity": [0, 0], "points": [
       {"name": "B", "position": [0, 1]}, {"name": "C", "position": [2, 1]}],
       "masses": [{"point": "B", "mass": 1}, {"point": "C", "mass": 1}],
       "constraints": [{"type": "linear", "terms": [{"point": "B", "axis": "y", "coefficient": 1}]},
@@ -228,7 +228,7 @@ TEST(Describe, RankShowsDegreesOfFreedomThatCountingMisses) {
 }
 
 TEST(Describe, SaysWhatAssemblyMoved) {
-  const Scene scene = scene_of(R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
+  const Scene scene = scene_of_text(R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
       {"name": "B", "position": [1.01, 0], "velocity": [0, 2]}],
       "rods": [{"between": ["A", "B"], "mass": 1, "length": 1}]})");
   const auto d = describe_json(scene, kSettings);
@@ -294,7 +294,7 @@ TEST(Describe, ListsElementsForPictures) {
 }
 
 TEST(Describe, ListsDistancesBesideBodiesAndMarksHelpers) {
-  const auto d = describe_json(scene_of(R"({"points": [
+  const auto d = describe_json(scene_of_text(R"({"points": [
       {"name": "A", "position": [0, 0], "fixed": true},
       {"name": "D", "position": [3, 0],
        "driven": {"x": {"table": {"times": [0, 1, 2, 3, 4], "values": [3, 3, 3, 3, 3]}}}}],

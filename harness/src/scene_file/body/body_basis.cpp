@@ -13,7 +13,7 @@ namespace mbs {
 namespace {
 
 /// Of a body's size: nearer to the span of the others, a needed item makes no good basis.
-constexpr double kApart = 0.1;
+constexpr double kAxesApart = 0.1;
 /// Items held to others by another body's constraints come first, unless others lie that much
 /// farther apart: what that body says need not be said again.
 constexpr double kSharedBonus = 4.0;
@@ -142,15 +142,15 @@ class BasisChoice {
 
   bool take_farthest() {
     std::size_t best = origin_;
-    double farthest = kApart;
+    double farthest = kAxesApart;
     for (const std::size_t i : needed_) {
       const double away = norm(residual(i));
       const double counted = is_held_elsewhere(i) ? kSharedBonus * away : away;
-      if (i == origin_ || !(away > kApart) || counted <= farthest) continue;
+      if (i == origin_ || !(away > kAxesApart) || counted <= farthest) continue;
       farthest = counted;
       best = i;
     }
-    return best != origin_ && consider(best, kApart);
+    return best != origin_ && consider(best, kAxesApart);
   }
 
   /// A shared unit vector, whose length the other body holds, or a point whose distance to a member
@@ -183,7 +183,7 @@ class BasisChoice {
   void complete_orientation() {
     add_own(draft_, index_, cross(directions_[0], directions_[1]), true, "w");
     draft_.points.back().hold = Hold::fixed;
-    consider(body().items.size() - 1, kApart);
+    consider(body().items.size() - 1, kAxesApart);
   }
 
   /// A point at the body's size from the origin, along that local axis which is most across.
@@ -201,7 +201,7 @@ class BasisChoice {
     const DraftBody& owner = body();
     const Vector3 local = owner.items[origin_].local + (owner.size / norm(best)) * best;
     add_own(draft_, index_, local, false, std::string(1, name));
-    consider(body().items.size() - 1, kApart);
+    consider(body().items.size() - 1, kAxesApart);
   }
 
   SceneDraft& draft_;
