@@ -85,7 +85,7 @@ def test_a_stored_set_has_all_parts_of_one_build(folder):
 @pytest.mark.parametrize("folder", SETS, ids=lambda folder: folder.name)
 def test_a_stored_set_is_drawn_again_as_it_was(folder, tmp_path):
     copy = shutil.copytree(folder, tmp_path / folder.name)
-    done = study("figures", copy)
+    done = study("figures", copy, seconds=1500)
     assert done.returncode == 0, done.stderr
     for part in parts():
         assert (copy / f"{part}.html").exists()
