@@ -15,7 +15,7 @@
 namespace mbs {
 namespace {
 
-SceneData scene_of(const std::string& json) { return parse_scene(json, "test"); }
+SceneData data_of_text(const std::string& json) { return parse_scene(json, "test"); }
 
 const Point& point_named(const ModelData& data, const std::string& name) {
   for (const Point& point : data.points) {
@@ -33,7 +33,7 @@ double mass_at(const ModelData& data, int row, int col) {
 
 /// Degrees of freedom by the rank of Phi_q, and rows that add nothing to it.
 void expect_freedom(const std::string& json, int freedoms, int redundant, int variables) {
-  const Model model(scene_of(json).model);
+  const Model model(data_of_text(json).model);
   const int rank = jacobian_rank(model, model.initial_position()).value();
   EXPECT_EQ(model.variables(), variables) << json;
   EXPECT_EQ(model.variables() - rank, freedoms) << json;
@@ -48,11 +48,11 @@ std::string planar(const std::string& rest) {
 
 TEST(BodyScene, ThinRodAsBodyIsTheRod) {
   const std::string springs = R"("springs": [{"between": ["A", "G"]}, {"between": ["B", "G"]}])";
-  const SceneData body = scene_of(planar(R"("bodies": [{"name": "K", "mass": 6, "centre": [1, 0],
+  const SceneData body = data_of_text(planar(R"("bodies": [{"name": "K", "mass": 6, "centre": [1, 0],
     "inertia": 2, "points": {"A": [0, 0], "B": [2, 0]}}], )" +
                                          springs));
   const SceneData rod =
-      scene_of(planar(R"("rods": [{"between": ["A", "B"], "mass": 6}], )" + springs));
+      data_of_text(planar(R"("rods": [{"between": ["A", "B"], "mass": 6}], )" + springs));
   ASSERT_EQ(body.model.mass.size(), rod.model.mass.size());  // nothing between x and y
   for (std::size_t i = 0; i < rod.model.mass.size(); ++i) {
     EXPECT_EQ(body.model.mass[i].row, rod.model.mass[i].row);
@@ -67,7 +67,7 @@ TEST(BodyScene, ThinRodAsBodyIsTheRod) {
 }
 
 TEST(BodyScene, PointsOfOutputsAreMarkersAndCostNothing) {
-  const SceneData data = scene_of(planar(R"("rods": [{"between": ["G", "A"], "mass": 1}],
+  const SceneData data = data_of_text(planar(R"("rods": [{"between": ["G", "A"], "mass": 1}],
     "bodies": [{"name": "K", "mass": 1, "inertia": 1,
                 "points": {"A": [0, 0], "B": [2, 0], "C": [1, 1], "D": [0, 1]}}],
     "springs": [{"between": ["B", "G"]}], "forces": [{"point": "C", "force": [1, 5]}],
@@ -97,10 +97,10 @@ TEST(BodyScene, PointsOfOutputsAreMarkersAndCostNothing) {
 }
 
 TEST(BodyScene, MassAtAMarkerJoinsTheBody) {
-  const SceneData with_mass = scene_of(planar(R"("bodies": [{"name": "K", "mass": 2, "inertia": 1,
+  const SceneData with_mass = data_of_text(planar(R"("bodies": [{"name": "K", "mass": 2, "inertia": 1,
     "points": {"A": [0, 0], "B": [2, 0], "C": [0, 1]}}], "masses": [{"point": "C", "mass": 3}],
     "springs": [{"between": ["B", "G"]}, {"between": ["A", "G"]}])"));
-  const SceneData merged = scene_of(planar(R"("bodies": [{"name": "K", "mass": 5,
+  const SceneData merged = data_of_text(planar(R"("bodies": [{"name": "K", "mass": 5,
     "centre": [0, 0.6], "inertia": 2.2, "points": {"A": [0, 0], "B": [2, 0]}}],
     "springs": [{"between": ["B", "G"]}, {"between": ["A", "G"]}])"));
   EXPECT_EQ(with_mass.model.points.size(), 3u);
@@ -112,16 +112,16 @@ TEST(BodyScene, MassAtAMarkerJoinsTheBody) {
 
 TEST(BodyScene, DrivenPointsLeaveTheirMassInQ) {
   // Everything falls with g, the driven points too: M a = Q without any constraint force.
-  const SceneData planar_scene = scene_of(R"({"points": [
+  const SceneData planar_scene = data_of_text(R"({"points": [
     {"name": "A", "driven": {"x": 0, "y": {"polynomial": [0, 0, -4.905]}}},
     {"name": "B", "position": [1, 0]}, {"name": "C", "position": [2, 0]}],
     "bodies": [{"name": "K", "mass": 2, "centre": [0.5, 0.7], "inertia": 1,
                 "points": {"A": [0, 0], "B": [1, 0]}}],
     "rods": [{"between": ["B", "C"], "mass": 1}]})");
-  const SceneData rod = scene_of(R"({"points": [
+  const SceneData rod = data_of_text(R"({"points": [
     {"name": "A", "driven": {"x": 0, "y": {"polynomial": [0, 0, -4.905]}}},
     {"name": "B", "position": [1, 0]}], "rods": [{"between": ["A", "B"], "mass": 1}]})");
-  const SceneData spatial = scene_of(R"({"dimension": 3, "points": [
+  const SceneData spatial = data_of_text(R"({"dimension": 3, "points": [
     {"name": "A", "driven": {"x": 0, "y": {"polynomial": [0, 0, -4.905]}, "z": 0}}],
     "bodies": [{"name": "K", "mass": 2, "centre": [0.5, 0.7, 0.1], "inertia": [1, 1, 1.2],
                 "points": {"A": [0, 0, 0]}, "pose": {}}]})");
@@ -140,7 +140,7 @@ TEST(BodyScene, DrivenPointsLeaveTheirMassInQ) {
 
 TEST(BodyScene, PosesAndVelocitiesSpread) {
   // Only the first body says where it is and how it turns; its neighbour hangs on it.
-  const SceneData data = scene_of(R"({"points": [{"name": "O", "position": [1, 2], "fixed": true},
+  const SceneData data = data_of_text(R"({"points": [{"name": "O", "position": [1, 2], "fixed": true},
       {"name": "P", "position": [1, 3.5]}],
     "bodies": [{"name": "K", "mass": 1, "inertia": 1, "points": {"O": [0, 0], "E": [1, 0]},
                 "pose": {"angle": 1.5707963267948966}, "angular_velocity": 2},
@@ -242,7 +242,7 @@ TEST(BodyScene, EnergyOfBodiesOnFixedPoints) {
   EXPECT_NEAR(potential_energy(plate.model, 0.0, plate.model.initial_position()),
               2.0 * 9.81 * height, 1e-12);
   // A bar about its fixed axis z, which is a vector of the body, 3 rad/s: J = 0.2 + 2 * 0.5^2.
-  const Model bar(scene_of(R"({"dimension": 3,
+  const Model bar(data_of_text(R"({"dimension": 3,
     "points": [{"name": "A", "position": [1, 1, 1], "fixed": true}],
     "vectors": [{"name": "z", "direction": [0, 0, 1], "fixed": true}],
     "bodies": [{"name": "bar", "mass": 2, "centre": [0.5, 0, 0.3], "inertia": [0.1, 0.2, 0.2],
@@ -253,7 +253,7 @@ TEST(BodyScene, EnergyOfBodiesOnFixedPoints) {
 }
 
 TEST(BodyScene, TorquesTurnBodies) {
-  const SceneData plane = scene_of(planar(R"("bodies": [{"name": "K", "mass": 1, "inertia": 1,
+  const SceneData plane = data_of_text(planar(R"("bodies": [{"name": "K", "mass": 1, "inertia": 1,
     "points": {"G": [0, 0], "A": [1.4142135623730951, 0]}}],
     "rods": [{"between": ["A", "B"], "mass": 1}], "torques": [{"body": "K", "torque": 3}])"));
   const Model model(plane.model);
@@ -263,7 +263,7 @@ TEST(BodyScene, TorquesTurnBodies) {
   const double moment = (force[1] - model.force()[1]) - (force[0] - model.force()[0]);
   EXPECT_NEAR(moment, 3.0, 1e-13);
 
-  const SceneData space = scene_of(R"({"dimension": 3, "gravity": [0, 0, 0],
+  const SceneData space = data_of_text(R"({"dimension": 3, "gravity": [0, 0, 0],
     "bodies": [{"name": "K", "mass": 1, "inertia": [1, 1, 1], "pose": {"rotation": [0.1, 0.2, 0.3]},
                 "vectors": {"axis": [0, 0.6, 0.8]}}],
     "torques": [{"body": "K", "axis": "axis", "torque": 2}]})");
@@ -287,7 +287,7 @@ TEST(BodyScene, TorquesTurnBodies) {
 
 TEST(BodyScene, ConstraintForcesAreFoundByName) {
   const SceneData data =
-      scene_of(planar(R"("rods": [{"name": "r", "between": ["G", "A"], "mass": 1}],
+      data_of_text(planar(R"("rods": [{"name": "r", "between": ["G", "A"], "mass": 1}],
     "bodies": [{"name": "K", "mass": 1, "inertia": 1, "points": {"A": [0, 0], "B": [2, 0]}},
                {"name": "L", "mass": 1, "inertia": 1, "points": {"B": [0, 0]}, "pose": {}}],
     "constraints": [
@@ -303,7 +303,7 @@ TEST(BodyScene, ConstraintForcesAreFoundByName) {
 }
 
 TEST(BodyScene, FurtherPointsKeepMPositiveDefinite) {
-  const SceneData data = scene_of(planar(R"("bodies": [{"name": "K", "mass": 1, "inertia": 1,
+  const SceneData data = data_of_text(planar(R"("bodies": [{"name": "K", "mass": 1, "inertia": 1,
     "points": {"A": [0, 0], "B": [2, 0], "C": [1, 1]}}],
     "springs": [{"between": ["A", "G"]}, {"between": ["B", "G"]}, {"between": ["C", "G"]}])"));
   const int C = point_named(data.model, "C").offset;

@@ -86,7 +86,7 @@ Scene crank_rocker(const std::string& held_a, const std::string& held_d, double 
   scene["points"][2]["velocity"] = {speed - 0.33658830977606014, 0.21612086831702532};
   scene["points"][3]["velocity"] = {speed - 0.33658830977605086, 0.21612079201106799};
   scene["points"][4]["velocity"] = scene["points"][3]["velocity"];
-  return watched_scene(scene, "test");
+  return scene_of(scene, "test");
 }
 
 Scene crank_rocker() { return crank_rocker(R"("fixed": true)", R"("fixed": true)", 0.0); }
@@ -120,7 +120,7 @@ TEST(BranchWatch, FindsJumpsOfLoopsThatAreCarriedOrHaveSomethingHanging) {
 
 TEST(BranchWatch, DoesNotTakeTheOtherAssemblyForTheSameWhereTheyAreClose) {
   // A slider-crank, its rod 1e-7 m too long to pass upright.
-  const Scene scene = watched_scene(nlohmann::json::parse(R"({"gravity": [0, 0], "points": [
+  const Scene scene = scene_of(nlohmann::json::parse(R"({"gravity": [0, 0], "points": [
       {"name": "A", "position": [0, 0], "fixed": true},
       {"name": "D", "position": [0, 0.15], "fixed": true},
       {"name": "Dx", "position": [1, 0.15], "fixed": true},
