@@ -15,13 +15,15 @@ def draw(tables, view):
 
 
 def distributions(table, machine):
-    """A panel a deadline and size: from the median to the longest step, a line an implementation."""
+    """A panel a deadline and size: from the median to the longest step, a line an implementation. Deadlines of one size stand side
+    by side."""
     if table.median_us.notna().sum() == 0:
         return nothing("No run of which there are step times.")
     steps, loops, names = sorted(table.step.unique(), reverse=True), sorted(table.loops.unique()), order(table)
-    figure, panels = plt.subplots(len(steps), len(loops), sharey=True, squeeze=False, constrained_layout=True,
-                                  figsize=(5.2 * len(loops) + 1.5, (0.27 * len(names) + 1.1) * len(steps) + 0.4))
-    for line, step in zip(panels, steps):
+    lines, columns = (len(steps), len(loops)) if len(loops) > 1 else (1, len(steps))
+    figure, panels = plt.subplots(lines, columns, sharey=True, squeeze=False, constrained_layout=True,
+                                  figsize=(5.2 * columns + 1.5, (0.27 * len(names) + 1.1) * lines + 0.4))
+    for line, step in zip(panels.reshape(len(steps), len(loops)), steps):
         gaps = machine[(machine.after == "distributions") & (machine.step == step)].largest_us.dropna()
         for axes, size in zip(line, loops):
             _panel(axes, table[(table.step == step) & (table.loops == size)], names)
