@@ -21,6 +21,7 @@ class Claim:
     part: str         # whose run tells
     where: str        # in the paper: its section's label
     found: Callable   # Known → (whether it holds, None if nothing was measured; what a run should give)
+    merged: bool = False  # study/merge tells, from the sets of several machines
 
 
 def claims():
@@ -30,10 +31,10 @@ def claims():
         Claim("single", "The best single library is within 1.3 times of the fastest on average over mechanisms", "families", "real", _single),
         Claim("assembly", "Sparse assembly makes dense Cholesky faster in every filled cell", "map", "fill", _assembly),
         Claim("overtakes", "Somewhere a dense factorization is as fast as the fastest library, or it is that one", "map", "fill", _overtakes),
-        Claim("compared", "Full sets of several processors are stored, all of this commit", "families", "machines", _compared),
+        Claim("compared", "Full sets of several processors are stored, all of this commit", "families", "machines", _compared, True),
         Claim("machines", "On nine of ten mechanisms all stored machines have a library in common that is fastest or within 5 % of it", "families", "machines",
-              _machines),
-        Claim("vector", "Dense kernels gain more than code that works number by number on machines whose widest vectors do more", "limit", "machines", _vector),
+              _machines, True),
+        Claim("vector", "Dense kernels gain more than code that works number by number on machines whose widest vectors do more", "limit", "machines", _vector, True),
         Claim("rule", "The rule keeps its bounds on families left out", "families", "price", _rule),
         Claim("automatic", "The automatic penalty factor is ok in every cell of size and step", "stability", "window", _automatic),
         Claim("below", "At the largest size and the step of 2008 the factor of 2008 lies below the estimated window", "stability", "window", _below),

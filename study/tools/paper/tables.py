@@ -206,7 +206,7 @@ def engines(known):
     rows = []
     for engine, mine in found[~found.engine.str.endswith(NATIVE)].groupby("engine", sort=False):
         rows.append({"": title(engine)} | {label: _times(mine[mine.side == side]) for side, label in SIDES.items()})
-    return table(rows, {"": "l"} | dict.fromkeys(SIDES.values(), r"P{35mm}"))
+    return table(rows, {"": "l"} | dict.fromkeys(SIDES.values(), r"P{32mm}"))
 
 
 def _times(rows):
