@@ -230,4 +230,4 @@ def fit(figure, height=None, machine=""):
 
 # name: (what draws it, height in inches; None: as it is)
 DRAWN = {"mechanisms": (mechanisms, 4.5), "held": (held, 2.2), "own_fill": (own_fill, 3.7), "map": (size_and_fill, 5.0), "phases": (phases, None),
-         "work": (work, 3.2), "window": (window, 2.6), "steps": (steps, 2.6), "own": (own, 2.6), "engines": (engines, 4.2)}
+         "work": (work, 3.2), "window": (window, 2.6), "steps": (steps, 2.9), "own": (own, 2.6), "engines": (engines, 4.2)}
