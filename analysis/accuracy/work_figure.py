@@ -1,5 +1,5 @@
 # Error against time of one subject: a column for libraries, one for all. The front is the thick line; the series on it
-# or close to it have names, colours by setting and markers by implementation, the others are grey. Below, as those lie on
+# or close to it have names, colours and dashes by setting, markers by implementation; the others are grey. Below, as those lie on
 # each other: their time over the least of them at the same error.
 import matplotlib.pyplot as plt
 import numpy
@@ -10,7 +10,7 @@ from analysis.accuracy import names
 from analysis.accuracy.points import NOT_JUDGED
 from analysis.accuracy.winners import LAYERS, meeting, met
 from analysis.core.outcomes import FINISHED, near
-from analysis.core.style import GREY, missing, number_axis
+from analysis.core.style import DASHES, GREY, missing, number_axis
 
 CLOSE = 1.25  # times the front's time at its error
 MOST = 8      # named series of a panel
@@ -108,7 +108,7 @@ def _series(rows, chosen, look):
     colours = names.colours(key[1] for key in chosen)
     for key in chosen:
         mine = meeting(rows[(rows.implementation == key[0]) & (rows.setting == key[1])], numpy.inf).sort_values("step")
-        line = {"color": colours[key[1]], "linewidth": 1.5, "linestyle": look.dash(key[0]), "marker": look.marker(key[0]),
+        line = {"color": colours[key[1]], "linewidth": 1.5, "linestyle": DASHES[list(colours).index(key[1]) % len(DASHES)], "marker": look.marker(key[0]),
                 "markersize": 8 if look.marker(key[0]) in "*PX" else 6, "markeredgecolor": "white", "markeredgewidth": 0.5}
         yield key, line, mine, [one for _, one in mine.groupby((mine.step / mine.step.shift(1) > GAP).cumsum())]
 

@@ -1,9 +1,11 @@
 # The site of a set: a page a part, index.html with the answers, one look.
 import base64
 import importlib
+import re
 from pathlib import Path
 
 import jinja2
+import markupsafe
 import matplotlib.pyplot as plt
 
 from analysis.core import records, schema
@@ -73,9 +75,14 @@ def template(path):
     loader = jinja2.FileSystemLoader([path.parent, HERE])
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
-    environment.filters |= {"number": number}
+    environment.filters |= {"number": number, "name": name}
     environment.globals |= {"between": between, "ends": ends}
     return environment.get_template(path.name)
+
+
+def name(text):
+    """The name of an implementation or a scene, which a narrow column breaks after / and comma."""
+    return markupsafe.Markup(re.sub("([/,])", r"\1<wbr>", str(markupsafe.escape(text))))
 
 
 def _saved(base, figures, view):

@@ -5,7 +5,7 @@ import matplotlib.pyplot as plt
 from matplotlib.colors import Normalize
 from matplotlib.patches import Patch, Polygon, Rectangle
 
-from analysis.core.style import GREY
+from analysis.core.style import GREY, nothing
 from analysis.extremes.battery import NOT_RUN, kind, ran
 
 SHADES, DIGITS = plt.get_cmap("Greens"), Normalize(-16, -2)  # of what is ok or plausible, by the exponent of the true error
@@ -19,7 +19,11 @@ SQUARE, LEFT, ABOVE = 0.24, 2.7, 1.9  # inches: of a square, left of them, above
 
 
 def draw(table):
-    """The figure of extreme cells' rows of battery.csv."""
+    """The figure of extreme cells' rows of battery.csv; cells and settings of which nothing was run are counted."""
+    asked, table = table, table[~table.status.isin(NOT_RUN) | (table.status == "refused")]
+    if table.empty:
+        return nothing("Nothing was run at the extremes.")
+    left = [asked[name].drop_duplicates().shape[0] - table[name].drop_duplicates().shape[0] for name in (["axis", "value"], ["setting"])]
     cells, settings = list(dict.fromkeys(zip(table.axis, table.value))), list(dict.fromkeys(table.setting))
     axes_of = list(dict.fromkeys(axis for axis, _ in cells))
     up = {cell: place + 0.6 * axes_of.index(cell[0]) for place, cell in enumerate(cells)}
@@ -40,7 +44,8 @@ def draw(table):
         axes.annotate(axis, (0, first + 0.5), xytext=(-72 * LEFT + 8, 0), textcoords="offset points", va="center", fontsize=9,
                       fontweight="bold", annotation_clip=False)
     wrong = int((table.verdict == "silently wrong").sum())
-    figure.suptitle(f"{wrong or 'No'} silent wrong{'s' * (wrong > 1)} in {len(ran(table))} runs at the extremes", x=0.02, y=1 - 0.1 / tall, ha="left",
+    figure.suptitle(f"{wrong or 'No'} silent wrong{'s' * (wrong > 1)} in {len(ran(table))} runs at the extremes"
+                    + (f"\nnot run: {left[0]} cells, {left[1]} settings" if any(left) else ""), x=0.02, y=1 - 0.1 / tall, ha="left",
                     va="top", fontsize=13, color=SILENT if wrong else "black")
     axes.legend(handles=[Patch(facecolor=colour, hatch=hatch, edgecolor=GREY, label=words or name) for name, (colour, hatch, words) in LOOKS.items()
                          if name in used], loc="upper left", bbox_to_anchor=(1.02, 1), fontsize=8)
@@ -48,10 +53,8 @@ def draw(table):
 
 
 def _square(axes, x, y, rows):
-    """Draws the worst of the rows of a cell and setting; a notch where implementations end differently. Its kind, None if nobody ran."""
-    kinds = [kind(row) if kind(row) in LOOKS else "other" for row in rows.itertuples() if row.status not in NOT_RUN or row.status == "refused"]
-    if not kinds:
-        return None
+    """Draws the worst of the rows of a cell and setting; a notch where implementations end differently. Its kind."""
+    kinds = [kind(row) if kind(row) in LOOKS else "other" for row in rows.itertuples()]
     what = min(kinds, key=list(LOOKS).index)
     colour, hatch, _ = LOOKS[what]
     errors = rows.true_error.clip(lower=rows.truth_error)

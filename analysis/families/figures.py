@@ -115,6 +115,6 @@ def held_figure(held):
     right.set_xlabel("variables n")
     right.set_ylabel("loss of the choice, %")
     right.set_title("Time lost by the chosen library")
-    left.legend(fontsize=8.5)
+    right.legend(fontsize=8.5, loc="upper left")
     figure.suptitle("Each family predicted by the others", x=0.01, ha="left", fontsize=10)
     return figure

@@ -118,13 +118,14 @@ def by_phase(rows, own):
 
 def ahead(leads):
     """A line a scene: how many times faster than the fastest library each variant is, with its interval; a mark where
-    it is to be at least."""
-    rows = leads[leads.kind.isin(KINDS)]
+    it is to be at least. Scenes of which nothing was timed are counted."""
+    asked = leads[leads.kind.isin(KINDS)]
+    rows = asked[asked.scene.isin(asked.scene[asked.status == "ok"])]
     about = rows.drop_duplicates("scene").assign(order=rows.kind.map({kind: place for place, kind in enumerate(KINDS)}))
     about = about.sort_values(["order", "dimension", "variables", "scene"], kind="stable").reset_index(drop=True)
     names = list(dict.fromkeys(rows.implementation))
     figure, axes = plt.subplots(figsize=(8.6, 0.36 * len(about) + 1.8), constrained_layout=True)
-    if not (rows.status == "ok").any():
+    if rows.empty:
         missing(axes, "no scene was timed with code of our own and a library beside it")
         return figure
     for number_of, name in enumerate(names):
@@ -152,6 +153,7 @@ def ahead(leads):
     line_each(axes, [f"{row.scene.rpartition('/')[2].removesuffix('.json')} ({row.kind}, n = {row.variables:.0f}, "
                      f"{row.dimension:.0f}D)" for row in about.itertuples()], fontsize=8)
     axes.set_xlabel("time of the fastest library ÷ own time")
-    axes.set_title("How far ahead of libraries")
+    left = asked.scene.nunique() - len(about)
+    axes.set_title("How far ahead of libraries" + (f"; {left} more scenes were not timed" if left else ""))
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
     return figure

@@ -1,4 +1,6 @@
 # Maps of the fastest over size and fill: the paper's Figures 6 and 7, for libraries and for all.
+import re
+import textwrap
 from itertools import groupby
 
 import matplotlib.patheffects as effects
@@ -16,11 +18,13 @@ LINE = "#111111"
 OPAQUE, PALE = 0.85, 0.4
 BAND = (-19.0, -3.0)  # where cells of own fill stand, in % of the axis above
 NOTHING = {"facecolor": "white", "edgecolor": "#c4c4c4", "hatch": "...", "linewidth": 0}
+LETTERS = 46  # in a line of the legend
 EDGE = {"edgecolor": "white", "linewidth": 1.0}
 
 
-def draw(results, look, title, names, smallest=0, largest=float("inf")):
-    """The map of some contenders, of the sizes from `smallest` to `largest` variables."""
+def draw(results, look, title, names, smallest=0, largest=float("inf"), letters=13, line=2.1):
+    """The map of some contenders, of the sizes from `smallest` to `largest` variables. A cell has `letters` in a line of text, which
+    is `line` % of the axis high."""
     cells = [cell for cell in map_cells(results, names) if smallest <= cell.variables <= largest]
     count = len(columns(cells))
     figure, axes = plt.subplots(figsize=(max(5.0, 0.9 + 1.02 * count), 7.4))
@@ -30,7 +34,7 @@ def draw(results, look, title, names, smallest=0, largest=float("inf")):
         return figure
     found = crossings(results, cells)
     for place, (size, mine) in enumerate(columns(cells).items()):
-        _column(axes, place - 0.5, mine, look)
+        _column(axes, place - 0.5, mine, look, (letters, line))
         if size in found:
             fill, low, high = found[size]
             axes.fill_between([place - 0.5, place + 0.5], low, high, color=LINE, alpha=0.12, linewidth=0, zorder=3)
@@ -65,7 +69,7 @@ def bounds(fills, own):
     return [*(edges if own is not None else [fills[0], *edges]), min(100.0, fills[-1] + gap / 2)]
 
 
-def _column(axes, left, cells, look):
+def _column(axes, left, cells, look, room):
     """The cells of a size, and what was not measured."""
     natural = [cell for cell in cells if cell.fill_asked is None]
     filled = [cell for cell in cells if cell.fill_asked is not None]
@@ -75,17 +79,15 @@ def _column(axes, left, cells, look):
     if own is not None:  # below the own fill there is no tangent of this mechanism
         axes.add_patch(Rectangle((left, 0), 1, own, facecolor="white", linewidth=0))
         axes.plot([left, left + 1], [own, own], color=GREY, linewidth=1.2, zorder=5)
-        _cell(axes, left, BAND[0], BAND[1] - BAND[0], natural[0], look)
+        _cell(axes, left, BAND[0], BAND[1] - BAND[0], natural[0], look, room)
     for cell, low, high in zip(filled, edges, edges[1:]):
-        _cell(axes, left, low, high - low, cell, look)
+        _cell(axes, left, low, high - low, cell, look, room)
 
 
-def _cell(axes, x, y, height, cell, look):
-    """A winner is opaque; those that are as fast stand in stripes of their colours; open cells are pale and hatched."""
+def _cell(axes, x, y, height, cell, look, room):
+    """Nothing where nobody was timed. A winner is opaque; those that are as fast stand in stripes of their colours; open cells are pale and hatched."""
     names = cell.winners
     if not names:
-        axes.add_patch(Rectangle((x, y), 1, height, facecolor="white", **EDGE))
-        axes.text(x + 0.5, y + height / 2, "nobody", ha="center", va="center", fontsize=6.5)
         return
     shown = names if cell.settled else names[:2]
     axes.add_patch(Rectangle((x, y), 1, height, facecolor="white", linewidth=0))
@@ -95,16 +97,26 @@ def _cell(axes, x, y, height, cell, look):
     axes.add_patch(Rectangle((x, y), 1, height, facecolor="none", **EDGE))
     if not (cell.decided or cell.settled):
         axes.add_patch(Rectangle((x, y), 1, height, facecolor="none", edgecolor="#555555", linewidth=0, hatch="////"))
-    _text(axes, x + 0.5, y + height / 2, height, cell)
+    _text(axes, x + 0.5, y + height / 2, height, cell, room)
 
 
-def _text(axes, x, y, height, cell):
-    folder, _, variant = cell.ranking.winner.partition("/")
-    lines = [f"{folder}/", variant, _margin(cell)]
-    room = int(height / 2.1)
-    text = "\n".join(lines if room >= 3 else [variant, lines[2]] if room == 2 else [f"{variant} {lines[2]}"])
-    axes.text(x, y, text, ha="center", va="center", fontsize=min(6.6, 3.1 * height), linespacing=1.05, zorder=6,
+def _text(axes, x, y, height, cell, room):
+    letters, line = room
+    name, lines = broken(cell.ranking.winner, letters), int(height / line)
+    short = [*broken(cell.ranking.winner.partition("/")[2], letters), _margin(cell)]
+    fitting = next((one for one in ([*name, _margin(cell)], short) if len(one) <= lines), [" ".join(short)])
+    axes.text(x, y, "\n".join(fitting), ha="center", va="center", fontsize=min(6.6, 6.5 * height / line), linespacing=1.15, zorder=6,
               bbox={"boxstyle": "round,pad=0.12", "facecolor": "white", "alpha": 0.82, "linewidth": 0})
+
+
+def broken(name, letters):
+    """A name in lines of at most so many letters: ["csc_ldl/", "uplooking"]."""
+    lines = [""]
+    for piece in re.findall(r"[^_/]+[_/]?", name):
+        if lines[-1] and len(lines[-1] + piece) > letters:
+            lines.append("")
+        lines[-1] += piece
+    return lines
 
 
 def _margin(cell):
@@ -150,13 +162,17 @@ def _legend(axes, cells, look, names, crossed, pairs):
                    sum(not cell.decided and cell.settled and name in cell.winners for cell in cells),
                    sum(not cell.settled and not cell.decided and name in cell.winners for cell in cells)] for name in names}
     words = ("wins {}", "as fast in {}", "may be in {}")
+    drawn = {name for cell in cells for name in (cell.winners if cell.settled else cell.winners[:2])}
     shown = [Patch(facecolor=look.colour(name), alpha=OPAQUE, label=f"{name}: " + ", ".join(
-        word.format(count) for word, count in zip(words, wins[name]) if count)) for name in names if any(wins[name])]
+        word.format(count) for word, count in zip(words, wins[name]) if count)) for name in names if name in drawn]
+    more = sum(any(wins[name]) and name not in drawn for name in names)
+    shown += [Patch(facecolor="none", label=f"{more} more may be the fastest of an open cell")] if more else []
     shown += [Patch(facecolor="#dddddd", edgecolor="#555555", hatch="////", linewidth=0,
                     label="open: two of those that may be the fastest")]
     shown += [Patch(**NOTHING, label="not measured"), Patch(facecolor="white", edgecolor=GREY, label="white: below the own fill (line)")]
     if crossed:
-        shown.append(Line2D([], [], color=LINE, linewidth=1.6, label=f"best of the paper's dense kind (on {pairs})\novertakes best sparse library; 95 % band"))
+        shown.append(Line2D([], [], color=LINE, linewidth=1.6, label=textwrap.fill(
+            f"best of the paper's dense kind (on {pairs}) overtakes best sparse library; 95 % band", LETTERS)))
     shown += [Patch(facecolor="none", label=text) for text in ("1.32×: the second behind the winner", "= 2 more: as fast, within 5 %",
                                                               "? 2 more: may be as fast")]
     axes.legend(handles=shown, loc="upper left", bbox_to_anchor=(1.01, 1.01), fontsize=8)

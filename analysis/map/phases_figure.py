@@ -4,7 +4,7 @@ from textwrap import shorten
 import matplotlib.pyplot as plt
 
 from analysis.core.statistics import phase_shares
-from analysis.core.style import GREY, missing
+from analysis.core.style import GREY, missing, nothing
 from analysis.map.compare import profiled
 from analysis.map.tidy import PHASES
 
@@ -36,6 +36,8 @@ def panel_sizes(results):
 
 def draw(results):
     names, sizes = results.implementations, panel_sizes(results)
+    if not len(profiled(results)):
+        return nothing("No step was timed phase by phase.")
     figure, panels = plt.subplots(1, len(sizes), sharey=True, squeeze=False, figsize=(9.6, 1.6 + 0.2 * max(4, len(names))),
                                   gridspec_kw={"wspace": 0.06})
     for axes, size in zip(panels[0], sizes):

@@ -15,13 +15,16 @@ def draw(tables, view):
 
 
 def distributions(table, machine):
-    """A panel a deadline and size: from the median to the longest step, a line an implementation."""
+    """A panel a deadline and size: from the median to the longest step, a line an implementation. Deadlines of one size stand side
+    by side."""
+    table, left = run_of(table, table.status == "dropped")
     if table.median_us.notna().sum() == 0:
         return nothing("No run of which there are step times.")
     steps, loops, names = sorted(table.step.unique(), reverse=True), sorted(table.loops.unique()), order(table)
-    figure, panels = plt.subplots(len(steps), len(loops), sharey=True, squeeze=False, constrained_layout=True,
-                                  figsize=(5.2 * len(loops) + 1.5, (0.27 * len(names) + 1.1) * len(steps) + 0.4))
-    for line, step in zip(panels, steps):
+    lines, columns = (len(steps), len(loops)) if len(loops) > 1 else (1, len(steps))
+    figure, panels = plt.subplots(lines, columns, sharey=True, squeeze=False, constrained_layout=True,
+                                  figsize=(5.2 * columns + 1.5, (0.27 * len(names) + 1.1) * lines + 0.4))
+    for line, step in zip(panels.reshape(len(steps), len(loops)), steps):
         gaps = machine[(machine.after == "distributions") & (machine.step == step)].largest_us.dropna()
         for axes, size in zip(line, loops):
             _panel(axes, table[(table.step == step) & (table.loops == size)], names)
@@ -38,12 +41,18 @@ def distributions(table, machine):
                 plt.Line2D([], [], color=GREY, marker="x", linestyle="none", label="longest"),
                 plt.Line2D([], [], color="black", linestyle=(0, (4, 2)), label="deadline"),
                 plt.Line2D([], [], color=GREY, linestyle=(0, (1, 1.5)), label="longest gap of the null process")]
+    handles += left
     others = sorted(set(table.status[table.median_us.notna()]) - {"ok"})
     if others:
         handles.append(plt.Line2D([], [], color=GREY, marker="o", markerfacecolor="white", linestyle="none",
                                   label=f"hollow: {', '.join(others)}"))
     figure.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=4)
     return figure
+
+
+def run_of(table, dropped):
+    """Without what the budget dropped; and an entry of the legend that counts it."""
+    return table[~dropped], [plt.Line2D([], [], color="none", label=f"not drawn: {dropped.sum()} that the budget dropped")] if dropped.any() else []
 
 
 def order(table):
@@ -71,6 +80,7 @@ def _panel(axes, rows, names):
 
 def sizes(table):
     """The largest size that was kept up with and the next one that was not, with the misses of both."""
+    table, left = run_of(table, table.largest.isna())
     if table.empty:
         return nothing("No search was made.")
     steps = sorted(table.step.unique(), reverse=True)
@@ -92,16 +102,13 @@ def sizes(table):
                           label=f"{form}: kept up with") for form in shown]
     handles += [plt.Line2D([], [], color=GREY, marker="X", linestyle="none", label="next size tried: not kept up with"),
                 plt.Line2D([], [], color="none", label="right: N, steps missed (lost by the null process)")]
-    figure.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=4)
+    figure.legend(handles=[*handles, *left], loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=4)
     return figure
 
 
 def _search(axes, row, place, several):
     colour, marker, shift = FORMS[row.scheme]
     y = place + (shift if several else 0)
-    if row.largest != row.largest:
-        axes.text(0.02, y, "dropped", transform=axes.get_yaxis_transform(), color=colour, va="center", fontsize=7)
-        return
     start, end = max(row.largest, LEFT), row.next if row.next == row.next else max(row.largest, LEFT)
     axes.plot([start, end], [y, y], color=colour, linewidth=1.4, alpha=0.6)
     axes.plot(start, y, marker, color=colour, markersize=5.5, markerfacecolor=colour if row.complete else "white")

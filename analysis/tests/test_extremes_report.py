@@ -162,6 +162,14 @@ def texts(figure):
     return [text.get_text() for text in figure.texts] + [text.get_text() for axes in figure.axes for text in axes.texts]
 
 
+def test_cells_and_settings_that_were_not_run_are_counted():
+    table = small()
+    table.loc[table.setting == "saddle-point", "status"] = "dropped"
+    figure = battery_figure.draw(table)
+    assert "not run: 4 cells, 1 settings" in texts(figure)[0] and [text.get_text() for text in figure.axes[0].get_xticklabels()] == ["penalty"]
+    assert "not run: 4 cells, 0 settings" in texts(battery_figure.draw(small()))[0]
+
+
 def test_the_matrix_shows_the_worst_and_names_every_outcome():
     table = small()
     figure = battery_figure.draw(table)

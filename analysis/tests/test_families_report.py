@@ -7,6 +7,7 @@ import numpy
 import pandas
 import pytest
 
+from analysis.core import site
 from analysis.core.schema import conform, of_part
 from analysis.families import bounds, by_hand, defaults, figures, page, rule, sentences, tables, times
 from analysis.tests.test_limit_report import REGISTRY, about, bench, gate
@@ -250,3 +251,7 @@ def test_a_default_without_any_time_has_no_loss():
     ("The map of 2008", 40, 0.5, defaults.SUPERNODAL)])
 def test_rules_choose_as_their_sources_say(rule, variables, fill, expected):
     assert next(one for one in defaults.RULES if one.name == rule).choose(variables, fill) == expected
+
+
+def test_a_name_is_broken_at_its_joints_and_stays_text():
+    assert str(site.name("csc_klu/refactor")) == "csc_klu/<wbr>refactor" and str(site.name("a,<b>")) == "a,<wbr>&lt;b&gt;"

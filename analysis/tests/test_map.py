@@ -11,7 +11,7 @@ from analysis.core.records import Record
 from analysis.core.style import Look
 from analysis.map import figures, losses, sentences, summary, tables, tidy
 from analysis.map.cells import map_cells, table
-from analysis.map.maps import bounds, crossings
+from analysis.map.maps import bounds, broken, crossings
 from analysis.map.timed import AFTER, Scene, differing, timed_rows
 from analysis.tests.map_tables import cell, failed, registry, results, scene, view
 
@@ -147,6 +147,11 @@ def test_no_winner_is_drawn_in_grey():
     names = [f"f{place}/x" for place in range(10)]
     look = Look(registry(sparse=names))
     assert all(max(rgb) - min(rgb) > 25 for rgb in ([int(look.colour(name)[at:at + 2], 16) for at in (1, 3, 5)] for name in names))
+
+
+@pytest.mark.parametrize("letters, lines", [(30, ["csc_cholmod/supernodal"]), (13, ["csc_cholmod/", "supernodal"]), (9, ["csc_", "cholmod/", "supernodal"])])
+def test_a_name_is_broken_where_it_has_a_joint(letters, lines):
+    assert broken("csc_cholmod/supernodal", letters) == lines
 
 
 def test_records_become_tables_and_a_page(tmp_path):

@@ -106,6 +106,14 @@ def test_figures_page_and_answers():
     assert texts[1:] == ["1 of 2 runs of 5 s missed no deadline at all. The machine itself lost 1 deadlines of 1 ms in 1.3 s."]
 
 
+def test_what_the_budget_dropped_is_counted_and_not_drawn():
+    found = made(run(10, 2, role="steps"), run(10, 0, role="steps", who="own/a", ended="dropped"), run(8, 0), run(8, 0, who="own/a", ended="dropped"))
+    for figure in figures.draw(found, VIEW).values():
+        assert [label.get_text() for label in figure.axes[0].get_yticklabels()] == ["lib/a"]
+        assert "not drawn: 1 that the budget dropped" in [text.get_text() for text in figure.legends[0].get_texts()]
+        plt.close(figure)
+
+
 def judged(scene, variables, judge_us, who="own/a", mean=10.0, status="ok", number=1):
     output = {"status": status, "status_reason": "because", "variables": variables, "judge_us": judge_us, "step_us": {"mean": mean}}
     return Record(f"judging/judging/{who}-{scene}-{number}.json", {"scene": scene, "contenders": [who], "role": "judging", "number": number, "settings": []},

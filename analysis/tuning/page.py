@@ -4,5 +4,5 @@ def context(tables, view):
     groups = {}
     for row in rows.to_dict("records"):
         groups.setdefault(row["base"], {}).setdefault((row["alternative"], row["description"]), {})[row["scene"]] = row
-    return {"settings": view.settings, "groups": groups, "scenes": list(dict.fromkeys(rows.scene)),
+    return {"settings": view.settings, "groups": groups, "scenes": {base: list(dict.fromkeys(mine.scene)) for base, mine in rows.groupby("base")},
             "lost": rows[rows.status != "ok"].to_dict("records")}

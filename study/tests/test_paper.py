@@ -157,6 +157,15 @@ def test_an_old_artifact_is_found(known, tmp_path, monkeypatch):
     assert artifact.refresh(known, claimed) and not list(artifact.stale(known, claimed))
 
 
+def test_claims_are_told_of_a_set_that_has_a_few_parts(known, tmp_path):
+    for name in ("set.json", "registry.json", "profile.yaml", "contexts", "realtime"):
+        (tmp_path / name).symlink_to(known.folder / name)
+    done = study("paper", "--claims", tmp_path)
+    assert done.returncode == 0 and len(done.stdout.splitlines()) == len(claims())
+    holds, said = claims()[-1].found(known)
+    assert f"{artifact.SAYS[holds]}: {claims()[-1].text} ({said})" in done.stdout and f"not measured: {claims()[0].text}\n" in done.stdout
+
+
 def test_a_set_that_is_not_stored_is_refused(tmp_path):
     done = study("paper", "--audit", tmp_path)
     assert done.returncode == 2 and "is no stored set" in done.stderr

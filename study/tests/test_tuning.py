@@ -68,6 +68,6 @@ def test_ratios_and_reasons():
 def test_page_and_sentences():
     full = made(gate(), *(bench(number, a=10.0, a_metis=12.0 + 0.01 * number) for number in (1, 2, 3)))
     known = page.context(full, VIEW)
-    assert known["scenes"] == [SCENE] and len(known["groups"]["one/a"]) == 2 and len(known["lost"]) == 1
+    assert known["scenes"] == {"one/a": [SCENE]} and len(known["groups"]["one/a"]) == 2 and len(known["lost"]) == 1
     assert "1 are shown to be longer than with the variant's own, 0 shorter" in sentences.answers(full, VIEW)[0]["text"] and figures.draw(full, VIEW) == {}
     assert "Not measured" in sentences.answers(made(gate("dropped")), VIEW)[0]["text"] and page.context(made(), VIEW)["groups"] == {}

@@ -2,6 +2,7 @@
 import math
 import re
 
+from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write_text
 from study.tools.paper.claims import claims
 
@@ -35,6 +36,16 @@ def judged(known):
     return {one.name: one.found(known) for one in claims()}
 
 
+def told(known):
+    """A line a claim, also of a set that has a few parts."""
+    for one in claims():
+        try:
+            holds, found = one.found(known)
+        except StudyError:  # a part that it needs is missing
+            holds, found = None, ""
+        yield f"{SAYS[holds]}: {one.text}" + (f" ({found})" if found else "")
+
+
 def _set(known):
     said = [f"`{one.folder.name}` of {one.facts['date'][:10]}, {one.context['cpu_model']}" for one in known.machines]
     return f"Set {said[0]}, commit `{known.context['commit'][:10]}`." + "".join(f" Beside it, of the same commit: {one}." for one in said[1:]) + "\n"
@@ -42,9 +53,15 @@ def _set(known):
 
 def _claims(known, claimed):
     """claim → command → what it should give → minutes → where"""
-    rows = [f"| {one.text} ({SAYS[claimed[one.name][0]]}) | `study/run --profile {known.facts['profile']} --part {one.part}` | {claimed[one.name][1] or '–'} | "
-            f"{math.ceil(known.view(one.part).settings['seconds'] / 60)} | `{one.part}.html`; section {one.where} |\n" for one in claims()]
+    merge = f"`study/merge {' '.join(f'results/{one.folder.name}' for one in known.machines)}` | {{}} | 1 | its page"
+    rows = [f"| {one.text} ({SAYS[claimed[one.name][0]]}) | {(merge if one.merged else _run(known, one)).format(claimed[one.name][1] or '–')}; "
+            f"section {one.where} |\n" for one in claims()]
     return "| claim | command | expected | minutes | where |\n|---|---|---|---|---|\n" + "".join(rows)
+
+
+def _run(known, one):
+    minutes = math.ceil(known.view(one.part).settings["seconds"] / 60)
+    return f"`study/run --profile {known.facts['profile']} --part {one.part}` | {{}} | {minutes} | `{one.part}.html`"
 
 
 def _archives(known):

@@ -1,6 +1,4 @@
 # The paper's figures: the study's own, at print size; and one of its own, real mechanisms with intervals.
-import importlib
-
 import matplotlib
 import matplotlib.pyplot as plt
 from matplotlib.gridspec import GridSpec
@@ -10,14 +8,21 @@ from matplotlib.ticker import LogLocator
 from analysis.accuracy import work_figure
 from analysis.core.style import GREY, SPARSE, Look, nothing
 from analysis.core.text import bounded, number
-from analysis.map import phases_figure
+from analysis.engines import figures as engine_figures
+from analysis.families import figures as families
+from analysis.map import maps, phases_figure, sparse_figure
+from analysis.map.results import of
+from analysis.realtime import figures as realtime
+from analysis.stability import figures as stability
 from study.tools.paper import numbers
 from study.tools.paper.numbers import DENSE, HYBRID, led, profiled, real_mechanisms
 
 TEXT = 6.69      # inches, width of the paper's text
 SCALE = 0.78     # of letters and lines on paper: what figures have at 9.5 is 7.4 points
 NAMED = 6        # libraries of the figure of mechanisms with marks of their own
-END = 2.0        # ratio at which it ends
+END = 1.5        # ratio at which it ends
+FRONT = 3        # points that make a front
+STEPS = 14       # implementations of the figure of steps
 PHASES_OF = (DENSE, HYBRID, "csc_cholmod/supernodal", "csc_cholmod/simplicial", "csc_ldl/uplooking", "eigen_sparse/ldlt", "csc_klu/refactor",
              "compiled_ldl/fronts")
 NOTHING = "Not measured in this set."
@@ -26,31 +31,80 @@ MARKS = ("o", "s", "^", "D", "v", "P")
 
 def figures(known):
     """{name: figure}, each as wide as the paper's text"""
-    matplotlib.rcParams["figure.max_open_warning"] = 0  # all of some parts, of which few are taken
-    drawn = {part: importlib.import_module(f"analysis.{part}.figures").draw(known.tables(part), known.view(part)) for part in (
-        "families", "map", "stability", "realtime", "engines")}
-    found = {"mechanisms": (mechanisms(known), 6.3), "held": (drawn["families"]["held"], 2.2), "own_fill": (lower_notes(drawn["map"]["f4_sparse_solvers"]), 4.2),
-             "map": (drawn["map"]["f7_map"], 4.6), "phases": (phases(known), None), "work": (work(known), 5.2),
-             "window": (drawn["stability"].get("penalty-double") or nothing(NOTHING), 2.9), "steps": (drawn["realtime"]["steps"], 5.0),
-             "own": (own(drawn["families"]["map"]), 2.6), "engines": (engines(drawn["engines"]["regular"]), 3.2)}
-    return {name: fit(figure, height, known.context["cpu_model"]) for name, (figure, height) in found.items()}
+    return {name: figure(known, name) for name in DRAWN}
+
+
+def figure(known, name):
+    draw, height = DRAWN[name]
+    return fit(draw(known), height, known.context["cpu_model"])
+
+
+def held(known):
+    return families.held_figure(known.tables("families")["held"])
+
+
+def own_fill(known):
+    figure = sparse_figure.draw(results_of(known), Look(known.registry))
+    for text in figure.texts:  # which the caption says
+        text.set_text("")
+    figure.axes[0].set_title("")
+    for axes in figure.axes:
+        axes.set_ylabel("time ÷ the least")
+    return figure
+
+
+def size_and_fill(known):
+    """The map, its legend below: cells are as wide as paper allows."""
+    results = results_of(known)
+    figure = maps.draw(results, Look(known.registry), "", results.layer("libraries"), letters=9, line=2.7)
+    legend = figure.axes[0].get_legend()
+    if legend:
+        below(figure, legend, 3, 0.02, 7.2)
+    return figure
+
+
+def results_of(known):
+    return of(known.tables("map"), known.view("map"))
 
 
 def work(known):
-    """Error against time of the largest four-bar, of libraries alone."""
+    """Error against time of a four-bar, of libraries alone: the largest of which a front was timed."""
     tables = known.tables("accuracy")
     rows = tables["points"][tables["points"].loops.notna() & tables["points"].fill_asked.isna() & tables["points"].library.fillna(False).astype(bool)]
     if rows.empty:
         return nothing(NOTHING)
-    mine = rows[rows.loops == rows.loops.max()]
+    fronts = rows.groupby("loops").front_libraries.sum()
+    mine = rows[rows.loops == max(fronts.index[fronts >= FRONT], default=rows.loops.max())]
     won = tables["winners"][(tables["winners"].subject == mine.subject.iloc[0]) & tables["winners"].fill_asked.isna()]
-    figure = work_figure.draw(mine, won, Look(known.registry), "largest of position, m", f"n = {mine.variables.max():.0f}, libraries")
-    figure.delaxes(figure.axes[1])  # of all, own code included
-    legend = figure.axes[0].get_legend()
-    if legend:
-        legend.set_bbox_to_anchor((0.5, -0.17))
+    figure = work_figure.draw(mine, won, Look(known.registry), "largest of position, m", "")
+    front, everyone, ratios, ratios_of_everyone = figure.axes
+    for axes in (everyone, ratios_of_everyone):  # own code included
+        figure.delaxes(axes)
     figure.set_layout_engine("none")  # which would count the legend to the axes
-    return alone(figure)
+    for axes, place in zip((front, ratios), GridSpec(1, 2, figure=figure, wspace=0.3)):
+        axes.set_subplotspec(place)
+    front.set_title(f"n = {mine.variables.max():.0f}")
+    if ratios.get_legend():
+        below(figure, ratios.get_legend(), 3, -0.04)
+    return figure
+
+
+def window(known):
+    """Of the smallest, a middle and the largest size."""
+    tables = known.tables("stability")
+    rows = tables["maps"][(tables["maps"].status != "dropped") & (tables["maps"].scheme == "penalty") & (tables["maps"].precision == "double")]
+    sizes = sorted(rows.loops.unique())
+    if not sizes:
+        return nothing(NOTHING)
+    return stability.one_map(rows[rows.loops.isin([sizes[0], sizes[len(sizes) // 2], sizes[-1]])], tables["windows"], "penalty", "double")
+
+
+def steps(known):
+    """Of the larger size, in the penalty form: the fastest of whom there are times."""
+    tables = known.tables("realtime")
+    rows = tables["steps"][(tables["steps"].scheme == "penalty") & tables["steps"].median_us.notna()]
+    rows = rows[rows.loops == rows.loops.max()]
+    return realtime.distributions(rows[rows.implementation.isin(realtime.order(rows)[:STEPS])] if len(rows) else rows, tables["machine"])
 
 
 def alone(figure):
@@ -59,30 +113,24 @@ def alone(figure):
     return figure
 
 
-def own(figure):
+def own(known):
     """Of the map of mechanisms the panel of our own code."""
+    figure = families.real_map(known.tables("families"), Look(known.registry), known.registry)
     if len(figure.axes) > 1:
         figure.delaxes(figure.axes[0])
-        libraries, families = figure.legends
-        below(figure, families, 5)
-        libraries.remove()
+        colours, forms = figure.legends
+        below(figure, forms, 5)
+        colours.remove()
     for axes in figure.axes:
-        axes.set_title("", loc="left")
+        axes.set(title="", ylabel="times as fast")
     return alone(figure)
 
 
-def lower_notes(figure):
-    """Notes further below, as axes are lower on paper."""
-    for text in figure.texts:
-        text.set_y(text.get_position()[1] - 0.04)
-    return figure
-
-
-def below(figure, legend, columns):
+def below(figure, legend, columns, y=-0.03, size=9):
     """A legend below the axes instead of beside them."""
     entries = legend.legendHandles, [text.get_text() for text in legend.get_texts()]
     legend.remove()
-    figure.legend(*entries, loc="upper center", bbox_to_anchor=(0.5, -0.03), ncols=columns, fontsize=9)
+    figure.legend(*entries, loc="upper center", bbox_to_anchor=(0.5, y), ncols=columns, fontsize=size)
 
 
 def phases(known):
@@ -104,10 +152,12 @@ def phases(known):
     return figure
 
 
-def engines(figure):
+def engines(known):
     """With a narrower legend, fewer ticks and one name of the time axis."""
+    figure = engine_figures.draw(known.tables("engines"), known.view("engines"))["regular"]
     if not figure.legends:
         return figure
+    figure.subplots_adjust(hspace=0.42)
     below(figure, figure.legends[0], 3)
     panels = [axes for axes in figure.axes if axes.axison]
     for axes in panels:
@@ -119,14 +169,24 @@ def engines(figure):
 
 def mechanisms(known):
     """A line a mechanism at its own fill: each library's time over that of the fastest, with its interval. Libraries that lead
-    nowhere are grey; whoever is beyond the end stands at the edge."""
+    nowhere are grey; who takes more than the end of the axis is not drawn."""
     rows = known.tables("families")["scenes"]
     mine = real_mechanisms(known).sort_values("variables")
     if mine.empty:
         return nothing(NOTHING)
     rows = rows[(rows.status == "ok") & rows.implementation.isin(known.registry.libraries)].merge(mine[["scene", "scheme"]], on=["scene", "scheme"])
     chosen = list(led(mine))[:NAMED]
-    figure, axes = plt.subplots(figsize=(8.4, 1.4 + min(7.2, 0.2 * len(mine))))
+    half = -(-len(mine) // 2)
+    figure, panels = plt.subplots(1, 2, figsize=(8.4, 1.2 + 0.16 * half), gridspec_kw={"wspace": 0.75})
+    for axes, some in zip(panels, (mine[:half], mine[half:])):
+        _mechanisms(axes, some, rows[rows.scene.isin(some.scene)], chosen)
+    panels[0].plot([], [], "|", color="#9a9a9a", markersize=6, label="other libraries")
+    entries = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels())}
+    figure.legend(entries.values(), entries, loc="lower center", bbox_to_anchor=(0.42, 0.89), ncols=4, fontsize=8.5)
+    return figure
+
+
+def _mechanisms(axes, mine, rows, chosen):
     places = {scene: place for place, scene in enumerate(mine.scene)}
     for name, group in rows.groupby("implementation", sort=False):
         y = group.scene.map(places) + (0.7 / len(chosen) * (chosen.index(name) - (len(chosen) - 1) / 2) if name in chosen else 0)
@@ -135,7 +195,7 @@ def mechanisms(known):
             axes.plot(inside.to_rival, y[inside.index], "|", color="#9a9a9a", markersize=6, zorder=1)
             continue
         colour, mark = SPARSE[2 + chosen.index(name)], MARKS[chosen.index(name)]
-        axes.plot(inside.to_rival, y[inside.index], mark, color=colour, markersize=5, label=name, markerfacecolor=colour if mark in "os^" else "white")
+        axes.plot(inside.to_rival, y[inside.index], mark, color=colour, markersize=4.5, label=name, markerfacecolor=colour if mark in "os^" else "white")
         for row in inside.itertuples():
             if bounded(row.to_rival_low, row.to_rival_high):
                 axes.plot([row.to_rival_low, min(row.to_rival_high, END)], [y[row.Index]] * 2, color=colour, linewidth=1.3, alpha=0.7)
@@ -143,13 +203,10 @@ def mechanisms(known):
     axes.axvspan(1, 1.05, color="#eeeeee", zorder=0)
     for place in range(len(mine)):
         axes.axhline(place + 0.5, color="#e6e6e6", linewidth=0.6, zorder=0)
-    axes.set(xlim=(0.93, END), ylim=(len(mine) - 0.4, -0.6), xlabel="time ÷ that of the fastest library; grey band: as fast, to 5 %")
-    marks = {True: "", False: "  open"}
+    axes.set(xlim=(0.93, END), ylim=(len(mine) - 0.4, -0.6), xlabel="time ÷ that of the fastest library")
+    marks = {True: "", False: " ?"}
     said = mine.decided.fillna(False).astype(bool) | mine.settled.fillna(False).astype(bool)
-    axes.set_yticks(range(len(mine)), [f"{row.scene}, n = {row.variables:.0f}{marks[one]}" for row, one in zip(mine.itertuples(), said)], fontsize=7.3)
-    axes.plot([], [], "|", color="#9a9a9a", markersize=6, label="other libraries")
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=4, fontsize=8.5)
-    return figure
+    axes.set_yticks(range(len(mine)), [f"{row.scene} ({row.variables:.0f}){marks[one]}" for row, one in zip(mine.itertuples(), said)], fontsize=7.0)
 
 
 def fit(figure, height=None, machine=""):
@@ -169,3 +226,8 @@ def fit(figure, height=None, machine=""):
         wide, high = figure.get_size_inches()
         figure.set_size_inches(max(2.5, wide + TEXT - box.width), high + (height - box.height if height else 0))
     return figure
+
+
+# name: (what draws it, height in inches; None: as it is)
+DRAWN = {"mechanisms": (mechanisms, 4.5), "held": (held, 2.2), "own_fill": (own_fill, 3.7), "map": (size_and_fill, 5.0), "phases": (phases, None),
+         "work": (work, 3.2), "window": (window, 2.6), "steps": (steps, 2.9), "own": (own, 2.6), "engines": (engines, 4.2)}

@@ -18,6 +18,7 @@ def paper(arguments):
                     "names one that is not there, or claims what the set does not say.")
     parser.add_argument("set", nargs="?", type=directory, help="its directory (the one that the rule of `mbs describe` names)")
     parser.add_argument("--audit", action="store_true", help="only say what is wrong, a line each; needs no LaTeX")
+    parser.add_argument("--claims", action="store_true", help="only say which claims hold in a set, a line each; also in one that is not stored")
     parser.add_argument("--fill", action="store_true", help="only fill paper/ARTIFACT.md anew")
     options = parser.parse_args(arguments)
     need_modules()
@@ -26,6 +27,9 @@ def paper(arguments):
     from study.tools.paper.known import Known
     from study.tools.paper.numbers import numbers
     known = Known((options.set or main_set()).resolve())
+    if options.claims:
+        print(*artifact.told(known), sep="\n")
+        return 0
     if known.folder.parent != ROOT / "results":
         raise StudyError(f"{known.folder} is no stored set: the paper is built from one of results/ (study/store)")
     claimed = artifact.judged(known)

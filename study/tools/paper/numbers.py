@@ -106,7 +106,7 @@ def _design(known):
             "slower": of_rows((timed.low > 1).sum(), "tuning/alternatives", timed[timed.low > 1]),
             "faster": of_rows((timed.high < 1).sum(), "tuning/alternatives", timed[timed.high < 1]),
             "least": of_rows(number(timed.ratio.min()), "tuning/alternatives", timed.nsmallest(1, "ratio")) if len(timed) else None,
-            "controls": Number(_controls(known), "map/controls", tuple(known.tables("map")["controls"].record)),
+            "controls": of_rows(_controls(known), "map/controls", known.tables("map")["controls"]),
             "spread": Number(_spread(known), "map/spread")}
 
 

@@ -12,7 +12,7 @@ from analysis.engines.runs import NATIVE
 from analysis.families import bounds
 from analysis.families.figures import best_form, fastest_own
 from analysis.families.sentences import cases
-from analysis.map import summary
+from analysis.map import ledger, summary
 from analysis.map.results import of
 from study.tools.merge import machine
 from study.tools.paper import numbers
@@ -29,13 +29,12 @@ def tex(text):
     return re.sub("|".join(map(re.escape, ESCAPED)), lambda one: ESCAPED[one[0]], str(text))
 
 
-CHEAPEST = 8  # libraries of the table of prices
 RANKED = 12     # libraries of the table of ranks
 DEFAULTS = 6    # of other tools: the least costly and the two most costly
 MOST_FOUND = 110  # letters of what was found; the page of the families has the rest
 DIFFERING = 12  # scenes of the table of those that differ by machine
 GAINED = (SCALAR, "csc_klu/refactor", BLOCKS, HYBRID, "compiled_ldl/fronts")  # whose steps are compared between machines
-TABLES = ("contenders", "decided", "ranking", "machines", "differs", "claims", "prices", "leaves", "defaults", "largest", "engines", "mechanisms")
+TABLES = ("contenders", "decided", "ranking", "machines", "differs", "claims", "leaves", "defaults", "largest", "engines", "mechanisms")
 
 
 def tables(known):
@@ -87,28 +86,47 @@ def decided(known):
 
 
 def ranking(known):
-    """Libraries over the mechanisms at their own fill."""
-    mine, lost = led(real_mechanisms(known)), losses(known)
+    """Libraries over the mechanisms at their own fill; beside, what it costs to take one always over the cells of the map."""
+    mine, lost, results = led(real_mechanisms(known)), losses(known), of(known.tables("map"), known.view("map"))
+    prices = {row["implementation"]: row for row in summary.prices(results, results.layer("libraries"))}
     rows = [{"library": name, "first or as fast": str(mine.get(name, 0)), "timed on": str(len(one)), "mean": number(mean(one)),
-             "worst": number(one.max()), "where": one.idxmax()} for name, one in [*lost.items()][:RANKED]]
-    return table(rows, {"library": "l", "first or as fast": "r", "timed on": "r", "mean": "r", "worst": "r", "where": "l"})
+             "worst": number(one.max()), "where": one.idxmax()} | _price(prices.get(name)) for name, one in [*lost.items()][:RANKED]]
+    return table(rows, {"library": "l", "first or as fast": "r", "timed on": "r", "mean": "r", "worst": "r", "where": "l"} | dict.fromkeys(PRICE, "r"))
+
+
+PRICE = ("map: mean", "map: worst", "cells", "by pilot")
+
+
+def _price(row):
+    return dict.fromkeys(PRICE, "–") if row is None else dict(zip(PRICE, (number(row["mean"]), number(row["worst"]), f"{row['cells']} of {row['of']}",
+                                                                          str(row["rough"]))))
 
 
 def claims(known):
-    """The claims of 2008, each with theirs, ours on each machine and the verdict."""
+    """The claims of 2008, each with theirs, ours on each machine and the verdict; below, those that no set could judge, and why."""
     sets = known.machines
     others = [one.tables("map")["claims"].set_index(["id", "claim"]) for one in sets[1:]]
-    rows = []
+    rows, without = [], {}
     for row in known.tables("map")["claims"].itertuples():
         mine, verdicts = {"": row.id, "claim": row.claim, "2008": row.paper, sets[0].folder.name: _ours(row)}, [row.verdict]
         for one, its in zip(sets[1:], others):
             there = its.loc[(row.id, row.claim)] if (row.id, row.claim) in its.index else None
             mine[one.folder.name] = "–" if there is None else _ours(there)
             verdicts += [] if there is None else [there.verdict]
-        rows.append(mine | {"verdict": "; ".join(dict.fromkeys(verdicts))})
+        if {*verdicts} <= {ledger.UNMEASURED, ledger.INCOMPARABLE}:
+            without.setdefault((row.id, row.reason), []).append(row.claim)
+        else:
+            rows.append(mine | {"verdict": "; ".join(dict.fromkeys(verdicts))})
     width = 44 / len(sets)
     heads = {head: r"P{%.0fmm}" % width for head in rows[0] if head not in ("", "claim", "2008", "verdict")} if rows else {}
-    return table(rows, {"": "l", "claim": r"P{61mm}", "2008": r"P{18mm}"} | heads | {"verdict": r"P{21mm}"}, long=True)
+    return table(rows, {"": "l", "claim": r"P{61mm}", "2008": r"P{18mm}"} | heads | {"verdict": r"P{21mm}"}, long=True) + _without(without)
+
+
+def _without(found):
+    """Claims that have no verdict, by reason: {(id, reason): [claim]}"""
+    said = (f"{name}: {claims[0]}" + (f", and {len(claims) - 1} more" if len(claims) > 1 else "") + f" ({reason.rstrip('.')})"
+            for (name, reason), claims in found.items())
+    return "\n" + tex(f"No verdict: {'; '.join(said)}.") + r"\par" if found else ""
 
 
 def _ours(row):
@@ -146,22 +164,18 @@ def differs(known):
             row[there.folder.name] = "; ".join([one.winners[place], *others])
         rows.append(row | {"robust": f"{one.robust} {number(one.worst.get(one.robust))}"})
     width = 88 / len(known.machines)
-    return table(rows, {"scene": r"P{30mm}", "form": "l", "n": "r"} | {one.folder.name: r"P{%.0fmm}" % width for one in known.machines}
-                 | {"robust": r"P{32mm}"}) if rows else tex("None." if known.others else "Not measured in this set.")
-
-
-def prices(known):
-    """What it costs to take one library always, over the cells of the map: the cheapest."""
-    results = of(known.tables("map"), known.view("map"))
-    rows = [{"library": row["implementation"], "mean": number(row["mean"]), "worst": number(row["worst"]), "where": row["where"],
-             "cells": f"{row['cells']} of {row['of']}", "by pilot": str(row["rough"])} for row in summary.prices(results, results.layer("libraries"))[:CHEAPEST]]
-    return table(rows, {"library": "l", "mean": "r", "worst": "r", "where": "l", "cells": "l", "by pilot": "r"})
+    return table(rows, {"scene": r"P{27mm}", "form": "l", "n": "r"} | {one.folder.name: r"P{%.0fmm}" % width for one in known.machines}
+                 | {"robust": r"P{30mm}"}) if rows else tex("None." if known.others else "Not measured in this set.")
 
 
 def leaves(known):
-    """The ends of the rule."""
-    rows = [{"case": row["case"], "take": row["take"]} for row in cases(known.tables("families"), known.view("families"))]
-    return table(rows, {"case": r"P{75mm}", "take": r"P{88mm}"})
+    """The rule by hand, with what it costs on families that were left out."""
+    rows = []
+    for row in cases(known.tables("families"), known.view("families")):
+        if row["link"].endswith("#by-hand"):
+            take, _, lost = row["take"].partition("; on families left out ")
+            rows.append({"case": row["case"], "take": take, "slower than the fastest": lost.replace(" slower than the fastest library", "")})
+    return table(rows, {"case": r"P{78mm}", "take": r"P{34mm}", "slower than the fastest": r"P{56mm}"})
 
 
 def defaults(known):
@@ -192,7 +206,7 @@ def engines(known):
     rows = []
     for engine, mine in found[~found.engine.str.endswith(NATIVE)].groupby("engine", sort=False):
         rows.append({"": title(engine)} | {label: _times(mine[mine.side == side]) for side, label in SIDES.items()})
-    return table(rows, {"": "l"} | dict.fromkeys(SIDES.values(), r"P{35mm}"))
+    return table(rows, {"": "l"} | dict.fromkeys(SIDES.values(), r"P{32mm}"))
 
 
 def _times(rows):
