@@ -1,6 +1,5 @@
-# The figures of the part: trials, the battery, ways out, kept pivots, roundoff.
-from analysis.extremes import battery, battery_figure, pivots, pivots_figure, roundoff_figure, trials_figure, ways_figure
-from analysis.extremes.roundoff import FORMS
+# The figures of the part: trials, the battery, ways out, kept pivots.
+from analysis.extremes import battery, battery_figure, pivots, pivots_figure, trials_figure, ways_figure
 
 
 def draw(tables, view):
@@ -13,5 +12,4 @@ def draw(tables, view):
         found["ways"] = ways_figure.draw(tables["ways"], tables["ways_cost"])
     if len(pivots.timed(tables["pivots"])):
         found["pivots"] = pivots_figure.draw(pivots.timed(tables["pivots"]))
-    return found | {f"roundoff-{form}": roundoff_figure.draw(tables["growth"], view.registry, form)
-                    for form in FORMS if (tables["growth"].scheme == form).any()}
+    return found

@@ -10,7 +10,7 @@
 from dataclasses import dataclass
 
 import numpy
-from scipy.special import ellipj, ellipk, ellipkinc
+from scipy.special import ellipj, ellipkinc
 
 GRAVITY = 9.81  # m/s^2
 
@@ -65,11 +65,6 @@ class Chain:
             sn = kappa * sn
         return -2 * sn * cn, 2 * sn**2 - 1
 
-    def speed(self, times):
-        """phi' at `times`, rad/s, without its sign: from the energy."""
-        square = self.rate**2 + 2 * self.k * (numpy.cos(self.angle) - self.phi(times)[1])
-        return numpy.maximum(square, 0)**0.5  # at rest it rounds to less
-
     def solutions(self, times):
         """[{column of a trajectory: values}]: the motion that is possible."""
         sine, cosine = self.phi(numpy.asarray(times, dtype=float))
@@ -110,13 +105,3 @@ class Flat(Chain):
         still = {"B0.x": numpy.full_like(times, self.length), "B0.y": numpy.zeros_like(times),
                  "B1.x": swing["B1.x"], "B1.y": swing["B1.y"]}
         return [*super().solutions(times), still]
-
-
-def singular_times(chain, duration):
-    """When the rods of a chain that starts upright and turns over lie on one line, s."""
-    bottom = chain.rate**2 + 4 * chain.k
-    parameter = 4 * chain.k / bottom
-    turns = int(bottom**0.5 * duration / numpy.pi) + 2
-    quarter = ellipkinc(numpy.pi * (numpy.arange(turns) / 2 - 0.25), parameter)  # am at phi = pi/2, 3 pi/2 ...
-    times = 2 * (quarter + ellipk(parameter)) / bottom**0.5
-    return times[(times > 0) & (times < duration)]

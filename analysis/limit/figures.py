@@ -1,26 +1,23 @@
-# Step time over size between the limit's bounds and the implementations; steps split by phase; leads scene by scene.
+# Step time over size between the limit's bounds and the implementations; leads scene by scene.
 import matplotlib.pyplot as plt
 import numpy
 from matplotlib.ticker import NullLocator
 
 from analysis.core.style import ALTERNATIVES, GREY, MARKERS, Look, legend, line_each, missing, number_axis, size_ticks
 from analysis.core.text import number
-from analysis.core.timing import PHASES
 from analysis.limit.held import wanted
 from analysis.limit.tables import KINDS, LIMIT
 
 BOUNDS = {"latency_ns": ("bound: dependent operations", "--"),
           "memory_ns": ("bound: memory traffic", "-."),
           "arithmetic_ns": ("bound: rate of arithmetic", ":")}
-COLOURS = dict(zip(PHASES, ("#56B4E9", "#009E73", "#0072B2", "#E69F00", "#CC79A7", "#999999")))
 LIMIT_LABEL = "limit: code for the N-four-bar alone"
-WHOLE = 0.99  # of a step in "other": it has no phases
 
 
 def draw(tables, view):
     own = {name.partition("/")[0] for name in view.registry.own}
     rows = everyone(tables["steps"])
-    return {"over_size": over_size(tables["bounds"], rows, Look(view.registry), own), "by_phase": by_phase(rows, own),
+    return {"over_size": over_size(tables["bounds"], rows, Look(view.registry), own),
             "ahead": ahead(tables["leads"])}
 
 
@@ -74,45 +71,6 @@ def over_size(bounds, rows, look, own):
     size_ticks(multiples, sorted(rows.variables.unique()))
     multiples.set_xlim(rows.variables.min() / 1.3, rows.variables.max() * 1.3)
     legend(times, order=[*(label for label, _ in BOUNDS.values()), LIMIT_LABEL, *leaders(rows, own)].index)
-    return figure
-
-
-def by_phase(rows, own):
-    """A panel a size (at most three that many were timed at): the share of each phase in a step of each of the
-    leaders(), beside the step in multiples of the limit code."""
-    rows = rows[rows.other_us.notna()]
-    names = leaders(rows, own) if len(rows) else []
-    many = rows[rows.implementation.isin(names)].groupby("loops").size() > len(names) / 3
-    sizes = sorted(many.index[many])
-    shown = sizes if len(sizes) <= 3 else [sizes[round(k * (len(sizes) - 1) / 2)] for k in range(3)]
-    figure, panels = plt.subplots(1, max(1, len(shown)), sharey=True, squeeze=False, constrained_layout=True,
-                                  figsize=(3.9 * max(1, len(shown)) + 1.8, 0.36 * len(names) + 1.5))
-    if not shown:
-        missing(panels[0][0], "no phases were timed")
-    for axes, loops in zip(panels[0], shown):
-        of_size = rows[rows.loops == loops].set_index("implementation")
-        for place, name in enumerate(names):
-            if name not in of_size.index:
-                axes.text(0.02, place, "not timed", va="center", fontsize=8, color=GREY)
-                continue
-            row = of_size.loc[name]
-            if row.other_us > WHOLE * row.step_us:
-                axes.text(0.02, place, "all in the same sweeps", va="center", fontsize=8)
-            else:
-                left = 0.0
-                for phase in PHASES:
-                    width = row[f"{phase}_us"] / row.step_us
-                    axes.barh(place, width, 0.62, left=left, color=COLOURS[phase])
-                    left += width
-            axes.text(1, place, f" {number(row.multiple)}×, {number(row.step_us)} µs", va="center", fontsize=8)
-        axes.set_xlim(0, 1.6)
-        axes.set_xticks([0, 0.5, 1], ["0", "50 %", "100 %"])
-        axes.set_title(f"N-four-bar, n = {2 * loops + 2:.0f}; limit {number(of_size.step_us[LIMIT])} µs")
-        axes.set_xlabel("share of the step")
-        axes.set_yticks(range(len(names)), names)
-        axes.set_ylim(len(names) - 0.4, -0.6)
-    figure.legend(handles=[plt.Rectangle((0, 0), 1, 1, color=colour, label=phase) for phase, colour in COLOURS.items()],
-                  loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=6)
     return figure
 
 

@@ -19,9 +19,9 @@ NOTHING = {"facecolor": "white", "edgecolor": "#c4c4c4", "hatch": "...", "linewi
 EDGE = {"edgecolor": "white", "linewidth": 1.0}
 
 
-def draw(results, look, title, names, smallest=0, largest=float("inf")):
-    """The map of some contenders, of the sizes from `smallest` to `largest` variables."""
-    cells = [cell for cell in map_cells(results, names) if smallest <= cell.variables <= largest]
+def draw(results, look, title, names):
+    """The map of some contenders."""
+    cells = map_cells(results, names)
     count = len(columns(cells))
     figure, axes = plt.subplots(figsize=(max(5.0, 0.9 + 1.02 * count), 7.4))
     axes.set_title(title)

@@ -19,7 +19,7 @@ def context(tables, view):
             "ledger": ledger, "by_id": by_id(tables["claims"]), "subjects": paper.SUBJECTS, "dense_pairs": paper.dense_pairs(results), "title": paper.TITLE,
             "table2": [row | {"interval": interval(row["ratio"])} for row in table2(results)], "operations": paper.OPERATIONS,
             "pairs": [pair | {"used": _used(results, pair["name"])} for pair in view.registry.listed.get("blas", [])],
-            "verdicts": losses.verdicts(results), "checks": losses.checks(results), "losses": losses.losses(results),
+            "verdicts": losses.verdicts(results), "losses": losses.losses(results),
             "not_reached": list(scenes[scenes.reason != ""].scene), "entries": view.registry.entries,
             "coverage": view.registry.coverage, "variants": list(view.registry.variants),
             "controls": carry.judged(tables["controls"]), "twins": tables["controls"].to_dict("records"), "spread": [

@@ -1,6 +1,4 @@
 # Shares of a step's time by phase, of every variant. Table 1's claims compare those of the starting versions with the paper's.
-from textwrap import shorten
-
 import matplotlib.pyplot as plt
 
 from analysis.core.statistics import phase_shares
@@ -16,16 +14,6 @@ FILLS = {"evaluation": "#cfe3f2", "assembly": "#6baed6", "factorization": "#0851
 LABELS = {"evaluation": "evaluation (Φ, Φq, f)", "assembly": "tangent assembly",
           "factorization": "factorization", "solve": "solves", "projection": "projections (rhs)",
           "other": "other"}
-
-
-def why_not(results, name, size):
-    """Why a cell has no shares: the status and reason of its profiled or its timed rows."""
-    tidy = results.tidy
-    cell = tidy[(tidy.implementation == name) & (tidy.variables == size) & tidy.fill_asked.isna()
-                & (tidy.status != "ok")].sort_values("kind", kind="stable")
-    if cell.empty:
-        return "not profiled at this size"
-    return shorten(f"{cell.status.iloc[0]}: {cell.reason.iloc[0]}", 60, placeholder=" …")
 
 
 def panel_sizes(results):
@@ -52,7 +40,7 @@ def all_panel(axes, results, size, names, first):
         rows = profiled(results, name, size)
         shares = phase_shares(rows, PHASES) if len(rows) else {}
         if not shares:
-            axes.text(1, place, why_not(results, name, size), va="center", fontsize=7.5, color=GREY)
+            axes.text(1, place, "not profiled at this size", va="center", fontsize=7.5, color=GREY)
         elif shares["other"] > WHOLE:
             axes.text(1, place, "all in the same sweeps", va="center", fontsize=7.5)
         else:

@@ -1,16 +1,16 @@
-# Every implementation at the extremes; is every wrong run told; ways out of what goes wrong there; kept pivots; the growth of roundoff.
-from analysis.extremes import battery as table, cells, judge, roundoff, trials, ways
+# Every implementation at the extremes; is every wrong run told; ways out of what goes wrong there; kept pivots.
+from analysis.extremes import battery as table, cells, judge, trials, ways
 from study.core.cell import Cell
 from study.core.contender import REFERENCE
 
-SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms and roundoff, for other settings, for trials ...
+SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms, for other settings, for trials ...
             "everyone": bool,         # ... and whether all others come after them
             "trials": dict,           # runs of standard problems and of others; 0: all
             "cells": int,             # of the battery, telling ones of an axis at most; 0: these and all others
-            "loops": dict,            # sizes: of the region of ways, of their times, of roundoff
+            "loops": dict,            # sizes: of the region of ways, of their times
             "processes": int,         # of a time
             "limit": float}           # s a run
-SHARES = {"battery": 0.77, "ways": 0.13, "pivots": 0.035, "roundoff": 0.055}
+SHARES = {"battery": 0.82, "ways": 0.14, "pivots": 0.04}
 DENSE_LOOPS = 200  # dense implementations run up to this size
 PREFERRED = {      # of each folder the first variant that serves a way stands for it
     "eigen_dense": ("eigen_dense/llt",),
@@ -23,7 +23,7 @@ def columns(settings):
 
 
 def run(lab, column):
-    {"battery": battery, "ways": way_out, "pivots": pivots, "roundoff": growth}[column](lab)
+    {"battery": battery, "ways": way_out, "pivots": pivots}[column](lab)
 
 
 def battery(lab):
@@ -116,18 +116,3 @@ def pivots(lab):
         return lab.run(asked, drop=True)
     for cell in asked:
         lab.skip(cell, "excluded", "csc_klu takes no part")
-
-
-def growth(lab):
-    kinds, others = _who(lab, "forms")
-    limit = 5 * lab.settings["limit"]
-    asked = [(loops, form) for loops in lab.settings["loops"]["roundoff"] for form in roundoff.FORMS]
-    lab.run([_growth(loops, form, REFERENCE, limit, "mbs_reference") for loops, form in asked])
-    lab.run([_growth(loops, form, one, limit) for who in (kinds, others) for loops, form in asked for one in who
-             if lab.registry.serves(one.variant, form)], drop=True)
-
-
-def _growth(loops, form, one, limit, program="mbs"):
-    words = ("--step", roundoff.STEP, "--duration", roundoff.DURATION, "--scheme", form)
-    return Cell("simulate", f"four-bar:{loops}", (one,), words, form, program=program, seconds=limit,
-                keep=roundoff.Chain(loops).columns(roundoff.POINTS), every=roundoff.EVERY)
