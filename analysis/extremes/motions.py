@@ -22,7 +22,6 @@ class Chain:
     gravity: float = GRAVITY
     rods: tuple = ()            # kg; empty: 1 kg each
     couplers: tuple = ()        # kg; empty: 1 kg each
-    spans: tuple = ()           # m, of the couplers; empty: `length` each
     offset: float = 0.0         # m, of all x and y
     angle: float = 0.0          # rad, at t = 0
     rate: float = 1.0           # rad/s, at t = 0, not negative
@@ -32,7 +31,7 @@ class Chain:
     @property
     def shortest(self):
         """m, of its links."""
-        return min(self.length, *self.spans, self.length)
+        return self.length
 
     @property
     def masses(self):
@@ -42,7 +41,7 @@ class Chain:
     @property
     def feet(self):
         """x of the ground points, m"""
-        return self.offset + numpy.cumsum([0.0, *(self.spans or (self.length,) * self.loops)])
+        return self.offset + self.length * numpy.arange(self.loops + 1)
 
     @property
     def k(self):
@@ -90,7 +89,7 @@ class Chain:
                          "length": self.length})
         for i, mass in enumerate(self.masses[1]):
             rods.append({"name": f"coupler{i}", "between": [f"B{i}", f"B{i + 1}"], "mass": mass,
-                         "length": self.spans[i] if self.spans else self.length})
+                         "length": self.length})
         return {"gravity": [0.0, -self.gravity], "points": points, "rods": rods}
 
 

@@ -1,11 +1,11 @@
 # What the page says besides its figures: counts, who ends how, what is left out; sentences of each section.
 from analysis.core.outcomes import GOOD
 from analysis.core.text import number
-from analysis.extremes import battery, pivots, verdicts, ways
+from analysis.extremes import battery, pivots, verdicts
 
 
 def context(tables, view):
-    return {"settings": view.settings, "battery": _battery(tables["battery"]), "ways": _ways(tables["ways"], tables["ways_cost"]),
+    return {"settings": view.settings, "battery": _battery(tables["battery"]),
             "pivots": _pivots(tables["pivots"], tables["claims"])}
 
 
@@ -33,24 +33,6 @@ def left_out(table):
              for reason, rows in table[table.status == "excluded"].groupby("reason", sort=False)]
     dropped = int((table.status == "dropped").sum())
     return found + [f"{dropped} runs were left out, as the budget was spent: the more telling ones came first."] * (dropped > 0)
-
-
-def silent(rows):
-    """What is ok or plausible and wrong, a cell an entry: its runs, errors and first command."""
-    return [{"axis": axis, "value": value, "runs": len(group), "least": group.true_error.min(skipna=False),
-             "most": group.true_error.max(skipna=False), "command": group.command.iloc[0]}
-            for (axis, value), group in rows[rows.silent.fillna(False)].groupby(["axis", "value"], sort=False)]
-
-
-def _ways(table, cost):
-    if table.empty:
-        return None
-    rows = [{"way": way, "folder": folder, "share": ways.share(own), "reason": ways.not_served(own),
-             "costs": [(f"N = {one.loops:g}", ways.factor(one), one.passes_per_step, one.processes)
-                       for one in cost[(cost.folder == folder) & (cost.way == way)].itertuples()]}
-            for way in dict.fromkeys(table.way) for folder in ways.folders(table)
-            for own in [table[(table.way == way) & (table.folder == folder)]] if len(own)]
-    return {"rows": rows, "silent": silent(table), "dropped": int((table.status == "dropped").sum())}
 
 
 def _pivots(table, claims):

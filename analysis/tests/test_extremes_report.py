@@ -14,14 +14,14 @@ from analysis.core.records import Record
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
 from analysis.extremes import (battery, battery_figure, cells, figures, judge, page, pivots, sentences,
-                               tables, trials, verdicts, ways)
+                               tables, trials, verdicts)
 from analysis.extremes.motions import Chain, Flat
 
 STATUSES = ("ok", "degraded", "diverged", "wrong-branch", "not-converged", "timeout", "crashed", "refused", "excluded", "dropped")
 NAMES = ("a/v", "b/v", "csc_klu/v")
 REGISTRY = Registry({"implementations": [{"folder": name.split("/")[0], "available": True, "variants": [
     {"name": name, "dense": name == "a/v"}]} for name in NAMES]})
-VIEW = SimpleNamespace(registry=REGISTRY, settings={"loops": {"ways": [2], "times": [10]}})
+VIEW = SimpleNamespace(registry=REGISTRY, settings={})
 TIMES = numpy.linspace(0, 3, 31)
 CELL = next(cell for cell in cells.extremes() if cell.label == "N = 1")
 KITE, PASSING, FAR, STANDARD = (next(cell for cell in trials.all_trials() if (cell.axis, cell.label) == key) for key in (
@@ -112,8 +112,6 @@ def test_records_of_another_battery_are_named():
     other = record("battery/penalty/x", {"scene": "raw/scenes/no-such-cell.json"})
     with pytest.raises(StudyError, match="battery/penalty/x: its cell is none of the battery"):
         made(other)
-    with pytest.raises(StudyError, match="none of the ways out"):
-        made(record("ways/rattle/x", {"scene": "x", "role": "rattle"}))
 
 
 def test_a_run_is_held_to_the_nearest_of_its_motions_and_to_no_bad_reference():
@@ -199,39 +197,12 @@ def test_cells_in_which_nobody_is_right_are_found():
     assert found["settings"][0] == ("penalty", 10, verdicts.counts(table[table.setting == "penalty"]))
 
 
-def way(role, time=None, number=0, who="csc_klu/v", scene="ways-step-0.0008-2", status="ok", **more):
-    if time is not None:
-        return record(f"ways/cost-{role}/{who}-{number}", {"scene": "four-bar:10", "role": f"cost-{role}", "contenders": [who], "number": number},
-                      {"status": status, "least_us": {"mean": time}, "passes_per_step": 2.0})
-    motion = Chain(2).solutions(TIMES)[0]
-    return record(f"ways/{role}/{who}@{scene}", {"scene": f"{scene}.json", "role": role, "contenders": [who]}, {"status": status},
-                  {"t": list(TIMES)} | {key: list(values) for key, values in motion.items()}, **more)
-
-
-def test_costs_are_ratios_within_a_turn():
-    turns = [way(role, time, number) for role, times in (("penalty", (1.0, 2.0, 9.0)), ("saddle-point", (2.0, 5.0, 18.0)))
-             for number, time in enumerate(times, start=1)]
-    cost = made(*turns)["ways_cost"].set_index("way")
-    assert cost.ratio["saddle-point"] == pytest.approx((2 * 2.5 * 2) ** (1 / 3)) and cost.processes["saddle-point"] == 3
-    assert 1.4 < cost.low["saddle-point"] < 2.15 < cost.high["saddle-point"] < 3 and cost.ratio["α auto"] == 1
-    lost = made(*turns[1:], way("penalty", 1.0, 1, status="diverged"))["ways_cost"].set_index("way")
-    assert lost.processes["α auto"] == 2 and lost.status["α auto"] == "diverged" and lost.processes["saddle-point"] == 3
-    assert numpy.isnan(made(*turns[3:])["ways_cost"].ratio[0])
-    rows = {row.way: row for row in made(*turns)["ways_cost"].itertuples()}
-    assert ways.factor(rows["α auto"]) == "×1.00" and ways.factor(rows["saddle-point"]).startswith("×2.15 (1.")
-
-
-def test_safe_is_ok_or_plausible_and_right():
-    found = made(way("penalty"), way("saddle-point", status="degraded"), way("saddle-point", who="b/v", status="plausible"),
-                 record("ways/penalty-precision.mixed/x", {"scene": "", "role": "penalty-precision.mixed", "contenders": ["b/v"]},
-                        ended="unsupported", reason="no variant serves mixed"),
-                 way("penalty", who="b/v", scene="ways-mass-ratio-1000-10"))["ways"]
-    rows = {(row.way, row.folder): row for row in found.itertuples()}
-    assert rows["α auto", "csc_klu"].safe and not rows["saddle-point", "csc_klu"].safe and rows["saddle-point", "b"].safe
-    assert rows["α auto", "b"].silent and rows["α auto", "b"].command  # it is Chain(2) that moved, not ten loops
-    mixed = found[found.way == "mixed precision"]
-    assert ways.not_served(mixed) == "no variant serves mixed" and ways.share(mixed) == (0, 0)
-    assert list(dict.fromkeys(found.way)) == ["α auto", "saddle-point", "mixed precision"]
+def test_settings_are_compared_where_all_were_tried():
+    found = made(run("ok", 0.02, of=KITE), run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), run("ok", 0.02, role="saddle-point"))["battery"]
+    assert verdicts.by_setting(found) == {"penalty": (1, 1), "rattle4": (1, 1), "saddle-point": (0, 1)}  # of a/v, in the cell of rattle4
+    [answer] = sentences._helps(found)
+    assert "right most often with “penalty” in 1 of 1, “rattle4” in 1 of 1; with “penalty” in 1 of 1 and “saddle-point” in 0 of 1" in answer["text"]
+    assert list(sentences._helps(found[found.setting != "rattle4"])) == []
 
 
 def stale(number, times):
@@ -269,30 +240,20 @@ FACTS = {"date": "today", "profile": "smoke", "only": [], "parts": ["extremes"]}
 
 
 def test_page_figures_and_answers_of_all_columns():
-    found = made(trial("plausible"), run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), way("penalty"), way("saddle-point", status="degraded"),
-                 *(way("penalty", 1.0, number) for number in (1, 2)), way("saddle-point", who="b/v", scene="ways-mass-ratio-1-10", status="diverged"),
-                 stale(1, (2.0, 2.4, 6.0)))
+    found = made(trial("plausible"), run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), run("ok", role="saddle-point"), stale(1, (2.0, 2.4, 6.0)))
     drawn, text = render(found)
-    assert drawn == {"trials", "battery", "ways", "pivots"}
+    assert drawn == {"trials", "battery", "pivots"}
     assert "Silently wrong: 1 run<" in text and "build/mbs simulate &#39;a scene.json&#39;" in text
-    assert "N = 10: ×1.00" in text and "holds" in text and "Not measured" not in text
+    assert "holds" in text and "Not measured" not in text
     said = [one["text"] for one in sentences.answers(found, VIEW)]
-    assert said[0].startswith("In 4 runs of 2 mechanisms of 2 kinds: 1 silent wrong and no false alarms.")
-    assert any("“α auto” is safe in most cells: 1 of 1" in text for text in said) and any("1.2 times the time" in text for text in said)
-    assert {one["anchor"] for one in sentences.answers(found, VIEW)} <= {"battery", "nobody", "ways", "pivots"}
+    assert said[0].startswith("In 5 runs of 2 mechanisms of 2 kinds: 1 silent wrong and no false alarms.")
+    assert any("right most often" in text for text in said) and any("1.2 times the time" in text for text in said)
+    assert {one["anchor"] for one in sentences.answers(found, VIEW)} <= {"battery", "nobody", "settings", "pivots"}
     assert all(f'id="{one["anchor"]}"' in text for one in sentences.answers(found, VIEW))
-    assert sentences.cases(found, VIEW) == []
 
 
 def test_a_page_of_nothing_says_so():
     found = made()
     drawn, text = render(found)
-    assert drawn == set() and text.count("Not measured") == 3
-    assert [one["anchor"] for one in sentences.answers(found, VIEW)] == [""] and sentences.cases(found, VIEW) == []
-
-
-def test_what_bears_unlike_masses_is_a_case_of_the_front_page():
-    table = pandas.DataFrame([{"way": title, "folder": folder, "axis": "mass ratio", "value": ratio, "safe": title == "equations scaled" or ratio < 1e9}
-                              for title in ways.WAYS for folder in ("a", "b") for ratio in (1e3, 1e9)])
-    [case] = sentences.cases({"ways": table}, VIEW)
-    assert case["take"].startswith("equations scaled,") and "10⁹" in case["case"]
+    assert drawn == set() and text.count("Not measured") == 2
+    assert [one["anchor"] for one in sentences.answers(found, VIEW)] == [""]

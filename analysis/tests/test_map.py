@@ -11,7 +11,7 @@ from analysis.core.records import Record
 from analysis.core.style import Look
 from analysis.map import figures, losses, sentences, summary, tables, tidy
 from analysis.map.cells import map_cells, table
-from analysis.map.maps import bounds, crossings
+from analysis.map.maps import bounds
 from analysis.map.timed import AFTER, Scene, differing, timed_rows
 from analysis.tests.map_tables import cell, failed, registry, results, scene, view
 
@@ -93,10 +93,7 @@ def test_dense_overtakes_where_the_ratio_passes_one():
     rows = []
     for fill, dense in ((None, 4.0), (0.25, 2.0), (0.75, 0.5)):
         rows += cell(A, 10, dense, dense, fill=fill) + cell(B, 10, 1.0, 1.0, fill=fill)
-    found = some(rows)
-    [(size, (fill, low, high))] = crossings(found, map_cells(found, [A, B])).items()
-    assert size == 10 and fill == pytest.approx(50) and low <= fill <= high
-    [row] = summary.dense_from(found)
+    [row] = summary.dense_from(some(rows))
     assert row["from"] == 75 and row["last_sparse"] == 25 and row["between"] is None
 
 

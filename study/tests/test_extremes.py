@@ -1,7 +1,6 @@
 # Extremes: what is known of motions and cells, what the plan asks for in which order, a few cells on the real program.
 import json
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy
 import pytest
@@ -11,7 +10,7 @@ from analysis.core import records
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
 from analysis.core.view import View
-from analysis.extremes import cells, judge, scenes, tables, trials, verdicts, ways
+from analysis.extremes import cells, judge, scenes, tables, trials, verdicts
 from analysis.extremes.linkages import Wheel
 from analysis.extremes.mechanisms import LightEnd, TwoDrives, Uneven
 from analysis.extremes.motions import GRAVITY, Chain, Flat
@@ -170,7 +169,7 @@ class Asked:
         self.registry, self.contenders = REGISTRY, [Contender(name, name) for name in names]
         self.settings = {"implementations": {"forms": ["csc_klu/refactor"], "others": ["eigen_dense/llt"],
                                               "trials": ["csc_klu/refactor", "eigen_dense/llt"]}, "trials": {"standard": 3, "others": 30}, "everyone": True,
-                         "cells": 0, "loops": {"ways": [2], "times": [10]}, "processes": 2,
+                         "cells": 0, "processes": 2,
                          "limit": 5.0} | settings
         self.runs, self.skipped = [], []
 
@@ -242,20 +241,6 @@ def test_the_reference_is_kept_at_the_same_instants():
         assert step * cell.every == pytest.approx(pendulum.step * pendulum.every)
 
 
-def test_ways_take_the_first_variant_that_serves_them_and_turns_come_first():
-    lab = Asked()
-    plan.run(lab, "ways")
-    times, regions = lab.runs
-    assert all(cell.timed for cell in times) and not any(cell.timed for cell in regions)
-    assert [cell.number for cell in times] == sorted(cell.number for cell in times) and {cell.number for cell in times} == {1, 2}
-    by_way = {cell.role: name for cell, name in zip(regions, who(regions)) if name.startswith("csc_klu")}
-    assert by_way["penalty"] == "csc_klu/refactor" and by_way["penalty-geometric-stiffness"] == "csc_klu/guarded"
-    assert ("penalty-precision.mixed", "unsupported", "no variant serves mixed") in [
-        (cell.role, status, reason) for cell, status, reason in lab.skipped]
-    assert len({cell.settled() for cell in times + regions}) == len(times + regions)
-    assert any("--scale-equations" in cell.settled().settings for cell in times)
-
-
 def test_pivots_need_klu():
     lab = Asked(names=["some/one"])
     plan.run(lab, "pivots")
@@ -268,7 +253,7 @@ def test_pivots_need_klu():
 @pytest.mark.parametrize("name", profiles.names())
 def test_columns_keep_the_budget(name):
     settings = profiles.load(name, ["extremes"]).parts["extremes"]
-    assert set(plan.columns(settings)) == {"battery", "ways", "pivots"}
+    assert set(plan.columns(settings)) == {"battery", "pivots"}
     assert sum(plan.columns(settings).values()) <= settings["seconds"] * (1 + 1e-12)
 
 
@@ -326,20 +311,3 @@ def test_trials_on_the_real_program(studyset, monkeypatch):
     right = table[table.verdict == "right"]
     assert {"pendulum", "A01", "kite at 0.01", "Watt at 0.01, 1 per s"} <= set(right.value) and (right.true_error < 0.01).all()
     assert not (table.verdict == verdicts.SILENT).any()
-
-
-def test_ways_on_the_real_program(studyset, monkeypatch):
-    monkeypatch.setattr(ways, "WAYS", {title: ways.WAYS[title] for title in ("α = 1e8", ways.PLAIN, "exact tangent", "saddle-point")})
-    monkeypatch.setattr(ways, "STEPS", (5e-3,))
-    monkeypatch.setattr(ways, "DURATION", 0.1)
-    monkeypatch.setitem(studyset.profile.parts["extremes"], "loops", {"ways": [2], "times": [10]})
-    lab = Lab(studyset, "extremes", "ways")
-    plan.run(lab, "ways")
-    view = SimpleNamespace(registry=studyset.registry, settings=lab.settings)
-    found = ways.build(records.read_part(studyset.folder, "extremes"), view.settings, view.registry)
-    table, cost = found["ways"], found["ways_cost"]
-    assert list(dict.fromkeys(table.way)) == ["α = 1e8", "α auto", "exact tangent", "saddle-point"]
-    assert list(table[table.way == "exact tangent"].status) == ["unsupported"]
-    assert table[table.axis == "step"].safe.astype(bool).all()
-    assert list(cost.way) == ["α = 1e8", "α auto", "saddle-point"] and (cost.processes == 2).all() and (cost.ratio > 0).all()
-    assert cost.ratio[1] == 1 and (cost.low < cost.ratio)[[0, 2]].all()
