@@ -1,10 +1,12 @@
-# Step time over size between the limit's bounds and the implementations; leads scene by scene.
+# Step time over size between the limit's bounds and the implementations; steps split by phase; leads scene by scene.
 import matplotlib.pyplot as plt
 import numpy
 from matplotlib.ticker import NullLocator
 
+from analysis.core.phases import FILLS, LABELS, bar, legend as legend_of_phases
 from analysis.core.style import ALTERNATIVES, GREY, MARKERS, Look, legend, line_each, missing, number_axis, size_ticks
 from analysis.core.text import number
+from analysis.core.timing import PHASES
 from analysis.limit.held import wanted
 from analysis.limit.tables import KINDS, LIMIT
 
@@ -12,12 +14,13 @@ BOUNDS = {"latency_ns": ("bound: dependent operations", "--"),
           "memory_ns": ("bound: memory traffic", "-."),
           "arithmetic_ns": ("bound: rate of arithmetic", ":")}
 LIMIT_LABEL = "limit: code for the N-four-bar alone"
+WHOLE = 0.99  # of a step in "other": it has no phases
 
 
 def draw(tables, view):
     own = {name.partition("/")[0] for name in view.registry.own}
     rows = everyone(tables["steps"])
-    return {"over_size": over_size(tables["bounds"], rows, Look(view.registry), own),
+    return {"over_size": over_size(tables["bounds"], rows, Look(view.registry), own), "by_phase": by_phase(rows, own),
             "ahead": ahead(tables["leads"])}
 
 
@@ -71,6 +74,36 @@ def over_size(bounds, rows, look, own):
     size_ticks(multiples, sorted(rows.variables.unique()))
     multiples.set_xlim(rows.variables.min() / 1.3, rows.variables.max() * 1.3)
     legend(times, order=[*(label for label, _ in BOUNDS.values()), LIMIT_LABEL, *leaders(rows, own)].index)
+    return figure
+
+
+def by_phase(rows, own):
+    """A panel a size (at most three that many were timed at): the share of each phase in a step of each of the
+    leaders(), beside the step in multiples of the limit code."""
+    rows = rows[rows.other_us.notna()]
+    names = leaders(rows, own) if len(rows) else []
+    many = rows[rows.implementation.isin(names)].groupby("loops").size() > len(names) / 3
+    sizes = sorted(many.index[many])
+    shown = sizes if len(sizes) <= 3 else [sizes[round(k * (len(sizes) - 1) / 2)] for k in range(3)]
+    figure, panels = plt.subplots(1, max(1, len(shown)), sharey=True, squeeze=False, constrained_layout=True,
+                                  figsize=(3.9 * max(1, len(shown)) + 1.8, 0.36 * len(names) + 1.5))
+    if not shown:
+        missing(panels[0][0], "no phases were timed")
+        return figure
+    for axes, loops in zip(panels[0], shown):
+        of_size = rows[rows.loops == loops].set_index("implementation")
+        for place, name in enumerate(names):
+            row = of_size.loc[name] if name in of_size.index else None
+            if row is None or row.other_us > WHOLE * row.step_us:
+                axes.text(2, place, "not timed" if row is None else "all in the same sweeps", va="center", fontsize=8)
+            else:
+                bar(axes, place, [(phase, 100 * row[f"{phase}_us"] / row.step_us) for phase in PHASES], FILLS, False)
+            if row is not None:
+                axes.text(100, place, f" {number(row.multiple)}×, {number(row.step_us)} µs", va="center", fontsize=8)
+        axes.set(xlim=(0, 160), xticks=[0, 50, 100], xlabel="share of the step, %")
+        axes.set_title(f"N-four-bar, n = {2 * loops + 2:.0f}; limit {number(of_size.step_us[LIMIT])} µs", pad=26)
+        line_each(axes, names)
+    legend_of_phases(panels[0][0], FILLS, LABELS)
     return figure
 
 

@@ -1,8 +1,9 @@
 # Claims about the starting versions and the symbolic preprocessing: T1, T2, C2.
+from analysis.core.timing import rank, ratio
 from analysis.map import paper
-from analysis.map.compare import over_sizes, profiled, share_interval
+from analysis.map.compare import Versus, over_sizes, profiled, share_interval
 from analysis.map.ledger import Rule, compared, factor, judged, unmeasured
-from analysis.map.operations import not_optimised, table as table2
+from analysis.map.results import with_samples
 
 MAIN_SHARE = 10   # %; smaller shares of Table 1 get no row
 SHARE_BAND = 10   # points around the paper's share that still confirm it
@@ -32,16 +33,30 @@ def _share(results, kind, size, group, phases, share):
 def table2_claims(results):
     """T2. Rule: a variant that is not optimised, over the fastest optimised one, within the band around the paper's ratio;
     a row an operation and such a variant, judged at every size."""
-    rows, found = [], table2(results)
+    rows, plain = [], [name for name in results.variants if name.split("/")[0] == paper.NOT_OPTIMISED]
     for operation, (before, after, quoted) in paper.TABLE2.items():
-        mine = [row for row in found if row["operation"] == operation]
         claim = f"symbolic preprocessing makes the {paper.OPERATIONS[operation]} {quoted} times faster"
         quote = f"{quoted}× ({before} → {after} ms)"
-        rows += [compared(("T2", f"{claim} ({slow})", quote), [row["ratio"] for row in mine if row["slow"] == slow], factor(quoted))
-                 for slow in not_optimised(results) if any(row["slow"] == slow for row in mine)]
-        if not mine:
+        found = {slow: ratios for slow in plain if (ratios := _gains(results, operation, slow))}
+        rows += [compared(("T2", f"{claim} ({slow})", quote), ratios, factor(quoted)) for slow, ratios in found.items()]
+        if not found:
             rows.append(unmeasured(("T2", claim, quote), "The operations alone were not timed in this run.", factor(quoted)))
     return rows
+
+
+def _gains(results, operation, slow):
+    """[Versus] by size, of the times of a call: to the fastest optimised variant that stores as much, both halves of the symmetric
+    matrices, as those for unsymmetric solvers do, or one."""
+    rows, found = results.tidy, []
+    rows = rows[(rows.kind == "operations") & (rows.status == "ok") & (rows.operation == operation)]
+    both_halves = lambda name: results.variants[name].get("unsymmetric", False)
+    alike = [name for name in paper.sparse(results) if both_halves(name) == both_halves(slow)]
+    for (size, _), cell in with_samples(rows).groupby(["variables", "scene"]):
+        ranking = rank(cell, alike)
+        one = ranking and ratio(cell, slow, ranking.winner)
+        if one and one.value == one.value:
+            found.append(Versus(one.value, one.low, one.high, slow, ranking.winner, size, 0.0, cell[cell.implementation == slow].record.iloc[0]))
+    return found
 
 
 def starting_sparse(results):

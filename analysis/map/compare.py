@@ -1,7 +1,6 @@
 # Comparisons within a scene that figures and claims share.
 from dataclasses import dataclass
 
-from analysis.map.results import with_samples
 from analysis.map.tidy import PHASES
 
 COVERED = 82  # variables that a run has to reach to speak of the paper's figures of 10 to 160
@@ -43,19 +42,10 @@ def over_sizes(results, slow, fast, low=0, high=float("inf"), reaching=0):
     return found if found and found[-1].size >= reaching else []
 
 
-def operations(results, operation):
-    """Rows of an operation of Table 2 that was timed; `step_us` is the time of a call here."""
+def profiled(results, name, size):
+    """Rows of the profiled processes of a contender at a size."""
     tidy = results.tidy
-    rows = tidy[(tidy.kind == "operations") & (tidy.status == "ok") & (tidy.operation == operation)]
-    return with_samples(rows).assign(step_us=rows.operation_us)
-
-
-def profiled(results, name=None, size=None):
-    """Rows of the profiled processes, of one contender and size if they are given."""
-    tidy = results.tidy
-    rows = tidy[(tidy.kind == "phases") & (tidy.status == "ok") & tidy.implementation.isin(list(results.variants))]
-    rows = rows if name is None else rows[rows.implementation == name]
-    return rows if size is None else rows[rows.variables == size]
+    return tidy[(tidy.kind == "phases") & (tidy.status == "ok") & (tidy.implementation == name) & (tidy.variables == size)]
 
 
 def share_interval(rows, phases):

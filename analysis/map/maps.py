@@ -1,29 +1,41 @@
 # Maps of the fastest over size and fill: the paper's Figures 6 and 7, for libraries and for all.
 from itertools import groupby
 
+import matplotlib.patheffects as effects
 import matplotlib.pyplot as plt
+import numpy
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from analysis.core.style import GREY, missing
+from analysis.map import paper
 from analysis.map.cells import map_cells
+from analysis.map.compare import best
 
+LINE = "#111111"
 OPAQUE, PALE = 0.85, 0.4
 BAND = (-19.0, -3.0)  # where cells of own fill stand, in % of the axis above
 NOTHING = {"facecolor": "white", "edgecolor": "#c4c4c4", "hatch": "...", "linewidth": 0}
 EDGE = {"edgecolor": "white", "linewidth": 1.0}
 
 
-def draw(results, look, title, names):
-    """The map of some contenders."""
-    cells = map_cells(results, names)
+def draw(results, look, title, names, smallest=0, largest=float("inf")):
+    """The map of some contenders, of the sizes from `smallest` to `largest` variables."""
+    cells = [cell for cell in map_cells(results, names) if smallest <= cell.variables <= largest]
     count = len(columns(cells))
     figure, axes = plt.subplots(figsize=(max(5.0, 0.9 + 1.02 * count), 7.4))
     axes.set_title(title)
     if not any(cell.ranking for cell in cells):
         missing(axes, "nobody of these was timed")
         return figure
-    for place, mine in enumerate(columns(cells).values()):
+    found = crossings(results, cells)
+    for place, (size, mine) in enumerate(columns(cells).items()):
         _column(axes, place - 0.5, mine, look)
+        if size in found:
+            fill, low, high = found[size]
+            axes.fill_between([place - 0.5, place + 0.5], low, high, color=LINE, alpha=0.12, linewidth=0, zorder=3)
+            axes.plot([place - 0.5, place + 0.5], [fill, fill], color=LINE, linewidth=1.6, zorder=4,
+                      path_effects=[effects.withStroke(linewidth=3, foreground="white")])
     axes.axhline(0, color="#444444", linewidth=0.8)
     axes.set(xlim=(-0.5, count - 0.5), ylim=(BAND[0], 100))
     axes.set_yticks([sum(BAND) / 2, 0, 20, 40, 60, 80, 100], ["own\nfill", "0", "20", "40", "60", "80", "100"])
@@ -33,7 +45,7 @@ def draw(results, look, title, names):
     axes.spines["bottom"].set_visible(False)
     axes.set_xlabel("variables n", fontsize=9.5)
     axes.set_ylabel("non-zeros of the tangent, % of n²", fontsize=9.5)
-    _legend(axes, cells, look, names)
+    _legend(axes, cells, look, names, found, paper.dense_pairs(results))
     return figure
 
 
@@ -105,7 +117,35 @@ def _margin(cell):
     return f"{'=' if cell.settled else '?'} {len(cell.winners) - 1} more"
 
 
-def _legend(axes, cells, look, names):
+def crossings(results, cells):
+    """{size: (fill, low, high)}: from where the best dense of the paper's is faster than the best sparse library; only
+    where that happens between the fills that were timed."""
+    found = {}
+    for size, mine in columns(cells).items():
+        ratios = [best(results, cell.scene, paper.dense(results), paper.sparse(results, others=True)) for cell in mine]
+        known = [(cell.fill_percent, ratio) for cell, ratio in zip(mine, ratios) if ratio]
+        if len(known) > 1:
+            fills = [fill for fill, _ in known]
+            fill, low, high = (crossing(fills, [getattr(ratio, end) for _, ratio in known]) for end in ("value", "low", "high"))
+            if fills[0] < fill < fills[-1]:
+                found[size] = (fill, max(low, fills[0]), min(high, fills[-1]))
+    return found
+
+
+def crossing(places, values):
+    """Where `values` (ratios) first fall below 1, log values interpolated over `places`; -inf if they are below from
+    the start, inf if nowhere."""
+    with numpy.errstate(divide="ignore"):  # of a single process an interval reaches from 0 to infinity
+        logs = numpy.log(values)
+    if logs[0] < 0:
+        return -numpy.inf
+    for left, right, before, after in zip(places, places[1:], logs, logs[1:]):
+        if after < 0:
+            return left + (right - left) * before / (before - after)
+    return numpy.inf
+
+
+def _legend(axes, cells, look, names, crossed, pairs):
     wins = {name: [sum(cell.decided and cell.ranking.winner == name for cell in cells),
                    sum(not cell.decided and cell.settled and name in cell.winners for cell in cells),
                    sum(not cell.settled and not cell.decided and name in cell.winners for cell in cells)] for name in names}
@@ -115,6 +155,8 @@ def _legend(axes, cells, look, names):
     shown += [Patch(facecolor="#dddddd", edgecolor="#555555", hatch="////", linewidth=0,
                     label="open: two of those that may be the fastest")]
     shown += [Patch(**NOTHING, label="not measured"), Patch(facecolor="white", edgecolor=GREY, label="white: below the own fill (line)")]
+    if crossed:
+        shown.append(Line2D([], [], color=LINE, linewidth=1.6, label=f"best of the paper's dense kind (on {pairs})\novertakes best sparse library; 95 % band"))
     shown += [Patch(facecolor="none", label=text) for text in ("1.32×: the second behind the winner", "= 2 more: as fast, within 5 %",
                                                               "? 2 more: may be as fast")]
     axes.legend(handles=shown, loc="upper left", bbox_to_anchor=(1.01, 1.01), fontsize=8)

@@ -1,8 +1,6 @@
 # What the page of the map says besides its figures.
-from analysis.core.text import interval
 from analysis.map import carry, losses, paper, summary
 from analysis.map.ledger import by_id
-from analysis.map.operations import table as table2
 from analysis.map.results import of
 
 
@@ -17,7 +15,6 @@ def context(tables, view):
             "dense_from": summary.dense_from(results), "prices": summary.prices(results, libraries),
             "times": losses.step_times(results), "overhead": losses.overhead(results), "centred": losses.LAST_CENTRED,
             "ledger": ledger, "by_id": by_id(tables["claims"]), "subjects": paper.SUBJECTS, "dense_pairs": paper.dense_pairs(results), "title": paper.TITLE,
-            "table2": [row | {"interval": interval(row["ratio"])} for row in table2(results)], "operations": paper.OPERATIONS,
             "pairs": [pair | {"used": _used(results, pair["name"])} for pair in view.registry.listed.get("blas", [])],
             "verdicts": losses.verdicts(results), "losses": losses.losses(results),
             "not_reached": list(scenes[scenes.reason != ""].scene), "entries": view.registry.entries,

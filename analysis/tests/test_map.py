@@ -11,7 +11,7 @@ from analysis.core.records import Record
 from analysis.core.style import Look
 from analysis.map import figures, losses, sentences, summary, tables, tidy
 from analysis.map.cells import map_cells, table
-from analysis.map.maps import bounds
+from analysis.map.maps import bounds, crossings
 from analysis.map.timed import AFTER, Scene, differing, timed_rows
 from analysis.tests.map_tables import cell, failed, registry, results, scene, view
 
@@ -93,7 +93,10 @@ def test_dense_overtakes_where_the_ratio_passes_one():
     rows = []
     for fill, dense in ((None, 4.0), (0.25, 2.0), (0.75, 0.5)):
         rows += cell(A, 10, dense, dense, fill=fill) + cell(B, 10, 1.0, 1.0, fill=fill)
-    [row] = summary.dense_from(some(rows))
+    found = some(rows)
+    [(size, (fill, low, high))] = crossings(found, map_cells(found, [A, B])).items()
+    assert size == 10 and fill == pytest.approx(50) and low <= fill <= high
+    [row] = summary.dense_from(found)
     assert row["from"] == 75 and row["last_sparse"] == 25 and row["between"] is None
 
 
@@ -134,7 +137,7 @@ def test_exclusions_of_one_are_one_line_of_what_was_not_timed():
 def test_every_figure_can_be_drawn(rows):
     found = some(rows)
     drawn = figures.draw({"tidy": found.tidy, "verification": found.verification}, found.view)
-    assert set(drawn) >= {"f4_sparse_solvers", "f7_map", "map_all", "t1_phases"}
+    assert set(drawn) >= {"f4_sparse_solvers", "f7_map", "map_all"}
     for figure in drawn.values():
         assert figure.get_size_inches()[1] < 16  # two screens
         plt.close(figure)
