@@ -46,7 +46,7 @@ def _pivots(table, claims):
                      f"{worst.pivoting} pivots).")
     found += [f"With default pivots a factorization and solve of {strategy} takes {rows.median():.2f} times that of refactor "
               f"(median over the sequences; {rows.min():.2f} to {rows.max():.2f})." for strategy, rows in overhead(table).items()]
-    return {"lost": lost, "said": found, "claims": claims.to_dict("records"), "matrices": int(table.matrices.max())}
+    return {"lost": lost, "said": found, "rows": table.to_dict("records"), "claims": claims.to_dict("records"), "matrices": int(table.matrices.max())}
 
 
 def overhead(table):

@@ -242,7 +242,7 @@ FACTS = {"date": "today", "profile": "smoke", "only": [], "parts": ["extremes"]}
 def test_page_figures_and_answers_of_all_columns():
     found = made(trial("plausible"), run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), run("ok", role="saddle-point"), stale(1, (2.0, 2.4, 6.0)))
     drawn, text = render(found)
-    assert drawn == {"trials", "battery", "pivots"}
+    assert drawn == {"trials", "battery"}
     assert "Silently wrong: 1 run<" in text and "build/mbs simulate &#39;a scene.json&#39;" in text
     assert "holds" in text and "Not measured" not in text
     said = [one["text"] for one in sentences.answers(found, VIEW)]

@@ -9,7 +9,6 @@ from analysis.core.records import Record
 from analysis.core.statistics import median, power_law_exponent
 from analysis.core.timing import counted, rank, ratio
 from analysis.map import carry
-from analysis.map.tidy import PHASES
 from analysis.map.timed import AFTER
 
 
