@@ -2,14 +2,15 @@
 from analysis.map import carry, losses, paper, summary
 from analysis.map.ledger import by_id
 from analysis.map.results import of
+from analysis.map.sentences import by_outcome
 
 
 def context(tables, view):
     results = of(tables, view)
     libraries = results.layer("libraries")
     scenes, ledger = tables["scenes"], tables["claims"].to_dict("records")
-    return {"by_size": {layer: [summary.outcome(group) for group in summary.by_size(results, results.layer(layer))]
-                        for layer in ("libraries", "all")},
+    return {"by_size": {layer: list(by_outcome(summary.by_size(results, results.layer(layer)), what))
+                        for layer, what in (("libraries", "library"), ("all", "of all"))},
             "own": [name for name in results.layer("all") if name not in libraries],
             "settled": {layer: summary.settled(tables["cells"], layer) for layer in ("libraries", "all")},
             "dense_from": summary.dense_from(results), "prices": summary.prices(results, libraries),
