@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy
 from matplotlib.ticker import NullLocator
 
-from analysis.core.phases import FILLS, LABELS, bar, legend as legend_of_phases
+from analysis.core.phases import FILLS, LABELS, bar
 from analysis.core.style import ALTERNATIVES, GREY, MARKERS, Look, legend, line_each, missing, number_axis, size_ticks
 from analysis.core.text import number
 from analysis.core.timing import PHASES
@@ -101,9 +101,10 @@ def by_phase(rows, own):
             if row is not None:
                 axes.text(100, place, f" {number(row.multiple)}×, {number(row.step_us)} µs", va="center", fontsize=8)
         axes.set(xlim=(0, 160), xticks=[0, 50, 100], xlabel="share of the step, %")
-        axes.set_title(f"N-four-bar, n = {2 * loops + 2:.0f}; limit {number(of_size.step_us[LIMIT])} µs", pad=26)
+        axes.set_title(f"N-four-bar, n = {2 * loops + 2:.0f}; limit {number(of_size.step_us[LIMIT])} µs")
         line_each(axes, names)
-    legend_of_phases(panels[0][0], FILLS, LABELS)
+    figure.legend(handles=[plt.Rectangle((0, 0), 1, 1, color=FILLS[phase], label=LABELS[phase]) for phase in PHASES],
+                  loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=len(PHASES) if len(shown) > 1 else 3)
     return figure
 
 
