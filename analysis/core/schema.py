@@ -78,16 +78,17 @@ def need_same_records(folder, part, records):
 
 
 def read_table(folder, part, name):
-    """A table of a set; StudyError if it is not as it was written."""
+    """A table of a set; StudyError if it is not as it was written. A set of an older schema may have columns that are gone."""
     path, kept = Path(folder) / part / f"{name}.csv", Path(folder) / part / DIGESTS
     if not kept.exists():
         raise StudyError(f"{kept} is missing: study/figures makes the tables again from the records")
     need_unchanged(folder, part)
+    columns = of_part(part)[name]
     try:
-        frame = pandas.read_csv(path, dtype=str, keep_default_na=False)
+        frame = pandas.read_csv(path, dtype=str, keep_default_na=False, usecols=columns.__contains__)
     except (OSError, ValueError) as error:
         raise StudyError(f"{path}: cannot be read: {error}") from error
-    return conform(frame, of_part(part)[name], str(path))
+    return conform(frame, columns, str(path))
 
 
 def need_unchanged(folder, part):

@@ -29,11 +29,3 @@ def power_law_interval(sizes, times):
     error = stats.linregress(numpy.log(sizes), numpy.log(times)).stderr
     half = stats.t.ppf((1 + CONFIDENCE) / 2, len(sizes) - 2) * error
     return exponent, exponent - half, exponent + half
-
-
-def phase_shares(rows, phases):
-    """{phase: share} of one cell: medians over its profiled runs, scaled so that they add up to 1
-    (a median, because a run that the system interrupts books the interruption on one phase)."""
-    shares = {phase: median(rows[f"phase_{phase}"]) for phase in phases}
-    total = sum(shares.values())
-    return {phase: share / total for phase, share in shares.items()}

@@ -30,10 +30,9 @@ matplotlib.rcParams.update({
 
 class Look:
     """How each implementation is drawn, by its place in the registry: a colour a folder and a shade
-    of it a variant; a marker of its own; a dash a variant. Alternatives "folder/variant+pair" have
-    colours and markers of their own."""
+    of it a variant; a marker of its own; a dash a variant."""
 
-    def __init__(self, registry, alternatives=()):
+    def __init__(self, registry):
         self.place, self.shade, self.hue = {}, {}, {}
         palettes = {True: iter(DENSE * 9), False: iter(SPARSE * 9)}
         for name in registry.variants:
@@ -42,47 +41,36 @@ class Look:
                 self.hue[folder] = next(palettes[name in registry.dense])
             self.place[name] = len(self.place)
             self.shade[name] = sum(other.startswith(f"{folder}/") for other in self.shade)
-        self.alternatives = {name: place for place, name in enumerate(sorted(alternatives))}
 
     def colour(self, name):
-        if name in self.alternatives:
-            return ALTERNATIVES[self.alternatives[name] % len(ALTERNATIVES)]
         base, shade = self.hue[name.split("/")[0]], self.shade[name]
         towards, share = SHADES[shade % len(SHADES)]
         mixed = numpy.array(to_rgb(base)) * (1 - share)
         return to_hex(mixed + share if towards == "white" else mixed)
 
     def marker(self, name):
-        return MARKERS[(self.place | self.alternatives)[name] % len(MARKERS)]
+        return MARKERS[self.place[name] % len(MARKERS)]
 
     def dash(self, name):
-        return DASHES[self.shade[name] % len(DASHES)] if name in self.shade else DASHES[0]
+        return DASHES[self.shade[name] % len(DASHES)]
 
     def line(self, name):
-        """Keywords of `plot` for the series of an implementation or alternative."""
+        """Keywords of `plot` for the series of an implementation."""
         return {"color": self.colour(name), "linestyle": self.dash(name), "linewidth": 1.4, "marker": self.marker(name),
                 "markersize": 8 if self.marker(name) in "*PX" else 5.5, "markeredgewidth": 0.6, "markerfacecolor": self.colour(name),
                 "markeredgecolor": "white"}
 
 
-def legend(axes, order=None):
-    """A legend right of the axes, entries in the order of their last points, slowest first, as the
-    lines end; or sorted by `order(label)`. Entries without a line's label come last."""
-    handles, labels = axes.get_legend_handles_labels()
-    lines = {id(line): line.get_ydata() for line in axes.get_lines()}
-
-    def last(entry):
-        values = lines.get(id(entry[0]), [])
-        return -values[-1] if len(values) else float("inf")
-    pairs = sorted(zip(handles, labels), key=(lambda e: order(e[1])) if order else last)
+def legend(axes, order):
+    """A legend right of the axes, entries sorted by `order(label)`."""
+    pairs = sorted(zip(*axes.get_legend_handles_labels()), key=lambda entry: order(entry[1]))
     if pairs:
         axes.legend(*zip(*pairs), loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
 
 
-def nothing(text, size=(6, 1.2), title=""):
+def nothing(text, size=(6, 1.2)):
     """A figure that says what is missing, and no more."""
     figure, axes = plt.subplots(figsize=size)
-    axes.set_title(title)
     missing(axes, text)
     return figure
 

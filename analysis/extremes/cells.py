@@ -19,7 +19,8 @@ LOOPS = 5            # where size is not what is varied
 FORMS = (Setting("penalty"), Setting("saddle-point"))  # of every cell
 OTHERS = (Setting("rattle"), Setting("rattle4"), Setting("rattle6"), Setting("multistep6"),  # of the telling ones
           *(Setting(form.scheme, (change,)) for change in (
-              ("tangent", "kept"), ("precision", "single"), ("precision", "mixed")) for form in FORMS),
+              ("tangent", "kept"), ("precision", "single"), ("precision", "mixed"), ("geometric-stiffness", "")) for form in FORMS),
+          Setting("penalty", (("scale-equations", ""),)), Setting("penalty", (("multipliers", "converged"),)),
           *(Setting(form.scheme, (*change, ("half-step", ""))) for change in ((), (("tangent", "kept"),)) for form in FORMS),
           Setting("rattle4", (("half-step", ""),)))  # of which alone a scene whose motion nobody knows is `ok`
 TELLING = {  # axis: labels of its most telling cells, these in order

@@ -1,6 +1,5 @@
-# The figures of the part: trials, the battery, ways out, kept pivots, roundoff.
-from analysis.extremes import battery, battery_figure, pivots, pivots_figure, roundoff_figure, trials_figure, ways_figure
-from analysis.extremes.roundoff import FORMS
+# The figures of the part: trials and the battery.
+from analysis.extremes import battery, battery_figure, trials_figure
 
 
 def draw(tables, view):
@@ -9,9 +8,4 @@ def draw(tables, view):
         found["trials"] = trials_figure.draw(tables["battery"])
     if len(battery.ran(extreme)):
         found["battery"] = battery_figure.draw(extreme)
-    if len(tables["ways"]):
-        found["ways"] = ways_figure.draw(tables["ways"], tables["ways_cost"])
-    if len(pivots.timed(tables["pivots"])):
-        found["pivots"] = pivots_figure.draw(pivots.timed(tables["pivots"]))
-    return found | {f"roundoff-{form}": roundoff_figure.draw(tables["growth"], view.registry, form)
-                    for form in FORMS if (tables["growth"].scheme == form).any()}
+    return found

@@ -10,7 +10,7 @@
 from dataclasses import dataclass
 
 import numpy
-from scipy.special import ellipj, ellipk, ellipkinc
+from scipy.special import ellipj, ellipkinc
 
 GRAVITY = 9.81  # m/s^2
 
@@ -22,7 +22,6 @@ class Chain:
     gravity: float = GRAVITY
     rods: tuple = ()            # kg; empty: 1 kg each
     couplers: tuple = ()        # kg; empty: 1 kg each
-    spans: tuple = ()           # m, of the couplers; empty: `length` each
     offset: float = 0.0         # m, of all x and y
     angle: float = 0.0          # rad, at t = 0
     rate: float = 1.0           # rad/s, at t = 0, not negative
@@ -32,7 +31,7 @@ class Chain:
     @property
     def shortest(self):
         """m, of its links."""
-        return min(self.length, *self.spans, self.length)
+        return self.length
 
     @property
     def masses(self):
@@ -42,7 +41,7 @@ class Chain:
     @property
     def feet(self):
         """x of the ground points, m"""
-        return self.offset + numpy.cumsum([0.0, *(self.spans or (self.length,) * self.loops)])
+        return self.offset + self.length * numpy.arange(self.loops + 1)
 
     @property
     def k(self):
@@ -64,11 +63,6 @@ class Chain:
             sn, _, cn, _ = ellipj(start + k**0.5 * times, kappa**2)
             sn = kappa * sn
         return -2 * sn * cn, 2 * sn**2 - 1
-
-    def speed(self, times):
-        """phi' at `times`, rad/s, without its sign: from the energy."""
-        square = self.rate**2 + 2 * self.k * (numpy.cos(self.angle) - self.phi(times)[1])
-        return numpy.maximum(square, 0)**0.5  # at rest it rounds to less
 
     def solutions(self, times):
         """[{column of a trajectory: values}]: the motion that is possible."""
@@ -95,7 +89,7 @@ class Chain:
                          "length": self.length})
         for i, mass in enumerate(self.masses[1]):
             rods.append({"name": f"coupler{i}", "between": [f"B{i}", f"B{i + 1}"], "mass": mass,
-                         "length": self.spans[i] if self.spans else self.length})
+                         "length": self.length})
         return {"gravity": [0.0, -self.gravity], "points": points, "rods": rods}
 
 
@@ -110,13 +104,3 @@ class Flat(Chain):
         still = {"B0.x": numpy.full_like(times, self.length), "B0.y": numpy.zeros_like(times),
                  "B1.x": swing["B1.x"], "B1.y": swing["B1.y"]}
         return [*super().solutions(times), still]
-
-
-def singular_times(chain, duration):
-    """When the rods of a chain that starts upright and turns over lie on one line, s."""
-    bottom = chain.rate**2 + 4 * chain.k
-    parameter = 4 * chain.k / bottom
-    turns = int(bottom**0.5 * duration / numpy.pi) + 2
-    quarter = ellipkinc(numpy.pi * (numpy.arange(turns) / 2 - 0.25), parameter)  # am at phi = pi/2, 3 pi/2 ...
-    times = 2 * (quarter + ellipk(parameter)) / bottom**0.5
-    return times[(times > 0) & (times < duration)]

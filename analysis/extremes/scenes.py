@@ -12,11 +12,6 @@ def unlike_masses(loops, ratio):
     return Chain(loops, rods=alternate(loops + 1, ratio), couplers=alternate(loops, ratio))
 
 
-def unlike_lengths(loops, ratio):
-    """Every second coupler is shorter by `ratio`."""
-    return Chain(loops, spans=alternate(loops, 1 / ratio))
-
-
 def sprung_loop(stiffness):
     """A spring beside a coupler of two loops, at its free length: the motion is that of the loops alone."""
     return Chain(2).document() | {"springs": [

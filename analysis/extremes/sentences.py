@@ -1,14 +1,15 @@
 # The answers to "What happens at the extremes, and what helps there?", from the tables.
 from analysis.core.text import number
-from analysis.extremes import battery, pivots, trials, verdicts, ways
+from analysis.extremes import battery, pivots, trials, verdicts
+from analysis.extremes.cells import FORMS
 from analysis.extremes.page import nobody, overhead
 
-
-MOST = 10  # silent wrongs that the answer itself names
+MOST = 10         # silent wrongs that the answer itself names
+MOST_HELPFUL = 2  # settings
 
 
 def answers(tables, view):
-    found = [*_battery(tables["battery"]), *_ways(tables["ways"], tables["ways_cost"]), *_pivots(tables["pivots"])]
+    found = [*_battery(tables["battery"]), *_helps(battery.extreme(tables["battery"])), *_pivots(tables["pivots"])]
     return found or [{"text": "Not measured: nobody that takes part runs at the extremes.", "anchor": ""}]
 
 
@@ -49,18 +50,12 @@ def _places(rows):
     return ", ".join(f"{kind}: {count}" for kind, count in rows.axis.value_counts(sort=False).items())
 
 
-def _ways(table, cost):
-    shares = {way: tuple(map(sum, zip(*(ways.share(own) for _, own in rows.groupby("folder")))))
-              for way, rows in table[table.axis != ""].groupby("way", sort=False)}
-    shares = {way: one for way, one in shares.items() if one[1]}
-    if ways.PLAIN not in shares:
-        return
-    ratios = {way: cost[(cost.way == way) & cost.ratio.notna()].ratio for way in shares}
-    best = max(shares, key=lambda way: (shares[way][0] / shares[way][1], -ratios[way].max()))
-    times = ratios[best]
-    at = f", at {number(times.min(), 2)} to {number(times.max(), 2)} times the time of a step" if len(times) else ""
-    yield {"anchor": "ways", "text": f"Of the ways out “{best}” is safe in most cells: {shares[best][0]} of {shares[best][1]}{at}. "
-           f"The penalty form with automatic α is so in {shares[ways.PLAIN][0]} of {shares[ways.PLAIN][1]}."}
+def _helps(extreme):
+    shares = verdicts.by_setting(extreme)
+    if len(shares) > len(FORMS):
+        told = [f"“{name}” in {right} of {runs}" for name, (right, runs) in shares.items()]
+        yield {"anchor": "settings", "text": f"Where other settings were tried as well, runs are right most often with {', '.join(told[:MOST_HELPFUL])}; "
+               f"with {' and '.join(told[list(shares).index(form.name)] for form in FORMS if form.name in shares)}."}
 
 
 def _pivots(table):
@@ -70,14 +65,3 @@ def _pivots(table):
     worst = table.groupby("strategy").error_worst.max()
     yield {"anchor": "pivots", "text": f"Solves with pivots that are kept have backward errors of up to {number(worst['refactor'], 1)}, "
            f"with a guard of at most {number(worst['guarded'], 1)}, for {number(overhead(table)['guarded'].median(), 3)} times the time."}
-
-
-def cases(tables, view):
-    """Rows of the front page's table."""
-    masses = tables["ways"][tables["ways"].axis == "mass ratio"]
-    most = masses[masses.value == masses.value.max()]
-    safe = [way for way, rows in most.groupby("way", sort=False) if rows.safe.all()]
-    if not safe:
-        return []
-    return [{"case": f"Masses in your mechanism differ by {number(most.value.iloc[0])}", "link": "extremes.html#ways",
-             "take": f"{' or '.join(safe)}, whatever the implementation (tried on the four-bar)"}]

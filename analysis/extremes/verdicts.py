@@ -1,5 +1,6 @@
 # What the outcome of a run is worth beside its true error; runs of a verdict by kind, those that are equal as one.
 from analysis.core.outcomes import FINISHED, GOOD, WHOLE
+from analysis.extremes.cells import FORMS
 
 RIGHT, SILENT, FALSE, TOLD, STOPPED = ALL = "right", "silently wrong", "false alarm", "told", "stopped"
 
@@ -28,6 +29,15 @@ def counts(table):
 def kinds(table):
     """A row a kind: mechanisms, runs and their verdicts."""
     return [{"kind": kind, "mechanisms": rows.value.nunique(), "runs": len(rows)} | counts(rows) for kind, rows in judged(table).groupby("axis", sort=False)]
+
+
+def by_setting(table):
+    """{setting: (right runs, runs)} where more than the two forms was tried, of those who tried more; the best first."""
+    runs = judged(table)
+    more = runs[~runs.setting.isin([form.name for form in FORMS])][["axis", "value", "implementation"]].drop_duplicates()
+    found = {name: (int((rows.verdict == RIGHT).sum()), len(rows))
+             for name, rows in runs.merge(more).groupby("setting", sort=False)}
+    return dict(sorted(found.items(), key=lambda one: -one[1][0] / one[1][1]))
 
 
 def listed(table, verdict):

@@ -3,6 +3,7 @@ import matplotlib.pyplot as plt
 import numpy
 from matplotlib.ticker import NullLocator
 
+from analysis.core.phases import FILLS, LABELS, bar
 from analysis.core.style import ALTERNATIVES, GREY, MARKERS, Look, legend, line_each, missing, number_axis, size_ticks
 from analysis.core.text import number
 from analysis.core.timing import PHASES
@@ -12,7 +13,6 @@ from analysis.limit.tables import KINDS, LIMIT
 BOUNDS = {"latency_ns": ("bound: dependent operations", "--"),
           "memory_ns": ("bound: memory traffic", "-."),
           "arithmetic_ns": ("bound: rate of arithmetic", ":")}
-COLOURS = dict(zip(PHASES, ("#56B4E9", "#009E73", "#0072B2", "#E69F00", "#CC79A7", "#999999")))
 LIMIT_LABEL = "limit: code for the N-four-bar alone"
 WHOLE = 0.99  # of a step in "other": it has no phases
 
@@ -89,30 +89,22 @@ def by_phase(rows, own):
                                   figsize=(3.9 * max(1, len(shown)) + 1.8, 0.36 * len(names) + 1.5))
     if not shown:
         missing(panels[0][0], "no phases were timed")
+        return figure
     for axes, loops in zip(panels[0], shown):
         of_size = rows[rows.loops == loops].set_index("implementation")
         for place, name in enumerate(names):
-            if name not in of_size.index:
-                axes.text(0.02, place, "not timed", va="center", fontsize=8, color=GREY)
-                continue
-            row = of_size.loc[name]
-            if row.other_us > WHOLE * row.step_us:
-                axes.text(0.02, place, "all in the same sweeps", va="center", fontsize=8)
+            row = of_size.loc[name] if name in of_size.index else None
+            if row is None or row.other_us > WHOLE * row.step_us:
+                axes.text(2, place, "not timed" if row is None else "all in the same sweeps", va="center", fontsize=8)
             else:
-                left = 0.0
-                for phase in PHASES:
-                    width = row[f"{phase}_us"] / row.step_us
-                    axes.barh(place, width, 0.62, left=left, color=COLOURS[phase])
-                    left += width
-            axes.text(1, place, f" {number(row.multiple)}×, {number(row.step_us)} µs", va="center", fontsize=8)
-        axes.set_xlim(0, 1.6)
-        axes.set_xticks([0, 0.5, 1], ["0", "50 %", "100 %"])
+                bar(axes, place, [(phase, 100 * row[f"{phase}_us"] / row.step_us) for phase in PHASES], FILLS, False)
+            if row is not None:
+                axes.text(100, place, f" {number(row.multiple)}×, {number(row.step_us)} µs", va="center", fontsize=8)
+        axes.set(xlim=(0, 160), xticks=[0, 50, 100], xlabel="share of the step, %")
         axes.set_title(f"N-four-bar, n = {2 * loops + 2:.0f}; limit {number(of_size.step_us[LIMIT])} µs")
-        axes.set_xlabel("share of the step")
-        axes.set_yticks(range(len(names)), names)
-        axes.set_ylim(len(names) - 0.4, -0.6)
-    figure.legend(handles=[plt.Rectangle((0, 0), 1, 1, color=colour, label=phase) for phase, colour in COLOURS.items()],
-                  loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=6)
+        line_each(axes, names)
+    figure.legend(handles=[plt.Rectangle((0, 0), 1, 1, color=FILLS[phase], label=LABELS[phase]) for phase in PHASES],
+                  loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=len(PHASES) if len(shown) > 1 else 3)
     return figure
 
 

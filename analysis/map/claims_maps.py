@@ -1,5 +1,4 @@
 # Claims about the tangent's fill and the maps: F5, F6, F7.
-from analysis.core.text import number
 from analysis.map import paper
 from analysis.map.cells import map_cells
 from analysis.map.compare import best
@@ -54,9 +53,7 @@ def _over_fill(results, head, system, size):
     if not found or lost:
         text = f"at fills of {', '.join(lost)} %" if lost else "anywhere"
         return unmeasured(head, f"At n = {size:g} {system}'s stand-ins were not timed against a dense version {text}.", at_least(1))
-    across = ", ".join(f"{number(one.value)}× at {one.fill:.0f} % ({one.slow} ÷ {one.fast})" for one in found)
-    return judged(head, [(f"{one.fill:.0f} %", of(one), one.record) for one in found], at_least(1), f"n = {size:g}, best dense ÷ {', '.join(names)}",
-                  f"Dense ÷ {system}'s stand-in over fill: {across}. Dense on: {paper.dense_pairs(results)}.{_shared(results, system)}")
+    return judged(head, [(f"{one.fill:.0f} %", of(one), one.record) for one in found], at_least(1), f"n = {size:g}, best dense ÷ {', '.join(names)}")
 
 
 def regions(results):
@@ -96,7 +93,7 @@ def _region(results, figure, claim, cells, system):
         winners.setdefault(cell.ranking.winner if cell.decided else "undecided", []).append(_place(cell))
     listed = "; ".join(f"{name}: {', '.join(found)}" for name, found in winners.items())
     return row(head, summed(told), by_place(told) if len(told) > 1 else "", rule,
-               f"Winners among the paper's systems: {listed}. Dense on: {paper.dense_pairs(results)}.{_shared(results, system)}") | {
+               f"Winners among the paper's systems: {listed}.") | {
         "ours": f"{len(told.get(CONFIRMED, []))} of {len(cells)} cells", "where": f"{', '.join(map(_place, cells))}: {', '.join(names)}",
         "record": " ".join(_record(results, cell) for cell in cells)}
 
@@ -118,9 +115,3 @@ def _record(results, cell):
     """One of the winner's in a cell."""
     rows = results.rows(cell.scene)
     return rows.record[rows.implementation == cell.ranking.winner].iloc[0]
-
-
-def _shared(results, system):
-    """A warning where one implementation stands for more than one of the paper's systems."""
-    found = paper.shared(results, system) if system else []
-    return f" {', '.join(found)} stands for two of the paper's systems." if found else ""

@@ -52,17 +52,17 @@ def summed(verdicts):
     return next(iter(set(verdicts))) if len(set(verdicts)) == 1 else MIXED if len(decided) > 1 else UNDECIDED
 
 
-def judged(head, cases, rule, where, why, unit="×"):
+def judged(head, cases, rule, where, unit="×"):
     """A row from what was measured at one or several sizes or fills, each judged alone. `head`: (id, claim, the paper's
-    number); `cases`: [(place, (value, low, high) in `unit`, record)]; `where`: who was compared; `why`: a sentence from
-    this set's numbers."""
+    number); `cases`: [(place, (value, low, high) in `unit`, record)]; `where`: who was compared."""
     told = {}
     for place, (_, low, high), _ in cases:
         told.setdefault(verdict(low, high, rule), []).append(place)
     known = [bounded(low, high) for _, (_, low, high), _ in cases]
     values = sorted((value, (number if one else rough)(value)) for (_, (value, _, _), _), one in zip(cases, known))
     ends = ["", ""] if not all(known) else [number(min(low for _, (_, low, _), _ in cases)), number(max(high for _, (_, _, high), _ in cases))]
-    return row(head, summed(told), _reason(cases, told, rule, unit), rule.text(unit), why) | {
+    seen = ", ".join(f"{(number if one else rough)(value)}{unit} at {place}" for (place, (value, _, _), _), one in zip(cases, known))
+    return row(head, summed(told), _reason(cases, told, rule, unit), rule.text(unit), seen) | {
         "ours": " to ".join(dict.fromkeys([values[0][1], values[-1][1]])) + unit, "low": ends[0], "high": ends[1],
         "where": f"{places([place for place, _, _ in cases])}, {where}", "record": " ".join(dict.fromkeys(one for _, _, one in cases))}
 
@@ -87,19 +87,18 @@ def places(names):
     return f"{heads.pop()}= {', '.join(short)}" if len(heads) == 1 and all(short) else ", ".join(names)
 
 
-def compared(head, found, rule, why, lacking=""):
-    """A row of compare.Versus of several sizes. `why`: a sentence, or what makes one of the last; without any the row says what is
-    `lacking`."""
+def compared(head, found, rule, lacking=""):
+    """A row of compare.Versus of several sizes; without any it says what is `lacking`."""
     if not found:
         return unmeasured(head, lacking, rule)
     return judged(head, [(f"n = {one.size:g}", of(one), one.record) for one in found], rule,
-                  ", ".join(dict.fromkeys(f"{one.slow} ÷ {one.fast}" for one in found)), why(found[-1]) if callable(why) else why)
+                  ", ".join(dict.fromkeys(f"{one.slow} ÷ {one.fast}" for one in found)))
 
 
-def row(head, found, reason, rule="", why=""):
+def row(head, found, reason, rule="", seen=""):
     """A row without numbers: for what has no times, or says nothing of the claim."""
     return dict(zip(("id", "claim", "paper"), head)) | {"ours": "", "low": "", "high": "", "where": "", "verdict": found,
-                                                        "reason": reason, "rule": rule, "why": why, "record": ""}
+                                                        "reason": reason, "rule": rule, "seen": seen, "record": ""}
 
 
 def unmeasured(head, reason, rule, unit="×"):

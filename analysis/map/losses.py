@@ -41,17 +41,6 @@ def verdicts(results):
     return rows
 
 
-def checks(results):
-    """Per check: how many ran, how many passed, and the one nearest to its tolerance or beyond."""
-    rows = []
-    for check, group in results.verification[results.verification.check != ""].groupby("check", sort=False):
-        ran = group[group.passed.notna()]
-        share = (ran.value / ran.tolerance.where(ran.tolerance > 0, 1.0)).dropna()
-        rows.append({"check": check, "ran": len(ran), "skipped": len(group) - len(ran), "passed": int((ran.passed == True).sum()),
-                     "worst": ran.loc[share.idxmax()] if len(share) else None})
-    return rows
-
-
 def losses(results):
     """What was not timed or may not be ranked, grouped: [{"implementation", "status", "reason", "scenes"}]; exclusions of
     one implementation are one group, as their reasons differ in nothing but the factor."""

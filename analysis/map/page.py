@@ -1,25 +1,23 @@
 # What the page of the map says besides its figures.
-from analysis.core.text import interval
 from analysis.map import carry, losses, paper, summary
 from analysis.map.ledger import by_id
-from analysis.map.operations import table as table2
 from analysis.map.results import of
+from analysis.map.sentences import by_outcome
 
 
 def context(tables, view):
     results = of(tables, view)
     libraries = results.layer("libraries")
     scenes, ledger = tables["scenes"], tables["claims"].to_dict("records")
-    return {"by_size": {layer: [summary.outcome(group) for group in summary.by_size(results, results.layer(layer))]
-                        for layer in ("libraries", "all")},
+    return {"by_size": {layer: list(by_outcome(summary.by_size(results, results.layer(layer)), what))
+                        for layer, what in (("libraries", "library"), ("all", "of all"))},
             "own": [name for name in results.layer("all") if name not in libraries],
             "settled": {layer: summary.settled(tables["cells"], layer) for layer in ("libraries", "all")},
             "dense_from": summary.dense_from(results), "prices": summary.prices(results, libraries),
             "times": losses.step_times(results), "overhead": losses.overhead(results), "centred": losses.LAST_CENTRED,
             "ledger": ledger, "by_id": by_id(tables["claims"]), "subjects": paper.SUBJECTS, "dense_pairs": paper.dense_pairs(results), "title": paper.TITLE,
-            "table2": [row | {"interval": interval(row["ratio"])} for row in table2(results)], "operations": paper.OPERATIONS,
             "pairs": [pair | {"used": _used(results, pair["name"])} for pair in view.registry.listed.get("blas", [])],
-            "verdicts": losses.verdicts(results), "checks": losses.checks(results), "losses": losses.losses(results),
+            "verdicts": losses.verdicts(results), "losses": losses.losses(results),
             "not_reached": list(scenes[scenes.reason != ""].scene), "entries": view.registry.entries,
             "coverage": view.registry.coverage, "variants": list(view.registry.variants),
             "controls": carry.judged(tables["controls"]), "twins": tables["controls"].to_dict("records"), "spread": [

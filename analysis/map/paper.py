@@ -25,7 +25,6 @@ SYSTEMS = {"KLU": ("csc_klu/refactor",),
            "optimised dense": ("eigen_dense", "armadillo_dense")}
 OTHERS = ("csc_klu", "csc_ldl", "csc_umfpack", "eigen_sparse")  # sparse folders of libraries besides, in figures alone
 FULL_PIVOTING = "csc_klu/factor"
-GUARDED = "csc_klu/guarded"
 SUBJECTS = {"T1": "time by phase", "T2": "symbolic preprocessing", "F2": "dense versions", "F4": "sparse solvers",
             "F5": "sparse against dense over fill", "F6": "regions, 10 to 100 variables", "F7": "regions, larger sizes",
             "C1": "pivoting of KLU", "C2": "best against starting sparse version", "C3": "BLAS under sparse solvers",

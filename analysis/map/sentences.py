@@ -27,8 +27,8 @@ def answers(tables, view):
     return found
 
 
-def by_outcome(groups):
-    """A sentence for each library that is shown to be fastest at some sizes, one for sizes of each other kind."""
+def by_outcome(groups, what="library"):
+    """A sentence for each that is shown to be fastest at some sizes, one for sizes of each other kind."""
     told = {}
     for group in groups:
         told.setdefault((group["kind"], group["names"][0] if group["kind"] == "decided" else ""), []).append(group)
@@ -38,6 +38,6 @@ def by_outcome(groups):
         names = ", ".join(dict.fromkeys(one for group in mine for one in group["names"]))
         ahead = " to ".join(dict.fromkeys(f"{value:.2f}" for value in (min(margins), max(margins)))) if margins else ""
         ahead = f", {ahead} times ahead of the second" if ahead else ""
-        yield (f"{name} is the fastest library at {sizes}{ahead}." if kind == "decided" else
+        yield (f"{name} is the fastest {what} at {sizes}{ahead}." if kind == "decided" else
                f"At {sizes} several are as fast as each other: {names}." if kind == "equivalent" else
                f"At {sizes} it is not decided; the fastest is among {names}.")

@@ -7,8 +7,8 @@ from analysis.map.compare import best
 
 
 def by_size(results, names):
-    """Neighbouring sizes with the same outcome at their own fill: [{"first", "last", "names", "kind", "low", "high"}];
-    kind: "decided" (one name), "equivalent" or "open"; low, high: of the second behind the winner."""
+    """Neighbouring sizes with the same outcome at their own fill: [{"first", "last", "names", "kind", "margins"}];
+    kind: "decided" (one name), "equivalent" or "open"; margins: of the second behind the winner."""
     groups = []
     for cell in map_cells(results, names):
         if cell.fill_asked is not None or cell.ranking is None:
@@ -18,26 +18,13 @@ def by_size(results, names):
         if groups and groups[-1]["names"] == sorted(cell.winners) and groups[-1]["kind"] == kind:
             groups[-1] |= {"last": cell.variables, "margins": [*groups[-1]["margins"], margin]}
         else:
-            groups.append({"first": cell.variables, "last": cell.variables, "names": sorted(cell.winners), "kind": kind,
-                           "winner": cell.ranking.winner, "margins": [margin], "scene": cell.scene})
-    return [group | {"low": min(group["margins"]), "high": max(group["margins"])} for group in groups]
+            groups.append({"first": cell.variables, "last": cell.variables, "names": sorted(cell.winners), "kind": kind, "margins": [margin]})
+    return groups
 
 
 def span(group):
     """Sizes of one of `by_size`: "10 to 22"."""
     return f"{group['first']:g}" + (f" to {group['last']:g}" if group["last"] != group["first"] else "")
-
-
-def outcome(group):
-    """One of `by_size` in words: (size, who)."""
-    sizes = f"n = {span(group)}"
-    names = group["names"]
-    if group["kind"] == "decided":
-        low, high = f"{group['low']:.2f}", f"{group['high']:.2f}"
-        ahead = "" if low == "nan" else f", {low}{f' to {high}' if high != low else ''} times ahead of the second"
-        return sizes, f"{names[0]}{ahead}"
-    listed = ", ".join(names[:-1]) + f" or {names[-1]}" if len(names) > 1 else names[0]
-    return sizes, f"{listed}, as fast as each other" if group["kind"] == "equivalent" else f"{listed}: not decided"
 
 
 def dense_from(results):

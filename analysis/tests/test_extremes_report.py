@@ -13,15 +13,15 @@ from analysis.core.files import ROOT
 from analysis.core.records import Record
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
-from analysis.extremes import (battery, battery_figure, cells, figures, judge, page, pivots, roundoff, sentences,
-                               tables, trials, verdicts, ways)
+from analysis.extremes import (battery, battery_figure, cells, figures, judge, page, pivots, sentences,
+                               tables, trials, verdicts)
 from analysis.extremes.motions import Chain, Flat
 
 STATUSES = ("ok", "degraded", "diverged", "wrong-branch", "not-converged", "timeout", "crashed", "refused", "excluded", "dropped")
 NAMES = ("a/v", "b/v", "csc_klu/v")
 REGISTRY = Registry({"implementations": [{"folder": name.split("/")[0], "available": True, "variants": [
     {"name": name, "dense": name == "a/v"}]} for name in NAMES]})
-VIEW = SimpleNamespace(registry=REGISTRY, settings={"loops": {"ways": [2], "times": [10], "roundoff": [1]}})
+VIEW = SimpleNamespace(registry=REGISTRY, settings={})
 TIMES = numpy.linspace(0, 3, 31)
 CELL = next(cell for cell in cells.extremes() if cell.label == "N = 1")
 KITE, PASSING, FAR, STANDARD = (next(cell for cell in trials.all_trials() if (cell.axis, cell.label) == key) for key in (
@@ -112,8 +112,6 @@ def test_records_of_another_battery_are_named():
     other = record("battery/penalty/x", {"scene": "raw/scenes/no-such-cell.json"})
     with pytest.raises(StudyError, match="battery/penalty/x: its cell is none of the battery"):
         made(other)
-    with pytest.raises(StudyError, match="none of the ways out"):
-        made(record("ways/rattle/x", {"scene": "x", "role": "rattle"}))
 
 
 def test_a_run_is_held_to_the_nearest_of_its_motions_and_to_no_bad_reference():
@@ -197,49 +195,22 @@ def test_what_was_left_out_is_told():
     assert page.left_out(table[table.status == "degraded"]) == []
 
 
-def test_cells_in_which_nobody_is_right_or_not_all_end_alike_are_found():
+def test_cells_in_which_nobody_is_right_are_found():
     table = small()
     found = page._battery(table)
-    assert (found["runs"], len(found["nobody"]), found["unlike"]) == (16, 14, [])
+    assert (found["runs"], len(found["nobody"])) == (16, 14)
     table.loc[(table.value == "diverged") & (table.implementation == "a/v"), ["status", "verdict"]] = "ok", verdicts.RIGHT
     found = page._battery(table)
-    assert len(found["nobody"]) == 12 and found["unlike"][0]["outcomes"] == {"ok": ["a/v"], "diverged": ["b/v"]}
+    assert len(found["nobody"]) == 12
     assert found["settings"][0] == ("penalty", 10, verdicts.counts(table[table.setting == "penalty"]))
 
 
-def way(role, time=None, number=0, who="csc_klu/v", scene="ways-step-0.0008-2", status="ok", **more):
-    if time is not None:
-        return record(f"ways/cost-{role}/{who}-{number}", {"scene": "four-bar:10", "role": f"cost-{role}", "contenders": [who], "number": number},
-                      {"status": status, "least_us": {"mean": time}, "passes_per_step": 2.0})
-    motion = Chain(2).solutions(TIMES)[0]
-    return record(f"ways/{role}/{who}@{scene}", {"scene": f"{scene}.json", "role": role, "contenders": [who]}, {"status": status},
-                  {"t": list(TIMES)} | {key: list(values) for key, values in motion.items()}, **more)
-
-
-def test_costs_are_ratios_within_a_turn():
-    turns = [way(role, time, number) for role, times in (("penalty", (1.0, 2.0, 9.0)), ("saddle-point", (2.0, 5.0, 18.0)))
-             for number, time in enumerate(times, start=1)]
-    cost = made(*turns)["ways_cost"].set_index("way")
-    assert cost.ratio["saddle-point"] == pytest.approx((2 * 2.5 * 2) ** (1 / 3)) and cost.processes["saddle-point"] == 3
-    assert 1.4 < cost.low["saddle-point"] < 2.15 < cost.high["saddle-point"] < 3 and cost.ratio["α auto"] == 1
-    lost = made(*turns[1:], way("penalty", 1.0, 1, status="diverged"))["ways_cost"].set_index("way")
-    assert lost.processes["α auto"] == 2 and lost.status["α auto"] == "diverged" and lost.processes["saddle-point"] == 3
-    assert numpy.isnan(made(*turns[3:])["ways_cost"].ratio[0])
-    rows = {row.way: row for row in made(*turns)["ways_cost"].itertuples()}
-    assert ways.factor(rows["α auto"]) == "×1.00" and ways.factor(rows["saddle-point"]).startswith("×2.15 (1.")
-
-
-def test_safe_is_ok_or_plausible_and_right():
-    found = made(way("penalty"), way("saddle-point", status="degraded"), way("saddle-point", who="b/v", status="plausible"),
-                 record("ways/penalty-precision.mixed/x", {"scene": "", "role": "penalty-precision.mixed", "contenders": ["b/v"]},
-                        ended="unsupported", reason="no variant serves mixed"),
-                 way("penalty", who="b/v", scene="ways-mass-ratio-1000-10"))["ways"]
-    rows = {(row.way, row.folder): row for row in found.itertuples()}
-    assert rows["α auto", "csc_klu"].safe and not rows["saddle-point", "csc_klu"].safe and rows["saddle-point", "b"].safe
-    assert rows["α auto", "b"].silent and rows["α auto", "b"].command  # it is Chain(2) that moved, not ten loops
-    mixed = found[found.way == "mixed precision"]
-    assert ways.not_served(mixed) == "no variant serves mixed" and ways.share(mixed) == (0, 0)
-    assert list(dict.fromkeys(found.way)) == ["α auto", "saddle-point", "mixed precision"]
+def test_settings_are_compared_where_all_were_tried():
+    found = made(run("ok", 0.02, of=KITE), run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), run("ok", 0.02, role="saddle-point"))["battery"]
+    assert verdicts.by_setting(found) == {"penalty": (1, 1), "rattle4": (1, 1), "saddle-point": (0, 1)}  # of a/v, in the cell of rattle4
+    [answer] = sentences._helps(found)
+    assert "right most often with “penalty” in 1 of 1, “rattle4” in 1 of 1; with “penalty” in 1 of 1 and “saddle-point” in 0 of 1" in answer["text"]
+    assert list(sentences._helps(found[found.setting != "rattle4"])) == []
 
 
 def stale(number, times):
@@ -263,59 +234,6 @@ def test_the_guard_is_compared_with_kept_pivots_over_processes():
     assert "A process gave nothing: unavailable: it is missing" in render(alone)[1]
 
 
-def line(jump):
-    """(times, a difference that grows tenfold in a second, or by four decades at 2 s)"""
-    t = numpy.linspace(0, 4, 401)
-    return t, 1e-12 * (10.0**(4 * (t > 2)) if jump else 10**t)
-
-
-TURNS = numpy.array([0.2, 0.6, 1.2, 2.0])  # singular positions; a turn takes 1 s
-
-
-def test_growth_tells_jumps_from_what_grows_between_after_the_first_turn():
-    near, far, time = roundoff.growth(*line(jump=True), TURNS)
-    assert near == pytest.approx(4) and far == pytest.approx(0, abs=1e-9) and time == pytest.approx(0.13, abs=0.01)
-    near, far, _ = roundoff.growth(*line(jump=False), TURNS)
-    assert near + far == pytest.approx(3, abs=0.02) and near == pytest.approx(0.4, abs=0.03)
-    times, found = line(jump=False)
-    assert numpy.isnan(roundoff.growth(times[times < 0.9], found[times < 0.9], TURNS)).all()
-    assert numpy.isnan(roundoff.growth(times, numpy.where(times > 3, numpy.nan, found), TURNS)[0])  # what is lost is not hidden
-
-
-def test_what_is_said_of_growth():
-    one = {"near": 4.0, "far": 0.1, "near_time": 0.1, "medians": [1e-12, 1e-10, 1.6e-9], "with_speed": 0.99}
-    assert "in jumps" in page.jumps([one])[0] and "between 2.0 and 2.0" in page.jumps([one])[1] and "late" in page.jumps([one])[2]
-    assert "singular positions are no jumps" in page.jumps([one | {"near": 0.4, "far": 3.6}])[0]
-    assert "it grows 3.0 times as fast there" in page.jumps([one | {"near": 1.0, "far": 3.0}])[0]
-    assert page.jumps([one | {"near": float("nan")}]) == ["No growth was seen."]
-
-
-def test_a_lag_is_told_from_other_differences():
-    t = numpy.linspace(1e-3, 4, 401)
-    speed = 2 + numpy.cos(t)
-    assert roundoff.with_speed(t, 1e-12 * t**2 * speed, speed) == pytest.approx(1, abs=1e-6)
-    assert roundoff.with_speed(t, 1e-12 * t**2 / speed, speed) == pytest.approx(-1, abs=1e-6)
-    assert numpy.isnan(roundoff.with_speed(t[:2], t[:2], speed[:2]))
-
-
-def rounded(error, who="a/v", program="mbs", count=401):
-    times = numpy.linspace(0, 20, 401)[:count]
-    series = {column: list(values + error * times**2) for column, values in Chain(1).solutions(times)[0].items()}
-    return record(f"roundoff/penalty/{who}", {"scene": "four-bar:1", "role": "penalty", "contenders": [who], "program": program},
-                  series={"t": list(times)} | series)
-
-
-def test_roundoff_is_the_difference_from_the_reference_as_long_as_both_have_steps():
-    reference = rounded(0.0, "reference/reference", "mbs_reference")
-    found = made(reference, rounded(1e-12), rounded(1e-12, "b/v", count=150))
-    a, b = found["roundoff"].itertuples()
-    assert a.at_20_s == pytest.approx(4e-10 * 2**0.5, rel=1e-3) and a.at_1_s == pytest.approx(1e-12 * 2**0.5, rel=1e-2)
-    assert b.at_5_s > 0 and numpy.isnan(b.at_20_s)
-    assert len(found["growth"]) == 100 + 37
-    [alone] = made(rounded(1e-12))["roundoff"].itertuples()
-    assert "there is no reference" in alone.reason and numpy.isnan(alone.at_20_s)
-
-
 def render(found):
     drawn = figures.draw(found, VIEW)
     for figure in drawn.values():
@@ -330,30 +248,20 @@ FACTS = {"date": "today", "profile": "smoke", "only": [], "parts": ["extremes"]}
 
 
 def test_page_figures_and_answers_of_all_columns():
-    found = made(trial("plausible"), run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), way("penalty"), way("saddle-point", status="degraded"),
-                 *(way("penalty", 1.0, number) for number in (1, 2)), way("saddle-point", who="b/v", scene="ways-mass-ratio-1-10", status="diverged"),
-                 stale(1, (2.0, 2.4, 6.0)), rounded(0.0, "reference/reference", "mbs_reference"), rounded(1e-12))
+    found = made(trial("plausible"), run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), run("ok", role="saddle-point"), stale(1, (2.0, 2.4, 6.0)))
     drawn, text = render(found)
-    assert drawn == {"trials", "battery", "ways", "pivots", "roundoff-penalty"}
+    assert drawn == {"trials", "battery"}
     assert "Silently wrong: 1 run<" in text and "build/mbs simulate &#39;a scene.json&#39;" in text
-    assert "N = 10: ×1.00" in text and "holds" in text and "Not measured" not in text
+    assert "holds" in text and "Not measured" not in text
     said = [one["text"] for one in sentences.answers(found, VIEW)]
-    assert said[0].startswith("In 4 runs of 2 mechanisms of 2 kinds: 1 silent wrong and no false alarms.")
-    assert any("“α auto” is safe in most cells: 1 of 1" in text for text in said) and any("1.2 times the time" in text for text in said)
-    assert {one["anchor"] for one in sentences.answers(found, VIEW)} <= {"battery", "nobody", "ways", "pivots"}
+    assert said[0].startswith("In 5 runs of 2 mechanisms of 2 kinds: 1 silent wrong and no false alarms.")
+    assert any("right most often" in text for text in said) and any("1.2 times the time" in text for text in said)
+    assert {one["anchor"] for one in sentences.answers(found, VIEW)} <= {"battery", "nobody", "settings", "pivots"}
     assert all(f'id="{one["anchor"]}"' in text for one in sentences.answers(found, VIEW))
-    assert sentences.cases(found, VIEW) == []
 
 
 def test_a_page_of_nothing_says_so():
     found = made()
     drawn, text = render(found)
-    assert drawn == set() and text.count("Not measured") == 4
-    assert [one["anchor"] for one in sentences.answers(found, VIEW)] == [""] and sentences.cases(found, VIEW) == []
-
-
-def test_what_bears_unlike_masses_is_a_case_of_the_front_page():
-    table = pandas.DataFrame([{"way": title, "folder": folder, "axis": "mass ratio", "value": ratio, "safe": title == "equations scaled" or ratio < 1e9}
-                              for title in ways.WAYS for folder in ("a", "b") for ratio in (1e3, 1e9)])
-    [case] = sentences.cases({"ways": table}, VIEW)
-    assert case["take"].startswith("equations scaled,") and "10⁹" in case["case"]
+    assert drawn == set() and text.count("Not measured") == 2
+    assert [one["anchor"] for one in sentences.answers(found, VIEW)] == [""]

@@ -118,8 +118,6 @@ def test_neighbouring_sizes_with_one_outcome_are_one_line():
     for size, first in ((10, 2.0), (22, 3.0), (50, 0.5)):
         rows += cell(A, size, first, first, first) + cell(B, size, 1.0, 1.0, 1.0)
     groups = summary.by_size(some(rows), [A, B])
-    assert [summary.outcome(group) for group in groups] == [
-        ("n = 10 to 22", f"{B}, 2.00 to 3.00 times ahead of the second"), ("n = 50", f"{A}, 2.00 times ahead of the second")]
     assert list(sentences.by_outcome(groups)) == [
         f"{B} is the fastest library at n = 10 to 22, 2.00 to 3.00 times ahead of the second.",
         f"{A} is the fastest library at n = 50, 2.00 times ahead of the second."]
@@ -137,7 +135,7 @@ def test_exclusions_of_one_are_one_line_of_what_was_not_timed():
 def test_every_figure_can_be_drawn(rows):
     found = some(rows)
     drawn = figures.draw({"tidy": found.tidy, "verification": found.verification}, found.view)
-    assert set(drawn) >= {"f4_sparse_solvers", "f5_fill", "f6_map", "f7_map", "map_all", "t1_phases"}
+    assert set(drawn) >= {"f4_sparse_solvers", "f7_map", "map_all"}
     for figure in drawn.values():
         assert figure.get_size_inches()[1] < 16  # two screens
         plt.close(figure)
@@ -181,7 +179,7 @@ def test_records_become_tables_and_a_page(tmp_path):
     assert set(cells.failed) == {C} and set(cells.excluded) == {"", OWN}
     assert cells.settled.all() and set(cells.equivalent) == {f"{A} {B}"}
     page = (tmp_path / "map.html").read_text()
-    assert "off by 1" in page and "as fast as each other" in page and "NaN" not in page and ">nan" not in page
+    assert "off by 1" in page and "several are as fast as each other" in page and "NaN" not in page and ">nan" not in page
 
 
 def test_without_times_the_answer_says_so():

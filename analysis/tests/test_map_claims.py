@@ -49,7 +49,7 @@ def test_verdict_needs_the_whole_interval(low, high, rule, expected):
 
 
 def judged(*cases, rule=at_least(3)):
-    return ledger.judged(("X", "", ""), [(f"n = {size}", interval, f"r{size}") for size, interval in cases], rule, "a ÷ b", "")
+    return ledger.judged(("X", "", ""), [(f"n = {size}", interval, f"r{size}") for size, interval in cases], rule, "a ÷ b")
 
 
 @pytest.mark.parametrize("intervals, expected", [
@@ -103,9 +103,6 @@ def test_table1_compares_shares_in_points():
     assert outcome(rows, "dense", "residual") == (CONFIRMED, "45 %")
     assert outcome(rows, "dense", "factorize") == (REFUTED, "30 %")
     assert {row["verdict"] for row in rows if "sparse" in row["claim"]} == {UNMEASURED}
-    why = next(row["why"] for row in rows if "residual" in row["claim"])
-    assert "takes 8 µs a step at n = 22, of which assembly 25 %" in why
-    assert "from factorize and solve (14 points less) to other (16 points more)" in why
 
 
 def test_table2_is_judged_at_every_size_for_each_plain_version():
@@ -118,8 +115,7 @@ def test_table2_is_judged_at_every_size_for_each_plain_version():
     assert outcome(rows, "addition")[0] == UNMEASURED
     mixed = next(row for row in rows if PLAIN in row["claim"])
     assert mixed["reason"] == "confirmed at n = 250; exceeded at n = 1000; refuted at n = 10"
-    assert f"n^1.0 optimised, {PLAIN} as n^2.0, {AXPY} as n^1.0" in mixed["why"] and "it passes 269 near n = 269" in mixed["why"]
-    assert f"takes 1/200 of the time of {PLAIN} at n = 1000" in mixed["why"]
+    assert mixed["seen"] == "10× at n = 10, 250× at n = 250, 1000× at n = 1000"
 
 
 def test_solvers_and_pivoting():
@@ -185,19 +181,18 @@ def test_a_newcomer_changes_no_claim(name, time):
     more += operation(name, 22, "rank_k_update", time, time)
     before, after = claims(load(rows)), claims(load(rows + more))
     assert {row["id"] for row in before if row["verdict"] != UNMEASURED} == IDS - {"T1", "C5"}
-    told = lambda found: [{key: value for key, value in row.items() if key != "why"} for row in found]  # which may say who else is fast
-    assert told(after) == told(before)
+    assert after == before
 
 
 def test_the_best_dense_is_the_best_measured_one_on_any_pair_and_says_which_took_part():
     rows = steady(KLU, 50, 1) + steady(POTRF, 50, 8) + steady(f"{POTRF}+reference", 50, 5) + steady(NEW, 50, 2)
     found = sparse_against_dense(load(rows))
-    assert outcome(found, "50 variables") == (CONFIRMED, "5×") and "Dense on: openblas, reference." in found[1]["why"]
+    assert outcome(found, "50 variables") == (CONFIRMED, "5×") and f"{POTRF}+reference ÷ {KLU}" in found[1]["where"]
     rows = [row for fill in FILLS[1:] for name, time in ((SIMPLICIAL, 2), (POTRF, 3), (f"{POTRF}+reference", 1))
             for row in steady(name, 100, time, fill=fill)] + steady(f"{POTRF}+reference", 100, 1)
     assert outcome(over_fill(load(rows)), "CHOLMOD") == (REFUTED, "0.5×")
     nowhere = next(row for row in regions(load(rows)) if "nowhere" in row["claim"])
-    assert nowhere["verdict"] == REFUTED and f"{POTRF}+reference" in nowhere["why"]
+    assert nowhere["verdict"] == REFUTED and f"{POTRF}+reference" in nowhere["seen"]
 
 
 def test_libraries():

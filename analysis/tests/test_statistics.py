@@ -6,10 +6,9 @@ import pandas
 import pytest
 
 from analysis.core.records import Record
-from analysis.core.statistics import median, phase_shares, power_law_exponent
+from analysis.core.statistics import median, power_law_exponent
 from analysis.core.timing import counted, rank, ratio
 from analysis.map import carry
-from analysis.map.tidy import PHASES
 from analysis.map.timed import AFTER
 
 
@@ -157,10 +156,3 @@ def test_power_law_exponent():
     sizes = numpy.array([100.0, 200, 400, 1000])
     assert power_law_exponent(sizes, 7 * sizes**1.05) == pytest.approx(1.05)
     assert numpy.isnan(power_law_exponent(sizes[:2], sizes[:2]))
-
-
-def test_phase_shares_survive_one_interrupted_run():
-    calm = {f"phase_{phase}": 1 / 6 for phase in PHASES}
-    hit = {f"phase_{phase}": 0.02 for phase in PHASES} | {"phase_solve": 0.9}
-    shares = phase_shares(pandas.DataFrame([calm, calm, hit]), PHASES)
-    assert sum(shares.values()) == pytest.approx(1.0) and shares["solve"] == pytest.approx(1 / 6)

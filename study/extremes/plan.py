@@ -1,21 +1,16 @@
-# Every implementation at the extremes; is every wrong run told; ways out of what goes wrong there; kept pivots; the growth of roundoff.
-from analysis.extremes import battery as table, cells, judge, roundoff, trials, ways
+# Every implementation at the extremes; is every wrong run told; kept pivots.
+from analysis.extremes import battery as table, cells, judge, trials
 from study.core.cell import Cell
 from study.core.contender import REFERENCE
 
-SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms and roundoff, for other settings, for trials ...
+SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms, for other settings, for trials ...
             "everyone": bool,         # ... and whether all others come after them
             "trials": dict,           # runs of standard problems and of others; 0: all
             "cells": int,             # of the battery, telling ones of an axis at most; 0: these and all others
-            "loops": dict,            # sizes: of the region of ways, of their times, of roundoff
-            "processes": int,         # of a time
+            "processes": int,         # of the pivots
             "limit": float}           # s a run
-SHARES = {"battery": 0.77, "ways": 0.13, "pivots": 0.035, "roundoff": 0.055}
+SHARES = {"battery": 0.96, "pivots": 0.04}
 DENSE_LOOPS = 200  # dense implementations run up to this size
-PREFERRED = {      # of each folder the first variant that serves a way stands for it
-    "eigen_dense": ("eigen_dense/llt",),
-    "csc_klu": ("csc_klu/refactor", "csc_klu/guarded", "csc_klu/factor"),
-    "eigen_sparse": ("eigen_sparse/ldlt", "eigen_sparse/superlu")}
 
 
 def columns(settings):
@@ -23,7 +18,7 @@ def columns(settings):
 
 
 def run(lab, column):
-    {"battery": battery, "ways": way_out, "pivots": pivots, "roundoff": growth}[column](lab)
+    {"battery": battery, "pivots": pivots}[column](lab)
 
 
 def battery(lab):
@@ -79,36 +74,6 @@ def _reference(lab, cell, scene, factor, one=REFERENCE, program="mbs_reference")
                 every=cell.every * factor)
 
 
-def way_out(lab):
-    sizes, limit = lab.settings["loops"], lab.settings["limit"]
-    served = []
-    for way in ways.WAYS.values():
-        for names in PREFERRED.values():
-            present = [one for name in names for one in [lab.contender(name)] if one]
-            one = next((one for one in present if lab.registry.serves(one.variant, *way.needs)), None)
-            if one:
-                served.append((way, one))
-            elif present:
-                lab.skip(Cell("simulate", "", (present[0],), way.words(), way.file_name), "unsupported",
-                         f"no variant serves {', '.join(sorted(way.needs))}")
-    # What a way costs is told beside the same variant without it.
-    plain = {one for way, one in served if way == ways.WAYS[ways.PLAIN]}
-    timed = [(f"cost-{way.file_name}", way, one) for way, one in served] + [
-        (f"beside-{ways.WAYS[ways.PLAIN].file_name}", ways.WAYS[ways.PLAIN], one)
-        for one in dict.fromkeys(one for _, one in served) if one not in plain]
-    places = ways.places(sizes["ways"])
-    scenes = {place.name: lab.scene(place.name, place.chain.document()) for place in places}
-    times = [Cell("simulate", f"four-bar:{loops}", (one,),
-                  ("--step", ways.STEP, "--duration", ways.DURATION, "--repeats", 3, *way.words()),
-                  role, number=number, timed=True, seconds=limit)
-             for number in range(1, lab.settings["processes"] + 1) for loops in sizes["times"] for role, way, one in timed]
-    lab.run(times, drop=True)
-    lab.run([Cell("simulate", scenes[place.name], (one,),
-                  ("--step", f"{place.step:g}", "--duration", f"{place.step * place.steps:g}", *way.words()), way.file_name,
-                  seconds=limit, keep=place.chain.columns(ways.POINTS), every=place.every)
-             for place in places for way, one in served], drop=True)
-
-
 def pivots(lab):
     asked = [Cell("", "", (), ("--json",), "pivots", number=number, program="stale_pivots", timed=True, seconds=600)
              for number in range(1, lab.settings["processes"] + 1)]
@@ -116,18 +81,3 @@ def pivots(lab):
         return lab.run(asked, drop=True)
     for cell in asked:
         lab.skip(cell, "excluded", "csc_klu takes no part")
-
-
-def growth(lab):
-    kinds, others = _who(lab, "forms")
-    limit = 5 * lab.settings["limit"]
-    asked = [(loops, form) for loops in lab.settings["loops"]["roundoff"] for form in roundoff.FORMS]
-    lab.run([_growth(loops, form, REFERENCE, limit, "mbs_reference") for loops, form in asked])
-    lab.run([_growth(loops, form, one, limit) for who in (kinds, others) for loops, form in asked for one in who
-             if lab.registry.serves(one.variant, form)], drop=True)
-
-
-def _growth(loops, form, one, limit, program="mbs"):
-    words = ("--step", roundoff.STEP, "--duration", roundoff.DURATION, "--scheme", form)
-    return Cell("simulate", f"four-bar:{loops}", (one,), words, form, program=program, seconds=limit,
-                keep=roundoff.Chain(loops).columns(roundoff.POINTS), every=roundoff.EVERY)

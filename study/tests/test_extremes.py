@@ -1,7 +1,6 @@
 # Extremes: what is known of motions and cells, what the plan asks for in which order, a few cells on the real program.
 import json
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy
 import pytest
@@ -11,10 +10,10 @@ from analysis.core import records
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
 from analysis.core.view import View
-from analysis.extremes import cells, judge, scenes, tables, trials, verdicts, ways
+from analysis.extremes import cells, judge, scenes, tables, trials, verdicts
 from analysis.extremes.linkages import Wheel
 from analysis.extremes.mechanisms import LightEnd, TwoDrives, Uneven
-from analysis.extremes.motions import GRAVITY, Chain, Flat, singular_times
+from analysis.extremes.motions import GRAVITY, Chain, Flat
 from study.core import profile as profiles
 from study.core.contender import Contender
 from study.core.lab import Lab
@@ -30,10 +29,9 @@ CHAINS = [Chain(3, angle=numpy.pi / 2, rate=0.0), Chain(3, angle=numpy.pi / 2, r
 
 @pytest.mark.parametrize("chain", CHAINS)
 def test_motions_solve_their_equation_of_motion(chain):
-    angles, rates = solve_ivp(lambda _, y: [y[1], chain.k * numpy.sin(y[0])], (0, 3), [chain.angle, chain.rate],
+    angles, _ = solve_ivp(lambda _, y: [y[1], chain.k * numpy.sin(y[0])], (0, 3), [chain.angle, chain.rate],
                               t_eval=TIMES, rtol=1e-10, atol=1e-12, method="DOP853").y
     sine, cosine = chain.phi(TIMES)
-    assert chain.speed(TIMES)**2 == pytest.approx(rates**2, rel=1e-6, abs=1e-6)
     assert abs(sine - numpy.sin(angles)).max() < 1e-7 and abs(cosine - numpy.cos(angles)).max() < 1e-7
 
 
@@ -44,8 +42,6 @@ def test_motions_are_those_of_the_four_bar_and_scale_with_length():
         assert abs(Chain(5).solutions(TIMES)[0][f"B0.{axis}"] - known[f"B0.{axis}"]).max() < 1e-12
         assert abs(small[f"B0.{axis}"] / 1e-2 - known[f"B0.{axis}"]).max() < 1e-12
     assert Chain(1, rods=(3.0, 3.0), couplers=(3.0,)).k == pytest.approx(Chain(1).k)
-    times = singular_times(Chain(2), 20)
-    assert len(times) == 20 and abs(Chain(2).phi(times)[1]).max() < 1e-9
     assert [len(Flat(1, angle=numpy.pi / 2, rate=0.0).solutions(TIMES)), len(Chain(1).solutions(TIMES))] == [2, 1]
 
 
@@ -173,7 +169,7 @@ class Asked:
         self.registry, self.contenders = REGISTRY, [Contender(name, name) for name in names]
         self.settings = {"implementations": {"forms": ["csc_klu/refactor"], "others": ["eigen_dense/llt"],
                                               "trials": ["csc_klu/refactor", "eigen_dense/llt"]}, "trials": {"standard": 3, "others": 30}, "everyone": True,
-                         "cells": 0, "loops": {"ways": [2], "times": [10], "roundoff": [1, 2]}, "processes": 2,
+                         "cells": 0, "processes": 2,
                          "limit": 5.0} | settings
         self.runs, self.skipped = [], []
 
@@ -245,20 +241,6 @@ def test_the_reference_is_kept_at_the_same_instants():
         assert step * cell.every == pytest.approx(pendulum.step * pendulum.every)
 
 
-def test_ways_take_the_first_variant_that_serves_them_and_turns_come_first():
-    lab = Asked()
-    plan.run(lab, "ways")
-    times, regions = lab.runs
-    assert all(cell.timed for cell in times) and not any(cell.timed for cell in regions)
-    assert [cell.number for cell in times] == sorted(cell.number for cell in times) and {cell.number for cell in times} == {1, 2}
-    by_way = {cell.role: name for cell, name in zip(regions, who(regions)) if name.startswith("csc_klu")}
-    assert by_way["penalty"] == "csc_klu/refactor" and by_way["penalty-geometric-stiffness"] == "csc_klu/guarded"
-    assert ("penalty-precision.mixed", "unsupported", "no variant serves mixed") in [
-        (cell.role, status, reason) for cell, status, reason in lab.skipped]
-    assert len({cell.settled() for cell in times + regions}) == len(times + regions)
-    assert any("--scale-equations" in cell.settled().settings for cell in times)
-
-
 def test_pivots_need_klu():
     lab = Asked(names=["some/one"])
     plan.run(lab, "pivots")
@@ -268,18 +250,10 @@ def test_pivots_need_klu():
     assert [cell.number for cell in lab.found()] == [1, 2] and all(cell.timed for cell in lab.found())
 
 
-def test_roundoff_asks_for_a_reference_of_each_form_and_size():
-    lab = Asked()
-    plan.run(lab, "roundoff")
-    references, runs = lab.runs
-    assert {(cell.scene, cell.role) for cell in references} == {(cell.scene, cell.role) for cell in runs}
-    assert [replace(cell, contenders=(), program="mbs") for cell in references][0] == replace(runs[0], contenders=())
-
-
 @pytest.mark.parametrize("name", profiles.names())
 def test_columns_keep_the_budget(name):
     settings = profiles.load(name, ["extremes"]).parts["extremes"]
-    assert set(plan.columns(settings)) == {"battery", "ways", "pivots", "roundoff"}
+    assert set(plan.columns(settings)) == {"battery", "pivots"}
     assert sum(plan.columns(settings).values()) <= settings["seconds"] * (1 + 1e-12)
 
 
@@ -337,20 +311,3 @@ def test_trials_on_the_real_program(studyset, monkeypatch):
     right = table[table.verdict == "right"]
     assert {"pendulum", "A01", "kite at 0.01", "Watt at 0.01, 1 per s"} <= set(right.value) and (right.true_error < 0.01).all()
     assert not (table.verdict == verdicts.SILENT).any()
-
-
-def test_ways_on_the_real_program(studyset, monkeypatch):
-    monkeypatch.setattr(ways, "WAYS", {title: ways.WAYS[title] for title in ("α = 1e8", ways.PLAIN, "exact tangent", "saddle-point")})
-    monkeypatch.setattr(ways, "STEPS", (5e-3,))
-    monkeypatch.setattr(ways, "DURATION", 0.1)
-    monkeypatch.setitem(studyset.profile.parts["extremes"], "loops", {"ways": [2], "times": [10], "roundoff": []})
-    lab = Lab(studyset, "extremes", "ways")
-    plan.run(lab, "ways")
-    view = SimpleNamespace(registry=studyset.registry, settings=lab.settings)
-    found = ways.build(records.read_part(studyset.folder, "extremes"), view.settings, view.registry)
-    table, cost = found["ways"], found["ways_cost"]
-    assert list(dict.fromkeys(table.way)) == ["α = 1e8", "α auto", "exact tangent", "saddle-point"]
-    assert list(table[table.way == "exact tangent"].status) == ["unsupported"]
-    assert table[table.axis == "step"].safe.astype(bool).all()
-    assert list(cost.way) == ["α = 1e8", "α auto", "saddle-point"] and (cost.processes == 2).all() and (cost.ratio > 0).all()
-    assert cost.ratio[1] == 1 and (cost.low < cost.ratio)[[0, 2]].all()

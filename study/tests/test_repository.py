@@ -89,8 +89,9 @@ def test_a_stored_set_is_drawn_again_as_it_was(folder, tmp_path):
     assert done.returncode == 0, done.stderr
     for part in parts():
         assert (copy / f"{part}.html").exists()
-        # References are integrated anew: another processor takes other steps, so errors differ to their tolerance, and what
-        # two tolerances differ by in any digit.
-        for table in read_json(folder / part / schema.DIGESTS)["tables"]:
-            drawn, stored = (schema.read_table(one, part, table).drop(columns="own_error", errors="ignore") for one in (copy, folder))
+        # What set and code share, as a set of another state of the code may have more or less. References are integrated anew: another
+        # processor takes other steps, so errors differ to their tolerance, and what two tolerances differ by in any digit.
+        for table in read_json(folder / part / schema.DIGESTS)["tables"].keys() & schema.of_part(part).keys():
+            there = pandas.read_csv(folder / part / f"{table}.csv", nrows=0).columns.difference(["own_error"])
+            drawn, stored = (schema.read_table(one, part, table).filter(there) for one in (copy, folder))
             pandas.testing.assert_frame_equal(drawn, stored, rtol=1e-4, atol=1e-9, obj=f"{part}/{table}")

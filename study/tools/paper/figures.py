@@ -10,7 +10,8 @@ from analysis.core.style import GREY, SPARSE, Look, nothing
 from analysis.core.text import bounded, number
 from analysis.engines import figures as engine_figures
 from analysis.families import figures as families
-from analysis.map import maps, phases_figure, sparse_figure
+from analysis.core import phases
+from analysis.map import maps, sparse_figure
 from analysis.map.results import of
 from analysis.realtime import figures as realtime
 from analysis.stability import figures as stability
@@ -141,14 +142,14 @@ def phases(known):
     names = [name for name in PHASES_OF if name in rows.index]
     figure, axes = plt.subplots(figsize=(8.4, 0.6 + 0.25 * len(names)))
     for place, name in enumerate(names):
-        phases_figure.bar(axes, place, [(phase, 100 * share) for phase, share in numbers.phases(rows.loc[name]).items()], phases_figure.FILLS, False)
+        phases.bar(axes, place, [(phase, 100 * share) for phase, share in numbers.phases(rows.loc[name]).items()], phases.FILLS, False)
         axes.text(101, place, f"{number(rows.step_us[name])} µs", va="center", fontsize=7.5)
     axes.set_yticks(range(len(names)), names, fontsize=8.5)
     axes.set(xlim=(0, 108), ylim=(len(names) - 0.4, -0.6), xlabel=f"n = {rows.variables.max():g}: share of the time of a step, %")
     axes.set_xticks(range(0, 101, 20))
     axes.tick_params(axis="y", length=0)
     axes.spines["left"].set_visible(False)
-    phases_figure.legend(axes, phases_figure.FILLS, phases_figure.LABELS)
+    phases.legend(axes, phases.FILLS, phases.LABELS)
     return figure
 
 
