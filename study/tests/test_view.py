@@ -13,7 +13,7 @@ import pytest
 from analysis.core.errors import StudyError
 from study.tests import moving_mbs
 from study.tests.conftest import ROOT
-from study.tools.viewer import picture, program, trajectory
+from study.tools.viewer import picture, program, sheet, trajectory
 from study.tools.viewer.scene import from_description, upward
 
 STAND_IN = Path(moving_mbs.__file__)
@@ -138,7 +138,10 @@ def test_one_row_is_no_motion(tmp_path):
     (["crank", "--output", "page.txt"], "it must end with .html"),
     (["crank", "--output", "nowhere/page.html"], "there is no directory nowhere"),
     (["crank", "--output", "/proc/page.html"], "cannot write /proc/page.html"),
+    (["crank", "--png", "sheet.pdf"], "it must end with .png"),
     (["crank", "--duration", "-1"], "--duration"),
+    (["crank", "--window", "3", "2"], "the first before the last"),
+    (["crank", "--duration", "1", "--png", "a.png", "--window", "5", "6"], "from 0 to 1 s"),
     (["crank", "any.csv", "--duration", "1"], "but a TRAJECTORY is given"),
     (["stiff", "--step", "1e-3"], "diverged at t = 0.1 s"),
     ([], "the following arguments are required: scene"),
@@ -165,7 +168,7 @@ def test_outputs_that_cannot_be_replaced_leave_no_parts(tmp_path):
 
 
 def test_a_simulation_of_its_own_reaches_the_end(tmp_path):
-    done = view(tmp_path, "crank", "--duration", "2")
+    done = view(tmp_path, "crank", "--duration", "2", "--png", "crank.png")
     assert done.returncode == 0, done.stderr
     data, packed = data_of(tmp_path / "crank.html")
     assert data["times"][0] == 0 and data["times"][-1] == pytest.approx(2)
@@ -173,6 +176,7 @@ def test_a_simulation_of_its_own_reaches_the_end(tmp_path):
     assert [data["points"][i]["name"] for i in data["moving"]] == ["E", "P", "D", "R"]
     assert len(packed) == len(data["times"]) * 4 * 2
     assert packed[-8:-6] == pytest.approx(moving_mbs.crank(2.0)["E"][1], abs=1e-6)
+    assert (tmp_path / "crank.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
 
 
 def test_the_step_is_made_smaller_until_the_run_is_right(tmp_path):
@@ -220,6 +224,35 @@ def test_vectors_sit_on_shared_points_or_amid_their_body(tmp_path):
     assert picture.arrows(scene, motion)[0].at == [index[name] for name in "OTUV"]
     scene.bodies.append(type(scene.bodies[0])("L", [index["W"], index["T"]], [index["a"]]))
     assert picture.arrows(scene, motion)[0].at == [index["T"]]
+
+
+def sheet_of(monkeypatch, scene, motion, window=None):
+    """The axes of the sheet, before they are closed."""
+    drawn = []
+    monkeypatch.setattr(sheet.plt, "close", drawn.append)
+    sheet.draw(scene, motion, [0, 1, 0], window)
+    return [axes for axes in drawn[-1].axes if axes.get_title(loc="left").strip()]
+
+
+def test_every_arrow_is_in_every_instant_of_the_sheet(tmp_path, monkeypatch):
+    scene = scene_of("top")
+    path = csv_of(tmp_path, "top", times=[0.05 * k for k in range(60)])
+    motion = trajectory.read(path, scene, 99)
+    arrow, = picture.arrows(scene, motion)
+    monkeypatch.setattr(picture, "arrows", lambda *_: [picture.Arrow(arrow.vector, arrow.at, 2.0)])
+    for axes in sheet_of(monkeypatch, scene, motion):
+        tip, = (text.xy for text in axes.texts if text.xycoords == "data")
+        (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+        assert left < tip[0] < right and bottom < tip[1] < top
+
+
+def test_the_sheet_shows_the_whole_motion_unless_a_window_is_asked_for(tmp_path, monkeypatch):
+    scene = scene_of("crank")
+    path = csv_of(tmp_path, "crank", times=[0.05 * k for k in range(201)])
+    motion = trajectory.read(path, scene, 999)
+    titles = [[axes.get_title(loc="left") for axes in sheet_of(monkeypatch, scene, motion, window)]
+              for window in (None, (1, 3))]
+    assert [(found[0], found[-1]) for found in titles] == [("0.0 s", "10.0 s"), ("1.00 s", "3.00 s")]
 
 
 @pytest.mark.parametrize("text, up", [
@@ -271,6 +304,19 @@ def test_distances_are_drawn_where_no_rod_is():
                            {"name": "tie", "between": ["C", "P"]}]
     scene = from_description({"dimension": 2, "drivers_end": None, "elements": listed}, "crank")
     assert [rod.name for rod in scene.rods] == ["crank", "tie"]
+
+
+@pytest.mark.parametrize("name, place", [("crank", "O"), ("top", "O")])
+def test_torsion_springs_wind_from_one_direction_to_the_other(tmp_path, name, place):
+    scene = scene_of(name)
+    motion = trajectory.read(csv_of(tmp_path, name), scene, 100)
+    coil, = picture.coils(scene, motion)
+    at = motion.positions[1]
+    wire = picture.spiral(coil, at) - at[[name for name, _ in scene.points].index(place)]
+    for end, (a, b) in ((wire[0], coil.first), (wire[-1], coil.second)):
+        cosine = end @ (at[b] - at[a]) / numpy.linalg.norm(end) / numpy.linalg.norm(at[b] - at[a])
+        assert cosine == pytest.approx(1)
+    assert numpy.linalg.norm(wire[-1]) == pytest.approx(coil.length)
 
 
 def test_the_scenes_own_outputs_are_in_the_page(tmp_path):

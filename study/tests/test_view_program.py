@@ -18,7 +18,8 @@ PROGRAM = Path(os.environ.get("MBS_PROGRAM", ROOT / "build" / "mbs"))
 def test_a_scene_is_simulated_and_shown(tmp_path, scene):
     assert os.access(PROGRAM, os.X_OK), f"{PROGRAM} is missing: run study/setup"
     path = scene if scene.startswith("four-bar") else ROOT / scene
-    done = view(tmp_path, path, "--duration", "1", "--output", "page.html", program=PROGRAM)
+    done = view(tmp_path, path, "--duration", "1", "--output", "page.html", "--png", "sheet.png",
+                program=PROGRAM)
     assert done.returncode == 0, done.stderr
     data, _ = data_of(tmp_path / "page.html")
     assert data["times"][-1] == pytest.approx(1) and data["moving"] and data["rods"]
@@ -87,7 +88,7 @@ def test_a_scene_in_space_stands_upright(tmp_path, asked, up):
 
 def test_outputs_and_torsion_springs_of_a_scene_are_shown(tmp_path):
     done = view(tmp_path, ROOT / "harness/scenes/examples/spatial_joints.json", "--duration", "0.5",
-                "--output", "page.html", program=PROGRAM)
+                "--output", "page.html", "--png", "sheet.png", program=PROGRAM)
     assert done.returncode == 0, done.stderr
     data, _ = data_of(tmp_path / "page.html")
     assert set(data["outputs"]) == {"bend", "M", "axis", "reach", "slide"} and len(data["coils"]) == 1

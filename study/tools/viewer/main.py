@@ -1,11 +1,13 @@
-# The command line of study/view: from a scene to an HTML page.
+# The command line of study/view: from a scene to an HTML page and a PNG sheet.
+import math
+import os
 import re
 import tempfile
 import webbrowser
 from pathlib import Path
 
 from analysis.core.errors import StudyError
-from analysis.core.files import write_text
+from analysis.core.files import write
 from study.core.options import Parser, positive
 from study.core.main import need_modules
 
@@ -15,7 +17,7 @@ IMPLEMENTATION = "csc_klu/refactor"
 
 def view(arguments):
     options = _options(arguments)
-    need_modules("scipy", "jinja2")
+    need_modules("matplotlib", "jinja2")
     from study.tools.viewer import program, trajectory  # they need the modules
     from study.tools.viewer.scene import upward
     scene = program.describe(options.scene)
@@ -43,11 +45,14 @@ def view(arguments):
 
 def _options(arguments):
     parser = Parser(prog="study/view", description="Shows the motion of a scene: an HTML page that "
-                    "needs nothing else to play it.")
+                    "needs nothing else to play it, and a PNG sheet for documents.")
     parser.add_argument("scene", help="four-bar:N, one of mbs list --scenes, or a JSON file")
     parser.add_argument("trajectory", nargs="?", help="CSV of `mbs simulate --trajectory`; without "
                         "it, the scene is simulated now")
     parser.add_argument("--output", metavar="FILE.html", help="the page (SCENE.html, here)")
+    parser.add_argument("--png", metavar="FILE.png", help="write a contact sheet of the motion too")
+    parser.add_argument("--window", nargs=2, type=_number, metavar="S",
+                        help="first and last time of the sheet (all of the motion)")
     parser.add_argument("--up", choices="xyz", help="axis that points up in 3D (against "
                         "gravity; y without gravity)")
     parser.add_argument("--frames", type=int, default=600, help="at most in the page (600)")
@@ -64,25 +69,45 @@ def _options(arguments):
     return options
 
 
+def _number(text):
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError
+    return value
+
+
 def _check(options):
     if options.trajectory and (options.duration or options.step):
         raise StudyError("--duration and --step are for a simulation, but a TRAJECTORY is given")
     if options.frames < 2:
         raise StudyError(f"--frames is {options.frames}: it must be at least 2")
+    if options.window and not options.window[0] < options.window[1]:
+        raise StudyError("--window must be two times, the first before the last")
     if options.output is None:
         stem = Path(options.scene).name.removesuffix(".json")
         options.output = re.sub(r"[^\w.=-]+", "-", stem) + ".html"
-    path, inputs = Path(options.output), [Path(name).resolve() for name in (options.scene, options.trajectory) if name]
-    if path.suffix.lower() != ".html":
-        raise StudyError(f"--output is {options.output!r}: it must end with .html")
-    if path.resolve() in inputs or path.is_dir() or not path.parent.is_dir():
-        raise StudyError(f"--output: cannot write {path}: " + (
-            "it is an input" if path.resolve() in inputs else "it is a directory" if path.is_dir() else f"there is no directory {path.parent}"))
+    inputs = [Path(name).resolve() for name in (options.scene, options.trajectory) if name]
+    for flag, name, ending in (("--output", options.output, ".html"),
+                               ("--png", options.png, ".png")):
+        if name is None:
+            continue
+        path = Path(name)
+        if path.suffix.lower() != ending:
+            raise StudyError(f"{flag} is {name!r}: it must end with {ending}")
+        if path.resolve() in inputs or os.path.isdir(path) or not os.path.isdir(path.parent):
+            raise StudyError(f"{flag}: cannot write {name}: "
+                             + ("it is an input" if path.resolve() in inputs else
+                                "it is a directory" if os.path.isdir(path) else
+                                f"there is no directory {path.parent}"))
 
 
 def _write(options, scene, motion, note, up):
-    from study.tools.viewer import page
-    write_text(options.output, page.render(scene, motion, note, up))
-    print(f"{options.output}: {len(motion.times)} frames")
+    from study.tools.viewer import page, sheet
+    outputs = [(options.output, page.render(scene, motion, note, up).encode())]
+    if options.png:
+        outputs.append((options.png, sheet.draw(scene, motion, up, options.window)))
+    for name, content in outputs:
+        write(name, lambda partial, content=content: partial.write_bytes(content))
+        print(f"{name}: {len(motion.times)} frames" if name == options.output else name)
     if options.open and not webbrowser.open(Path(options.output).resolve().as_uri()):
         raise StudyError(f"no browser found to open {options.output} in")

@@ -1,4 +1,4 @@
-# What the page needs to know of a motion: extent, which points to trace, where vectors sit.
+# What the page and the sheet both need to know: extent, which points to trace, where vectors sit.
 from dataclasses import dataclass
 
 import numpy
@@ -144,3 +144,21 @@ def coils(scene, motion):
         if at:
             found.append(Coil(first, second, at, length))
     return found
+
+
+def spiral(coil, at):
+    """The way of a coil's wire (points, dimension) where the points are at `at` (points, dimension):
+    one turn more than the angle between its directions."""
+    first, second = ((at[b] - at[a]) / (numpy.linalg.norm(at[b] - at[a]) or 1)
+                     for a, b in (coil.first, coil.second))
+    if len(first) == 2:
+        across = numpy.array([-first[1], first[0]])
+    else:
+        across = second - first * (first @ second)
+        if numpy.linalg.norm(across) < 1e-6:
+            across = numpy.cross(first, numpy.eye(3)[numpy.abs(first).argmin()])
+        across /= numpy.linalg.norm(across) or 1
+    share = numpy.linspace(0, 1, 60)[:, None]
+    angle = share * (2 * numpy.pi + numpy.arctan2(across @ second, first @ second))
+    return at[coil.at].mean(axis=0) + coil.length * (0.35 + 0.65 * share) * (
+        numpy.cos(angle) * first + numpy.sin(angle) * across)
