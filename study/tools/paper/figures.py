@@ -6,11 +6,11 @@ from matplotlib.text import Text
 from matplotlib.ticker import LogLocator
 
 from analysis.accuracy import work_figure
+from analysis.core.phases import FILLS, LABELS, bar, legend
 from analysis.core.style import GREY, SPARSE, Look, nothing
 from analysis.core.text import bounded, number
 from analysis.engines import figures as engine_figures
 from analysis.families import figures as families
-from analysis.core import phases
 from analysis.map import maps, sparse_figure
 from analysis.map.results import of
 from analysis.realtime import figures as realtime
@@ -142,14 +142,14 @@ def phases(known):
     names = [name for name in PHASES_OF if name in rows.index]
     figure, axes = plt.subplots(figsize=(8.4, 0.6 + 0.25 * len(names)))
     for place, name in enumerate(names):
-        phases.bar(axes, place, [(phase, 100 * share) for phase, share in numbers.phases(rows.loc[name]).items()], phases.FILLS, False)
+        bar(axes, place, [(phase, 100 * share) for phase, share in numbers.phases(rows.loc[name]).items()], FILLS, False)
         axes.text(101, place, f"{number(rows.step_us[name])} µs", va="center", fontsize=7.5)
     axes.set_yticks(range(len(names)), names, fontsize=8.5)
     axes.set(xlim=(0, 108), ylim=(len(names) - 0.4, -0.6), xlabel=f"n = {rows.variables.max():g}: share of the time of a step, %")
     axes.set_xticks(range(0, 101, 20))
     axes.tick_params(axis="y", length=0)
     axes.spines["left"].set_visible(False)
-    phases.legend(axes, phases.FILLS, phases.LABELS)
+    legend(axes, FILLS, LABELS)
     return figure
 
 
