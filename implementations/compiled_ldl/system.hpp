@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <type_traits>
 
 #include "elements/constraints.hpp"
@@ -11,6 +12,7 @@
 #include "mbs/simulation.hpp"
 #include "panels/fronts.hpp"
 #include "panels/panels.hpp"
+#include "schur.hpp"
 
 namespace mbs::compiled_ldl {
 
@@ -69,19 +71,16 @@ class System {
 
  private:
   static constexpr bool kSame = std::is_same_v<S, F>;
+  static constexpr bool kDouble = kSame && std::is_same_v<S, double>;
   void fill_constants();
   S scale_down();
   void scale_up(const S& scale);
 
-  Array<F> rounded_;  // y in units of its largest entry
+  Array<F> rounded_;                 // y in units of its largest entry
+  std::unique_ptr<Schur<D>> schur_;  // if the program has constant fronts
 };
 
 // Construction, state in and out.
-
-/// Or the multistep method, which begins with it and has the same matrix.
-inline bool is_rattle(const StepSettings& s) {
-  return s.scheme != Scheme::penalty && s.scheme != Scheme::saddle_point;
-}
 
 /// The number that the settings of each lane have.
 template <typename S>
@@ -120,6 +119,12 @@ System<S, F, D>::System(std::span<const Model* const> models,
     }
   }
   fill_constants();
+  if constexpr (kDouble) {
+    if (program.constant_fronts > 0) {
+      const int numbers = gradient_numbers(*models[0]);
+      schur_ = std::make_unique<Schur<D>>(program, constraints, numbers, fronts);
+    }
+  }
   drivers.drive(0.0, q.data(), v.data(), constraints, force.data());
 }
 
@@ -179,6 +184,9 @@ void System<S, F, D>::finish_residual() {
 
 template <typename S, typename F, int D>
 void System<S, F, D>::assemble() {
+  if constexpr (kDouble) {
+    if (schur_) return schur_->assemble(constraints);
+  }
   fronts.start();
   F* matrix = fronts.matrix();
   if (saddle) {
@@ -227,6 +235,9 @@ void System<S, F, D>::scale_up(const S& scale) {
 
 template <typename S, typename F, int D>
 bool System<S, F, D>::factorize_and_solve() {
+  if constexpr (kDouble) {
+    if (schur_) return schur_->factorize_and_solve(y.data());
+  }
   if constexpr (kSame) {
     return fronts.factorize_and_solve(y.data());
   } else {
@@ -239,6 +250,9 @@ bool System<S, F, D>::factorize_and_solve() {
 
 template <typename S, typename F, int D>
 void System<S, F, D>::solve() {
+  if constexpr (kDouble) {
+    if (schur_) return schur_->solve(y.data());
+  }
   if constexpr (kSame) {
     fronts.solve(y.data());
   } else {
