@@ -104,6 +104,9 @@ double cycles_of_solves(const Tree& tree, const Pattern& pattern, int width, dou
 double cycles_of_products(double rows, int width, int numbers) {
   return 0.7 * numbers * (numbers + 1) * rows * (rows + width) / (2 * width);
 }
+/// Cycles in which B, no part of the matrix any more, is written and multiplied with, a row and
+/// number.
+constexpr double kCyclesOfNumber = 26.0;
 
 /// Replaces `tree` by the points' fronts and those of −ε − B A⁻¹ Bᵀ, if a pass of Newton's method
 /// is predicted to take less time with them; the number of the points' fronts, 0: nothing is
@@ -114,7 +117,7 @@ int eliminate_points_first(const Pattern& pattern, int width, int numbers, Tree&
                       .points = static_cast<int>(pattern.borders.size()),
                       .cliques = cliques_of_multipliers(pattern),
                       .borders = {}};
-  double after = 0.0;
+  double after = kCyclesOfNumber * numbers * multipliers.points;
   for (const auto& clique : multipliers.cliques) {
     after += cycles_of_products(static_cast<double>(clique.size()), width, numbers);
   }
@@ -125,7 +128,7 @@ int eliminate_points_first(const Pattern& pattern, int width, int numbers, Tree&
                        .borders = {}};
   Tree constant = best_tree(points, width), rest = best_tree(multipliers, width);
   after += rest.cycles + cycles_of_solves(rest, multipliers, width, 2.0) +
-           cycles_of_solves(constant, points, width, 3.0);
+           cycles_of_solves(constant, points, width, 3.0);  // 2, and nothing hides their latencies
   if (after >= before) return 0;
   tree = std::move(constant);
   const auto fronts = static_cast<int>(tree.fronts.size());

@@ -24,9 +24,13 @@ class Schur {
 
   /// −S, with the gradients of the last evaluation, which solve() keeps.
   void assemble(const Constraints<double, D>& constraints);
+  /// What the points have of a right-hand side: r, or A⁻¹ r.
+  enum class Points { given, solved };
   /// y = solution; false if a pivot was not accepted.
-  bool factorize_and_solve(double* y);
-  void solve(double* y);
+  bool factorize_and_solve(double* y, Points points);
+  void solve(double* y, Points points);
+  /// x = A⁻¹ x.
+  void solve_points(double* x) const { panels_.solve(x, Part::constant); }
 
  private:
   static constexpr int L = kWidest<double>;
@@ -46,7 +50,7 @@ class Schur {
   void assemble_fronts();
   template <int N>
   const double* assemble_column(const Front& front, int j, int rows, const double* products);
-  void eliminate_points(double* y);
+  void eliminate_points(double* y, Points points);
   void add_forces(double* y);
 
   const Program& program_;
@@ -132,7 +136,7 @@ void Schur<D>::find_products_of_column(int column, std::span<const int> rows, in
     for (const Entry& e : entries_of(column)) {
       if (e.number / count_ == j) change_[e.row] += e.unit;
     }
-    panels_.solve(change_.data(), Part::constant);
+    solve_points(change_.data());
     for (int k = above; k < size; ++k) {
       double* to = products_.data() + base + (k - above) / L * L * numbers_ * numbers_ + k % L;
       for (const Entry& e : entries_of(rows[k])) {
@@ -203,16 +207,16 @@ const double* Schur<D>::assemble_column(const Front& front, int j, int rows,
 // Solves.
 
 template <int D>
-bool Schur<D>::factorize_and_solve(double* y) {
-  eliminate_points(y);
+bool Schur<D>::factorize_and_solve(double* y, Points points) {
+  eliminate_points(y, points);
   const bool accepted = panels_.factorize_and_solve(y, Part::changing);
   add_forces(y);
   return accepted && accepted_;
 }
 
 template <int D>
-void Schur<D>::solve(double* y) {
-  eliminate_points(y);
+void Schur<D>::solve(double* y, Points points) {
+  eliminate_points(y, points);
   panels_.solve(y, Part::changing);
   add_forces(y);
 }
@@ -220,9 +224,9 @@ void Schur<D>::solve(double* y) {
 /// x = A⁻¹ r, and Φq x is subtracted from the multipliers' rows. Nothing where r is zero, as in
 /// projections.
 template <int D>
-void Schur<D>::eliminate_points(double* y) {
+void Schur<D>::eliminate_points(double* y, Points points) {
   if (std::all_of(y, y + first_, [](double x) { return x == 0.0; })) return;
-  panels_.solve(y, Part::constant);
+  if (points == Points::given) solve_points(y);
   std::size_t e = 0;
   for (int m = 0; m < count_; ++m) {
     double sum = 0.0;
@@ -243,7 +247,7 @@ void Schur<D>::add_forces(double* y) {
       change_[entries_[e].row] -= values_[e] * mu;
     }
   }
-  panels_.solve(change_.data(), Part::constant);
+  solve_points(change_.data());
   for (int i = 0; i < first_; ++i) y[i] += change_[i];
 }
 
