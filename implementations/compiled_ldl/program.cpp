@@ -106,7 +106,7 @@ double cycles_of_products(double rows, int width, int numbers) {
 }
 /// Cycles in which B, no part of the matrix any more, is written and multiplied with, a row and
 /// number.
-constexpr double kCyclesOfNumber = 26.0;
+constexpr double kCyclesOfNumber = 12.0;
 
 /// Replaces `tree` by the points' fronts and those of −ε − B A⁻¹ Bᵀ, if a pass of Newton's method
 /// is predicted to take less time with them; the number of the points' fronts, 0: nothing is
