@@ -133,8 +133,11 @@ void list_fronts(std::ostream& out, const Model& model, const StepSettings& sett
   }
   out << "compiled_ldl/fronts: storage of " << program.storage << " numbers (" << bytes
       << " bytes); " << program.size << " rows, points " << points << ", multipliers "
-      << program.row_of_node.size() - points << ", fronts " << program.fronts.size()
-      << "; predicted cycles of a factorization " << static_cast<long>(program.cycles)
+      << program.row_of_node.size() - points << ", fronts " << program.fronts.size();
+  if (program.constant_fronts > 0) {
+    out << ", the first " << program.constant_fronts << " factorized once";
+  }
+  out << "; predicted cycles of a factorization " << static_cast<long>(program.cycles)
       << ".\nA panel PxL has P pivots, and the rows below are taken L at a time.\n";
   listing::print_fronts(out, model, program);
 }

@@ -32,7 +32,14 @@ std::vector<int> insert_multipliers(const std::vector<int>& points, const Patter
   return order;
 }
 
-Tree best_tree(const Pattern& pattern, const std::vector<int>& sizes, int width) {
+std::vector<int> sizes_of(const Pattern& pattern) {
+  std::vector<int> sizes(pattern.points + pattern.borders.size(), 1);
+  std::fill_n(sizes.begin(), pattern.points, pattern.dimension);
+  return sizes;
+}
+
+Tree best_tree(const Pattern& pattern, int width) {
+  const std::vector<int> sizes = sizes_of(pattern);
   auto cliques = pattern.cliques;
   cliques.insert(cliques.end(), pattern.borders.begin(), pattern.borders.end());
   const Graph points = graph_of(pattern.points, cliques);
@@ -54,6 +61,85 @@ Tree best_tree(const Pattern& pattern, const std::vector<int>& sizes, int width)
     if (!tree.fronts.empty() && tree.cycles < best.cycles) best = std::move(tree);
   }
   return best;
+}
+
+// Points eliminated once and for all.
+
+/// Multipliers that are coupled when all points are eliminated: those of each connected part of the
+/// points.
+std::vector<std::vector<int>> cliques_of_multipliers(const Pattern& pattern) {
+  std::vector<int> part(pattern.points);
+  std::iota(part.begin(), part.end(), 0);
+  const auto find = [&](int p) {
+    while (part[p] != p) p = part[p] = part[part[p]];
+    return p;
+  };
+  for (const auto& clique : pattern.cliques) {
+    for (const int p : clique) part[find(p)] = find(clique[0]);
+  }
+  std::vector<std::vector<int>> cliques(pattern.points);
+  for (int m = 0; m < static_cast<int>(pattern.borders.size()); ++m) {
+    for (const int p : pattern.borders[m]) {
+      auto& clique = cliques[find(p)];
+      if (clique.empty() || clique.back() != m) clique.push_back(m);
+    }
+  }
+  return cliques;
+}
+
+/// Cycles of `solves` substitutions with the factors of a tree.
+double cycles_of_solves(const Tree& tree, const Pattern& pattern, int width, double solves) {
+  const std::vector<int> sizes = sizes_of(pattern);
+  double cycles = 0.0;
+  for (const TreeFront& front : tree.fronts) {
+    double pivots = 0.0, border = 0.0;
+    for (const int node : front.pivots) pivots += sizes[node];
+    for (const int node : front.border) border += sizes[node];
+    cycles += pivots * (4.0 + (pivots + 2.0 * border) / width);
+  }
+  return solves * cycles;
+}
+
+/// Cycles in which the numbers of −ε − B A⁻¹ Bᵀ are found, with those of so many rows in a clique.
+double cycles_of_products(double rows, int width, int numbers) {
+  return 0.7 * numbers * (numbers + 1) * rows * (rows + width) / (2 * width);
+}
+/// Cycles in which B, no part of the matrix any more, is written and multiplied with, a row and
+/// number.
+constexpr double kCyclesOfNumber = 12.0;
+
+/// Replaces `tree` by the points' fronts and those of −ε − B A⁻¹ Bᵀ, if a pass of Newton's method
+/// is predicted to take less time with them; the number of the points' fronts, 0: nothing is
+/// replaced.
+int eliminate_points_first(const Pattern& pattern, int width, int numbers, Tree& tree) {
+  const double before = tree.cycles + cycles_of_solves(tree, pattern, width, 2.0);
+  Pattern multipliers{.dimension = 1,
+                      .points = static_cast<int>(pattern.borders.size()),
+                      .cliques = cliques_of_multipliers(pattern),
+                      .borders = {}};
+  double after = kCyclesOfNumber * numbers * multipliers.points;
+  for (const auto& clique : multipliers.cliques) {
+    after += cycles_of_products(static_cast<double>(clique.size()), width, numbers);
+  }
+  if (after >= before) return 0;  // which may have too many couplings to go on
+  const Pattern points{.dimension = pattern.dimension,
+                       .points = pattern.points,
+                       .cliques = pattern.cliques,
+                       .borders = {}};
+  Tree constant = best_tree(points, width), rest = best_tree(multipliers, width);
+  after += rest.cycles + cycles_of_solves(rest, multipliers, width, 2.0) +
+           cycles_of_solves(constant, points, width, 3.0);  // 2, and nothing hides their latencies
+  if (after >= before) return 0;
+  tree = std::move(constant);
+  const auto fronts = static_cast<int>(tree.fronts.size());
+  tree.cycles = rest.cycles;
+  for (TreeFront& front : rest.fronts) {
+    for (auto* nodes : {&front.pivots, &front.border}) {
+      for (int& node : *nodes) node += pattern.points;
+    }
+    tree.fronts.push_back(std::move(front));
+  }
+  return fronts;
 }
 
 /// Columns long enough for vectors of 2, 4 or 8 numbers that begin below the pivots of a panel. In
@@ -151,12 +237,14 @@ int Program::entry(int row, int column) const {
   return front.base + (column - front.first) * front.stride + place_in(*this, front, row);
 }
 
-Program compile(const Pattern& pattern, int width) {
+Program compile(const Pattern& pattern, int width, int numbers) {
   Program program;
   program.width = width;
-  std::vector<int> sizes(pattern.points + pattern.borders.size(), 1);
-  std::fill_n(sizes.begin(), pattern.points, pattern.dimension);
-  const Tree tree = best_tree(pattern, sizes, width);
+  const std::vector<int> sizes = sizes_of(pattern);
+  Tree tree = best_tree(pattern, width);
+  if (numbers > 0) {
+    program.constant_fronts = eliminate_points_first(pattern, width, numbers, tree);
+  }
   program.cycles = tree.cycles;
   place_rows(tree, sizes, program);
   place_borders(tree, sizes, program);

@@ -62,6 +62,7 @@ struct Program {
   std::vector<int> row_of_node;
   std::vector<int> front_of_row;
   std::vector<Front> fronts;  ///< in order of elimination
+  int constant_fronts = 0;    ///< the first ones, which no multiplier borders on: compile()
   std::vector<Group> groups;
   std::vector<int> border_rows;
   std::vector<int> positions;
@@ -70,8 +71,10 @@ struct Program {
   [[nodiscard]] int entry(int row, int column) const;
 };
 
-/// `width`: how many numbers a processor handles at once.
-Program compile(const Pattern& pattern, int width);
+/// `width`: how many numbers a processor handles at once. `numbers`: if the points' block A of the
+/// matrix [A Bᵀ; B −ε] never changes, of how many numbers a row of B is made, else 0. The program
+/// may be that of A, whose fronts are constant, and −ε − B A⁻¹ Bᵀ, if this is predicted faster.
+Program compile(const Pattern& pattern, int width, int numbers = 0);
 
 /// What chooses the kernel of a panel: its pivots, and the lanes of vectors for rows below, 0:
 /// none.

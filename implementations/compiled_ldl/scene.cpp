@@ -69,9 +69,20 @@ Pattern pattern_of(const Model& model, bool multipliers, bool second_derivatives
   return pattern;
 }
 
+int gradient_numbers(const Model& model) {
+  const auto& dots = model.dot_constraints();
+  const bool distances =
+      model.bilinear_constraints().empty() && std::all_of(dots.begin(), dots.end(), is_distance);
+  return distances ? model.dimension() : 2 * model.dimension();
+}
+
 Program program_of(const Model& model, const StepSettings& settings, int width) {
+  const bool stiff = !model.springs().empty() || !model.torsion_springs().empty();
+  const bool constant = has_multiplier_rows(settings) && (is_rattle(settings) || !stiff) &&
+                        !settings.geometric_stiffness &&
+                        settings.precision == Precision::double_precision;
   return compile(pattern_of(model, has_multiplier_rows(settings), settings.geometric_stiffness),
-                 width);
+                 width, constant ? gradient_numbers(model) : 0);
 }
 
 Rows::Rows(const Model& model, const Program& program)

@@ -192,7 +192,7 @@ template <typename S, typename F, int D>
 bool Stepper<S, F, D>::solve_pass(StepOutcome& outcome) {
   phases_.enter(Phase::evaluation);
   const bool renews = factorizes(outcome.passes);
-  system_.begin_residual();
+  system_.begin_residual(renews);
   if (renews) {
     phases_.enter(Phase::assembly);
     system_.assemble();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <type_traits>
 
 #include "elements/constraints.hpp"
@@ -11,6 +12,7 @@
 #include "mbs/simulation.hpp"
 #include "panels/fronts.hpp"
 #include "panels/panels.hpp"
+#include "schur.hpp"
 
 namespace mbs::compiled_ldl {
 
@@ -23,7 +25,7 @@ class System {
   void put(int lane, const State& state);
   void get(int lane, State& state) const;
 
-  void drive(double t) { drivers.drive(t, q.data(), v.data(), constraints, force.data()); }
+  void drive(double t);
   void evaluate() { constraints.evaluate(q.data(), phi.data()); }
 
   void evaluate_and_update() {
@@ -31,8 +33,10 @@ class System {
   }
 
   /// y = −f of Eq. (3), or the right-hand side of Eq. (12), in two parts: without the forces of the
-  /// constraints, and these. assemble() belongs between them.
-  void begin_residual();
+  /// constraints, and these. assemble() belongs between them, if a pass `renews` the matrix. Then,
+  /// where A = M is eliminated once and Q is constant, the points have A⁻¹ of it, h (A⁻¹ Q − a),
+  /// and no forces of the constraints: those of h λ + μ are found with the solution.
+  void begin_residual(bool renews = true);
   void finish_residual();
   /// The matrix of Eq. (5), (12) or (14), at the last evaluate() and the last forces.
   void assemble();
@@ -69,19 +73,19 @@ class System {
 
  private:
   static constexpr bool kSame = std::is_same_v<S, F>;
+  static constexpr bool kDouble = kSame && std::is_same_v<S, double>;
   void fill_constants();
+  void subtract_known_forces();
   S scale_down();
   void scale_up(const S& scale);
 
-  Array<F> rounded_;  // y in units of its largest entry
+  Array<F> rounded_;                 // y in units of its largest entry
+  std::unique_ptr<Schur<D>> schur_;  // if the program has constant fronts
+  typename Schur<D>::Points points_ = Schur<D>::Points::given;
+  Array<S> free_;  // A⁻¹ force
 };
 
 // Construction, state in and out.
-
-/// Or the multistep method, which begins with it and has the same matrix.
-inline bool is_rattle(const StepSettings& s) {
-  return s.scheme != Scheme::penalty && s.scheme != Scheme::saddle_point;
-}
 
 /// The number that the settings of each lane have.
 template <typename S>
@@ -120,7 +124,23 @@ System<S, F, D>::System(std::span<const Model* const> models,
     }
   }
   fill_constants();
-  drivers.drive(0.0, q.data(), v.data(), constraints, force.data());
+  if constexpr (kDouble) {
+    if (program.constant_fronts > 0) {
+      const int numbers = gradient_numbers(*models[0]);
+      schur_ = std::make_unique<Schur<D>>(program, constraints, numbers, fronts);
+    }
+  }
+  drive(0.0);
+}
+
+template <typename S, typename F, int D>
+void System<S, F, D>::drive(double t) {
+  drivers.drive(t, q.data(), v.data(), constraints, force.data());
+  if constexpr (kDouble) {
+    if (!schur_) return;
+    free_ = force;
+    schur_->solve_points(free_.data());
+  }
 }
 
 template <typename S, typename F, int D>
@@ -164,7 +184,14 @@ void System<S, F, D>::get(int l, State& state) const {
 // Residual, matrix and solves.
 
 template <typename S, typename F, int D>
-void System<S, F, D>::begin_residual() {
+void System<S, F, D>::begin_residual([[maybe_unused]] bool renews) {
+  if constexpr (kDouble) {
+    if (schur_ && renews && !forces.any()) {
+      points_ = Schur<D>::Points::solved;
+      for (int i = 0; i < program.padded; ++i) y[i] = h * (free_[i] - a[i]);
+      return;
+    }
+  }
   mass.residual(force.data(), a.data(), h, y.data());
   if (forces.any()) forces.add(q.data(), v.data(), h, y.data());
 }
@@ -172,6 +199,12 @@ void System<S, F, D>::begin_residual() {
 /// Comes last, so that the matrix is in the cache when it is factorized.
 template <typename S, typename F, int D>
 void System<S, F, D>::finish_residual() {
+  if (points_ == Schur<D>::Points::solved) {
+    for (int k = 0; k < constraints.count(); ++k) {
+      y[constraints.row(k)] = -phi[k] - epsilon * h * lambda[k];
+    }
+    return;
+  }
   constraints.add_forces(lambda.data(), phi.data(), saddle ? S(0.0) : alpha, h, y.data());
   if (!saddle) return;
   for (int k = 0; k < constraints.count(); ++k) y[constraints.row(k)] = -phi[k];
@@ -179,6 +212,9 @@ void System<S, F, D>::finish_residual() {
 
 template <typename S, typename F, int D>
 void System<S, F, D>::assemble() {
+  if constexpr (kDouble) {
+    if (schur_) return schur_->assemble(constraints);
+  }
   fronts.start();
   F* matrix = fronts.matrix();
   if (saddle) {
@@ -225,8 +261,23 @@ void System<S, F, D>::scale_up(const S& scale) {
   for (int i = 0; i < program.padded; ++i) y[i] = static_cast<S>(rounded_[i]) * scale;
 }
 
+/// Of a solution whose right-hand side had A⁻¹ r at the points, multipliers are h λ + μ.
+template <typename S, typename F, int D>
+void System<S, F, D>::subtract_known_forces() {
+  if (points_ == Schur<D>::Points::given) return;
+  points_ = Schur<D>::Points::given;
+  for (int k = 0; k < constraints.count(); ++k) y[constraints.row(k)] -= h * lambda[k];
+}
+
 template <typename S, typename F, int D>
 bool System<S, F, D>::factorize_and_solve() {
+  if constexpr (kDouble) {
+    if (schur_) {
+      const bool accepted = schur_->factorize_and_solve(y.data(), points_);
+      subtract_known_forces();
+      return accepted;
+    }
+  }
   if constexpr (kSame) {
     return fronts.factorize_and_solve(y.data());
   } else {
@@ -239,6 +290,12 @@ bool System<S, F, D>::factorize_and_solve() {
 
 template <typename S, typename F, int D>
 void System<S, F, D>::solve() {
+  if constexpr (kDouble) {
+    if (schur_) {
+      schur_->solve(y.data(), points_);
+      return subtract_known_forces();
+    }
+  }
   if constexpr (kSame) {
     fronts.solve(y.data());
   } else {

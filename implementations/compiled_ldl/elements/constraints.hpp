@@ -60,6 +60,14 @@ class Constraints {
   /// t = 2 u̇·B ẇ, which is Φ̇q v + Φ̇t but for what drivers prescribe.
   void velocity_terms(const S* v, S* t) const;
 
+  /// Of rows of Φq as Σ n_i e_i (gradient_numbers()): e_i of constraint k has (i, row, entry), to
+  /// all of which `then` is applied.
+  template <typename Then>
+  void unit_entries(int k, Then then) const;
+  /// then(k, i, n_i).
+  template <typename Then>
+  void gradient_numbers(Then then) const;
+
   /// What never changes: linear rows. `s` = (Δt²/4) α of the penalty form.
   template <typename F>
   void add_constant(F* matrix, const S& s) const;
@@ -130,7 +138,7 @@ Constraints<S, D>::Constraints(std::span<const Model* const> models, const Progr
   const int points = static_cast<int>(program.row_of_node.size()) - count();
   if (multipliers) {
     for (const int k : number_) multiplier_row_.push_back(program.row_of_node[points + k]);
-    find_rows(program);
+    if (program.constant_fronts == 0) find_rows(program);
     return;
   }
   for (const Terms& terms : linear_) {
@@ -149,7 +157,7 @@ void Constraints<S, D>::add_pairs(std::span<const Model* const> models, const Ro
   std::vector<std::array<int, 2>> points;
   std::vector<int> numbers, order;
   for (int i = 0; i < static_cast<int>(all.size()); ++i) {
-    if (all[i].a != all[i].c || all[i].b != all[i].d) continue;
+    if (!is_distance(all[i])) continue;
     points.push_back({all[i].a, all[i].b});
     numbers.push_back(i);
   }
@@ -172,7 +180,7 @@ void Constraints<S, D>::add_quads(std::span<const Model* const> models, const Ro
   const int dot_count = static_cast<int>(dots.size());
   for (int i = 0; i < dot_count; ++i) {
     const DotConstraint& c = dots[i];
-    if (c.a == c.c && c.b == c.d) continue;
+    if (is_distance(c)) continue;
     quads_.push_back(make_quad({c.a, c.b, c.c, c.d}, rows, program, places));
     matrix_of_quad_.push_back(-1);
     number_.push_back(i);
@@ -421,6 +429,46 @@ void Constraints<S, D>::values(const S* q, Then then) const {
     then(k, sum - value_[k]);
     ++k;
   }
+}
+
+/// A distance has the numbers u, another quadratic one A and C, a linear one 1.
+template <typename S, int D>
+template <typename Then>
+void Constraints<S, D>::unit_entries(int k, Then then) const {
+  if (k < pairs_.count()) {
+    const Pair& pair = pairs_.list[k];
+    for (int x = 0; x < D && k < pairs_.one; ++x) {
+      then(x, pair.a + x, S(2.0));
+      if (k < pairs_.two) then(x, pair.b + x, S(-2.0));
+    }
+    return;
+  }
+  const int at = k - pairs_.count();
+  if (at < static_cast<int>(quads_.size())) {
+    for (int i = 0; i < quads_[at].free; ++i) {
+      const Quad::Point& point = quads_[at].points[i];
+      for (int x = 0; x < D; ++x) {
+        then(x, point.row + x, S(point.sign_a));
+        then(D + x, point.row + x, S(point.sign_c));
+      }
+    }
+    return;
+  }
+  const Terms& terms = linear_[at - quads_.size()];
+  for (int i = terms.begin; i < terms.end; ++i) then(0, term_rows_[i], term_coefficients_[i]);
+}
+
+template <typename S, int D>
+template <typename Then>
+void Constraints<S, D>::gradient_numbers(Then then) const {
+  int k = 0;
+  for (; k < pairs_.count(); ++k) {
+    for (int x = 0; x < D; ++x) then(k, x, u_[k * D + x]);
+  }
+  for (std::size_t i = 0; i < quads_.size(); ++i, ++k) {
+    for (int x = 0; x < 2 * D; ++x) then(k, x, vectors_[i * kQuad + x]);
+  }
+  for (; k < count(); ++k) then(k, 0, S(1.0));
 }
 
 // What they add to the matrix of Eqs. (5), (12) and (14).

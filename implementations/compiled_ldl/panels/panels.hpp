@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <stdexcept>
 #include <type_traits>
 
@@ -31,9 +32,11 @@ class Panels {
     for (const Copied& c : copied_) std::copy_n(constants() + c.begin, c.count, matrix() + c.begin);
   }
 
+  /// Fronts: the program's constant ones, or those behind them.
+  enum class Part { all, constant, changing };
   /// Factorizes and solves for y, which is padded; false if a pivot is not accepted.
-  bool factorize_and_solve(F* y);
-  void solve(F* y) const;
+  bool factorize_and_solve(F* y, Part part = Part::all);
+  void solve(F* y, Part part = Part::all) const;
 
  private:
   static constexpr int kMargin = 16;  // numbers before and behind, which vectors may touch
@@ -74,6 +77,11 @@ class Panels {
     void (Panels::*backward)(const Run&, F*) const = nullptr;
   };
 
+  [[nodiscard]] std::span<const Run> runs_of(Part part) const {
+    const std::span<const Run> all(runs_);
+    if (part == Part::all) return all;
+    return part == Part::constant ? all.first(constant_runs_) : all.subspan(constant_runs_);
+  }
   void add_front(const Front& front);
   void add_strips(const Front& front);
   void add_copied(const Front& front);
@@ -124,6 +132,7 @@ class Panels {
   Array<F> constants_, matrix_, factors_;
   std::vector<Panel> panels_;
   std::vector<Run> runs_;
+  std::size_t constant_runs_ = 0;
   PanelShape last_shape_;  // while tables are made, as the next
   int next_factors_ = 0;
   std::vector<int> rows_;
@@ -139,7 +148,13 @@ Panels<F>::Panels(const Program& program, bool definite)
       definite_(definite),
       constants_(program.storage + 2 * kMargin, F(0)),
       matrix_(program.storage + 2 * kMargin, F(0)) {
-  for (const Front& front : program.fronts) add_front(front);
+  for (int k = 0; k < static_cast<int>(program.fronts.size()); ++k) {
+    if (k == program.constant_fronts) {
+      constant_runs_ = runs_.size();
+      last_shape_ = {};  // begins a run
+    }
+    add_front(program.fronts[k]);
+  }
   factors_.resize(next_factors_ + kMargin, F(0));
 }
 
@@ -285,10 +300,11 @@ void Panels<F>::set_kernels(Run& run) const {
 // Elimination of a run of panels.
 
 template <typename F>
-bool Panels<F>::factorize_and_solve(F* y) {
+bool Panels<F>::factorize_and_solve(F* y, Part part) {
   bool accepted = true;
-  for (const Run& run : runs_) accepted &= (this->*run.eliminate)(run, y);
-  for (auto run = runs_.rbegin(); run != runs_.rend(); ++run) (this->*run->backward)(*run, y);
+  const auto runs = runs_of(part);
+  for (const Run& run : runs) accepted &= (this->*run.eliminate)(run, y);
+  for (auto run = runs.rbegin(); run != runs.rend(); ++run) (this->*run->backward)(*run, y);
   return accepted;
 }
 
@@ -584,9 +600,10 @@ void Panels<F>::update_two(const Panel& panel) {
 // Substitution with the factors there are.
 
 template <typename F>
-void Panels<F>::solve(F* y) const {
-  for (const Run& run : runs_) (this->*run.forward)(run, y);
-  for (auto run = runs_.rbegin(); run != runs_.rend(); ++run) (this->*run->backward)(*run, y);
+void Panels<F>::solve(F* y, Part part) const {
+  const auto runs = runs_of(part);
+  for (const Run& run : runs) (this->*run.forward)(run, y);
+  for (auto run = runs.rbegin(); run != runs.rend(); ++run) (this->*run->backward)(*run, y);
 }
 
 /// z = D⁻¹ M y in place of the pivots' y; y −= C L⁻ᵀ z below.
