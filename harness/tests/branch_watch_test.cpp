@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -68,6 +69,27 @@ TEST(BranchWatch, LetsALoopPassItsSingularPositions) {
   const RunSummary estimated = run(scene, test::reference(), settings);
   EXPECT_EQ(estimated.status, RunStatus::plausible) << estimated.reason;
   EXPECT_NE(estimated.reason.find("singular position"), std::string::npos) << estimated.reason;
+}
+
+TEST(BranchWatch, TakesNoDirectionFromRoundingAtRest) {
+  const Scene scene = load_scene(MBS_ROOT "/harness/scenes/four_bar_2.json");
+  State rest = initial_state(scene.model);
+  std::ranges::fill(rest.v, 0.0);
+  const auto changes = [&](double speed) {
+    BranchWatch watch(scene, rest, judged_length(scene.model), true);
+    bool has_changed = false;
+    for (int i = 0; i < 40; ++i) {
+      State state = rest;
+      for (std::size_t k = 0; k < state.v.size(); ++k) {
+        state.v[k] = speed * std::sin(3.0 * i * i + 2.0 * static_cast<double>(k * k) + i);
+      }
+      has_changed = has_changed || watch.is_across(i, state);
+      if (i == 0) watch.look(i, state);
+    }
+    return has_changed;
+  };
+  EXPECT_TRUE(changes(1.0));
+  EXPECT_FALSE(changes(1e-14));
 }
 
 /// A crank-rocker 1e-7 m from its change point with a light rod hanging on it; how its feet are

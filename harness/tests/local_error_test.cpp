@@ -1,7 +1,11 @@
 // What neither energy nor constraints show: lags, found by what single steps leave.
+#include "run/local_errors.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
 
 #include "controls/controls.hpp"
 #include "run/initial_state.hpp"
@@ -79,6 +83,90 @@ TEST(LocalErrors, CountWhatAWrongEnergyIsAheadBy) {
   double speed = 0.0;
   for (const double v : faster.v) speed = std::hypot(speed, v);
   EXPECT_NEAR(judge.local_error_sum(), speed * (std::sqrt(2 - 1 / 1.0201) - 1), 1e-12);
+}
+
+TEST(LocalErrors, AddUpAlongTheWay) {
+  const Scene scene = shipped("pendulum.json");
+  ASSERT_EQ(scene.model.variables(), 2);
+  const std::vector<double> onward{2.0, 0.0}, none{0.0, 0.0};
+  LocalErrors lags(scene, 1.0);
+  lags.add_lag(std::vector{1e-3, 5.0}, onward, 10);  // what is across the way is no lag
+  EXPECT_NEAR(lags.sum(), 1e-2, 1e-15);
+  lags.add_lag(std::vector{1e-3, 5.0}, none, 10);
+  EXPECT_NEAR(lags.sum(), 1e-2, 1e-15);
+  lags.add_lag(std::vector{std::numeric_limits<double>::quiet_NaN(), 0.0}, onward, 1);
+  EXPECT_EQ(lags.sum(), HUGE_VAL);
+  // Each of 1000 steps leaves the speed by 1e-6 m/s too high: by 1e-3 m/s at last, half of that on
+  // the mean, over 1 s. The walk that it may be besides is 1e-6 sqrt(N).
+  LocalErrors speeds(scene, 1.0), shaken(scene, 1.0), brief(scene, 1.0);
+  for (int i = 0; i < 100; ++i) {
+    speeds.add_speed({{1e-6, 5.0}, {1e-6, 0.0}}, onward, 1e-3, 10, 0.0);
+    const double error = i % 2 == 0 ? 1e-6 : -1e-6;
+    shaken.add_speed({{error, 5.0}, {error, 0.0}}, onward, 1e-3, 10, 0.0);
+    brief.add_speed({{1e-6, 5.0}, {-1e-7, 0.0}}, onward, 1e-3, 10, 0.0);
+  }
+  EXPECT_GT(speeds.sum(), 3e-4);
+  EXPECT_LT(speeds.sum(), 6e-4);
+  EXPECT_LT(shaken.sum(), 5e-5);
+  EXPECT_EQ(brief.sum(), 0.0);  // a stiff damper turned it round
+  LocalErrors braked(scene, 1.0);  // as if all was taken away before each sample
+  for (int i = 0; i < 100; ++i) {
+    braked.add_speed({{1e-6, 5.0}, {1e-6, 5.0}}, onward, 1e-3, 10, 1e6);
+  }
+  EXPECT_LT(braked.sum(), 1e-5);
+  speeds.add_speed({{1.0, 0.0}, {1.0, 0.0}}, onward, 1e-3, 1000, 0.0);  // no more than the way itself
+  EXPECT_LT(speeds.sum(), 6e-4 + 2.0 * 1e-3 * 1000 + 1e-12);
+}
+
+/// Two rods of 1 m below each other, of 1 kg and of `mass`.
+Scene with_lower_rod(double mass) {
+  nlohmann::json scene = nlohmann::json::parse(R"({"points": [
+      {"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "B", "position": [0.8, -0.6]}, {"name": "C", "position": [1.6, -1.2]}],
+      "rods": [{"name": "upper", "between": ["A", "B"], "mass": 1, "length": 1},
+               {"name": "lower", "between": ["B", "C"], "length": 1}]})");
+  scene["rods"][1]["mass"] = mass;
+  return scene_of(scene, "test");
+}
+
+TEST(LocalErrors, OfALightPartAreItsOwn) {
+  const Scene scene = with_lower_rod(1e-6);
+  RunSettings settings = settings_for(scene, Scheme::penalty, 1.25e-3, 4.0);
+  settings.step.tolerance = automatic_tolerance(scene.model, settings.step);
+  const RunSummary shaken = run(scene, test::reference(), settings);
+  EXPECT_EQ(shaken.status, RunStatus::degraded);
+  EXPECT_LT(*shaken.energy_drift_max, 1e-3);
+  EXPECT_NE(shaken.reason.find("local errors"), std::string::npos) << shaken.reason;
+  const RunSummary sound =
+      run(scene, test::reference(), settings_for(scene, Scheme::saddle_point, 1.25e-3, 4.0));
+  EXPECT_EQ(sound.status, RunStatus::plausible) << sound.reason;
+}
+
+TEST(LocalErrors, SeeWhatPassesThatEndEarlyLeave) {
+  // A rod that turns about its foot without gravity and is braked.
+  const Scene scene = scene_of(nlohmann::json::parse(R"({"gravity": [0, 0], "points": [
+      {"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "X", "position": [1, 0], "fixed": true},
+      {"name": "B", "position": [1, 0], "velocity": [0, 3]}],
+      "rods": [{"name": "rod", "between": ["A", "B"], "mass": 1, "length": 1}],
+      "torsion_springs": [{"name": "brake", "from": ["A", "X"], "to": ["A", "B"], "stiffness": 0,
+                           "damping": 0.4, "angle": 1}]})"),
+                               "test");
+  RunSettings settings = settings_for(scene, Scheme::penalty, 5e-3, 5.0);
+  settings.step.tolerance = 1e-6;
+  settings.step.tangent = TangentReuse::kept;
+  EXPECT_EQ(run(scene, test::reference(), settings).status, RunStatus::degraded);
+  settings.step.tolerance = 1e-12;
+  const RunSummary sound = run(scene, test::reference(), settings);
+  EXPECT_EQ(sound.status, RunStatus::plausible) << sound.reason;
+}
+
+TEST(LocalErrors, DoNotAddUpWhereDriversLeaveNoFreedom) {
+  const Scene scene = shipped("examples/driven_crank.json");
+  const RunSummary summary =
+      run(scene, test::reference(), settings_for(scene, Scheme::penalty, 2e-2, 2.0));
+  EXPECT_FALSE(summary.local_error_sum);
+  EXPECT_EQ(summary.status, RunStatus::plausible) << summary.reason;
 }
 
 /// A mass on a spring along x at 2 pi rad a `period` steps, in unit steps of a millisecond.

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "controls/controls.hpp"
+#include "model_math/even_carriage.hpp"
 #include "model_math/kinematics.hpp"
 #include "run/initial_state.hpp"
 #include "run/judge.hpp"
@@ -52,6 +53,23 @@ TEST(PowerBalance, SeesEnergyThatNothingBrought) {
   EXPECT_NEAR(balance.over(before, before, 1e-9, 1e-9).excess, 0.0, 1e-4 * gained);
 }
 
+TEST(PowerBalance, KnowsWhatDampersTake) {
+  // A rod of inertia 1/3 about its foot, braked by 0.4 N m s: that takes 2 c/I of its energy.
+  const Scene scene = scene_of(nlohmann::json::parse(R"({"points": [
+      {"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "X", "position": [1, 0], "fixed": true},
+      {"name": "B", "position": [1, 0], "velocity": [0, 3]}],
+      "rods": [{"name": "rod", "between": ["A", "B"], "mass": 1, "length": 1}],
+      "torsion_springs": [{"name": "brake", "from": ["A", "X"], "to": ["A", "B"], "stiffness": 5,
+                           "damping": 0.4, "angle": 1}]})"),
+                               "test");
+  State state = initial_state(scene.model);
+  PowerBalance balance(scene);
+  EXPECT_NEAR(balance.braked(0.0, state), 2.4, 1e-12);
+  for (double& v : state.v) v = 0.0;
+  EXPECT_EQ(balance.braked(0.0, state), 0.0);
+}
+
 TEST(PowerBalance, IsNoQuestionWhereEnergyIsConservedOrDriversSetAll) {
   for (const char* name : {"double_pendulum.json", "examples/driven_crank.json"}) {
     const Scene scene = shipped(name);
@@ -94,6 +112,43 @@ TEST(EvenCarriage, ConservesEnergyInItsFrame) {
   faster.v[1] *= 1.1;
   judge.judge(0.0, faster);
   EXPECT_GT(*judge.energy_drift_max(), 0.1);
+}
+
+TEST(EvenCarriage, TakesBodiesAlongWhosePointsAreDriven) {
+  // Of a body with three points that others need, one of them driven, a linear row has a value that is driven too.
+  const auto body = [](const std::string& first, const std::string& second) {
+    return scene_of(nlohmann::json::parse(R"({"gravity": [0, -3], "points": [
+        {"name": "A", "position": [0, 0], "driven": {"x": {"polynomial": [)" +
+                                          first + R"(]}, "y": 0}},
+        {"name": "B", "position": [1, 0], "velocity": [5, 1]},
+        {"name": "C", "position": [0.5, 0.5], "velocity": [4.5, 0.5]},
+        {"name": "D", "position": [3, 0], "driven": {"x": {"polynomial": [)" +
+                                          second + R"(]}, "y": 0}},
+        {"name": "E", "position": [4, 0], "velocity": [4.8, 1]},
+        {"name": "F", "position": [1.5, 0.5], "velocity": [4.5, 1]},
+        {"name": "G", "position": [2, 0], "velocity": [5, 1]}],
+        "bodies": [{"name": "body", "mass": 1, "centre": [0.5, 0], "inertia": 0.1,
+                    "points": {"A": [0, 0], "B": [1, 0], "C": [0.5, 0.5]}}],
+        "rods": [{"name": "beside", "between": ["D", "E"], "mass": 1, "length": 1},
+                 {"name": "at C", "between": ["C", "F"], "mass": 1, "length": 1},
+                 {"name": "at B", "between": ["B", "G"], "mass": 1, "length": 1}]})"),
+                    "test");
+  };
+  const Scene even = body("0, 5", "3, 5");
+  ASSERT_FALSE(even.model.driven_values().empty());
+  const auto carriage = EvenCarriage::of(even.model);
+  ASSERT_TRUE(carriage);
+  EXPECT_TRUE(carriage->holds(even.model, 2.0));
+  EXPECT_FALSE(EvenCarriage::of(body("0, 5", "3, 4.8").model));
+  EXPECT_FALSE(EvenCarriage::of(body("0, 5, 1", "3, 5, 1").model));
+  RunSettings settings;
+  settings.step.scheme = Scheme::saddle_point;
+  settings.step.step = 1e-3;
+  settings.step.penalty = automatic_penalty(even.model, settings.step);
+  settings.duration = 1.0;
+  const RunSummary sound = run(even, test::reference(), settings);
+  ASSERT_TRUE(sound.energy_drift_max) << sound.reason;
+  EXPECT_LT(*sound.energy_drift_max, 1e-3);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ BlockJacobian::BlockJacobian(const Model& model, std::vector<ConstraintBlock> bl
   const int quadratic = dots + static_cast<int>(model.bilinear_constraints().size());
   for (std::size_t m = 0; m < blocks_.size(); ++m) {
     const auto size = static_cast<Eigen::Index>(blocks_[m].cols.size());
-    constant_.emplace_back(Eigen::MatrixXd::Zero(size, size));
+    constant_.emplace_back(SquareMatrix::Zero(size, size));
     int place = 0;
     for (const int row : blocks_[m].rows) {
       if (row < dots) {
@@ -74,7 +74,7 @@ void BlockJacobian::evaluate(double t, std::span<const double> q) {
     const Vector3 w = position(row.points[2], q) - position(row.points[3], q);
     const Vector3 at_ab = row.is_dot ? w : multiply(row.B, w);
     const Vector3 at_cd = row.is_dot ? u : multiply_transposed(row.B, u);
-    Eigen::MatrixXd& matrix = matrices_[row.matrix];
+    SquareMatrix& matrix = matrices_[row.matrix];
     for (std::size_t k = 0; k < 4; ++k) {
       const Vector3& gradient = k < 2 ? at_ab : at_cd;
       const double sign = k % 2 == 0 ? 1.0 : -1.0;

@@ -13,6 +13,8 @@
 
 namespace mbs {
 
+using SquareMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Phi_q of some rows and columns. A block with one column more than rows has a last row left to
 /// its user. Allocates nothing after construction.
 class BlockJacobian {
@@ -29,7 +31,7 @@ class BlockJacobian {
   /// At q (n, m) and t (s); the rows that are left to the user become 0.
   void evaluate(double t, std::span<const double> q);
   /// As many rows as columns.
-  [[nodiscard]] Eigen::MatrixXd& matrix(std::size_t index) { return matrices_[index]; }
+  [[nodiscard]] SquareMatrix& matrix(std::size_t index) { return matrices_[index]; }
 
  private:
   /// A quadratic row: where the gradient at its points goes.
@@ -50,7 +52,7 @@ class BlockJacobian {
   const Model& model_;
   KnownMotion known_;
   std::vector<ConstraintBlock> blocks_;
-  std::vector<Eigen::MatrixXd> constant_, matrices_;  // constant_: linear rows alone
+  std::vector<SquareMatrix> constant_, matrices_;  // constant_: linear rows alone
   std::vector<Row> rows_;
 };
 

@@ -15,6 +15,9 @@ std::optional<EvenCarriage> EvenCarriage::of(const Model& model) {
   ModelData at_rest = model.data();
   at_rest.driven_points.clear();
   at_rest.driven_mass.clear();
+  const auto first_linear = model.constraints() - static_cast<int>(model.linear_constraints().size());
+  std::erase_if(at_rest.driven_values,
+                [&](const DrivenValue& driven) { return driven.constraint >= first_linear; });
   if (!is_conservative(Model(std::move(at_rest)))) return std::nullopt;
   EvenCarriage result;
   const auto points = model.points();
@@ -31,8 +34,10 @@ std::optional<EvenCarriage> EvenCarriage::of(const Model& model) {
           result.carried_[static_cast<std::size_t>(axis)];
     }
   }
-  for (const LinearConstraint& c : model.linear_constraints()) {  // between coordinates alone
-    double rate = 0.0, size = 0.0;
+  const auto values = KnownMotion(model, 0.0).values();
+  auto value = values.end() - static_cast<std::ptrdiff_t>(model.linear_constraints().size());
+  for (const LinearConstraint& c : model.linear_constraints()) {  // it holds in that frame too
+    double rate = -value->rate, size = std::abs(rate);
     for (const auto& term : c.terms) {
       const double part =
           term.coefficient * result.velocity_[static_cast<std::size_t>(term.coordinate)];
@@ -40,6 +45,7 @@ std::optional<EvenCarriage> EvenCarriage::of(const Model& model) {
       size += std::abs(part);
     }
     if (std::abs(rate) > 1e-12 * size) return std::nullopt;
+    ++value;
   }
   constexpr double kLongest = 1000.0;  // s
   for (double t = 0.01; t < kLongest; t *= 1.618) {
@@ -49,18 +55,21 @@ std::optional<EvenCarriage> EvenCarriage::of(const Model& model) {
 }
 
 bool EvenCarriage::holds(const Model& model, double t) const {
-  constexpr double kSmall = 1e-12;
+  const auto is_even = [t](const TimeFunction& function, double rate) {
+    if (t > function.end()) return true;
+    constexpr double kSmall = 1e-12;
+    const double start = function.at(0.0).value, way = rate * t;
+    const auto now = function.at(t);
+    return now.acceleration == 0.0 &&
+           std::abs(now.value - start - way) <= kSmall * (std::abs(start) + std::abs(way));
+  };
   for (const DrivenPoint& driven : model.driven_points()) {
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(model.dimension()); ++axis) {
-      const TimeFunction& position = driven.position[axis];
-      if (t > position.end()) continue;
-      const double start = position.at(0.0).value, way = carried_[axis] * t;
-      const auto now = position.at(t);
-      if (!(std::abs(now.value - start - way) <= kSmall * (std::abs(start) + std::abs(way)))) {
-        return false;
-      }
-      if (now.acceleration != 0.0) return false;
+      if (!is_even(driven.position[axis], carried_[axis])) return false;
     }
+  }
+  for (const DrivenValue& driven : model.driven_values()) {
+    if (!is_even(driven.value, driven.value.at(0.0).rate)) return false;
   }
   return true;
 }

@@ -11,7 +11,8 @@ namespace mbs {
 
 /// The frame of a model without losses that is fixed to nothing but driven points, which all move
 /// at one constant velocity V: there its feet rest and, by Galilei, all forces are the same, so
-/// that the energy at q - V t, v - V is conserved, while drivers do work at q, v.
+/// that the energy at q - V t, v - V is conserved, while drivers do work at q, v. (A linear row of a
+/// body that has a driven point has a value that is driven too: it must go along.)
 class EvenCarriage {
  public:
   /// None if the model is another.

@@ -17,9 +17,34 @@ namespace {
 
 constexpr int kLargestPart = 60;   // rows; larger ones would cost more than steps
 constexpr double kUnknown = 1e-9;  // smallest pivot, of rows of length 1: no sign
+constexpr double kStill = 1e-9;    // of the length a second: no direction of motion
 constexpr double kSame = 1e-5;     // of the length: more than what constraints are violated by
 constexpr int kMostUncertain = 8;  // looks
 constexpr double kApart = 3e-3;    // of the length: less is not yet another assembly
+
+/// The sign of its determinant by elimination with row pivots, which passes over zeros, or 0 where a
+/// pivot is too small. (A determinant of many rows is small wherever it is.) Overwrites it.
+int sign_of(SquareMatrix& matrix) {
+  const Eigen::Index size = matrix.rows();
+  int sign = 1;
+  for (Eigen::Index k = 0; k < size; ++k) {
+    Eigen::Index at = 0;
+    const double most = matrix.col(k).tail(size - k).cwiseAbs().maxCoeff(&at);
+    if (!(most > kUnknown && std::isfinite(most))) return 0;
+    if (at != 0) {
+      matrix.row(k).tail(size - k).swap(matrix.row(k + at).tail(size - k));
+      sign = -sign;
+    }
+    const double pivot = matrix(k, k);
+    if (pivot < 0.0) sign = -sign;
+    for (Eigen::Index i = k + 1; i < size; ++i) {
+      if (matrix(i, k) == 0.0) continue;
+      const double factor = matrix(i, k) / pivot;
+      matrix.row(i).tail(size - k - 1) -= factor * matrix.row(k).tail(size - k - 1);
+    }
+  }
+  return sign;
+}
 
 }  // namespace
 
@@ -42,7 +67,7 @@ BranchWatch::BranchWatch(const Scene& scene, const State& start, double length, 
   if (!is_needed()) return;
   matrices_.emplace(scene.model, std::move(matrices));
   now_.resize(matrices_->size());
-  for (std::size_t m = 0; m < now_.size(); ++m) lu_.emplace_back(matrices_->matrix(m).rows());
+  eliminated_.resize(now_.size());
   tangent_ = start.v;
   find_tangents(start);
   find_signs(0.0, start);
@@ -86,8 +111,9 @@ void BranchWatch::find_signs(double t, const State& state) {
   matrices_->evaluate(t, state.q);
   for (std::size_t m = 0; m < now_.size(); ++m) {
     const ConstraintBlock& block = matrices_->block(m);
-    Eigen::MatrixXd& square = matrices_->matrix(m);
+    SquareMatrix& square = matrices_->matrix(m);
     const Eigen::Index size = square.rows();
+    double least = 0.0;  // length of a row that has a direction
     if (BlockJacobian::is_open(block)) {  // one freedom: the direction of motion below
       const std::vector<double>& below = is_carried(m) ? tangent_ : state.v;
       const double sign = is_carried(m) ? 1.0 : turned(block, state);
@@ -95,24 +121,16 @@ void BranchWatch::find_signs(double t, const State& state) {
         const int col = block.cols[static_cast<std::size_t>(j)];
         square(size - 1, j) = sign * below[static_cast<std::size_t>(col)];
       }
+      if (!is_carried(m)) least = kStill * length_;
     }
-    double lengths = 1.0;
+    bool has_directions = true;
     for (Eigen::Index i = 0; i < size; ++i) {
       const double length = square.row(i).norm();
-      square.row(i) /= length > 0.0 ? length : 1.0;
-      if (!(length > 0.0)) lengths = 0.0;
+      if (!(length > (i == size - 1 ? least : 0.0))) has_directions = false;
+      if (length > 0.0) square.row(i) /= length;
     }
-    // A determinant of many rows is small wherever it is: the smallest pivot tells.
-    double determinant = 0.0, least = 0.0;
-    if (size == 2) {
-      determinant = square(0, 0) * square(1, 1) - square(0, 1) * square(1, 0);
-      least = std::abs(determinant);
-    } else {
-      determinant = lu_[m].compute(square).determinant();
-      least = lu_[m].matrixLU().diagonal().cwiseAbs().minCoeff();
-    }
-    const bool is_known = lengths * least > kUnknown && std::isfinite(determinant);
-    now_[m] = !is_known || determinant == 0.0 ? 0 : determinant > 0.0 ? 1 : -1;
+    eliminated_[m] = square;
+    now_[m] = has_directions ? sign_of(eliminated_[m]) : 0;
   }
 }
 
@@ -131,7 +149,7 @@ void BranchWatch::moor(double t, const State& state) {
     if (!BlockJacobian::is_open(block)) continue;
     if (is_carried(m)) {
       if (now_[m] == 0) continue;
-      const Eigen::MatrixXd& square = matrices_->matrix(m);  // as find_signs() left it
+      const SquareMatrix& square = matrices_->matrix(m);  // as find_signs() left it
       const Eigen::VectorXd tangent =
           square.partialPivLu()
               .solve(Eigen::VectorXd::Unit(square.rows(), square.rows() - 1))

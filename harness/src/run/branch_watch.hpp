@@ -1,7 +1,6 @@
 // Finds motions that went on as another assembly of their mechanism.
 #pragma once
 
-#include <Eigen/LU>
 #include <optional>
 #include <string>
 #include <vector>
@@ -71,7 +70,7 @@ class BranchWatch {
   std::vector<Part> parts_;
   std::vector<std::size_t> part_of_;  // of each determinant
   std::optional<BlockJacobian> matrices_;
-  std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> lu_;  // of each, as of find_signs(); not of 2 x 2
+  std::vector<SquareMatrix> eliminated_;                    // of each, to work in
   State anchor_;
   double anchor_time_ = 0.0;             // s
   std::vector<int> anchor_signs_, now_;  // as of find_signs()

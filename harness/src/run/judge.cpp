@@ -74,11 +74,6 @@ bool is_finite(const State& state) {
 
 }  // namespace
 
-double trapezoidal_error(const Scene& scene, const State& before, const State& after, double step,
-                         double length) {
-  return step * step / 12 * largest_distance(scene, length, after.a, before.a);
-}
-
 double judged_length(const Model& model) {
   return std::min(extent(model.points()), fastest_turning(model).length);
 }

@@ -28,16 +28,12 @@ struct AccurateBounds {
   double position_error = 1e-2;  ///< m, where an exact solution is known
   /// Of Judge::length(), where the error is estimated: HalfStepRun.
   double estimated_error = 1e-2;
-  /// Of Judge::length(): local_error_sum(), of which errors are usually one to twelve times.
+  /// Of Judge::length(): RunSummary::local_error_sum, of which errors are usually one to twelve
+  /// times.
   double local_error = 3e-3;
   double energy_drift = 1e-2;  ///< as RunBounds
   double constraint_violation = 1e-4;
 };
-
-/// What the trapezoidal rule leaves in one step, dt^2/12 |a' - a| of the point where that is most,
-/// m; `after` is one step (s) after `before`, unit vectors count as `length` (m) long.
-double trapezoidal_error(const Scene& scene, const State& before, const State& after, double step,
-                         double length);
 
 /// What errors are small against where the exact motion is not known, m: the length of the part
 /// that turns fastest, at most the extent.
@@ -62,10 +58,12 @@ class Judge {
   /// Largest |sum of the excess| over the run, over the larger of the largest kinetic energy and
   /// the work so far; none without add_balance().
   [[nodiscard]] std::optional<double> imbalance_max() const { return so_far_.imbalance; }
-  /// Sum of the local errors over the run, m: what the position error comes to if nothing damps or
-  /// multiplies it, such as the lag behind the exact motion, which neither energy nor constraints
-  /// show.
+  /// Sum of what add_local_error() got and of the way ahead or behind, m.
   [[nodiscard]] double local_error_sum() const { return so_far_.local_error; }
+  /// The velocity of `judged`, the last state, in the frame of feet that are carried along; n, m/s.
+  [[nodiscard]] const std::vector<double>& velocity(const State& judged) const {
+    return carriage_ ? moved_v_ : judged.v;
+  }
   /// judged_length() of the scene, m.
   [[nodiscard]] double length() const { return length_; }
   [[nodiscard]] bool knows_exact_motion() const { return exact_.has_value(); }

@@ -20,6 +20,10 @@ bool has_high_order(Scheme scheme) {
   return scheme == Scheme::rattle4 || scheme == Scheme::rattle6 || scheme == Scheme::multistep6;
 }
 
+bool is_trapezoidal(Scheme scheme) {
+  return scheme == Scheme::penalty || scheme == Scheme::saddle_point;
+}
+
 }  // namespace
 
 JudgedRun::JudgedRun(const Scene& scene, const Variant& variant, const RunSettings& settings,
@@ -37,19 +41,18 @@ JudgedRun::JudgedRun(const Scene& scene, const Variant& variant, const RunSettin
       judge_(scene, state_, 0.0),
       good_{0, state_, judge_.figures()},
       watch_(scene, state_, judge_.length(), !judge_.knows_exact_motion()),
-      samples_local_error_(!judge_.knows_exact_motion()) {}
+      local_errors_(scene, judge_.length()),
+      adds_local_errors_(watch_.freedoms() > 0) {}
 
 void JudgedRun::begin(Access access) {
   access_ = std::move(access);
   if (watch_.is_needed()) next_look_ = looked_after(state_);
-  if (samples_local_error_ && watch_.freedoms() > 0 && !judge_.energy_drift_max()) {
-    balance_.emplace(scene_);
-  }
+  if (adds_local_errors_ && !judge_.energy_drift_max()) balance_.emplace(scene_);
   if (observer_) observer_(0, 0.0, state_);
   if (settings_.half_step) {
     half_.emplace(scene_, variant_, *settings_.half_step, state_, judge_.length());
   }
-  if (has_high_order(settings_.step.scheme)) {
+  if (adds_local_errors_ && has_high_order(settings_.step.scheme)) {
     local_half_.emplace(scene_, variant_, settings_.step, judge_.length());
   }
 }
@@ -89,7 +92,7 @@ void JudgedRun::take(const StepOutcome& outcome) {
     if (is_over_) return;
     next_judged_ = judged_after(step);
   }
-  if (samples_local_error_ && step < steps_ && step + 1 == next_judged_) {
+  if (adds_local_errors_ && step < steps_ && step + 1 == next_judged_) {
     const auto begin = Clock::now();
     access_.get_state(before_);
     judging_ += Clock::now() - begin;
@@ -124,9 +127,7 @@ void JudgedRun::judge_present() {
     redone = Clock::now() - redo;
   }
   if (is_over_) return;
-  if (samples_local_error_) {
-    judge_.add_local_error(local_error(), state_, settings_.step.step, step - good_.step);
-  }
+  if (adds_local_errors_) add_local_errors();
   balance_energy();
   good_.step = step;
   std::swap(good_.state, state_);
@@ -163,10 +164,10 @@ bool JudgedRun::is_unusual(const StepOutcome& outcome) const {
 }
 
 /// Steps until the next look: as many as leave no time to jump there and back, a quarter of the
-/// judged length by speed and acceleration of the fastest point, and at most 64.
+/// judged length by speed and acceleration of the fastest point, and at most 256.
 long JudgedRun::looked_after(const State& present) const {
   constexpr double kWay = 0.25;  // of the length
-  constexpr long kMost = 64;
+  constexpr long kMost = 256;
   const double length = judge_.length();
   double speed = 0.0, acceleration = 0.0;
   for (const double v : present.v) speed = std::max(speed, std::abs(v));
@@ -203,10 +204,44 @@ void JudgedRun::balance_energy() {
   balanced_ = step;
 }
 
-/// What the last step left, m, sampled where the state is judged.
-double JudgedRun::local_error() {
-  if (local_half_) return local_half_->error(before_, state_);
-  return trapezoidal_error(scene_, before_, state_, settings_.step.step, judge_.length());
+/// What the last step left stands for those since the last judged one.
+void JudgedRun::add_local_errors() {
+  const long steps = summary_.steps - good_.step;
+  const double step = settings_.step.step;
+  if (!local_half_) {  // the trapezoidal rule
+    off_.resize(state_.a.size());
+    for (std::size_t i = 0; i < off_.size(); ++i) {
+      off_[i] = step * step / 12 * (state_.a[i] - before_.a[i]);
+    }
+    local_errors_.add_lag(off_, judge_.velocity(state_), steps);
+  }
+  judge_.add_local_error(local_half_ ? local_half_->error(before_, state_) : 0.0, state_, step,
+                         steps);
+  add_speed_error();
+}
+
+/// By some of the steps that are judged, 16 in a run or one in 1024: it takes as long as a few
+/// steps.
+void JudgedRun::add_speed_error() {
+  constexpr long kMost = 1024, kTimes = 16;
+  const long step = summary_.steps, since = step - done_again_;
+  if (!is_trapezoidal(settings_.step.scheme)) return;
+  if (step != steps_ && since < std::min(kMost, steps_ / kTimes - interval_)) return;
+  // Steps that were not projected as the others are not comparable.
+  if (step % settings_.step.projections_every != 0) return;
+  if (!again_) {  // its set-up is no more judging than that of the run is a step
+    const auto begin = Clock::now();
+    again_.emplace(access_.create, scene_.model, settings_.step,
+                   static_cast<double>(summary_.passes) / static_cast<double>(step));
+    judging_ -= Clock::now() - begin;
+  }
+  // Even if all steps left so much: the sum grows with the square of time.
+  const double negligible = 0.1 * AccurateBounds{}.local_error * judge_.length() /
+                            (static_cast<double>(steps_) * time(steps_));
+  local_errors_.add_speed(again_->error(before_, state_, negligible), judge_.velocity(state_),
+                          settings_.step.step, since,
+                          balance_ ? balance_->braked(time(step), state_) : 0.0);
+  done_again_ = step;
 }
 
 /// The solution was found lost, for `reason`. Does the steps since the last good one again and
@@ -274,7 +309,9 @@ void JudgedRun::take_exception() {
 /// The outcome of a run that went to its end.
 void JudgedRun::conclude() {
   is_over_ = true;
-  if (samples_local_error_) summary_.local_error_sum = judge_.local_error_sum();
+  if (adds_local_errors_) {
+    summary_.local_error_sum = judge_.local_error_sum() + local_errors_.sum();
+  }
   const double share = static_cast<double>(summary_.steps_at_limit) / static_cast<double>(steps_);
   if (share > RunBounds{}.pass_limit_share) {
     summary_.status = RunStatus::not_converged;
@@ -292,7 +329,7 @@ void JudgedRun::conclude() {
     summary_.reason += reason;
   };
   add(watch_.doubt());
-  if (samples_local_error_) {
+  if (adds_local_errors_) {
     add(rounding_degradation(scene_.model, settings_.step, steps_, judge_.length()));
   }
   if (!summary_.reason.empty()) {
@@ -302,7 +339,7 @@ void JudgedRun::conclude() {
     summary_.reason = watch_.passage() +
                       ", where half the step goes the same way: it does not tell whether it is "
                       "the right one";
-  } else if (samples_local_error_ && !half_) {
+  } else if (!judge_.knows_exact_motion() && !half_) {
     summary_.status = RunStatus::plausible;
     summary_.reason = "no exact motion is known; --half-step estimates the position error";
   }

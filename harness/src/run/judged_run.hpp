@@ -8,9 +8,11 @@
 
 #include "run/branch_watch.hpp"
 #include "run/half_step_run.hpp"
+#include "run/local_errors.hpp"
 #include "run/local_half_steps.hpp"
 #include "run/power_balance.hpp"
 #include "run/run.hpp"
+#include "run/step_again.hpp"
 
 namespace mbs {
 
@@ -28,6 +30,8 @@ class JudgedRun {
     std::function<void(State&)> get_state;
     /// A simulation that can be set back, to do steps of this run again: the same, or one like it.
     std::function<Simulation&()> again;
+    /// Makes simulations like it, with other settings.
+    StepAgain::Create create;
   };
 
   /// `scene` and `variant` must outlive this.
@@ -67,7 +71,8 @@ class JudgedRun {
   void lose(const Judge& judge, const std::string& reason, long step);
   /// What may be behind a loss with this scheme.
   [[nodiscard]] std::string hint() const;
-  [[nodiscard]] double local_error();
+  void add_local_errors();
+  void add_speed_error();
   void balance_energy();
   void conclude();
   [[nodiscard]] std::string beyond_estimates() const;
@@ -89,9 +94,13 @@ class JudgedRun {
   BranchWatch watch_;
   std::optional<PowerBalance> balance_;  // where energy is not conserved
   long judgements_ = 0, balanced_ = 0;   // balanced_: step
+  std::optional<StepAgain> again_;       // of the trapezoidal forms
+  long done_again_ = 0;                  // step
+  LocalErrors local_errors_;
+  std::vector<double> off_;              // n, m
   std::optional<HalfStepRun> half_;
   std::optional<LocalHalfSteps> local_half_;
-  bool samples_local_error_;  // nothing better tells
+  bool adds_local_errors_;    // nothing better tells, and constraints do not fix all
   bool has_figures_ = false;  // of a state beyond the start
   bool is_over_ = false;
   std::chrono::steady_clock::duration judging_{};

@@ -69,4 +69,15 @@ PowerBalance::Step PowerBalance::over(const State& before, const State& after, d
   return {end.energy - begin.energy - work, std::abs(work)};
 }
 
+double PowerBalance::braked(double t, const State& state) {
+  applied_force(model_, t, state.q, state.v, force_);
+  applied_force(model_, t, state.q, rest_, conserved_);
+  double power = 0.0;
+  for (std::size_t i = 0; i < force_.size(); ++i) {
+    power += (conserved_[i] - force_[i]) * state.v[i];
+  }
+  const double kinetic = kinetic_energy(model_, state.v);
+  return power > 0.0 && kinetic > 0.0 ? power / kinetic : 0.0;
+}
+
 }  // namespace mbs

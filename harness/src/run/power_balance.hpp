@@ -27,6 +27,10 @@ class PowerBalance {
   /// Over the step of `step` (s) from `before` to `after`, which is at `t` (s).
   [[nodiscard]] Step over(const State& before, const State& after, double t, double step);
 
+  /// The share of the kinetic energy that dampers, and what else depends on velocities, take from
+  /// `state` at `t` (s), 1/s; 0 where they bring some.
+  [[nodiscard]] double braked(double t, const State& state);
+
  private:
   struct Instant {
     double energy = 0.0;  // J

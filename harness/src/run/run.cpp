@@ -156,21 +156,23 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
   try {
     const auto begin = Clock::now();
     if (settings.scale_equations) scaled.emplace(scene.model);
-    const auto create = [&] {
-      return scaled ? scaled->create(variant, scene.model, settings.step)
-                    : create_simulation(variant, scene.model, settings.step);
+    const auto create = [&](const StepSettings& step) {
+      return scaled ? scaled->create(variant, scene.model, step)
+                    : create_simulation(variant, scene.model, step);
     };
-    const auto simulation = create();
+    const auto simulation = create(settings.step);
     simulation->set_state(start);
     setup_us = microseconds(Clock::now() - begin);
     judged.begin({[&](State& state) { simulation->get_state(state); },
-                  [&]() -> Simulation& { return *simulation; }});
+                  [&]() -> Simulation& { return *simulation; }, create});
     times.reserve(static_cast<std::size_t>(count_steps(settings)));
     step_through(*simulation, judged, times);
     if (settings.repeats > 1 && !times.empty()) {
       const std::size_t together = timed_together(times);
       least = by_block(times, together);
-      for (int run = 1; run < settings.repeats; ++run) repeat(*create(), start, together, least);
+      for (int run = 1; run < settings.repeats; ++run) {
+        repeat(*create(settings.step), start, together, least);
+      }
     }
   } catch (...) {
     judged.take_exception();

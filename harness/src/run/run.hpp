@@ -69,7 +69,9 @@ struct RunSummary {
   std::optional<StepTimes> least_us;              ///< each step's least over all runs, with repeats
   std::optional<double> position_error_max;       ///< m
   std::optional<double> position_error_estimate;  ///< m, with RunSettings::half_step
-  /// Judge::local_error_sum(), m; none where something better is known.
+  /// Sum of what single steps leave, m: what the position error comes to if nothing damps or
+  /// multiplies it, such as a lag, which neither energy nor constraints show. None where the exact
+  /// motion is known, or drivers leave no freedom.
   std::optional<double> local_error_sum;
   std::optional<double> energy_drift_max;  ///< none if the model is not conservative
   std::optional<double> imbalance_max;     ///< Judge::imbalance_max()

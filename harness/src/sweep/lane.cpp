@@ -49,7 +49,10 @@ class BatchLane {
     batch_.set_state(index_, start_);
     guard([this] {
       judged_.begin({[this](State& state) { batch_.get_state(index_, state); },
-                     [this]() -> Simulation& { return again(); }});
+                     [this]() -> Simulation& { return again(); },
+                     [this](const StepSettings& step) {
+                       return create_simulation(variant_, lane_.scene.model, step);
+                     }});
     });
   }
   void take(const StepOutcome& outcome) {

@@ -1,0 +1,56 @@
+// What single steps leave, point by point, and how far that carries each point over a run.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "model_math/vector3.hpp"
+#include "run/step_again.hpp"
+#include "scene/scene.hpp"
+
+namespace mbs {
+
+/// Adds up errors of single steps along the way of each point; across it the constraints take them
+/// away. A point is off by the sum of its lags and by the way that a wrong speed goes:
+///
+///   lag  = sum of |off . v|/|v|                          m
+///   gain of v^2/2 by the lesser of now . v and later . v, if their signs agree, m^2/s^2
+///   way  = sum of dt gain/|v|, at most dt |v|            m
+///
+/// Rounding and passes leave something else in each step, so that m samples of N steps, with mean x
+/// and root mean square r, gain N max(0, |x| - 2 r/sqrt(m)) + r sqrt(N): their mean, as far as that
+/// is no chance, and a random walk. Dampers take gains away as they take energy.
+///
+///   LocalErrors errors(scene, judged_length(scene.model));
+///   errors.add_lag(off, v, 64);              // 64 steps like this one
+///   errors.add_speed(again.error(before, after), v, 1.25e-3, 512, 0.0);
+///   double sum = errors.sum();
+class LocalErrors {
+ public:
+  /// `scene` must outlive this; unit vectors count as `length` (m) long.
+  LocalErrors(const Scene& scene, double length) : scene_(scene), length_(length) {}
+
+  /// `steps` steps that each left the positions `off` (n, m) at the velocity `v` (n, m/s).
+  void add_lag(std::span<const double> off, std::span<const double> v, long steps);
+  /// `steps` steps of `step` (s) that each left the velocity too high by `error` while dampers took
+  /// `braked` (1/s) of the kinetic energy.
+  void add_speed(const SpeedError& error, std::span<const double> v, double step, long steps,
+                 double braked);
+
+  /// Largest lag + way of a point so far, m.
+  [[nodiscard]] double sum() const;
+
+ private:
+  struct Sums {
+    double lag = 0.0, way = 0.0;
+    double gain = 0.0, gain_squared = 0.0;  // of samples
+  };
+
+  const Scene& scene_;
+  double length_;
+  std::vector<Vector3> error_, later_, velocity_;  // of one sample
+  std::vector<Sums> points_;
+  double samples_ = 0.0, steps_ = 0.0;  // m, N, without what dampers took away
+};
+
+}  // namespace mbs
