@@ -323,5 +323,28 @@ TEST(BodyScene, ExamplesHaveNoRedundantRows) {
   }
 }
 
+/// A force that changes in time has a hidden point, which is fixed in the draft and lies anywhere.
+TEST(BodyScene, VectorsBeginAtTheOriginWhateverPushes) {
+  const auto of_force = [](const std::string& force) {
+    return data_of_text(R"({"dimension": 3, "bodies": [{"name": "K", "mass": 1, "inertia": [1, 1, 1],
+      "points": {"A": [1, 0, 0.1]}, "vectors": {"u": [0, 0, 1], "w": [0, 1, 0]}}],
+      "forces": [{"point": "A", "force": [0, )" + force + ", 0]}]}");
+  };
+  for (const char* force : {"5", R"({"polynomial": [5, 1]})"}) {
+    const SceneData data = of_force(force);
+    int edges = 0;
+    for (const DotConstraint& dot : data.model.dot_constraints) {
+      for (const auto& [to, from] : {std::pair{dot.a, dot.b}, std::pair{dot.c, dot.d}}) {
+        const Point &tip = data.model.points[static_cast<std::size_t>(to)],
+                    &foot = data.model.points[static_cast<std::size_t>(from)];
+        if (!tip.is_vector) continue;
+        ++edges;
+        EXPECT_EQ(foot.position, (std::array{0.0, 0.0, 0.0})) << force;
+      }
+    }
+    EXPECT_GT(edges, 0);
+  }
+}
+
 }  // namespace
 }  // namespace mbs

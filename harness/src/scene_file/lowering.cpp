@@ -52,6 +52,7 @@ void Lowering::number_points() {
 /// A force that is a function of time: what the mass of a driven point would put into Q.
 void Lowering::add_pusher(DraftForce& force) {
   force.pusher = add_hidden(force.node.path(), false);
+  draft_.points.back().hold = Hold::driven;  // no origin of directions, whatever its place in the draft
   Point& point = model().points[static_cast<std::size_t>(force.pusher)];
   point.position = position(force.point);  // so that the scene's extent stays
   DrivenPoint driven{force.pusher, {}};

@@ -1,0 +1,56 @@
+// A state that is set is where a simulation goes on from, whatever it did before.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <memory>
+
+#include "registry/factory.hpp"
+#include "registry/registry.hpp"
+#include "run/settings.hpp"
+#include "run/stretch.hpp"
+#include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
+#include "support/gtest_name.hpp"
+
+namespace mbs {
+namespace {
+
+class SetState : public ::testing::TestWithParam<NamedVariant> {};
+
+/// n = 12: no multiple of a register's doubles.
+TEST_P(SetState, IsTheWayBackFromAStepThatWasNotFinite) {
+  const Scene scene = load_scene("four-bar:5");
+  for (const Scheme scheme : {Scheme::penalty, Scheme::saddle_point}) {
+    StepSettings settings;
+    settings.scheme = scheme;
+    settings.penalty = automatic_penalty(scene.model, settings);
+    const State start = make_stretch(scene, settings.step, 10).initial;
+    std::unique_ptr<Simulation> simulation;
+    try {
+      simulation = create_simulation(*GetParam().variant, scene.model, settings);
+    } catch (const Unsupported&) {
+      continue;  // `mbs check` is where this is reported
+    }
+    State first = start, again = start, broken = start;
+    simulation->set_state(start);
+    simulation->step();
+    simulation->get_state(first);
+    broken.v[1] = std::numeric_limits<double>::quiet_NaN();
+    simulation->set_state(broken);
+    simulation->step();
+    simulation->set_state(start);
+    EXPECT_NE(simulation->step().status, StepStatus::factorization_failed);
+    simulation->get_state(again);
+    for (std::size_t i = 0; i < first.q.size(); ++i) {
+      EXPECT_NEAR(again.q[i], first.q[i], 1e-12);
+      EXPECT_NEAR(again.v[i], first.v[i], 1e-9);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SetState, ::testing::ValuesIn(all_variants()),
+                         [](const auto& info) { return test::gtest_name(info.param.name); });
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SetState);
+
+}  // namespace
+}  // namespace mbs
