@@ -109,7 +109,7 @@ TEST(CheckProgram, KeepsChecksThatWereNotRun) {
 }
 
 /// Status 2, nothing on stdout, and one line that has `word` in it on stderr.
-void expect_refusal(const std::string& arguments, const std::string& word) {
+void expect_check_refusal(const std::string& arguments, const std::string& word) {
   const auto run = test::run_mbs("check " + arguments);
   EXPECT_EQ(run.status, 2) << arguments;
   EXPECT_EQ(run.output, "") << arguments;
@@ -119,27 +119,27 @@ void expect_refusal(const std::string& arguments, const std::string& word) {
 
 TEST(CheckProgram, RefusesBadInput) {
   if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
-  expect_refusal("no-such-scene", "no-such-scene");
-  expect_refusal("four-bar:0", "four-bar:0");
-  expect_refusal("four-bar:1 --implementation no_such", "no_such");
-  expect_refusal("four-bar:1 --no-such-option", "--no-such-option");
-  expect_refusal("four-bar:1 --step 0", "--step");
-  expect_refusal("four-bar:1 --step nan", "--step");
-  expect_refusal("four-bar:1 --penalty -1", "--penalty");
-  expect_refusal("four-bar:1 --tolerance 0", "--tolerance");
-  expect_refusal("four-bar:1 --max-passes 0", "--max-passes");
+  expect_check_refusal("no-such-scene", "no-such-scene");
+  expect_check_refusal("four-bar:0", "four-bar:0");
+  expect_check_refusal("four-bar:1 --implementation no_such", "no_such");
+  expect_check_refusal("four-bar:1 --no-such-option", "--no-such-option");
+  expect_check_refusal("four-bar:1 --step 0", "--step");
+  expect_check_refusal("four-bar:1 --step nan", "--step");
+  expect_check_refusal("four-bar:1 --penalty -1", "--penalty");
+  expect_check_refusal("four-bar:1 --tolerance 0", "--tolerance");
+  expect_check_refusal("four-bar:1 --max-passes 0", "--max-passes");
   for (const char* value : {"0", "-1", "nan", "inf", "abc"}) {
-    expect_refusal(std::string("four-bar:1 --time-limit ") + value, "--time-limit");
+    expect_check_refusal(std::string("four-bar:1 --time-limit ") + value, "--time-limit");
   }
-  expect_refusal("four-bar:1 --json /no/such/folder/x.json", "/no/such/folder/x.json");
+  expect_check_refusal("four-bar:1 --json /no/such/folder/x.json", "/no/such/folder/x.json");
 }
 
 TEST(CheckProgram, SaysSoIfTheReferenceItselfFails) {
   if (all_variants().empty()) GTEST_SKIP() << "no implementation is available";
   const std::string file = test::temporary_path("verdicts.json");
-  expect_refusal("four-bar:1 --penalty 1e300 --json '" + file + "'", "the reference fails");
-  expect_refusal("chain:60 --step 0.1", "the reference fails at t = 0.1 s");
-  expect_refusal("chain:60 --step 0.1", "try --scheme saddle-point, or a shorter step");
+  expect_check_refusal("four-bar:1 --penalty 1e300 --json '" + file + "'", "the reference fails");
+  expect_check_refusal("chain:60 --step 0.1", "the reference fails at t = 0.1 s");
+  expect_check_refusal("chain:60 --step 0.1", "try --scheme saddle-point, or a shorter step");
   EXPECT_FALSE(fs::exists(file));
   EXPECT_FALSE(fs::exists(file + ".partial"));
 }
@@ -147,7 +147,7 @@ TEST(CheckProgram, SaysSoIfTheReferenceItselfFails) {
 TEST(CheckProgram, ARefusedCheckLeavesOlderVerdictsAlone) {
   const std::string file = test::temporary_path("verdicts.json");
   std::ofstream(file) << "precious";
-  expect_refusal("no-such-scene --json '" + file + "'", "no-such-scene");
+  expect_check_refusal("no-such-scene --json '" + file + "'", "no-such-scene");
   EXPECT_EQ(test::file_text(file), "precious");
   fs::remove(file);
 }

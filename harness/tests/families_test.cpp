@@ -64,7 +64,7 @@ class Start {
 };
 
 /// Angular acceleration of a pendulum of one rod, or of what is in closed form the same.
-double pendulum(double lean, double moment, double inertia) {
+double swinging(double lean, double moment, double inertia) {
   return -kG * moment * std::sin(lean) / inertia;
 }
 
@@ -144,7 +144,7 @@ TEST(Families, RefuseWhatTheyDoNotTake) {
 }
 
 TEST(Families, ChainIsAPendulumOfRods) {
-  Start("chain:1").expect_turning("P1", pendulum(0.25, 0.5, 1.0 / 3.0));
+  Start("chain:1").expect_turning("P1", swinging(0.25, 0.5, 1.0 / 3.0));
   const Start two("chain:2");  // Lagrange's equations of two rods at one angle
   const Vector3 across{std::cos(0.25), std::sin(0.25), 0.0};
   const double rate = kG * std::sin(0.25);
@@ -182,7 +182,7 @@ TEST(Families, LoopAndTreeMirrorThemselves) {
 }
 
 TEST(Families, TreeOfTwoRodsIsTwoPendulums) {
-  const double turning = pendulum(0.15, 0.5, 1.0 / 3.0);
+  const double turning = swinging(0.15, 0.5, 1.0 / 3.0);
   const Start two("tree:2");
   two.expect_turning("P1", -turning);
   two.expect_turning("P2", turning);
@@ -191,7 +191,7 @@ TEST(Families, TreeOfTwoRodsIsTwoPendulums) {
 TEST(Families, LadderKeepsItsRungsLevel) {
   // Two sides of 1 kg and 0.5 m that turn, a rung of 0.5 kg that does not.
   const Start one("ladder:1");
-  const double angular = pendulum(0.25, 0.5 * (2 * 0.5 + 0.5), 0.25 * (2.0 / 3.0 + 0.5));
+  const double angular = swinging(0.25, 0.5 * (2 * 0.5 + 0.5), 0.25 * (2.0 / 3.0 + 0.5));
   one.expect_turning("A1", angular);
   one.expect("B1", one.acceleration("A1"));
   const Start many("ladder:9");
@@ -203,7 +203,7 @@ TEST(Families, LadderKeepsItsRungsLevel) {
 TEST(Families, GridMovesAsOneColumn) {
   // A cord that hangs and turns, and as much weight from beside it that does not.
   const Start one("grid:1x4");
-  const double angular = pendulum(0.4, 0.5 * (0.5 + 1.0), 0.25 * (1.0 / 3.0 + 1.0));
+  const double angular = swinging(0.4, 0.5 * (0.5 + 1.0), 0.25 * (1.0 / 3.0 + 1.0));
   const double along = 0.5 * angular, level = along * std::cos(0.4) * std::sqrt(0.5);
   for (const char* name : {"P1_0", "P1_1", "P1_4"}) {
     one.expect(name, {level, along * std::sin(0.4), level});

@@ -19,12 +19,12 @@ namespace mbs {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr bool kSanitized = true;
+constexpr bool kIsSanitized = true;
 #else
-constexpr bool kSanitized = false;
+constexpr bool kIsSanitized = false;
 #endif
 
-constexpr IsolationLimits kShort{.seconds = 0.3};
+constexpr IsolationLimits kShortLimits{.seconds = 0.3};
 
 double seconds_of(const std::function<void()>& action) {
   const auto begin = std::chrono::steady_clock::now();
@@ -94,7 +94,7 @@ TEST(Isolate, ExitIsNoResult) {
     EXPECT_EQ(result.fate, Fate::crashed);
     EXPECT_EQ(result.reason, "exited with status " + std::to_string(status) + " before its result");
   }
-  if (kSanitized) return;  // whose report of leaks changes the status
+  if (kIsSanitized) return;  // whose report of leaks changes the status
   EXPECT_EQ(run_isolated([]() -> std::string { std::exit(0); }).fate, Fate::crashed);
 }
 
@@ -118,7 +118,7 @@ TEST(Isolate, KillsWhatHangs) {
           std::signal(SIGTERM, SIG_IGN);
           while (true) ::pause();
         },
-        kShort);
+        kShortLimits);
     EXPECT_EQ(result.fate, Fate::timeout);
     EXPECT_EQ(result.reason, "did not finish within 0.3 s");
   });
@@ -132,7 +132,7 @@ TEST(Isolate, KillsWhatIsStopped) {
         ::raise(SIGSTOP);
         return "";
       },
-      kShort);
+      kShortLimits);
   EXPECT_EQ(result.fate, Fate::timeout);
 }
 
@@ -143,7 +143,7 @@ TEST(Isolate, ClosingThePipeDoesNotEscapeTheLimit) {
           for (int descriptor = 3; descriptor < 256; ++descriptor) ::close(descriptor);
           while (true) ::pause();
         },
-        kShort);
+        kShortLimits);
     EXPECT_EQ(result.fate, Fate::timeout);
   });
   EXPECT_LT(seconds, 10.0);
@@ -246,12 +246,12 @@ TEST(Isolate, AnOutputFloodIsCutByTheLimit) {
           if (::write(STDOUT_FILENO, noise.data(), noise.size()) < 0) return "could not write";
         }
       },
-      kShort);
+      kShortLimits);
   EXPECT_EQ(result.fate, Fate::timeout);
 }
 
 TEST(Isolate, LimitsMemory) {
-  if (kSanitized) GTEST_SKIP() << "sanitizers reserve terabytes: no memory limit is set";
+  if (kIsSanitized) GTEST_SKIP() << "sanitizers reserve terabytes: no memory limit is set";
   const auto take = [](std::size_t bytes) {
     return [bytes] {
       const std::string text(bytes, 'x');
@@ -268,7 +268,7 @@ TEST(Isolate, LimitsMemory) {
 TEST(Isolate, LeaksNoDescriptorsAndNoProcesses) {
   run_isolated([] { return std::string(); });
   const long before = open_descriptors();
-  const int runs = kSanitized ? 300 : 2000;
+  const int runs = kIsSanitized ? 300 : 2000;
   for (int i = 0; i < runs; ++i) {
     const Isolated result = run_isolated([i]() -> std::string {
       if (i % 3 == 1) ::_exit(1);

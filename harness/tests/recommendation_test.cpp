@@ -170,7 +170,7 @@ TEST(Recommendation, NothingIsRecommendedWithoutARule) {
 
 /// `change` turns the rule into one that is refused for a reason with `part` in it.
 template <class Change>
-void expect_refused(const char* part, Change change) {
+void expect_rule_refused(const char* part, Change change) {
   json rule = rule_json();
   change(rule);
   try {
@@ -184,28 +184,28 @@ void expect_refused(const char* part, Change change) {
 TEST(Recommendation, RefusesWhatIsNoRule) {
   EXPECT_THROW(static_cast<void>(parse_rule("")), std::runtime_error);
   EXPECT_THROW(static_cast<void>(parse_rule("[]")), std::runtime_error);
-  expect_refused("key 'candidates' not found", [](json& rule) { rule.erase("candidates"); });
-  expect_refused("the candidate d/own is no library with times in the penalty form",
+  expect_rule_refused("key 'candidates' not found", [](json& rule) { rule.erase("candidates"); });
+  expect_rule_refused("the candidate d/own is no library with times in the penalty form",
                  [](json& rule) { rule["candidates"]["penalty"] = {"d/own"}; });
-  expect_refused("the candidate a/large is no library with times in the saddle-point form",
+  expect_rule_refused("the candidate a/large is no library with times in the saddle-point form",
                  [](json& rule) { rule["candidates"]["saddle-point"] = {"a/large"}; });
-  expect_refused("there are 6 candidates, allowed are 1 to 5",
+  expect_rule_refused("there are 6 candidates, allowed are 1 to 5",
                  [](json& rule) { rule["candidates"]["penalty"] = Names(5, "a/large"); });
-  expect_refused("the layer is 'other'",
+  expect_rule_refused("the layer is 'other'",
                  [](json& rule) { rule["times"]["a/large"]["layer"] = "other"; });
-  expect_refused("n*m is -1, allowed", [](json& rule) {
+  expect_rule_refused("n*m is -1, allowed", [](json& rule) {
     rule["times"]["a/large"]["penalty"]["coefficients"]["n*m"] = -1;
   });
-  expect_refused("'colour' is no feature", [](json& rule) {
+  expect_rule_refused("'colour' is no feature", [](json& rule) {
     rule["times"]["a/large"]["penalty"]["coefficients"]["n*colour"] = 1;
   });
-  expect_refused("low is above high",
+  expect_rule_refused("low is above high",
                  [](json& rule) { rule["times"]["a/large"]["penalty"]["low"] = 3; });
-  expect_refused("a/large has no times",
+  expect_rule_refused("a/large has no times",
                  [](json& rule) { rule["times"]["a/large"].erase("penalty"); });
-  expect_refused("must be string", [](json& rule) { rule["machine"] = 3; });
-  expect_refused("there are no scenes", [](json& rule) { rule["scenes"] = json::array(); });
-  expect_refused("feature flops is missing or 0",
+  expect_rule_refused("must be string", [](json& rule) { rule["machine"] = 3; });
+  expect_rule_refused("there are no scenes", [](json& rule) { rule["scenes"] = json::array(); });
+  expect_rule_refused("feature flops is missing or 0",
                  [](json& rule) { rule["scenes"][0]["features"].erase("flops"); });
 }
 

@@ -24,15 +24,15 @@ StepSettings with_scheme(const Model& model, Scheme scheme, double step) {
   return settings;
 }
 
-struct Motion {
+struct SchemeMotion {
   State state;
   long passes = 0, factorizations = 0;
 };
 
-Motion run_reference_for(const Scene& scene, const StepSettings& settings, double duration) {
+SchemeMotion run_reference_for(const Scene& scene, const StepSettings& settings, double duration) {
   ReferenceSimulation simulation(scene.model, settings);
   simulation.set_state(initial_state(scene.model));
-  Motion run;
+  SchemeMotion run;
   for (long i = 0; i < std::lround(duration / settings.step); ++i) {
     const StepOutcome outcome = simulation.step();
     EXPECT_NE(outcome.status, StepStatus::factorization_failed);
@@ -43,7 +43,7 @@ Motion run_reference_for(const Scene& scene, const StepSettings& settings, doubl
   return run;
 }
 
-double distance(const std::vector<double>& x, const std::vector<double>& y) {
+double distance_between(const std::vector<double>& x, const std::vector<double>& y) {
   double worst = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) worst = std::fmax(worst, std::abs(x[i] - y[i]));
   return worst;
@@ -60,7 +60,7 @@ TEST(ReferenceSchemes, AreOfTheirOrderBeforeTheSingularPosition) {
     const auto order = [&](Scheme scheme, double step) {
       const auto error = [&](double h) {
         const StepSettings settings = with_scheme(scene.model, scheme, h);
-        return distance(run_reference_for(scene, settings, kDuration).state.q, exact.q);
+        return distance_between(run_reference_for(scene, settings, kDuration).state.q, exact.q);
       };
       return std::log2(error(step) / error(step / 2));
     };
@@ -107,28 +107,28 @@ TEST(ReferenceSchemes, SettingsChangeTheWayAndNotTheMotion) {
     return run_reference_for(scene, settings, 0.3);
   };
   using S = StepSettings;
-  const Motion plain = with([](S&) {});
+  const SchemeMotion plain = with([](S&) {});
   EXPECT_EQ(plain.factorizations, plain.passes);
-  const auto expect_same = [&](const Motion& run, const char* name, double allowed = 1e-9) {
-    EXPECT_LT(distance(run.state.q, plain.state.q), allowed) << name;
-    EXPECT_LT(distance(run.state.v, plain.state.v), 10 * allowed) << name;
+  const auto expect_same = [&](const SchemeMotion& run, const char* name, double allowed = 1e-9) {
+    EXPECT_LT(distance_between(run.state.q, plain.state.q), allowed) << name;
+    EXPECT_LT(distance_between(run.state.v, plain.state.v), 10 * allowed) << name;
   };
   expect_same(with([](S& s) { s.multipliers = MultiplierUpdate::converged; }), "converged");
-  const Motion step = with([](S& s) { s.tangent = TangentReuse::step; });
+  const SchemeMotion step = with([](S& s) { s.tangent = TangentReuse::step; });
   expect_same(step, "every step");
   EXPECT_EQ(step.factorizations, 300);
-  const Motion kept = with([](S& s) { s.tangent = TangentReuse::kept; });
+  const SchemeMotion kept = with([](S& s) { s.tangent = TangentReuse::kept; });
   expect_same(kept, "kept");
-  const Motion saddle = with([](S& s) { s.scheme = Scheme::saddle_point; });
+  const SchemeMotion saddle = with([](S& s) { s.scheme = Scheme::saddle_point; });
   expect_same(saddle, "saddle-point");
-  const Motion saddle_kept = with([](S& s) {
+  const SchemeMotion saddle_kept = with([](S& s) {
     s.scheme = Scheme::saddle_point;
     s.tangent = TangentReuse::kept;
   });
   expect_same(saddle_kept, "saddle-point, kept", 1e-7);  // five refinements at most
   EXPECT_LT(saddle_kept.factorizations, 150);
   for (const Scheme scheme : {Scheme::penalty, Scheme::saddle_point}) {
-    const Motion exact = with([scheme](S& s) {
+    const SchemeMotion exact = with([scheme](S& s) {
       s.scheme = scheme;
       s.geometric_stiffness = true;
     });
@@ -154,7 +154,7 @@ TEST(ReferenceSchemes, ProjectsEveryKthStepOnly) {
     (void)unprojected.step();
     simulation.get_state(state);
     unprojected.get_state(other);
-    EXPECT_EQ(distance(state.v, other.v) == 0.0, i < 3) << i;
+    EXPECT_EQ(distance_between(state.v, other.v) == 0.0, i < 3) << i;
   }
 }
 

@@ -20,7 +20,7 @@
 namespace mbs {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 Variant control(const std::string& name) {
   const std::vector<Variant> variants = test::controls().variants;
@@ -189,7 +189,7 @@ TEST(Judge, RefusesANanAnywhere) {
   const State initial = make_stretch(scene, 1.25e-3, 1, 0.0).initial;
   EXPECT_EQ(Judge(scene, initial, 0.0).judge(0.0, initial), "");
   for (const auto quantity : {&State::q, &State::v, &State::a, &State::lambda}) {
-    for (const double bad : {kNaN, HUGE_VAL, -HUGE_VAL}) {
+    for (const double bad : {kNotANumber, HUGE_VAL, -HUGE_VAL}) {
       for (std::size_t i = 0; i < (initial.*quantity).size(); ++i) {
         State state = initial;
         (state.*quantity)[i] = bad;
@@ -245,7 +245,7 @@ TEST(Judge, TellsAnotherBranchFromALateMotion) {
 }
 
 /// A mass on a spring along x, stretched by 0.5 m; `damping` in N s/m.
-Scene oscillator(double damping) {
+Scene spring_mass(double damping) {
   ModelData data;
   data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1.5, 0, 0}}};
   data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
@@ -257,7 +257,7 @@ Scene oscillator(double damping) {
 State at(double x, double vx) { return {{x, 0}, {vx, 0}, {0, 0}, {}, 0.0}; }
 
 TEST(Judge, JudgesEnergyOfConservativeModelsOnly) {
-  const Scene conservative = oscillator(0.0), damped = oscillator(5.0);
+  const Scene conservative = spring_mass(0.0), damped = spring_mass(5.0);
   Judge strict(conservative, at(1.5, 0.0), 0.0);
   EXPECT_EQ(strict.judge(0.1, at(1.0, 5.0)), "");  // 100 * 0.5^2 / 2 J either way
   EXPECT_NEAR(*strict.energy_drift_max(), 0.0, 1e-12);
@@ -266,12 +266,12 @@ TEST(Judge, JudgesEnergyOfConservativeModelsOnly) {
   EXPECT_EQ(lenient.judge(0.2, at(1.0, 3.0)), "");
   EXPECT_FALSE(lenient.energy_drift_max());
   State lost = at(1.0, 3.0);
-  lost.v[1] = kNaN;
+  lost.v[1] = kNotANumber;
   EXPECT_EQ(lenient.judge(0.2, lost), "the state is not finite");
 }
 
 TEST(Judge, ASpringAtRestGivesTheEnergyScale) {
-  const Scene scene = oscillator(0.0);
+  const Scene scene = spring_mass(0.0);
   // At the first step hardly anything moves: the drift is small against what the spring holds.
   Judge judge(scene, at(1.5, 0.0), 0.0);
   EXPECT_EQ(judge.judge(1e-6, at(1.5, 1e-4)), "");
@@ -460,7 +460,7 @@ TEST(CountSteps, RefusesWhatIsOutOfRange) {
       EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
     }
   };
-  for (const double bad : {0.0, -1.0, kNaN, HUGE_VAL, -HUGE_VAL}) {
+  for (const double bad : {0.0, -1.0, kNotANumber, HUGE_VAL, -HUGE_VAL}) {
     expect_refusal([bad](RunSettings& s) { s.step.step = bad; }, "--step");
     expect_refusal([bad](RunSettings& s) { s.duration = bad; }, "--duration");
     expect_refusal([bad](RunSettings& s) { s.deadline_us = bad; }, "--deadline-us");

@@ -8,7 +8,7 @@
 namespace mbs {
 namespace {
 
-std::string refusal(const StepSettings& settings) {
+std::string refusal_of(const StepSettings& settings) {
   try {
     require_combination(settings);
   } catch (const UsageError& error) {
@@ -34,24 +34,24 @@ TEST(SettingNames, EveryChoiceHasItsNameAndTheDefaultComesFirst) {
 }
 
 TEST(SettingNames, CombinationsThatDoNotGoTogetherAreRefusedByName) {
-  EXPECT_EQ(refusal({}), "");
-  EXPECT_EQ(refusal({.projections_every = 0}), "--projections-every is 0: it must be at least 1");
-  EXPECT_EQ(refusal({.scheme = Scheme::saddle_point, .multipliers = MultiplierUpdate::converged}),
+  EXPECT_EQ(refusal_of({}), "");
+  EXPECT_EQ(refusal_of({.projections_every = 0}), "--projections-every is 0: it must be at least 1");
+  EXPECT_EQ(refusal_of({.scheme = Scheme::saddle_point, .multipliers = MultiplierUpdate::converged}),
             "--scheme saddle-point and --multipliers converged do not go together: it goes with "
             "every-pass");
   for (const Scheme scheme :
        {Scheme::rattle, Scheme::rattle4, Scheme::rattle6, Scheme::multistep6}) {
-    EXPECT_EQ(refusal({.scheme = scheme}), "");
-    EXPECT_NE(refusal({.projections = Projections::velocity, .scheme = scheme}), "");
-    EXPECT_NE(refusal({.projections_every = 2, .scheme = scheme}), "");
-    EXPECT_NE(refusal({.scheme = scheme, .multipliers = MultiplierUpdate::converged}), "");
-    EXPECT_NE(refusal({.scheme = scheme, .tangent = TangentReuse::kept}), "");
-    EXPECT_NE(refusal({.scheme = scheme, .precision = Precision::mixed}), "");
-    EXPECT_NE(refusal({.scheme = scheme, .geometric_stiffness = true}), "");
-    EXPECT_EQ(refusal({.scheme = scheme, .precision = Precision::single_precision}).empty(),
+    EXPECT_EQ(refusal_of({.scheme = scheme}), "");
+    EXPECT_NE(refusal_of({.projections = Projections::velocity, .scheme = scheme}), "");
+    EXPECT_NE(refusal_of({.projections_every = 2, .scheme = scheme}), "");
+    EXPECT_NE(refusal_of({.scheme = scheme, .multipliers = MultiplierUpdate::converged}), "");
+    EXPECT_NE(refusal_of({.scheme = scheme, .tangent = TangentReuse::kept}), "");
+    EXPECT_NE(refusal_of({.scheme = scheme, .precision = Precision::mixed}), "");
+    EXPECT_NE(refusal_of({.scheme = scheme, .geometric_stiffness = true}), "");
+    EXPECT_EQ(refusal_of({.scheme = scheme, .precision = Precision::single_precision}).empty(),
               scheme != Scheme::multistep6);
   }
-  EXPECT_NE(refusal({.projections = Projections::none, .projections_every = 2}), "");
+  EXPECT_NE(refusal_of({.projections = Projections::none, .projections_every = 2}), "");
 }
 
 }  // namespace

@@ -13,8 +13,8 @@
 namespace mbs {
 namespace {
 
-using Case = std::tuple<NamedVariant, SettingCase>;
-class SettingsTerms : public ::testing::TestWithParam<Case> {};
+using TermCase = std::tuple<NamedVariant, SettingCase>;
+class SettingsTerms : public ::testing::TestWithParam<TermCase> {};
 
 TEST_P(SettingsTerms, Agree) {
   const auto& [variant, setting] = GetParam();
@@ -79,8 +79,8 @@ bool tells_much(const SettingCase& setting) {
 }
 
 /// Setting by setting, for kept_reference().
-std::vector<Case> cases() {
-  std::vector<Case> result;
+std::vector<TermCase> cases() {
+  std::vector<TermCase> result;
   for (const SettingCase& setting : setting_cases()) {
     if (test::kSlowReference && !tells_much(setting)) continue;
     const RegistryEntry* last = nullptr;
@@ -95,12 +95,12 @@ std::vector<Case> cases() {
   return result;
 }
 
-std::string test_name(const ::testing::TestParamInfo<Case>& info) {
+std::string setting_test_name(const ::testing::TestParamInfo<TermCase>& info) {
   const auto& [variant, setting] = info.param;
   return test::gtest_name(variant.name + "_" + setting.name);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SettingsTerms, ::testing::ValuesIn(cases()), test_name);
+INSTANTIATE_TEST_SUITE_P(All, SettingsTerms, ::testing::ValuesIn(cases()), setting_test_name);
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SettingsTerms);
 
 }  // namespace

@@ -38,7 +38,7 @@ std::string function(const std::string& name, bool is_input) {
 }
 
 /// Everything in the plane that may be a function of time; `of` writes one.
-std::string planar(const std::function<std::string(const char*)>& of) {
+std::string planar_text(const std::function<std::string(const char*)>& of) {
   return R"({"points": [{"name": "O", "position": [0, 0], "fixed": true},
       {"name": "D", "position": [2, 0], "driven": {"y": )" +
          of("point") + R"(}}, {"name": "P", "position": [0, 1]},
@@ -63,7 +63,7 @@ std::string planar(const std::function<std::string(const char*)>& of) {
     "outputs": [{"name": "end", "position": "E"}, {"name": "turn", "angle": [["O", "D"], ["O", "A"]]}]})";
 }
 
-std::string spatial(const std::function<std::string(const char*)>& of) {
+std::string spatial_text(const std::function<std::string(const char*)>& of) {
   return R"({"dimension": 3,
     "points": [{"name": "O", "position": [0, 0, 0], "fixed": true}, {"name": "A", "position": [1, 0, 0.2]},
       {"name": "D", "position": [1, 1, 0], "driven": {"z": )" +
@@ -141,7 +141,7 @@ TEST_P(StepperInputs, AreWhatFunctionsOfTimeAreInEveryImplementation) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, StepperInputs, testing::Values(planar, spatial, hinge));
+INSTANTIATE_TEST_SUITE_P(Scenes, StepperInputs, testing::Values(planar_text, spatial_text, hinge));
 
 /// Inputs that stay are the numbers of a scene that has no function of time: springs, couples,
 /// constant forces.
@@ -164,7 +164,7 @@ TEST_P(StepperInputs, ThatStayAreNumbers) {
 }
 
 SceneDocument planar_with_inputs() {
-  return SceneDocument::parse(planar([](const char* name) { return function(name, true); }));
+  return SceneDocument::parse(planar_text([](const char* name) { return function(name, true); }));
 }
 
 TEST(Stepper, ComesBackToWhatItSaved) {
@@ -266,7 +266,7 @@ TEST(BatchStepper, MovesEachLaneAsAStepperDoes) {
       };
   std::vector<SceneDocument> scenes;
   for (int i = 0; i < 3; ++i) {
-    scenes.push_back(SceneDocument::parse(spatial(of)));
+    scenes.push_back(SceneDocument::parse(spatial_text(of)));
     scenes.back().set_number("rods/O-A/mass", 1.0 + 0.1 * i);
   }
   int batches = 0;

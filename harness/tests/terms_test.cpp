@@ -35,11 +35,11 @@ TEST_P(EveryTerm, AgreeWithProjectedVelocities) {
 }
 #endif
 
-std::string test_name(const ::testing::TestParamInfo<NamedVariant>& info) {
+std::string term_test_name(const ::testing::TestParamInfo<NamedVariant>& info) {
   return test::gtest_name(info.param.name);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EveryTerm, ::testing::ValuesIn(all_variants()), test_name);
+INSTANTIATE_TEST_SUITE_P(All, EveryTerm, ::testing::ValuesIn(all_variants()), term_test_name);
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(EveryTerm);
 
 }  // namespace

@@ -114,7 +114,7 @@ TEST(Warnings, TellOfSingularStarts) {
 }
 
 /// 1 kg on a spring of 1e4 N/m along x, `damping` in N s/m.
-Model oscillator(double damping) {
+Model oscillating(double damping) {
   ModelData data;
   data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1, 0, 0}}};
   data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
@@ -124,10 +124,10 @@ Model oscillator(double damping) {
 }
 
 TEST(Warnings, TellOfStepsTooLongForSprings) {
-  EXPECT_NEAR(shortest_period(oscillator(0.0)), 2 * std::numbers::pi / 100, 1e-15);
-  EXPECT_EQ(period_warning(oscillator(0.0), 6e-3), "");
-  EXPECT_NE(period_warning(oscillator(0.0), 7e-3).find("shortest period"), std::string::npos);
-  EXPECT_EQ(period_warning(oscillator(200.1), 7e-3), "");  // creeps back
+  EXPECT_NEAR(shortest_period(oscillating(0.0)), 2 * std::numbers::pi / 100, 1e-15);
+  EXPECT_EQ(period_warning(oscillating(0.0), 6e-3), "");
+  EXPECT_NE(period_warning(oscillating(0.0), 7e-3).find("shortest period"), std::string::npos);
+  EXPECT_EQ(period_warning(oscillating(200.1), 7e-3), "");  // creeps back
   EXPECT_EQ(period_warning(Model(four_bar(2)), 1.0), "");
   ModelData data;  // a rod of 2 m, 3 kg at its end, on 12 N m/rad
   data.points = {{"A", -1, {0, 0, 0}}, {"X", -1, {1, 0, 0}}, {"B", 0, {0, 2, 0}}};
