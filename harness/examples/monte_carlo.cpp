@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <mbs/stepper.hpp>
 #include <random>
@@ -38,13 +39,23 @@ double highest(const Task& task, unsigned run) {
   return most;
 }
 
+/// `text` as a whole number above 0; `what` it is, for messages.
+unsigned count(const char* what, const char* text) {
+  char* end = nullptr;
+  const long value = std::strtol(text, &end, 10);
+  if (end != text && *end == '\0' && value > 0 && value <= 1'000'000'000)
+    return static_cast<unsigned>(value);
+  throw mbs::Refused(std::string(what) + ": found '" + text +
+                     "', allowed is a whole number above 0");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   if (argc < 2) throw mbs::Refused("monte_carlo SCENE [RUNS] [THREADS] [IMPLEMENTATION]");
-  const auto runs = static_cast<unsigned>(argc > 2 ? std::stoul(argv[2]) : 200);
+  const auto runs = argc > 2 ? count("RUNS", argv[2]) : 200u;
   const unsigned threads =
-      argc > 3 ? static_cast<unsigned>(std::stoul(argv[3])) : std::thread::hardware_concurrency();
+      argc > 3 ? count("THREADS", argv[3]) : std::thread::hardware_concurrency();
   Task task{mbs::SceneDocument::load(argv[1]), {.implementation = argc > 4 ? argv[4] : "auto"}};
   task.options.settings.step = 1e-3;
   std::vector<double> results(runs);

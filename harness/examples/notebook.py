@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """A full car from Python: cells (`# %%`) for an editor that has them, or one script: notebook.py [car.json]"""
-# %% The scene, and what is expected of it
+# %% The scene, and who is expected to be fastest on it: with the project's own code, which "auto" may choose, and of libraries alone
 import sys
 from pathlib import Path
 
@@ -10,8 +10,11 @@ import mbs
 
 car = mbs.Scene(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent / "car.json")
 told = car.describe(1e-3)
-print(told["variables"], "variables;", told["degrees_of_freedom"], "degrees of freedom; the rule:",
-      told["recommendation"][0]["implementation"])
+best = {}
+for one in told["recommendation"]:  # each layer's fastest first
+    best.setdefault(one["layer"], one["implementation"])
+print(told["variables"], "variables;", told["degrees_of_freedom"], "degrees of freedom; own code:", best.get("own"),
+      "library:", best.get("library"))
 
 # %% It settles, then a wind comes up over a second
 STEP, STEPS = 1e-3, 3000

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <mbs/stepper.hpp>
 #include <string>
 
@@ -55,11 +56,19 @@ void print(const char* what, std::vector<long> times) {
               at(1.0));
 }
 
+/// `text` as a number; `what` it is, for messages.
+double number(const char* what, const char* text) {
+  char* end = nullptr;
+  const double value = std::strtod(text, &end);
+  if (end != text && *end == '\0') return value;
+  throw mbs::Refused(std::string(what) + ": found '" + text + "', allowed is a number");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   if (argc < 2) throw mbs::Refused("realtime SCENE [SECONDS] [IMPLEMENTATION]");
-  const double seconds = argc > 2 ? std::stod(argv[2]) : 5.0;
+  const double seconds = argc > 2 ? number("SECONDS", argv[2]) : 5.0;
   mbs::StepperOptions options{.implementation = argc > 3 ? argv[3] : "auto"};
   options.settings.step = 1e-3;
   mbs::Stepper car(mbs::SceneDocument::load(argv[1]), options);

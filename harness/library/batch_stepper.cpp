@@ -14,7 +14,10 @@ struct BatchStepper::Content {
   std::unique_ptr<BatchSimulation> batch;  // null: each lane has its simulation
 
   [[nodiscard]] Stepper::Content& lane(int index) {
-    return *lanes.at(static_cast<std::size_t>(index));
+    if (index < 0 || index >= static_cast<int>(lanes.size())) {
+      throw Refused(fmt::format("found lane {}, allowed is 0 to {}", index, lanes.size() - 1));
+    }
+    return *lanes[static_cast<std::size_t>(index)];
   }
   void start();
   /// Null where the implementation offers none of these scenes.
@@ -41,14 +44,12 @@ void BatchStepper::Content::start() {
   if (lanes.size() > 1) batch = side_by_side();
   for (std::size_t i = 0; i < lanes.size(); ++i) {
     Stepper::Content& lane = *lanes[i];
-    lane.state = initial_state(lane.scene.model);
-    if (batch) {
-      batch->set_state(static_cast<int>(i), lane.state);
+    if (!batch) {
+      lane.start();
       continue;
     }
-    lane.simulation =
-        create_simulation(*lane.choice.variant.variant, lane.scene.model, lane.settings);
-    lane.simulation->set_state(lane.state);
+    lane.state = initial_state(lane.scene.model);
+    batch->set_state(static_cast<int>(i), lane.state);
   }
 }
 
@@ -92,6 +93,13 @@ std::span<const std::string> BatchStepper::input_names() const {
 }
 std::span<const std::string> BatchStepper::output_names() const {
   return content_->lane(0).output_names();
+}
+
+int BatchStepper::input(std::string_view name) const {
+  return index_of(name, content_->lane(0).input_names, "input");
+}
+int BatchStepper::output(std::string_view name) const {
+  return index_of(name, content_->lane(0).output_names(), "output");
 }
 
 void BatchStepper::set_input(int lane, int input, double value, double rate, double acceleration) {

@@ -1,11 +1,15 @@
 // Scenes as documents, and which implementation to take for one.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "describe/describe.hpp"
 #include "describe/features.hpp"
 #include "describe/recommendation.hpp"
 #include "environment/build_info.hpp"
 #include "library/content.hpp"
+#include "registry/factory.hpp"
 #include "run/settings.hpp"
 #include "scene_file/json_text.hpp"
 #include "scene_file/load_scene.hpp"
@@ -36,9 +40,17 @@ json description_of(const Scene& scene, const StepSettings& settings,
   return description;
 }
 
+json scene_object(json document, const std::string& name) {
+  if (document.is_object()) return document;
+  throw UsageError(
+      fmt::format("{}: found {}, allowed is an object, a scene", name, document.type_name()));
+}
+
 /// The fastest that the rule expects.
 Choice choose_by_rule(const Scene& scene, StepSettings settings) {
   if (is_explicit(settings.scheme)) {
+    const std::string unsuited = why_unsuited(scene.model, settings);
+    if (!unsuited.empty()) throw Unsupported(unsuited);  // naming one would not help
     throw UsageError(fmt::format("--scheme {} is not in the measured rule: name an implementation",
                                  name_of(settings.scheme)));
   }
@@ -60,6 +72,21 @@ Choice choose_by_rule(const Scene& scene, StepSettings settings) {
 
 }  // namespace
 
+std::string without_options(std::string text) {
+  const auto replace = [&text](const std::string& option, const std::string& with) {
+    for (auto at = text.find(option); at != std::string::npos; at = text.find(option))
+      text.replace(at, option.size(), with);
+  };
+  const json names = settings_json({});
+  for (auto name = names.rbegin(); name != names.rend(); ++name) {  // the longer before its prefix
+    std::string option = "--" + name.key();
+    std::ranges::replace(option, '_', '-');
+    replace(option, name.key());
+  }
+  replace("--vary ", "");
+  return text;
+}
+
 Choice choose(const Scene& scene, const StepperOptions& options) {
   if (options.implementation == "auto") return choose_by_rule(scene, options.settings);
   const std::vector<NamedVariant> found = select_variants({options.implementation});
@@ -74,7 +101,8 @@ std::vector<Offer> implementations() {
     const Implementation& folder = one.entry->implementation;
     const bool is_own = is_own_code(folder, *one.variant);
     offers.push_back({one.name, folder.description + "; " + one.variant->description,
-                      is_own ? "none" : folder.library, is_own ? "" : folder.licence});
+                      is_own ? "none" : folder.library, is_own ? "" : folder.licence,
+                      one.variant->allocates});
   }
   return offers;
 }
@@ -92,13 +120,15 @@ SceneDocument::~SceneDocument() = default;
 
 SceneDocument SceneDocument::load(const std::string& scene) {
   return refusing([&] {
-    return SceneDocument(std::make_unique<Content>(Content{scene, load_document(scene)}));
+    return SceneDocument(
+        std::make_unique<Content>(Content{scene, scene_object(load_document(scene), scene)}));
   });
 }
 
 SceneDocument SceneDocument::parse(std::string_view json, const std::string& name) {
   return refusing([&] {
-    return SceneDocument(std::make_unique<Content>(Content{name, parse_json(json, name)}));
+    return SceneDocument(
+        std::make_unique<Content>(Content{name, scene_object(parse_json(json, name), name)}));
   });
 }
 
@@ -114,6 +144,9 @@ double SceneDocument::number(const std::string& path) const {
 }
 
 void SceneDocument::set_number(const std::string& path, double value) {
+  if (!std::isfinite(value)) {
+    throw Refused(fmt::format("{}: found {:g}, allowed is a finite number", path, value));
+  }
   refusing([&] { return content_->document[find_number(content_->document, path)] = value; });
 }
 

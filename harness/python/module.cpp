@@ -7,6 +7,8 @@
 #include <limits>
 #include <mbs/stepper.hpp>
 #include <optional>
+#include <string>
+#include <type_traits>
 
 namespace py = pybind11;
 
@@ -25,14 +27,78 @@ std::vector<std::string> list(std::span<const std::string> names) {
   return {names.begin(), names.end()};
 }
 
+std::string type_name(const py::object& type) { return type.attr("__name__").cast<std::string>(); }
+
+/// What a `Value` is called in messages.
+template <class Value>
+std::string wanted() {
+  using Plain = std::remove_cvref_t<Value>;
+  if constexpr (std::is_same_v<Plain, bool>) {
+    return "True or False";
+  } else if constexpr (std::is_same_v<Plain, double>) {
+    return "a number";
+  } else if constexpr (std::is_integral_v<Plain>) {
+    return "a whole number";
+  } else if constexpr (std::is_same_v<Plain, std::string>) {
+    return "a text";
+  } else if constexpr (std::is_same_v<Plain, Array>) {
+    return "an array of numbers";
+  } else {
+    return "an mbs." + type_name(py::type::of<Plain>());
+  }
+}
+
+/// `given` as a `Value`. pybind11's own refusal is many lines.
+template <class Value>
+Value as(const char* name, const py::object& given) {
+  try {
+    return given.cast<Value>();
+  } catch (const py::cast_error&) {
+  } catch (const py::error_already_set&) {  // numpy's own
+  }
+  throw mbs::Refused(std::string(name) + ": found " + type_name(py::type::of(given)) +
+                     ", allowed is " + wanted<Value>());
+}
+
+/// What `work` raises, as Refused.
+template <class Work>
+std::string text_of(Work work) {
+  try {
+    return work().template cast<std::string>();
+  } catch (const py::error_already_set& error) {
+    throw mbs::Refused("scene: " + py::str(error.value()).cast<std::string>());
+  }
+}
+
+/// Numpy's arrays and numbers, for json.dumps().
+py::object plain(const py::object& value) {
+  if (py::hasattr(value, "tolist")) return value.attr("tolist")();
+  throw py::type_error("found " + type_name(py::type::of(value)) +
+                       ", allowed is what JSON has, and numpy's arrays and numbers");
+}
+
 mbs::SceneDocument scene_of(const py::object& source, const std::string& name) {
   if (py::isinstance<mbs::SceneDocument>(source)) return source.cast<mbs::SceneDocument>();
   if (py::isinstance<py::dict>(source)) {
-    const py::object text = py::module_::import("json").attr("dumps")(source);
-    return mbs::SceneDocument::parse(text.cast<std::string>(), name);
+    const auto dumps = py::module_::import("json").attr("dumps");
+    return mbs::SceneDocument::parse(
+        text_of([&] { return dumps(source, py::arg("default") = py::cpp_function(plain)); }), name);
   }
-  return mbs::SceneDocument::load(
-      py::module_::import("os").attr("fspath")(source).cast<std::string>());
+  const auto path = py::module_::import("os").attr("fspath");
+  return mbs::SceneDocument::load(text_of([&] { return path(source); }));
+}
+
+std::vector<mbs::SceneDocument> scenes_of(const py::object& sources) {
+  const bool is_one = py::isinstance<mbs::SceneDocument>(sources) ||
+                      py::isinstance<py::dict>(sources) || py::isinstance<py::str>(sources);
+  if (is_one || !py::isinstance<py::iterable>(sources))
+    throw mbs::Refused("scenes: found " + type_name(py::type::of(sources)) +
+                       ", allowed is a list of scenes");
+  std::vector<mbs::SceneDocument> scenes;
+  for (const py::handle one : sources)
+    scenes.push_back(scene_of(py::reinterpret_borrow<py::object>(one), "scene"));
+  if (scenes.empty()) throw mbs::Refused("scenes: found none, allowed is one or more");
+  return scenes;
 }
 
 std::string name_of(mbs::StepStatus status) {
@@ -79,11 +145,23 @@ class InputRows {
   bool with_rates_ = false;
 };
 
+std::pair<long, long> counts(const py::object& of_steps, const py::object& of_every) {
+  const auto steps = as<long>("steps", of_steps), every = as<long>("every", of_every);
+  if (steps < 0)
+    throw mbs::Refused("steps: found " + std::to_string(steps) + ", allowed is 0 or more");
+  if (every < 1)
+    throw mbs::Refused("every: found " + std::to_string(every) + ", allowed is 1 or more");
+  return {steps, every};
+}
+
 /// Rows of (t, outputs...) after every `every`-th of `steps` steps, fewer where a step's
 /// factorization fails; and how many steps ended at the pass limit.
-py::tuple run(mbs::Stepper& self, long steps, long every, const std::optional<Array>& inputs) {
-  if (steps < 0 || every < 1) throw mbs::Refused("steps: at least 0; every: at least 1");
-  InputRows rows(inputs, steps, self.input_names().size());
+py::tuple run(mbs::Stepper& self, const py::object& of_steps, const py::object& of_every,
+              const py::object& inputs) {
+  const auto [steps, every] = counts(of_steps, of_every);
+  std::optional<Array> given;
+  if (!inputs.is_none()) given = as<Array>("inputs", inputs);
+  InputRows rows(given, steps, self.input_names().size());
   const auto columns = static_cast<py::ssize_t>(self.output_names().size() + 1);
   py::array_t<double> table({static_cast<py::ssize_t>(steps / every), columns});
   double* place = table.mutable_data();
@@ -106,8 +184,9 @@ py::tuple run(mbs::Stepper& self, long steps, long every, const std::optional<Ar
 }
 
 /// (lanes, rows, 1 + outputs), not a number from where a lane's factorization fails.
-py::array run_lanes(mbs::BatchStepper& self, long steps, long every) {
-  if (steps < 0 || every < 1) throw mbs::Refused("steps: at least 0; every: at least 1");
+py::array run_lanes(mbs::BatchStepper& self, const py::object& of_steps,
+                    const py::object& of_every) {
+  const auto [steps, every] = counts(of_steps, of_every);
   const auto columns = static_cast<py::ssize_t>(self.output_names().size() + 1);
   const py::ssize_t rows = steps / every, lanes = self.lanes();
   py::array_t<double> table({lanes, rows, columns});
@@ -131,34 +210,40 @@ py::array run_lanes(mbs::BatchStepper& self, long steps, long every) {
   return table;
 }
 
-mbs::StepperOptions options_of(const std::string& implementation, double step, double penalty,
-                               double tolerance, mbs::Scheme scheme, mbs::Projections projections,
-                               int max_passes) {
-  mbs::StepperOptions options{implementation};
-  options.settings.step = step;
-  options.settings.penalty = penalty;
-  options.settings.tolerance = tolerance;
-  options.settings.scheme = scheme;
-  options.settings.projections = projections;
-  options.settings.max_passes = max_passes;
-  return options;
+/// The settings by keyword.
+mbs::StepperOptions options_of(const py::object& implementation, const py::kwargs& given) {
+  mbs::StepperOptions options{as<std::string>("implementation", implementation)};
+  std::string names;
+  py::ssize_t taken = 0;
+  const auto take = [&]<class Value>(const char* name, Value& setting) {
+    names += std::string(names.empty() ? "" : ", ") + name;
+    if (!given.contains(name)) return;
+    setting = as<Value>(name, given[name]);
+    ++taken;
+  };
+  mbs::StepSettings& settings = options.settings;
+  take("step", settings.step);
+  take("penalty", settings.penalty);
+  take("tolerance", settings.tolerance);
+  take("max_passes", settings.max_passes);
+  take("scheme", settings.scheme);
+  take("multipliers", settings.multipliers);
+  take("tangent", settings.tangent);
+  take("projections", settings.projections);
+  take("projections_every", settings.projections_every);
+  take("precision", settings.precision);
+  take("geometric_stiffness", settings.geometric_stiffness);
+  if (taken == static_cast<py::ssize_t>(given.size())) return options;
+  throw mbs::Refused("settings: found " +
+                     py::str(", ").attr("join")(py::list(given)).cast<std::string>() +
+                     ", allowed are " + names);
 }
 
-/// A class whose constructor takes what StepperOptions has, by keyword.
-template <class Class, class Scenes>
-void add_constructor(py::class_<Class>& self, const char* scenes) {
-  self.def(py::init([](const Scenes& of, const std::string& implementation, double step,
-                       double penalty, double tolerance, mbs::Scheme scheme,
-                       mbs::Projections projections, int max_passes) {
-             return Class(of, options_of(implementation, step, penalty, tolerance, scheme,
-                                         projections, max_passes));
-           }),
-           py::arg(scenes), py::arg("implementation") = "auto", py::kw_only(),
-           py::arg("step") = mbs::StepSettings{}.step, py::arg("penalty") = 0.0,
-           py::arg("tolerance") = 0.0, py::arg("scheme") = mbs::Scheme::penalty,
-           py::arg("projections") = mbs::Projections::both,
-           py::arg("max_passes") = mbs::StepSettings{}.max_passes);
-}
+constexpr const char* kSettings =
+    "\n\nSettings, by keyword: step (s), penalty, tolerance (m; of both 0 is chosen from the "
+    "scene),\n"
+    "max_passes, scheme, multipliers, tangent, projections, projections_every, precision,\n"
+    "geometric_stiffness: StepSettings of mbs/simulation.hpp.";
 
 template <class Enum>
 void add_choice(py::module_& module, const char* name,
@@ -184,95 +269,206 @@ PYBIND11_MODULE(_mbs, module) {
                                {{"none", mbs::Projections::none},
                                 {"velocity", mbs::Projections::velocity},
                                 {"both", mbs::Projections::both}});
-  module.def("implementations", [] {
-    py::list all;
-    for (const mbs::Offer& one : mbs::implementations()) {
-      all.append(py::dict(py::arg("name") = one.name, py::arg("description") = one.description,
-                          py::arg("library") = one.library, py::arg("licence") = one.licence));
-    }
-    return all;
-  });
+  add_choice<mbs::MultiplierUpdate>(module, "MultiplierUpdate",
+                                    {{"every_pass", mbs::MultiplierUpdate::every_pass},
+                                     {"converged", mbs::MultiplierUpdate::converged}});
+  add_choice<mbs::TangentReuse>(module, "TangentReuse",
+                                {{"none", mbs::TangentReuse::none},
+                                 {"step", mbs::TangentReuse::step},
+                                 {"kept", mbs::TangentReuse::kept}});
+  add_choice<mbs::Precision>(module, "Precision",
+                             {{"double_precision", mbs::Precision::double_precision},
+                              {"single_precision", mbs::Precision::single_precision},
+                              {"mixed", mbs::Precision::mixed}});
+  module.def(
+      "implementations",
+      [] {
+        py::list all;
+        for (const mbs::Offer& one : mbs::implementations()) {
+          all.append(py::dict(py::arg("name") = one.name, py::arg("description") = one.description,
+                              py::arg("library") = one.library, py::arg("licence") = one.licence,
+                              py::arg("allocates") = one.allocates));
+        }
+        return all;
+      },
+      "Of this build, a dict each: name, description, library, its licence, and why a step "
+      "allocates "
+      "memory (\"\": it does not).");
+  module.def("_scenes", scenes_of);
 
-  py::class_<mbs::SceneDocument>(module, "Scene")
+  using mbs::SceneDocument;
+  py::class_<SceneDocument>(module, "Scene", "A scene, whose numbers may be changed.")
+      .def(py::init(&scene_of), py::arg("source"), py::arg("name") = "scene",
+           "A scene: a path, a name (\"vehicle:4\"), a document as a dict, or another scene to "
+           "copy.")
       .def(
-          py::init(&scene_of), py::arg("source"), py::arg("name") = "scene",
-          "A scene: a path, a name (\"vehicle:4\"), a document as a dict, or another scene to copy")
-      .def("__getitem__", &mbs::SceneDocument::number)
-      .def("__setitem__", &mbs::SceneDocument::set_number)
-      .def("document",
-           [](const mbs::SceneDocument& self) {
-             return py::module_::import("json").attr("loads")(self.json());
+          "__getitem__",
+          [](const SceneDocument& self, const py::object& path) {
+            return self.number(as<std::string>("path", path));
+          },
+          "A number, by its path as in `mbs sweep --vary`.")
+      .def("__setitem__",
+           [](SceneDocument& self, const py::object& path, const py::object& value) {
+             self.set_number(as<std::string>("path", path), as<double>("value", value));
            })
       .def(
-          "describe",
-          [](const mbs::SceneDocument& self, double step) {
-            return py::module_::import("json").attr("loads")(self.describe(step));
+          "document",
+          [](const SceneDocument& self) {
+            return py::module_::import("json").attr("loads")(self.json());
           },
-          py::arg("step") = mbs::StepSettings{}.step)
-      .def_property_readonly("name", &mbs::SceneDocument::name);
+          "The scene's document as a dict of its own.")
+      .def(
+          "describe",
+          [](const SceneDocument& self, const py::object& step) {
+            return py::module_::import("json").attr("loads")(
+                self.describe(as<double>("step", step)));
+          },
+          py::arg("step") = mbs::StepSettings{}.step,
+          "What `mbs describe --json` prints for a step of so many s, as a dict.")
+      .def_property_readonly("name", &SceneDocument::name, "What messages call it.")
+      .def(py::pickle(
+          [](const SceneDocument& self) { return py::make_tuple(self.json(), self.name()); },
+          [](const py::tuple& parts) {
+            return SceneDocument::parse(parts[0].cast<std::string>(), parts[1].cast<std::string>());
+          }));
 
-  py::class_<mbs::StepOutcome>(module, "StepOutcome")
-      .def_property_readonly("status",
-                             [](const mbs::StepOutcome& self) { return name_of(self.status); })
-      .def_readonly("passes", &mbs::StepOutcome::passes)
-      .def_readonly("factorizations", &mbs::StepOutcome::factorizations);
-  py::class_<mbs::Saved>(module, "Saved");
+  py::class_<mbs::StepOutcome>(module, "StepOutcome", "How a step, or a block of them, ended.")
+      .def_property_readonly(
+          "status", [](const mbs::StepOutcome& self) { return name_of(self.status); },
+          "\"converged\"; \"pass_limit\": the last iterate; or \"factorization_failed\": "
+          "the "
+          "state means nothing.")
+      .def_readonly("passes", &mbs::StepOutcome::passes, "Passes begun.")
+      .def_readonly("factorizations", &mbs::StepOutcome::factorizations, "Factorizations begun.")
+      .def("__repr__", [](const mbs::StepOutcome& self) {
+        return "StepOutcome(status='" + name_of(self.status) +
+               "', passes=" + std::to_string(self.passes) +
+               ", factorizations=" + std::to_string(self.factorizations) + ")";
+      });
+  using mbs::Saved;
+  py::class_<Saved>(module, "Saved", "A moment of a Stepper. It belongs to its scene and settings.")
+      .def("__copy__", [](const Saved& self) { return Saved(self); })
+      .def("__deepcopy__", [](const Saved& self, const py::dict&) { return Saved(self); });
 
   using mbs::Stepper;
   using Self = py::object;
   const auto state_view = [](std::vector<double> mbs::State::*part) {
     return [part](const Self& self) { return view(self.cast<Stepper&>().state().*part, self); };
   };
-  py::class_<Stepper> stepper(module, "Stepper");
-  add_constructor<Stepper, mbs::SceneDocument>(stepper, "scene");
-  stepper.def_property_readonly("implementation", &Stepper::implementation)
-      .def_property_readonly("inputs", [](const Stepper& self) { return list(self.input_names()); })
-      .def_property_readonly("outputs",
-                             [](const Stepper& self) { return list(self.output_names()); })
-      .def_property_readonly("dt", [](const Stepper& self) { return self.settings().step; })
-      .def_property_readonly("penalty", [](const Stepper& self) { return self.settings().penalty; })
-      .def_property_readonly("tolerance",
-                             [](const Stepper& self) { return self.settings().tolerance; })
+  py::class_<Stepper>(module, "Stepper",
+                      "One simulation of one scene, from its start on. For one thread at a time.")
+      .def(py::init([](const py::object& scene, const py::object& implementation,
+                       const py::kwargs& settings) {
+             return Stepper(scene_of(scene, "scene"), options_of(implementation, settings));
+           }),
+           py::arg("scene"), py::arg("implementation") = "auto",
+           (std::string(
+                "`scene`: what Scene() takes. `implementation`: \"folder/variant\", or \"auto\" "
+                "for the one that is expected to be fastest.") +
+            kSettings)
+               .c_str())
+      .def_property_readonly("implementation", &Stepper::implementation, "The one chosen.")
+      .def_property_readonly(
+          "inputs", [](const Stepper& self) { return list(self.input_names()); },
+          "Names of the scene's inputs.")
+      .def_property_readonly(
+          "outputs", [](const Stepper& self) { return list(self.output_names()); },
+          "Names of `values`.")
+      .def_property_readonly(
+          "dt", [](const Stepper& self) { return self.settings().step; }, "The step, s.")
+      .def_property_readonly(
+          "penalty", [](const Stepper& self) { return self.settings().penalty; },
+          "The penalty factor, given or chosen.")
+      .def_property_readonly(
+          "tolerance", [](const Stepper& self) { return self.settings().tolerance; },
+          "Newton's, given or chosen, m.")
       .def(
           "set",
-          [](Stepper& self, const std::string& name, double value, double rate,
-             double acceleration) { self.set_input(self.input(name), value, rate, acceleration); },
-          py::arg("input"), py::arg("value"), py::arg("rate") = 0.0, py::arg("acceleration") = 0.0)
+          [](Stepper& self, const py::object& input, const py::object& value,
+             const py::object& rate, const py::object& acceleration) {
+            self.set_input(self.input(as<std::string>("input", input)), as<double>("value", value),
+                           as<double>("rate", rate), as<double>("acceleration", acceleration));
+          },
+          py::arg("input"), py::arg("value"), py::arg("rate") = 0.0, py::arg("acceleration") = 0.0,
+          "What the input of this name is from the end of the next step on. What moves a point or "
+          "a\n"
+          "constraint needs its rate (per s) and acceleration (per s^2) too.")
       .def(
-          "step", [](Stepper& self, long steps) { return self.step(steps); }, py::arg("steps") = 1,
-          py::call_guard<py::gil_scoped_release>())
-      .def("run", run, py::arg("steps"), py::arg("every") = 1, py::arg("inputs") = py::none())
-      .def_property_readonly("t", [](Stepper& self) { return self.state().t; })
-      .def_property_readonly("q", state_view(&mbs::State::q))
-      .def_property_readonly("v", state_view(&mbs::State::v))
-      .def_property_readonly("a", state_view(&mbs::State::a))
-      .def_property_readonly("multipliers", state_view(&mbs::State::lambda))
+          "step",
+          [](Stepper& self, const py::object& steps) {
+            const auto count = as<long>("steps", steps);
+            const py::gil_scoped_release others_may_run;
+            return self.step(count);
+          },
+          py::arg("steps") = 1,
+          "So many steps further, 1 or more; fewer where one fails. The status is the worst of "
+          "them,\n"
+          "passes and factorizations are sums.")
+      .def("run", run, py::arg("steps"), py::arg("every") = 1, py::arg("inputs") = py::none(),
+           "(rows, how many steps ended at the pass limit). A row is t and `values` after each\n"
+           "`every`-th step: after steps 3, 6 and 9 of 10 for every=3. Fewer rows where a step "
+           "fails.\n"
+           "`inputs`: (steps, inputs) values, or (steps, inputs, 3) with rates and accelerations.")
       .def_property_readonly(
-          "values", [](const Self& self) { return view(self.cast<Stepper&>().outputs(), self); })
-      .def("save",
-           [](Stepper& self) {
-             mbs::Saved moment;
-             self.save(moment);
-             return moment;
-           })
-      .def("restore", &Stepper::restore);
+          "t", [](Stepper& self) { return self.state().t; }, "Now, s.")
+      .def_property_readonly("q", state_view(&mbs::State::q), "Coordinates, m; a view.")
+      .def_property_readonly("v", state_view(&mbs::State::v), "Velocities, m/s; a view.")
+      .def_property_readonly("a", state_view(&mbs::State::a), "Accelerations, m/s^2; a view.")
+      .def_property_readonly("multipliers", state_view(&mbs::State::lambda),
+                             "lambda of each constraint, N/m, of linear ones N; a view.")
+      .def_property_readonly(
+          "values", [](const Self& self) { return view(self.cast<Stepper&>().outputs(), self); },
+          "The scene's outputs now, as `outputs` names them; a view.")
+      .def(
+          "save",
+          [](Stepper& self) {
+            Saved moment;
+            self.save(moment);
+            return moment;
+          },
+          "State and inputs now, for restore().")
+      .def(
+          "restore",
+          [](Stepper& self, const py::object& moment) {
+            self.restore(as<const Saved&>("moment", moment));
+          },
+          py::arg("moment"), "Back to what this or an equal Stepper saved.");
 
   using mbs::BatchStepper;
-  py::class_<BatchStepper> batch(module, "BatchStepper");
-  add_constructor<BatchStepper, std::vector<mbs::SceneDocument>>(batch, "scenes");
-  batch.def_property_readonly("implementation", &BatchStepper::implementation)
-      .def_property_readonly("dt", [](const BatchStepper& self) { return self.settings(0).step; })
-      .def_property_readonly("lanes", &BatchStepper::lanes)
-      .def_property_readonly("is_side_by_side", &BatchStepper::is_side_by_side)
-      .def_property_readonly("inputs",
-                             [](const BatchStepper& self) { return list(self.input_names()); })
-      .def_property_readonly("outputs",
-                             [](const BatchStepper& self) { return list(self.output_names()); })
+  py::class_<BatchStepper>(module, "BatchStepper",
+                           "Several scenes with the same inputs and outputs at once, a lane each.")
+      .def(py::init([](const py::object& scenes, const py::object& implementation,
+                       const py::kwargs& settings) {
+             return BatchStepper(scenes_of(scenes), options_of(implementation, settings));
+           }),
+           py::arg("scenes"), py::arg("implementation") = "auto",
+           (std::string("`scenes`: a list of what Scene() takes. \"auto\" chooses for the first.") +
+            kSettings)
+               .c_str())
+      .def_property_readonly("implementation", &BatchStepper::implementation, "The one chosen.")
+      .def_property_readonly(
+          "dt", [](const BatchStepper& self) { return self.settings(0).step; }, "The step, s.")
+      .def_property_readonly("lanes", &BatchStepper::lanes, "How many.")
+      .def_property_readonly("is_side_by_side", &BatchStepper::is_side_by_side,
+                             "False: one lane is stepped after the other.")
+      .def_property_readonly(
+          "inputs", [](const BatchStepper& self) { return list(self.input_names()); },
+          "Names of the scenes' inputs.")
+      .def_property_readonly(
+          "outputs", [](const BatchStepper& self) { return list(self.output_names()); },
+          "Names of the columns of run(), after t.")
       .def(
           "set",
-          [](BatchStepper& self, int lane, int input, double value, double rate,
-             double acceleration) { self.set_input(lane, input, value, rate, acceleration); },
+          [](BatchStepper& self, const py::object& lane, const py::object& input,
+             const py::object& value, const py::object& rate, const py::object& acceleration) {
+            self.set_input(as<int>("lane", lane), self.input(as<std::string>("input", input)),
+                           as<double>("value", value), as<double>("rate", rate),
+                           as<double>("acceleration", acceleration));
+          },
           py::arg("lane"), py::arg("input"), py::arg("value"), py::arg("rate") = 0.0,
-          py::arg("acceleration") = 0.0)
-      .def("run", run_lanes, py::arg("steps"), py::arg("every") = 1);
+          py::arg("acceleration") = 0.0, "As Stepper.set(), for a lane, from 0 on.")
+      .def("run", run_lanes, py::arg("steps"), py::arg("every") = 1,
+           "(lanes, rows, 1 + outputs): t and the outputs after each `every`-th step, not a number "
+           "from\n"
+           "where a lane fails.");
 }

@@ -4,11 +4,13 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <mbs/stepper.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "registry/registry.hpp"
 #include "scene/time_functions.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/scene_support.hpp"
@@ -220,34 +222,127 @@ TEST(Stepper, TakesTheRulesChoiceAndItsNumbers) {
   EXPECT_NEAR(stepper.state().t, 1e-2, 1e-15);
 }
 
+/// The one line of what `work` refuses.
+std::string refused_by(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Refused& error) {
+    return error.what();
+  } catch (const Unsupported& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
 TEST(Stepper, RefusesInOneLine) {
-  const auto refusal = [](const std::function<void()>& work) -> std::string {
-    try {
-      work();
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-    return "";
-  };
   const SceneDocument scene = planar_with_inputs();
-  EXPECT_NE(
-      refusal([] { static_cast<void>(SceneDocument::load("nowhere.json")); }).find("no such file"),
-      std::string::npos);
-  EXPECT_NE(
-      refusal([&] { Stepper(scene, {.implementation = "nobody"}); }).find("unknown implementation"),
-      std::string::npos);
-  EXPECT_NE(refusal([&] {
+  EXPECT_NE(refused_by([] {
+              static_cast<void>(SceneDocument::load("nowhere.json"));
+            }).find("no such file"),
+            std::string::npos);
+  EXPECT_NE(refused_by([&] {
+              Stepper(scene, {.implementation = "nobody"});
+            }).find("unknown implementation"),
+            std::string::npos);
+  EXPECT_NE(refused_by([&] {
               static_cast<void>(Stepper(scene).input("wind"));
             }).find("has no input 'wind': there are "),
             std::string::npos);
-  EXPECT_NE(refusal([&] { static_cast<void>(scene.number("springs/9/stiffness")); }), "");
+  expect_parts(refused_by([&] { static_cast<void>(scene.number("springs/9/stiffness")); }),
+               {"\"springs/9/stiffness\": found no \"9\" in springs"});
   StepperOptions options;
   options.settings.step = -1.0;
-  EXPECT_NE(refusal([&] { Stepper(scene, options); }), "");
+  expect_parts(refused_by([&] { Stepper(scene, options); }), {"step", "-1"});
   options.settings.step = 1e-3;
   options.settings.scheme = Scheme::rattle;
-  EXPECT_NE(refusal([&] { Stepper(scene, options); }).find("name an implementation"),
-            std::string::npos);
+  expect_parts(refused_by([&] { Stepper(scene, options); }),
+               {"scheme rattle is for scenes without drivers"});
+  expect_parts(refused_by([&] { Stepper(SceneDocument::load("four-bar:3"), options); }),
+               {"scheme rattle", "name an implementation"});
+}
+
+TEST(Stepper, RefusesSettingsByTheirOwnNames) {
+  const SceneDocument scene = SceneDocument::load("four-bar:3");
+  StepperOptions options{.implementation = "csc_ldl/uplooking"};
+  const auto said = [&] { return refused_by([&] { Stepper(scene, options); }); };
+  options.settings.max_passes = 0;
+  EXPECT_EQ(said().find("max_passes is 0"), 0u) << said();
+  options.settings = {.projections_every = 0};
+  EXPECT_EQ(said().find("projections_every is 0"), 0u) << said();
+  options.settings = {.scheme = Scheme::multistep6};
+  EXPECT_EQ(said().find("csc_ldl/uplooking: it does not offer scheme multistep6"), 0u) << said();
+}
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(Stepper, RefusesInputsThatAFileMayNotHave) {
+  Stepper stepper(planar_with_inputs());
+  const auto said = [&](const char* name, const TimeFunction::Sample& to) {
+    return refused_by(
+        [&] { stepper.set_input(stepper.input(name), to.value, to.rate, to.acceleration); });
+  };
+  Saved before, after;
+  stepper.save(before);
+  expect_parts(said("force", {kNan}), {"input 'force': found the value nan, allowed is"});
+  expect_parts(said("force", {1e60}), {"input 'force': found the value 1e+60, allowed is"});
+  expect_parts(said("point", {0.0, -kInfinity}), {"input 'point': found the rate -inf"});
+  expect_parts(said("point", {0.0, 0.0, kNan}), {"input 'point': found the acceleration nan"});
+  expect_parts(said("stiffness", {-1.0}),
+               {"found the value -1", "a stiffness in N/m of at least 0"});
+  expect_parts(said("constraint", {0.0}), {"found the value 0", "a distance in m above 0"});
+  expect_parts(refused_by([&] { stepper.set_input(8, 0.0); }),
+               {"no input 8", "force, ", "stiffness"});
+  expect_parts(refused_by([&] { stepper.set_input(-1, 0.0); }), {"no input -1"});
+  expect_parts(refused_by([&] { static_cast<void>(stepper.step(0)); }), {"0 steps", "1 or more"});
+  stepper.save(after);
+  for (std::size_t i = 0; i < before.inputs.size(); ++i) {
+    EXPECT_EQ(after.inputs[i].value, before.inputs[i].value);
+    EXPECT_EQ(after.inputs[i].rate, before.inputs[i].rate);
+  }
+  EXPECT_EQ(after.state.t, 0.0);
+  stepper.set_input(stepper.input("force"), -1.0);  // which may have any sign
+}
+
+TEST(Stepper, RestoresOnlyWhatItCouldHaveSaved) {
+  Stepper stepper(planar_with_inputs());
+  ASSERT_EQ(stepper.step(10).status, StepStatus::converged);
+  Saved saved;
+  stepper.save(saved);
+  const std::vector<double> q = stepper.state().q;
+  const auto said = [&](const std::function<void(Saved&)>& spoil) {
+    Saved other = saved;
+    spoil(other);
+    return refused_by([&] { stepper.restore(other); });
+  };
+  const auto stiffness = static_cast<std::size_t>(stepper.input("stiffness"));
+  expect_parts(said([&](Saved& it) { it.inputs[stiffness].value = -5; }), {"'stiffness'", "-5"});
+  expect_parts(said([](Saved& it) { it.inputs[0].value = kNan; }), {"the value nan"});
+  expect_parts(said([](Saved& it) { it.state.q[0] = kNan; }), {"state.q[0] is not finite"});
+  expect_parts(said([](Saved& it) { it.angles[1] = kNan; }), {"angles[1] is nan"});
+  expect_parts(said([](Saved& it) { it = {}; }), {"another scene"});
+  EXPECT_EQ(stepper.state().q, q);
+  EXPECT_EQ(said([](Saved& /*it*/) {}), "not refused");
+
+  const auto pendulum_of = [](double length) {
+    return SceneDocument::parse(pendulum("-2", std::to_string(-length)));
+  };
+  Stepper one(pendulum_of(1.0)), same(pendulum_of(1.0)), other(pendulum_of(5.0)),
+      finer(pendulum_of(1.0), {.settings = {.step = 1e-3, .penalty = 0.0, .tolerance = 0.0}});
+  one.save(saved);
+  same.restore(saved);
+  expect_parts(refused_by([&] { other.restore(saved); }), {"another scene or other settings"});
+  expect_parts(refused_by([&] { finer.restore(saved); }), {"another scene or other settings"});
+}
+
+TEST(Implementations, SayWhetherTheyAllocate) {
+  int allocating = 0;
+  for (const Offer& one : implementations()) {
+    const NamedVariant found = select_variants({one.name}).front();
+    EXPECT_EQ(one.allocates, found.variant->allocates) << one.name;
+    allocating += !one.allocates.empty();
+  }
+  EXPECT_GT(allocating, 0);
 }
 
 TEST(SceneDocument, ChangesNumbersOfACopyAlone) {
@@ -257,6 +352,30 @@ TEST(SceneDocument, ChangesNumbersOfACopyAlone) {
   other.set_number(path, 2 * one.number(path) + 1);
   EXPECT_NE(other.number(path), one.number(path));
   EXPECT_NE(one.describe().find("recommendation"), std::string::npos);
+}
+
+TEST(SceneDocument, RefusesWhatIsNoSceneOrNumber) {
+  expect_parts(refused_by([] { SceneDocument::parse("[]", "mine"); }),
+               {"mine: found array, allowed is an object"});
+  SceneDocument scene = planar_with_inputs();
+  expect_parts(refused_by([&] { scene.set_number("rods/rod/mass", kNan); }),
+               {"rods/rod/mass: found nan, allowed is a finite number"});
+  EXPECT_EQ(scene.number("rods/rod/mass"), 2.0);
+  scene.set_number("springs/0/stiffness/input/value", -1.0);
+  expect_parts(refused_by([&] { Stepper{scene}; }),
+               {"input 'stiffness': found the value -1", "at least 0"});
+}
+
+TEST(BatchStepper, RefusesOtherLanes) {
+  const std::vector<SceneDocument> scenes(2, planar_with_inputs());
+  BatchStepper batch(scenes);
+  const int force = batch.input("force");
+  expect_parts(refused_by([&] { batch.set_input(2, force, 0.0); }),
+               {"found lane 2, allowed is 0 to 1"});
+  expect_parts(refused_by([&] { static_cast<void>(batch.outputs(-1)); }), {"found lane -1"});
+  expect_parts(refused_by([&] { static_cast<void>(batch.settings(9)); }), {"found lane 9"});
+  expect_parts(refused_by([&] { batch.set_input(1, force, kNan); }), {"'force'", "nan"});
+  expect_parts(refused_by([&] { static_cast<void>(batch.output("nothing")); }), {"end.x", "turn"});
 }
 
 TEST(BatchStepper, MovesEachLaneAsAStepperDoes) {

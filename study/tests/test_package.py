@@ -79,6 +79,17 @@ def test_errors_are_one_line(examples):
         assert found.stderr.startswith("car: ") and found.stderr.count("\n") == 1
 
 
+@pytest.mark.parametrize("words, name", [
+    (("realtime", "car.json", "x"), "SECONDS"), (("speed", "four-bar:3", "1e-3x", "5"), "STEP"),
+    (("speed", "four-bar:3", "1e-3", "x"), "STEPS"), (("monte_carlo", "car.json", "-1"), "RUNS"),
+    (("monte_carlo", "car.json", "1", "2.5"), "THREADS")])
+def test_examples_say_which_number_is_none(examples, words, name):
+    program, *rest = words
+    found = subprocess.run([examples / program, *rest], cwd=examples, capture_output=True, text=True, check=False)
+    assert found.returncode == 1
+    assert found.stderr.startswith(f"{program}: {name}: found '") and "allowed is" in found.stderr and found.stderr.count("\n") == 1
+
+
 def test_the_loop_in_real_time_counts(examples):
     text = run(examples / "realtime", "car.json", "0.2", cwd=examples)
     assert "200 steps of 1000 us" in text and "deadlines missed: " in text
@@ -131,6 +142,80 @@ for wrong in (lambda: mbs.Scene("nowhere.json"), lambda: mbs.Scene("four-bar:3")
         assert "\\n" not in str(error)
     else:
         raise AssertionError("not refused")
+""", cwd=tmp_path, env=python_of(prefix))
+
+
+def test_python_refuses_bad_input_in_one_line(prefix, tmp_path):
+    run("/usr/bin/python3", "-c", """
+import sys
+import numpy, mbs
+car = mbs.Scene(sys.argv[1])
+stepper = mbs.Stepper(car, "csc_ldl/uplooking", step=1e-3)
+four_bar = mbs.Stepper("four-bar:3", "csc_ldl/uplooking", step=1e-3)
+moment, nan, two = stepper.save(), float("nan"), [car, car]
+rows = numpy.zeros((10, len(stepper.inputs)))
+rows[5, stepper.inputs.index("wind")] = nan
+wrong = {
+    "duration: found nan": lambda: mbs.simulate(car, nan), "duration: found inf": lambda: mbs.simulate(car, float("inf")),
+    "duration: found '2'": lambda: mbs.simulate(car, "2"), "duration: found -1": lambda: mbs.simulate(car, -1),
+    "duration: found None": lambda: mbs.simulate_all(two, None),
+    "inputs: found list": lambda: mbs.simulate(car, 1, inputs=[1.0]),
+    "input 'wind': found no numbers": lambda: mbs.simulate(car, 1, inputs=dict.fromkeys(stepper.inputs, [0.0] * 800) | {"wind": ["x"]}),
+    "scenes: found none": lambda: mbs.simulate_all([], 1.0), "scenes: found str": lambda: mbs.simulate_all("car.json", 1.0),
+    "scenes: found Scene": lambda: mbs.BatchStepper(car),
+    "threads: found 0": lambda: mbs.simulate_all(two, 1.0, threads=0), "lanes: found 0": lambda: mbs.simulate_all(two, 1.0, lanes=0),
+    "scene: found set": lambda: mbs.Scene({"points": {1}}), "scene: expected str": lambda: mbs.Scene(3),
+    "settings: found stepp, allowed are step, ": lambda: mbs.Stepper(car, stepp=1e-3),
+    "scheme: found str, allowed is an mbs.Scheme": lambda: mbs.Stepper(car, scheme="rattle"),
+    "max_passes: found float": lambda: mbs.Stepper(car, max_passes=1.5), "step: found str": lambda: mbs.Stepper(car, step="1e-3"),
+    "implementation: found int": lambda: mbs.Stepper(car, 1),
+    "csc_ldl/uplooking: it does not offer scheme multistep6":
+        lambda: mbs.Stepper("four-bar:3", "csc_ldl/uplooking", scheme=mbs.Scheme.multistep6),
+    "input 'wind': found the value nan": lambda: stepper.set("wind", nan),
+    "input 'front stiffness': found the value -1": lambda: stepper.set("front stiffness", -1),
+    "value: found str": lambda: stepper.set("wind", "much"), "input: found int": lambda: stepper.set(0, 1.0),
+    "found 0 steps": lambda: stepper.step(0), "steps: found float": lambda: stepper.step(1.5),
+    "steps: found -1": lambda: stepper.run(-1), "every: found 0": lambda: stepper.run(1, every=0),
+    "inputs: found list": lambda: stepper.run(1, inputs=[["x"] * 6]), "input 'wind'": lambda: stepper.run(10, inputs=rows),
+    "moment: found str": lambda: stepper.restore("x"), "what was saved is of another scene": lambda: four_bar.restore(moment),
+    "bodies/body/mass: found nan": lambda: car.__setitem__("bodies/body/mass", nan),
+    "found lane 2": lambda: mbs.BatchStepper(two).set(2, "wind", 0.0),
+    "the scene has no input 'wimd'": lambda: mbs.BatchStepper(two).set(0, "wimd", 0.0)}
+for said, work in wrong.items():
+    try:
+        work()
+    except (mbs.Refused, mbs.Unsupported) as error:
+        assert str(error).startswith(said) and "\\n" not in str(error), str(error)
+    else:
+        raise AssertionError("not refused: " + said)
+""", EXAMPLES / "car.json", cwd=tmp_path, env=python_of(prefix))
+
+
+def test_python_says_what_it_has(prefix, tmp_path):
+    run("/usr/bin/python3", "-c", """
+import copy, pickle
+import numpy, mbs
+for name in mbs.__all__:
+    thing = getattr(mbs, name)
+    if isinstance(thing, type) and not hasattr(thing, "__members__") and not issubclass(thing, Exception):
+        assert thing.__doc__, name
+        public = {part: getattr(thing, part) for part in dir(thing) if not part.startswith("_")}
+        assert all(part.__doc__ for part in public.values()), (name, public)
+stepper = mbs.Stepper("four-bar:3", "eigen_dense/llt", step=1e-3, tangent=mbs.TangentReuse.kept, projections_every=2,
+                      multipliers=mbs.MultiplierUpdate.converged, precision=mbs.Precision.mixed, geometric_stiffness=False)
+assert "status='converged'" in repr(stepper.step(3))
+rows, _ = stepper.run(10, every=3)
+assert numpy.allclose(rows[:, 0], [6e-3, 9e-3, 12e-3])
+moment = copy.deepcopy(stepper.save())
+stepper.step()
+stepper.restore(moment)
+assert numpy.isclose(stepper.t, 13e-3)
+scene = pickle.loads(pickle.dumps(mbs.Scene("four-bar:3")))
+assert scene.name == "four-bar:3" and copy.copy(scene).document() == scene.document()
+plain = {"points": [{"name": "O", "position": [0, 0], "fixed": True}, {"name": "A", "position": numpy.array([1.0, 0.0])}],
+         "rods": [{"between": ["O", "A"], "mass": numpy.float64(2)}]}
+assert mbs.simulate(plain, 0.01, step=1e-3).attrs["steps_at_limit"] == 0
+assert any(one["allocates"] for one in mbs.implementations()) and not all(one["allocates"] for one in mbs.implementations())
 """, cwd=tmp_path, env=python_of(prefix))
 
 

@@ -2,6 +2,7 @@
 // example.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -13,7 +14,8 @@
 
 namespace mbs {
 
-/// What the library refuses: a scene, a name, a setting. what() is one line.
+/// What the library refuses: a scene, a name, a number, a setting. what() is one line: what was
+/// found and what is allowed. A call that throws it has changed nothing.
 class Refused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -24,7 +26,8 @@ class SceneDocument {
   /// What `mbs simulate` takes: the path of a JSON file, "four-bar:40", "vehicle:4". Throws
   /// Refused.
   static SceneDocument load(const std::string& scene);
-  /// The text of a JSON scene; `name` stands for it in messages. Throws Refused.
+  /// The text of a JSON scene; `name` stands for it in messages. Throws Refused where it is no
+  /// JSON object. What a scene must have, Stepper and describe() look at: numbers may still change.
   static SceneDocument parse(std::string_view json, const std::string& name = "scene");
 
   SceneDocument(const SceneDocument& other);
@@ -34,7 +37,7 @@ class SceneDocument {
   /// A number of the document, by the path that `mbs sweep --vary` takes:
   /// "springs/front/stiffness", "points/B/velocity/0". Throws Refused with what is there.
   [[nodiscard]] double number(const std::string& path) const;
-  void set_number(const std::string& path, double value);
+  void set_number(const std::string& path, double value);  ///< finite
 
   [[nodiscard]] const std::string& name() const;
   [[nodiscard]] std::string json() const;
@@ -65,28 +68,32 @@ struct Offer {
   std::string description;  ///< one line
   std::string library;      ///< "none": code of this project alone, under its licence
   std::string licence;      ///< of that library, SPDX
+  std::string allocates;    ///< why its step() allocates memory; empty: it does not
 };
 std::vector<Offer> implementations();
 
 /// "0.1.0".
 const char* version();
 
-/// A moment of a Stepper, to come back to.
+/// A moment of a Stepper, to come back to. It belongs to the scene and the settings: any Stepper of
+/// an equal document and equal settings takes it. To begin a changed scene from it, save() there
+/// and replace `state`.
 struct Saved {
   State state;
   std::vector<TimeFunction::Sample> inputs;
   std::vector<double> angles;  ///< as outputs count them, with turns
+  std::uint64_t identity = 0;  ///< of the scene and settings
 };
 
 /// One simulation of one scene, from its start on. Set up once; step() and set_input() allocate
-/// nothing (but where mbs::Variant::allocates says so), and neither do the others after their first
-/// call.
+/// nothing (step() only where Offer::allocates says so), and neither do the others after their
+/// first call, but outputs() of a scene with springs or laws that asks for its energy.
 ///
-///   mbs::Stepper car(mbs::SceneDocument::load("car.json"), {.implementation =
-///   "csc_ldl/uplooking"}); const int road = car.input("road"), hub = car.output("hub.y"); for (;;)
-///   {
-///     car.set_input(road, z, dz, ddz);        // at the end of the step
-///     if (car.step().status != mbs::StepStatus::converged) ...
+///   mbs::Stepper car(mbs::SceneDocument::load("car.json"));
+///   const int road = car.input("road"), hub = car.output("hub.y");
+///   for (;;) {
+///     car.set_input(road, z, dz, ddz);  // at the end of the step
+///     if (car.step().status != mbs::StepStatus::converged) break;
 ///     use(car.outputs()[hub]);
 ///   }
 ///
@@ -112,13 +119,14 @@ class Stepper {
   /// What an input is from the next step on; of a function of time: its value at the end of that
   /// step. Forces, torques, stiffnesses, dampings and factors need the value alone. What moves a
   /// point or a constraint needs its rate (per s) and acceleration (per s^2) too, consistent with
-  /// each other.
+  /// each other. Throws Refused with the names if there is no such input, and where a scene file
+  /// would: not a finite number, a negative stiffness or damping, a distance that is not above 0.
   void set_input(int input, double value, double rate = 0.0, double acceleration = 0.0);
 
   /// Delta t further.
   [[nodiscard]] StepOutcome step();
   /// At most `steps` steps, fewer where a factorization fails. The status is the worst of them,
-  /// passes and factorizations are sums.
+  /// passes and factorizations are sums. Throws Refused if `steps` is below 1.
   [[nodiscard]] StepOutcome step(long steps);
 
   /// q, v, a, lambda and t now; valid until the next step or restore(). The same buffers every
@@ -130,6 +138,8 @@ class Stepper {
 
   /// State and inputs. Kept tangents and the history of multistep6 begin anew with restore().
   void save(Saved& moment);
+  /// Throws Refused if `moment` is of another scene or other settings, if its state is not finite,
+  /// or if set_input() would refuse one of its inputs.
   void restore(const Saved& moment);
 
  private:
@@ -155,7 +165,10 @@ class BatchStepper {
   [[nodiscard]] const StepSettings& settings(int lane) const;
   [[nodiscard]] std::span<const std::string> input_names() const;
   [[nodiscard]] std::span<const std::string> output_names() const;
+  [[nodiscard]] int input(std::string_view name) const;
+  [[nodiscard]] int output(std::string_view name) const;
 
+  /// A lane counts from 0; Refused is thrown for any other. Inputs and outcomes as a Stepper's.
   void set_input(int lane, int input, double value, double rate = 0.0, double acceleration = 0.0);
   /// All lanes Delta t further; one outcome a lane. A lane that failed goes no further.
   [[nodiscard]] std::span<const StepOutcome> step();
