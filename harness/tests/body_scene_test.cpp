@@ -326,8 +326,11 @@ TEST(BodyScene, ExamplesHaveNoRedundantRows) {
 /// A force that changes in time has a hidden point, which is fixed in the draft and lies anywhere.
 TEST(BodyScene, VectorsBeginAtTheOriginWhateverPushes) {
   const auto of_force = [](const std::string& force) {
-    return data_of_text(R"({"dimension": 3, "bodies": [{"name": "K", "mass": 1, "inertia": [1, 1, 1],
-      "points": {"A": [1, 0, 0.1]}, "vectors": {"u": [0, 0, 1], "w": [0, 1, 0]}}],
+    return data_of_text(R"({"dimension": 3, "bodies": [{"name": "K", "mass": 1, "inertia": [1, 1, 1], "pose": {"position": [0, 0, 0]},
+      "points": {"A": [0, 0, 0.1], "B": [1, 0, 0]}, "vectors": {"u": [0, 0, 1], "w": [0, 1, 0]}}],
+      "vectors": [{"name": "g", "direction": [1, 0, 0], "fixed": true}],
+      "constraints": [{"name": "c", "type": "perpendicular", "first": "w", "second": "g"},
+        {"name": "d", "type": "perpendicular", "first": "u", "second": "g"}],
       "forces": [{"point": "A", "force": [0, )" + force + ", 0]}]}");
   };
   for (const char* force : {"5", R"({"polynomial": [5, 1]})"}) {
