@@ -22,10 +22,9 @@ LETTERS = 46  # in a line of the legend
 EDGE = {"edgecolor": "white", "linewidth": 1.0}
 
 
-def draw(results, look, title, names, smallest=0, largest=float("inf"), letters=13, line=2.1):
-    """The map of some contenders, of the sizes from `smallest` to `largest` variables. A cell has `letters` in a line of text, which
-    is `line` % of the axis high."""
-    cells = [cell for cell in map_cells(results, names) if smallest <= cell.variables <= largest]
+def draw(results, look, title, names, letters=13, line=2.1):
+    """The map of some contenders. A cell has `letters` in a line of text, which is `line` % of the axis high."""
+    cells = map_cells(results, names)
     count = len(columns(cells))
     figure, axes = plt.subplots(figsize=(max(5.0, 0.9 + 1.02 * count), 7.4))
     axes.set_title(title)

@@ -62,10 +62,11 @@ void HybridSimulation<D, System>::do_set_state(const State& state) {
   std::ranges::copy(state.v, v_.data());
   std::ranges::copy(state.a, a_.data());
   for (long k = 0; k < m_; ++k) lambda_[k] = state.lambda[constraints_.model_row(k)];
-  // What a step that was not finite left behind the last of the n entries, where zeros belong.
+  // What a step that was not finite left behind the last entries, where zeros belong.
   for (Array* one : {&v_, &a_, &Delta_q_, &right_v_, &right_a_}) {
     std::fill_n(one->data() + n_, padded(n_) - n_, 0.0);
   }
+  std::fill_n(y_.data() + m_, padded(m_) - m_, 0.0);
 }
 
 template <int D, class System>

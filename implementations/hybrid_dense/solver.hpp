@@ -16,7 +16,7 @@ std::string library_versions();
 class PanelsSolver {
  public:
   static constexpr bool kProducts = false;  // whether it has multiply()
-  explicit PanelsSolver(long n) : n_(n), panels_(n), A_(panels_.size()), Z_(panels_.size()) {
+  explicit PanelsSolver(long n) : panels_(n), A_(panels_.size()), Z_(panels_.size()) {
     for (long i = n; i < padded(n); ++i) A_[Panels::position(i, i)] = 1.0;
   }
   /// The lower half is to be written; kWidth rows from a multiple of kWidth on lie one behind the
@@ -25,18 +25,14 @@ class PanelsSolver {
   static long position(long i, long j) { return Panels::position(i, j); }
   /// False unless the matrix is positive definite.
   [[nodiscard]] bool factorize() { return hybrid_dense::factorize(panels_, A_.data(), Z_.data()); }
-  /// x is the right-hand side when it arrives, with room for whole vectors.
-  void solve(double* x) const {
-    std::fill_n(x + n_, padded(n_) - n_, 0.0);  // a step that was not finite leaves NaN there
-    hybrid_dense::solve(panels_, Z_.data(), x);
-  }
+  /// x is the right-hand side when it arrives; padded by zeros.
+  void solve(double* x) const { hybrid_dense::solve(panels_, Z_.data(), x); }
   /// `count` of them, each `stride` behind the one before.
   void solve(double* x, long count, long stride) const {
     for (long k = 0; k < count; ++k) solve(x + k * stride);
   }
 
  private:
-  long n_;
   Panels panels_;
   Array A_, Z_;
 };

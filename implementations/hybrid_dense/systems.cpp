@@ -130,7 +130,7 @@ bool SaddleSystem<D, Solver>::factorize() {
 template <int D, class Solver>
 void SaddleSystem<D, Solver>::solve(double* x, double* y) {
   // Fixed points' entries of right-hand sides mean nothing; Phi_q's products read them.
-  std::copy_n(x, n_, z_.data());
+  std::copy_n(x, padded(n_), z_.data());
   T_0_.solve(z_.data());
   constraints_.multiply(Phi_q_.data(), z_.data(), z_y_.data());
   for (long k = 0; k < m_; ++k) y[k] = z_y_[k] - y[k];

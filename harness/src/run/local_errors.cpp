@@ -14,7 +14,7 @@ void LocalErrors::add_lag(std::span<const double> off, std::span<const double> v
   points_.resize(velocity_.size());
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const double speed = std::sqrt(dot(velocity_[p], velocity_[p]));
-    if (!(speed > 0.0)) continue;
+    if (speed == 0.0) continue;  // a NaN goes on
     points_[p].lag += static_cast<double>(steps) * std::abs(dot(error_[p], velocity_[p])) / speed;
   }
 }
@@ -35,7 +35,7 @@ void LocalErrors::add_speed(const SpeedError& error, std::span<const double> v, 
     const double gain = now * later < 0.0 ? 0.0 : std::abs(later) < std::abs(now) ? later : now;
     sums.gain = kept * sums.gain + gain;
     sums.gain_squared = kept * sums.gain_squared + gain * gain;
-    if (!(speed > 0.0)) continue;
+    if (speed == 0.0) continue;
     const double mean = std::abs(sums.gain) / samples_;
     const double rms = std::sqrt(sums.gain_squared / samples_);
     const double gained = steps_ * std::max(0.0, mean - 2 * rms / std::sqrt(samples_)) +

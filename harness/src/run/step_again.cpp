@@ -39,7 +39,8 @@ double StepAgain::subtract(const State& x, const State& y, std::vector<double>& 
   for (std::size_t i = 0; i < faster.size(); ++i) {
     faster[i] = is_done_ ? x.v[i] - y.v[i] + step_ / 2 * (x.a[i] - y.a[i])
                          : std::numeric_limits<double>::infinity();
-    largest = std::max(largest, std::abs(faster[i]));
+    // std::max would drop a NaN.
+    largest = std::max(largest, std::isnan(faster[i]) ? HUGE_VAL : std::abs(faster[i]));
   }
   return largest;
 }
@@ -47,11 +48,12 @@ double StepAgain::subtract(const State& x, const State& y, std::vector<double>& 
 const SpeedError& StepAgain::error(const State& before, const State& after, double negligible) {
   is_done_ = true;
   advance(before, again_);
-  if (subtract(after, again_, error_.now) < negligible) {
+  const double largest = subtract(after, again_, error_.now);
+  if (largest < negligible || !std::isfinite(largest)) {
     error_.later = error_.now;
     return error_;
   }
-  if (is_done_) advance(after, later_);
+  advance(after, later_);
   if (is_done_) advance(again_, again_later_);
   subtract(is_done_ ? later_ : after, is_done_ ? again_later_ : after, error_.later);
   return error_;

@@ -51,15 +51,13 @@ void Lowering::number_points() {
 
 /// A force that is a function of time: what the mass of a driven point would put into Q.
 void Lowering::add_pusher(DraftForce& force) {
-  force.pusher = add_hidden(force.node.path(), false);
-  draft_.points.back().hold = Hold::driven;  // no origin of directions, whatever its place in the draft
-  Point& point = model().points[static_cast<std::size_t>(force.pusher)];
+  DraftPoint point{force.node.path()};
+  point.hold = Hold::driven;
   point.position = position(force.point);  // so that the scene's extent stays
-  DrivenPoint driven{force.pusher, {}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    driven.position[axis] = pushing(force.driven[axis], point.position[axis]);
+    point.motion[axis] = pushing(force.driven[axis], (*point.position)[axis]);
   }
-  model().driven_points.push_back(driven);
+  force.pusher = add_hidden(std::move(point));
 }
 
 void Lowering::add_point(DraftPoint& point) {
@@ -131,11 +129,15 @@ int Lowering::zero() {
 
 int Lowering::add_hidden(const std::string& name, bool is_vector) {
   DraftPoint point{name, std::nullopt, is_vector};
+  point.hold = Hold::fixed;
+  point.position = Vector3{};
+  return add_hidden(std::move(point));
+}
+
+int Lowering::add_hidden(DraftPoint point) {
   while (!draft_.index_of.emplace(point.name, static_cast<int>(draft_.points.size())).second) {
     point.name += '_';
   }
-  point.hold = Hold::fixed;
-  point.position = Vector3{};
   add_point(point);
   const int index = point.index;
   draft_.points.push_back(std::move(point));

@@ -81,6 +81,8 @@ class Lowering {
  private:
   void number_points();
   void add_pusher(DraftForce& force);
+  /// `point`, by another name where its own is taken; its index in the model.
+  int add_hidden(DraftPoint point);
   void add_point(DraftPoint& point);
   [[nodiscard]] std::string velocity_path(const DraftPoint& point) const;
   void add_elements();

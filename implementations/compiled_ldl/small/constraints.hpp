@@ -2,6 +2,7 @@
 #pragma once
 
 #include "elements/blocks.hpp"
+#include "scene.hpp"
 #include "small/rows.hpp"
 
 namespace mbs::compiled_ldl {
@@ -86,7 +87,7 @@ SmallConstraints<N, D>::SmallConstraints(const Model& model, double alpha, doubl
   int number = 0;
   for (const DotConstraint& c : model.dot_constraints()) {
     values.push_back(c.value);
-    if (c.a == c.c && c.b == c.d) {
+    if (is_distance(c)) {
       Distance distance = {};
       distance.u = {model, c.a, c.b};
       distance.number = number++;
