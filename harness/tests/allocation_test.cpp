@@ -100,24 +100,24 @@ struct Prepared {
 
 constexpr int kStretchSteps = 120;
 
-/// Each stretch passes a singular position of the four-bar in its middle, where passes, multipliers
+/// The stretch passes a singular position of the four-bar in its middle, where passes, multipliers
 /// and pivots change most.
+Prepared prepare(Scene scene) {
+  StepSettings settings;
+  settings.penalty = automatic_penalty(scene.model, settings);
+  Stretch stretch = make_stretch(scene, settings.step, kStretchSteps);
+  return {std::move(scene), settings, std::move(stretch)};
+}
+
 const std::vector<Prepared>& prepared() {
   static const std::vector<Prepared> all = [] {
-    std::vector<Scene> scenes;
+    std::vector<Prepared> result;
     for (const char* name : {"four-bar:1", "four-bar:10", "four-bar:40", "four-bar:10,fill=0.6",
                              "four-bar:80", "four-bar:80,fill=1"}) {
-      scenes.push_back(load_scene(name));
+      result.push_back(prepare(load_scene(name)));
     }
-    scenes.push_back(free_fall());
-    scenes.push_back(spatial());
-    std::vector<Prepared> result;
-    for (Scene& scene : scenes) {
-      StepSettings settings;
-      settings.penalty = automatic_penalty(scene.model, settings);
-      Stretch stretch = make_stretch(scene, settings.step, kStretchSteps);
-      result.push_back({std::move(scene), settings, std::move(stretch)});
-    }
+    result.push_back(prepare(free_fall()));
+    result.push_back(prepare(spatial()));
     return result;
   }();
   return all;
@@ -191,7 +191,7 @@ TEST(AllocationCounter, NoticesAStepThatAllocates) {
                         [](const Model& model, const StepSettings&) -> std::unique_ptr<Simulation> {
                           return std::make_unique<Allocating>(model);
                         }};
-  EXPECT_EQ(allocations_of_steps(variant, free_fall()), 115);
+  EXPECT_EQ(allocations_of_steps(variant, prepare(free_fall())), 115);
 }
 
 }  // namespace
