@@ -25,22 +25,28 @@ constexpr double kApart = 3e-3;    // of the length: less is not yet another ass
 /// The sign of its determinant by elimination with row pivots, which passes over zeros, or 0 where a
 /// pivot is too small. (A determinant of many rows is small wherever it is.) Overwrites it.
 int sign_of(SquareMatrix& matrix) {
-  const Eigen::Index size = matrix.rows();
+  const auto size = static_cast<std::size_t>(matrix.rows());
+  double* const first = matrix.data();  // in rows; plain loops, since blocks are small
   int sign = 1;
-  for (Eigen::Index k = 0; k < size; ++k) {
-    Eigen::Index at = 0;
-    const double most = matrix.col(k).tail(size - k).cwiseAbs().maxCoeff(&at);
+  for (std::size_t k = 0; k < size; ++k) {
+    double* row = first + k * size;
+    double* pivots = row;
+    for (std::size_t i = k + 1; i < size; ++i) {
+      double* const other = first + i * size;
+      if (std::abs(other[k]) > std::abs(pivots[k])) pivots = other;
+    }
+    const double pivot = pivots[k], most = std::abs(pivot);
     if (!(most > kUnknown && std::isfinite(most))) return 0;
-    if (at != 0) {
-      matrix.row(k).tail(size - k).swap(matrix.row(k + at).tail(size - k));
+    if (pivots != row) {
+      std::swap_ranges(row + k, row + size, pivots + k);
       sign = -sign;
     }
-    const double pivot = matrix(k, k);
     if (pivot < 0.0) sign = -sign;
-    for (Eigen::Index i = k + 1; i < size; ++i) {
-      if (matrix(i, k) == 0.0) continue;
-      const double factor = matrix(i, k) / pivot;
-      matrix.row(i).tail(size - k - 1) -= factor * matrix.row(k).tail(size - k - 1);
+    for (std::size_t i = k + 1; i < size; ++i) {
+      double* const other = first + i * size;
+      if (other[k] == 0.0) continue;
+      const double factor = other[k] / pivot;
+      for (std::size_t j = k + 1; j < size; ++j) other[j] -= factor * row[j];
     }
   }
   return sign;

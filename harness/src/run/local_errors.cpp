@@ -8,15 +8,18 @@
 
 namespace mbs {
 
-void LocalErrors::add_lag(std::span<const double> off, std::span<const double> v, long steps) {
+double LocalErrors::add_lag(std::span<const double> off, std::span<const double> v, long steps) {
   point_vectors(scene_, length_, off, error_);
   point_vectors(scene_, length_, v, velocity_);
   points_.resize(velocity_.size());
+  double fastest = 0.0;
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const double speed = std::sqrt(dot(velocity_[p], velocity_[p]));
     if (speed == 0.0) continue;  // a NaN goes on
     points_[p].lag += static_cast<double>(steps) * std::abs(dot(error_[p], velocity_[p])) / speed;
+    fastest = std::max(fastest, speed);
   }
+  return fastest;
 }
 
 void LocalErrors::add_speed(const SpeedError& error, std::span<const double> v, double step,

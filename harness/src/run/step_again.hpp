@@ -45,4 +45,10 @@ class StepAgain {
   SpeedError error_;
 };
 
+/// The largest velocity, m/s, that a step of the penalty form can leave whose passes ended at the
+/// tolerance, each with a tangent of its own, where the fastest point moves at `speed`, m/s: what
+/// (2) makes of the tolerance, and what (6) does to the lightest coordinate, since the tangent is
+/// one correction older. Infinite for other settings.
+double most_left(const Model& model, const StepSettings& settings, double speed);
+
 }  // namespace mbs
