@@ -22,8 +22,8 @@ constexpr double kSame = 1e-5;     // of the length: more than what constraints 
 constexpr int kMostUncertain = 8;  // looks
 constexpr double kApart = 3e-3;    // of the length: less is not yet another assembly
 
-/// The sign of its determinant by elimination with row pivots, which passes over zeros, or 0 where a
-/// pivot is too small. (A determinant of many rows is small wherever it is.) Overwrites it.
+/// The sign of its determinant by elimination with row pivots, which passes over zeros, or 0 where
+/// a pivot is too small. (A determinant of many rows is small wherever it is.) Overwrites it.
 int sign_of(SquareMatrix& matrix) {
   const auto size = static_cast<std::size_t>(matrix.rows());
   double* const first = matrix.data();  // in rows; plain loops, since blocks are small
@@ -119,7 +119,7 @@ void BranchWatch::find_signs(double t, const State& state) {
     const ConstraintBlock& block = matrices_->block(m);
     SquareMatrix& square = matrices_->matrix(m);
     const Eigen::Index size = square.rows();
-    double least = 0.0;  // length of a row that has a direction
+    double least = 0.0;                   // length of a row that has a direction
     if (BlockJacobian::is_open(block)) {  // one freedom: the direction of motion below
       const std::vector<double>& below = is_carried(m) ? tangent_ : state.v;
       const double sign = is_carried(m) ? 1.0 : turned(block, state);
@@ -227,7 +227,8 @@ std::string BranchWatch::look(double t, const State& state) {
     const Part& part = parts_[part_of_[m]];
     const std::optional<FollowedCurve> followed = follow(part, t, state);
     const auto lost = [&] {
-      return fmt::format("at t = {:g} s {} cannot be followed by their constraints alone", t, place_of(m));
+      return fmt::format("at t = {:g} s {} cannot be followed by their constraints alone", t,
+                         place_of(m));
     };
     if (!followed && uncertain_ < kMostUncertain) {
       is_certain = false;

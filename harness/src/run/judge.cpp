@@ -163,8 +163,8 @@ void Judge::add_local_error(double local, double speed, double step, long steps)
   so_far_.local_error += static_cast<double>(steps) * local;
   if (!conservative_ || !(so_far_.last_kinetic > 0.0)) return;
   const double energy = 1 + so_far_.last_energy_difference / so_far_.last_kinetic;
-  so_far_.ahead += static_cast<double>(steps) * step * speed *
-                   (std::sqrt(std::max(energy, 0.0)) - 1);
+  so_far_.ahead +=
+      static_cast<double>(steps) * step * speed * (std::sqrt(std::max(energy, 0.0)) - 1);
   so_far_.farthest_ahead = std::max(so_far_.farthest_ahead, std::abs(so_far_.ahead));
 }
 

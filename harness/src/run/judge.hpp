@@ -81,9 +81,9 @@ class Judge {
     double violation = 0.0;           // m^2, m
     double relative_violation = 0.0;  // as RunBounds
     bool off_branch = false;
-    double local_error = 0.0;         // m
+    double local_error = 0.0;                  // m
     double ahead = 0.0, farthest_ahead = 0.0;  // m; farthest_ahead: the largest |ahead|
-    double excess = 0.0, work = 0.0;  // J
+    double excess = 0.0, work = 0.0;           // J
     std::optional<double> imbalance;
   };
   [[nodiscard]] const Figures& figures() const { return so_far_; }

@@ -41,8 +41,8 @@ void LocalErrors::add_speed(const SpeedError& error, std::span<const double> v, 
     if (speed == 0.0) continue;
     const double mean = std::abs(sums.gain) / samples_;
     const double rms = std::sqrt(sums.gain_squared / samples_);
-    const double gained = steps_ * std::max(0.0, mean - 2 * rms / std::sqrt(samples_)) +
-                          rms * std::sqrt(steps_);
+    const double gained =
+        steps_ * std::max(0.0, mean - 2 * rms / std::sqrt(samples_)) + rms * std::sqrt(steps_);
     sums.way += time * (gained / speed > speed ? speed : gained / speed);
   }
 }

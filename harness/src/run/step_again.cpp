@@ -41,8 +41,7 @@ double most_left(const Model& model, const StepSettings& settings, double speed)
   const double rate = is_driven ? 2 * speed * extent(model.points()) : 0.0;
   const double wrong = factor * (rate + step / 2 * 8 * speed * speed);
   const double beta = settings.penalty * step * step / 4;
-  return 2 / step * tolerance +
-         beta * turned * wrong / std::ranges::min(mass_diagonal(model));
+  return 2 / step * tolerance + beta * turned * wrong / std::ranges::min(mass_diagonal(model));
 }
 
 StepAgain::StepAgain(const Create& create, const Model& model, const StepSettings& settings,

@@ -28,9 +28,9 @@ class StepAgain {
   /// step.
   StepAgain(const Create& create, const Model& model, const StepSettings& settings, double passes);
 
-  /// Of the velocity that the next step begins with, v + dt/2 a; `after` is one step after `before`.
-  /// Not finite where the step could not be done again. What is below `negligible` (m/s) everywhere is
-  /// not followed and taken to stay.
+  /// Of the velocity that the next step begins with, v + dt/2 a; `after` is one step after
+  /// `before`. Not finite where the step could not be done again. What is below `negligible` (m/s)
+  /// everywhere is not followed and taken to stay.
   const SpeedError& error(const State& before, const State& after, double negligible);
 
  private:
