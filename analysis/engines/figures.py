@@ -58,7 +58,7 @@ def _panel(axes, engines, ours, own):
         lost = rows[~rows.status.isin((*FINISHED, *NOT_MADE)) & (rows.time > 0)]
         # A share of the height each, so that engines do not cover each other's crosses.
         axes.plot(lost.time, numpy.full(len(lost), 0.985 - 0.025 * place), "x", color=colour, markersize=4,
-                  transform=axes.get_xaxis_transform(), clip_on=False)
+                  transform=axes.get_xaxis_transform(), clip_on=False, in_layout=False)
     for side, line in LINES.items():
         rows = of_side(ours, side, own)
         front = rows.loc[pareto(rows)]
