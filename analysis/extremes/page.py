@@ -20,7 +20,8 @@ def _battery(table):
         return None
     return {"runs": len(runs), "mechanisms": len(runs[["axis", "value"]].drop_duplicates()), "kinds": verdicts.kinds(runs), "verdicts": verdicts.ALL,
             "lists": {verdict: verdicts.listed(runs, verdict) for verdict in (verdicts.SILENT, verdicts.FALSE)}, "left_out": left_out(table),
-            "nobody": nobody(extreme), "matrix": matrix(extreme), "unjudged": int((table.status.isin(GOOD) & table.true_error.isna()).sum()),
+            "nobody": nobody(extreme), "matrix": matrix(extreme), "tried": list(extreme.setting.unique()),
+            "unjudged": int((table.status.isin(GOOD) & table.true_error.isna()).sum()),
             "settings": [(name, len(rows), verdicts.counts(rows)) for name, rows in runs.groupby("setting", sort=False)]}
 
 
