@@ -1,5 +1,5 @@
-# The figures of accuracy: error against time of each subject, the regions of required errors, pairs of settings.
-from analysis.accuracy import pairs, pairs_figure, regions_figure, work_figure
+# The figures of accuracy: error against time of each subject, the regions of required errors.
+from analysis.accuracy import regions_figure, work_figure
 from analysis.core.style import Look
 
 
@@ -16,10 +16,4 @@ def draw(tables, view):
     chains = tables["winners"][tables["winners"].loops.notna()]
     if len(chains):
         found["regions"] = regions_figure.draw(chains, look)
-    for kind, title, goal in (
-            (pairs.FORMS, "The saddle-point form beside the penalty form", None),
-            (pairs.PRECISION, "Lower precision beside double; hollow: another error class, or none", pairs.GAIN)):
-        rows = tables["pairs"][(tables["pairs"].kind == kind) & tables["pairs"].ratio.notna()]
-        if rows.variables.nunique() > 1:
-            found[kind] = pairs_figure.draw(rows, look, title, goal)
     return found

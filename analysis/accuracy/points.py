@@ -7,6 +7,7 @@ import pandas
 
 from analysis.core import timing
 from analysis.core.outcomes import FINISHED, of_run
+from analysis.core.statistics import median
 from analysis.accuracy import subjects
 
 KEY = ["scene", "implementation", "setting", "step"]
@@ -36,11 +37,10 @@ def runs(records, subject, known):
                     "passes": found["passes_per_step"], "factorizations": found["factorizations_per_step"],
                     "time": 1e-6 * found["step_us"]["median"] / row["step"]}
         if status in FINISHED and known:
-            error = subjects.error(subject, known, record)
-            row |= {"error": max(error, known.own_error), "at_most": bool(error <= known.own_error)}
+            row["error"] = max(subjects.error(subject, known, record), known.own_error)
         rows.append(row)
     return pandas.DataFrame(rows, columns=[*KEY, "duration", "status", "reason", "record", "variables", "fill", "passes", "factorizations",
-                                           "time", "error", "at_most"])
+                                           "time", "error"])
 
 
 def timed(records):
@@ -71,17 +71,15 @@ def points(made, measured):
             row |= own[key] | {"error_of": key[1], "time_from": RUN}
         elif key[2:] in others:
             source = others[key[2:]]
-            row |= {name: source[name] for name in ("error", "at_most", "passes", "variables", "record")} | {
+            row |= {name: source[name] for name in ("error", "passes", "variables", "record")} | {
                 "status": NOT_JUDGED, "reason": "no run of its own", "error_of": source["implementation"]}
         else:
             row |= {"status": NOT_JUDGED, "reason": "nobody's run tells its error"}
         if key in times:
             row |= _time(times[key], row)
         rows.append(row)
-    found = pandas.DataFrame(rows, columns=[*KEY, "duration", "status", "reason", "error", "error_of", "at_most", "passes",
-                                            "factorizations", "variables", "fill", "step_us", "time", "time_low",
-                                            "time_high", "time_from", "processes", "record"])
-    return found.astype({"at_most": "boolean"})
+    return pandas.DataFrame(rows, columns=[*KEY, "duration", "status", "reason", "error", "error_of", "passes", "factorizations", "variables",
+                                           "fill", "step_us", "time", "time_low", "time_high", "time_from", "processes", "record"])
 
 
 def _key(row):
@@ -106,27 +104,24 @@ def _time(rows, row):
     if lost:
         status = {key: lost[key] for key in ("status", "reason")} if row["status"] in (*FINISHED, NOT_JUDGED) else {}
         return status | {"time": numpy.nan, "time_from": ROLES[kind], "record": records}
-    seconds = [float(numpy.median(_seconds(one, row))) for one in mine]
-    return {"step_us": float(numpy.median([one["step_us"] for one in mine])), "time": float(numpy.median(seconds)),
-            "time_low": min(seconds), "time_high": max(seconds), "time_from": ROLES[kind], "processes": len(mine),
-            "record": records, "variables": mine[0].get("variables", row.get("variables"))}
+    seconds = [_seconds(one, row) for one in mine]
+    return {"step_us": median([one["step_us"] for one in mine]), "time": median(seconds), "time_low": min(seconds), "time_high": max(seconds),
+            "time_from": ROLES[kind], "processes": len(mine), "record": records, "variables": mine[0].get("variables", row.get("variables"))}
 
 
 def _seconds(process, row):
-    """Samples of a process as s of computation for a simulated second."""
+    """A process's time of a step as s of computation for a simulated second."""
     in_stretch = process["passes"] / process["steps"]
     more = row["passes"] / in_stretch if row.get("passes", 0) > 0 and in_stretch > 0 else 1.0
-    return 1e-6 / row["step"] * more * numpy.array(process["samples"])
+    return 1e-6 / row["step"] * more * process["step_us"]
 
 
 def rounds(table, measured):
     """The rows of a scene's points in rounds as analysis.core.timing ranks them: "implementation" is a label of the
     point. Processes of one number follow each other on the machine, and count as one process."""
-    times, rows = _processes(measured, ("time",)), []
-    for point in table[table.time_from == ROUNDS].to_dict("records"):
-        for one in times[_key(point)]:
-            row = {"implementation": label(point), "process": one["process"], "status": one["status"]}
-            rows.append(row | {"seconds": float(numpy.median(_seconds(one, point)))} if one["status"] == "ok" else row)
+    times = _processes(measured, ("time",))
+    rows = [{"implementation": label(point), "process": one["process"], "status": one["status"], "seconds": _seconds(one, point)}
+            for point in table[table.time_from == ROUNDS].to_dict("records") for one in times[_key(point)]]
     return timing.apart(pandas.DataFrame(rows, columns=["implementation", "process", "status", "seconds"]), "seconds")
 
 

@@ -2,10 +2,9 @@
 import matplotlib.pyplot as plt
 from matplotlib.patches import Patch, Rectangle
 
-from analysis.accuracy import names
 from analysis.accuracy.winners import LAYERS, NOBODY, NOT_TIMED, met
 from analysis.accuracy.work_figure import TITLES
-from analysis.core.text import number
+from analysis.core.text import number, step
 
 STRONG, WEAK = 0.95, 0.45  # a winner that is decided or has its equals named; one that is open
 NONE = {"facecolor": "white", "edgecolor": "#bbbbbb", "hatch": "...", "linewidth": 0}
@@ -43,7 +42,7 @@ def _cell(axes, row, x, y, look):
         if not settled:
             axes.add_patch(Rectangle((x, y), 1, 1, facecolor="none", edgecolor="#555555", linewidth=0, hatch="////"))
         others = len(row.equivalent.split("; ")) if row.equivalent else 0
-        text = f"{row.setting}\n{names.step(row.step)}" + (f"  ≈{others}" if others else "")
+        text = f"{row.setting}\n{step(row.step)}" + (f"  ≈{others}" if others else "")
         colour = "black"
     axes.text(x + 0.5, y + 0.5, text, ha="center", va="center", fontsize=6.8, linespacing=1.2, color=colour, zorder=6,
               bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "linewidth": 0, "alpha": 0.78})

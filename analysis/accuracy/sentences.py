@@ -142,8 +142,3 @@ def of_reuse(table):
     said += (f"; the quickest, {quickest['second']} with n = {quickest['variables']:.0f}, takes {number(quickest['ratio'], 2)} of "
              "the time of a step without." if quickest["ratio"] < 1 else "; nowhere is a step faster for it.")
     return [said]
-
-
-def rest(table, column):
-    """Counts of a column's values, as {value: count}."""
-    return {value: int(count) for value, count in table[column].value_counts().items()} if len(table) else {}

@@ -4,7 +4,7 @@ import pandas
 from analysis.accuracy import pairs, subjects
 from analysis.accuracy.columns import columns
 from analysis.accuracy.points import points, runs, timed
-from analysis.accuracy.winners import LAYERS, meeting, winners
+from analysis.accuracy.winners import LAYERS, meeting, of_layer, winners
 from analysis.core.errors import StudyError
 from analysis.core.outcomes import pareto
 
@@ -51,12 +51,8 @@ def of_column(kind, subject, known, records, view):
         return {}
     libraries = view.registry.libraries
     for layer in LAYERS:
-        table[f"front_{layer}"] = False
-    for scene, rows in table.groupby("scene", sort=False):
-        for layer in LAYERS:
-            timed_ones = meeting(rows, float("inf"))
-            chosen = timed_ones[timed_ones.implementation.isin(libraries)] if layer == "libraries" else timed_ones
-            table.loc[pareto(chosen), f"front_{layer}"] = True
+        chosen = meeting(of_layer(table, layer, libraries), float("inf"))
+        table[f"front_{layer}"] = table.index.isin([index for _, rows in chosen.groupby("scene") for index in pareto(rows)])
     won = winners(table, measured, view.settings["errors"], libraries)
     fills = {scene: rows.fill.dropna().median() for scene, rows in table.groupby("scene")}
     for one in (table, won):

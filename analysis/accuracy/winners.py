@@ -12,6 +12,10 @@ NEAR = 1.25  # times the fastest in a look: who is slower has no rounds, and has
 COLUMNS = ("error", "time", "time_low", "time_high", "processes", "record")
 
 
+def of_layer(rows, layer, libraries):
+    return rows[rows.implementation.isin(libraries)] if layer == "libraries" else rows
+
+
 def meeting(table, required):
     """The points that meet an error in a run of their own and have a time by themselves, the fastest first."""
     found = table[table.status.isin(FINISHED) & (table.error <= required) & (table.error_of == table.implementation)
@@ -25,7 +29,7 @@ def winners(table, measured, errors, libraries):
     for scene, points in table.groupby("scene", sort=False):
         samples = rounds(points, measured)
         for layer in LAYERS:
-            mine = table[table.implementation.isin(libraries)] if layer == "libraries" else table
+            mine = of_layer(table, layer, libraries)
             reached, dropped = mine[mine.status.isin(FINISHED)].error.min(), (mine.status == "dropped").any()
             here = mine[mine.scene == scene]
             for required in errors:
@@ -58,8 +62,5 @@ def fastest(found, samples):
         row |= {"decided": ranking.decided and waiting.empty, "settled": ranking.settled and waiting.empty,
                 "equivalent": "; ".join(names[one] for one in ranking.equivalent if one != ranking.winner)}
         if ranking.second:
-            second, margin = by_label[ranking.second], ranking.margin
-            row |= {"second": second["implementation"], "second_setting": second["setting"],
-                    "second_step": second["step"], "margin": margin.value, "margin_low": margin.low,
-                    "margin_high": margin.high}
+            row |= {"second": by_label[ranking.second]["implementation"], "margin": ranking.margin.value}
     return row

@@ -3,19 +3,18 @@
 # each other: their time over the least of them at the same error.
 import matplotlib.pyplot as plt
 import numpy
-from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
-from analysis.accuracy import names
 from analysis.accuracy.points import NOT_JUDGED
 from analysis.accuracy.winners import LAYERS, meeting, met
 from analysis.core.outcomes import FINISHED, near
-from analysis.core.style import DASHES, GREY, missing, number_axis
+from analysis.core.style import ALTERNATIVES, DASHES, missing, number_axis
 
 CLOSE = 1.25  # times the front's time at its error
 MOST = 8      # named series of a panel
 SHOWN = 2.5   # times the least, at which the lower panels end at most
 GAP = 2.6     # times the shorter of two steps
+OTHERS = {"color": "#c4c8ce", "linewidth": 0.7, "marker": ".", "markersize": 3, "zorder": 1}
 RINGED = "fastest for a required error (dashed)"
 RING = {"marker": "o", "markersize": 13, "markerfacecolor": "none", "markeredgecolor": "black", "markeredgewidth": 1.3}
 TITLES = {"libraries": "libraries", "all": "libraries and code without one"}
@@ -28,7 +27,6 @@ def name(subject):
 def draw(rows, won, look, unit, title):
     """The figure of one subject's points at its own fill. `won`: its rows of winners.csv, which are ringed."""
     figure, (panels, below) = plt.subplots(2, 2, figsize=(13, 9), sharex="row", sharey="row", constrained_layout=True, height_ratios=[1.7, 1])
-    drawn = False
     for axes, ratios, layer in zip(panels, below, LAYERS):
         mine = rows[rows.library.astype(bool)] if layer == "libraries" else rows
         axes.set_title(TITLES[layer])
@@ -36,18 +34,18 @@ def draw(rows, won, look, unit, title):
             missing(axes, "nobody finished and was timed")
             missing(ratios, "")
             continue
-        drawn = True
         front = mine[mine[f"front_{layer}"].astype(bool)]
-        handles = _panel(axes, mine, front, met(won[won.layer == layer]), look)
-        _ratios(ratios, mine, front, look)
+        series = _series(mine, front, look)
+        _panel(axes, mine, series, front, met(won[won.layer == layer]))
+        _ratios(ratios, series)
         ratios.set_xlabel(f"error, {unit}")
-        ratios.legend(handles=handles, fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
+        ratios.legend(*axes.get_legend_handles_labels(), fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
         axes.set_xlabel("computation for a simulated second, s")
         axes.grid(True)
+    drawn = [pair for pair in zip(panels, below) if pair[0].axison]
     if drawn:
-        first = next(axes for axes in panels if axes.axison)
+        first, lower = drawn[0]
         first.set_ylabel(f"error, {unit}")
-        lower = next(axes for axes in below if axes.axison)
         lower.set(yscale="log", ylabel="time ÷ the least at that error")
         lower.set_ylim(0.95, min(lower.get_ylim()[1], SHOWN))
         number_axis(lower.yaxis, "×")
@@ -70,55 +68,44 @@ def named(rows, front):
     return order[:MOST]
 
 
-def _panel(axes, rows, front, won, look):
-    chosen = named(rows, front)
+def _series(rows, front, look):
+    """{(implementation, setting): (keywords of `plot`, its points in pieces)} of each named series: what lies between two steps that were
+    timed is not known, and has no line."""
+    chosen, found = named(rows, front), {}
+    settings = list(dict.fromkeys(setting for _, setting in chosen))
+    for name, setting in chosen:
+        mine = meeting(rows[(rows.implementation == name) & (rows.setting == setting)], numpy.inf).sort_values("step")
+        place = settings.index(setting)
+        line = look.line(name) | {"color": ALTERNATIVES[place % len(ALTERNATIVES)], "linestyle": DASHES[place % len(DASHES)],
+                                  "markerfacecolor": ALTERNATIVES[place % len(ALTERNATIVES)]}
+        found[name, setting] = line, [one for _, one in mine.groupby((mine.step / mine.step.shift(1) > GAP).cumsum())]
+    return found
+
+
+def _panel(axes, rows, series, front, won):
     done = rows[rows.status.isin((*FINISHED, NOT_JUDGED)) & rows.time.notna() & rows.error.notna()]
-    for key, mine in done.groupby(["implementation", "setting"], sort=False):
-        mine = mine.sort_values("step")
-        if key not in chosen:
-            axes.plot(mine.time, mine.error, color="#c4c8ce", linewidth=0.7, marker=".", markersize=3, zorder=1)
-    handles = []
-    for key, line, mine, pieces in _series(rows, chosen, look):
+    for key, mine in done.sort_values("step").groupby(["implementation", "setting"], sort=False):
+        if key not in series:
+            axes.plot(mine.time, mine.error, **OTHERS)
+    for (name, setting), (line, pieces) in series.items():
+        axes.plot([], [], **line, label=f"{name}, {setting}")
         for piece in pieces:
             axes.plot(piece.time, piece.error, **line, zorder=4)
-        axes.hlines(mine.error, mine.time_low, mine.time_high, color=line["color"], linewidth=1.0, zorder=3)
-        below = mine[mine.at_most.fillna(False).astype(bool)]
-        axes.plot(below.time, below.error, linestyle="none", marker="v", markersize=10, markerfacecolor="none",
-                  markeredgecolor=line["color"], zorder=4)
-        handles.append(Line2D([], [], **line, label=f"{key[0]}, {key[1]}"))
+            axes.hlines(piece.error, piece.time_low, piece.time_high, color=line["color"], linewidth=1.0, zorder=3)
     front = front.sort_values("time")
-    axes.plot(front.time, front.error, color="black", linewidth=4, alpha=0.22, zorder=2, drawstyle="steps-post")
-    handles += [Line2D([], [], color="black", alpha=0.22, linewidth=4, label="front"),
-                Line2D([], [], color="#c4c8ce", marker=".", linewidth=0.7, label="others")]
+    axes.plot(front.time, front.error, color="black", linewidth=4, alpha=0.22, zorder=2, drawstyle="steps-post", label="front")
+    axes.plot([], [], **OTHERS, label="others")
     for required in won.required:
         axes.axhline(required, color="black", linewidth=0.8, linestyle=(0, (2, 2)), zorder=1.5)
-    axes.plot(won.time, won.error, linestyle="none", zorder=5, **RING)
-    if len(won):
-        handles.append(Line2D([], [], linestyle=(0, (2, 2)), linewidth=0.8, color="black",
-                              **RING, label=RINGED))
-    if front.at_most.fillna(False).any():
-        handles.append(Line2D([], [], color=GREY, marker="v", markerfacecolor="none", linestyle="none",
-                              label="below the reference's own error"))
-    return handles
+    axes.plot(won.time, won.error, linestyle="none", zorder=5, **RING, label=RINGED if len(won) else None)
 
 
-def _series(rows, chosen, look):
-    """(key, keywords of `plot`, its points, these in pieces) of each named series: what lies between two steps that were
-    timed is not known, and has no line."""
-    colours = names.colours(key[1] for key in chosen)
-    for key in chosen:
-        mine = meeting(rows[(rows.implementation == key[0]) & (rows.setting == key[1])], numpy.inf).sort_values("step")
-        line = {"color": colours[key[1]], "linewidth": 1.5, "linestyle": DASHES[list(colours).index(key[1]) % len(DASHES)], "marker": look.marker(key[0]),
-                "markersize": 8 if look.marker(key[0]) in "*PX" else 6, "markeredgecolor": "white", "markeredgewidth": 0.5}
-        yield key, line, mine, [one for _, one in mine.groupby((mine.step / mine.step.shift(1) > GAP).cumsum())]
-
-
-def _ratios(axes, rows, front, look):
+def _ratios(axes, series):
     """Time of each named series over the least of all at its error, between its points on logarithms; bars from the least to the
     largest of its processes."""
-    every = [(line, piece.sort_values("error")) for _, line, _, pieces in _series(rows, named(rows, front), look) for piece in pieces]
+    every = [(line, piece.sort_values("error")) for line, pieces in series.values() for piece in pieces]
     errors = numpy.unique([error for _, piece in every for error in piece.error])
-    times = numpy.array([numpy.exp(numpy.interp(numpy.log(errors), numpy.log(piece.error), numpy.log(piece.time), numpy.nan, numpy.nan)) for _, piece in every])
+    times = [numpy.exp(numpy.interp(numpy.log(errors), numpy.log(piece.error), numpy.log(piece.time), numpy.nan, numpy.nan)) for _, piece in every]
     best = numpy.nanmin(times, axis=0)
     for (line, piece), mine in zip(every, times):
         there = best[numpy.searchsorted(errors, piece.error)]

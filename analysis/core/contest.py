@@ -15,10 +15,11 @@ def grouped(records):
 
 
 def contests(by_role, role):
-    """(scene, rows of its timed processes, {contender: its cell}) for each scene of a role."""
-    said, timed = verdicts_of(by_role.get(f"{role}-gate", [])), dict(by_scene(by_role.get(role, [])))
-    for scene, look in by_scene(by_role.get(f"{role}-look", [])):
-        rows = timed.get(scene, look[:0])
+    """(scene, rows of its timed processes, {contender: its cell}) for each scene of a role; of some there is a first look."""
+    said = verdicts_of(by_role.get(f"{role}-gate", []))
+    looks, timed = (dict(by_scene(by_role.get(one, []))) for one in (f"{role}-look", role))
+    for scene, rows in (looks | timed).items():
+        look, rows = looks.get(scene, rows[:0]), timed.get(scene, rows[:0])
         yield scene, rows, {name: looked(one) for name, one in cells_of(look, scene, said).items()} | cells_of(rows, scene, said)
 
 

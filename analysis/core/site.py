@@ -29,7 +29,7 @@ def write_part(folder, part):
     tables = schema.write_tables(folder, part, _module(part, "tables").build(found, view), found)
     figures = _saved(folder / part / "figures", _module(part, "figures").draw(tables, view), view)
     known = _module(part, "page").context(tables, view)
-    _write(folder, part, template(ROOT / "analysis" / part / "page.html.j2").render(
+    write_text(folder / f"{part}.html", template(ROOT / "analysis" / part / "page.html.j2").render(
         **_frame(folder, part), **known, figures=figures, schema=schema.of_part(part)))
     said = _module(part, "sentences")
     write_json(folder / part / "answers.json", {
@@ -40,24 +40,18 @@ def write_part(folder, part):
 
 def write_index(folder):
     """index.html: the answers of the parts that are done; explore.html; and a page for each of the other parts."""
-    frame = _frame(folder, "index")
     answers, known = answers_of(folder), _module("explorer", "page").context(folder)
-    _write(folder, "explore", template(ROOT / "analysis" / "explorer" / "page.html.j2").render(**_frame(folder, "explore"), **known))
-    _write(folder, "index", template(HERE / "index.html.j2").render(**frame, answers=answers, examples=known["examples"]))
-    for part, known in answers.items():
-        if known is None:
-            _write(folder, part, template(HERE / "pending.html.j2").render(
-                **_frame(folder, part), chosen=part in frame["facts"]["parts"]))
+    pages = {"explore": (ROOT / "analysis" / "explorer" / "page.html.j2", known),
+             "index": (HERE / "index.html.j2", {"answers": answers, "examples": known["examples"]})}
+    pages |= {part: (HERE / "pending.html.j2", {}) for part, said in answers.items() if said is None}
+    for name, (path, more) in pages.items():
+        write_text(folder / f"{name}.html", template(path).render(**_frame(folder, name), **more))
 
 
 def answers_of(folder):
     """{part: what its sentences.py says: "answers" and "cases" (your case, take this, link)}; None of one not done."""
     return {part: read_object(folder / part / "answers.json", answers=list, cases=list) if (folder / part / "answers.json").exists() else None
             for part in parts()}
-
-
-def _write(folder, name, text):
-    write_text(folder / f"{name}.html", text)
 
 
 def _module(part, name):

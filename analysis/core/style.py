@@ -61,6 +61,25 @@ class Look:
                 "markeredgecolor": "white"}
 
 
+def panels(count, columns, wide, high):
+    """(figure, axes of `count` panels, `wide` and `high` inches each, in lines of so many columns); they share their axes."""
+    columns = max(1, min(count, columns))
+    lines = -(-count // columns) or 1
+    figure, grid = plt.subplots(lines, columns, figsize=(wide * columns + 1.2, high * lines + 0.9), sharex=True, sharey=True,
+                                squeeze=False, constrained_layout=True)
+    for place, axes in enumerate(grid.flat):
+        axes.set_visible(place < count)
+        axes.tick_params(labelbottom=place + columns >= count)
+    return figure, list(grid.flat[:count])
+
+
+def below(figure, columns, more=()):
+    """A legend below all of a figure, of what its axes have labels for and of `more` handles."""
+    found = {label: handle for axes in figure.axes for handle, label in zip(*axes.get_legend_handles_labels())}
+    handles = [*found.values(), *more]
+    figure.legend(handles, [*found, *(one.get_label() for one in more)], loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=columns, fontsize=9)
+
+
 def legend(axes, order):
     """A legend right of the axes, entries sorted by `order(label)`."""
     pairs = sorted(zip(*axes.get_legend_handles_labels()), key=lambda entry: order(entry[1]))

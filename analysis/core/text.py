@@ -20,6 +20,11 @@ def number(value, digits=3):
     return power if mantissa == "1" else f"{mantissa}·{power}"
 
 
+def step(seconds):
+    """"1.25 ms" or "39 µs"."""
+    return f"{1e3 * seconds:.3g} ms" if seconds >= 1e-4 else f"{1e6 * seconds:.3g} µs"
+
+
 def bounded(low, high):
     """Whether an interval says something: that of a single process does not, it reaches from 0 to infinity."""
     return math.isfinite(low) and math.isfinite(high)

@@ -37,27 +37,19 @@ def candidates(engines, ours, own):
 
 def least_error(engines):
     """The smallest error of a candidate of theirs: ours needs no smaller one. 0 without any."""
-    found = _candidates(engines)
-    return engines.error[found].min() if found else 0.0
+    return min(engines.error[_candidates(engines)], default=0.0)
 
 
 def _candidates(engines):
-    found, done = set(), finished(engines)
-    for name, rows in done.groupby("name"):
-        if name.endswith(NATIVE):  # runs of those that were chosen already
-            found |= set(rows.index)
-            continue
-        for limit in LIMITS:
-            found |= set(_near(rows[rows.error <= limit]))
-    return sorted(found)
+    done = finished(engines)
+    native = done.name.str.endswith(NATIVE)  # runs of those that were chosen already
+    near = [_near(rows[rows.error <= limit]) for _, rows in done[~native].groupby("name") for limit in LIMITS]
+    return sorted(set(done.index[native]).union(*near))
 
 
 def _near(rows):
     """Index of the fastest rows, at most MOST."""
-    if rows.empty:
-        return []
-    rows = rows[rows.time <= NEAR * rows.time.min()].sort_values("time", kind="stable")
-    return list(rows.index[:MOST])
+    return rows[rows.time <= NEAR * rows.time.min()].nsmallest(MOST, "time").index
 
 
 def table(engines, ours, rounds, own):
@@ -94,20 +86,16 @@ def native(engines, rounds):
 
 def samples(rounds):
     """Rows as analysis/core/timing.py has them, a process a round. Who failed in one round has failed."""
-    ended = rounds.assign(error=0.0, key=[key(row) for row in rounds.to_dict("records")])
-    done = finished(ended)
-    done = done[~done.key.isin(set(ended.key[~ended.index.isin(done.index) & (ended.status != "dropped")]))]
-    return pandas.DataFrame({"implementation": done.key.to_list(), "environment": "",
-                             "process": done["round"].to_list(), "status": "ok", "step_us": done.time.to_list(),
-                             "samples": [(time,) for time in done.time]})
+    rows = rounds.assign(implementation=[key(row) for row in rounds.to_dict("records")], process=rounds["round"], error=0.0)
+    done = finished(rows)
+    failed = rows.implementation[~rows.index.isin(done.index) & (rows.status != "dropped")]
+    return timing.apart(done[~done.implementation.isin(failed)].assign(status="ok"), "time")
 
 
 def _timed(rows, side, timed):
     """Finished rows that were timed in the rounds, with the median of these times."""
-    done = finished(rows)
-    medians = timed.groupby("implementation").step_us.median()
-    keys = [key(row | {"side": side}) for row in done.to_dict("records")]
-    done = done.assign(key=pandas.Series(keys, index=done.index, dtype=object))
+    done, medians = finished(rows), timed.groupby("implementation").time.median()
+    done = done.assign(key=pandas.Series([key(row | {"side": side}) for row in done.to_dict("records")], done.index, dtype=object))
     done = done[done.key.isin(medians.index)]
     return done.assign(time=done.key.map(medians).astype(float))
 

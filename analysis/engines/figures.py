@@ -1,11 +1,10 @@
 # Error against time for a simulated second: each engine's Pareto front beside ours, a panel a subject.
-import matplotlib.pyplot as plt
 import numpy
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from analysis.core.outcomes import FINISHED, finished, pareto
-from analysis.core.style import GREY, MARKERS, nothing
+from analysis.core.style import GREY, MARKERS, below, nothing, panels
 from analysis.engines.equal_error import SIDES, of_side
 from analysis.engines.runs import NATIVE
 from analysis.engines.subjects import subject_of
@@ -21,40 +20,29 @@ NOT_MADE = ("unavailable", "not-reached", "dropped")
 
 def draw(tables, view):
     subjects = [subject_of(name) for name in dict.fromkeys(tables["ours"].subject)]
-    return {name: panels(tables, [one for one in subjects if one.regular == regular], view.registry.own)
+    return {name: one_figure(tables, [one for one in subjects if one.regular == regular], view.registry.own)
             for name, regular in (("singular", False), ("regular", True))}
 
 
-def panels(tables, subjects, own):
+def one_figure(tables, subjects, own):
     """The figure of some subjects."""
     if not subjects:
         return nothing("Not measured.")
     engines, ours = tables["engines"], tables["ours"].rename(columns={"implementation": "name"})
-    columns = 2 if len(subjects) == 4 else min(3, len(subjects))
-    lines = -(-len(subjects) // columns)
-    figure, grid = plt.subplots(lines, columns, figsize=(5.2 * columns + 0.8, 4.1 * lines + 0.9), squeeze=False,
-                                sharex=True, sharey=True)
-    figure.subplots_adjust(left=0.12 / columns + 0.02, right=0.98, wspace=0.06, hspace=0.2)
-    for axes in grid.flat[len(subjects):]:
-        axes.set_axis_off()
-    for place, (axes, subject) in enumerate(zip(grid.flat, subjects)):
+    figure, grid = panels(len(subjects), 2 if len(subjects) == 4 else 3, 5.2, 4.1)
+    for axes, subject in zip(grid, subjects):
         _panel(axes, engines[engines.subject == subject.name], ours[ours.subject == subject.name], own)
-        axes.set_title(subject.title)
-        axes.set(xscale="log", yscale="log")
+        axes.set(title=subject.title, xscale="log", yscale="log")
         axes.grid(True)
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_locator(LogLocator(numticks=15))
             axis.set_minor_formatter(NullFormatter())
-        if place + columns >= len(subjects):
-            axes.tick_params(labelbottom=True)
-            axes.set_xlabel("computation for a simulated second, s")
-    low, high = numpy.log10(grid[0, 0].get_ylim())  # which all share
-    grid[0, 0].set_ylim(10**low, 10**(high + HEADROOM * (high - low)))
-    for axes in grid[:, 0]:
-        axes.set_ylabel("largest position error, m")
-    figure.legend(handles=_key(engines.engine.unique()), loc="upper center", bbox_to_anchor=(0.5, 0.1 - 0.1 / lines),
-                  ncols=min(4, columns + 1), fontsize=9, handlelength=2.4)
-    figure.suptitle("Error against time: engines and ours", x=0.01, y=0.97 + 0.01 * lines, ha="left", fontsize=12)
+    low, high = numpy.log10(grid[0].get_ylim())  # which all share
+    grid[0].set_ylim(10**low, 10**(high + HEADROOM * (high - low)))
+    figure.supxlabel("computation for a simulated second, s", fontsize=10)
+    figure.supylabel("largest position error, m", fontsize=10)
+    below(figure, 4, _key(engines.engine.unique()))
+    figure.suptitle("Error against time: engines and ours", x=0.01, ha="left", fontsize=12)
     return figure
 
 
@@ -70,7 +58,7 @@ def _panel(axes, engines, ours, own):
         lost = rows[~rows.status.isin((*FINISHED, *NOT_MADE)) & (rows.time > 0)]
         # A share of the height each, so that engines do not cover each other's crosses.
         axes.plot(lost.time, numpy.full(len(lost), 0.985 - 0.025 * place), "x", color=colour, markersize=4,
-                  transform=axes.get_xaxis_transform(), clip_on=False)
+                  transform=axes.get_xaxis_transform(), clip_on=False, in_layout=False)
     for side, line in LINES.items():
         rows = of_side(ours, side, own)
         front = rows.loc[pareto(rows)]

@@ -26,17 +26,9 @@ def context(tables, view):
 
 
 def summary(rows, engines):
-    """{subject: {engine: (lowest ratio, highest ratio, errors, errors that are not reached) or None}}"""
-    found = {}
-    for subject, mine in rows.groupby("subject", sort=False):
-        found[subject] = {}
-        for engine in engines:
-            one = mine[mine.engine == engine]
-            ratios = one.ratio.dropna()
-            found[subject][engine] = None if one.empty else (
-                ratios.min() if len(ratios) else None, ratios.max() if len(ratios) else None, len(one),
-                int(one.ratio.isna().sum()))
-    return found
+    """{subject: {engine: {"low", "high": lowest and highest ratio, "errors", "reached": how many} or None}}"""
+    found = rows.groupby(["subject", "engine"]).ratio.agg(low="min", high="max", errors="size", reached="count").to_dict("index")
+    return {subject: {engine: found.get((subject, engine)) for engine in engines} for subject in rows.subject.unique()}
 
 
 def unreached(table):

@@ -33,11 +33,8 @@ def _engine(record, subject):
     whole = output.get("status") in FINISHED
     return {"name": name + (NATIVE if "build-engines" in record.cell["program"] else ""),
             "setting": ", ".join(f"{key} {text}" for key, text in pairs.items() if key != over), "over": over,
-            "value": float(pairs[over]) if over else None, "time": output.get("time"), "repeats": output.get("repeats"),
-            "error": subject.engine_error(output) if whole and record.role == ENGINE else None,
-            "energy_drift": output.get("energy_drift_max"), "joint_gap": output.get("joint_gap_max"),
-            "version": output.get("version"), "complaints": output.get("complaints"),
-            "first_complaint": output.get("first_complaint")}
+            "value": float(pairs[over]) if over else None, "time": output.get("time"), "version": output.get("version"),
+            "error": subject.engine_error(output) if whole and record.role == ENGINE else None}
 
 
 def _ours(record, subject):
@@ -49,7 +46,6 @@ def _ours(record, subject):
     return {"name": record.cell["contenders"][0], "over": "step", "value": step,
             "setting": ", ".join([scheme, *(f"{key} {value}".strip() for key, value in options.items())]),
             "time": 1e-6 * times["mean"] * output["steps"] / output["duration"] if times else None,
-            "repeats": output.get("repeats"), "passes_per_step": output.get("passes_per_step"),
             "error": subject.our_error(record) if whole and record.role == OURS else None}
 
 

@@ -5,8 +5,7 @@ from analysis.engines import equal_error
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
 from analysis.engines.subjects import subject_of
 
-COLUMNS = ("subject", "side", "name", "setting", "over", "value", "status", "reason", "error", "time", "round", "repeats",
-           "record")
+COLUMNS = ("subject", "side", "name", "setting", "over", "value", "status", "reason", "error", "time", "round", "record")
 
 
 def build(records, view):

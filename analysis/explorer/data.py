@@ -66,7 +66,7 @@ def of_families(folder):
 
 def of_map(folder):
     """Contests on the four-bar over size and artificial fill, in the penalty form."""
-    results = Results({name: schema.read_table(folder, "map", name) for name in ("tidy", "verification")}, View(folder, "map"))
+    results = Results({"tidy": schema.read_table(folder, "map", "tidy")}, View(folder, "map"))
     names, found = results.layer("all"), []
     for scene in results.samples()[results.samples().fill_percent.notna()].scene.unique():
         rows = results.rows(scene)

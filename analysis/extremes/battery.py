@@ -8,6 +8,8 @@ from analysis.core.outcomes import GOOD, of_run
 from analysis.extremes import cells, judge, trials, verdicts
 
 NOT_RUN = ("unsupported", "refused", "excluded", "dropped", "unavailable")
+KINDS = ("silent", "other", "crashed", "out-of-memory", "timeout", "diverged", "wrong-branch", "not-converged", "degraded", "unjudged", "ok",
+         "refused")  # what a row is shown as, the worst first
 REFERENCE = "reference"  # the role of its runs
 
 
@@ -69,15 +71,10 @@ def extreme(table):
     return table[table.axis.isin(cells.TELLING)]
 
 
-def ran(table):
-    """The rows that are runs: neither refused nor left out."""
-    return table[~table.status.isin(NOT_RUN)]
-
-
 def kind(row):
-    """What a row is shown as."""
+    """What a row is shown as, one of KINDS."""
     if row.verdict == verdicts.SILENT:
         return "silent"
     if row.status in GOOD:
         return "ok" if row.true_error == row.true_error else "unjudged"
-    return row.status
+    return row.status if row.status in KINDS else "other"

@@ -10,7 +10,6 @@ from study.core.setting import Setting
 STEP, STEPS = 1.25e-3, 2000
 INSTANTS = 20        # of a run at least, at which it is judged ...
 TURN = 2             # ... and in a turn of about 2 s, where a run has many
-POINTS = 6           # whose places are kept, at most: all of them up to five loops
 LONGEST = 5.0        # s of simulated time where the step is what is varied
 SIZES = {1: STEPS, 10: STEPS, 100: 1200, 1000: 100, 10000: 24}  # loops: steps; 1.25 s are past two singular positions
 JSON_LOOPS = 1000    # up to this size the scene is a file: the program knows the exact motion of `four-bar:N`
@@ -65,7 +64,7 @@ class Extreme:
     @property
     def columns(self):
         """Of its motion: those that are kept."""
-        return self.kept or self.motion.columns(POINTS)
+        return self.kept or self.motion.columns
 
     @property
     def every(self):
@@ -89,12 +88,6 @@ class Extreme:
         return telling.index(self.label) if self.label in telling else None
 
 
-def extremes():
-    """All cells that are extreme in one respect, in the order of the picture."""
-    return [*_sizes(), *_steps(), *_penalties(), *_masses(), *_lengths(), *_springs(), *_redundant(),
-            *_starts(), *_denormals()]
-
-
 def _short(value):
     """1e6 for 1000000, 1e-160 for 1e-160, 0.01 for 0.01."""
     mantissa, _, power = f"{value:g}".partition("e")
@@ -105,69 +98,62 @@ def _chain(axis, label, chain, **more):
     return Extreme(axis, label, "", chain, chain.document(), length=chain.length, **more)
 
 
-def _sizes():
-    return [_chain("loops", f"N = {loops}", Chain(loops), steps=steps) if loops <= JSON_LOOPS else
-            Extreme("loops", f"N = {loops}", f"four-bar:{loops}", Chain(loops), steps=steps)
-            for loops, steps in SIZES.items()]
+def extremes():
+    """All cells that are extreme in one respect, in the order of the picture."""
+    return [*_sizes_and_settings(), *_masses_and_lengths(), *_constraints(), *_starts(), *_denormals()]
 
 
-def _steps():
-    return [_chain("step", f"Δt = 1e{power} s", Chain(LOOPS), step=10.0**power,
-                   steps=min(STEPS, round(LONGEST / 10.0**power))) for power in range(-6, 0)]
+def _sizes_and_settings():
+    for loops, steps in SIZES.items():
+        yield (_chain("loops", f"N = {loops}", Chain(loops), steps=steps) if loops <= JSON_LOOPS else
+               Extreme("loops", f"N = {loops}", f"four-bar:{loops}", Chain(loops), steps=steps))
+    for power in range(-6, 0):
+        yield _chain("step", f"Δt = 1e{power} s", Chain(LOOPS), step=10.0**power, steps=min(STEPS, round(LONGEST / 10.0**power)))
+    for power in range(2, 17, 2):
+        yield _chain("penalty", f"α = 1e{power}", Chain(LOOPS), penalty=f"1e{power}")
 
 
-def _penalties():
-    return [_chain("penalty", f"α = 1e{power}", Chain(LOOPS), penalty=f"1e{power}") for power in range(2, 17, 2)]
+def _masses_and_lengths():
+    for power in (-9, -6, -3, 3, 6, 9):
+        yield _chain("mass ratio", f"1e{power}", scenes.unlike_masses(LOOPS, 10.0**power))
+    for power in range(-6, 7, 2):  # steps in proportion to sqrt(length), as the motion is ...
+        yield _chain("length", f"{_short(10.0**power)} m", _long(10.0**power), step=STEP * 10.0**(power // 2))
+    for length in (1e-2, 1e2):     # ... and two with the usual step
+        yield _chain("length", f"{_short(length)} m, usual step", _long(length))
+    for offset in (1e3, 1e6):
+        yield _chain("offset", f"{_short(offset)} m", Chain(LOOPS, offset=offset))
 
 
-def _masses():
-    return [_chain("mass ratio", f"1e{power}", scenes.unlike_masses(LOOPS, 10.0**power))
-            for power in (-9, -6, -3, 3, 6, 9)]
+def _long(length):
+    return Chain(LOOPS, length=length, rate=length**-0.5)
 
 
-def _lengths():
-    """Steps in proportion to sqrt(length), as the motion is; two with the usual step."""
-    def chain(length):
-        return Chain(LOOPS, length=length, rate=length**-0.5)
-    scaled = [_chain("length", f"{_short(10.0**power)} m", chain(10.0**power), step=STEP * 10.0**(power // 2))
-              for power in range(-6, 7, 2)]
-    usual = [_chain("length", f"{_short(length)} m, usual step", chain(length)) for length in (1e-2, 1e2)]
-    return [*scaled, *usual, *(_chain("offset", f"{_short(offset)} m", Chain(LOOPS, offset=offset))
-                               for offset in (1e3, 1e6))]
-
-
-def _springs():
-    found = []
+def _constraints():
     for stiffness in (1e6, 1e8, 1e10, 1e12):
-        found += [Extreme("spring", f"loop, {_short(stiffness)} N/m", "", Chain(2), scenes.sprung_loop(stiffness)),
-                  Extreme("spring", f"pendulum, {_short(stiffness)} N/m", "", None,
-                          scenes.sprung_pendulum(stiffness), steps=800, kept=("B.x", "B.y", "C.x", "C.y"))]
-    return found
-
-
-def _redundant():
-    return [Extreme("redundant", "rod given twice", "", Chain(1), scenes.twin_rod(same_points=True)),
-            Extreme("redundant", "rod doubled", "", Chain(1), scenes.twin_rod(same_points=False)),
-            *(Extreme("redundant", f"third rod at {_short(shift)} m", "", Chain(1), scenes.shifted_rod(shift))
-              for shift in (1e-3, 1e-5, 1e-7, 1e-9))]
+        yield Extreme("spring", f"loop, {_short(stiffness)} N/m", "", Chain(2), scenes.sprung_loop(stiffness))
+        yield Extreme("spring", f"pendulum, {_short(stiffness)} N/m", "", None, scenes.sprung_pendulum(stiffness), steps=800,
+                      kept=("B.x", "B.y", "C.x", "C.y"))
+    yield Extreme("redundant", "rod given twice", "", Chain(1), scenes.twin_rod(same_points=True))
+    yield Extreme("redundant", "rod doubled", "", Chain(1), scenes.twin_rod(same_points=False))
+    for shift in (1e-3, 1e-5, 1e-7, 1e-9):
+        yield Extreme("redundant", f"third rod at {_short(shift)} m", "", Chain(1), scenes.shifted_rod(shift))
 
 
 def _starts():
     flat, moving = math.pi / 2, math.sqrt(1 + 2 * Chain(2).k)  # as fast as four-bar:2 gets there
-    return [_chain("start", "singular, at rest", Flat(1, angle=flat, rate=0.0), steps=600),  # at 1 s it rests on
-            # a line again, and other motions become possible
-            _chain("start", "singular, moving", Chain(2, angle=flat, rate=moving)),
-            _chain("start", "zero gravity", Chain(LOOPS, gravity=0.0)),
-            _chain("start", "zero gravity, at rest", Chain(LOOPS, gravity=0.0, rate=0.0)),
-            _chain("start", "hanging at rest", Chain(LOOPS, angle=math.pi, rate=0.0)),
-            _chain("start", "upright at rest", Chain(LOOPS, rate=0.0))]
+    # At 1 s the first one rests on a line again, and other motions become possible.
+    yield _chain("start", "singular, at rest", Flat(1, angle=flat, rate=0.0), steps=600)
+    yield _chain("start", "singular, moving", Chain(2, angle=flat, rate=moving))
+    yield _chain("start", "zero gravity", Chain(LOOPS, gravity=0.0))
+    yield _chain("start", "zero gravity, at rest", Chain(LOOPS, gravity=0.0, rate=0.0))
+    yield _chain("start", "hanging at rest", Chain(LOOPS, angle=math.pi, rate=0.0))
+    yield _chain("start", "upright at rest", Chain(LOOPS, rate=0.0))
 
 
 def _denormals():
     tiny, short = 1e-310, 1e-160
-    return [_chain("denormal", f"masses {_short(tiny)} kg", Chain(1, rods=(tiny, tiny), couplers=(tiny,))),
-            _chain("denormal", f"a rod of {_short(tiny)} kg", Chain(1, rods=(1.0, tiny))),
-            Extreme("denormal", f"a force of {_short(tiny)} N", "", Chain(1), scenes.with_force(tiny)),
-            _chain("denormal", f"gravity {_short(tiny)} m/s²", Chain(1, gravity=tiny)),
-            _chain("denormal", f"lengths {_short(short)} m", Chain(1, length=short, rate=short**-0.5),
-                   step=STEP * short**0.5)]
+    yield _chain("denormal", f"masses {_short(tiny)} kg", Chain(1, rods=(tiny, tiny), couplers=(tiny,)))
+    yield _chain("denormal", f"a rod of {_short(tiny)} kg", Chain(1, rods=(1.0, tiny)))
+    yield Extreme("denormal", f"a force of {_short(tiny)} N", "", Chain(1), scenes.with_force(tiny))
+    yield _chain("denormal", f"gravity {_short(tiny)} m/s²", Chain(1, gravity=tiny))
+    yield _chain("denormal", f"lengths {_short(short)} m", Chain(1, length=short, rate=short**-0.5), step=STEP * short**0.5)

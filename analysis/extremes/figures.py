@@ -1,11 +1,3 @@
-# The figures of the part: trials and the battery.
-from analysis.extremes import battery, battery_figure, trials_figure
-
-
+# Nothing is drawn of the extremes: the page has tables.
 def draw(tables, view):
-    found, extreme = {}, battery.extreme(tables["battery"])
-    if tables["battery"].near.notna().any():
-        found["trials"] = trials_figure.draw(tables["battery"])
-    if len(battery.ran(extreme)):
-        found["battery"] = battery_figure.draw(extreme)
-    return found
+    return {}

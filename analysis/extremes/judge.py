@@ -69,8 +69,7 @@ def wrong_from(record, solutions, length, limit):
 
 def harmless(cell, failed_at):
     """Outcomes that its motion does not deserve at `failed_at`, s: far from its change points it jumps nowhere."""
-    clearance = getattr(cell.motion, "clearance", None)
-    return ("wrong-branch",) if clearance and failed_at and clearance(failed_at) > FAR else cell.harmless
+    return ("wrong-branch",) if cell.motion and failed_at and cell.motion.clearance(failed_at) > FAR else cell.harmless
 
 
 def distances(series, solution, length):

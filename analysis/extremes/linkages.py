@@ -8,6 +8,8 @@ from functools import lru_cache
 import numpy
 from scipy.interpolate import CubicHermiteSpline
 
+from analysis.extremes.motions import Motion, fixed, rod
+
 IMAGINARY = 1e-30  # step along the imaginary axis: a derivative without rounding
 CELLS = 4096       # of a quadrature, in a turn at least
 
@@ -143,7 +145,7 @@ class Wheel(Follower):
 
 
 @dataclass(frozen=True)
-class Linkage:
+class Linkage(Motion):
     feet: tuple            # (name, (x, y)); the first one is the crank's
     crank: float           # m
     followers: tuple
@@ -153,8 +155,6 @@ class Linkage:
     gravity: float = 0.0
     finest: float = 1.0    # rad of the crank, in which something turns over
     carried: float = 0.0   # m/s, along x, of all feet
-
-    loops = 1
 
     @property
     def truth(self):
@@ -176,7 +176,8 @@ class Linkage:
     def shortest(self):
         return min(length for _, _, length in self.links)
 
-    def columns(self, most):
+    @property
+    def columns(self):
         return tuple(f"{name}.{axis}" for name in self.points for axis in "xy")
 
     def at(self, angle):
@@ -211,7 +212,7 @@ class Linkage:
         return inertia, potential
 
     def _foot(self, name, x, y):
-        return {"name": name, "position": [x, y]} | ({"driven": {"x": {"polynomial": [x, self.carried]}, "y": y}} if self.carried else {"fixed": True})
+        return {"name": name, "position": [x, y], "driven": {"x": {"polynomial": [x, self.carried]}, "y": y}} if self.carried else fixed(name, x, y)
 
     def document(self):
         """The scene as JSON."""
@@ -228,7 +229,7 @@ class Linkage:
                 found["bodies"].append({"name": name, "mass": 1.0, "centre": [length / 2, 0], "inertia": length**2 / 12, "points": {
                     ends[0]: [0, 0], ends[1]: [length, 0], plate.name: [plate.along, plate.up]}})
             else:
-                found["rods"].append({"name": name, "between": list(ends), "mass": 1.0, "length": length})
+                found["rods"].append(rod(name, *ends, length=length))
         for one in self.followers:
             for key, more in one.lists().items():
                 found[key] += more

@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 from analysis.extremes import scenes
 from analysis.extremes.linkages import Dyad, Linkage, Side
-from analysis.extremes.motions import GRAVITY, Chain
+from analysis.extremes.motions import GRAVITY, Chain, Motion, fixed, rod
 from study.scenes.references import CLOSED, KNOWN
 
 
@@ -14,21 +14,17 @@ def _of_rods(motion, *rods):
     """The scene of rods that hang from A, at rest where a motion of B and C begins."""
     at = {key: float(values[0]) for key, values in motion.solutions([0.0])[0].items()}
     return {"gravity": [0.0, -GRAVITY], "points": [
-        {"name": "A", "position": [0, 0], "fixed": True},
-        *({"name": name, "position": [at[f"{name}.x"], at[f"{name}.y"]]} for name in "BC")], "rods": list(rods)}
+        fixed("A", 0, 0), *({"name": name, "position": [at[f"{name}.x"], at[f"{name}.y"]]} for name in "BC")], "rods": list(rods)}
 
 
 @dataclass(frozen=True)
-class LightEnd:
+class LightEnd(Motion):
     """A double pendulum of two rods of 1 m, the upper one of 1 kg, released at rest on a line. Its two equations of
     motion in the angles from the downward vertical, that of the lower rod divided by its mass, are integrated."""
     mass: float                 # kg, of the lower rod
 
-    loops, truth, accuracy, shortest = 1, "equations of its own, integrated", 1e-8, 1.0
+    truth, accuracy = "equations of its own, integrated", 1e-8
     start, tolerance = 1.0, 1e-12  # rad
-
-    def columns(self, most):
-        return "B.x", "B.y", "C.x", "C.y"
 
     def solutions(self, times):
         def derivative(_, state):
@@ -40,27 +36,22 @@ class LightEnd:
                 sine / 2 * da**2 - GRAVITY / 2 * numpy.sin(b)])]
         times = numpy.asarray(times, dtype=float)
         if not len(times):
-            return [dict.fromkeys(self.columns(2), times)]
+            return [dict.fromkeys(self.columns, times)]
         a, b = solve_ivp(derivative, (0, max(times[-1], 1e-9)), [self.start, self.start, 0, 0], "DOP853", times,
                          rtol=self.tolerance, atol=self.tolerance).y[:2]
         x, y = numpy.sin(a), -numpy.cos(a)
         return [{"B.x": x, "B.y": y, "C.x": x + numpy.sin(b), "C.y": y - numpy.cos(b)}]
 
     def document(self):
-        return _of_rods(self, {"name": "upper", "between": ["A", "B"], "mass": 1.0, "length": 1.0},
-                        {"name": "lower", "between": ["B", "C"], "mass": self.mass, "length": 1.0})
+        return _of_rods(self, rod("upper", "A", "B"), rod("lower", "B", "C", self.mass))
 
 
 @dataclass(frozen=True)
-class Damped:
+class Damped(Motion):
     """A rod of 1 m and 1 kg that turns about its foot without gravity and is braked in proportion to its rate."""
     damping: float  # N m s/rad
 
-    loops, truth, accuracy, shortest = 1, "closed form", 0.0, 1.0
     start, rate = 0.3, 3.0  # rad, rad/s
-
-    def columns(self, most):
-        return "B.x", "B.y"
 
     def solutions(self, times):
         decay = 3 * self.damping  # over the inertia
@@ -69,21 +60,17 @@ class Damped:
 
     def document(self):
         x, y = numpy.cos(self.start), numpy.sin(self.start)
-        return {"gravity": [0.0, 0.0], "rods": [{"name": "rod", "between": ["A", "B"], "mass": 1.0, "length": 1.0}],
-                "points": [{"name": "A", "position": [0, 0], "fixed": True}, {"name": "X", "position": [1, 0], "fixed": True},
-                           {"name": "B", "position": [x, y], "velocity": [-self.rate * y, self.rate * x]}],
+        return {"gravity": [0.0, 0.0], "rods": [rod("rod", "A", "B")],
+                "points": [fixed("A", 0, 0), fixed("X", 1, 0), {"name": "B", "position": [x, y], "velocity": [-self.rate * y, self.rate * x]}],
                 "torsion_springs": [{"name": "brake", "from": ["A", "X"], "to": ["A", "B"], "stiffness": 0.0, "damping": self.damping, "angle": 1.0}]}
 
 
 @dataclass(frozen=True)
-class TwoPendulums:
+class TwoPendulums(Motion):
     """Two rods that have nothing to do with each other, of 1 m and 1 kg and of 0.5 m and `mass`, released at rest."""
     mass: float
 
-    loops, truth, accuracy, shortest = 1, "closed form", 0.0, 0.5
-
-    def columns(self, most):
-        return "B.x", "B.y", "C.x", "C.y"
+    shortest = 0.5
 
     def solutions(self, times):
         found = {}
@@ -93,8 +80,7 @@ class TwoPendulums:
         return [found]
 
     def document(self):
-        return _of_rods(self, {"name": "heavy", "between": ["A", "B"], "mass": 1.0, "length": 1.0},
-                        {"name": "light", "between": ["A", "C"], "mass": self.mass, "length": 0.5})
+        return _of_rods(self, rod("heavy", "A", "B"), rod("light", "A", "C", self.mass, 0.5))
 
 
 @dataclass(frozen=True)
@@ -115,15 +101,12 @@ class Uneven(Chain):
 
 
 @dataclass(frozen=True)
-class TwoDrives:
+class TwoDrives(Motion):
     """A parallelogram whose cranks are both driven, the second one faster and faster: it can obey neither, one, or something between."""
     share: float  # rad/s^2
 
-    loops, truth, accuracy, shortest = 1, "closed form", 0.0, 0.5
+    shortest = 0.5
     linkage = Linkage((("A", (0.0, 0.0)), ("D", (1.0, 0.0))), 0.5, (Dyad("C", ("B", "D"), (1.0, 0.5), Side(1, 0.0)),))
-
-    def columns(self, most):
-        return self.linkage.columns(most)
 
     def solutions(self, times):
         times = numpy.asarray(times, dtype=float)
@@ -137,11 +120,9 @@ class TwoDrives:
 
 
 @dataclass(frozen=True)
-class Standard:
+class Standard(Motion):
     """A standard problem with a reference that `mbs` has no part in: of study/scenes/references.py."""
     known: str
-
-    loops = 1
 
     @property
     def truth(self):
@@ -150,9 +131,6 @@ class Standard:
     @property
     def accuracy(self):
         return 0.0 if self.known in CLOSED else 1e-8
-
-    def columns(self, most):
-        return ("outputs",)
 
     def solutions(self, times):
         times = numpy.asarray(times, dtype=float)

@@ -13,10 +13,37 @@ import numpy
 from scipy.special import ellipj, ellipkinc
 
 GRAVITY = 9.81  # m/s^2
+POINTS = 6      # of a chain, whose places are kept, at most: all of them up to five loops
+
+
+class Motion:
+    """A mechanism whose motion is known. `solutions(times)`: the motions that are possible, each {column of a trajectory: values};
+    `document()`: its scene as JSON."""
+    loops, shortest = 1, 1.0              # shortest: m, of its links
+    truth, accuracy = "closed form", 0.0  # what `solutions` are; their error beside rounding, m
+
+    @property
+    def columns(self):
+        """Of a trajectory: those that judge it."""
+        return tuple(self.solutions([0.0])[0])
+
+    def clearance(self, time):
+        """How far it is from a change point, where anything may jump; 0 where nobody knows."""
+        return 0.0
+
+
+def fixed(name, x, y):
+    """A point of a scene."""
+    return {"name": name, "position": [x, y], "fixed": True}
+
+
+def rod(name, first, second, mass=1.0, length=1.0):
+    """A rod of a scene."""
+    return {"name": name, "between": [first, second], "mass": mass, "length": length}
 
 
 @dataclass(frozen=True)
-class Chain:
+class Chain(Motion):
     loops: int
     length: float = 1.0         # m, of the rods
     gravity: float = GRAVITY
@@ -26,11 +53,10 @@ class Chain:
     angle: float = 0.0          # rad, at t = 0
     rate: float = 1.0           # rad/s, at t = 0, not negative
 
-    truth, accuracy = "exact", 0.0  # what `solutions` are; their error beside rounding, m
+    truth = "exact"
 
     @property
     def shortest(self):
-        """m, of its links."""
         return self.length
 
     @property
@@ -65,32 +91,25 @@ class Chain:
         return -2 * sn * cn, 2 * sn**2 - 1
 
     def solutions(self, times):
-        """[{column of a trajectory: values}]: the motion that is possible."""
         sine, cosine = self.phi(numpy.asarray(times, dtype=float))
         return [{f"B{i}.{axis}": values for i, foot in enumerate(self.feet) for axis, values in (
             ("x", foot + self.length * sine), ("y", self.offset + self.length * cosine))}]
 
-    def columns(self, most):
-        """Columns of a trajectory that judge it: those of at most `most` points, spread over the chain."""
-        spread = numpy.linspace(0, self.loops, min(self.loops + 1, most)).round().astype(int)
+    @property
+    def columns(self):
+        spread = numpy.linspace(0, self.loops, min(self.loops + 1, POINTS)).round().astype(int)
         return tuple(f"B{i}.{axis}" for i in spread for axis in "xy")
 
     def document(self):
-        """The scene as JSON."""
         sine, cosine = (round(float(f(self.angle)), 15) for f in (numpy.sin, numpy.cos))
-        speed, points, rods = self.length * self.rate, [], []
-        for i, foot in enumerate(map(float, self.feet)):
-            points += [{"name": f"A{i}", "position": [foot, self.offset], "fixed": True},
-                       {"name": f"B{i}", "position": [foot + self.length * sine,
-                                                      self.offset + self.length * cosine],
-                        "velocity": [speed * cosine, -speed * sine]}]
-        for i, mass in enumerate(self.masses[0]):
-            rods.append({"name": f"rod{i}", "between": [f"A{i}", f"B{i}"], "mass": mass,
-                         "length": self.length})
-        for i, mass in enumerate(self.masses[1]):
-            rods.append({"name": f"coupler{i}", "between": [f"B{i}", f"B{i + 1}"], "mass": mass,
-                         "length": self.length})
-        return {"gravity": [0.0, -self.gravity], "points": points, "rods": rods}
+        speed, (rods, couplers) = self.length * self.rate, self.masses
+        points = [point for i, foot in enumerate(map(float, self.feet)) for point in (
+            fixed(f"A{i}", foot, self.offset),
+            {"name": f"B{i}", "position": [foot + self.length * sine, self.offset + self.length * cosine],
+             "velocity": [speed * cosine, -speed * sine]})]
+        return {"gravity": [0.0, -self.gravity], "points": points, "rods": [
+            *(rod(f"rod{i}", f"A{i}", f"B{i}", mass, self.length) for i, mass in enumerate(rods)),
+            *(rod(f"coupler{i}", f"B{i}", f"B{i + 1}", mass, self.length) for i, mass in enumerate(couplers))]}
 
 
 @dataclass(frozen=True)

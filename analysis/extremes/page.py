@@ -1,11 +1,15 @@
-# What the page says besides its figures: counts, who ends how, what is left out; sentences of each section.
+# What the page says: counts, who ends how, what is left out; sentences of each section.
+import math
+
 from analysis.core.outcomes import GOOD
 from analysis.core.text import number
 from analysis.extremes import battery, pivots, verdicts
 
+WORDS = {"silent": "silently wrong", "other": "other failure", "unjudged": "ok or plausible, not judged", "ok": "ok or plausible"}
+
 
 def context(tables, view):
-    return {"settings": view.settings, "battery": _battery(tables["battery"]),
+    return {"settings": view.settings, "battery": _battery(tables["battery"]), "kinds": {kind: WORDS.get(kind, kind) for kind in battery.KINDS},
             "pivots": _pivots(tables["pivots"], tables["claims"])}
 
 
@@ -16,8 +20,21 @@ def _battery(table):
         return None
     return {"runs": len(runs), "mechanisms": len(runs[["axis", "value"]].drop_duplicates()), "kinds": verdicts.kinds(runs), "verdicts": verdicts.ALL,
             "lists": {verdict: verdicts.listed(runs, verdict) for verdict in (verdicts.SILENT, verdicts.FALSE)}, "left_out": left_out(table),
-            "nobody": nobody(extreme), "unjudged": int((table.status.isin(GOOD) & table.true_error.isna()).sum()),
+            "nobody": nobody(extreme), "matrix": matrix(extreme), "tried": list(extreme.setting.unique()),
+            "unjudged": int((table.status.isin(GOOD) & table.true_error.isna()).sum()),
             "settings": [(name, len(rows), verdicts.counts(rows)) for name, rows in runs.groupby("setting", sort=False)]}
+
+
+def matrix(extreme):
+    """{(axis, value): {setting: (the worst kind, exponent of the largest true error or None, whether implementations end differently)}} of
+    extreme cells; no error is shown below that of the truth."""
+    rows = extreme[~extreme.status.isin(battery.NOT_RUN) | (extreme.status == "refused")]
+    rows = rows.assign(kind=[battery.kind(row) for row in rows.itertuples()], error=rows.true_error.clip(lower=rows.truth_error).clip(1e-17, 1e99))
+    found = {}
+    for (axis, value, setting), mine in rows.groupby(["axis", "value", "setting"], sort=False):
+        power = math.floor(math.log10(mine.error.max())) if mine.error.notna().any() else None
+        found.setdefault((axis, value), {})[setting] = min(mine.kind, key=battery.KINDS.index), power, mine.kind.nunique() > 1
+    return found
 
 
 def nobody(extreme):

@@ -1,15 +1,11 @@
 # The scenes of the battery that are more than a chain of four-bars: springs, redundant rods, denormals.
-from analysis.extremes.motions import GRAVITY, Chain
-
-
-def alternate(count, ratio):
-    """1, ratio, 1, ... of `count`."""
-    return tuple(ratio if i % 2 else 1.0 for i in range(count))
+from analysis.extremes.motions import GRAVITY, Chain, fixed, rod
 
 
 def unlike_masses(loops, ratio):
     """Every second rod and every second coupler has `ratio` kg, the others 1 kg."""
-    return Chain(loops, rods=alternate(loops + 1, ratio), couplers=alternate(loops, ratio))
+    masses = tuple(ratio if i % 2 else 1.0 for i in range(loops + 1))
+    return Chain(loops, rods=masses, couplers=masses[:-1])
 
 
 def sprung_loop(stiffness):
@@ -21,10 +17,9 @@ def sprung_loop(stiffness):
 def sprung_pendulum(stiffness):
     """A mass at the end of a rod, another on a spring behind it, released on a horizontal line: nothing pulls
     then, so that a stiff spring starts without vibration."""
-    return {"points": [{"name": "A", "position": [0, 0], "fixed": True}, {"name": "B", "position": [1, 0]},
-                       {"name": "C", "position": [2, 0]}],
+    return {"points": [fixed("A", 0, 0), {"name": "B", "position": [1, 0]}, {"name": "C", "position": [2, 0]}],
             "gravity": [0.0, -GRAVITY],
-            "rods": [{"name": "rod", "between": ["A", "B"], "mass": 0, "length": 1.0}],
+            "rods": [rod("rod", "A", "B", mass=0)],
             "masses": [{"point": "B", "mass": 1.0}, {"point": "C", "mass": 1.0}],
             "springs": [{"name": "spring", "between": ["B", "C"], "stiffness": stiffness, "length": 1.0}]}
 
@@ -32,10 +27,8 @@ def sprung_pendulum(stiffness):
 def twin_rod(same_points):
     """One loop whose first rod is there twice; the second has a foot of its own at the same place, or not."""
     document = Chain(1).document()
-    foot = "A0" if same_points else "A"
-    if not same_points:
-        document["points"].append({"name": foot, "position": [0, 0], "fixed": True})
-    document["rods"].append({"name": "twin", "between": [foot, "B0"], "mass": 0, "length": 1.0})
+    document["points"] += [] if same_points else [fixed("A", 0, 0)]
+    document["rods"].append(rod("twin", "A0" if same_points else "A", "B0", mass=0))
     return document
 
 
@@ -45,8 +38,8 @@ def shifted_rod(shift):
     document["rods"] = [rod for rod in document["rods"] if rod["name"] != "coupler0"]
     document["bodies"] = [{"name": "coupler0", "mass": 1.0, "centre": [0.5, 0], "inertia": 1 / 12,
                            "points": {"B0": [0, 0], "C": [shift, 0], "B1": [1, 0]}}]
-    document["points"].append({"name": "A", "position": [shift, 0], "fixed": True})
-    document["rods"].append({"name": "third", "between": ["A", "C"], "mass": 0, "length": 1.0})
+    document["points"].append(fixed("A", shift, 0))
+    document["rods"].append(rod("third", "A", "C", mass=0))
     return document
 
 

@@ -117,85 +117,81 @@ def _trial(kind, label, motion, step, seconds, settings, **more):
 
 
 def _near():
-    found = []
     for gap in DISTANCES:
         for (kind, name), linkage in near(gap).items():
             label = f"{name} at {gap:g}"
             for rate in (1.0, -2.0):
                 driven = replace(linkage, rate=rate)
-                found += [_trial(f"driven {kind}", f"{label}, {rate:g} per s", driven, step, 6.4 / abs(rate), DRIVEN, near=gap) for step in STEPS]
+                for step in STEPS:
+                    yield _trial(f"driven {kind}", f"{label}, {rate:g} per s", driven, step, 6.4 / abs(rate), DRIVEN, near=gap)
             narrow = name in ("rhombus", "kite", "quick return")  # what follows the crank turns over within this angle
             if gap >= 1e-3 or not narrow:
                 free = replace(linkage, driven=False, finest=gap if narrow else 1.0)
-                found += [_trial(f"free {kind}", label, free, step, 3.2, FREE, near=gap) for step in STEPS]
+                for step in STEPS:
+                    yield _trial(f"free {kind}", label, free, step, 3.2, FREE, near=gap)
             if name in MORE:
                 wheel = replace(free, followers=(*free.followers, Wheel("W", free.points[-1])))
-                found += [_trial("free, with a wheel", label, wheel, step, 3.2, FREE, near=gap) for step in STEPS[:2]]
-                found += [_trial("free, carried", label, replace(free, carried=0.5), step, 3.2, DRIVEN, near=gap) for step in STEPS[:2]]
-    return found
+                for step in STEPS[:2]:
+                    yield _trial("free, with a wheel", label, wheel, step, 3.2, FREE, near=gap)
+                for step in STEPS[:2]:
+                    yield _trial("free, carried", label, replace(free, carried=0.5), step, 3.2, DRIVEN, near=gap)
 
 
 def _passing():
-    found = []
     for kind, linkages, harmless in (("passage", PASSING, PASSAGE), ("far", FAR, REGULAR)):
         for name, linkage in linkages.items():
             for rate in (1.0, -2.0):
-                driven = replace(linkage, rate=rate)
-                found += [_trial(f"{kind}, driven", f"{name}, {rate:g} per s", driven, step, 20 / abs(rate), DRIVEN[:4], harmless=harmless)
-                          for step in STEPS[1:]]
-                found += [_trial(f"{kind}, free", f"{name}, {rate:g} per s", replace(driven, driven=False), step, 6.4, FREE, harmless=harmless)
-                          for step in STEPS[1:]]
-    return found
+                driven, label = replace(linkage, rate=rate), f"{name}, {rate:g} per s"
+                for step in STEPS[1:]:
+                    yield _trial(f"{kind}, driven", label, driven, step, 20 / abs(rate), DRIVEN[:4], harmless=harmless)
+                for step in STEPS[1:]:
+                    yield _trial(f"{kind}, free", label, replace(driven, driven=False), step, 6.4, FREE, harmless=harmless)
 
 
 def _worked():
     """Where drivers or dampers do work, so that energy is not conserved."""
-    found = []
     for step in (1e-2, 5e-3, STEP):
         for speed in (0.5, 5.0):
-            found += [_trial("carried pendulum", f"at {speed:g} m/s, gravity {gravity:g} m/s²", Linkage(
-                (("A", (0.0, 0.0)),), 1.0, (), rate=rate, driven=False, gravity=gravity, carried=speed), step, 5.0, DRIVEN, harmless=REGULAR)
-                for rate, gravity in ((1.0, 0.0), (4.0, 3.0))]
-        found += [_trial("damped rod", f"{damping:g} N m s", Damped(damping), step, 5.0, DRIVEN, harmless=REGULAR) for damping in (0.4, 1.0, 10.0)]
-    return found
+            for rate, gravity in ((1.0, 0.0), (4.0, 3.0)):
+                carried = Linkage((("A", (0.0, 0.0)),), 1.0, (), rate=rate, driven=False, gravity=gravity, carried=speed)
+                yield _trial("carried pendulum", f"at {speed:g} m/s, gravity {gravity:g} m/s²", carried, step, 5.0, DRIVEN, harmless=REGULAR)
+        for damping in (0.4, 1.0, 10.0):
+            yield _trial("damped rod", f"{damping:g} N m s", Damped(damping), step, 5.0, DRIVEN, harmless=REGULAR)
 
 
 def _light():
-    found = []
     for mass in MASSES:
         for step in STEPS[:2]:
-            found += [_trial("light part", f"lower rod of {mass:g} kg", LightEnd(mass), step, 8.0, FREE, near=mass),
-                      _trial("light part", f"pendulum of {mass:g} kg beside one of 1 kg", TwoPendulums(mass), step, 8.0, FREE, near=mass)]
-    return found
+            yield _trial("light part", f"lower rod of {mass:g} kg", LightEnd(mass), step, 8.0, FREE, near=mass)
+            yield _trial("light part", f"pendulum of {mass:g} kg beside one of 1 kg", TwoPendulums(mass), step, 8.0, FREE, near=mass)
 
 
 def _redundant():
-    found = []
     for share in UNEVEN:
-        found += [_trial("uneven speeds", f"three cranks, by {share:g}", Uneven(1, share=share), STEP, 5.0, FREE, near=share),
-                  _trial("uneven speeds", f"crank doubled, by {share:g}", Uneven(1, share=share, same_points=False), STEP, 5.0, FREE, near=share),
-                  _trial("uneven speeds", f"two drives, by {share:g}", TwoDrives(share), STEP, 6.4, DRIVEN, near=share)]
-    return found
+        yield _trial("uneven speeds", f"three cranks, by {share:g}", Uneven(1, share=share), STEP, 5.0, FREE, near=share)
+        yield _trial("uneven speeds", f"crank doubled, by {share:g}", Uneven(1, share=share, same_points=False), STEP, 5.0, FREE, near=share)
+        yield _trial("uneven speeds", f"two drives, by {share:g}", TwoDrives(share), STEP, 6.4, DRIVEN, near=share)
 
 
 def _long():
-    found = []
     for step in STEPS[:2]:
-        found += [_trial("100 s", f"{loops} loops", Chain(loops), step, LONG, FREE) for loops in (1, 2, 5)]
-        found += [_trial("100 s", f"{name}, driven", linkage, step, LONG, DRIVEN[:2]) for name, linkage in FAR.items()]
-        found += [_trial("100 s", f"{name}, free", replace(linkage, driven=False), step, LONG, FREE) for name, linkage in FAR.items()]
-    return found
+        for loops in (1, 2, 5):
+            yield _trial("100 s", f"{loops} loops", Chain(loops), step, LONG, FREE)
+        for name, linkage in FAR.items():
+            yield _trial("100 s", f"{name}, driven", linkage, step, LONG, DRIVEN[:2])
+        for name, linkage in FAR.items():
+            yield _trial("100 s", f"{name}, free", replace(linkage, driven=False), step, LONG, FREE)
 
 
 def _standard():
     """Standard problems, examples and families at their own steps."""
-    found = [Extreme(STANDARD[1], scene.rpartition("/")[2].removesuffix(".json"), scene, None, steps=1600, length=length,
-                     kept=("all",), settings=FORMS, harmless=REGULAR) for scene, length in EXAMPLES.items()]
+    for scene, length in EXAMPLES.items():
+        yield Extreme(STANDARD[1], scene.rpartition("/")[2].removesuffix(".json"), scene, None, steps=1600, length=length,
+                      kept=("all",), settings=FORMS, harmless=REGULAR)
     for one in read_list()[1]:
-        motion = None if one.known == EXTRAPOLATED else Standard(one.known)
         own = tuple((option, f"{value}") for option, value, usual in (("penalty", one.penalty, "auto"), ("tolerance", one.tolerance, "auto"),
                                                                       ("max-passes", one.max_passes, 20)) if value != usual)
-        found.append(Extreme(STANDARD[0], one.name, one.scene, motion, step=one.steps[0], steps=round(one.duration / one.steps[0]),
-                             length=LINKS[one.name], kept=("B0.x", "B0.y") if one.scene.startswith("four-bar") else ("outputs",),
-                             settings=(Setting("penalty", own),) if own else FORMS, harmless=REGULAR))
-    return found
+        yield Extreme(STANDARD[0], one.name, one.scene, None if one.known == EXTRAPOLATED else Standard(one.known), step=one.steps[0],
+                      steps=round(one.duration / one.steps[0]), length=LINKS[one.name],
+                      kept=("B0.x", "B0.y") if one.scene.startswith("four-bar") else ("outputs",),
+                      settings=(Setting("penalty", own),) if own else FORMS, harmless=REGULAR)

@@ -1,12 +1,12 @@
 # Step time over size between the limit's bounds and the implementations; steps split by phase; leads scene by scene.
 import matplotlib.pyplot as plt
 import numpy
+from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
-from analysis.core.phases import FILLS, LABELS, bar
-from analysis.core.style import ALTERNATIVES, GREY, MARKERS, Look, legend, line_each, missing, number_axis, size_ticks
+from analysis.core.style import (ALTERNATIVES, GREY, MARKERS, Look, below, legend, line_each, missing, nothing, number_axis, panels,
+                                 size_ticks)
 from analysis.core.text import number
-from analysis.core.timing import PHASES
 from analysis.limit.held import wanted
 from analysis.limit.tables import KINDS, LIMIT
 
@@ -15,12 +15,20 @@ BOUNDS = {"latency_ns": ("bound: dependent operations", "--"),
           "arithmetic_ns": ("bound: rate of arithmetic", ":")}
 LIMIT_LABEL = "limit: code for the N-four-bar alone"
 WHOLE = 0.99  # of a step in "other": it has no phases
+PHASES = {  # colour, words; light to dark and back, so that neighbours stay apart in black and white
+    "evaluation": ("#cfe3f2", "evaluation (Φ, Φq, f)"), "assembly": ("#6baed6", "tangent assembly"), "factorization": ("#08519c", "factorization"),
+    "solve": ("#e6a141", "solves"), "projection": ("#f6dcae", "projections (rhs)"), "other": ("#e4e4e4", "other")}
 
 
 def draw(tables, view):
     own = {name.partition("/")[0] for name in view.registry.own}
     rows = everyone(tables["steps"])
-    return {"over_size": over_size(tables["bounds"], rows, Look(view.registry), own), "by_phase": by_phase(rows, own),
+    profiled = rows[rows.other_us.notna()]
+    names = leaders(profiled, own) if len(profiled) else []
+    many = profiled[profiled.implementation.isin(names)].groupby("loops").size() > len(names) / 3
+    sizes = sorted(many.index[many])
+    shown = sizes if len(sizes) <= 3 else [sizes[round(k * (len(sizes) - 1) / 2)] for k in range(3)]
+    return {"over_size": over_size(tables["bounds"], rows, Look(view.registry), own), "by_phase": by_phase(profiled, names, shown),
             "ahead": ahead(tables["leads"])}
 
 
@@ -77,35 +85,36 @@ def over_size(bounds, rows, look, own):
     return figure
 
 
-def by_phase(rows, own):
-    """A panel a size (at most three that many were timed at): the share of each phase in a step of each of the
-    leaders(), beside the step in multiples of the limit code."""
-    rows = rows[rows.other_us.notna()]
-    names = leaders(rows, own) if len(rows) else []
-    many = rows[rows.implementation.isin(names)].groupby("loops").size() > len(names) / 3
-    sizes = sorted(many.index[many])
-    shown = sizes if len(sizes) <= 3 else [sizes[round(k * (len(sizes) - 1) / 2)] for k in range(3)]
-    figure, panels = plt.subplots(1, max(1, len(shown)), sharey=True, squeeze=False, constrained_layout=True,
-                                  figsize=(3.9 * max(1, len(shown)) + 1.8, 0.36 * len(names) + 1.5))
-    if not shown:
-        missing(panels[0][0], "no phases were timed")
-        return figure
-    for axes, loops in zip(panels[0], shown):
+def by_phase(rows, names, sizes):
+    """A panel a size: the share of each phase in a step of each of `names`, beside the step in multiples of the limit code."""
+    if not sizes:
+        return nothing("no phases were timed")
+    figure, grid = panels(len(sizes), len(sizes), 3.9, 0.36 * len(names) + 0.6)
+    for axes, loops in zip(grid, sizes):
         of_size = rows[rows.loops == loops].set_index("implementation")
         for place, name in enumerate(names):
             row = of_size.loc[name] if name in of_size.index else None
             if row is None or row.other_us > WHOLE * row.step_us:
                 axes.text(2, place, "not timed" if row is None else "all in the same sweeps", va="center", fontsize=8)
             else:
-                bar(axes, place, [(phase, 100 * row[f"{phase}_us"] / row.step_us) for phase in PHASES], FILLS, False)
+                _bar(axes, place, row)
             if row is not None:
                 axes.text(100, place, f" {number(row.multiple)}×, {number(row.step_us)} µs", va="center", fontsize=8)
-        axes.set(xlim=(0, 160), xticks=[0, 50, 100], xlabel="share of the step, %")
-        axes.set_title(f"N-four-bar, n = {2 * loops + 2:.0f}; limit {number(of_size.step_us[LIMIT])} µs")
+        axes.set(xlim=(0, 160), xticks=[0, 50, 100], xlabel="share of the step, %", title=f"N-four-bar, n = {2 * loops + 2:.0f}")
         line_each(axes, names)
-    figure.legend(handles=[plt.Rectangle((0, 0), 1, 1, color=FILLS[phase], label=LABELS[phase]) for phase in PHASES],
-                  loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=len(PHASES) if len(shown) > 1 else 3)
+    below(figure, len(PHASES) if len(sizes) > 1 else 3, [Patch(color=colour, label=words) for colour, words in PHASES.values()])
     return figure
+
+
+def _bar(axes, place, row):
+    left = 0.0
+    for phase, (colour, _) in PHASES.items():
+        share = 100 * row[f"{phase}_us"] / row.step_us
+        axes.barh(place, share, left=left, height=0.8, color=colour, edgecolor="white", linewidth=0.5)
+        if share >= 3.5:
+            axes.text(left + share / 2, place, f"{share:.0f}", ha="center", va="center", fontsize=7.5,
+                      color="white" if phase == "factorization" else "#222222")
+        left += share
 
 
 def ahead(leads):
@@ -113,29 +122,23 @@ def ahead(leads):
     it is to be at least. Scenes of which nothing was timed are counted."""
     asked = leads[leads.kind.isin(KINDS)]
     rows = asked[asked.scene.isin(asked.scene[asked.status == "ok"])]
-    about = rows.drop_duplicates("scene").assign(order=rows.kind.map({kind: place for place, kind in enumerate(KINDS)}))
+    if rows.empty:
+        return nothing("no scene was timed with code of our own and a library beside it")
+    about = rows.drop_duplicates("scene").assign(order=rows.kind.map(list(KINDS).index))
     about = about.sort_values(["order", "dimension", "variables", "scene"], kind="stable").reset_index(drop=True)
     names = list(dict.fromkeys(rows.implementation))
     figure, axes = plt.subplots(figsize=(8.6, 0.36 * len(about) + 1.8), constrained_layout=True)
-    if rows.empty:
-        missing(axes, "no scene was timed with code of our own and a library beside it")
-        return figure
-    for number_of, name in enumerate(names):
-        shift, label = (number_of - (len(names) - 1) / 2) * 0.36, name
-        colour, marker = ALTERNATIVES[number_of % len(ALTERNATIVES)], MARKERS[number_of]
-        for place, scene in enumerate(about.scene):
-            for row in rows[(rows.scene == scene) & (rows.implementation == name)].itertuples():
-                if row.status == "ok":
-                    if row.high < numpy.inf:
-                        axes.plot([row.low, row.high], [place + shift] * 2, color=colour, linewidth=1.6, alpha=0.6)
-                    axes.plot(row.lead, place + shift, marker, color=colour, markersize=5.5, linestyle="none", label=label)
-                    axes.annotate(f"{number(row.lead)}×", (max(row.lead, row.high if row.high < numpy.inf else 0), place + shift),
-                                  (5, 0), textcoords="offset points", va="center", fontsize=7, color=colour, zorder=4,
-                                  bbox={"boxstyle": "round,pad=0.1", "facecolor": "white", "alpha": 0.8, "linewidth": 0})
-                    label = None
-                elif row.status != "unsupported":
-                    axes.annotate(f"{name.partition('/')[2]}: {row.status}", (1, place + shift), (5, 0), va="center", fontsize=7,
-                                  textcoords="offset points", color=colour)
+    for place, name in enumerate(names):
+        colour, mine = ALTERNATIVES[place % len(ALTERNATIVES)], rows[rows.implementation == name]
+        mine = mine.assign(y=mine.scene.map(dict(zip(about.scene, about.index))) + (place - (len(names) - 1) / 2) * 0.36,
+                           low=mine.low.where(mine.high < numpy.inf), high=mine.high.where(mine.high < numpy.inf))
+        axes.hlines(mine.y, mine.low, mine.high, color=colour, linewidth=1.6, alpha=0.6)
+        axes.plot(mine.lead, mine.y, MARKERS[place], color=colour, markersize=5.5, linestyle="none", label=name)
+        for row in mine[mine.status != "unsupported"].itertuples():
+            text, x = ((f"{number(row.lead)}×", numpy.nanmax([row.lead, row.high])) if row.status == "ok" else
+                       (f"{name.partition('/')[2]}: {row.status}", 1))
+            axes.annotate(text, (x, row.y), (5, 0), textcoords="offset points", va="center", fontsize=7, color=colour, zorder=4,
+                          bbox={"boxstyle": "round,pad=0.1", "facecolor": "white", "alpha": 0.8, "linewidth": 0})
     axes.plot([wanted(row.kind, row.dimension) for row in about.itertuples()], range(len(about)), linestyle="none", marker="|",
               markersize=15, markeredgewidth=2, color="black", label="at least")
     axes.axvline(1, color=GREY, linewidth=1)

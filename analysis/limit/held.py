@@ -22,21 +22,16 @@ def wanted(kind, dimension):
 def must_hold(own, tables):
     """Rows of held.csv. `own`: variants of such code; `tables`: as the schema has them."""
     steps, leads, batches = (tables[name][tables[name].implementation.isin(own)] for name in ("steps", "leads", "batches"))
-    ahead = leads[leads.status == "ok"]
-    found = [
-        _worst("times faster than the fastest library, N-four-bar", LEAST, AHEAD,
-               _fastest(_in(ahead, "kind", ["four-bar"], "variables", AHEAD_SIZES), "scene", "lead", False), "lead", len(AHEAD_SIZES)),
-        _worst("times the limit code's step", MOST, NEAR_LIMIT,
-               _fastest(_in(steps, "form", ["penalty"], "variables", NEAR_SIZES), "loops", "multiple", True), "multiple",
-               len(NEAR_SIZES)),
-        *(_worst(f"times faster than the fastest library, {where} standard problems", LEAST, bound,
-                 _fastest(_in(ahead, "kind", ["problem"], "dimension", [dimension]), "scene", "lead", False), "lead",
-                 _count(leads, "problem", dimension))
-          for where, dimension, bound in (("planar", 2, AHEAD_PLANAR), ("spatial", 3, AHEAD_SPATIAL))),
-        _worst("times faster than the fastest library, n = 100, filled", LEAST, round(1 / BEHIND_FILLED, 3),
-               _fastest(_in(ahead, "kind", ["fill"]), "scene", "lead", False), "lead", _count(leads, "fill", 2))]
+    found = [_lead("N-four-bar", AHEAD, leads[(leads.kind == "four-bar") & leads.variables.isin(AHEAD_SIZES)], len(AHEAD_SIZES)),
+             _worst("times the limit code's step", MOST, NEAR_LIMIT,
+                    _fastest(steps[(steps.form == "penalty") & steps.variables.isin(NEAR_SIZES)], "loops", "multiple", True), "multiple",
+                    len(NEAR_SIZES))]
+    for where, kind, dimension, bound in (("planar standard problems", "problem", 2, AHEAD_PLANAR), ("spatial standard problems", "problem", 3, AHEAD_SPATIAL),
+                                          ("n = 100, filled", "fill", 2, round(1 / BEHIND_FILLED, 3))):
+        rows = leads[(leads.kind == kind) & (leads.dimension.isin([dimension]) | leads.dimension.isna())]  # that of some is not known
+        found.append(_lead(where, bound, rows[rows.dimension.notna()], rows.scene.nunique()))
     for form in ("penalty", "saddle-point"):
-        found += _growth(_in(steps, "form", [form]), form)
+        found += _growth(steps[steps.form == form], form)
     for sets in sorted(set(batches.sets)):
         rows = batches[(batches.sets == sets) & (batches.status != "unsupported")]
         found.append(_worst(f"throughput of batches ÷ that of their lanes alone, {sets:.0f} sets of parameters", LEAST, GAIN,
@@ -44,14 +39,8 @@ def must_hold(own, tables):
     return found
 
 
-def _in(rows, key, values, other=None, among=()):
-    chosen = rows[rows[key].isin(values)]
-    return chosen[chosen[other].isin(among)] if other else chosen
-
-
-def _count(leads, kind, dimension):
-    """How many scenes there are; one that could not be described is counted everywhere."""
-    return leads[(leads.kind == kind) & (leads.dimension.isin([dimension]) | leads.dimension.isna())].scene.nunique()
+def _lead(where, bound, rows, cases):
+    return _worst(f"times faster than the fastest library, {where}", LEAST, bound, _fastest(rows, "scene", "lead", False), "lead", cases)
 
 
 def _fastest(rows, key, column, least):

@@ -2,7 +2,7 @@
 import pandas
 
 from analysis.core import timing
-from analysis.core.contest import agreed, by_scene, cells_of, contests, grouped, ratio_to, rival_of, verdicts_of
+from analysis.core.contest import agreed, contests, grouped, ratio_to, rival_of
 from analysis.core.schema import conform, of_part
 from analysis.core.statistics import median
 from analysis.limit.held import must_hold
@@ -14,38 +14,30 @@ FORMS = {"size": "penalty", "growth": "saddle-point"}  # roles of the N-four-bar
 
 
 def build(records, view):
-    registry = view.registry
-    by_role = grouped(records)
+    registry, by_role = view.registry, grouped(records)
     order = {name: place for place, name in enumerate([LIMIT, *registry.variants])}
     about = {record.cell["scene"]: record.output for record in by_role.get("about", []) if record.done}
     found = {"bounds": [row | {"status": record.status, "reason": record.reason, "record": record.name}
                         for record in by_role.get("bounds", []) for row in record.output.get("rows", [{}])],
              "steps": [], "scenes": [], "leads": [], "batches": _batches(by_role.get("batch", [])),
              "sweeps": _sweeps(by_role.get("sweep", []))}
-    for role in FORMS:
-        said = verdicts_of(by_role.get(f"{role}-gate", []))
-        for scene, rows in by_scene(by_role.get(role, [])):
-            cells, loops = cells_of(rows, scene, said), int(scene.partition(":")[2])
-            found["steps"] += [{"form": FORMS[role], "loops": loops, "variables": 2 * loops + 2} | cells[name]
-                               | ratio_to("multiple", rows, name, LIMIT, cells[name]) for name in _ordered(cells, order)]
-            if set(registry.libraries) & set(cells):
+    for role in (*FORMS, *KINDS):
+        for scene, rows, cells in contests(by_role, role):
+            names = sorted((name for name in cells if name in order), key=order.get)  # without anchors of other pairs
+            if role in FORMS:
+                loops = int(scene.partition(":")[2])
                 known = {"scene": scene, "kind": "four-bar", "dimension": 2, "variables": 2 * loops + 2}
+                found["steps"] += [{"form": FORMS[role], "loops": loops, "variables": known["variables"]} | cells[name]
+                                   | ratio_to("multiple", rows, name, LIMIT, cells[name]) for name in names]
+            else:
+                known = {"scene": scene, "kind": role} | {key: about.get(scene, {}).get(key) for key in ("dimension", "variables")}
+                rival = rival_of(rows, cells, registry)
+                found["scenes"] += [known | cells[name] | ratio_to("to_rival", rows, name, rival, cells[name]) for name in names]
+            if role in KINDS or set(registry.libraries) & set(cells):
                 found["leads"] += [known | one for one in _leads(rows, cells, registry)]
-    for kind in KINDS:
-        for scene, rows, cells in contests(by_role, kind):
-            known = {"scene": scene, "kind": kind} | {key: about.get(scene, {}).get(key) for key in ("dimension", "variables")}
-            rival = rival_of(rows, cells, registry)
-            found["scenes"] += [known | cells[name] | ratio_to("to_rival", rows, name, rival, cells[name])
-                                for name in _ordered(cells, order)]
-            found["leads"] += [known | one for one in _leads(rows, cells, registry)]
     known = of_part("limit")
     tables = {name: conform(pandas.DataFrame(rows), known[name], f"limit/{name}.csv") for name, rows in found.items()}
     return tables | {"held": pandas.DataFrame(must_hold(registry.own, tables) if registry.own else [])}
-
-
-def _ordered(cells, order):
-    """Without anchors of other pairs."""
-    return sorted((name for name in cells if name in order), key=order.get)
 
 
 def _leads(rows, cells, registry):

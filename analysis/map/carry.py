@@ -1,6 +1,5 @@
 # What a result carries beyond its own run: controls, where nothing differs (A/A), and where the spread of a ratio comes from.
 import math
-from collections import defaultdict
 
 import numpy
 import pandas
@@ -42,29 +41,34 @@ def components(timed, seeds):
     """Where the spread of a ratio comes from: {"source", "percent", "scenes", "record"} a row. `percent`: the standard
     deviation of a ratio that this source alone makes, over all scenes. Of the two that lead in a scene, by nested analysis
     of variance: what the mean over processes of a layout still owes to its processes is taken off the layouts."""
-    parts, records = defaultdict(list), defaultdict(list)
+    found = pandas.DataFrame([*_of_scenes(timed), *_of_seeds(seeds)], columns=["source", "variance", "record"])
+    found = found.groupby("source").agg(percent=("variance", lambda one: 100 * math.sqrt(one.mean())), scenes=("variance", "size"),
+                                        record=("record", lambda one: " ".join(dict.fromkeys(" ".join(one).split()))))
+    return found.reindex([source for source in SOURCES if source in found.index]).reset_index()
+
+
+def _of_scenes(timed):
+    """The variances of each scene's leaders."""
     for _, group in timed[(timed.status == "ok") & (timed.process > AFTER)].groupby("scene"):
         paired = timing.Paired(group)
         pair = _leaders(paired)
-        if not pair:
-            continue
-        for source, variance in nested(timing.by_layout(paired, timing.log_ratios(paired, *pair)), _rounds(paired, *pair)).items():
-            parts[source].append(variance)
-            records[source] += group[group.implementation == pair[0]].record.tolist()
+        if pair:
+            variances = nested(timing.by_layout(paired, timing.log_ratios(paired, *pair)), _rounds(paired, *pair))
+            names = " ".join(group[group.implementation == pair[0]].record)
+            yield from ({"source": source, "variance": variance, "record": names} for source, variance in variances.items())
+
+
+def _of_seeds(seeds):
+    """The variance between scenes that differ in the seed of their fill alone, for each size and fill."""
     for _, group in seeds[seeds.status == "ok"].groupby(["variables", "fill_asked"]):
-        values, inner = [], []
-        scenes = {scene: timing.Paired(rows) for scene, rows in group.groupby("scene")}
-        pair = _leaders(next(iter(scenes.values())))
-        for paired in scenes.values() if pair else ():
-            logs = list(timing.log_ratios(paired, *pair).values())
-            if len(logs) > 1:
-                values.append(float(numpy.mean(logs)))
-                inner.append(float(numpy.var(logs, ddof=1)) / len(logs))
-        if len(values) > 1:
-            parts["seed"].append(max(0.0, float(numpy.var(values, ddof=1)) - float(numpy.mean(inner))))
-            records["seed"] += group.record.tolist()
-    return pandas.DataFrame([{"source": source, "percent": 100 * math.sqrt(numpy.mean(parts[source])), "scenes": len(parts[source]),
-                              "record": " ".join(dict.fromkeys(records[source]))} for source in SOURCES if parts[source]])
+        scenes = [timing.Paired(rows) for _, rows in group.groupby("scene")]
+        pair = _leaders(scenes[0])
+        logs = [list(timing.log_ratios(paired, *pair).values()) for paired in scenes] if pair else []
+        logs = [one for one in logs if len(one) > 1]
+        if len(logs) > 1:
+            within = numpy.mean([numpy.var(one, ddof=1) / len(one) for one in logs])
+            between = numpy.var([numpy.mean(one) for one in logs], ddof=1)
+            yield {"source": "seed", "variance": max(0.0, between - within), "record": " ".join(group.record)}
 
 
 def nested(groups, rounds):

@@ -29,6 +29,10 @@ class Cell:
         return bool(self.ranking and self.ranking.settled and (self.ranking.second or not self.failed))
 
     @property
+    def outcome(self):
+        return "decided" if self.decided else "equivalent" if self.settled else "open"
+
+    @property
     def winners(self):
         """Who may be called the fastest: the winner, or all of the equivalence set, or also those that are open."""
         if self.ranking is None or self.decided:

@@ -1,7 +1,7 @@
 # Comparisons within a scene that figures and claims share.
 from dataclasses import dataclass
 
-from analysis.map.tidy import PHASES
+from analysis.core.timing import PHASES
 
 COVERED = 82  # variables that a run has to reach to speak of the paper's figures of 10 to 160
 

@@ -30,15 +30,12 @@ def overhead(results):
     return rows.groupby("variables").step_us.median().max()
 
 
-def verdicts(results):
+def verdicts(table, names):
     """Per implementation: how many scenes agree, and the scenes of every other verdict."""
-    table = results.verification.drop_duplicates(["scene", "implementation"])
-    rows = []
-    for name in results.implementations:
-        mine = table[table.implementation == name]
-        others = {verdict: list(cells.scene) for verdict, cells in mine[mine.verdict != "agrees"].groupby("verdict", sort=False)}
-        rows.append({"implementation": name, "agreed": int((mine.verdict == "agrees").sum()), "of": len(mine), "others": others})
-    return rows
+    scenes = table.drop_duplicates(["scene", "implementation"]).groupby(["implementation", "verdict"], sort=False).scene.agg(list)
+    found = {name: scenes[name].to_dict() if name in scenes else {} for name in names}
+    return [{"implementation": name, "of": sum(map(len, mine.values())), "agreed": len(mine.pop("agrees", ())), "others": mine}
+            for name, mine in found.items()]
 
 
 def losses(results):

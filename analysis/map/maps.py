@@ -1,25 +1,18 @@
 # Maps of the fastest over size and fill: the paper's Figures 6 and 7, for libraries and for all.
 import re
-import textwrap
+from collections import Counter
 from itertools import groupby
 
-import matplotlib.patheffects as effects
 import matplotlib.pyplot as plt
-import numpy
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from analysis.core.style import GREY, missing
-from analysis.map import paper
 from analysis.map.cells import map_cells
-from analysis.map.compare import best
 
-LINE = "#111111"
 OPAQUE, PALE = 0.85, 0.4
 BAND = (-19.0, -3.0)  # where cells of own fill stand, in % of the axis above
 NOTHING = {"facecolor": "white", "edgecolor": "#c4c4c4", "hatch": "...", "linewidth": 0}
-LETTERS = 46  # in a line of the legend
-EDGE = {"edgecolor": "white", "linewidth": 1.0}
+OUTCOMES = {"decided": "wins", "equivalent": "as fast in", "open": "may be in"}
 
 
 def draw(results, look, title, names, letters=13, line=2.1):
@@ -31,14 +24,8 @@ def draw(results, look, title, names, letters=13, line=2.1):
     if not any(cell.ranking for cell in cells):
         missing(axes, "nobody of these was timed")
         return figure
-    found = crossings(results, cells)
-    for place, (size, mine) in enumerate(columns(cells).items()):
+    for place, mine in enumerate(columns(cells).values()):
         _column(axes, place - 0.5, mine, look, (letters, line))
-        if size in found:
-            fill, low, high = found[size]
-            axes.fill_between([place - 0.5, place + 0.5], low, high, color=LINE, alpha=0.12, linewidth=0, zorder=3)
-            axes.plot([place - 0.5, place + 0.5], [fill, fill], color=LINE, linewidth=1.6, zorder=4,
-                      path_effects=[effects.withStroke(linewidth=3, foreground="white")])
     axes.axhline(0, color="#444444", linewidth=0.8)
     axes.set(xlim=(-0.5, count - 0.5), ylim=(BAND[0], 100))
     axes.set_yticks([sum(BAND) / 2, 0, 20, 40, 60, 80, 100], ["own\nfill", "0", "20", "40", "60", "80", "100"])
@@ -48,7 +35,7 @@ def draw(results, look, title, names, letters=13, line=2.1):
     axes.spines["bottom"].set_visible(False)
     axes.set_xlabel("variables n", fontsize=9.5)
     axes.set_ylabel("non-zeros of the tangent, % of n²", fontsize=9.5)
-    _legend(axes, cells, look, names, found, paper.dense_pairs(results))
+    _legend(axes, cells, look, names)
     return figure
 
 
@@ -83,18 +70,22 @@ def _column(axes, left, cells, look, room):
         _cell(axes, left, low, high - low, cell, look, room)
 
 
+def _shown(cell):
+    """Names whose colours a cell has."""
+    return cell.winners if cell.settled else cell.winners[:2]
+
+
 def _cell(axes, x, y, height, cell, look, room):
     """Nothing where nobody was timed. A winner is opaque; those that are as fast stand in stripes of their colours; open cells are pale and hatched."""
-    names = cell.winners
-    if not names:
+    shown = _shown(cell)
+    if not shown:
         return
-    shown = names if cell.settled else names[:2]
     axes.add_patch(Rectangle((x, y), 1, height, facecolor="white", linewidth=0))
     for place, name in enumerate(shown):
         axes.add_patch(Rectangle((x + place / len(shown), y), 1 / len(shown), height, linewidth=0,
-                                 facecolor=look.colour(name), alpha=OPAQUE if cell.decided or cell.settled else PALE))
-    axes.add_patch(Rectangle((x, y), 1, height, facecolor="none", **EDGE))
-    if not (cell.decided or cell.settled):
+                                 facecolor=look.colour(name), alpha=PALE if cell.outcome == "open" else OPAQUE))
+    axes.add_patch(Rectangle((x, y), 1, height, facecolor="none", edgecolor="white", linewidth=1.0))
+    if cell.outcome == "open":
         axes.add_patch(Rectangle((x, y), 1, height, facecolor="none", edgecolor="#555555", linewidth=0, hatch="////"))
     _text(axes, x + 0.5, y + height / 2, height, cell, room)
 
@@ -128,50 +119,15 @@ def _margin(cell):
     return f"{'=' if cell.settled else '?'} {len(cell.winners) - 1} more"
 
 
-def crossings(results, cells):
-    """{size: (fill, low, high)}: from where the best dense of the paper's is faster than the best sparse library; only
-    where that happens between the fills that were timed."""
-    found = {}
-    for size, mine in columns(cells).items():
-        ratios = [best(results, cell.scene, paper.dense(results), paper.sparse(results, others=True)) for cell in mine]
-        known = [(cell.fill_percent, ratio) for cell, ratio in zip(mine, ratios) if ratio]
-        if len(known) > 1:
-            fills = [fill for fill, _ in known]
-            fill, low, high = (crossing(fills, [getattr(ratio, end) for _, ratio in known]) for end in ("value", "low", "high"))
-            if fills[0] < fill < fills[-1]:
-                found[size] = (fill, max(low, fills[0]), min(high, fills[-1]))
-    return found
-
-
-def crossing(places, values):
-    """Where `values` (ratios) first fall below 1, log values interpolated over `places`; -inf if they are below from
-    the start, inf if nowhere."""
-    with numpy.errstate(divide="ignore"):  # of a single process an interval reaches from 0 to infinity
-        logs = numpy.log(values)
-    if logs[0] < 0:
-        return -numpy.inf
-    for left, right, before, after in zip(places, places[1:], logs, logs[1:]):
-        if after < 0:
-            return left + (right - left) * before / (before - after)
-    return numpy.inf
-
-
-def _legend(axes, cells, look, names, crossed, pairs):
-    wins = {name: [sum(cell.decided and cell.ranking.winner == name for cell in cells),
-                   sum(not cell.decided and cell.settled and name in cell.winners for cell in cells),
-                   sum(not cell.settled and not cell.decided and name in cell.winners for cell in cells)] for name in names}
-    words = ("wins {}", "as fast in {}", "may be in {}")
-    drawn = {name for cell in cells for name in (cell.winners if cell.settled else cell.winners[:2])}
+def _legend(axes, cells, look, names):
+    counts = {name: Counter(cell.outcome for cell in cells if name in cell.winners) for name in names}
+    drawn = {name for cell in cells for name in _shown(cell)}
     shown = [Patch(facecolor=look.colour(name), alpha=OPAQUE, label=f"{name}: " + ", ".join(
-        word.format(count) for word, count in zip(words, wins[name]) if count)) for name in names if name in drawn]
-    more = sum(any(wins[name]) and name not in drawn for name in names)
+        f"{words} {counts[name][outcome]}" for outcome, words in OUTCOMES.items() if counts[name][outcome])) for name in names if name in drawn]
+    more = sum(bool(counts[name]) and name not in drawn for name in names)
     shown += [Patch(facecolor="none", label=f"{more} more may be the fastest of an open cell")] if more else []
-    shown += [Patch(facecolor="#dddddd", edgecolor="#555555", hatch="////", linewidth=0,
-                    label="open: two of those that may be the fastest")]
-    shown += [Patch(**NOTHING, label="not measured"), Patch(facecolor="white", edgecolor=GREY, label="white: below the own fill (line)")]
-    if crossed:
-        shown.append(Line2D([], [], color=LINE, linewidth=1.6, label=textwrap.fill(
-            f"best of the paper's dense kind (on {pairs}) overtakes best sparse library; 95 % band", LETTERS)))
+    shown += [Patch(facecolor="#dddddd", edgecolor="#555555", hatch="////", linewidth=0, label="open: two of those that may be the fastest"),
+              Patch(**NOTHING, label="not measured"), Patch(facecolor="white", edgecolor=GREY, label="white: below the own fill (line)")]
     shown += [Patch(facecolor="none", label=text) for text in ("1.32×: the second behind the winner", "= 2 more: as fast, within 5 %",
                                                               "? 2 more: may be as fast")]
     axes.legend(handles=shown, loc="upper left", bbox_to_anchor=(1.01, 1.01), fontsize=8)

@@ -17,7 +17,7 @@ def context(tables, view):
             "times": losses.step_times(results), "overhead": losses.overhead(results), "centred": losses.LAST_CENTRED,
             "ledger": ledger, "by_id": by_id(tables["claims"]), "subjects": paper.SUBJECTS, "dense_pairs": paper.dense_pairs(results), "title": paper.TITLE,
             "pairs": [pair | {"used": _used(results, pair["name"])} for pair in view.registry.listed.get("blas", [])],
-            "verdicts": losses.verdicts(results), "losses": losses.losses(results),
+            "verdicts": losses.verdicts(tables["verification"], results.implementations), "losses": losses.losses(results),
             "not_reached": list(scenes[scenes.reason != ""].scene), "entries": view.registry.entries,
             "coverage": view.registry.coverage, "variants": list(view.registry.variants),
             "controls": carry.judged(tables["controls"]), "twins": tables["controls"].to_dict("records"), "spread": [

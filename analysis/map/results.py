@@ -25,7 +25,7 @@ def with_samples(rows):
 
 class Results:
     def __init__(self, tables, view):
-        self.tidy, self.verification, self.view = tables["tidy"], tables["verification"], view
+        self.tidy, self.view = tables["tidy"], view
         self.registry, self.variants = view.registry, view.registry.variants
 
     @cached_property
@@ -103,11 +103,6 @@ class Results:
         """Time of `slow` over that of `fast`; None if they cannot be compared."""
         found = self._paired(scene).ratio(slow, fast)
         return None if found.value != found.value else found
-
-    def medians(self, scene):
-        """{name: µs a step}: median over its processes. For orientation: ratios compare."""
-        rows = self.rows(scene)
-        return rows[rows.status == "ok"].groupby("implementation").step_us.median().to_dict()
 
     def failed(self, scene, names):
         return self._with(scene, names, FAILURES)

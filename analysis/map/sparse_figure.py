@@ -46,7 +46,7 @@ def draw(results, look):
         axes.set_ylabel("time ÷ the least at that size")
     panels[0].set(xlabel="", ylim=(0.96, LEADERS))
     number_axis(panels[1].yaxis, "×")
-    outcomes = {cell.variables: "" if cell.decided else "as fast" if cell.settled else "open"
+    outcomes = {cell.variables: {"decided": "", "equivalent": "as fast", "open": "open"}[cell.outcome]
                 for cell in map_cells(results, list(found)) if cell.fill_asked is None}
     panels[1].set_xticks(range(len(sizes)), [f"{size:g}\n{outcomes.get(size, '')}" for size in sizes])
     legend(panels[0], order=list(found).index)

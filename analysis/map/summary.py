@@ -13,12 +13,11 @@ def by_size(results, names):
     for cell in map_cells(results, names):
         if cell.fill_asked is not None or cell.ranking is None:
             continue
-        kind = "decided" if cell.decided else "equivalent" if cell.settled else "open"
-        margin = cell.ranking.margin.value  # not a number of who is alone
-        if groups and groups[-1]["names"] == sorted(cell.winners) and groups[-1]["kind"] == kind:
-            groups[-1] |= {"last": cell.variables, "margins": [*groups[-1]["margins"], margin]}
-        else:
-            groups.append({"first": cell.variables, "last": cell.variables, "names": sorted(cell.winners), "kind": kind, "margins": [margin]})
+        found = {"names": sorted(cell.winners), "kind": cell.outcome}
+        if not groups or groups[-1] | found != groups[-1]:
+            groups.append(found | {"first": cell.variables, "margins": []})
+        groups[-1]["last"] = cell.variables
+        groups[-1]["margins"].append(cell.ranking.margin.value)  # not a number of who is alone
     return groups
 
 

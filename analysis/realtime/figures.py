@@ -3,10 +3,12 @@ import matplotlib.pyplot as plt
 import numpy
 
 from analysis.core.outcomes import FINISHED
-from analysis.core.style import GREY, line_each, nothing, number_axis
+from analysis.core.style import GREY, below, line_each, nothing, number_axis, panels
 
 FORMS = {"penalty": ("#0072B2", "o", -0.17), "saddle-point": ("#D55E00", "s", 0.17)}  # colour, marker, place in a line
 LEFT = 0.7  # of the axis of sizes
+DEADLINE = {"color": "black", "linewidth": 1.2, "linestyle": (0, (4, 2)), "label": "deadline"}
+GAP = {"color": GREY, "linewidth": 1.2, "linestyle": (0, (1, 1.5)), "label": "longest gap of the null process"}
 
 
 def draw(tables, view):
@@ -21,38 +23,30 @@ def distributions(table, machine):
     if table.median_us.notna().sum() == 0:
         return nothing("No run of which there are step times.")
     steps, loops, names = sorted(table.step.unique(), reverse=True), sorted(table.loops.unique()), order(table)
-    lines, columns = (len(steps), len(loops)) if len(loops) > 1 else (1, len(steps))
-    figure, panels = plt.subplots(lines, columns, sharey=True, squeeze=False, constrained_layout=True,
-                                  figsize=(5.2 * columns + 1.5, (0.27 * len(names) + 1.1) * lines + 0.4))
-    for line, step in zip(panels.reshape(len(steps), len(loops)), steps):
-        gaps = machine[(machine.after == "distributions") & (machine.step == step)].largest_us.dropna()
-        for axes, size in zip(line, loops):
-            _panel(axes, table[(table.step == step) & (table.loops == size)], names)
-            axes.axvline(1e6 * step, color="black", linewidth=1.2, linestyle=(0, (4, 2)))
-            for gap in gaps:
-                axes.axvline(gap, color=GREY, linewidth=1.2, linestyle=(0, (1, 1.5)))
-            axes.set_title(f"N = {size:g}, deadline {1e3 * step:g} ms")
-    for axes in panels[-1]:
-        axes.set_xlabel("time of a step, µs")
+    asked = [(step, size) for step in steps for size in loops]
+    figure, grid = panels(len(asked), len(loops) if len(loops) > 1 else len(steps), 5.2, 0.27 * len(names) + 1.1)
+    for axes, (step, size) in zip(grid, asked):
+        for scheme, rows in table[(table.step == step) & (table.loops == size)].groupby("scheme", sort=False):
+            _form(axes, rows, names, scheme)
+        axes.axvline(1e6 * step, **DEADLINE)
+        for gap in machine[(machine.after == "distributions") & (machine.step == step)].largest_us.dropna():
+            axes.axvline(gap, **GAP)
+        axes.set(xscale="log", title=f"N = {size:g}, deadline {1e3 * step:g} ms")
+        line_each(axes, names)
+    figure.supxlabel("time of a step, µs", fontsize=10)
     figure.suptitle("Times of steps, as observed in one run", x=0.01, ha="left", fontsize=12)
-    handles = [plt.Line2D([], [], color=colour, marker=marker, label=f"{form}: median")
-               for form, (colour, marker, _) in FORMS.items() if form in set(table.scheme)]
-    handles += [plt.Line2D([], [], color=GREY, marker="|", linestyle="none", markersize=9, label="99 %, 99.9 %"),
-                plt.Line2D([], [], color=GREY, marker="x", linestyle="none", label="longest"),
-                plt.Line2D([], [], color="black", linestyle=(0, (4, 2)), label="deadline"),
-                plt.Line2D([], [], color=GREY, linestyle=(0, (1, 1.5)), label="longest gap of the null process")]
-    handles += left
     others = sorted(set(table.status[table.median_us.notna()]) - {"ok"})
-    if others:
-        handles.append(plt.Line2D([], [], color=GREY, marker="o", markerfacecolor="white", linestyle="none",
-                                  label=f"hollow: {', '.join(others)}"))
-    figure.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=4)
+    below(figure, 4, left + [_entry(f"hollow: {', '.join(others)}", GREY, "o", markerfacecolor="white")] * bool(others))
     return figure
 
 
 def run_of(table, dropped):
     """Without what the budget dropped; and an entry of the legend that counts it."""
-    return table[~dropped], [plt.Line2D([], [], color="none", label=f"not drawn: {dropped.sum()} that the budget dropped")] if dropped.any() else []
+    return table[~dropped], [_entry(f"not drawn: {dropped.sum()} that the budget dropped")] if dropped.any() else []
+
+
+def _entry(label, colour="none", marker="", **more):
+    return plt.Line2D([], [], linestyle="none", color=colour, marker=marker, label=label, **more)
 
 
 def order(table):
@@ -62,20 +56,19 @@ def order(table):
     return list(middle.sort_values(na_position="last", kind="stable").index)
 
 
-def _panel(axes, rows, names):
-    for row in rows.itertuples():
-        colour, marker, shift = FORMS[row.scheme]
-        y = names.index(row.implementation) + shift
-        if row.median_us != row.median_us:  # there are no times
-            axes.text(0.02, y, row.status, transform=axes.get_yaxis_transform(), color=colour, va="center", fontsize=7)
-            continue
-        axes.plot([row.median_us, row.max_us], [y, y], color=colour, linewidth=1, alpha=0.6)
-        axes.plot(row.median_us, y, marker, color=colour, markersize=4.5,
-                  markerfacecolor=colour if row.status == "ok" else "white")
-        axes.plot([row.p99_us, row.p999_us], [y, y], "|", color=colour, markersize=8)
-        axes.plot(row.max_us, y, "x", color=colour, markersize=4.5)
-    axes.set_xscale("log")
-    line_each(axes, names)
+def _form(axes, rows, names, scheme):
+    """The runs of one form of the step."""
+    colour, marker, shift = FORMS[scheme]
+    y, good = rows.implementation.map(names.index) + shift, rows.status == "ok"
+    axes.hlines(y, rows.median_us, rows.max_us, color=colour, linewidth=1, alpha=0.6)
+    axes.plot(rows.median_us[good], y[good], marker, color=colour, markersize=4.5, label=f"{scheme}: median")
+    axes.plot(rows.median_us[~good], y[~good], marker, color=colour, markersize=4.5, markerfacecolor="white")
+    axes.plot(rows[["p99_us", "p999_us"]], y, "|", color=colour, markersize=8)
+    axes.plot(rows.max_us, y, "x", color=colour, markersize=4.5)
+    axes.plot([], [], "|", color=GREY, markersize=9, label="99 %, 99.9 %")
+    axes.plot([], [], "x", color=GREY, label="longest")
+    for row in rows[rows.median_us.isna()].itertuples():  # there are no times
+        axes.text(0.02, y[row.Index], row.status, transform=axes.get_yaxis_transform(), color=colour, va="center", fontsize=7)
 
 
 def sizes(table):
@@ -86,23 +79,19 @@ def sizes(table):
     steps = sorted(table.step.unique(), reverse=True)
     names = list(table.groupby("implementation").largest.max().sort_values(ascending=False, kind="stable").index)
     shown = [form for form in FORMS if form in set(table.scheme)]
-    figure, panels = plt.subplots(1, len(steps), sharey=True, squeeze=False, constrained_layout=True,
-                                  figsize=(6.6 * len(steps) + 1.5, (0.2 + 0.22 * len(shown)) * len(names) + 1.7))
-    for axes, step in zip(panels[0], steps):
+    figure, grid = panels(len(steps), len(steps), 6.6, (0.2 + 0.22 * len(shown)) * len(names) + 0.8)
+    for axes, step in zip(grid, steps):
         for row in table[table.step == step].itertuples():
             _search(axes, row, names.index(row.implementation), len(shown) > 1)
-        known = [size for size in (*table.largest.dropna(), *table.next.dropna()) if size > 0]
-        axes.set_xlim(LEFT if (table.largest == 0).any() else 0.6 * min(known, default=1), 1.6 * max(known, default=1))
-        number_axis(axes.xaxis)
         axes.set_title(f"step and deadline {1e3 * step:g} ms")
-        axes.set_xlabel("N of the four-bar (n = 2N + 2 variables)")
         line_each(axes, names)
+    known = [size for size in (*table.largest.dropna(), *table.next.dropna()) if size > 0]
+    grid[0].set_xlim(LEFT if (table.largest == 0).any() else 0.6 * min(known, default=1), 1.6 * max(known, default=1))
+    number_axis(grid[0].xaxis)
+    figure.supxlabel("N of the four-bar (n = 2N + 2 variables)", fontsize=10)
     figure.suptitle("Largest N in real time", x=0.01, ha="left", fontsize=12)
-    handles = [plt.Line2D([], [], color=FORMS[form][0], marker=FORMS[form][1], linestyle="none",
-                          label=f"{form}: kept up with") for form in shown]
-    handles += [plt.Line2D([], [], color=GREY, marker="X", linestyle="none", label="next size tried: not kept up with"),
-                plt.Line2D([], [], color="none", label="right: N, steps missed (lost by the null process)")]
-    figure.legend(handles=[*handles, *left], loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=4)
+    below(figure, 4, [*(_entry(f"{form}: kept up with", *FORMS[form][:2]) for form in shown),
+                      _entry("next size tried: not kept up with", GREY, "X"), _entry("right: N, steps missed (lost by the null process)"), *left])
     return figure
 
 

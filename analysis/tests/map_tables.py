@@ -5,8 +5,8 @@ import pandas
 
 from analysis.core import schema
 from analysis.core.registry import Registry
+from analysis.core.timing import PHASES
 from analysis.map.results import Results
-from analysis.map.tidy import PHASES
 
 OWN_FILL = 5.0  # percent
 
@@ -64,6 +64,5 @@ def view(known, columns=()):
 
 def results(rows, dense=(), sparse=(), own=(), columns=(), pairs=()):
     known = schema.of_part("map")
-    tables = {name: schema.conform(pandas.DataFrame(found, columns=list(known[name])), known[name], name)
-              for name, found in (("tidy", rows), ("verification", []))}
-    return Results(tables, view(registry(dense, sparse, own, pairs), columns))
+    tidy = schema.conform(pandas.DataFrame(rows, columns=list(known["tidy"])), known["tidy"], "tidy")
+    return Results({"tidy": tidy}, view(registry(dense, sparse, own, pairs), columns))

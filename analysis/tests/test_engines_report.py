@@ -126,7 +126,7 @@ def test_figures_page_and_answers(found):
     plt.close("all")
     known = page.context(found, VIEW)
     assert known["measured"] and known["subjects"] == {LONG: "N = 2", SHORT: "N = 2, first 0.6 s"}
-    assert known["summaries"]["library"][LONG]["ode"] == pytest.approx((0.5, 0.5, 3, 2))
+    assert known["summaries"]["library"][LONG]["ode"] == pytest.approx({"low": 0.5, "high": 0.5, "errors": 3, "reached": 1})
     assert [(row["side"], row["engine"], round(row["ratio"], 3)) for row in known["behind"]][:2] == [
         ("paper", "ode+native", 0.167), ("library", "ode+native", 0.25)]
     assert ("chains", LONG, "its smallest error is 0.0001 m", [4e-6]) in known["unreached"]

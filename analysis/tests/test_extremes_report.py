@@ -1,11 +1,9 @@
 # Extremes: judging, tables, figures, page and answers on synthetic records and small tables of every outcome.
 from types import SimpleNamespace
 
-import matplotlib.pyplot as plt
 import numpy
 import pandas
 import pytest
-from matplotlib.patches import Polygon
 
 from analysis.core import site
 from analysis.core.errors import StudyError
@@ -13,8 +11,7 @@ from analysis.core.files import ROOT
 from analysis.core.records import Record
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
-from analysis.extremes import (battery, battery_figure, cells, figures, judge, page, pivots, sentences,
-                               tables, trials, verdicts)
+from analysis.extremes import battery, cells, judge, page, pivots, sentences, tables, trials, verdicts
 from analysis.extremes.motions import Chain, Flat
 
 STATUSES = ("ok", "degraded", "diverged", "wrong-branch", "not-converged", "timeout", "crashed", "refused", "excluded", "dropped")
@@ -104,7 +101,7 @@ def test_trials_are_counted_by_kind_and_bounds_that_fail_are_said_to():
     assert "In 5 runs of 2 mechanisms of 2 kinds: 2 silent wrongs and 1 false alarm." in text
     assert text.endswith("driven four-bar, kite at 0.001, 1 per s: build/mbs simulate 'a scene.json'.")
     assert "silently wrong”: not held, 2 runs (driven four-bar: 2)." in text and "own steps”: held, in 1 runs." in text
-    text = render(made(trial("plausible", 0.5)))[1]
+    text = render(made(trial("plausible", 0.5)))
     assert "Silently wrong: 1 run<" in text and "build/mbs simulate" in text and "False alarm: no run." in text
 
 
@@ -156,33 +153,17 @@ def small():
         for axis in ("loops", "step") for status in STATUSES for setting in ("penalty", "saddle-point") for name in ("a/v", "b/v")])
 
 
-def texts(figure):
-    return [text.get_text() for text in figure.texts] + [text.get_text() for axes in figure.axes for text in axes.texts]
-
-
-def test_cells_and_settings_that_were_not_run_are_counted():
+def test_the_matrix_shows_the_worst_and_who_is_unlike():
     table = small()
-    table.loc[table.setting == "saddle-point", "status"] = "dropped"
-    figure = battery_figure.draw(table)
-    assert "not run: 4 cells, 1 settings" in texts(figure)[0] and [text.get_text() for text in figure.axes[0].get_xticklabels()] == ["penalty"]
-    assert "not run: 4 cells, 0 settings" in texts(battery_figure.draw(small()))[0]
-
-
-def test_the_matrix_shows_the_worst_and_names_every_outcome():
-    table = small()
-    figure = battery_figure.draw(table)
-    named = {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
-    assert {"ok or plausible", *STATUSES[1:8]} <= named and "No silent wrong in 56 runs at the extremes" in texts(figure)[0]
-    assert "−5" in texts(figure) and not any(isinstance(patch, Polygon) and len(patch.get_xy()) == 4 for patch in figure.axes[0].patches)
+    found = page.matrix(table)
+    assert len(found) == 16 and ("loops", "dropped") not in found and found["loops", "ok"]["penalty"] == ("ok", -5, False)
+    assert {cells["penalty"][0] for cells in found.values()} == {"ok", *STATUSES[1:8]}
     table.loc[table.index[0], ["verdict", "true_error"]] = verdicts.SILENT, 0.3
     table.loc[table.index[9], "status"] = "strange"
-    figure = battery_figure.draw(table)
-    named = {text.get_text() for text in figure.axes[0].get_legend().get_texts()}
-    assert {"silently wrong", "other failure"} <= named and "1 silent wrong in 56 runs" in texts(figure)[0] and "−1" in texts(figure)
-    assert any(isinstance(patch, Polygon) and len(patch.get_xy()) == 4 for patch in figure.axes[0].patches)  # who are unlike
+    found = page.matrix(table)
+    assert found["loops", "ok"]["penalty"] == ("silent", -1, True) and "other" in {kind for cells in found.values() for kind, _, _ in cells.values()}
     table["truth_error"] = 1e-3
-    assert "−3" in texts(battery_figure.draw(table)) and "−5" not in texts(battery_figure.draw(table))  # none is shown below that of the truth
-    plt.close("all")
+    assert page.matrix(table)["step", "ok"]["penalty"][1] == -3  # none is shown below that of the truth
 
 
 def test_what_was_left_out_is_told():
@@ -231,15 +212,12 @@ def test_the_guard_is_compared_with_kept_pivots_over_processes():
     missing = record("pivots/x", {"role": "pivots"}, ended="unavailable", reason="it is missing")
     both, alone = made(stale(1, (2.0, 2.4, 6.0)), missing)["pivots"], made(missing)
     assert len(both) == 10 and list(both.status[9:]) == ["unavailable"] and len(pivots.timed(both)) == 9
-    assert "A process gave nothing: unavailable: it is missing" in render(alone)[1]
+    assert "A process gave nothing: unavailable: it is missing" in render(alone)
 
 
 def render(found):
-    drawn = figures.draw(found, VIEW)
-    for figure in drawn.values():
-        plt.close(figure)
     template = site.template(ROOT / "analysis" / "extremes" / "page.html.j2")
-    return set(drawn), template.render(**page.context(found, VIEW), figures=dict.fromkeys(drawn, "AA"), schema={}, part="extremes", parts={},
+    return template.render(**page.context(found, VIEW), figures={}, schema={}, part="extremes", parts={},
                                        question="?", facts=FACTS, libraries=["c"], context=dict.fromkeys(("cpu_model", "num_cpus", "commit", "compiler",
                                                                                         "flags", "kernel", "machine", "dirty"), "c"))
 
@@ -247,10 +225,10 @@ def render(found):
 FACTS = {"date": "today", "profile": "smoke", "only": [], "parts": ["extremes"]}
 
 
-def test_page_figures_and_answers_of_all_columns():
+def test_page_and_answers_of_all_columns():
     found = made(trial("plausible"), run("ok"), run("ok", 0.02, who="b/v"), run("ok", role="rattle4"), run("ok", role="saddle-point"), stale(1, (2.0, 2.4, 6.0)))
-    drawn, text = render(found)
-    assert drawn == {"trials", "battery"}
+    text = render(found)
+    assert 'class="matrix"' in text
     assert "Silently wrong: 1 run<" in text and "build/mbs simulate &#39;a scene.json&#39;" in text
     assert "holds" in text and "Not measured" not in text
     said = [one["text"] for one in sentences.answers(found, VIEW)]
@@ -262,6 +240,6 @@ def test_page_figures_and_answers_of_all_columns():
 
 def test_a_page_of_nothing_says_so():
     found = made()
-    drawn, text = render(found)
-    assert drawn == set() and text.count("Not measured") == 2
+    text = render(found)
+    assert text.count("Not measured") == 2
     assert [one["anchor"] for one in sentences.answers(found, VIEW)] == [""]

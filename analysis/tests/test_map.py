@@ -1,5 +1,6 @@
 # Cells, sums and figures of the map on made-up times.
 import json
+import math
 
 import matplotlib.pyplot as plt
 import pandas
@@ -11,7 +12,7 @@ from analysis.core.records import Record
 from analysis.core.style import Look
 from analysis.map import figures, losses, sentences, summary, tables, tidy
 from analysis.map.cells import map_cells, table
-from analysis.map.maps import bounds, broken, crossings
+from analysis.map.maps import bounds, broken
 from analysis.map.timed import AFTER, Scene, differing, timed_rows
 from analysis.tests.map_tables import cell, failed, registry, results, scene, view
 
@@ -94,8 +95,6 @@ def test_dense_overtakes_where_the_ratio_passes_one():
     for fill, dense in ((None, 4.0), (0.25, 2.0), (0.75, 0.5)):
         rows += cell(A, 10, dense, dense, fill=fill) + cell(B, 10, 1.0, 1.0, fill=fill)
     found = some(rows)
-    [(size, (fill, low, high))] = crossings(found, map_cells(found, [A, B])).items()
-    assert size == 10 and fill == pytest.approx(50) and low <= fill <= high
     [row] = summary.dense_from(found)
     assert row["from"] == 75 and row["last_sparse"] == 25 and row["between"] is None
 
@@ -134,7 +133,7 @@ def test_exclusions_of_one_are_one_line_of_what_was_not_timed():
                                   + failed(C, 10, "excluded", pilot=9.0)])
 def test_every_figure_can_be_drawn(rows):
     found = some(rows)
-    drawn = figures.draw({"tidy": found.tidy, "verification": found.verification}, found.view)
+    drawn = figures.draw({"tidy": found.tidy}, found.view)
     assert set(drawn) >= {"f4_sparse_solvers", "f7_map", "map_all"}
     for figure in drawn.values():
         assert figure.get_size_inches()[1] < 16  # two screens
@@ -184,12 +183,12 @@ def test_records_become_tables_and_a_page(tmp_path):
 
 def test_without_times_the_answer_says_so():
     found = some([])
-    empty = {"tidy": found.tidy, "verification": found.verification, "claims": pandas.DataFrame({"verdict": []})}
+    empty = {"tidy": found.tidy, "claims": pandas.DataFrame({"verdict": []})}
     [answer] = sentences.answers(empty, found.view)
     assert "Nothing was timed" in answer["text"]
 
 
 def test_a_scene_is_read_off_its_name():
-    assert tidy.scene_of("four-bar:24,fill=0.35") == {"scene": "four-bar:24,fill=0.35", "variables": 50, "fill_asked": 0.35}
-    assert tidy.scene_of("four-bar:4")["fill_asked"] is None
+    asked = tidy._asked(pandas.Series(["four-bar:24,fill=0.35,seed=2", "four-bar:4"]))
+    assert list(asked["variables"]) == [50, 10] and asked["fill_asked"][0] == 0.35 and math.isnan(asked["fill_asked"][1])
     assert set(tables.build([], view(registry()))) == set(schema.of_part("map"))

@@ -6,16 +6,15 @@ from matplotlib.text import Text
 from matplotlib.ticker import LogLocator
 
 from analysis.accuracy import work_figure
-from analysis.core.phases import FILLS, LABELS, bar, legend
 from analysis.core.style import GREY, SPARSE, Look, nothing
-from analysis.core.text import bounded, number
+from analysis.core.text import bounded
 from analysis.engines import figures as engine_figures
 from analysis.families import figures as families
+from analysis.limit import figures as limit
 from analysis.map import maps, sparse_figure
 from analysis.map.results import of
 from analysis.realtime import figures as realtime
 from analysis.stability import figures as stability
-from study.tools.paper import numbers
 from study.tools.paper.numbers import DENSE, HYBRID, led, profiled, real_mechanisms
 
 TEXT = 6.69      # inches, width of the paper's text
@@ -135,36 +134,19 @@ def below(figure, legend, columns, y=-0.03, size=9):
 
 
 def phases(known):
-    """What a step of some variants consists of, and how long it takes, at the largest size that was timed phase by phase."""
-    rows = profiled(known).set_index("implementation")
-    if rows.empty:
-        return nothing(NOTHING)
-    names = [name for name in PHASES_OF if name in rows.index]
-    figure, axes = plt.subplots(figsize=(8.4, 0.6 + 0.25 * len(names)))
-    for place, name in enumerate(names):
-        bar(axes, place, [(phase, 100 * share) for phase, share in numbers.phases(rows.loc[name]).items()], FILLS, False)
-        axes.text(101, place, f"{number(rows.step_us[name])} µs", va="center", fontsize=7.5)
-    axes.set_yticks(range(len(names)), names, fontsize=8.5)
-    axes.set(xlim=(0, 108), ylim=(len(names) - 0.4, -0.6), xlabel=f"n = {rows.variables.max():g}: share of the time of a step, %")
-    axes.set_xticks(range(0, 101, 20))
-    axes.tick_params(axis="y", length=0)
-    axes.spines["left"].set_visible(False)
-    legend(axes, FILLS, LABELS)
-    return figure
+    """What a step of some variants consists of, at the largest size that was timed phase by phase."""
+    rows = profiled(known)
+    names = [name for name in PHASES_OF if name in set(rows.implementation)]
+    return limit.by_phase(rows, names, sorted(set(rows.loops)))
 
 
 def engines(known):
-    """With a narrower legend, fewer ticks and one name of the time axis."""
+    """With a narrower legend and fewer ticks."""
     figure = engine_figures.draw(known.tables("engines"), known.view("engines"))["regular"]
-    if not figure.legends:
-        return figure
-    figure.subplots_adjust(hspace=0.42)
-    below(figure, figure.legends[0], 3)
-    panels = [axes for axes in figure.axes if axes.axison]
-    for axes in panels:
+    for axes in figure.axes if figure.legends else ():
         axes.xaxis.set_major_locator(LogLocator(numticks=5))
-        if axes is not panels[len(panels) // 2]:
-            axes.set_xlabel("")
+    if figure.legends:
+        below(figure, figure.legends[0], 3)
     return figure
 
 
