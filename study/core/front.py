@@ -1,6 +1,5 @@
 # Runs Snakemake in the background and shows the part, the cells done of all and the time left.
 import os
-import re
 import shutil
 import signal
 import subprocess
@@ -8,10 +7,9 @@ import sys
 import time
 
 from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, write_json
+from analysis.core.files import ROOT, read_json, write_json
 from study.core import child
 from study.core.job import FRONT
-from study.core.progress import Reader, duration
 
 
 class Display:
@@ -83,12 +81,8 @@ class Follower:
     def update(self):
         for line in self.log.readlines():
             self.lines = [*self.lines, line.strip()][-12:]
-            self.take(line)
             if line.startswith("error: "):
                 self.error = self.error or line.removeprefix("error: ").strip()
-
-    def take(self, line):
-        """For those that show it."""
 
     def last_words(self):
         wrong = [line for line in self.lines if "rror" in line]
@@ -96,46 +90,29 @@ class Follower:
 
 
 class _Cells(Follower):
-    """Turns progress events and Snakemake's log into what the display shows."""
+    """Shows the part and its column at work, and the time left."""
 
     def __init__(self, studyset, columns, display):
         super().__init__(studyset)
-        self.columns, self.display, self.events = columns, display, Reader(studyset.progress)
-        self.done_columns = {(part, column) for part, names in columns.items() for column in names
-                             if studyset.stamp(part, column).exists()}
-        self.now, self.cells, self.expected, self.text = None, 0, 0, ""
-        self.since = time.monotonic()
-
-    def take(self, line):
-        if re.match(r"rule (\w+):", line) and not self.now and not any(self.columns.values()):  # of a stored set nothing is run
-            self.display.show("pages")
+        self.set, self.columns, self.display = studyset, columns, display
+        self.now, self.since = None, 0.0
+        studyset.progress.unlink(missing_ok=True)
 
     def update(self):
         super().update()
-        events = self.events.events()
-        for event in events:
-            self._take(event)
-        if self.now and events:
-            self._show()
+        if self.set.progress.exists():
+            self._show(**read_json(self.set.progress))
+        elif self.lines and not any(self.columns.values()):  # of a stored set nothing is run
+            self.display.show("pages")
 
-    def _take(self, event):
-        at = event["part"], event["column"]
-        if at != self.now:
-            if self.now:
-                self.done_columns.add(self.now)
-            self.now, self.cells, self.expected, self.text, self.since = at, 0, 0, "", time.monotonic()
-        self.expected += event.get("expected", 0)
-        self.cells += event.get("done", 0)
-        self.text = event.get("text", self.text)
-
-    def _show(self):
-        part, column = self.now
-        left = sum(seconds for one, names in self.columns.items() for name, seconds in names.items()
-                   if (one, name) not in self.done_columns) - (time.monotonic() - self.since)
-        place = list(self.columns).index(part) + 1
-        total = max(self.expected, self.cells)
-        self.display.show(f"[{place}/{len(self.columns)}] {part}", f"{column}: {self.cells} of {total} cells, "
-                          f"at most {duration(left)} left" + (f"; {self.text}" if self.text else ""))
+    def _show(self, part, column, cells, text):
+        if (part, column) != self.now:
+            self.now, self.since = (part, column), time.monotonic()
+        ahead = sum(seconds for one, names in self.columns.items() for name, seconds in names.items()
+                    if not self.set.stamp(one, name).exists())
+        left = duration(ahead - (time.monotonic() - self.since))
+        self.display.show(f"[{list(self.columns).index(part) + 1}/{len(self.columns)}] {part}",
+                          f"{column}: {cells}, at most {left} left" + (f"; {text}" if text else ""))
 
 
 def _stop(process, ends):
@@ -148,3 +125,13 @@ def _stop(process, ends):
             process.wait(timeout=10)
         except subprocess.TimeoutExpired:
             continue
+
+
+def duration(seconds):
+    """The text "1 min 20 s"."""
+    seconds = max(0, round(seconds))
+    if seconds < 60:
+        return f"{seconds} s"
+    if seconds < 3600:
+        return f"{seconds // 60} min {seconds % 60} s"
+    return f"{seconds // 3600} h {seconds % 3600 // 60} min"

@@ -1,6 +1,7 @@
 # A set: the results of one commit, one build, one machine; its folder, and whether it may be continued.
 import datetime
 import shutil
+from dataclasses import replace
 from functools import cached_property
 
 from analysis.core import records
@@ -11,11 +12,11 @@ from analysis.core.registry import Registry
 from analysis.core.view import Folder, facts_of
 from study.core import executor, locks, profile as profiles
 from study.core.cell import Cell
-from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
+from study.core.contender import CONTROL, control, on_usual_pairs
 from study.core.executor import need_same, program_of
 
 BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml",  # what is written before set.json ...
-         ".cluster", ".snakemake", ".progress"}                             # ... and on a cluster
+         ".cluster", ".snakemake"}                                          # ... and on a cluster
 
 
 class StudySet(Folder):
@@ -80,7 +81,7 @@ class StudySet(Folder):
 
 def context_of(one):
     """The context of a contender's build and BLAS pair on this machine."""
-    null = Contender(one.name, CONTROL.variant, one.blas, one.build)
+    null = replace(one, variant=CONTROL.variant)
     cell = Cell("bench", "four-bar:1", (null,), ("--steps", 1, "--benchmark_repetitions=1", "--benchmark_min_time=0"))
     found = executor.run(cell.settled(), None)
     if not found["context"]:
@@ -108,6 +109,20 @@ def opened(folder):
     return found
 
 
+def sets_in(*bases):
+    """The sets in these folders, the newest first; what tools keep there has no parts, and is none."""
+    found = [StudySet(path.parent) for base in bases for path in base.glob("*/set.json")]
+    return sorted((one for one in found if one.facts["parts"]), key=lambda one: one.facts["date"], reverse=True)
+
+
+def newest(base):
+    """Folder of the newest set in `base`; StudyError if there is none."""
+    found = sets_in(base)
+    if not found:
+        raise StudyError(f"{base.relative_to(ROOT)}/ holds no set: name one, or make one with study/run")
+    return found[0].folder
+
+
 def need_own(folder, begun=BEGUN):
     """StudyError if a folder holds anything but a set, or one that was just begun: nothing of a user's is overwritten."""
     if not folder.is_dir() or (folder / "set.json").exists():
@@ -122,7 +137,7 @@ def start(folder, profile, only, chosen):
     """Records what a folder is for, or continues it; StudyError if it holds results of something else."""
     registry = listed()
     select(registry, only)
-    context = context_of(Contender(CONTROL.name, CONTROL.variant, usable(registry, profile.blas["all"])))
+    context = context_of(control(registry, profile.blas))
     record = begun(profile.name, only, chosen, context)
     if (folder / "set.json").exists():
         known = opened(folder)

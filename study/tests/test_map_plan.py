@@ -21,7 +21,7 @@ from study.map.timed import Scene
 from study.tests.conftest import FAKE, TEMPORARY
 from study.tools import compare
 
-SETTINGS = {"seconds": 100, "processes": 3, "process": 0.1, "again": 2, "between": 1, "slower": {"natural": 1000, "filled": 50},
+SETTINGS = {"seconds": 100, "processes": 3, "process": 0.1, "again": 2, "slower": {"natural": 1000, "filled": 50},
             "limits": {"pilot": 2, "check": 10, "time": 10}, "alternatives": [{"implementations": ["good_dense"],
                                                                               "blas": ["reference", "atlas"], "columns": [10]}],
             "phases": {"columns": [10], "processes": 1}, "operations": {"columns": [10], "processes": 1},

@@ -1,7 +1,6 @@
 # study/compare A B: do two sets give the same map? The libraries and all, own code included, apart.
 from analysis.core import schema
 from analysis.core.errors import StudyError
-from study.core.main import need_modules
 from study.core.options import Parser, directory
 from study.core.studyset import opened
 
@@ -14,7 +13,6 @@ def compare(arguments):
     for name in ("first", "second"):
         parser.add_argument(name, type=directory, metavar=name[0].upper() + name[1:], help="directory of a set")
     options = parser.parse_args(arguments)
-    need_modules()
     sets = [opened(folder) for folder in (options.first, options.second)]
     tables = [cells_of(studyset.folder) for studyset in sets]
     print("\n".join(line for layer in LAYERS for line in report(layer, *tables)))

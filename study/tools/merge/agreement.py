@@ -5,6 +5,7 @@ from analysis.core import schema
 from analysis.core.timing import EQUIVALENT, NONE, Ratio
 from analysis.core.view import View
 from analysis.map.results import Results
+from study.core import executor
 
 LAYERS = {"libraries": "libraries", "all": "all, own code included"}
 ALIKE = ("commit", "compiler", "flags", "build_type", "libraries")  # of sets that may be compared
@@ -24,10 +25,9 @@ def unlike(first, other):
     for one in (first, other):
         if str(one.facts["context"].get("dirty")).lower() != "false":
             return f"{one.folder} was measured from a tree with changes"
-    for key in ALIKE:
-        mine, its = (str(one.facts["context"].get(key, "missing")) for one in (first, other))
-        if mine != its:
-            return f"{other.folder} is of another build than {first.folder}: {key} is '{its}', not '{mine}'"
+    if differs := executor.differing(first.facts["context"], other.facts["context"], ALIKE):
+        key, mine, its = differs
+        return f"{other.folder} is of another build than {first.folder}: {key} is '{its}', not '{mine}'"
     return ""
 
 

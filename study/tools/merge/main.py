@@ -4,7 +4,6 @@ import pandas
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, write_text
 from analysis.core.site import template
-from study.core.main import need_modules
 from study.core.options import Parser, directory
 from study.core.studyset import opened
 from study.tools.merge import agreement, machine
@@ -22,7 +21,6 @@ def merge(arguments):
     options = parser.parse_args(arguments)
     if len(options.sets) < 2 or len({one.resolve() for one in options.sets}) < len(options.sets):
         raise StudyError("needs two different sets or more")
-    need_modules()
     sets = [opened(folder) for folder in options.sets]
     fresh = opened(options.fresh) if options.fresh else None
     for one in (*sets, *([fresh] if fresh else [])):

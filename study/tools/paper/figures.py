@@ -1,5 +1,4 @@
 # The paper's figures: the study's own, at print size; and one of its own, real mechanisms with intervals.
-import matplotlib
 import matplotlib.pyplot as plt
 from matplotlib.gridspec import GridSpec
 from matplotlib.text import Text
@@ -32,12 +31,7 @@ MARKS = ("o", "s", "^", "D", "v", "P")
 
 def figures(known):
     """{name: figure}, each as wide as the paper's text"""
-    return {name: figure(known, name) for name in DRAWN}
-
-
-def figure(known, name):
-    draw, height = DRAWN[name]
-    return fit(draw(known), height, known.context["cpu_model"])
+    return {name: fit(draw(known), height, known.context["cpu_model"]) for name, (draw, height) in DRAWN.items()}
 
 
 def held(known):
@@ -108,12 +102,6 @@ def steps(known):
     return realtime.distributions(rows[rows.implementation.isin(realtime.order(rows)[:STEPS])] if len(rows) else rows, tables["machine"])
 
 
-def alone(figure):
-    """With the one panel that is left over its whole width."""
-    figure.axes[0].set_subplotspec(GridSpec(1, 1, figure=figure)[0])
-    return figure
-
-
 def own(known):
     """Of the map of mechanisms the panel of our own code."""
     figure = families.real_map(known.tables("families"), Look(known.registry), known.registry)
@@ -124,7 +112,8 @@ def own(known):
         colours.remove()
     for axes in figure.axes:
         axes.set(title="", ylabel="times as fast")
-    return alone(figure)
+    figure.axes[0].set_subplotspec(GridSpec(1, 1, figure=figure)[0])  # the panel that is left has the whole width
+    return figure
 
 
 def below(figure, legend, columns, y=-0.03, size=9):

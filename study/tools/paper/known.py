@@ -3,25 +3,20 @@ import importlib
 from dataclasses import dataclass, field
 from functools import cached_property
 
-import pandas
-
-from analysis.core import schema
-from analysis.core.files import ROOT, read_object
+from analysis.core.files import ROOT
 from analysis.core.view import Folder, View
-from study.tools.merge import agreement
+from study.tools.merge import agreement, machine
 
 
 class Tables(dict):
-    """{table: DataFrame} of a part of a set; a table that a set of an older schema lacks is empty."""
+    """{table: DataFrame} of a part of a set, each read when it is asked for; empty where the set lacks it."""
 
     def __init__(self, folder, part):
         super().__init__()
         self.folder, self.part = folder, part
 
     def __missing__(self, name):
-        kept = read_object(self.folder / self.part / schema.DIGESTS, tables=dict)["tables"]
-        self[name] = schema.read_table(self.folder, self.part, name) if name in kept else schema.conform(
-            pandas.DataFrame(), schema.of_part(self.part)[name], f"{self.part}/{name}.csv")
+        self[name] = machine.table(self.folder, self.part, name)
         return self[name]
 
 
@@ -30,7 +25,6 @@ class Known(Folder):
     _tables: dict = field(default_factory=dict)
 
     def tables(self, part):
-        """{table: DataFrame} of a part, each read when it is asked for."""
         return self._tables.setdefault(part, Tables(self.folder, part))
 
     def view(self, part="map"):

@@ -4,6 +4,7 @@ import re
 from textwrap import shorten
 
 import pandas
+from scipy.stats import gmean
 
 from analysis.core.text import between, bounded, ends, interval, number
 from analysis.engines.equal_error import SIDES
@@ -16,7 +17,7 @@ from analysis.map import ledger, summary
 from analysis.map.results import of
 from study.tools.merge import machine
 from study.tools.paper import numbers
-from study.tools.paper.numbers import BLOCKS, HYBRID, SCALAR, led, losses, mean, real_mechanisms
+from study.tools.paper.numbers import BLOCKS, HYBRID, SCALAR, led, losses, real_mechanisms
 
 ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}",
            "^": r"\textasciicircum{}", "$": r"\$", "<": r"\textless{}", ">": r"\textgreater{}", "/": r"/\allowbreak{}", ":": r":\allowbreak{}", "@": r"@\allowbreak{}", "µ": r"\textmu{}", "÷": r"\(\div\)", "×": r"\(\times\)", "≥": r"\(\ge\)",
@@ -89,7 +90,7 @@ def ranking(known):
     """Libraries over the mechanisms at their own fill; beside, what it costs to take one always over the cells of the map."""
     mine, lost, results = led(real_mechanisms(known)), losses(known), of(known.tables("map"), known.view("map"))
     prices = {row["implementation"]: row for row in summary.prices(results, results.layer("libraries"))}
-    rows = [{"library": name, "first or as fast": str(mine.get(name, 0)), "timed on": str(len(one)), "mean": number(mean(one)),
+    rows = [{"library": name, "first or as fast": str(mine.get(name, 0)), "timed on": str(len(one)), "mean": number(gmean(one)),
              "worst": number(one.max()), "where": one.idxmax()} | _price(prices.get(name)) for name, one in [*lost.items()][:RANKED]]
     return table(rows, {"library": "l", "first or as fast": "r", "timed on": "r", "mean": "r", "worst": "r", "where": "l"} | dict.fromkeys(PRICE, "r"))
 

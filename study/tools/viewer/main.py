@@ -9,7 +9,8 @@ from pathlib import Path
 from analysis.core.errors import StudyError
 from analysis.core.files import write
 from study.core.options import Parser, positive
-from study.core.main import need_modules
+from study.tools.viewer import page, program, sheet, trajectory
+from study.tools.viewer.scene import upward
 
 VALUES_AT_MOST = 2_000_000  # coordinates in a page: 11 MB of it
 IMPLEMENTATION = "csc_klu/refactor"
@@ -17,9 +18,6 @@ IMPLEMENTATION = "csc_klu/refactor"
 
 def view(arguments):
     options = _options(arguments)
-    need_modules("matplotlib", "jinja2")
-    from study.tools.viewer import program, trajectory  # they need the modules
-    from study.tools.viewer.scene import upward
     scene = program.describe(options.scene)
     if not scene.points:
         raise StudyError(f"{options.scene} has no points to show")
@@ -102,7 +100,6 @@ def _check(options):
 
 
 def _write(options, scene, motion, note, up):
-    from study.tools.viewer import page, sheet
     outputs = [(options.output, page.render(scene, motion, note, up).encode())]
     if options.png:
         outputs.append((options.png, sheet.draw(scene, motion, up, options.window)))
