@@ -9,7 +9,7 @@ from pathlib import Path
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, write_json
 from study.core import locks, studyset as sets
-from study.core.front import Follower, duration, follow
+from study.core.front import duration, follow
 from study.core.node import home, own_sets, refusals
 from study.core.studyset import StudySet
 
@@ -75,29 +75,18 @@ def _continued(folder, profile, only, chosen):
 def _workflow(studyset, cluster, columns, target):
     command = ["/usr/bin/python3", "-m", "snakemake", target, "--snakefile", str(PROFILES / "Snakefile"), "--directory",
                str(studyset.folder), "--profile", str(cluster), "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor"]
+    stamps = [studyset.stamp(part, column) for part, names in columns.items() for column in names]
+
+    def show(display):
+        display.show("cluster", f"{sum(stamp.exists() for stamp in stamps)} of {len(stamps)} columns")
+        time.sleep(1)  # they are asked for over a network
     try:
-        follow(studyset, command, lambda display: _Columns(studyset, columns, display), (signal.SIGINT, signal.SIGTERM, signal.SIGKILL))
+        follow(studyset, command, show, (signal.SIGINT, signal.SIGTERM, signal.SIGKILL))
     except StudyError as error:
         told = "; ".join(f"{host} is not of this set: {reason}" for host, reason in refusals(studyset.folder).items())
         raise StudyError(f"{error}; {told}" if told else str(error)) from error
     finally:
         end_jobs(studyset.folder, cluster)
-
-
-class _Columns(Follower):
-    """How many columns are done."""
-
-    def __init__(self, studyset, columns, display):
-        super().__init__(studyset)
-        self.display = display
-        self.stamps = [studyset.stamp(part, column) for part, names in columns.items() for column in names]
-        self.looked = 0.0
-
-    def update(self):
-        super().update()
-        if time.monotonic() - self.looked > 1:
-            self.looked = time.monotonic()
-            self.display.show("cluster", f"{sum(stamp.exists() for stamp in self.stamps)} of {len(self.stamps)} columns")
 
 
 def end_jobs(folder, cluster):

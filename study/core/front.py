@@ -39,29 +39,41 @@ def run_workflow(studyset, columns, stored=False):
     """Runs the workflow to its end. `columns`: {part: {column: seconds}}. Raises StudyError, or KeyboardInterrupt
     once all children are gone."""
     write_json(studyset.folder / ".parts.json", list(columns))
-    follow(studyset, _command(studyset, stored), lambda display: _Cells(studyset, columns, display))
+    studyset.progress.unlink(missing_ok=True)
+    follow(studyset, _command(studyset, stored), _Cells(studyset, columns))
 
 
-def follow(studyset, command, follower_of, ends=(signal.SIGTERM, signal.SIGKILL)):
-    """Runs Snakemake to its end, shown by a Follower. `ends`: signals that stop it, each after the one before."""
+def follow(studyset, command, show, ends=(signal.SIGTERM, signal.SIGKILL)):
+    """Runs Snakemake to its end; meanwhile `show` is called with a Display. `ends`: signals that stop it, each after the one before."""
     display = Display()
     with open(studyset.log, "a", encoding="utf-8") as log:
-        follower = follower_of(display)
+        begin = log.tell()
         process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, cwd=studyset.folder,
                                    start_new_session=True, preexec_fn=lambda parent=os.getpid(): child.die_with(parent),
                                    env=os.environ | {FRONT: str(os.getpid())})
         try:
             while process.poll() is None:
-                follower.update()
+                show(display)
                 time.sleep(0.15)
-            follower.update()
         finally:
             _stop(process, ends)
             display.end()
     if process.returncode != 0 and shutil.disk_usage(studyset.folder).free < 2**20:
         raise StudyError(f"no space is left for {studyset.folder}; what is finished is kept: make room and run it again")
     if process.returncode != 0:
-        raise StudyError(f"{follower.error or follower.last_words()} (log: {studyset.log})")
+        raise StudyError(f"{_why(studyset.log, begin)} (log: {studyset.log})")
+
+
+def _why(log, begin):
+    """What a log says from there on of a failure: the first error of a job, else its last words."""
+    with open(log, encoding="utf-8", errors="replace") as file:
+        file.seek(begin)
+        lines = [line.strip() for line in file]
+    for line in lines:
+        if line.startswith("error: "):
+            return line.removeprefix("error: ")
+    wrong = [line for line in lines[-12:] if "rror" in line]
+    return f"a stage failed: {(wrong or lines or ['no word of it'])[-1][:300]}"
 
 
 def _command(studyset, stored):
@@ -71,48 +83,26 @@ def _command(studyset, stored):
             "--config", f"stored={int(stored)}"]
 
 
-class Follower:
-    """What the log says from here on."""
+class _Cells:
+    """Shows the part and its column at work, and the time left; where nothing is run, that pages are drawn."""
 
-    def __init__(self, studyset):
-        self.log, self.error, self.lines = open(studyset.log, encoding="utf-8", errors="replace"), None, []
-        self.log.seek(0, os.SEEK_END)
+    def __init__(self, studyset, columns):
+        self.set, self.columns, self.now, self.since = studyset, columns, None, 0.0
 
-    def update(self):
-        for line in self.log.readlines():
-            self.lines = [*self.lines, line.strip()][-12:]
-            if line.startswith("error: "):
-                self.error = self.error or line.removeprefix("error: ").strip()
-
-    def last_words(self):
-        wrong = [line for line in self.lines if "rror" in line]
-        return f"a stage failed: {(wrong or self.lines or ['no word of it'])[-1][:300]}"
-
-
-class _Cells(Follower):
-    """Shows the part and its column at work, and the time left."""
-
-    def __init__(self, studyset, columns, display):
-        super().__init__(studyset)
-        self.set, self.columns, self.display = studyset, columns, display
-        self.now, self.since = None, 0.0
-        studyset.progress.unlink(missing_ok=True)
-
-    def update(self):
-        super().update()
+    def __call__(self, display):
         if self.set.progress.exists():
-            self._show(**read_json(self.set.progress))
-        elif self.lines and not any(self.columns.values()):  # of a stored set nothing is run
-            self.display.show("pages")
+            display.show(*self._said(**read_json(self.set.progress)))
+        elif not any(self.columns.values()):
+            display.show("pages")
 
-    def _show(self, part, column, cells, text):
+    def _said(self, part, column, cells, text):
         if (part, column) != self.now:
             self.now, self.since = (part, column), time.monotonic()
         ahead = sum(seconds for one, names in self.columns.items() for name, seconds in names.items()
                     if not self.set.stamp(one, name).exists())
         left = duration(ahead - (time.monotonic() - self.since))
-        self.display.show(f"[{list(self.columns).index(part) + 1}/{len(self.columns)}] {part}",
-                          f"{column}: {cells}, at most {left} left" + (f"; {text}" if text else ""))
+        place = list(self.columns).index(part) + 1
+        return f"[{place}/{len(self.columns)}] {part}", f"{column}: {cells}, at most {left} left" + (f"; {text}" if text else "")
 
 
 def _stop(process, ends):

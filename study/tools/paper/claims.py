@@ -12,7 +12,7 @@ from analysis.families import bounds, rule
 from analysis.families.figures import fastest_own
 from analysis.limit import held as limits
 from study.tools.merge import agreement, machine
-from study.tools.paper.numbers import DENSE, HYBRID, SCALAR, losses, of, percent, real_mechanisms
+from study.tools.paper.numbers import DENSE, HYBRID, SCALAR, losses, percent, real_mechanisms
 
 PAPER_PENALTY = 1e8  # the factor of 2008, at 1.25 ms
 
@@ -75,9 +75,9 @@ def _single(known):
 
 
 def _assembly(known):
-    results, cells = of(known.tables("map"), known.view("map")), known.tables("map")["cells"]
+    cells = known.tables("map")["cells"]
     scenes = cells[(cells.layer == "libraries") & cells.fill_asked.notna()].scene
-    found = [one for scene in scenes for one in [results.ratio(scene, DENSE, HYBRID)] if one]
+    found = [one for scene in scenes for one in [known.results.ratio(scene, DENSE, HYBRID)] if one]
     return (all(one.low > 1 for one in found) if found else None), (f"above 1; here {span([one.low for one in found])} at the lower ends" if found else "")
 
 

@@ -11,7 +11,6 @@ from analysis.core.text import bounded, number
 from analysis.engines import figures as engine_figures
 from analysis.families import figures as families
 from analysis.map import maps, sparse_figure
-from analysis.map.results import of
 from analysis.realtime import figures as realtime
 from analysis.stability import figures as stability
 from study.tools.paper import numbers
@@ -39,7 +38,7 @@ def held(known):
 
 
 def own_fill(known):
-    figure = sparse_figure.draw(results_of(known), Look(known.registry))
+    figure = sparse_figure.draw(known.results, Look(known.registry))
     for text in figure.texts:  # which the caption says
         text.set_text("")
     figure.axes[0].set_title("")
@@ -50,16 +49,12 @@ def own_fill(known):
 
 def size_and_fill(known):
     """The map, its legend below: cells are as wide as paper allows."""
-    results = results_of(known)
+    results = known.results
     figure = maps.draw(results, Look(known.registry), "", results.layer("libraries"), letters=9, line=2.7)
     legend = figure.axes[0].get_legend()
     if legend:
         below(figure, legend, 3, 0.02, 7.2)
     return figure
-
-
-def results_of(known):
-    return of(known.tables("map"), known.view("map"))
 
 
 def work(known):

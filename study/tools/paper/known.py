@@ -5,6 +5,7 @@ from functools import cached_property
 
 from analysis.core.files import ROOT
 from analysis.core.view import Folder, View
+from analysis.map.results import of
 from study.tools.merge import agreement, machine
 
 
@@ -34,6 +35,11 @@ class Known(Folder):
         """The part's own answers, one text."""
         module = importlib.import_module(f"analysis.{part}.sentences")
         return [one["text"] for one in module.answers(self.tables(part), self.view(part))]
+
+    @cached_property
+    def results(self):
+        """What the map's tables are asked for."""
+        return of(self.tables("map"), self.view("map"))
 
     @property
     def context(self):

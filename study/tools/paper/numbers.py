@@ -15,7 +15,6 @@ from analysis.core.text import number, span
 from analysis.families import rule as rules
 from analysis.families.figures import best_form, fastest_own
 from analysis.map import carry, ledger, sentences as map_sentences, summary
-from analysis.map.results import of
 from study.tools.merge import agreement, machine
 
 NOT_MEASURED = "not measured"
@@ -182,8 +181,7 @@ def shares(counts):
 
 
 def _size(known):
-    results = of(known.tables("map"), known.view("map"))
-    cells = known.tables("map")["cells"]
+    results, cells = known.results, known.tables("map")["cells"]
     own_fill = cells[(cells.layer == "libraries") & cells.fill_asked.isna()]
     groups = summary.by_size(results, results.layer("libraries"))
     return {"outcome": of_rows(" ".join(map_sentences.by_outcome(groups)), "map/cells", own_fill),
@@ -192,7 +190,7 @@ def _size(known):
 
 
 def _fill(known):
-    results, cells = of(known.tables("map"), known.view("map")), known.tables("map")["cells"]
+    results, cells = known.results, known.tables("map")["cells"]
     rows = cells[(cells.layer == "libraries") & (cells.winner != "")]
     filled = rows[rows.fill_asked.notna()]
     hybrid = filled[filled.equivalent.str.contains(HYBRID.split("/")[0])]
@@ -240,8 +238,7 @@ def _claims(known):
 
 
 def _price(known):
-    results = of(known.tables("map"), known.view("map"))
-    whole = [row for row in summary.prices(results, results.layer("libraries")) if not row["failed"] and row["cells"] == row["of"]]
+    whole = [row for row in summary.prices(known.results, known.results.layer("libraries")) if not row["failed"] and row["cells"] == row["of"]]
     first = whole[0] if whole else defaultdict(str)
     rows = known.tables("map")["cells"]
     rows = rows[(rows.layer == "libraries") & (rows.winner != "")]

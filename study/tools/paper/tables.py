@@ -14,7 +14,6 @@ from analysis.families import bounds
 from analysis.families.figures import best_form, fastest_own
 from analysis.families.sentences import cases
 from analysis.map import ledger, summary
-from analysis.map.results import of
 from study.tools.merge import machine
 from study.tools.paper import numbers
 from study.tools.paper.numbers import BLOCKS, HYBRID, SCALAR, led, losses, real_mechanisms
@@ -88,7 +87,7 @@ def decided(known):
 
 def ranking(known):
     """Libraries over the mechanisms at their own fill; beside, what it costs to take one always over the cells of the map."""
-    mine, lost, results = led(real_mechanisms(known)), losses(known), of(known.tables("map"), known.view("map"))
+    mine, lost, results = led(real_mechanisms(known)), losses(known), known.results
     prices = {row["implementation"]: row for row in summary.prices(results, results.layer("libraries"))}
     rows = [{"library": name, "first or as fast": str(mine.get(name, 0)), "timed on": str(len(one)), "mean": number(gmean(one)),
              "worst": number(one.max()), "where": one.idxmax()} | _price(prices.get(name)) for name, one in [*lost.items()][:RANKED]]
