@@ -11,10 +11,9 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
 from analysis.core.parts import parts
 from study.core import child, cluster, locks, profile as profiles
-from study.core.disk import writable
 from study.core.front import Display, duration, run_workflow
 from study.core.options import Parser, directory
-from study.core.studyset import listed, need_own, need_records, need_tables, newest, opened, reopen, select, start
+from study.core.studyset import listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, writable
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
            "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}

@@ -13,9 +13,8 @@ from analysis.core.records import Record
 from study.core import executor, locks, profile as profiles
 from study.core.cell import LAYOUT, Cell
 from study.core.contender import control
-from study.core.disk import writable
 from study.core.executor import program_of
-from study.core.studyset import context_of, start
+from study.core.studyset import context_of, start, writable
 
 CONTROL_SCENE, CONTROL_WORDS = "four-bar:10", ("--steps", 20, "--benchmark_repetitions=5")
 TRIES = 2  # so often must an A/A control be decided to count as failed: once in twenty it is by chance

@@ -1,6 +1,7 @@
 # A set: the results of one commit, one build, one machine; its folder, and whether it may be continued.
 import datetime
 import shutil
+import tempfile
 from dataclasses import replace
 from functools import cached_property
 
@@ -131,6 +132,18 @@ def need_own(folder, begun=BEGUN):
     if names and (".lock" not in names or not names <= begun):
         raise StudyError(f"{folder} is not empty and holds no set (no set.json): name another directory with --results, "
                          "or an empty one")
+
+
+def writable(folder):
+    """Makes a folder; StudyError unless it can be written to and has room."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise StudyError(f"cannot write to {folder}: {error.strerror}") from error
+    if shutil.disk_usage(folder).free < 100 * 2**20:
+        raise StudyError(f"less than 100 MB free for {folder}")
 
 
 def start(folder, profile, only, chosen):

@@ -13,13 +13,12 @@ from analysis.core.files import ROOT, digest, read_json, write, write_json
 from analysis.map.timed import differing
 from study.core import executor, locks, profile as profiles
 from study.core.contender import CONTROL, on_usual_pairs
-from study.core.disk import writable
 from study.core.executor import program_of
 from study.core.gate import verdicts
 from study.core.main import set_up
 from study.core.options import Parser, directory
 from study.core.front import duration
-from study.core.studyset import StudySet, context_of, listed, opened, select, sets_in
+from study.core.studyset import StudySet, context_of, listed, opened, select, sets_in, writable
 from study.core.timing import measure
 from study.tools import shelf
 

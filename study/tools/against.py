@@ -15,11 +15,10 @@ from analysis.core.files import ROOT, digest, write
 from study.core import child, locks, profile as profiles
 from study.core.cell import Cell
 from study.core.contender import by_environment, control, on_usual_pairs
-from study.core.disk import writable
 from study.core.executor import program_of
 from study.core.main import set_up
 from study.core.options import Parser, directory, rounds
-from study.core.studyset import context_of, listed, need_own, select
+from study.core.studyset import context_of, listed, need_own, select, writable
 from study.tools import shelf
 
 SECONDS = 120.0  # of a process

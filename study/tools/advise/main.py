@@ -11,10 +11,9 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write_json
 from study.core import locks, profile as profiles
 from study.core.contender import control, on_usual_pairs
-from study.core.disk import writable
 from study.core.executor import program_of
 from study.core.options import Parser, directory, positive
-from study.core.studyset import context_of, listed, need_own, select
+from study.core.studyset import context_of, listed, need_own, select, writable
 from study.tools.advise.advice import Question, advise as seek
 from study.tools.advise.answer import as_json, text
 from study.tools.advise.choice import LEAST_STEPS, MOST_STEPS
