@@ -18,7 +18,7 @@ from study.core.studyset import listed, need_own, need_records, need_tables, new
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
            "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
 TOOLS = {"view": "study.tools.viewer.main", "advise": "study.tools.advise.main", "against": "study.tools.against",
-         "compare": "study.tools.compare", "merge": "study.tools.merge.main", "add": "study.tools.add", "store": "study.tools.store",
+         "merge": "study.tools.merge.main", "add": "study.tools.add", "store": "study.tools.store",
          "new": "study.tools.new", "paper": "study.tools.paper.main", "sweep": "study.tools.sweep"}
 
 

@@ -402,12 +402,12 @@ def test_a_set_of_another_shape_is_named(tmp_path, key):
 
 @pytest.mark.parametrize("parts, words", [(["foo"], "parts: 'foo' is none of"), ([1], "parts: 1 is none"),
                                           ([["map"]], "is none"), ([], "has no parts")])
-@pytest.mark.parametrize("command", ["figures", "store", "compare", "add"])
+@pytest.mark.parametrize("command", ["figures", "store", "merge", "add"])
 def test_a_set_of_parts_that_are_none_is_named_before_anything_else(tmp_path, monkeypatch, capsys, command, parts, words):
     monkeypatch.setattr(child, "end_on_signals", lambda: None)
     write_json(tmp_path / "set.json", FACTS | {"parts": parts})
     folder = str(tmp_path)
-    assert main.main({"compare": [command, folder, folder], "add": [command, "klu", "--to", folder]}.get(command, [command, folder])) == 2
+    assert main.main({"merge": [command, folder, f"{folder}/.."], "add": [command, "klu", "--to", folder]}.get(command, [command, folder])) == 2
     told = capsys.readouterr()
     assert told.out == "" and "set.json" in told.err and words in told.err and told.err.count("\n") == 1
 
@@ -635,7 +635,7 @@ def test_locks_are_held_once_and_waited_for(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("command", [["run", "--results", ""], ["figures", ""], ["store", ""], ["add", "klu", "--to", ""],
-                                     ["advise", "--results", ""], ["against", "HEAD", "--results", ""], ["compare", "", ""]])
+                                     ["advise", "--results", ""], ["against", "HEAD", "--results", ""], ["merge", "", ""]])
 def test_an_empty_name_stands_for_no_default(command, capsys, monkeypatch):
     monkeypatch.setattr(child, "end_on_signals", lambda: None)
     assert main.main(command) == 2

@@ -159,9 +159,9 @@ def differs(known):
     rows, found = [], sorted((one for one in known.agreed if one.verdict == "differs"), key=lambda one: -one.worst.get(one.robust, math.inf))
     for one in found[:DIFFERING]:
         row = {"scene": one.question.scene, "form": one.question.form.partition("-")[0], "n": number(one.question.variables, 5)}
-        for place, (there, ratios) in enumerate(zip(known.machines, one.machines)):
-            others = [f"{name} {interval(ratios[name])}" for name in dict.fromkeys(one.winners) if name != one.winners[place] and name in ratios]
-            row[there.folder.name] = "; ".join([one.winners[place], *others])
+        for there, ranking in zip(known.machines, one.machines):
+            others = [f"{name} {interval(ranking.ratios[name])}" for name in dict.fromkeys(one.winners) if name != ranking.winner and name in ranking.ratios]
+            row[there.folder.name] = "; ".join([ranking.winner, *others])
         rows.append(row | {"robust": f"{one.robust} {number(one.worst.get(one.robust))}"})
     width = 88 / len(known.machines)
     return table(rows, {"scene": r"P{27mm}", "form": "l", "n": "r"} | {one.folder.name: r"P{%.0fmm}" % width for one in known.machines}
