@@ -62,12 +62,13 @@ def read(path, of):
     if "status" not in names[1:] or not len(table):
         raise StudyError(f"{path}: found no lanes, allowed is a table of `mbs sweep`")
     parameters = names[:names.index("status")]
-    results = [name for name in names[names.index("status"):] if pandas.api.types.is_numeric_dtype(table[name])]
+    numbers = set(table.select_dtypes("number"))
+    results = [name for name in names[names.index("status"):] if name in numbers]
     outputs = names[names.index("constraint_violation_max") + 1:] if "constraint_violation_max" in names else []
     result = of or next((name for name in outputs if name in results), "constraint_violation_max")
     if result not in results:
         raise StudyError(f"--of: found {result!r}, allowed are {', '.join(results)}")
-    if wrong := [name for name in parameters if not pandas.api.types.is_numeric_dtype(table[name])]:
+    if wrong := [name for name in parameters if name not in numbers]:
         raise StudyError(f"{path}: {wrong[0]} has something else than numbers")
     table["finished"] = table["status"].isin(FINISHED)
     return table, parameters, result
