@@ -225,18 +225,15 @@ def reopen(studyset, columns):
     """Makes the workflow run columns again of which a record is missing, or says that a program is which is there now,
     and draw pages that are missing or empty; StudyError naming a record that was changed. `columns`: {part: names}."""
     index = studyset.folder / "index.html"
-    if _empty(index):
-        index.unlink(missing_ok=True)
     for part, names in columns.items():
         page = studyset.folder / f"{part}.html"
-        if _empty(page):
-            for path in (studyset.page(part), index):
-                path.unlink(missing_ok=True)
-        for column in names:
-            stamp = studyset.stamp(part, column)
-            if not stamp.exists() or _missing(studyset, stamp) or _there_now(studyset, stamp):
-                for path in (stamp, studyset.page(part), page, index):
-                    path.unlink(missing_ok=True)  # the workflow runs nothing whose results are all there
+        stamps = [studyset.stamp(part, column) for column in names]
+        again = [one for one in stamps if not one.exists() or _missing(studyset, one) or _there_now(studyset, one)]
+        if again or _empty(page):
+            for path in (*again, studyset.page(part), page, index):
+                path.unlink(missing_ok=True)  # the workflow runs nothing whose results are all there
+    if _empty(index):
+        index.unlink(missing_ok=True)
 
 
 def _there_now(studyset, stamp):
