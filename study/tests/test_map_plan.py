@@ -10,7 +10,6 @@ import yaml
 from analysis.core import records, schema
 from analysis.core.errors import StudyError
 from analysis.core.registry import Registry
-from analysis.core.files import write_json
 from analysis.core.view import View
 from analysis.map import tables
 from study.core import profile as profiles, studyset
