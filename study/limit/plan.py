@@ -120,4 +120,5 @@ def own(lab):
     return [one for one in lab.contenders if one.variant in lab.registry.own]
 
 
-columns, run = by_share({"sizes": (0.27, sizes), "growth": (0.08, growth), "scenes": (0.39, scenes), "batches": (0.08, batches), "sweeps": (0.18, sweeps)})
+columns, run = by_share({"sizes": (0.27, sizes), "growth": (0.08, growth), "scenes": (0.39, scenes), "batches": (0.08, batches),
+                         "sweeps": (0.18, sweeps)})

@@ -201,7 +201,8 @@ def _fill(known):
              "hybrid": count(hybrid, filled, table)}
     timed = profiled(known)
     for name, variant in (("dense", DENSE), ("hybrid", HYBRID)):
-        found[f"assembly_{name}"] = of_rows(lambda rows: percent(phases(rows.iloc[0])["assembly"]), "limit/steps", timed[timed.implementation == variant])
+        mine = timed[timed.implementation == variant]
+        found[f"assembly_{name}"] = of_rows(lambda rows: percent(phases(rows.iloc[0])["assembly"]), "limit/steps", mine)
     return found | {"profiled": of_rows(number(timed.variables.max()), "limit/steps", timed), "faster": _hybrid(results, filled)}
 
 

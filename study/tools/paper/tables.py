@@ -160,7 +160,8 @@ def differs(known):
     for one in found[:DIFFERING]:
         row = {"scene": one.question.scene, "form": one.question.form.partition("-")[0], "n": number(one.question.variables, 5)}
         for there, ranking in zip(known.machines, one.machines):
-            others = [f"{name} {interval(ranking.ratios[name])}" for name in dict.fromkeys(one.winners) if name != ranking.winner and name in ranking.ratios]
+            others = [f"{name} {interval(ranking.ratios[name])}" for name in dict.fromkeys(one.winners)
+                      if name != ranking.winner and name in ranking.ratios]
             row[there.folder.name] = "; ".join([ranking.winner, *others])
         rows.append(row | {"robust": f"{one.robust} {number(one.worst.get(one.robust))}"})
     width = 88 / len(known.machines)
