@@ -31,7 +31,6 @@ def follow(runs, speed):
 
 def between(runs, found):
     """The same with runs between the two steps that bracket a required error, of curves near the fastest of their layer there."""
-    by_name = {one.name: one for group in runs.layers.values() for one in group}
     cells = {}
     for error in runs.lab.settings["errors"]:
         for layer in runs.layers:
@@ -41,7 +40,7 @@ def between(runs, found):
                 longer = [one["step"] for one in found[key] if row and one["step"] > 1.001 * row["step"]]
                 if longer and row["time"] <= WORTH * best:
                     step = float(f"{BETWEEN * min(longer):g}")
-                    cells[key, step] = runs.run_cell(by_name[row["implementation"]], key[1], step)
+                    cells[key, step] = runs.run_cell(runs.names[row["implementation"]], key[1], step)
     for (key, _), record in zip(cells, runs.lab.run(list(cells.values()), drop=True)):
         found[key] = sorted([*found[key], runs.row(record)], key=lambda one: -one["step"])
     return found

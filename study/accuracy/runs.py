@@ -28,6 +28,7 @@ class Runs:
         own = [one for one in lab.contenders if one.variant in lab.registry.own]
         self.layers = {name: group for name, group in (
             ("libraries", [one for one in lab.contenders if one not in own]), ("own", own)) if group}
+        self.names = {one.name: one for group in self.layers.values() for one in group}
         self.longest, self.records, self.known = lab.settings["longest"], [], None
         self.chosen = {}  # {scene: {(setting, step): contenders that are timed}}
 
@@ -75,15 +76,14 @@ class Runs:
     def quick(self, scene, step, contenders, behind, dense=False):
         """Those that end a look at the default setting and are at most `behind` times slower than the fastest, in its
         order."""
-        names = [one.name for one in contenders]
         for patience in PATIENCE if contenders else ():
             self.look(scene, "default", step, contenders, dense, patience)
             rows = self.measured()
             rows = rows[(rows.scene == scene) & (rows.role == "look") & (rows.setting == "default") & (rows.status == "ok")
-                        & rows.implementation.isin(names)].sort_values("step_us", kind="stable")
+                        & rows.implementation.isin([one.name for one in contenders])].sort_values("step_us", kind="stable")
             near = list(rows[rows.step_us <= behind * rows.step_us.min()].implementation.unique())
             if near:
-                return [contenders[names.index(name)] for name in near]
+                return [self.names[name] for name in near]
         return []
 
     def time(self, role, scene, name, step, contenders, processes, dense=False):

@@ -76,7 +76,6 @@ def _judge(runs, scene):
     table = runs.points()
     table = table[(table.scene == scene) & table.time.notna() & table.error.notna()
                   & table.status.isin((*FINISHED, NOT_JUDGED)) & table.time_from.isin(("look", "rounds"))]
-    names = {one.name: one for group in runs.layers.values() for one in group}
     jobs = []
     for error in runs.lab.settings["errors"]:
         for group in runs.layers.values():
@@ -86,7 +85,7 @@ def _judge(runs, scene):
             for row in chosen[chosen.status == NOT_JUDGED].itertuples():
                 duration = runs.duration(row.time)
                 if duration:
-                    jobs.append((names[row.implementation], row.setting, row.step, scene, duration))
+                    jobs.append((runs.names[row.implementation], row.setting, row.step, scene, duration))
     runs.simulate(dict.fromkeys(jobs))
 
 
@@ -97,7 +96,7 @@ def _rounds(runs, scene, processes, open_only=False):
     table = table[table.scene == scene]
     if table.empty:
         return
-    errors, names = runs.lab.settings["errors"], {one.name: one for group in runs.layers.values() for one in group}
+    errors = runs.lab.settings["errors"]
     if open_only:
         won = winners(table, runs.measured(), errors, runs.lab.registry.libraries)
         errors = [error for error in errors if (won[won.required == error].settled == False).any()]  # noqa: E712
@@ -109,7 +108,7 @@ def _rounds(runs, scene, processes, open_only=False):
     chosen = runs.chosen.setdefault(scene, {})
     for (name, step), contenders in points.items():
         # The same contenders in all processes, in the order of the registry.
-        group = chosen.setdefault((name, step), [one for one in names.values() if one.name in contenders])
+        group = chosen.setdefault((name, step), [one for one in runs.names.values() if one.name in contenders])
         runs.time("time", scene, name, step, group, processes)
 
 

@@ -1,6 +1,5 @@
 # study/run --cluster: the columns of a set as jobs of a cluster. This machine measures nothing: it hands jobs over, watches
 # them and draws. What a node does is node.py's; how a cluster is spoken to is a profile's: study/cluster/README.md.
-import math
 import shutil
 import signal
 import subprocess
@@ -10,9 +9,8 @@ from pathlib import Path
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, write_json
 from study.core import locks, studyset as sets
-from study.core.front import Follower, follow
+from study.core.front import duration, follow
 from study.core.node import home, own_sets, refusals
-from study.core.progress import duration
 from study.core.studyset import StudySet
 
 PROFILES = ROOT / "study" / "cluster"
@@ -28,11 +26,6 @@ def profile_folder(name):
         known = ", ".join(sorted(path.parent.name for path in PROFILES.glob("*/config.yaml")))
         raise StudyError(f"--cluster: {folder} is no profile ({missing[0]} is missing); known: {known}")
     return folder
-
-
-def minutes(columns):
-    """{part: {column: limit of its job}}"""
-    return {part: {column: math.ceil(seconds / 60) + GRACE for column, seconds in names.items()} for part, names in columns.items()}
 
 
 def dry_run(columns, folder):
@@ -67,9 +60,7 @@ def run(profile, only, chosen, folder, cluster, columns):
 def _plan(profile, only, chosen, folder, columns):
     shutil.rmtree(home(folder) / "refused", ignore_errors=True)  # a node may be another one by now
     (home(folder) / "refused").mkdir(parents=True)
-    write_json(home(folder) / "plan.json", {"profile": profile.name, "only": only, "parts": chosen, "columns": columns,
-                                            "minutes": minutes(columns), "grace": GRACE})
-    (folder / ".progress").write_text("")
+    write_json(home(folder) / "plan.json", {"profile": profile.name, "only": only, "parts": chosen, "columns": columns, "grace": GRACE})
 
 
 def _continued(folder, profile, only, chosen):
@@ -84,29 +75,18 @@ def _continued(folder, profile, only, chosen):
 def _workflow(studyset, cluster, columns, target):
     command = ["/usr/bin/python3", "-m", "snakemake", target, "--snakefile", str(PROFILES / "Snakefile"), "--directory",
                str(studyset.folder), "--profile", str(cluster), "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor"]
+    stamps = [studyset.stamp(part, column) for part, names in columns.items() for column in names]
+
+    def show(display):
+        display.show("cluster", f"{sum(stamp.exists() for stamp in stamps)} of {len(stamps)} columns")
+        time.sleep(1)  # they are asked for over a network
     try:
-        follow(studyset, command, lambda display: _Columns(studyset, columns, display), (signal.SIGINT, signal.SIGTERM, signal.SIGKILL))
+        follow(studyset, command, show, (signal.SIGINT, signal.SIGTERM, signal.SIGKILL))
     except StudyError as error:
         told = "; ".join(f"{host} is not of this set: {reason}" for host, reason in refusals(studyset.folder).items())
         raise StudyError(f"{error}; {told}" if told else str(error)) from error
     finally:
         end_jobs(studyset.folder, cluster)
-
-
-class _Columns(Follower):
-    """How many columns are done."""
-
-    def __init__(self, studyset, columns, display):
-        super().__init__(studyset)
-        self.display = display
-        self.stamps = [studyset.stamp(part, column) for part, names in columns.items() for column in names]
-        self.looked = 0.0
-
-    def update(self):
-        super().update()
-        if time.monotonic() - self.looked > 1:
-            self.looked = time.monotonic()
-            self.display.show("cluster", f"{sum(stamp.exists() for stamp in self.stamps)} of {len(self.stamps)} columns")
 
 
 def end_jobs(folder, cluster):

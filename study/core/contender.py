@@ -1,5 +1,5 @@
 # Who takes part: a variant of an implementation in one build of the program on one BLAS and LAPACK pair.
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from analysis.core.registry import NULL
 
@@ -42,6 +42,11 @@ def on_usual_pairs(registry, pairs, names):
 def usable(registry, pair):
     """The pair, or the system's where it is not installed."""
     return pair if registry.pairs.get(pair, "unknown") == "" else SYSTEM
+
+
+def control(registry, pairs):
+    """CONTROL on the pair of most; `pairs`: as on_usual_pairs has them."""
+    return replace(CONTROL, blas=usable(registry, pairs["all"]))
 
 
 def by_environment(contenders):

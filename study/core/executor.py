@@ -83,11 +83,7 @@ def compact(output):
 
 
 FINGERPRINT = ("machine", "commit", "dirty", "compiler", "flags", "build_type", "blas", "blas_loaded", "libraries")
-
-
 KEPT = (*FINGERPRINT, "cpu_model", "kernel", "num_cpus")
-
-
 OF_ALL = ("machine", "commit", "dirty", "cpu_model", "kernel", "num_cpus")  # true of programs other than `mbs`, too
 
 
@@ -102,13 +98,18 @@ def fingerprint(context):
     return found | {"blas_loaded": ";".join(sorted(found["blas_loaded"].split(";")))}
 
 
+def differing(known, found, keys=FINGERPRINT):
+    """The first thing in which two contexts differ, as (key, known value, found value); None if there is nothing."""
+    known, found = fingerprint(known), fingerprint(found)
+    return next(((key, known[key], found[key]) for key in keys if known[key] != found[key]), None)
+
+
 def need_same(known, found, what):
     """StudyError naming the first thing in which two contexts differ."""
-    known, found = fingerprint(known), fingerprint(found)
-    for key in FINGERPRINT:
-        if known[key] != found[key]:
-            raise StudyError(f"{what}: comes from another machine or build ({key} is '{found[key]}', the set's is "
-                             f"'{known[key]}'): results are never merged; name another directory with --results")
+    if other := differing(known, found):
+        key, mine, its = other
+        raise StudyError(f"{what}: comes from another machine or build ({key} is '{its}', the set's is '{mine}'): "
+                         "results are never merged; name another directory with --results")
 
 
 def _failure(ended):

@@ -1,6 +1,5 @@
 # Runs Snakemake in the background and shows the part, the cells done of all and the time left.
 import os
-import re
 import shutil
 import signal
 import subprocess
@@ -8,10 +7,9 @@ import sys
 import time
 
 from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, write_json
+from analysis.core.files import ROOT, read_json, write_json
 from study.core import child
 from study.core.job import FRONT
-from study.core.progress import Reader, duration
 
 
 class Display:
@@ -41,29 +39,41 @@ def run_workflow(studyset, columns, stored=False):
     """Runs the workflow to its end. `columns`: {part: {column: seconds}}. Raises StudyError, or KeyboardInterrupt
     once all children are gone."""
     write_json(studyset.folder / ".parts.json", list(columns))
-    follow(studyset, _command(studyset, stored), lambda display: _Cells(studyset, columns, display))
+    studyset.progress.unlink(missing_ok=True)
+    follow(studyset, _command(studyset, stored), _Cells(studyset, columns))
 
 
-def follow(studyset, command, follower_of, ends=(signal.SIGTERM, signal.SIGKILL)):
-    """Runs Snakemake to its end, shown by a Follower. `ends`: signals that stop it, each after the one before."""
+def follow(studyset, command, show, ends=(signal.SIGTERM, signal.SIGKILL)):
+    """Runs Snakemake to its end; meanwhile `show` is called with a Display. `ends`: signals that stop it, each after the one before."""
     display = Display()
     with open(studyset.log, "a", encoding="utf-8") as log:
-        follower = follower_of(display)
+        begin = log.tell()
         process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, cwd=studyset.folder,
                                    start_new_session=True, preexec_fn=lambda parent=os.getpid(): child.die_with(parent),
                                    env=os.environ | {FRONT: str(os.getpid())})
         try:
             while process.poll() is None:
-                follower.update()
+                show(display)
                 time.sleep(0.15)
-            follower.update()
         finally:
             _stop(process, ends)
             display.end()
     if process.returncode != 0 and shutil.disk_usage(studyset.folder).free < 2**20:
         raise StudyError(f"no space is left for {studyset.folder}; what is finished is kept: make room and run it again")
     if process.returncode != 0:
-        raise StudyError(f"{follower.error or follower.last_words()} (log: {studyset.log})")
+        raise StudyError(f"{_why(studyset.log, begin)} (log: {studyset.log})")
+
+
+def _why(log, begin):
+    """What a log says from there on of a failure: the first error of a job, else its last words."""
+    with open(log, encoding="utf-8", errors="replace") as file:
+        file.seek(begin)
+        lines = [line.strip() for line in file]
+    for line in lines:
+        if line.startswith("error: "):
+            return line.removeprefix("error: ")
+    wrong = [line for line in lines[-12:] if "rror" in line]
+    return f"a stage failed: {(wrong or lines or ['no word of it'])[-1][:300]}"
 
 
 def _command(studyset, stored):
@@ -73,69 +83,26 @@ def _command(studyset, stored):
             "--config", f"stored={int(stored)}"]
 
 
-class Follower:
-    """What the log says from here on."""
+class _Cells:
+    """Shows the part and its column at work, and the time left; where nothing is run, that pages are drawn."""
 
-    def __init__(self, studyset):
-        self.log, self.error, self.lines = open(studyset.log, encoding="utf-8", errors="replace"), None, []
-        self.log.seek(0, os.SEEK_END)
+    def __init__(self, studyset, columns):
+        self.set, self.columns, self.now, self.since = studyset, columns, None, 0.0
 
-    def update(self):
-        for line in self.log.readlines():
-            self.lines = [*self.lines, line.strip()][-12:]
-            self.take(line)
-            if line.startswith("error: "):
-                self.error = self.error or line.removeprefix("error: ").strip()
+    def __call__(self, display):
+        if self.set.progress.exists():
+            display.show(*self._said(**read_json(self.set.progress)))
+        elif not any(self.columns.values()):
+            display.show("pages")
 
-    def take(self, line):
-        """For those that show it."""
-
-    def last_words(self):
-        wrong = [line for line in self.lines if "rror" in line]
-        return f"a stage failed: {(wrong or self.lines or ['no word of it'])[-1][:300]}"
-
-
-class _Cells(Follower):
-    """Turns progress events and Snakemake's log into what the display shows."""
-
-    def __init__(self, studyset, columns, display):
-        super().__init__(studyset)
-        self.columns, self.display, self.events = columns, display, Reader(studyset.progress)
-        self.done_columns = {(part, column) for part, names in columns.items() for column in names
-                             if studyset.stamp(part, column).exists()}
-        self.now, self.cells, self.expected, self.text = None, 0, 0, ""
-        self.since = time.monotonic()
-
-    def take(self, line):
-        if re.match(r"rule (\w+):", line) and not self.now and not any(self.columns.values()):  # of a stored set nothing is run
-            self.display.show("pages")
-
-    def update(self):
-        super().update()
-        events = self.events.events()
-        for event in events:
-            self._take(event)
-        if self.now and events:
-            self._show()
-
-    def _take(self, event):
-        at = event["part"], event["column"]
-        if at != self.now:
-            if self.now:
-                self.done_columns.add(self.now)
-            self.now, self.cells, self.expected, self.text, self.since = at, 0, 0, "", time.monotonic()
-        self.expected += event.get("expected", 0)
-        self.cells += event.get("done", 0)
-        self.text = event.get("text", self.text)
-
-    def _show(self):
-        part, column = self.now
-        left = sum(seconds for one, names in self.columns.items() for name, seconds in names.items()
-                   if (one, name) not in self.done_columns) - (time.monotonic() - self.since)
+    def _said(self, part, column, cells, text):
+        if (part, column) != self.now:
+            self.now, self.since = (part, column), time.monotonic()
+        ahead = sum(seconds for one, names in self.columns.items() for name, seconds in names.items()
+                    if not self.set.stamp(one, name).exists())
+        left = duration(ahead - (time.monotonic() - self.since))
         place = list(self.columns).index(part) + 1
-        total = max(self.expected, self.cells)
-        self.display.show(f"[{place}/{len(self.columns)}] {part}", f"{column}: {self.cells} of {total} cells, "
-                          f"at most {duration(left)} left" + (f"; {self.text}" if self.text else ""))
+        return f"[{place}/{len(self.columns)}] {part}", f"{column}: {cells}, at most {left} left" + (f"; {text}" if text else "")
 
 
 def _stop(process, ends):
@@ -148,3 +115,13 @@ def _stop(process, ends):
             process.wait(timeout=10)
         except subprocess.TimeoutExpired:
             continue
+
+
+def duration(seconds):
+    """The text "1 min 20 s"."""
+    seconds = max(0, round(seconds))
+    if seconds < 60:
+        return f"{seconds} s"
+    if seconds < 3600:
+        return f"{seconds // 60} min {seconds % 60} s"
+    return f"{seconds // 3600} h {seconds % 3600 // 60} min"

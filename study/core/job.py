@@ -22,7 +22,7 @@ def main(arguments):
     child.end_on_signals()
     folder, verb, *rest = arguments
     try:
-        verbs = {"run": run, "page": page, "index": index, "start": begin, "column": column, "draw": draw}
+        verbs = {"run": run, "page": page, "index": index, "start": node.first, "column": column, "draw": draw}
         verbs[verb](StudySet(Path(folder).resolve()), *rest)
         return 0
     except StudyError as error:
@@ -44,11 +44,6 @@ def run(studyset, part):
             _measure(studyset, part, name, seconds)
     page(studyset, part)
     index(studyset)  # nothing else runs now
-
-
-def begin(studyset):
-    """Of a cluster: the set, on the first node that is free."""
-    node.first(studyset.folder)
 
 
 def column(studyset, part, name):

@@ -9,7 +9,6 @@ from analysis.core import records
 from analysis.core.files import ROOT, write_json
 from study.core import executor, locks
 from study.core.executor import program_of
-from study.core.progress import Progress
 
 
 class Lab:
@@ -18,7 +17,8 @@ class Lab:
     def __init__(self, studyset, part, column, seconds=float("inf")):
         self.set, self.part, self.column, self.budget = studyset, part, column, seconds
         self.base = studyset.folder / "raw" / part
-        self.progress, self.names, self.spent = Progress(studyset, part, column), {}, 0.0
+        self.names, self.spent = {}, 0.0  # of the cells that are done
+        self.asked, self.text = set(), ""  # names of all cells that are known of; what is told beside their number
         self.known = set()  # programs that are those of the set's records
 
     def contender(self, name):
@@ -88,7 +88,12 @@ class Lab:
 
     def tell(self, text):
         """Shown beside the cells that are done."""
-        self.progress.tell(text)
+        self.text = text
+        self._show_state()
+
+    def show(self, cells, text):
+        """Leaves what there is to say where the front looks for it."""
+        write_json(self.set.progress, {"part": self.part, "column": self.column, "cells": cells, "text": text})
 
     @property
     def left(self):
@@ -114,7 +119,11 @@ class Lab:
         return self.set.context(cell.contenders[0]) if cell.contenders else self.set.facts["context"]
 
     def _expect(self, cells):
-        self.progress.expect(len({self._name(cell) for cell in cells} - self.names.keys()))
+        self.asked |= {self._name(cell) for cell in cells}
+        self._show_state()
+
+    def _show_state(self):
+        self.show(f"{len(self.names)} of {len(self.asked)} cells", self.text)
 
     def _need(self, programs):
         self.set.need_programs(sorted(programs - self.known))
@@ -129,7 +138,7 @@ class Lab:
         if record.name not in self.names:
             self.names[record.name] = None  # in their order
             self.spent += record.seconds / (at_once or (1 if record.cell["timed"] else cores()))
-            self.progress.done()
+            self._show_state()
         return record
 
     def _name(self, cell):

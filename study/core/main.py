@@ -11,16 +11,14 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
 from analysis.core.parts import parts
 from study.core import child, cluster, locks, profile as profiles
-from study.core.disk import writable
-from study.core.front import Display, run_workflow
+from study.core.front import Display, duration, run_workflow
 from study.core.options import Parser, directory
-from study.core.progress import duration
-from study.core.studyset import StudySet, listed, need_own, need_records, need_tables, opened, reopen, select, start
+from study.core.studyset import listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, writable
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
            "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
 TOOLS = {"view": "study.tools.viewer.main", "advise": "study.tools.advise.main", "against": "study.tools.against",
-         "compare": "study.tools.compare", "merge": "study.tools.merge.main", "add": "study.tools.add", "store": "study.tools.store",
+         "merge": "study.tools.merge.main", "add": "study.tools.add", "store": "study.tools.store",
          "new": "study.tools.new", "paper": "study.tools.paper.main", "sweep": "study.tools.sweep"}
 
 
@@ -28,7 +26,8 @@ def main(arguments):
     command, *rest = arguments
     child.end_on_signals()
     try:
-        if command in TOOLS:  # imported only now: they need modules that others do without
+        if command in TOOLS:  # imported only now: they need modules that study/run may have to install
+            need_modules()
             return getattr(importlib.import_module(TOOLS[command]), command)(rest)
         return {"run": run, "figures": figures}[command](rest)
     except StudyError as error:
@@ -61,7 +60,6 @@ def run(arguments):
     options = parser.parse_args(arguments)
     if options.list:
         return list_choices()
-    need_modules("yaml")
     if unknown := [name for name in options.part if name not in parts()]:
         raise StudyError(f"unknown part '{unknown[0]}'; known: {', '.join(parts())}")
     chosen = [part for part in parts() if not options.part or part in options.part]
@@ -81,8 +79,7 @@ def run(arguments):
         print(f"site: {folder / 'index.html'}")
         return 0
     with locks.only_one(folder), locks.only_one_study(options.wait):
-        if "MBS_PROGRAM" not in os.environ:
-            set_up(folder / "run.log")
+        set_up(folder / "run.log")
         need_modules()
         studyset = start(folder, profile, options.only, chosen)
         columns = columns_of(profile, studyset.facts["parts"])
@@ -105,7 +102,7 @@ def figures(arguments):
     parser.add_argument("set", nargs="?", type=directory, help="its directory (the newest in results/)")
     given = parser.parse_args(arguments).set
     need_modules()
-    folder = given or newest()
+    folder = given or newest(ROOT / "results")
     studyset = opened(folder)
     writable(folder)
     with locks.only_one(folder):
@@ -116,16 +113,7 @@ def figures(arguments):
     return 0
 
 
-def newest():
-    """The stored set of the latest date."""
-    found = [path.parent for path in (ROOT / "results").glob("*/set.json")]
-    if not found:
-        raise StudyError("results/ holds no set: name one, or make one with study/run")
-    return max(found, key=lambda folder: StudySet(folder).facts["date"])
-
-
 def list_choices():
-    need_modules("yaml")
     print("parts:")
     for part, question in parts().items():
         print(f"  {part:28} {question}")
@@ -159,7 +147,11 @@ def dry_run(profile, chosen, folder, only, way):
 
 
 def set_up(log):
-    """Runs study/setup; shows its last line while it works and all of its end if it fails."""
+    """Runs study/setup, unless MBS_PROGRAM stands in for what it builds; shows its last line while it works and all of its end
+    if it fails."""
+    if "MBS_PROGRAM" in os.environ:
+        return
+    log.parent.mkdir(parents=True, exist_ok=True)
     display, lines = Display(), []
     display.show("set-up")
     with open(log, "a", encoding="utf-8") as file:
@@ -175,11 +167,10 @@ def set_up(log):
         raise StudyError(f"set-up failed, see above (log: {log})")
 
 
-def need_modules(*modules):
-    for module in modules or MODULES:
+def need_modules():
+    for module, package in MODULES.items():
         if importlib.util.find_spec(module) is None:
-            raise StudyError(f"Python module {module} is missing for /usr/bin/python3: run "
-                             f"study/setup, or apt-get install {MODULES[module]}")
+            raise StudyError(f"Python module {module} is missing for /usr/bin/python3: run study/setup, or apt-get install {package}")
 
 
 if __name__ == "__main__":

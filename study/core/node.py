@@ -12,10 +12,9 @@ from analysis.core.files import ROOT, digest, read_object, write_json, write_tex
 from analysis.core.records import Record
 from study.core import executor, locks, profile as profiles
 from study.core.cell import LAYOUT, Cell
-from study.core.contender import CONTROL, Contender, usable
-from study.core.disk import writable
+from study.core.contender import control
 from study.core.executor import program_of
-from study.core.studyset import context_of, start
+from study.core.studyset import context_of, start, writable
 
 CONTROL_SCENE, CONTROL_WORDS = "four-bar:10", ("--steps", 20, "--benchmark_repetitions=5")
 TRIES = 2  # so often must an A/A control be decided to count as failed: once in twenty it is by chance
@@ -48,12 +47,12 @@ def begin(folder):
     start(folder, profiles.load(plan["profile"], plan["parts"]), plan["only"], plan["parts"])
 
 
-def first(folder):
+def first(studyset):
     """Begins the set; a node on which that fails is not asked again."""
     try:
-        begin(folder)
+        begin(studyset.folder)
     except StudyError as error:
-        write_text(home(folder) / "refused" / name(), f"{error}\n\n")
+        write_text(home(studyset.folder) / "refused" / name(), f"{error}\n\n")
         raise
 
 
@@ -62,8 +61,7 @@ def admit(studyset):
     folder, own, alone = studyset.folder, None, False
     try:
         writable(Path(tempfile.gettempdir()))
-        one = Contender(CONTROL.name, CONTROL.variant, usable(studyset.registry, studyset.profile.blas["all"]))
-        context = context_of(one)
+        context = context_of(control(studyset.registry, studyset.profile.blas))
         only = home(folder) / "only"
         reason = another(studyset, context)
         if only.exists() and only.read_text().strip() != name():
@@ -85,10 +83,9 @@ def admit(studyset):
 
 def another(studyset, context):
     """In what this machine, its libraries or its build differ from the set's; "" if in nothing."""
-    known, found = executor.fingerprint(studyset.facts["context"]), executor.fingerprint(context)
-    for key in executor.FINGERPRINT:
-        if known[key] != found[key]:
-            return f"another machine or build ({key} is '{found[key]}' on {context['cpu_model']}, the set's is '{known[key]}')"
+    if other := executor.differing(studyset.facts["context"], context):
+        key, mine, its = other
+        return f"another machine or build ({key} is '{its}' on {context['cpu_model']}, the set's is '{mine}')"
     known, program = studyset.facts["programs"], ROOT / program_of()
     return "another build (mbs)" if known.get("mbs") not in (None, digest(program)[:16]) else ""
 

@@ -57,6 +57,16 @@ def plan_of(part):
     return importlib.import_module(f"study.{part}.plan")
 
 
+def by_share(columns):
+    """`columns` and `run` of a plan whose columns share out the part's seconds: {column: (its share, what runs it, of a lab)}."""
+    def seconds(settings):
+        return {name: share * settings["seconds"] for name, (share, _) in columns.items()}
+
+    def run(lab, column):
+        columns[column][1](lab)
+    return seconds, run
+
+
 def need_keys(path, what, data, keys):
     if not isinstance(data, dict):
         raise StudyError(f"{path}: {what} needs settings, found {type(data).__name__}")

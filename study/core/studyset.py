@@ -1,6 +1,8 @@
 # A set: the results of one commit, one build, one machine; its folder, and whether it may be continued.
 import datetime
 import shutil
+import tempfile
+from dataclasses import replace
 from functools import cached_property
 
 from analysis.core import records
@@ -11,11 +13,11 @@ from analysis.core.registry import Registry
 from analysis.core.view import Folder, facts_of
 from study.core import executor, locks, profile as profiles
 from study.core.cell import Cell
-from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
+from study.core.contender import CONTROL, control, on_usual_pairs
 from study.core.executor import need_same, program_of
 
 BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml",  # what is written before set.json ...
-         ".cluster", ".snakemake", ".progress"}                             # ... and on a cluster
+         ".cluster", ".snakemake"}                                          # ... and on a cluster
 
 
 class StudySet(Folder):
@@ -80,7 +82,7 @@ class StudySet(Folder):
 
 def context_of(one):
     """The context of a contender's build and BLAS pair on this machine."""
-    null = Contender(one.name, CONTROL.variant, one.blas, one.build)
+    null = replace(one, variant=CONTROL.variant)
     cell = Cell("bench", "four-bar:1", (null,), ("--steps", 1, "--benchmark_repetitions=1", "--benchmark_min_time=0"))
     found = executor.run(cell.settled(), None)
     if not found["context"]:
@@ -108,6 +110,20 @@ def opened(folder):
     return found
 
 
+def sets_in(*bases):
+    """The sets in these folders, the newest first; what tools keep there has no parts, and is none."""
+    found = [StudySet(path.parent) for base in bases for path in base.glob("*/set.json")]
+    return sorted((one for one in found if one.facts["parts"]), key=lambda one: one.facts["date"], reverse=True)
+
+
+def newest(base):
+    """Folder of the newest set in `base`; StudyError if there is none."""
+    found = sets_in(base)
+    if not found:
+        raise StudyError(f"{base.relative_to(ROOT)}/ holds no set: name one, or make one with study/run")
+    return found[0].folder
+
+
 def need_own(folder, begun=BEGUN):
     """StudyError if a folder holds anything but a set, or one that was just begun: nothing of a user's is overwritten."""
     if not folder.is_dir() or (folder / "set.json").exists():
@@ -118,11 +134,23 @@ def need_own(folder, begun=BEGUN):
                          "or an empty one")
 
 
+def writable(folder):
+    """Makes a folder; StudyError unless it can be written to and has room."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise StudyError(f"cannot write to {folder}: {error.strerror}") from error
+    if shutil.disk_usage(folder).free < 100 * 2**20:
+        raise StudyError(f"less than 100 MB free for {folder}")
+
+
 def start(folder, profile, only, chosen):
     """Records what a folder is for, or continues it; StudyError if it holds results of something else."""
     registry = listed()
     select(registry, only)
-    context = context_of(Contender(CONTROL.name, CONTROL.variant, usable(registry, profile.blas["all"])))
+    context = context_of(control(registry, profile.blas))
     record = begun(profile.name, only, chosen, context)
     if (folder / "set.json").exists():
         known = opened(folder)
@@ -197,18 +225,15 @@ def reopen(studyset, columns):
     """Makes the workflow run columns again of which a record is missing, or says that a program is which is there now,
     and draw pages that are missing or empty; StudyError naming a record that was changed. `columns`: {part: names}."""
     index = studyset.folder / "index.html"
-    if _empty(index):
-        index.unlink(missing_ok=True)
     for part, names in columns.items():
         page = studyset.folder / f"{part}.html"
-        if _empty(page):
-            for path in (studyset.page(part), index):
-                path.unlink(missing_ok=True)
-        for column in names:
-            stamp = studyset.stamp(part, column)
-            if not stamp.exists() or _missing(studyset, stamp) or _there_now(studyset, stamp):
-                for path in (stamp, studyset.page(part), page, index):
-                    path.unlink(missing_ok=True)  # the workflow runs nothing whose results are all there
+        stamps = [studyset.stamp(part, column) for column in names]
+        again = [one for one in stamps if not one.exists() or _missing(studyset, one) or _there_now(studyset, one)]
+        if again or _empty(page):
+            for path in (*again, studyset.page(part), page, index):
+                path.unlink(missing_ok=True)  # the workflow runs nothing whose results are all there
+    if _empty(index):
+        index.unlink(missing_ok=True)
 
 
 def _there_now(studyset, stamp):

@@ -1,6 +1,7 @@
 # The N-four-bar, a double pendulum and Andrews' mechanism in the engines and solvers that people use, beside ours: curves
 # of error against time, then common rounds of what may be the fastest at some error.
 import json
+import math
 import random
 from dataclasses import dataclass, replace
 
@@ -18,7 +19,6 @@ SETTINGS = {"subjects": list,      # names: analysis/engines/subjects.py
             "engine_settings": int,  # of each engine, the first of settings.yaml
             "implementations": list,  # ours
             "settings": list,      # ours: names of study/settings.yaml
-            "octave": int,         # steps of ours from one to half of it
             "time_limit": float,   # s: a run that is predicted to take longer is not made
             "rounds": int}
 CURVES = 0.3, 0.6    # of a column's budget, by when their curves and ours end; the rest is for the rounds
@@ -91,7 +91,7 @@ class Bench:
         """Our curves, down to the `least` error that is asked for."""
         wanted = {one.name: one for one in read_settings() if one.name in self.lab.settings["settings"]}
         curves = [Curve(f"{variant} {name in PAPER}", [(step, self.our_cell(one, wanted[name], step)) for step in self.steps()],
-                        2 ** (1 / self.lab.settings["octave"]))
+                        2.0)
                   for name in self.lab.settings["settings"] for variant in self.lab.settings["implementations"]
                   for one in [self.lab.contender(variant)] if one and self.lab.registry.serves(variant, *wanted[name].needs)]
         return self._followed(curves, least, CURVES[1])
@@ -102,13 +102,9 @@ class Bench:
         return frame([one for curve in curves for one in curve.rows])
 
     def steps(self):
-        """A fixed ladder."""
-        octave, (longest, shortest), found = self.lab.settings["octave"], self.subject.steps, []
-        step = longest
-        while step > 0.99 * shortest:
-            found.append(float(f"{step:.6g}"))
-            step = longest / 2 ** (len(found) / octave)
-        return found
+        """A fixed ladder, each half of the one before."""
+        longest, shortest = self.subject.steps
+        return [float(f"{longest / 2**k:.6g}") for k in range(math.ceil(math.log2(longest / (0.99 * shortest))))]
 
     def our_cell(self, one, setting, step):
         judged = ("--judge-every", max(1, int(self.subject.judged / step + 1e-3))) if self.subject.loops else ()

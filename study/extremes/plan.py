@@ -2,6 +2,7 @@
 from analysis.extremes import battery as table, cells, judge, trials
 from study.core.cell import Cell
 from study.core.contender import REFERENCE
+from study.core.profile import by_share
 
 SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms, for other settings, for trials ...
             "everyone": bool,         # ... and whether all others come after them
@@ -9,16 +10,7 @@ SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms, 
             "cells": int,             # of the battery, telling ones of an axis at most; 0: these and all others
             "processes": int,         # of the pivots
             "limit": float}           # s a run
-SHARES = {"battery": 0.96, "pivots": 0.04}
 DENSE_LOOPS = 200  # dense implementations run up to this size
-
-
-def columns(settings):
-    return {column: share * settings["seconds"] for column, share in SHARES.items()}
-
-
-def run(lab, column):
-    {"battery": battery, "pivots": pivots}[column](lab)
 
 
 def battery(lab):
@@ -81,3 +73,6 @@ def pivots(lab):
         return lab.run(asked, drop=True)
     for cell in asked:
         lab.skip(cell, "excluded", "csc_klu takes no part")
+
+
+columns, run = by_share({"battery": (0.96, battery), "pivots": (0.04, pivots)})

@@ -7,6 +7,7 @@ from analysis.limit.tables import LIMIT
 from study.core.cell import Cell
 from study.core.contest import CHECK_S, about, contest, elsewhere, near, usual
 from study.core.gate import verdicts
+from study.core.profile import by_share
 from study.core.setting import Setting
 from study.core.timing import measure
 from study.scenes.problems import read_list
@@ -22,21 +23,12 @@ SETTINGS = {"loops": list,     # sizes of the N-four-bar for everyone
             "patience": float, # s of the first stretch of a size: whoever is slower is not timed
             "processes": int,  # of a scene
             "samples": int}    # of a process and contender
-SHARES = {"sizes": 0.27, "growth": 0.08, "scenes": 0.39, "batches": 0.08, "sweeps": 0.18}  # of the budget
 FIRST = ("--start", 0, "--steps", 40)  # the same passes at all sizes
 BATCH_S = 0.02  # a process of batches lasts about ten times that
 SWEPT = {  # scene: the implementation that sweeps it, and what varies; lanes of a tenth of a second
     "four-bar:10": ("compiled_chains/sweeps", "rods/A0-B0/mass=uniform:0.5:2", "gravity/1=normal:-9.81:0.5"),
     "vehicle:4": ("csc_ldl/uplooking", "springs/0/stiffness=uniform:120e3:180e3", "bodies/chassis/mass=normal:8000:400")}
 SWEEP = "../study/limit/sweep_process"  # as seen from the build
-
-
-def columns(settings):
-    return {name: share * settings["seconds"] for name, share in SHARES.items()}
-
-
-def run(lab, column):
-    {"sizes": sizes, "growth": growth, "scenes": scenes, "batches": batches, "sweeps": sweeps}[column](lab)
 
 
 def sizes(lab):
@@ -126,3 +118,7 @@ def timed(lab, scene, contenders, role, settings=()):
 
 def own(lab):
     return [one for one in lab.contenders if one.variant in lab.registry.own]
+
+
+columns, run = by_share({"sizes": (0.27, sizes), "growth": (0.08, growth), "scenes": (0.39, scenes), "batches": (0.08, batches),
+                         "sweeps": (0.18, sweeps)})

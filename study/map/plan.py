@@ -14,7 +14,6 @@ from study.map.verify import alternatives, fit
 SETTINGS = {"processes": int,      # of a timed scene
             "process": float,      # s of samples in each, about
             "again": int,          # further processes of those who lead
-            "between": int,        # fills to be put half-way where the winner changes, a column
             "slower": dict,        # natural, filled: whoever is so many times slower than the fastest library is not timed
             "limits": dict,        # s: pilot, check, time
             "alternatives": list,  # the same on other BLAS pairs, at natural fill; never ranked
@@ -59,8 +58,7 @@ def run(lab, column):
     _operations(lab, natural)
     for one in timed:
         one.again(lab.settings["again"])
-    for _ in range(lab.settings["between"]):
-        _add_between(lab, timed)
+    _add_between(lab, timed)
     _seeds(lab, timed)
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from analysis.realtime.verdict import judge, needs_null, observed
 from study.core.cell import Cell
 from study.core.contender import Contender
+from study.core.profile import by_share
 from study.core.setting import Setting
 
 SETTINGS = {"implementations": list,  # names, what is worth most first
@@ -19,7 +20,6 @@ GRID = sorted({round(2 ** (power / 4)) for power in range(60)})  # the sizes of 
 JUMP = 8             # places on the grid, of the search's first steps: a factor of four
 PATIENCE = 2.0       # times real time that a run may take, besides its set-up
 SET_UP = 4.0         # s
-SHARES = {"distributions": 0.23, "judging": 0.12, "largest": 0.65}
 JUDGED = ("harness/scenes/double_pendulum.json", "harness/scenes/four_bar_2.json", "harness/scenes/problems/spatial_slider_crank.json",
           "harness/scenes/problems/half_car.json", "four-bar:10", "scissors:5", "loop:12", "ladder:12", "harness/scenes/problems/a04_bricard.json",
           "vehicle:4", "four-bar:40", "scissors:20", "robot:10", "grid:5x5", "bodies:10")  # scenes, from small to large
@@ -38,14 +38,6 @@ class Case:
         return Cell("simulate", f"four-bar:{loops}", (self.contender,), (
             "--scheme", self.scheme, "--step", f"{self.step:g}", "--duration", f"{duration:g}",
             "--deadline-us", f"{1e6 * self.step:g}"), role, number, timed=True, seconds=PATIENCE * duration + SET_UP)
-
-
-def columns(settings):
-    return {column: share * settings["seconds"] for column, share in SHARES.items()}
-
-
-def run(lab, column):
-    {"distributions": distributions, "judging": judging, "largest": largest}[column](lab)
 
 
 def cases(lab):
@@ -133,3 +125,6 @@ def search(probe, count):
             return None
         low -= 1
     return low
+
+
+columns, run = by_share({"distributions": (0.23, distributions), "judging": (0.12, judging), "largest": (0.65, largest)})

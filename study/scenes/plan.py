@@ -1,6 +1,7 @@
 # The standard problems: the gate of everyone, runs of the two that are compared; then what modelling costs.
 from study.core.cell import Cell
 from study.core.contender import by_environment
+from study.core.profile import by_share
 from study.scenes import metric, modelling
 from study.scenes.problems import compared_of, read_list
 
@@ -8,16 +9,7 @@ SETTINGS = {"problems": list,  # names in problems.yaml
             "loops": list,     # sizes of the N-four-bar on which modelling is measured
             "rounds": int,     # processes of each of its cases, in turn
             "samples": int}    # of a process and contender
-SHARES = {"problems": 0.5, "modelling": 0.5}  # of the budget
 CHECK_S, RUN_S = 120, 600  # limits of a process
-
-
-def columns(settings):
-    return {name: share * settings["seconds"] for name, share in SHARES.items()}
-
-
-def run(lab, column):
-    {"problems": problems, "modelling": modelling.run}[column](lab)
 
 
 def problems(lab):
@@ -46,3 +38,6 @@ def gate(problem, contenders):
         "--step", f"{problem.steps[0]:g}", *problem.settings)
     return Cell("check", problem.scene, contenders, (*settings, "--time-limit", CHECK_S), "gate",
                 seconds=2 * CHECK_S)
+
+
+columns, run = by_share({"problems": (0.5, problems), "modelling": (0.5, modelling.run)})

@@ -1,5 +1,6 @@
 # The N-four-bar over step and penalty factor: one untimed run a cell of the maps; whole runs with all automatic.
 from study.core.cell import Cell
+from study.core.profile import by_share
 from study.core.setting import Setting
 
 SETTINGS = {"loops": list,      # sizes of the maps
@@ -11,15 +12,6 @@ IMPLEMENTATIONS = {"double": "csc_klu/refactor", "single": "compiled_ldl/fronts"
 FORMS = ("penalty", "saddle-point")
 STEP, WHOLE = 1.25e-3, 20.0
 AUTOMATIC = "auto"
-MAPS = 0.7  # of the budget
-
-
-def columns(settings):
-    return {"maps": MAPS * settings["seconds"], "whole": (1 - MAPS) * settings["seconds"]}
-
-
-def run(lab, column):
-    {"maps": maps, "whole": whole}[column](lab)
 
 
 def maps(lab):
@@ -57,3 +49,6 @@ def _served(lab):
         found |= {(scheme, precision): one for scheme in FORMS
                   if one and lab.registry.serves(name, scheme, precision)}
     return found
+
+
+columns, run = by_share({"maps": (0.7, maps), "whole": (0.3, whole)})

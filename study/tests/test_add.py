@@ -24,7 +24,6 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", TEMPORARY.name)
     monkeypatch.setenv("MBS_PROGRAM", str(FAKE))
     monkeypatch.setattr(add, "PASSES", (2, 3))
-    monkeypatch.setattr(add, "set_up", lambda log: pytest.fail("nothing is built with MBS_PROGRAM"))
     folder = tmp_path / "set"
     for pair in ("openblas", "system"):
         context = context_of(Contender(CONTROL.name, CONTROL.variant, pair))
@@ -158,6 +157,6 @@ def test_unknown_names_and_sets(folder, monkeypatch, tmp_path):
 
 
 def test_it_keeps_to_a_fifth_of_the_maps_time(folder, monkeypatch):
-    monkeypatch.setattr(add, "budget_of", lambda _: 0.0)
+    monkeypatch.setattr(add, "SHARE", 0.0)
     table = measure(folder, monkeypatch, 0.5)
     assert set(table.status) == {"dropped"} and "budget" in table.reason[0] and set(table.hands) == {"not timed"}

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy
 import pytest
+from scipy.interpolate import CubicHermiteSpline
 
 from analysis.core import records
 from analysis.core.errors import StudyError
@@ -409,9 +410,8 @@ def test_the_reference_is_the_fastest_that_simulates_the_scene_in_both_forms():
 def test_runs_are_held_to_a_motion_between_its_instants():
     truth = object.__new__(Truth)
     truth.columns, truth.shape = ("p.x", "p.y"), (1, 2)
-    truth.t = numpy.linspace(0, 1, 21)
-    truth.q = numpy.stack([numpy.cos(truth.t), numpy.sin(truth.t)]).T
-    truth.v = numpy.stack([-numpy.sin(truth.t), numpy.cos(truth.t)]).T
+    t = numpy.linspace(0, 1, 21)
+    truth.motion = CubicHermiteSpline(t, numpy.stack([numpy.cos(t), numpy.sin(t)]).T, numpy.stack([-numpy.sin(t), numpy.cos(t)]).T)
     t = [0.0, 0.33, 0.77]
     series = {"t": t, "p.x": [math.cos(x) for x in t], "p.y": [math.sin(x) + 1e-3 * (x > 0.5) for x in t]}
     assert truth.error(series) == pytest.approx(1e-3, rel=1e-3)

@@ -18,7 +18,7 @@ import pytest
 
 from analysis.core import records, schema
 from analysis.core.errors import StudyError
-from analysis.core.files import ROOT, digest, read_object, write_json, write_text
+from analysis.core.files import ROOT, digest, read_json, read_object, write_json, write_text
 from analysis.core.parts import parts
 from analysis.core.registry import Registry
 from analysis.core.style import save
@@ -27,9 +27,9 @@ from analysis.core.view import View, facts_of
 from study.core import child, executor, front, locks, main, profile, studyset
 from study.core.cell import Cell
 from study.core.contender import Contender, by_environment, on_usual_pairs
+from study.core.front import duration
 from study.core.lab import Lab, cores
 from study.core.options import Parser, positive
-from study.core.progress import Reader, duration
 from study.tests.conftest import FAKE, TEMPORARY, study
 
 ONE, TWO = Contender("one/a", "one/a"), Contender("two/b", "two/b", "openblas")
@@ -312,13 +312,11 @@ def test_a_program_that_is_not_built_is_unavailable(tmp_path):
 def test_the_count_of_cells_comes_to_its_end(mbs, tmp_path):
     mbs('sleep 0.2; echo "{}"')
     for _ in range(2):  # the second time all have records
-        reader = Reader(tmp_path / ".progress")
         lab = Lab(Set(tmp_path), "part", "column", 0.1)
         lab.run(cells(3, timed=True), drop=True)
         lab.run(cells(2, timed=True))
         lab.skip(CELL, "excluded", "too slow")
-        events = reader.events()
-        assert [sum(event.get(key, 0) for event in events) for key in ("expected", "done")] == [4, 4]
+        assert read_json(tmp_path / ".progress") == {"part": "part", "column": "column", "cells": "4 of 4 cells", "text": ""}
 
 
 def test_untimed_cells_share_the_cores_and_timed_ones_have_the_machine(mbs, tmp_path):
@@ -336,17 +334,11 @@ def test_a_skipped_cell_has_a_reason_and_stays(tmp_path):
     assert lab.skip(CELL, "excluded", "another one").reason == "too slow" and list(lab.names) == ["column/" + CELL.settled().file_name()]
 
 
-def test_progress_is_told_and_read_in_lines(tmp_path):
-    reader = Reader(tmp_path / ".progress")
+def test_what_a_lab_does_is_told(tmp_path):
     lab = Lab(Set(tmp_path), "part", "column")
-    lab.progress.expect(3)
+    lab.skip(CELL, "excluded", "too slow")
     lab.tell("words")
-    with open(tmp_path / ".progress", "a") as file:
-        file.write('{"part": "p"')
-    assert [event.get("text") for event in reader.events()] == [None, "words"]
-    with open(tmp_path / ".progress", "a") as file:
-        file.write(', "column": "c", "done": 1}\n')
-    assert reader.events() == [{"part": "p", "column": "c", "done": 1}]
+    assert read_json(tmp_path / ".progress") == {"part": "part", "column": "column", "cells": "1 of 1 cells", "text": "words"}
     assert [duration(one) for one in (5, 80, 7300)] == ["5 s", "1 min 20 s", "2 h 1 min"]
 
 
@@ -410,12 +402,12 @@ def test_a_set_of_another_shape_is_named(tmp_path, key):
 
 @pytest.mark.parametrize("parts, words", [(["foo"], "parts: 'foo' is none of"), ([1], "parts: 1 is none"),
                                           ([["map"]], "is none"), ([], "has no parts")])
-@pytest.mark.parametrize("command", ["figures", "store", "compare", "add"])
+@pytest.mark.parametrize("command", ["figures", "store", "merge", "add"])
 def test_a_set_of_parts_that_are_none_is_named_before_anything_else(tmp_path, monkeypatch, capsys, command, parts, words):
     monkeypatch.setattr(child, "end_on_signals", lambda: None)
     write_json(tmp_path / "set.json", FACTS | {"parts": parts})
     folder = str(tmp_path)
-    assert main.main({"compare": [command, folder, folder], "add": [command, "klu", "--to", folder]}.get(command, [command, folder])) == 2
+    assert main.main({"merge": [command, folder, f"{folder}/.."], "add": [command, "klu", "--to", folder]}.get(command, [command, folder])) == 2
     told = capsys.readouterr()
     assert told.out == "" and "set.json" in told.err and words in told.err and told.err.count("\n") == 1
 
@@ -643,7 +635,7 @@ def test_locks_are_held_once_and_waited_for(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("command", [["run", "--results", ""], ["figures", ""], ["store", ""], ["add", "klu", "--to", ""],
-                                     ["advise", "--results", ""], ["against", "HEAD", "--results", ""], ["compare", "", ""]])
+                                     ["advise", "--results", ""], ["against", "HEAD", "--results", ""], ["merge", "", ""]])
 def test_an_empty_name_stands_for_no_default(command, capsys, monkeypatch):
     monkeypatch.setattr(child, "end_on_signals", lambda: None)
     assert main.main(command) == 2

@@ -143,7 +143,7 @@ def test_a_sweep_by_one_and_by_two_jobs_must_give_one_table(tmp_path, table, agr
 
 def test_nothing_is_asked_where_nobody_takes_part(measured):
     lab = Asked(names=())
-    for column in plan.SHARES:
+    for column in plan.columns({"seconds": 1.0}):
         plan.run(lab, column)
     assert not [cell for cell in lab.cells if cell.contenders]
 

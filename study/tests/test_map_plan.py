@@ -1,4 +1,4 @@
-# The map's plan on a fake program that misbehaves on demand: who is timed, who is left out and why; study/compare.
+# The map's plan on a fake program that misbehaves on demand: who is timed, who is left out and why.
 import shutil
 import tempfile
 from types import SimpleNamespace
@@ -10,7 +10,6 @@ import yaml
 from analysis.core import records, schema
 from analysis.core.errors import StudyError
 from analysis.core.registry import Registry
-from analysis.core.files import write_json
 from analysis.core.view import View
 from analysis.map import tables
 from study.core import profile as profiles, studyset
@@ -19,9 +18,8 @@ from study.core.lab import Lab
 from study.map import plan, verify
 from study.map.timed import Scene
 from study.tests.conftest import FAKE, TEMPORARY
-from study.tools import compare
 
-SETTINGS = {"seconds": 100, "processes": 3, "process": 0.1, "again": 2, "between": 1, "slower": {"natural": 1000, "filled": 50},
+SETTINGS = {"seconds": 100, "processes": 3, "process": 0.1, "again": 2, "slower": {"natural": 1000, "filled": 50},
             "limits": {"pilot": 2, "check": 10, "time": 10}, "alternatives": [{"implementations": ["good_dense"],
                                                                               "blas": ["reference", "atlas"], "columns": [10]}],
             "phases": {"columns": [10], "processes": 1}, "operations": {"columns": [10], "processes": 1},
@@ -130,31 +128,6 @@ def test_a_wrong_column_is_one_clear_line(columns, words):
 def test_the_profiles_fit_their_budgets(name):
     settings = profiles.load(name, ["map"]).parts["map"]
     assert sum(plan.columns(settings).values()) <= settings["seconds"]
-
-
-def cells(folder, *rows):
-    """A set with these cells: (scene, winner, equivalent, decided, settled)."""
-    found = {name: pandas.DataFrame() for name in schema.of_part("map")}
-    found["cells"] = pandas.DataFrame([{"scene": scene, "layer": "libraries", "winner": winner, "second": "z", "equivalent": same,
-                                        "decided": decided, "settled": settled} for scene, winner, same, decided, settled in rows])
-    schema.write_tables(folder, "map", found, [])
-    write_json(folder / "set.json", {"profile": "smoke", "only": [], "parts": ["map"], "programs": {}, "date": "2020-01-01 00:00",
-                                     "context": {"machine": "m", "commit": "c"}})
-    return folder
-
-
-def test_compare_counts_what_is_said_and_what_is_alike(tmp_path, capsys):
-    first = cells(tmp_path / "a", ("1", "x", "x", True, True), ("2", "x", "x y", False, True), ("3", "x", "x", True, True),
-                  ("4", "x", "x", False, False))
-    second = cells(tmp_path / "b", ("1", "x", "x", True, True), ("2", "y", "y x", False, True), ("3", "y", "y", True, True),
-                   ("4", "x", "x", True, True), ("5", "x", "x", True, True))
-    compare.compare([str(first), str(second)])
-    text = capsys.readouterr().out
-    assert "Libraries: 4 common cells, 1 more in the second" in text
-    assert "first : 2 decided, 1 with several that are as fast, 1 open (75 % said)" in text
-    assert "3 said in both, 2 of them alike (67 % alike)" in text and "\n  3: x" in text
-    with pytest.raises(StudyError, match="holds no set"):
-        compare.compare([str(tmp_path), str(second)])
 
 
 KNOWN = Registry({"implementations": [{"folder": name.split("/")[0], "available": True, "library": library, "variants": [

@@ -10,6 +10,7 @@ from study.tools.paper import artifact, audit, known as known_sets, tables
 from study.tools.paper.claims import claims
 from study.tools.paper.known import Known
 from study.tools.paper.numbers import NOT_MEASURED, Number, numbers
+from study.tools.store import faults
 
 TEXT = audit.source()
 BIBLIOGRAPHY = (ROOT / "paper" / "references.bib").read_text(encoding="utf-8")
@@ -94,15 +95,15 @@ def test_references_and_equations(text, bibliography, said):
 
 def test_a_dirty_or_mixed_or_stale_set_is_found(known, tmp_path):
     copy = Known(shutil.copytree(known.folder, tmp_path / known.folder.name))
-    assert list(audit.of_set(copy)) == []
+    assert list(faults(copy)) == []
     context = next(path for path in sorted((copy.folder / "contexts").glob("*.json")))
     write_json(context, read_json(context) | {"dirty": "true", "commit": "0" * 40})
     digests = copy.folder / "realtime" / "tables.json"
     write_json(digests, read_json(digests) | {"records": "0" * 64})
     with open(copy.folder / "stability" / "windows.csv", "a", encoding="utf-8") as file:
         file.write("\n")
-    said = "\n".join(audit.of_set(copy))
-    for part in ("with changes", "another commit", "not those of its records", "windows.csv is not as it was written"):
+    said = "\n".join(faults(copy))
+    for part in ("dirty tree", "another commit", "not those of its records", "windows.csv is not as it was written"):
         assert part in said
 
 

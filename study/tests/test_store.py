@@ -8,6 +8,7 @@ import pytest
 from analysis.core import records, schema
 from analysis.core.errors import StudyError
 from analysis.core.files import read_json, write_json
+from study.core import studyset
 from study.tests.conftest import ROOT, study
 from study.tools import fragments, store
 
@@ -22,13 +23,9 @@ def measured(tmp_path_factory):
     assert done.returncode == 0, done.stderr
     for path in (folder / "set.json", *(folder / "contexts").glob("*.json")):  # the tree of a developer is dirty
         found = read_json(path)
-        clean = {"dirty": "false", "commit": head(), "cpu_model": "AMD EPYC (family 25, model 17, stepping 1)"}
+        clean = {"dirty": "false", "cpu_model": "AMD EPYC (family 25, model 17, stepping 1)"}
         write_json(path, found | {"context": found["context"] | clean} if "context" in found else found | clean)
     return folder
-
-
-def head():
-    return subprocess.run(["git", "rev-parse", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
 
 
 @pytest.fixture
@@ -156,7 +153,7 @@ def test_the_newest_local_set_is_the_default_and_tools_have_none(folder):
                               ("against-1", "2026-01-03 10:00", [])):
         shutil.copytree(folder, local / name)
         edit(local / name / "set.json", lambda found: found.update(date=date, parts=parts))
-    assert store.newest_local() == local / "new"
+    assert studyset.newest(local) == local / "new"
 
 
 def test_archives_and_tables_are_tracked_and_what_is_drawn_again_is_not():

@@ -47,11 +47,11 @@ def test_the_surface_has_medians_and_marks_failures(tmp_path):
 
 
 def test_cells_are_of_values_or_of_one_width():
-    assert [found.tolist() for found in sweep.cells(numpy.array([1.0, 4, 2]))] == [[0, 2, 1], [0.5, 1.5, 3, 5]]
+    assert sweep.edges(numpy.array([1.0, 4, 2])).tolist() == [0.5, 1.5, 3, 5]
     for count, expected in ((10_000, sweep.CELLS), (400, 10), (50, 4)):
-        places, edges = sweep.cells(numpy.linspace(0, 1, count))
-        assert len(edges) == expected + 1 and numpy.ptp(numpy.bincount(places)) <= 1
-    assert [found.tolist() for found in sweep.cells(numpy.array([7.0, 7]))] == [[0, 0], [6.5, 7.5]]
+        found = sweep.edges(numpy.linspace(0, 1, count))
+        assert len(found) == expected + 1 and numpy.ptp(numpy.diff(found)) < 1e-12
+    assert sweep.edges(numpy.array([7.0, 7])).tolist() == [6.5, 7.5]
 
 
 @pytest.mark.parametrize("text, options, words", [

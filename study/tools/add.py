@@ -3,22 +3,22 @@
 # The newcomer, the leader and the runner-up of the libraries and the leader of all take turns in fresh processes: what
 # the set has of the others is never paired with new samples. Records: SET/raw/added/NAME/, the result: SET/added/NAME.csv.
 import datetime
-import os
 import shutil
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from analysis.core import schema, timing
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_json, write, write_json
-from study.core import locks, profile as profiles
-from study.core.contender import CONTROL, Contender, on_usual_pairs
-from study.core.disk import writable
-from study.core.executor import fingerprint, program_of
+from analysis.map.timed import differing
+from study.core import executor, locks, profile as profiles
+from study.core.contender import CONTROL, on_usual_pairs
+from study.core.executor import program_of
 from study.core.gate import verdicts
-from study.core.main import need_modules, set_up
+from study.core.main import set_up
 from study.core.options import Parser, directory
-from study.core.progress import duration
-from study.core.studyset import StudySet, context_of, listed, opened, select
+from study.core.front import duration
+from study.core.studyset import StudySet, context_of, listed, opened, select, sets_in, writable
 from study.core.timing import measure
 from study.tools import shelf
 
@@ -40,13 +40,10 @@ def add(arguments):
     parser.add_argument("--to", type=directory, metavar="SET", help="its directory (the newest of this machine and build in results/ and results/local)")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
     options = parser.parse_args(arguments)
-    need_modules()
     if options.to:
         opened(options.to)
     with locks.only_one_study(options.wait):
-        if "MBS_PROGRAM" not in os.environ:
-            LOG.parent.mkdir(parents=True, exist_ok=True)
-            set_up(LOG)
+        set_up(LOG)
         known = listed()
         select(known, [options.name], "")
         folder = options.to or newest(known)
@@ -59,13 +56,12 @@ def add(arguments):
 
 def newest(known):
     """The newest set with a map of this machine and build, stored or one's own."""
-    found = {path.parent: StudySet(path.parent).facts for base in (RESULTS, RESULTS / "local") for path in base.glob("*/set.json")}
-    found = {folder: facts for folder, facts in found.items() if "map" in facts["parts"]}
-    now = fingerprint(context_of(Contender(CONTROL.name, CONTROL.variant, next(name for name, why in known.pairs.items() if not why))))
-    same = [folder for folder, facts in found.items() if all(fingerprint(facts["context"])[key] == now[key] for key in SAME)]
-    if same:
-        return max(same, key=lambda folder: found[folder]["date"])
-    others = ", ".join(f"{folder.relative_to(ROOT)} is of {facts['context'].get('cpu_model', 'another')}" for folder, facts in found.items())
+    found = [one for one in sets_in(RESULTS, RESULTS / "local") if "map" in one.facts["parts"]]
+    now = context_of(replace(CONTROL, blas=next(name for name, why in known.pairs.items() if not why)))
+    for one in found:
+        if not executor.differing(one.facts["context"], now, SAME):
+            return one.folder
+    others = ", ".join(f"{one.folder.relative_to(ROOT)} is of {one.facts['context'].get('cpu_model', 'another')}" for one in found)
     raise StudyError(f"no set with a map is of this machine and build{f' ({others})' * bool(others)}: study/run --part map makes one in "
                      "some minutes, with every implementation in it; for a first look: build/mbs bench four-bar:10 four-bar:40")
 
@@ -88,18 +84,17 @@ class _Present(StudySet):
 
 def measured(folder, name, known):
     """The table of one newcomer, or several variants of one, which is written."""
-    from analysis.core import schema
     newcomers = select(known, [name], "")
     cells = schema.read_table(folder, "map", "cells")
     cells = cells[cells.winner != ""]
     steps = schema.read_table(folder, "map", "scenes").set_index("scene")
     times = _times(schema.read_table(folder, "map", "tidy"))
-    blas = profiles.read(folder / "profile.yaml", StudySet(folder).facts["profile"], []).blas
+    profile = profiles.read(folder / "profile.yaml", StudySet(folder).facts["profile"], [])
     rivals = {*cells.winner, *cells[cells.layer == "libraries"].second} & set(known.variants)
-    contenders = {one.name: one for one in on_usual_pairs(known, blas, [*newcomers, *sorted(rivals - set(newcomers))])}
+    contenders = {one.name: one for one in on_usual_pairs(known, profile.blas, [*newcomers, *sorted(rivals - set(newcomers))])}
     present = contexts(folder, contenders.values())
     column = name.replace("/", ".")
-    lab = shelf.ToolLab(_Present(folder, present), "added", column, seconds=SHARE * budget_of(folder))
+    lab = shelf.ToolLab(_Present(folder, present), "added", column, SHARE * sum(part["seconds"] for part in profile.parts.values()))
     _begin(folder, column, lab)
     scenes = list(dict.fromkeys(cells.scene))
     chosen = {scene: _rivals(cells[cells.scene == scene], newcomers, contenders) for scene in scenes}
@@ -111,18 +106,11 @@ def measured(folder, name, known):
             if fit and chosen[scene]:
                 records[scene] = measure(lab, scene, [*fit, *(contenders[one] for one in chosen[scene])], processes=count,
                                          **_size(lab, times.get(scene, {}), chosen[scene], steps.steps[scene], len(scenes)))
-    lab.progress.end()
+    lab.display.end()
     context = present[contenders[newcomers[0]].environment]
     rows = [row | {"commit": context["commit"], "dirty": context["dirty"]} for scene in scenes
-            for row in _rows(cells[cells.scene == scene], newcomers, known, verdicts[scene], records.get(scene, []),
-                             steps.loc[scene])]
+            for row in _rows(cells[cells.scene == scene], known, verdicts[scene], records.get(scene, []), steps.loc[scene])]
     return _finish(folder, column, lab, rows)
-
-
-def budget_of(folder):
-    """Seconds that all parts of the set's profile have."""
-    studyset = StudySet(folder)
-    return sum(part["seconds"] for part in profiles.read(folder / "profile.yaml", studyset.facts["profile"], []).parts.values())
 
 
 def contexts(folder, contenders):
@@ -134,11 +122,10 @@ def contexts(folder, contenders):
         now = found[one.environment] = context_of(one)
         kept = folder / "contexts" / f"{one.environment.replace('|', '-')}.json"
         then = read_json(kept) if kept.exists() else known.facts["context"]
-        for key in (*SAME, *(("blas_loaded",) if kept.exists() else ())):
-            was, one_is = (fingerprint(context)[key] for context in (then, now))
-            if was != one_is:
-                raise StudyError(f"{folder} is of another machine or build ({then.get('cpu_model', '')}; here: {now.get('cpu_model', '')}): "
-                                 f"its {key} is '{was}', here it is '{one_is}'; times of both cannot stand side by side")
+        if other := executor.differing(then, now, (*SAME, "blas_loaded") if kept.exists() else SAME):
+            key, its, here = other
+            raise StudyError(f"{folder} is of another machine or build ({then.get('cpu_model', '')}; here: {now.get('cpu_model', '')}): "
+                             f"its {key} is '{its}', here it is '{here}'; times of both cannot stand side by side")
         lost = versions(then) - versions(now)
         if lost:
             raise StudyError(f"{folder} is of other libraries: it has {', '.join(sorted(lost))}, here there is "
@@ -192,44 +179,42 @@ def _size(lab, times, rivals, steps, scenes):
             "seconds": 30 + 3 * samples * turns + 5 * patience}
 
 
-def _rows(cells, newcomers, known, verdicts, records, asked):
-    """A row for each layer of a scene and newcomer that has a place in it."""
-    from analysis.core import timing
-    from analysis.map.timed import differing
+def _rows(cells, known, verdicts, records, asked):
+    """A row for each layer of a scene and newcomer that has a place in it. `verdicts`: of the newcomers."""
     rows = timing.processes(records)
+    good = rows[rows.status == "ok"]
     wrong = differing(rows) if len(rows) else {}
-    other = "" if not len(rows) or not len(good := rows[rows.status == "ok"]) or set(
-        zip(good.steps, good.start)) == {(asked.steps, asked.start)} else "the program times another stretch than the set's"
+    if len(good) and set(zip(good.steps, good.start)) != {(asked.steps, asked.start)}:
+        wrong = dict.fromkeys(verdicts, "the program times another stretch than the set's") | wrong
     for cell in cells.itertuples():
-        for name in newcomers:
+        others = [name for name in good.implementation.unique() if name not in verdicts and "+" not in name and name not in wrong
+                  and (cell.layer == "all" or name not in known.own)]
+        for name in verdicts:
             if cell.layer == "libraries" and name in known.own:
                 continue
-            row = {"scene": cell.scene, "variables": cell.variables, "layer": cell.layer, "implementation": name,
-                   "before": cell.winner, "hands": "stays", "record": records[0].name if records else ""}
-            mine = rows[rows.implementation == name] if len(rows) else rows
-            lost = mine[(mine.status != "ok") & ((mine.status != "dropped") | ~(mine.status == "ok").any())] if len(mine) else mine
-            status, reason = verdicts[name]
-            if status == "ok" and (name in wrong or other):
-                status, reason = "disagrees", wrong.get(name, other)
-            elif status == "ok" and len(lost):
-                status, reason = lost.status.iloc[0], lost.reason.iloc[0]
-            row |= {"status": status, "reason": reason}
-            if status != "ok":
-                yield row | {"hands": "not timed" if status in NOT_TIMED else "stays"}
-                continue
-            others = [one for one in rows.implementation.unique() if one not in newcomers and "+" not in one
-                      and (cell.layer == "all" or one not in known.own) and one not in wrong]
-            yield row | _compared(timing, rows, name, timing.rank(rows, others), cell.winner)
+            status, reason = _standing(rows[rows.implementation == name], verdicts[name], wrong.get(name))
+            row = {"scene": cell.scene, "variables": cell.variables, "layer": cell.layer, "implementation": name, "before": cell.winner,
+                   "hands": "not timed" if status in NOT_TIMED else "stays", "record": records[0].name if records else "",
+                   "status": status, "reason": reason}
+            yield row | (_compared(rows, name, timing.rank(rows, others), cell.winner) if status == "ok" else {})
 
 
-def _compared(timing, rows, name, ranking, before):
+def _standing(rows, verdict, wrong):
+    """(status, reason) of a newcomer: what the gate says, then what its processes say; what was dropped counts where no other was
+    timed. `wrong`: what makes its times none."""
+    if verdict[0] != "ok" or wrong:
+        return verdict if verdict[0] != "ok" else ("disagrees", wrong)
+    lost = rows[(rows.status != "ok") & ((rows.status != "dropped") | ~(rows.status == "ok").any())]
+    return (lost.status.iloc[0], lost.reason.iloc[0]) if len(lost) else verdict
+
+
+def _compared(rows, name, ranking, before):
     """What a newcomer's row says of it beside the fastest of the others."""
     if ranking is None:
         return {"hands": "open", "reason": "none of those who led the cell could be timed"}
     ratio = timing.ratio(rows, name, ranking.winner)
     times = rows[rows.status == "ok"].groupby("implementation").step_us.median()
-    hands = "open" if not (ratio.high < 1 or ratio.low > 1) else (
-        "changes" if (ratio.high < 1) != (before == name) else "stays")
+    hands = "open" if ratio.low <= 1 <= ratio.high else "changes" if (ratio.high < 1) != (before == name) else "stays"
     return {"rival": ranking.winner, "ratio": ratio.value, "low": ratio.low, "high": ratio.high, "hands": hands,
             "step_us": times[name], "rival_us": times[ranking.winner],
             "processes": len(timing.log_ratios(rows, name, ranking.winner))}
@@ -243,7 +228,7 @@ def _finish(folder, column, lab, rows):
         "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M"), "context": lab.set.facts["context"],
         "table": digest(path), "records": {name: digest(lab.base / name) for name in sorted(lab.names)}})
     shutil.rmtree(lab.set.scratch, ignore_errors=True)
-    lab.progress.tell(duration(lab.spent))
+    lab.tell(duration(lab.spent))
     return table
 
 

@@ -3,21 +3,22 @@
 # Two programs cannot share a process. Fresh processes alternate, old new new old, so that what drifts falls on both
 # alike; inside each all implementations take turns. A ratio is that of two neighbours, its interval one over pairs.
 import json
-import os
 import subprocess
 import sys
 from dataclasses import replace
 
+import pandas
+
+from analysis.core import timing
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write
 from study.core import child, locks, profile as profiles
 from study.core.cell import Cell
-from study.core.contender import CONTROL, Contender, by_environment, on_usual_pairs, usable
-from study.core.disk import writable
+from study.core.contender import by_environment, control, on_usual_pairs
 from study.core.executor import program_of
-from study.core.main import need_modules, set_up
+from study.core.main import set_up
 from study.core.options import Parser, directory, rounds
-from study.core.studyset import context_of, listed, need_own, select
+from study.core.studyset import context_of, listed, need_own, select, writable
 from study.tools import shelf
 
 SECONDS = 120.0  # of a process
@@ -38,14 +39,12 @@ def against(arguments):
     parser.add_argument("--results", type=directory, metavar="DIR", help="(results/local/against-REVISION)")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
     options = parser.parse_args(arguments)
-    need_modules("pandas", "yaml", "scipy")
     revision = _resolve(options.revision)[:10]
     folder = options.results or ROOT / "results" / "local" / f"against-{revision}"
     need_own(folder)
     writable(folder)
     with locks.only_one(folder), locks.only_one_study(options.wait):
-        if "MBS_PROGRAM" not in os.environ:
-            set_up(folder / "run.log")
+        set_up(folder / "run.log")
         build = _build(revision)
         table = _measure(folder, options, revision, build)
     write(folder / "ratios.csv", lambda partial: table.to_csv(partial, index=False))
@@ -84,9 +83,9 @@ def _measure(folder, options, revision, build):
     """The table of ratios."""
     known, pairs = listed(), profiles.load("quick", []).blas
     contenders = on_usual_pairs(known, pairs, select(known, options.only))
-    context = context_of(Contender(CONTROL.name, CONTROL.variant, usable(known, pairs["all"])))
-    lab = shelf.ToolLab(shelf.open_shelf(folder, "against", context, options.only, scenes=options.scenes,
-                                          old=digest(ROOT / program_of(build=build))[:16]), "against", "runs")
+    kept = shelf.open_shelf(folder, "against", context_of(control(known, pairs)), options.only, scenes=options.scenes,
+                            old=digest(ROOT / program_of(build=build))[:16])
+    lab = shelf.ToolLab(kept, "against", "runs")
     there = _variants_of(build)
     rows = [{"implementation": one.name, "scene": scene, "reason": f"is not in {revision}"}
             for one in contenders if one.variant not in there for scene in options.scenes]
@@ -94,7 +93,7 @@ def _measure(folder, options, revision, build):
     for scene in options.scenes:
         for group in groups.values():
             rows += _ratios(lab, scene, group, options.rounds, build, revision)
-    lab.progress.end()
+    lab.display.end()
     return shelf.table(rows, "ratios")
 
 
@@ -125,8 +124,6 @@ def _ratios(lab, scene, group, count, build, revision):
 
 
 def _row(name, scene, found):
-    import pandas
-    from analysis.core import timing
     trees = {}
     for tree, records in found.items():
         try:

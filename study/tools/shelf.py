@@ -1,6 +1,9 @@
 # Where a tool keeps its records: a set without parts, so that cells run, resume and are refused as those of parts.
 from pathlib import Path
 
+import pandas
+
+from analysis.core import schema
 from analysis.core.files import write_json
 from study.core.executor import need_same
 from study.core.front import Display
@@ -25,8 +28,6 @@ def open_shelf(folder, tool, context, only, **question):
 
 def table(rows, name):
     """Rows as the table of that name in schema.yaml."""
-    import pandas
-    from analysis.core import schema
     return schema.conform(pandas.DataFrame(rows), schema.read(Path(__file__).with_name("schema.yaml"))[name], name)
 
 
@@ -35,29 +36,8 @@ class ToolLab(Lab):
 
     def __init__(self, studyset, tool, column, seconds=float("inf"), quiet=False):
         super().__init__(studyset, tool, column, seconds)
-        self.progress = _Shown(tool, quiet)
-
-
-class _Shown:
-    """Of Progress what a lab calls."""
-
-    def __init__(self, title, quiet):
-        self.title, self.known, self.cells, self.text = title, 0, 0, ""
         self.display, self.quiet = Display(), quiet
 
-    def expect(self, cells):
-        self.known += cells
-
-    def done(self):
-        self.cells += 1
-        self.tell(self.text)
-
-    def tell(self, text):
-        self.text = text
+    def show(self, cells, text):
         if not self.quiet:
-            total = max(self.known, self.cells)
-            self.display.show(self.title, f"{self.cells} of {total} cells{'; ' * bool(text)}{text}")
-
-    def end(self):
-        if not self.quiet:
-            self.display.end()
+            self.display.show(self.part, f"{cells}{'; ' * bool(text)}{text}")

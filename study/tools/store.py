@@ -6,13 +6,15 @@ import re
 import shutil
 import subprocess
 
+from analysis.core import records, schema
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, read_json
 from analysis.core.parts import parts
 from study.core import locks
-from study.core.main import columns_of, need_modules
+from study.core.main import columns_of
 from study.core.options import Parser, directory
-from study.core.studyset import StudySet, need_records, opened
+from study.core.studyset import need_records, newest, opened
+from study.tools import fragments
 
 RESULTS = ROOT / "results"
 MOST = 3  # sets
@@ -26,11 +28,9 @@ def store(arguments):
     parser.add_argument("set", nargs="?", type=directory, metavar="DIR", help="its directory (the newest in results/local)")
     parser.add_argument("name", nargs="?", metavar="NAME", help="(PROFILE-PROCESSOR)")
     options = parser.parse_args(arguments)
-    need_modules()
-    folder = options.set or newest_local()
+    folder = options.set or newest(RESULTS / "local")
     studyset = opened(folder)
     with locks.only_one(RESULTS), locks.only_one(folder):
-        need_clean(studyset)
         need_whole(studyset)
         name = options.name if options.name is not None else f"{studyset.facts['profile']}-{short(studyset.facts['context']['cpu_model'])}"
         _need_place(name)
@@ -39,39 +39,50 @@ def store(arguments):
     return 0
 
 
-def newest_local():
-    found = {path.parent: StudySet(path.parent).facts for path in (RESULTS / "local").glob("*/set.json")}
-    found = {folder: facts["date"] for folder, facts in found.items() if facts["parts"]}  # tools keep theirs there too
-    if not found:
-        raise StudyError("results/local holds no set: name one, or make one with study/run")
-    return max(found, key=found.get)
-
-
 def short(processor):
     """"epyc-25-17" of "AMD EPYC (family 25, model 17, stepping 1)"."""
     words = [word for word in re.findall(r"[a-z0-9]+", processor.lower().partition("@")[0]) if word not in COMMON]
     return "-".join(words[:3]) or "machine"
 
 
-def need_clean(studyset):
-    """StudyError unless all that was run was built from a commit of this repository."""
-    for path in (studyset.folder / "set.json", *sorted((studyset.folder / "contexts").glob("*.json"))):
+def faults(kept):
+    """What is wrong with a set, a line each: a tree with changes, several commits or machines, a part that is missing, tables that were
+    changed or are not those of its records."""
+    usual = kept.facts["context"]
+    for path in (kept.folder / "set.json", *sorted((kept.folder / "contexts").glob("*.json"))):
         context = read_json(path)
-        context = context["context"] if path.name == "set.json" else context
+        context = context.get("context", context)
         if str(context.get("dirty")).lower() != "false":
-            raise StudyError(f"{path}: it was measured from a dirty tree (dirty is {context.get('dirty')}): commit, "
-                             "build and measure again")
-        if subprocess.run(["git", "cat-file", "-e", f"{context.get('commit')}^{{commit}}"], cwd=ROOT,
-                          capture_output=True).returncode != 0:
-            raise StudyError(f"{path}: it is of {context.get('commit')}, which is no commit of this repository")
+            yield f"{path}: it was measured from a dirty tree (dirty is {context.get('dirty')}): commit, build and measure again"
+        yield from (f"{path}: is of another {key} than its set" for key in ("commit", "machine") if context.get(key) != usual.get(key))
+    yield from _lacking(kept)
+    for part in kept.facts["parts"]:
+        yield from _faults_of(kept.folder, part, usual)
+
+
+def _lacking(kept):
+    return [f"{kept.folder} lacks {part}: a stored set has all parts" for part in parts() if part not in kept.facts["parts"]]
+
+
+def _faults_of(folder, part, context):
+    try:
+        schema.need_unchanged(folder, part)
+        there, tables = records.read_part(folder, part), folder / part / schema.DIGESTS
+        if not tables.exists() or read_json(tables)["records"] != schema.digest_of(there):
+            yield f"{folder / part}: its tables are not those of its records: run study/figures {folder}"
+        for record in there:
+            records.need_same_origin(record, context, f"{folder}/raw/{part}")
+    except StudyError as error:
+        yield str(error)
 
 
 def need_whole(studyset):
     """StudyError naming what is not finished, or not as it was measured."""
-    from analysis.core import records, schema
-    missing = [part for part in parts() if part not in studyset.facts["parts"]]
-    if missing:
-        raise StudyError(f"{studyset.folder} lacks {', '.join(missing)}: a stored set has all parts")
+    for fault in _lacking(studyset):
+        raise StudyError(fault)
+    commit = studyset.facts["context"].get("commit")
+    if subprocess.run(["git", "cat-file", "-e", f"{commit}^{{commit}}"], cwd=ROOT, capture_output=True).returncode != 0:
+        raise StudyError(f"{studyset.folder / 'set.json'}: it is of {commit}, which is no commit of this repository")
     need_records(studyset)
     for part, columns in columns_of(studyset.profile, studyset.facts["parts"]).items():
         for column in columns:
@@ -80,11 +91,8 @@ def need_whole(studyset):
         for name, path in records.files_of(studyset.folder, part).items():
             if name.partition("/")[0] not in columns:
                 raise StudyError(f"{path} belongs to no column that has ended: remove it, and run study/run again")
-        schema.need_unchanged(studyset.folder, part)
-        tables = studyset.folder / part / schema.DIGESTS
-        if not tables.exists() or read_json(tables)["records"] != schema.digest_of(records.read_part(studyset.folder, part)):
-            raise StudyError(f"{studyset.folder / part}: its tables are not those of its records: run study/figures "
-                             f"{studyset.folder}")
+    for fault in faults(studyset):
+        raise StudyError(fault)
 
 
 def _need_place(name):
@@ -113,8 +121,6 @@ def _build(studyset, name):
 
 
 def _fill(studyset, building):
-    from analysis.core import records, schema
-    from study.tools import fragments
     building.mkdir(parents=True)
     for name in OF_ALL:
         source = studyset.folder / name
@@ -135,7 +141,6 @@ def _fill(studyset, building):
 
 
 def _tell(folder, name, pictures):
-    from study.tools import fragments
     files = [path for path in (RESULTS / name).rglob("*") if path.is_file()]
     print(f"results/{name}: {len(files)} files, {sum(path.stat().st_size for path in files) / 2**20:.1f} MB")
     if (folder / "added").exists():

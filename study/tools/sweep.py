@@ -3,12 +3,16 @@ import re
 import zlib
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy
+import pandas
+from matplotlib.collections import LineCollection
+from scipy.stats import binned_statistic_2d
 
+from analysis.core import style
 from analysis.core.errors import StudyError
 from analysis.core.outcomes import FINISHED
 from study.core import cluster
-from study.core.main import need_modules
 from study.core.options import Parser
 from study.tools import sweep_cluster
 
@@ -29,7 +33,6 @@ def sweep(arguments):
     parser.add_argument("--parts", type=int, default=16, metavar="K", help="jobs of its array (16)")
     here = arguments.index("--") if "--" in arguments else len(arguments)
     options, words = parser.parse_args(arguments[:here]), arguments[here + 1:]
-    need_modules("pandas", "matplotlib")
     if (options.cluster is None) != (not words):
         raise StudyError("found one of --cluster PROFILE and -- SCENE …, allowed are both or none (see study/sweep --help)")
     if options.parts < 1:
@@ -51,7 +54,6 @@ def sweep(arguments):
 
 def read(path, of):
     """(table with a column `finished`, names of parameters, name of the result). Raises StudyError."""
-    import pandas
     try:
         table = pandas.read_csv(path)
     except (OSError, EOFError, ValueError, zlib.error) as error:
@@ -60,21 +62,19 @@ def read(path, of):
     if "status" not in names[1:] or not len(table):
         raise StudyError(f"{path}: found no lanes, allowed is a table of `mbs sweep`")
     parameters = names[:names.index("status")]
-    results = [name for name in names[names.index("status"):] if pandas.api.types.is_numeric_dtype(table[name])]
+    numbers = set(table.select_dtypes("number"))
+    results = [name for name in names[names.index("status"):] if name in numbers]
     outputs = names[names.index("constraint_violation_max") + 1:] if "constraint_violation_max" in names else []
     result = of or next((name for name in outputs if name in results), "constraint_violation_max")
     if result not in results:
         raise StudyError(f"--of: found {result!r}, allowed are {', '.join(results)}")
-    if wrong := [name for name in parameters if not pandas.api.types.is_numeric_dtype(table[name])]:
+    if wrong := [name for name in parameters if name not in numbers]:
         raise StudyError(f"{path}: {wrong[0]} has something else than numbers")
     table["finished"] = table["status"].isin(FINISHED)
     return table, parameters, result
 
 
 def draw(table, parameters, result, over, path):
-    import matplotlib.pyplot as plt
-
-    from analysis.core import style
     figure, (left, right) = plt.subplots(1, 2, figsize=(5 + 1.2 * len(parameters) + 6, 5), layout="constrained",
                                          width_ratios=(4 + 1.2 * len(parameters), 6))
     lines(left, table, [*parameters, result])
@@ -87,8 +87,6 @@ def draw(table, parameters, result, over, path):
 
 def lines(axes, table, columns):
     """Each lane a line over axes of its own scale; the colour goes by the last column."""
-    import matplotlib.pyplot as plt
-    from matplotlib.collections import LineCollection
     low, high = table[columns].min(), table[columns].max()
     shares = (table[columns] - low) / (high - low).where(high > low, 1)
     shares[columns[-1]] = shares[columns[-1]].fillna(-0.12)  # a lane without a result ends below
@@ -114,30 +112,26 @@ def lines(axes, table, columns):
 
 def surface(axes, table, over, result):
     """Median of the result in each cell of two parameters; a cross where a lane failed."""
-    places, edges = zip(*(cells(table[name].to_numpy()) for name in over))
-    groups = table.groupby([*places])
-    rows, columns = (range(len(edge) - 1) for edge in edges)
-    values = groups[result].median().unstack().reindex(index=rows, columns=columns).to_numpy()
-    failed = ~groups["finished"].all().unstack(fill_value=True).reindex(index=rows, columns=columns, fill_value=True).to_numpy()
-    mesh = axes.pcolormesh(*edges, values.T, cmap="viridis")
+    bins = [edges(table[name].to_numpy()) for name in over]
+    known, failed = table[table[result].notna()], table[~table["finished"]]
+    values = binned_statistic_2d(known[over[0]], known[over[1]], known[result], "median", bins).statistic
+    lost = numpy.argwhere(numpy.histogram2d(failed[over[0]], failed[over[1]], bins)[0])
+    mesh = axes.pcolormesh(*bins, values.T, cmap="viridis")
     axes.figure.colorbar(mesh, ax=axes, label=result)
-    middles = [(edge[:-1] + edge[1:]) / 2 for edge in edges]
-    axes.plot(middles[0][failed.nonzero()[0]], middles[1][failed.nonzero()[1]], "x", color=FAILED, markersize=5)
+    middles = [(edge[:-1] + edge[1:]) / 2 for edge in bins]
+    axes.plot(middles[0][lost[:, 0]], middles[1][lost[:, 1]], "x", color=FAILED, markersize=5)
     axes.set(xlabel=over[0], ylabel=over[1])
-    axes.set_title(f"{result}, median of a cell" + ("; crosses: lanes failed" if failed.any() else ""))
+    axes.set_title(f"{result}, median of a cell" + ("; crosses: lanes failed" if len(lost) else ""))
 
 
-def cells(values):
-    """(the cell of each value, edges of the cells): one a value where these are few, else of one width, so many that
-    cells of two parameters have some values each."""
+def edges(values):
+    """Of the cells of a parameter: one a value where these are few, else of one width, so many that cells of two parameters have some
+    values each."""
     distinct = numpy.unique(values)
     if 1 < len(distinct) <= CELLS:
         inner = (distinct[:-1] + distinct[1:]) / 2
-        edges = numpy.concatenate([[2 * distinct[0] - inner[0]], inner, [2 * distinct[-1] - inner[-1]]])
-    else:
-        count = int(numpy.clip(numpy.sqrt(len(values) / 4), 4, CELLS))
-        edges = numpy.linspace(distinct[0], distinct[-1], count + 1) if len(distinct) > 1 else distinct[0] + numpy.array([-.5, .5])
-    return numpy.clip(numpy.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2), edges
+        return numpy.concatenate([[2 * distinct[0] - inner[0]], inner, [2 * distinct[-1] - inner[-1]]])
+    return numpy.histogram_bin_edges(values, int(numpy.clip(numpy.sqrt(len(values) / 4), 4, CELLS)) if len(distinct) > 1 else 1)
 
 
 def curve(axes, table, name, result):

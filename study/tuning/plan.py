@@ -3,6 +3,7 @@ from dataclasses import replace
 
 from study.core.contest import CHECK_S, usual
 from study.core.gate import agreeing
+from study.core.profile import by_share
 from study.core.timing import measure
 
 SETTINGS = {"scenes": list,     # the most telling first
@@ -11,11 +12,7 @@ SETTINGS = {"scenes": list,     # the most telling first
             "samples": int}     # of a process and contender
 
 
-def columns(settings):
-    return {"alternatives": settings["seconds"]}
-
-
-def run(lab, column):
+def alternatives(lab):
     """A scene at a time: the gate, then whoever it agrees with."""
     here = asked(lab)
     for scene in lab.settings["scenes"] if here else []:
@@ -32,3 +29,6 @@ def asked(lab):
         if tried:
             found += (one, *(replace(one, name=name, variant=name) for name in tried))
     return found
+
+
+columns, run = by_share({"alternatives": (1.0, alternatives)})

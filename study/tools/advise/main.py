@@ -4,17 +4,24 @@ import math
 import re
 import sys
 import time
+from dataclasses import asdict
 from pathlib import Path
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write_json
 from study.core import locks, profile as profiles
-from study.core.contender import CONTROL, Contender, on_usual_pairs, usable
-from study.core.disk import writable
+from study.core.contender import control, on_usual_pairs
 from study.core.executor import program_of
-from study.core.main import need_modules
 from study.core.options import Parser, directory, positive
-from study.core.studyset import context_of, listed, need_own, select
+from study.core.studyset import context_of, listed, need_own, select, writable
+from study.tools.advise.advice import Question, advise as seek
+from study.tools.advise.answer import as_json, text
+from study.tools.advise.choice import LEAST_STEPS, MOST_STEPS
+from study.tools.advise.evidence import BEGUN
+from study.tools.advise.runner import REPEATS, Runner, describe, scene_name
+from study.tools.advise.settings import catalogue
+from study.tools.advise.validate import questions, validate
+from study.tools.shelf import ToolLab, open_shelf
 
 DURATION, BUDGET, LONGEST = 20.0, 45.0, 1e6  # s
 OF_A_QUESTION = ("--error", "--deadline-us", "--step", "--duration", "--budget", "--json")
@@ -23,14 +30,12 @@ DEFAULT = ROOT / "results" / "local" / "advice"
 
 def advise(arguments):
     options = _parser().parse_args(arguments)
-    need_modules("yaml", "pandas")
     if options.validate:
         return _validate(options)
     if options.results:
         need_own(options.results)
     if len(options.scene) != 1 or options.error is None:
         raise StudyError("one SCENE and --error E are needed (see study/advise --help)")
-    from study.tools.advise.answer import text
     answer = ask(options)
     print(json.dumps(answer, indent=1) if options.json else text(answer))
     return 0 if answer["met"] else 1
@@ -41,9 +46,6 @@ def _validate(options):
     if given:
         raise StudyError(f"--validate asks questions of its own: {', '.join(given)} "
                          f"do{'es' * (len(given) == 1)} not go with it, only --only and --results do")
-    need_modules()
-    from study.tools.advise.evidence import BEGUN
-    from study.tools.advise.validate import questions, validate
     questions(options.scene)  # before anything is written
     results = options.results or DEFAULT / "validation"
     need_own(results, BEGUN)
@@ -53,10 +55,6 @@ def _validate(options):
 
 def ask(options, folder=None):
     """The answer to one question; its records and advice.json are kept."""
-    from study.tools.advise.advice import Question, advise as seek  # these need the modules
-    from study.tools.advise.answer import as_json
-    from study.tools.advise.runner import REPEATS, describe, scene_name
-    from study.tools.advise.settings import catalogue
     began = time.monotonic()
     known = listed()
     names = select(known, options.only)
@@ -65,9 +63,7 @@ def ask(options, folder=None):
     question = Question(options.scene[0], options.error, duration(options.scene[0], options.duration, described),
                         options.deadline_us, options.budget or BUDGET, options.step)
     _need_possible(question)
-    inputs = {"scene": scene, "file": digest(ROOT / scene) if (ROOT / scene).is_file() else "",
-              "error": question.error, "duration": question.duration, "deadline_us": question.deadline_us,
-              "budget": question.budget, "step": question.step, "repeats": REPEATS}
+    inputs = asdict(question) | {"scene": scene, "file": digest(ROOT / scene) if (ROOT / scene).is_file() else "", "repeats": REPEATS}
     folder = folder or options.results or DEFAULT / _folder(inputs, names)
     writable(folder)
     spent = time.monotonic() - began
@@ -75,7 +71,7 @@ def ask(options, folder=None):
         clock = {"budget": question.budget, "began": time.monotonic() - spent}  # without the time of waiting
         run = runner_of(folder, inputs, described["variables"], names, known, question.deadline_us, options.json, **clock)
         advice = seek(question, catalogue(), described, {name: known.variants[name] for name in names}, run)
-        run.lab.progress.end()
+        run.lab.display.end()
         answer = as_json(advice, run, folder)
         write_json(folder / "advice.json", answer)
     return answer
@@ -88,11 +84,9 @@ def say(text):
 
 def runner_of(folder, inputs, variables, names, known, deadline_us=None, quiet=False, **clock):
     """The Runner of a scene and its records in `folder`; `clock`: `budget` and `began`."""
-    from study.tools.advise.runner import Runner  # these need the modules
-    from study.tools.shelf import ToolLab, open_shelf
     pairs = profiles.load("quick", []).blas
-    context = context_of(Contender(CONTROL.name, CONTROL.variant, usable(known, pairs["all"])))
-    lab = ToolLab(open_shelf(folder, "advise", context, names, question=inputs), "advise", "runs", quiet=quiet)
+    kept = open_shelf(folder, "advise", context_of(control(known, pairs)), names, question=inputs)
+    lab = ToolLab(kept, "advise", "runs", quiet=quiet)
     return Runner(lab, inputs["scene"], variables, on_usual_pairs(known, pairs, names), deadline_us, **clock)
 
 
@@ -133,7 +127,6 @@ def seconds(text):
 
 def _need_possible(question):
     """StudyError if a step is given in which there is nothing to advise on."""
-    from study.tools.advise.choice import LEAST_STEPS, MOST_STEPS
     least, most = question.duration / MOST_STEPS, question.duration / LEAST_STEPS
     if question.step and not least <= question.step <= most:
         raise StudyError(f"--step {question.step:g}: a run of {question.duration:g} s has {LEAST_STEPS} to "

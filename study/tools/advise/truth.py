@@ -2,6 +2,7 @@
 import math
 
 import numpy
+from scipy.interpolate import CubicHermiteSpline
 
 from analysis.core.outcomes import FINISHED, of_run
 from study.core.cell import Cell
@@ -30,8 +31,8 @@ class Truth:
             found = [self._extrapolated(lab, scene, contender, scheme, every) for scheme in SCHEMES]
             if any(one is None for one in found):
                 continue
-            (self.t, self.q, self.v), other = found
-            self.uncertainty = self._distance(self.q, other[1])
+            self.motion = CubicHermiteSpline(*found[0])
+            self.uncertainty = self._distance(found[0][1], found[1][1])
             if self.uncertainty <= enough:
                 return
 
@@ -41,13 +42,7 @@ class Truth:
 
     def error(self, series):
         """The largest distance of a point at any instant, m."""
-        t = numpy.array(series["t"])
-        at = numpy.clip(numpy.searchsorted(self.t, t) - 1, 0, len(self.t) - 2)
-        h = (self.t[at + 1] - self.t[at])[:, None]
-        s = (t - self.t[at])[:, None] / h
-        known = ((1 + 2 * s) * (1 - s)**2 * self.q[at] + s * (1 - s)**2 * h * self.v[at]
-                 + s * s * (3 - 2 * s) * self.q[at + 1] - s * s * (1 - s) * h * self.v[at + 1])
-        return self._distance(known, self._of(series, self.columns))
+        return self._distance(self.motion(series["t"]), self._of(series, self.columns))
 
     def _extrapolated(self, lab, scene, contender, scheme, every):
         """(t, q, v) by steps of duration/DENSE/every and half of that, to fourth order; None where a run was lost."""

@@ -60,7 +60,7 @@ def validate(options, ask, runner_of, results):
                 with locks.only_one_study(options.wait):
                     row |= _compare(row["error"], duration, answer, run, variants, found, speeds)
             evidence.keep(results, scene, rows, found)
-            run.lab.progress.end()
+            run.lab.display.end()
     table = evidence.read(results)
     print(f"{evidence.sentence(table)}\npage: {results / evidence.PAGE}")
     return 0 if evidence.held(table[table.asked]).all(axis=None) and table.asked.any() else 1

@@ -2,9 +2,10 @@
 from dataclasses import dataclass
 
 from analysis.core import schema
-from analysis.core.timing import EQUIVALENT, NONE, Ratio
+from analysis.core.timing import EQUIVALENT, Ranking, Ratio
 from analysis.core.view import View
 from analysis.map.results import Results
+from study.core import executor
 
 LAYERS = {"libraries": "libraries", "all": "all, own code included"}
 ALIKE = ("commit", "compiler", "flags", "build_type", "libraries")  # of sets that may be compared
@@ -24,15 +25,14 @@ def unlike(first, other):
     for one in (first, other):
         if str(one.facts["context"].get("dirty")).lower() != "false":
             return f"{one.folder} was measured from a tree with changes"
-    for key in ALIKE:
-        mine, its = (str(one.facts["context"].get(key, "missing")) for one in (first, other))
-        if mine != its:
-            return f"{other.folder} is of another build than {first.folder}: {key} is '{its}', not '{mine}'"
+    if differs := executor.differing(first.facts["context"], other.facts["context"], ALIKE):
+        key, mine, its = differs
+        return f"{other.folder} is of another build than {first.folder}: {key} is '{its}', not '{mine}'"
     return ""
 
 
 def questions(studyset):
-    """{Question: {contender: Ratio to the fastest of the layer}} of one set's map and mechanisms."""
+    """{Question: Ranking} of one set's map and mechanisms."""
     return dict([*_map(studyset), *_families(studyset)])
 
 
@@ -46,7 +46,7 @@ def _map(studyset):
         for scene, rows in results.timing.groupby("scene"):
             ranking = results.rank(scene, names)
             if ranking:
-                yield Question("map", scene, "penalty", layer, rows.variables.iloc[0]), ranking.ratios
+                yield Question("map", scene, "penalty", layer, rows.variables.iloc[0]), ranking
 
 
 def _families(studyset):
@@ -57,14 +57,14 @@ def _families(studyset):
     rows = rows[(rows.status == "ok") & rows.implementation.isin(studyset.registry.libraries) & rows.to_rival.notna()]
     for (scene, form), group in rows.groupby(["scene", "scheme"]):
         if group.to_rival_low.notna().any():
-            yield Question("families", scene, form, "libraries", group.variables.iloc[0]), {
-                row.implementation: Ratio(row.to_rival, row.to_rival_low, row.to_rival_high) if row.to_rival != 1 else Ratio(1.0, 1.0, 1.0)
-                for row in group.sort_values("to_rival").itertuples()}
+            ratios = {row.implementation: Ratio(row.to_rival, row.to_rival_low, row.to_rival_high) if row.to_rival != 1 else Ratio(1.0, 1.0, 1.0)
+                      for row in group.sort_values("to_rival").itertuples()}
+            yield Question("families", scene, form, "libraries", group.variables.iloc[0]), Ranking(next(iter(ratios)), ratios)
 
 
 @dataclass(frozen=True)
 class Agreement:
-    """`machines`: for each set {contender: Ratio}. A contender is inside on a machine if it is not shown to be more than
+    """`machines`: for each set its Ranking. A contender is inside on a machine if it is not shown to be more than
     5 % behind the fastest there."""
     question: Question
     machines: tuple
@@ -72,7 +72,7 @@ class Agreement:
     @property
     def sets(self):
         """Of each machine, those inside."""
-        return [[name for name, one in ratios.items() if one.value == 1 or not one.low > EQUIVALENT] for ratios in self.machines]
+        return [[name for name, one in ranking.ratios.items() if one.value == 1 or not one.low > EQUIVALENT] for ranking in self.machines]
 
     @property
     def common(self):
@@ -82,7 +82,12 @@ class Agreement:
 
     @property
     def winners(self):
-        return [next(iter(ratios)) for ratios in self.machines]
+        return [one.winner for one in self.machines]
+
+    @property
+    def alike(self):
+        """Whether each winner is as fast as the winner on every other machine."""
+        return all(mine.winner in its.equivalent for mine in self.machines for its in self.machines)
 
     @property
     def decided(self):
@@ -92,8 +97,8 @@ class Agreement:
     @property
     def worst(self):
         """{contender timed on all machines: its largest ratio to the fastest there}, the least first."""
-        shared = set.intersection(*(set(one) for one in self.machines))
-        found = {name: max(one[name].value for one in self.machines) for name in shared}
+        shared = set.intersection(*(set(one.ratios) for one in self.machines))
+        found = {name: max(one.ratios[name].value for one in self.machines) for name in shared}
         return dict(sorted(found.items(), key=lambda one: one[1]))
 
     @property
@@ -139,13 +144,11 @@ def held(agreed, fresh):
     known, found = questions(fresh), {}
     for one in agreed:
         if one.decided and one.question in known:
-            winner = next(iter(known[one.question]))
             cells, inner = found.get(one.question.layer, (0, 0))
-            found[one.question.layer] = (cells + 1, inner + (winner in one.common))
+            found[one.question.layer] = (cells + 1, inner + (known[one.question].winner in one.common))
     return found
 
 
-def pair(one, place):
-    """The margin of the second on a machine; NONE without one."""
-    ratios = list(one.machines[place].values())
-    return ratios[1] if len(ratios) > 1 else NONE
+def said(ranking):
+    """Whether a set says who is fastest, or of everyone whether it is as fast."""
+    return ranking.decided or ranking.settled

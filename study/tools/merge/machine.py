@@ -1,9 +1,10 @@
 # What was measured of a machine itself, beside the winners on it: rates of the processor, controls, and how long a step takes
 # each library beside another machine.
-import numpy
 import pandas
+from scipy.stats import gmean
 
 from analysis.core import records, schema
+from analysis.core.files import read_object
 from analysis.map import carry
 
 RATES = {"flops_per_ns": "multiply-adds in the widest vectors, operations a ns", "divisions_per_ns": "divisions in the widest vectors, a ns",
@@ -23,7 +24,7 @@ def rates(studyset):
 
 def controls(studyset):
     """carry.judged of a set's map."""
-    return carry.judged(table(studyset, "map", "controls"))
+    return carry.judged(table(studyset.folder, "map", "controls"))
 
 
 def gains(sets):
@@ -31,17 +32,18 @@ def gains(sets):
     the families that all timed, in the penalty form."""
     times = []
     for one in sets:
-        rows = table(one, "families", "scenes")
+        rows = table(one.folder, "families", "scenes")
         rows = rows[(rows.status == "ok") & (rows.scheme == "penalty")]
         times.append(rows.set_index(["implementation", "scene"]).step_us)
     shared = set.intersection(*(set(one.index) for one in times))
     scenes = {name: sorted(scene for who, scene in shared if who == name) for name, _ in shared}
-    found = {name: [float(numpy.exp(numpy.mean([numpy.log(one[name, scene] / times[0][name, scene]) for scene in mine]))) for one in times]
-             for name, mine in scenes.items()}
+    found = {name: [gmean([one[name, scene] / times[0][name, scene] for scene in mine]) for one in times] for name, mine in scenes.items()}
     return dict(sorted(found.items(), key=lambda one: one[1][-1]))
 
 
-def table(studyset, part, name):
-    if not (studyset.folder / part / schema.DIGESTS).exists():
-        return schema.conform(pandas.DataFrame(), schema.of_part(part)[name], f"{part}/{name}.csv")
-    return schema.read_table(studyset.folder, part, name)
+def table(folder, part, name):
+    """A table of a set; empty where the set lacks the part, or is of an older schema without it."""
+    kept = folder / part / schema.DIGESTS
+    if kept.exists() and name in read_object(kept, tables=dict)["tables"]:
+        return schema.read_table(folder, part, name)
+    return schema.conform(pandas.DataFrame(), schema.of_part(part)[name], f"{part}/{name}.csv")

@@ -4,7 +4,6 @@ import pandas
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, write_text
 from analysis.core.site import template
-from study.core.main import need_modules
 from study.core.options import Parser, directory
 from study.core.studyset import opened
 from study.tools.merge import agreement, machine
@@ -19,13 +18,13 @@ def merge(arguments):
     parser.add_argument("--to", type=directory, default=ROOT / "results" / "local" / "merged", metavar="DIR",
                         help="where page and table go (results/local/merged)")
     parser.add_argument("--fresh", type=directory, metavar="SET", help="a further set: how many of its winners lie in the merged sets?")
+    parser.add_argument("--other-builds", action="store_true", help="sets of other commits, libraries or changed trees too: do they say the same?")
     options = parser.parse_args(arguments)
     if len(options.sets) < 2 or len({one.resolve() for one in options.sets}) < len(options.sets):
         raise StudyError("needs two different sets or more")
-    need_modules()
     sets = [opened(folder) for folder in options.sets]
     fresh = opened(options.fresh) if options.fresh else None
-    for one in (*sets, *([fresh] if fresh else [])):
+    for one in () if options.other_builds else (*sets, *([fresh] if fresh else [])):
         need_alike(sets[0], one)
     if options.to.exists() and any(options.to.iterdir()) and not (options.to / "agreement.csv").exists():
         raise StudyError(f"{options.to} is not empty and holds no merged sets: name another directory with --to")
@@ -49,10 +48,21 @@ def merge(arguments):
         total = sum(count.values())
         print(f"{agreement.LAYERS[layer]}: {total} common cells, {count['decided']} with one winner everywhere, {count['several']} with several, "
               f"{count['differs']} differ by machine")
+        print(*_said([one for one in agreed if one.question.layer == layer], machines), sep="\n")
     for layer, (cells, inner) in found.items():
         print(f"{agreement.LAYERS[layer]}: of {cells} decided cells the fresh set's winner lies in {inner} ({100 * inner / cells:.0f} %)")
     print(f"page: {options.to / 'index.html'}")
     return 0
+
+
+def _said(agreed, machines):
+    """On how many cells each set says who is fastest, or who all are as fast, and how many of these all say alike."""
+    for place, label in enumerate(machines):
+        yield f"  {label}: {sum(agreement.said(one.machines[place]) for one in agreed)} decided or with all that are as fast"
+    both = [one for one in agreed if all(map(agreement.said, one.machines))]
+    alike = sum(one.alike for one in both)
+    yield f"  {len(both)} so in all, {alike} of them alike" + (f" ({100 * alike / len(both):.0f} %)" if both else "")
+    yield from (f"  {one.question.scene}, {one.question.form}: {' | '.join(one.winners)}" for one in both if not one.alike)
 
 
 def need_alike(first, other):
@@ -73,7 +83,7 @@ def row(one, machines):
              "variables": one.question.variables, "verdict": one.verdict, "common": " ".join(one.common), "robust": one.robust,
              "worst": one.worst.get(one.robust)}
     for place, label in enumerate(machines):
-        margin = agreement.pair(one, place)
+        margin = one.machines[place].margin
         found |= {f"winner: {label}": one.winners[place], f"margin: {label}": margin.value, f"low: {label}": margin.low,
                   f"high: {label}": margin.high, f"inside: {label}": " ".join(one.sets[place])}
     return found

@@ -2,7 +2,6 @@
 import math
 import re
 
-from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write_text
 from study.tools.paper.claims import claims
 
@@ -39,11 +38,8 @@ def judged(known):
 def told(known):
     """A line a claim, also of a set that has a few parts."""
     for one in claims():
-        try:
-            holds, found = one.found(known)
-        except StudyError:  # a part that it needs is missing
-            holds, found = None, ""
-        yield f"{SAYS[holds]}: {one.text}" + (f" ({found})" if found else "")
+        holds, found = one.found(known)
+        yield f"{SAYS[holds]}: {one.text}" + ("" if holds is None else f" ({found})")
 
 
 def _set(known):

@@ -1,13 +1,13 @@
 # study/paper --audit: what is wrong with the paper, its set and what was built, each a line. Needs no LaTeX.
 import re
 
-from analysis.core import records, schema
-from analysis.core.errors import StudyError
+from analysis.core import schema
 from analysis.core.files import ROOT, digest, read_json
-from analysis.core.parts import parts
 from study.tools.merge import agreement
 from study.tools.paper import artifact
+from study.tools.paper.figures import DRAWN
 from study.tools.paper.tables import TABLES
+from study.tools.store import faults
 
 PAPER = ROOT / "paper"
 BUILD = PAPER / "build"
@@ -34,34 +34,10 @@ def source():
 
 def of_sets(known):
     """What is wrong with the set, and with those of other machines beside it."""
-    yield from of_set(known)
+    yield from faults(known)
     for one in known.beside:
         what = agreement.unlike(known, one)
-        yield from [f"{what}: machines are compared by sets of one build; measure it anew, or remove it"] if what else of_set(one)
-
-
-def of_set(known):
-    """A set that is dirty, mixed, stale or not whole."""
-    context = known.context
-    for path in sorted((known.folder / "contexts").glob("*.json")) + [known.folder / "set.json"]:
-        one = read_json(path)
-        one = one.get("context", one)
-        if str(one.get("dirty")).lower() != "false":
-            yield f"{path}: measured from a tree with changes (dirty is {one.get('dirty')})"
-        yield from (f"{path}: is of another {key} than its set" for key in ("commit", "machine") if one.get(key) != context.get(key))
-    for part in parts():
-        if part not in known.facts["parts"]:
-            yield f"{known.folder} lacks the part {part}"
-            continue
-        try:
-            schema.need_unchanged(known.folder, part)
-            there = records.read_part(known.folder, part)
-            if read_json(known.folder / part / schema.DIGESTS)["records"] != schema.digest_of(there):
-                yield f"{known.folder / part}: its tables are not those of its records: study/figures {known.folder}"
-            for record in there:
-                records.need_same_origin(record, context, f"{known.folder}/raw/{part}")
-        except StudyError as error:
-            yield str(error)
+        yield from [f"{what}: machines are compared by sets of one build; measure it anew, or remove it"] if what else faults(one)
 
 
 def of_text(text, found, claimed):
@@ -75,13 +51,11 @@ def of_text(text, found, claimed):
         for name, one in found.items():
             if digits.strip("$") == one.text and one.records and len(re.sub(r"\D", "", digits)) > 2:
                 yield rf"\given{{{digits}}} is the measured number {name}"
-    for kind, known in (("value", found), ("table", [*TABLES]), ("figure", FIGURES)):
-        used = USED[kind].findall(text)
+    held = USED["holds"].findall(text)
+    for kind, known in (("value", found), ("table", TABLES), ("figure", DRAWN), ("claim", claimed)):
+        used = [*held, *EITHER.findall(text)] if kind == "claim" else USED[kind].findall(text)
         yield from (f"paper.tex uses the {kind} '{name}', which is not defined" for name in dict.fromkeys(used) if name not in known)
         yield from (f"the {kind} '{name}' is defined and not used" for name in known if name not in used)
-    held, chosen = USED["holds"].findall(text), EITHER.findall(text)
-    yield from (f"paper.tex asks for the claim '{name}', which is not defined" for name in dict.fromkeys([*held, *chosen]) if name not in claimed)
-    yield from (f"the claim '{name}' is defined and not used" for name in claimed if name not in [*held, *chosen])
     yield from (f"the claim '{name}' does not hold: {claimed[name][1] or 'not measured'}" for name in dict.fromkeys(held) if name in claimed and not claimed[name][0])
 
 
@@ -108,6 +82,3 @@ def built(known):
     if STAMP.exists() and read_json(STAMP) != stamp(known):
         was = read_json(STAMP)
         yield f"paper/build is of {was.get('set')} at {str(was.get('commit'))[:10]}, not of {known.folder.name} as it is now: run study/paper, or remove it"
-
-
-FIGURES = ("mechanisms", "held", "own_fill", "map", "phases", "work", "window", "steps", "own", "engines")

@@ -2,6 +2,9 @@
 # sentence that fits where the paper has one for each outcome (\either).
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import eq
+
+from scipy.stats import gmean
 
 from analysis.accuracy import pairs
 from analysis.core.text import between, number, span
@@ -9,7 +12,7 @@ from analysis.families import bounds, rule
 from analysis.families.figures import fastest_own
 from analysis.limit import held as limits
 from study.tools.merge import agreement, machine
-from study.tools.paper.numbers import DENSE, HYBRID, SCALAR, losses, mean, of, percent, real_mechanisms
+from study.tools.paper.numbers import DENSE, HYBRID, SCALAR, losses, percent, real_mechanisms
 
 PAPER_PENALTY = 1e8  # the factor of 2008, at 1.25 ms
 
@@ -46,37 +49,43 @@ def claims():
         Claim("quiet", "The machine itself lost no deadline", "realtime", "latency", _quiet))
 
 
+def _counted(good, wanted, text):
+    """(whether as many rows are good as is wanted, None without rows; the text with both numbers)"""
+    count, total = int(good.sum()), len(good)
+    return (wanted(count, total) if total else None), text.format(count=count, total=total)
+
+
+def _none(count, _):
+    return count == 0
+
+
 def _agree(known):
     rows = known.tables("families")["scenes"]
-    ranked = rows[(rows.status == "ok") & rows.to_rival.notna()]
-    wrong = ranked[ranked.verdict != "agrees"]
-    return (wrong.empty if len(ranked) else None), f"{len(ranked) - len(wrong)} of {len(ranked)} agree"
+    return _counted(rows[(rows.status == "ok") & rows.to_rival.notna()].verdict == "agrees", eq, "{count} of {total} agree")
 
 
 def _sparse(known):
-    rows = real_mechanisms(known)
-    dense = known.registry.dense
-    count = int((~rows.winner.isin(dense)).sum())
-    return (2 * count > len(rows) if len(rows) else None), f"more than half; here {count} of {len(rows)}"
+    sparse = ~real_mechanisms(known).winner.isin(known.registry.dense)
+    return _counted(sparse, lambda count, total: 2 * count > total, "more than half; here {count} of {total}")
 
 
 def _single(known):
     name, ratios = next(iter(losses(known).items()), ("", None))
-    return (mean(ratios) <= 1.3 if name else None), f"at most 1.3; here {name} {number(mean(ratios))}" if name else ""
+    return (gmean(ratios) <= 1.3 if name else None), f"at most 1.3; here {name} {number(gmean(ratios))}" if name else ""
 
 
 def _assembly(known):
-    results, cells = of(known.tables("map"), known.view("map")), known.tables("map")["cells"]
+    cells = known.tables("map")["cells"]
     scenes = cells[(cells.layer == "libraries") & cells.fill_asked.notna()].scene
-    found = [one for scene in scenes for one in [results.ratio(scene, DENSE, HYBRID)] if one]
+    found = [one for scene in scenes for one in [known.results.ratio(scene, DENSE, HYBRID)] if one]
     return (all(one.low > 1 for one in found) if found else None), (f"above 1; here {span([one.low for one in found])} at the lower ends" if found else "")
 
 
 def _overtakes(known):
     cells = known.tables("map")["cells"]
-    rows = cells[(cells.layer == "libraries") & (cells.winner != "")]
-    count = sum(bool(set(text.split()) & known.registry.dense) for text in rows.equivalent)
-    return (count > 0 if len(rows) else None), f"at least one cell; here {count} of {len(rows)}"
+    equivalent = cells[(cells.layer == "libraries") & (cells.winner != "")].equivalent
+    dense = equivalent.str.split().map(lambda names: not known.registry.dense.isdisjoint(names)).astype(bool)
+    return _counted(dense, lambda count, _: count > 0, "at least one cell; here {count} of {total}")
 
 
 def _compared(known):
@@ -114,8 +123,7 @@ def _rule(known):
 def _automatic(known):
     rows = known.tables("stability")["maps"]
     rows = rows[(rows.penalty_asked == "auto") & (rows.precision == "double") & (rows.status != "dropped")]
-    good = int((rows.status == "ok").sum())
-    return (good == len(rows) if len(rows) else None), f"all; here {good} of {len(rows)}"
+    return _counted(rows.status == "ok", eq, "all; here {count} of {total}")
 
 
 def _window_of_2008(known):
@@ -139,8 +147,7 @@ def _below(known):
 def _mixed(known):
     rows = known.tables("accuracy")["pairs"]
     rows = rows[(rows.kind == pairs.PRECISION) & rows.ratio.notna() & rows.second.str.contains("mixed")]
-    won = pairs.gains(rows) if len(rows) else rows
-    return (won.empty if len(rows) else None), f"none; here {len(won)} of {len(rows)}"
+    return _counted(rows.index.isin(pairs.gains(rows).index), _none, "none; here {count} of {total}")
 
 
 def _compiled(known):
@@ -161,8 +168,7 @@ def _batches(known):
 def _engines(known):
     rows = known.tables("engines")["equal_error"]
     rows = rows[(rows.side == "library") & rows.ratio.notna()]
-    behind = rows[rows.high < 1]
-    return (behind.empty if len(rows) else None), f"none; here {len(behind)} of {len(rows)} comparisons"
+    return _counted(rows.high < 1, _none, "none; here {count} of {total} comparisons")
 
 
 def _quiet(known):

@@ -1,5 +1,4 @@
 # The paper's figures: the study's own, at print size; and one of its own, real mechanisms with intervals.
-import matplotlib
 import matplotlib.pyplot as plt
 from matplotlib.gridspec import GridSpec
 from matplotlib.text import Text
@@ -12,7 +11,6 @@ from analysis.engines import figures as engine_figures
 from analysis.families import figures as families
 from analysis.limit import figures as limit
 from analysis.map import maps, sparse_figure
-from analysis.map.results import of
 from analysis.realtime import figures as realtime
 from analysis.stability import figures as stability
 from study.tools.paper.numbers import DENSE, HYBRID, led, profiled, real_mechanisms
@@ -31,12 +29,7 @@ MARKS = ("o", "s", "^", "D", "v", "P")
 
 def figures(known):
     """{name: figure}, each as wide as the paper's text"""
-    return {name: figure(known, name) for name in DRAWN}
-
-
-def figure(known, name):
-    draw, height = DRAWN[name]
-    return fit(draw(known), height, known.context["cpu_model"])
+    return {name: fit(draw(known), height, known.context["cpu_model"]) for name, (draw, height) in DRAWN.items()}
 
 
 def held(known):
@@ -44,7 +37,7 @@ def held(known):
 
 
 def own_fill(known):
-    figure = sparse_figure.draw(results_of(known), Look(known.registry))
+    figure = sparse_figure.draw(known.results, Look(known.registry))
     for text in figure.texts:  # which the caption says
         text.set_text("")
     figure.axes[0].set_title("")
@@ -55,16 +48,12 @@ def own_fill(known):
 
 def size_and_fill(known):
     """The map, its legend below: cells are as wide as paper allows."""
-    results = results_of(known)
+    results = known.results
     figure = maps.draw(results, Look(known.registry), "", results.layer("libraries"), letters=9, line=2.7)
     legend = figure.axes[0].get_legend()
     if legend:
         below(figure, legend, 3, 0.02, 7.2)
     return figure
-
-
-def results_of(known):
-    return of(known.tables("map"), known.view("map"))
 
 
 def work(known):
@@ -107,12 +96,6 @@ def steps(known):
     return realtime.distributions(rows[rows.implementation.isin(realtime.order(rows)[:STEPS])] if len(rows) else rows, tables["machine"])
 
 
-def alone(figure):
-    """With the one panel that is left over its whole width."""
-    figure.axes[0].set_subplotspec(GridSpec(1, 1, figure=figure)[0])
-    return figure
-
-
 def own(known):
     """Of the map of mechanisms the panel of our own code."""
     figure = families.real_map(known.tables("families"), Look(known.registry), known.registry)
@@ -123,7 +106,8 @@ def own(known):
         colours.remove()
     for axes in figure.axes:
         axes.set(title="", ylabel="times as fast")
-    return alone(figure)
+    figure.axes[0].set_subplotspec(GridSpec(1, 1, figure=figure)[0])  # the panel that is left has the whole width
+    return figure
 
 
 def below(figure, legend, columns, y=-0.03, size=9):

@@ -3,25 +3,21 @@ import importlib
 from dataclasses import dataclass, field
 from functools import cached_property
 
-import pandas
-
-from analysis.core import schema
-from analysis.core.files import ROOT, read_object
+from analysis.core.files import ROOT
 from analysis.core.view import Folder, View
-from study.tools.merge import agreement
+from analysis.map.results import of
+from study.tools.merge import agreement, machine
 
 
 class Tables(dict):
-    """{table: DataFrame} of a part of a set; a table that a set of an older schema lacks is empty."""
+    """{table: DataFrame} of a part of a set, each read when it is asked for; empty where the set lacks it."""
 
     def __init__(self, folder, part):
         super().__init__()
         self.folder, self.part = folder, part
 
     def __missing__(self, name):
-        kept = read_object(self.folder / self.part / schema.DIGESTS, tables=dict)["tables"]
-        self[name] = schema.read_table(self.folder, self.part, name) if name in kept else schema.conform(
-            pandas.DataFrame(), schema.of_part(self.part)[name], f"{self.part}/{name}.csv")
+        self[name] = machine.table(self.folder, self.part, name)
         return self[name]
 
 
@@ -30,7 +26,6 @@ class Known(Folder):
     _tables: dict = field(default_factory=dict)
 
     def tables(self, part):
-        """{table: DataFrame} of a part, each read when it is asked for."""
         return self._tables.setdefault(part, Tables(self.folder, part))
 
     def view(self, part="map"):
@@ -40,6 +35,11 @@ class Known(Folder):
         """The part's own answers, one text."""
         module = importlib.import_module(f"analysis.{part}.sentences")
         return [one["text"] for one in module.answers(self.tables(part), self.view(part))]
+
+    @cached_property
+    def results(self):
+        """What the map's tables are asked for."""
+        return of(self.tables("map"), self.view("map"))
 
     @property
     def context(self):

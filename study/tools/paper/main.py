@@ -6,8 +6,12 @@ import subprocess
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, write_json, write_text
-from study.core.main import need_modules
+from analysis.core.style import save
 from study.core.options import Parser, directory
+from study.tools.fragments import main_set
+from study.tools.paper import artifact, audit, figures, tables
+from study.tools.paper.known import Known
+from study.tools.paper.numbers import numbers
 
 LATEX = ("latexmk", "biber")
 LEAST, MOST = 10, 14  # pages
@@ -21,11 +25,6 @@ def paper(arguments):
     parser.add_argument("--claims", action="store_true", help="only say which claims hold in a set, a line each; also in one that is not stored")
     parser.add_argument("--fill", action="store_true", help="only fill paper/ARTIFACT.md anew")
     options = parser.parse_args(arguments)
-    need_modules()
-    from study.tools.fragments import main_set
-    from study.tools.paper import artifact, audit
-    from study.tools.paper.known import Known
-    from study.tools.paper.numbers import numbers
     known = Known((options.set or main_set()).resolve())
     if options.claims:
         print(*artifact.told(known), sep="\n")
@@ -61,8 +60,6 @@ def need_latex():
 
 def write_parts(known, found, claimed):
     """What paper.tex takes in: numbers, claims, tables and figures of the set, and the stamp that says of which."""
-    from analysis.core.style import save
-    from study.tools.paper import audit, figures, tables
     words = {True: "yes", False: "no", None: "unknown"}
     lines = [rf"\csdef{{number@{name}}}{{{tables.tex(one.text)}}}" for name, one in found.items()]
     lines += [rf"\csdef{{claim@{name}}}{{{words[holds]}}}" for name, (holds, _) in claimed.items()]
@@ -77,7 +74,6 @@ def write_parts(known, found, claimed):
 
 
 def build():
-    from study.tools.paper import audit
     done = subprocess.run(["latexmk", "-pdf", "-interaction=nonstopmode", "-halt-on-error", "-file-line-error", "-outdir=build", "paper.tex"],
                           cwd=audit.PAPER, env={**os.environ, "max_print_line": "1000"}, capture_output=True, text=True, errors="replace")
     if done.returncode:

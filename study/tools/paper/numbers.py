@@ -1,11 +1,12 @@
 # Every number of the paper by name, each a query on a table of the set, with the records behind it.
 #
-# A query gets Known and gives Number or None: then the paper prints "not measured".
+# A query gets Known and gives Number or None: then the paper prints "not measured", as it does for a text that says nothing.
 import math
+from collections import defaultdict
 from dataclasses import dataclass
 
-import numpy
 import yaml
+from scipy.stats import gmean
 
 from analysis.accuracy import sentences as accuracy
 from analysis.core import timing
@@ -14,10 +15,10 @@ from analysis.core.text import number, span
 from analysis.families import rule as rules
 from analysis.families.figures import best_form, fastest_own
 from analysis.map import carry, ledger, sentences as map_sentences, summary
-from analysis.map.results import of
 from study.tools.merge import agreement, machine
 
 NOT_MEASURED = "not measured"
+NOTHING = ("", "–", "nan")  # texts of what is not measured
 DENSE, HYBRID = "eigen_dense/llt", "hybrid_dense/llt"  # the same factorization, assembled densely and sparsely
 SCALAR, BLOCKS = "csc_ldl/uplooking", "csc_cholmod/supernodal"  # which works number by number; by calls of BLAS
 
@@ -35,14 +36,21 @@ def numbers(known):
     for query in (_set, _design, _gate, real, _size, _fill, _machines, _claims, _price, _rule, _error, _window, _latency, _own, _limits,
                   _minutes):
         found |= {f"{query.__name__.lstrip('_')}.{name}": one for name, one in query(known).items()}
-    return {name: Number(one.text, one.table, tuple(dict.fromkeys(one.records))) if isinstance(one, Number) and one.text not in ("", "–", "nan") else Number(NOT_MEASURED, one.table if one else "")
-            for name, one in found.items()}
+    return {name: one if one and one.text not in NOTHING else Number(NOT_MEASURED, one.table if one else "") for name, one in found.items()}
 
 
 def of_rows(text, table, rows):
-    """A Number of rows of a table, which name their records."""
-    names = [name for one in rows.record for name in str(one).split()]
-    return Number(str(text), table, tuple(dict.fromkeys(names)))
+    """A Number of rows of a table, which name their records; None if there are no rows. `text` may be a function of the rows."""
+    return Number(str(text(rows) if callable(text) else text), table, _records(rows)) if len(rows) else None
+
+
+def count(rows, among, table):
+    """The Number of rows; None if there are none that they might be `among`."""
+    return Number(str(len(rows)), table, _records(rows)) if len(among) else None
+
+
+def _records(rows):
+    return tuple(dict.fromkeys(name for one in rows.record for name in str(one).split()))
 
 
 def percent(value, digits=0):
@@ -76,12 +84,7 @@ def losses(known):
     rows = rows.assign(ratio=rows.to_rival.where(rows.status == "ok").fillna(rough).clip(lower=1))
     rows = rows[rows.ratio.notna() & rows.implementation.isin(known.registry.libraries)]
     found = {name: one.set_index("scene").ratio for name, one in rows.groupby("implementation")}
-    return dict(sorted(found.items(), key=lambda one: (-len(one[1]), mean(one[1]))))
-
-
-def mean(ratios):
-    """Geometric."""
-    return float(numpy.exp(numpy.mean(numpy.log(ratios))))
+    return dict(sorted(found.items(), key=lambda one: (-len(one[1]), gmean(one[1]))))
 
 
 def _set(known):
@@ -96,17 +99,15 @@ def _set(known):
 def _design(known):
     registry, file = known.registry, f"{known.folder.name}/registry.json"
     scenes, tried = known.tables("families")["scenes"], known.tables("tuning")["alternatives"]
-    processes, timed = scenes.processes.dropna(), tried[tried.status == "ok"]
+    timed, table = tried[tried.status == "ok"], "tuning/alternatives"
     return {"libraries": Number(str(len(registry.libraries)), file), "own": Number(str(len(registry.own)), file),
             "equal": Number(f"{100 * (timing.EQUIVALENT - 1):.0f} %", "analysis/core/timing.py"),
             "confidence": Number(f"{100 * timing.CONFIDENCE:.0f} %", "analysis/core/timing.py"),
-            "processes": of_rows(span(processes), "families/scenes", scenes[scenes.processes.notna()]) if len(processes) else None,
-            "tried": of_rows(timed.alternative.nunique(), "tuning/alternatives", timed),
-            "compared": of_rows(len(timed), "tuning/alternatives", timed),
-            "slower": of_rows((timed.low > 1).sum(), "tuning/alternatives", timed[timed.low > 1]),
-            "faster": of_rows((timed.high < 1).sum(), "tuning/alternatives", timed[timed.high < 1]),
-            "least": of_rows(number(timed.ratio.min()), "tuning/alternatives", timed.nsmallest(1, "ratio")) if len(timed) else None,
-            "controls": of_rows(_controls(known), "map/controls", known.tables("map")["controls"]),
+            "processes": of_rows(lambda rows: span(rows.processes), "families/scenes", scenes[scenes.processes.notna()]),
+            "tried": of_rows(timed.alternative.nunique(), table, timed), "compared": count(timed, timed, table),
+            "slower": count(timed[timed.low > 1], timed, table), "faster": count(timed[timed.high < 1], timed, table),
+            "least": of_rows(lambda rows: number(rows.ratio.iloc[0]), table, timed.nsmallest(1, "ratio")),
+            "controls": Number(_controls(known), "map/controls", _records(known.tables("map")["controls"])),
             "spread": Number(_spread(known), "map/spread")}
 
 
@@ -128,10 +129,7 @@ def _spread(known):
 
 def _machines(known):
     """What machines say together, and what makes them differ."""
-    if not known.others:
-        return dict.fromkeys(("count", "names", "all", "same", "common", "differ", "cells", "decided", "several", "differs", "rate", "latency", "vector",
-                              "scalar", "blocks"))
-    count = agreement.shares(agreement.mechanisms(known.machines, known.agreed))
+    shares = agreement.shares(agreement.mechanisms(known.machines, known.agreed))
     kinds = [one.verdict for one in known.agreed if one.question.part == "map"]
     verdicts = {"cells": len(kinds)} | {verdict: kinds.count(verdict) for verdict in ("decided", "several", "differs")}
     rates, gained = [machine.rates(one) for one in known.machines], machine.gains(known.machines)
@@ -141,11 +139,12 @@ def _machines(known):
     told = [f"{one.folder.name} is {one.context['cpu_model']}, {one.facts['date'][:10]}" for one in known.machines]
     on = lambda values: listed(f"{number(value, 2)} on {one.folder.name}" for value, one in zip(values, known.others))
     where = "of " + ", ".join(one.folder.name for one in known.machines)
-    return {name: Number(text, f"{table} {where}") for table, found in (
+    found = {name: Number(text, f"{table} {where}") for table, texts in (
         ("set.json", {"count": str(len(told)), "names": "; ".join(told)}),
-        ("families/scenes", {name: str(one) for name, one in count.items()} | {name: on(one) for name, one in steps.items()}),
+        ("families/scenes", {name: str(one) for name, one in shares.items()} | {name: on(one) for name, one in steps.items()}),
         ("map/tidy", {name: str(one) for name, one in verdicts.items()}),
-        ("raw/limit", {name: on(one) for name, one in beside.items()})) for name, text in found.items()}
+        ("raw/limit", {name: on(one) for name, one in beside.items()})) for name, text in texts.items()}
+    return found if known.others else dict.fromkeys(found)
 
 
 def _gate(known):
@@ -153,61 +152,58 @@ def _gate(known):
     for part, name, table in (("families", "scenes", known.tables("families")["scenes"]),
                               ("map", "verification", known.tables("map")["verification"].drop_duplicates(["scene", "implementation"]))):
         asked = table[~table.verdict.isin(["", "dropped"])]
-        found |= {f"{part}_asked": of_rows(len(asked), f"{part}/{name}", asked),
-                  f"{part}_agree": of_rows((asked.verdict == "agrees").sum(), f"{part}/{name}", asked[asked.verdict == "agrees"])}
+        found |= {f"{part}_asked": count(asked, asked, f"{part}/{name}"),
+                  f"{part}_agree": count(asked[asked.verdict == "agrees"], asked, f"{part}/{name}")}
     return found
 
 
 def real(known):
-    rows, table = real_mechanisms(known), "families/winners"
-    if rows.empty:
-        return dict.fromkeys(("mechanisms", "families", "least", "most", "said", "margin", "leader", "leads", "shares", "saddle", "saddle_of", "single", "single_on", "mean", "worst", "where"))
-    said = rows[rows.decided.fillna(False).astype(bool) | rows.settled.fillna(False).astype(bool)]
-    leaders = led(rows)
-    leader = next(iter(leaders))
-    winners = known.tables("families")["winners"]
+    rows, lost = real_mechanisms(known), losses(known)
+    winners, scenes = (known.tables("families")[name] for name in ("winners", "scenes"))
     saddle = winners[(winners.layer == "libraries") & (winners.scheme == "saddle-point") & (winners.winner != "") & ~winners.family.str.contains("filled")]
-    lost = losses(known)
-    single = next(iter(lost))
+    leaders = led(rows)
+    leader, single = next(iter(leaders), ""), next(iter(lost), "")
+    taken = scenes[(scenes.implementation == single) & scenes.scene.isin([*lost.get(single, {}).keys()])]
     found = {"mechanisms": len(rows), "families": rows.family.nunique(), "least": number(rows.variables.min(), 5),
-             "most": number(rows.variables.max(), 5), "said": len(said), "margin": number(rows.margin.median()), "leader": leader, "leads": leaders[leader],
-             "shares": listed(f"{name} on {count}" for name, count in leaders.items())}
-    found = {name: of_rows(one, table, rows) for name, one in found.items()}
-    found |= {"saddle": of_rows(listed(f"{name} on {count}" for name, count in led(saddle).items()), table, saddle),
-              "saddle_of": of_rows(len(saddle), table, saddle)}
-    ratios = lost[single]
-    chosen = known.tables("families")["scenes"]
-    chosen = chosen[(chosen.implementation == single) & chosen.scene.isin(ratios.index)]
-    return found | {name: of_rows(text, "families/scenes", chosen) for name, text in (
-        ("single", single), ("single_on", len(ratios)), ("mean", number(mean(ratios))), ("worst", number(ratios.max())),
-        ("where", ratios.idxmax()))}
+             "most": number(rows.variables.max(), 5), "said": (rows.decided.fillna(False) | rows.settled.fillna(False)).sum(),
+             "margin": number(rows.margin.median()), "leader": leader, "leads": leaders.get(leader), "shares": shares(leaders)}
+    of_saddle = {"saddle": shares(led(saddle)), "saddle_of": len(saddle)}
+    of_single = {"single": single, "single_on": lambda _: len(lost[single]), "mean": lambda _: number(gmean(lost[single])),
+                 "worst": lambda _: number(lost[single].max()), "where": lambda _: lost[single].idxmax()}
+    return {name: of_rows(text, table, chosen) for texts, table, chosen in (
+        (found, "families/winners", rows), (of_saddle, "families/winners", saddle), (of_single, "families/scenes", taken))
+        for name, text in texts.items()}
+
+
+def shares(counts):
+    """"a on 12 and b on 3" """
+    return listed(f"{name} on {count}" for name, count in counts.items())
 
 
 def _size(known):
-    results = of(known.tables("map"), known.view("map"))
-    cells = known.tables("map")["cells"]
+    results, cells = known.results, known.tables("map")["cells"]
     own_fill = cells[(cells.layer == "libraries") & cells.fill_asked.isna()]
     groups = summary.by_size(results, results.layer("libraries"))
-    return {"outcome": of_rows(" ".join(map_sentences.by_outcome(groups)), "map/cells", own_fill) if groups else None,
+    return {"outcome": of_rows(" ".join(map_sentences.by_outcome(groups)), "map/cells", own_fill),
             "least": of_rows(number(own_fill.variables.min(), 5), "map/cells", own_fill),
             "most": of_rows(number(own_fill.variables.max(), 5), "map/cells", own_fill)}
 
 
 def _fill(known):
-    results, cells = of(known.tables("map"), known.view("map")), known.tables("map")["cells"]
+    results, cells = known.results, known.tables("map")["cells"]
     rows = cells[(cells.layer == "libraries") & (cells.winner != "")]
     filled = rows[rows.fill_asked.notna()]
     hybrid = filled[filled.equivalent.str.contains(HYBRID.split("/")[0])]
-    count = summary.settled(cells, "libraries")
-    found = {"cells": of_rows(count["cells"], "map/cells", rows), "decided": of_rows(count["decided"], "map/cells", rows[rows.decided.astype(bool)]),
-             "equal": of_rows(count["equivalent"], "map/cells", rows), "open": of_rows(count["open"], "map/cells", rows),
-             "holm": _holm(rows), "filled": of_rows(len(filled), "map/cells", filled),
-             "hybrid": of_rows(len(hybrid), "map/cells", hybrid)}
-    rows = profiled(known)
+    said, table = summary.settled(cells, "libraries"), "map/cells"
+    found = {"cells": of_rows(said["cells"], table, rows), "decided": count(rows[rows.decided.astype(bool)], rows, table),
+             "equal": of_rows(said["equivalent"], table, rows), "open": of_rows(said["open"], table, rows),
+             "holm": count(rows[rows.holm.fillna(False).astype(bool)], rows[rows.chance.notna()], table), "filled": count(filled, rows, table),
+             "hybrid": count(hybrid, filled, table)}
+    timed = profiled(known)
     for name, variant in (("dense", DENSE), ("hybrid", HYBRID)):
-        mine = rows[rows.implementation == variant]
-        found |= {f"assembly_{name}": of_rows(percent(phases(mine.iloc[0])["assembly"]), "limit/steps", mine) if len(mine) else None}
-    return found | {"profiled": of_rows(number(rows.variables.max()), "limit/steps", rows) if len(rows) else None, "faster": _hybrid(results, filled)}
+        mine = timed[timed.implementation == variant]
+        found[f"assembly_{name}"] = of_rows(lambda rows: percent(phases(rows.iloc[0])["assembly"]), "limit/steps", mine)
+    return found | {"profiled": of_rows(number(timed.variables.max()), "limit/steps", timed), "faster": _hybrid(results, filled)}
 
 
 def profiled(known):
@@ -225,18 +221,11 @@ def phases(row):
     return {phase: one / sum(times.values()) for phase, one in times.items()}
 
 
-def _holm(rows):
-    if rows.chance.isna().all():
-        return None
-    kept = rows[rows.holm.fillna(False).astype(bool)]
-    return of_rows(len(kept), "map/cells", kept)
-
-
 def _hybrid(results, filled):
     """How many times as fast as with a dense assembly, over filled scenes that both were timed on."""
     found = {scene: one for scene in filled.scene for one in [results.ratio(scene, DENSE, HYBRID)] if one}
     rows = filled[filled.scene.isin(found)]
-    return of_rows(span([one.value for one in found.values()]), "map/tidy", rows) if found else None
+    return of_rows(lambda _: span([one.value for one in found.values()]), "map/tidy", rows)
 
 
 def _claims(known):
@@ -250,11 +239,8 @@ def _claims(known):
 
 
 def _price(known):
-    results = of(known.tables("map"), known.view("map"))
-    whole = [row for row in summary.prices(results, results.layer("libraries")) if not row["failed"] and row["cells"] == row["of"]]
-    if not whole:
-        return dict.fromkeys(("single", "mean", "worst", "cells"))
-    first = whole[0]
+    whole = [row for row in summary.prices(known.results, known.results.layer("libraries")) if not row["failed"] and row["cells"] == row["of"]]
+    first = whole[0] if whole else defaultdict(str)
     rows = known.tables("map")["cells"]
     rows = rows[(rows.layer == "libraries") & (rows.winner != "")]
     return {name: of_rows(text, "map/tidy", rows) for name, text in (("single", first["implementation"]), ("mean", number(first["mean"])),
@@ -263,26 +249,25 @@ def _price(known):
 
 def _rule(known):
     held, defaults = known.tables("families")["held"], known.tables("families")["defaults"]
-    names = ("mean", "worst", "within", "families", "scenes")
-    if held.empty:
-        found = dict.fromkeys(names)
-    else:
-        one = rules.summary(held)
-        worst = percent(one["worst_loss"]) + (f" ({one['unknown']} choices were not timed and do not count)" if one["unknown"] else "")
-        found = {name: of_rows(text, "families/held", held) for name, text in zip(names, (
-            percent(one["mean_loss"], 1), worst, percent(one["within"]), one["families"], one["scenes"]))}
+    one = rules.summary(held) if len(held) else defaultdict(float)
+    unknown = f" ({one['unknown']} choices were not timed and do not count)" if one["unknown"] else ""
+    found = {"mean": percent(one["mean_loss"], 1), "worst": percent(one["worst_loss"]) + unknown, "within": percent(one["within"]),
+             "families": one["families"], "scenes": one["scenes"]}
     rows = defaults[defaults["mean"].notna()].sort_values("mean")
-    ends = {"least": rows.head(1), "most": rows.tail(1)}
-    return found | {"factor": Number(number(rules.WITHIN), "analysis/families/rule.py")} | {f"defaults_{name}": of_rows(
-        f"{one.rule.iloc[0]}: {number(one['mean'].iloc[0])} times on average, {number(one.worst.iloc[0])} at worst", "families/defaults", one)
-        if len(one) else None for name, one in ends.items()}
+    return {name: of_rows(text, "families/held", held) for name, text in found.items()} | {
+        "factor": Number(number(rules.WITHIN), "analysis/families/rule.py"),
+        "defaults_least": of_rows(_default, "families/defaults", rows.head(1)), "defaults_most": of_rows(_default, "families/defaults", rows.tail(1))}
+
+
+def _default(rows):
+    return f"{rows.rule.iloc[0]}: {number(rows['mean'].iloc[0])} times on average, {number(rows.worst.iloc[0])} at worst"
 
 
 def _error(known):
     won = accuracy.met(accuracy.own_fill(known.tables("accuracy")["winners"]))
     mine, pairs = won[won.layer == "libraries"], known.tables("accuracy")["pairs"]
     precision = accuracy.of_precision(pairs)
-    return {"libraries": of_rows(accuracy.of_layer(mine, "libraries"), "accuracy/winners", mine) if len(mine) else None,
+    return {"libraries": of_rows(lambda rows: accuracy.of_layer(rows, "libraries"), "accuracy/winners", mine),
             "precision": of_rows(precision[0], "accuracy/pairs", pairs[pairs.kind == "precision"]) if precision else None}
 
 
@@ -290,12 +275,11 @@ def _window(known):
     rows, maps = known.tables("stability")["windows"], known.tables("stability")["maps"]
     rows = rows[(rows.precision == "double") & (abs(rows.step - 1.25e-3) < 1e-9) & (rows.status == "ok")]
     largest = rows.nlargest(1, "loops")
-    found = {name: of_rows(number(largest[name].iloc[0]), "stability/windows", largest) if len(largest) else None
-             for name in ("loops", "lower", "upper")}
+    found = {name: of_rows(number(largest[name].max()), "stability/windows", largest) for name in ("loops", "lower", "upper")}
     automatic = maps[(maps.penalty_asked == "auto") & (maps.precision == "double") & (maps.status != "dropped")]
-    for scheme, mine in (("penalty", automatic[automatic.scheme == "penalty"]), ("saddle", automatic[automatic.scheme == "saddle-point"])):
-        found |= {f"{scheme}_ok": of_rows((mine.status == "ok").sum(), "stability/maps", mine[mine.status == "ok"]),
-                  f"{scheme}_of": of_rows(len(mine), "stability/maps", mine)}
+    for name, scheme in (("penalty", "penalty"), ("saddle", "saddle-point")):
+        mine = automatic[automatic.scheme == scheme]
+        found |= {f"{name}_ok": count(mine[mine.status == "ok"], mine, "stability/maps"), f"{name}_of": count(mine, mine, "stability/maps")}
     return found
 
 
@@ -309,22 +293,17 @@ def _latency(known):
 
 def _own(known):
     ahead = fastest_own(known.tables("families")["scenes"], known.registry)
-    found = {"mechanisms": of_rows(len(ahead), "families/scenes", ahead),
-             "least": of_rows(number(1 / ahead.to_rival.max()), "families/scenes", ahead),
-             "most": of_rows(number(1 / ahead.to_rival.min()), "families/scenes", ahead),
-             "middle": of_rows(number(1 / ahead.to_rival.median()), "families/scenes", ahead),
-             "names": of_rows(listed(f"{name} on {count}" for name, count in ahead.implementation.value_counts().items()), "families/scenes", ahead)}
-    batches = known.tables("limit")["batches"]
-    batches = batches[batches.status == "ok"]
+    equal, batches = known.tables("engines")["equal_error"], known.tables("limit")["batches"]
+    equal, batches = equal[(equal.side == "library") & equal.ratio.notna()], batches[batches.status == "ok"]
+    texts = {"mechanisms": len(ahead), "least": number(1 / ahead.to_rival.max()), "most": number(1 / ahead.to_rival.min()),
+             "middle": number(1 / ahead.to_rival.median()), "names": shares(ahead.implementation.value_counts())}
+    found = {name: of_rows(text, "families/scenes", ahead) for name, text in texts.items()}
     for name, chosen in (("few", batches.sets.min()), ("many", batches.sets.max())):
         mine = batches[batches.sets == chosen]
-        found |= {f"{name}_sets": of_rows(number(chosen), "limit/batches", mine) if len(mine) else None,
-                  f"{name}_gain": of_rows(span(mine.gain), "limit/batches", mine) if len(mine) else None}
-    equal = known.tables("engines")["equal_error"]
-    equal = equal[(equal.side == "library") & equal.ratio.notna()]
-    return found | {"engines": of_rows(len(equal), "engines/equal_error", equal), "engines_ahead": of_rows(
-        (equal.low > 1).sum(), "engines/equal_error", equal[equal.low > 1]), "engines_middle": of_rows(
-        number(equal.ratio.median(), 2), "engines/equal_error", equal)}
+        found |= {f"{name}_sets": of_rows(number(chosen), "limit/batches", mine),
+                  f"{name}_gain": of_rows(lambda rows: span(rows.gain), "limit/batches", mine)}
+    return found | {"engines": count(equal, equal, "engines/equal_error"), "engines_ahead": count(equal[equal.low > 1], equal, "engines/equal_error"),
+                    "engines_middle": of_rows(number(equal.ratio.median(), 2), "engines/equal_error", equal)}
 
 
 def _limits(known):

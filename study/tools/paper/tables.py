@@ -4,6 +4,7 @@ import re
 from textwrap import shorten
 
 import pandas
+from scipy.stats import gmean
 
 from analysis.core.text import between, bounded, ends, interval, number
 from analysis.engines.equal_error import SIDES
@@ -13,10 +14,9 @@ from analysis.families import bounds
 from analysis.families.figures import best_form, fastest_own
 from analysis.families.sentences import cases
 from analysis.map import ledger, summary
-from analysis.map.results import of
 from study.tools.merge import machine
 from study.tools.paper import numbers
-from study.tools.paper.numbers import BLOCKS, HYBRID, SCALAR, led, losses, mean, real_mechanisms
+from study.tools.paper.numbers import BLOCKS, HYBRID, SCALAR, led, losses, real_mechanisms
 
 ESCAPED = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}",
            "^": r"\textasciicircum{}", "$": r"\$", "<": r"\textless{}", ">": r"\textgreater{}", "/": r"/\allowbreak{}", ":": r":\allowbreak{}", "@": r"@\allowbreak{}", "µ": r"\textmu{}", "÷": r"\(\div\)", "×": r"\(\times\)", "≥": r"\(\ge\)",
@@ -87,9 +87,9 @@ def decided(known):
 
 def ranking(known):
     """Libraries over the mechanisms at their own fill; beside, what it costs to take one always over the cells of the map."""
-    mine, lost, results = led(real_mechanisms(known)), losses(known), of(known.tables("map"), known.view("map"))
+    mine, lost, results = led(real_mechanisms(known)), losses(known), known.results
     prices = {row["implementation"]: row for row in summary.prices(results, results.layer("libraries"))}
-    rows = [{"library": name, "first or as fast": str(mine.get(name, 0)), "timed on": str(len(one)), "mean": number(mean(one)),
+    rows = [{"library": name, "first or as fast": str(mine.get(name, 0)), "timed on": str(len(one)), "mean": number(gmean(one)),
              "worst": number(one.max()), "where": one.idxmax()} | _price(prices.get(name)) for name, one in [*lost.items()][:RANKED]]
     return table(rows, {"library": "l", "first or as fast": "r", "timed on": "r", "mean": "r", "worst": "r", "where": "l"} | dict.fromkeys(PRICE, "r"))
 
@@ -159,9 +159,10 @@ def differs(known):
     rows, found = [], sorted((one for one in known.agreed if one.verdict == "differs"), key=lambda one: -one.worst.get(one.robust, math.inf))
     for one in found[:DIFFERING]:
         row = {"scene": one.question.scene, "form": one.question.form.partition("-")[0], "n": number(one.question.variables, 5)}
-        for place, (there, ratios) in enumerate(zip(known.machines, one.machines)):
-            others = [f"{name} {interval(ratios[name])}" for name in dict.fromkeys(one.winners) if name != one.winners[place] and name in ratios]
-            row[there.folder.name] = "; ".join([one.winners[place], *others])
+        for there, ranking in zip(known.machines, one.machines):
+            others = [f"{name} {interval(ranking.ratios[name])}" for name in dict.fromkeys(one.winners)
+                      if name != ranking.winner and name in ranking.ratios]
+            row[there.folder.name] = "; ".join([ranking.winner, *others])
         rows.append(row | {"robust": f"{one.robust} {number(one.worst.get(one.robust))}"})
     width = 88 / len(known.machines)
     return table(rows, {"scene": r"P{27mm}", "form": "l", "n": "r"} | {one.folder.name: r"P{%.0fmm}" % width for one in known.machines}

@@ -3,28 +3,26 @@ import math
 import os
 import re
 import tempfile
-import webbrowser
 from pathlib import Path
 
 from analysis.core.errors import StudyError
 from analysis.core.files import write
 from study.core.options import Parser, positive
-from study.core.main import need_modules
+from study.tools.viewer import page, program, sheet, trajectory
+from study.tools.viewer.scene import upward
 
+FRAMES = 600  # in a page, at most
 VALUES_AT_MOST = 2_000_000  # coordinates in a page: 11 MB of it
 IMPLEMENTATION = "csc_klu/refactor"
 
 
 def view(arguments):
     options = _options(arguments)
-    need_modules("matplotlib", "jinja2")
-    from study.tools.viewer import program, trajectory  # they need the modules
-    from study.tools.viewer.scene import upward
     scene = program.describe(options.scene)
     if not scene.points:
         raise StudyError(f"{options.scene} has no points to show")
     values = len(scene.points) * scene.dimension
-    frames = max(2, min(options.frames, VALUES_AT_MOST // values))
+    frames = max(2, min(FRAMES, VALUES_AT_MOST // values))
     if options.trajectory:
         motion = trajectory.read(options.trajectory, scene, frames)
         note = Path(options.trajectory).name
@@ -55,8 +53,6 @@ def _options(arguments):
                         help="first and last time of the sheet (all of the motion)")
     parser.add_argument("--up", choices="xyz", help="axis that points up in 3D (against "
                         "gravity; y without gravity)")
-    parser.add_argument("--frames", type=int, default=600, help="at most in the page (600)")
-    parser.add_argument("--open", action="store_true", help="open the page in a browser")
     own = parser.add_argument_group("without TRAJECTORY")
     own.add_argument("--duration", type=positive, metavar="S", help="simulated time (10 or, with "
                      "small steps or large scenes, what a minute is enough for)")
@@ -79,8 +75,6 @@ def _number(text):
 def _check(options):
     if options.trajectory and (options.duration or options.step):
         raise StudyError("--duration and --step are for a simulation, but a TRAJECTORY is given")
-    if options.frames < 2:
-        raise StudyError(f"--frames is {options.frames}: it must be at least 2")
     if options.window and not options.window[0] < options.window[1]:
         raise StudyError("--window must be two times, the first before the last")
     if options.output is None:
@@ -102,12 +96,9 @@ def _check(options):
 
 
 def _write(options, scene, motion, note, up):
-    from study.tools.viewer import page, sheet
     outputs = [(options.output, page.render(scene, motion, note, up).encode())]
     if options.png:
         outputs.append((options.png, sheet.draw(scene, motion, up, options.window)))
     for name, content in outputs:
         write(name, lambda partial, content=content: partial.write_bytes(content))
         print(f"{name}: {len(motion.times)} frames" if name == options.output else name)
-    if options.open and not webbrowser.open(Path(options.output).resolve().as_uri()):
-        raise StudyError(f"no browser found to open {options.output} in")

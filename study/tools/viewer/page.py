@@ -10,11 +10,11 @@ from study.tools.viewer import picture
 
 FOLDER = Path(__file__).parent / "page"
 SCRIPTS = ("data.js", "camera.js", "grid.js", "elements.js", "symbols.js", "stage.js", "charts.js",
-           "playback.js", "pointer.js", "controls.js")
+           "playback.js", "pointer.js", "controls.js", "sheet.js")
 
 
-def render(scene, motion, note, up):
-    """The whole page as text; nothing in it refers to anything outside."""
+def render(scene, motion, note, up, sheet=False):
+    """The whole page as text; nothing in it refers to anything outside. `sheet`: it draws a contact sheet when it is loaded."""
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(FOLDER), trim_blocks=True,
                                      undefined=jinja2.StrictUndefined, autoescape=True)
     moving = [index for index in range(len(scene.points))
@@ -22,7 +22,7 @@ def render(scene, motion, note, up):
     return environment.get_template("page.html.j2").render(
         scene=scene, note=note, has_curves=bool(motion.curves), outputs=motion.outputs, style=_text("page.css"),
         scripts="\n".join(map(_text, SCRIPTS)),
-        data=_json(_data(scene, motion, moving, up)),
+        data=_json(_data(scene, motion, moving, up) | {"sheet": sheet}),
         packed=base64.b64encode(
             motion.positions[:, moving].astype("<f4").tobytes()).decode())
 
@@ -49,8 +49,8 @@ def _data(scene, motion, moving, up):
         "springs": [spring.points for spring in scene.springs],
         "bodies": [{"name": body.name, "points": body.points, "faces": faces}
                    for body, faces in zip(scene.bodies, picture.faces(scene, motion))],
-        "arrows": [vars(arrow) for arrow in picture.arrows(scene, motion)],
-        "coils": [vars(coil) for coil in picture.coils(scene, motion)],
+        "arrows": picture.arrows(scene, motion),
+        "coils": picture.coils(scene, motion),
         "traces": picture.traces(scene, motion),
         "curves": curves or None,
         "outputs": {name: {column: _rounded(values) for column, values in columns.items()}

@@ -1,6 +1,4 @@
-# What the page and the sheet both need to know: extent, which points to trace, where vectors sit.
-from dataclasses import dataclass
-
+# What the page draws beside the elements of the scene: extent, which points to trace, where vectors sit.
 import numpy
 from scipy.spatial import ConvexHull, QhullError
 
@@ -9,24 +7,6 @@ from study.tools.viewer.scene import NO_PLACES
 TRACES = 2         # by default, at most
 CANDIDATES = 50    # points that are looked at for a trace
 DISTINCT = 0.1     # of the extent: how far traces must differ to be shown both
-
-
-@dataclass
-class Arrow:
-    """A unit vector drawn at the mean of some points."""
-    vector: int
-    at: list
-    length: float  # m
-
-
-@dataclass
-class Coil:
-    """A torsion spring, drawn as a spiral at the mean of some points from one direction to the other;
-    these are pairs of points."""
-    first: list
-    second: list
-    at: list
-    length: float  # m
 
 
 def places(scene):
@@ -106,8 +86,8 @@ def _hull(at, points):
 
 
 def arrows(scene, motion):
-    """Where to draw the vectors of bodies: at the point that all bodies with this vector share (a
-    hinge's axis), else at the body's fixed point if the vector stands still, else amid the body."""
+    """Unit vectors of bodies, each drawn at the mean of the points `at` with this `length`, m: at the point that all bodies
+    with this vector share (a hinge's axis), else at the body's fixed point if the vector stands still, else amid the body."""
     owners = {}
     for body in scene.bodies:
         for vector in body.vectors:
@@ -125,14 +105,14 @@ def arrows(scene, motion):
         else:
             at = bodies[0].points
         if at:
-            found.append(Arrow(vector, at, length))
+            found.append({"vector": vector, "at": at, "length": length})
     return found
 
 
 def coils(scene, motion):
-    """Torsion springs where they can be seen: at the point that both directions share, else where the
-    second begins; of unit vectors, where one of these is drawn."""
-    vectors = {arrow.vector: arrow.at for arrow in arrows(scene, motion)}
+    """Torsion springs, each a spiral from one direction to the other, which are pairs of points, at the mean of the points `at`: at
+    the point that both directions share, else where the second begins; of unit vectors, where one of these is drawn."""
+    vectors = {arrow["vector"]: arrow["at"] for arrow in arrows(scene, motion)}
     length = 0.2 * typical_length(scene, motion)
     found = []
     for first, second in scene.torsion_springs:
@@ -142,23 +122,5 @@ def coils(scene, motion):
         at = (shared[:1] or (lines[0][:1] if lines else []) or vectors.get(second[1])
               or vectors.get(first[1]))
         if at:
-            found.append(Coil(first, second, at, length))
+            found.append({"first": first, "second": second, "at": at, "length": length})
     return found
-
-
-def spiral(coil, at):
-    """The way of a coil's wire (points, dimension) where the points are at `at` (points, dimension):
-    one turn more than the angle between its directions."""
-    first, second = ((at[b] - at[a]) / (numpy.linalg.norm(at[b] - at[a]) or 1)
-                     for a, b in (coil.first, coil.second))
-    if len(first) == 2:
-        across = numpy.array([-first[1], first[0]])
-    else:
-        across = second - first * (first @ second)
-        if numpy.linalg.norm(across) < 1e-6:
-            across = numpy.cross(first, numpy.eye(3)[numpy.abs(first).argmin()])
-        across /= numpy.linalg.norm(across) or 1
-    share = numpy.linspace(0, 1, 60)[:, None]
-    angle = share * (2 * numpy.pi + numpy.arctan2(across @ second, first @ second))
-    return at[coil.at].mean(axis=0) + coil.length * (0.35 + 0.65 * share) * (
-        numpy.cos(angle) * first + numpy.sin(angle) * across)

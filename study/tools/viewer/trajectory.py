@@ -30,20 +30,11 @@ def read(path, scene, frames):
     with _opened(path) as file:
         columns = _header(path, file)
         places, curves = _places(path, columns, scene)
-        kept, times, table, violation, largest = _kept(path, file, frames), [], [], [], 0.0
-        for row, values in _rows(path, file, columns):
-            if curves:
-                largest = max(largest, values[curves[-1]])
-            if row in kept:
-                times.append(values[0])
-                table.append(values[[*places, *curves]])
-                violation.append(largest)
-                largest = 0.0
-    table = numpy.array(table)
-    positions = table[:, :len(places)].reshape(len(times), len(scene.points), scene.dimension)
-    motion = Motion(numpy.array(times), positions, dict(zip(CURVES, table[:, len(places):].T)))
+        table, largest = _table(path, file, columns, frames)
+    positions = table[:, places].reshape(len(table), len(scene.points), scene.dimension)
+    motion = Motion(table[:, 0], positions, {name: table[:, place] for name, place in zip(CURVES, curves)})
     if curves:
-        motion.curves["constraint_violation"] = numpy.array(violation)
+        motion.curves["constraint_violation"] = largest[:, curves[-1]]
     _same_start(path, motion, scene)
     return motion
 
@@ -53,8 +44,7 @@ def read_outputs(path, scene, frames):
     of: their rows are at the same times. Raises StudyError."""
     with _opened(path) as file:
         columns = _header(path, file)
-        kept = _kept(path, file, frames)
-        table = numpy.array([values for row, values in _rows(path, file, columns) if row in kept])
+        table, _ = _table(path, file, columns, frames)
     return {name: {column: table[:, place] for place, column in enumerate(columns)
                    if name in (column, column.rpartition(".")[0])} for name in scene.outputs}
 
@@ -107,6 +97,21 @@ def _places(path, columns, scene):
     return [place[name] for name in wanted], [place[name] for name in found]
 
 
+def _table(path, file, columns, frames):
+    """(the rows that are shown, of each the largest values since the one before), two arrays."""
+    count = sum(1 for _ in _lines(file))
+    if count < 2:
+        raise StudyError(f"{path} has {count} row(s): a motion needs two at least")
+    every, shown, largest, since = max(1, -(-(count - 1) // frames)), [], [], -numpy.inf
+    for row, values in enumerate(_rows(path, file, columns)):
+        since = numpy.maximum(since, values)
+        if row % every == 0 or row == count - 1:
+            shown.append(values)
+            largest.append(since)
+            since = -numpy.inf
+    return numpy.array(shown), numpy.array(largest)
+
+
 def _lines(file):
     """Of the rows below the header. One that is too long comes in pieces, which are no rows."""
     file.seek(0)
@@ -114,16 +119,8 @@ def _lines(file):
     return iter(lambda: file.readline(LONGEST), b"")
 
 
-def _kept(path, file, frames):
-    """Numbers of the rows to show, the first is 0."""
-    rows = sum(1 for _ in _lines(file))
-    if rows < 2:
-        raise StudyError(f"{path} has {rows} row(s): a motion needs two at least")
-    return {*range(0, rows, max(1, -(-(rows - 1) // frames))), rows - 1}
-
-
 def _rows(path, file, columns):
-    """(number, values) of all rows; StudyError naming the line of one that is not whole or does not come after the one before."""
+    """Values of all rows; StudyError naming the line of one that is not whole or does not come after the one before."""
     last = -numpy.inf
     for row, line in enumerate(_lines(file)):
         try:
@@ -135,7 +132,7 @@ def _rows(path, file, columns):
         if values[0] <= last:
             raise StudyError(f"{path}, line {row + 2}: the time {values[0]:g} s does not come after {last:g} s")
         last = values[0]
-        yield row, values
+        yield values
 
 
 def _same_start(path, motion, scene):

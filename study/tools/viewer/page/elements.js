@@ -139,7 +139,7 @@ function drawVector(pen, {vector, at, length}) {
   }
 }
 
-/// A torsion spring: a spiral from one direction to the other and a turn more; as in picture.py.
+/// A torsion spring: a spiral from one direction to the other and a turn more.
 function drawCoil(pen, {first, second, at, length}) {
   const unit = (v) => v.map((x) => x / (Math.hypot(...v) || 1));
   const dot = (v, w) => v.reduce((sum, x, axis) => sum + x * w[axis], 0);
