@@ -25,11 +25,11 @@ def context(tables, view):
 
 
 def _formulas(steps):
-    """(form, library, its step in µs as text) of those that the rule compares."""
+    """(form, library, its step in µs as text, its caution) of those that the rule compares."""
     if steps.empty:
         return []
     compared = steps[steps.candidate.astype(bool)]
-    return [(scheme, name, f"passes × ({' + '.join(_product(*row) for row in zip(rows.us, rows.term))})")
+    return [(scheme, name, f"passes × ({' + '.join(_product(*row) for row in zip(rows.us, rows.term))})", rows.caution.iloc[0])
             for (scheme, name), rows in compared.groupby(["scheme", "implementation"], sort=False)]
 
 

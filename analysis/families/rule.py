@@ -1,6 +1,8 @@
 # A rule that predicts: how long a step takes with each library, and so which to take, from numbers that need no factorization.
 #
-# A few libraries are compared in each form of the step: of the predicted times (times.py) the least one's is taken.
+# A few libraries are compared in each form of the step: of the predicted times (times.py), each times exp(σ/2), the least one's is taken. σ is
+# the root mean square of the logarithms of measured over predicted times in the fit: who scatters more must be ahead by more. This caution
+# was chosen with a look at families left out: exp(σ²/2), the mean over the median of a log-normal distribution, changes no choice there.
 # Which are worth comparing is found by what the choice costs. All is judged on families left out: each family is predicted by
 # what was fitted on all others, its candidates too. A loss is of times taken in turns, else of the first look, else of the look at the next
 # smaller machine of the shape, after which who had fallen far behind was not asked again. Where there is none of these a loss is not known:
@@ -63,7 +65,7 @@ def document(tables):
     times, candidates = {}, {}
     for (name, scheme), rows in steps.groupby(["implementation", "scheme"], sort=False):
         times.setdefault(name, {"layer": rows.layer.iloc[0]})[scheme] = {
-            "coefficients": dict(zip(rows.term, rows.us)), "low": rows.low.iloc[0], "high": rows.high.iloc[0]}
+            "coefficients": dict(zip(rows.term, rows.us)), "caution": rows.caution.iloc[0], "low": rows.low.iloc[0], "high": rows.high.iloc[0]}
         if rows.candidate.iloc[0]:
             candidates.setdefault(scheme, []).append(name)
     fastest = tables["winners"][(tables["winners"].layer == "libraries") & (tables["winners"].winner != "")].drop_duplicates("scene")
@@ -97,7 +99,7 @@ def _steps(data, rule, ratios, registry):
     for (scheme, name), found in rule.models.items():
         low, high = _range(ratios, scheme, name)
         rows += [{"scheme": scheme, "implementation": name, "layer": "own" if name in registry.own else "library",
-                  "candidate": name in rule.candidates[scheme], "term": term, "us": us, "low": low, "high": high,
+                  "candidate": name in rule.candidates[scheme], "term": term, "us": us, "caution": rule.caution[scheme, name], "low": low, "high": high,
                   "scenes": data.us[scheme][name].notna().sum(), "record": data.records} for term, us in found.items()]
     return pandas.DataFrame(rows)
 
@@ -140,20 +142,23 @@ class _Rule:
     """Models of all and candidates, fitted on some families."""
 
     def __init__(self, data):
-        self.models = {}
+        self.models, self.caution = {}, {}  # µs a step; what they count times
         for scheme, us in data.us.items():
             for name in us:
                 times = us[name].dropna()
                 times = times[[bool(data.usual[scheme][scene]) for scene in times.index]]
                 if len(times) >= FEWEST:
                     dense = bool(data.registry.variants[name].get("dense"))
-                    self.models[scheme, name] = model(TERMS[scheme, dense], data.features.loc[times.index], times, data.weights(times.index) ** 0.5)
+                    features, weights = data.features.loc[times.index], data.weights(times.index)
+                    self.models[scheme, name] = found = model(TERMS[scheme, dense], features, times, weights**0.5)
+                    scatter = numpy.average(numpy.log(times / predicted(found, features)) ** 2, weights=weights) ** 0.5
+                    self.caution[scheme, name] = float(numpy.exp(scatter / 2))
         self.candidates = self._compared(data)
 
     def choice(self, scheme, features):
-        """(name, µs) of the candidate that is expected to be the fastest on a scene."""
+        """(name, predicted µs) of the candidate that is taken on a scene."""
         times = {name: predicted(self.models[scheme, name], features)[0] for name in self.candidates[scheme]}
-        name = min(times, key=times.get)
+        name = min(times, key=lambda one: times[one] * self.caution[scheme, one])
         return name, times[name]
 
     def _compared(self, data):
@@ -163,7 +168,7 @@ class _Rule:
             costs, weights = data.costs(scheme), data.weights(data.losses[scheme].index)
             names = [name for name in costs if (scheme, name) in self.models and (costs[name] == 0).any()]
             features, rows = data.features.loc[costs.index], numpy.arange(len(costs))
-            times, costs = numpy.array([predicted(self.models[scheme, name], features) for name in names]).T, costs[names].to_numpy()
+            times, costs = numpy.array([self.caution[scheme, name] * predicted(self.models[scheme, name], features) for name in names]).T, costs[names].to_numpy()
             best = {}
             for places in (some for size in range(1, CANDIDATES[scheme] + 1) for some in combinations(range(len(names)), size)):
                 cost = costs[rows, numpy.array(places)[times[:, places].argmin(axis=1)]]

@@ -114,7 +114,17 @@ def test_the_rule_compares_times_and_holds_on_families_left_out():
     assert found["times"]["own/x"]["layer"] == "own" and found["times"]["one/a"]["penalty"]["low"] <= 1
     assert {row["scene"]: row["fastest"] for row in found["scenes"]}["beam:10"] == "one/b"
     assert rule.missed(tables["held"]).empty
-    assert [(form, name) for form, name, text in page._formulas(tables["steps"]) if text.startswith("passes × (")] == [("penalty", "one/a"), ("penalty", "one/b")]
+    assert [(form, name) for form, name, text, _ in page._formulas(tables["steps"]) if text.startswith("passes × (")] == [("penalty", "one/a"), ("penalty", "one/b")]
+
+
+def test_who_scatters_must_be_ahead_by_more():
+    times_of = rule.document(mechanisms(lambda family, name: {"chain": 2.0, "grid": 0.5}.get(family, 1.0) if name == "one/b" else 1.0))["times"]
+    assert times_of["one/a"]["penalty"]["caution"] == pytest.approx(1) and 1.1 < times_of["one/b"]["penalty"]["caution"] < 1.5
+    found = object.__new__(rule._Rule)
+    found.models, found.candidates = {("penalty", "a"): {"n": 1.0}, ("penalty", "b"): {"n": 0.9}}, {"penalty": ["a", "b"]}
+    for scatter, taken in ((1.05, ("b", 9.0)), (1.2, ("a", 10.0))):
+        found.caution = {("penalty", "a"): 1.0, ("penalty", "b"): scatter}
+        assert found.choice("penalty", pandas.DataFrame({"n": [10.0]})) == taken
 
 
 def test_a_time_is_the_sum_of_its_terms():

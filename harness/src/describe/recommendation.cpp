@@ -45,9 +45,11 @@ bool is_candidate(const Rule& rule, Scheme scheme, const std::string& variant) {
          std::ranges::find(found->second, variant) != found->second.end();
 }
 
-/// By layer; the fastest candidate first, then by time.
+/// By layer; the candidate of the least time times caution first, then by time.
 json ranked(const Rule& rule, Scheme scheme, const Features& scene, const WhyNot& why_not) {
   std::vector<json> result;
+  std::string taken;
+  double least = std::numeric_limits<double>::infinity();
   for (const TimedVariant& variant : rule.variants) {
     if (!refusal(variant, scheme, scene, why_not).empty()) continue;
     const StepTime& time = variant.times.at(scheme);
@@ -58,14 +60,18 @@ json ranked(const Rule& rule, Scheme scheme, const Features& scene, const WhyNot
                       {"step_us", us},
                       {"low_us", us * time.low},
                       {"high_us", us * time.high}});
+    if (is_candidate(rule, scheme, variant.name) && us * time.caution < least) {
+      taken = variant.name;
+      least = us * time.caution;
+    }
   }
   const auto layer_and_time = [](const json& one) {
     return std::tuple(one["layer"] == "own", one["step_us"].get<double>());
   };
   std::ranges::stable_sort(result, {}, layer_and_time);
-  const auto fastest = std::ranges::find_if(
-      result, [&](const json& one) { return is_candidate(rule, scheme, one["implementation"]); });
-  if (fastest != result.end()) std::rotate(result.begin(), fastest, fastest + 1);
+  const auto first =
+      std::ranges::find_if(result, [&](const json& one) { return one["implementation"] == taken; });
+  if (first != result.end()) std::rotate(result.begin(), first, first + 1);
   return result;
 }
 
@@ -100,16 +106,20 @@ json outside(const std::vector<MeasuredScene>& scenes, const Features& scene) {
   return result;
 }
 
-/// What is compared: {implementation, step_us, refused}, step_us null where it is refused.
+/// What is compared: {implementation, step_us, cautious_us, refused}; times null where refused.
 json candidates(const Rule& rule, Scheme scheme, const Features& scene, const WhyNot& why_not) {
   json result = json::array();
   for (const TimedVariant& variant : rule.variants) {
     if (!is_candidate(rule, scheme, variant.name)) continue;
     const std::string refused = refusal(variant, scheme, scene, why_not);
-    result.push_back(
-        {{"implementation", variant.name}, {"step_us", nullptr}, {"refused", nullptr}});
+    result.push_back({{"implementation", variant.name},
+                      {"step_us", nullptr},
+                      {"cautious_us", nullptr},
+                      {"refused", nullptr}});
     if (refused.empty()) {
-      result.back()["step_us"] = step_us(variant.times.at(scheme), scene);
+      const StepTime& time = variant.times.at(scheme);
+      result.back()["step_us"] = step_us(time, scene);
+      result.back()["cautious_us"] = step_us(time, scene) * time.caution;
     } else {
       result.back()["refused"] = refused;
     }

@@ -17,13 +17,14 @@ using WhyNot = std::function<std::string(const std::string& variant, Scheme sche
 /// What `rule` says of a scene with this describe_json(). Keys:
 ///
 /// - recommendation [{layer "library" or "own", implementation, scheme, step_us, low_us, high_us}],
-///   the library layer first: the fastest of the rule's candidates, then all by time; the own layer
+///   the library layer first: the rule's choice of its candidates, then all by time; the own layer
 ///   by time. Only variants that were measured with the scheme and that `why_not` allows;
 /// - no_recommendation: the reason why that is empty, or null;
 /// - nearest {scene, distance, fastest, step_us}: the measured scene that is nearest in
 ///   kDistanceFeatures, the distance the root of the sum of their squared log ratios; or null;
-/// - rule {set, machine, commit, held, candidates [{implementation, step_us, refused}], one of the
-///   last two null, outside [features outside of those of all measured scenes]}, or null.
+/// - rule {set, machine, commit, held, candidates [{implementation, step_us, cautious_us (times its
+///   caution), refused}], the times or refused null, outside [features outside of those of all
+///   measured scenes]}, or null.
 nlohmann::json recommendation_json(const std::optional<Rule>& rule,
                                    const nlohmann::json& description, const WhyNot& why_not);
 
