@@ -2,6 +2,7 @@
 #include "program.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "elimination_tree.hpp"
@@ -101,8 +102,14 @@ double cycles_of_solves(const Tree& tree, const Pattern& pattern, int width, dou
 }
 
 /// Cycles in which the numbers of −ε − B A⁻¹ Bᵀ are found, with those of so many rows in a clique.
-double cycles_of_products(double rows, int width, int numbers) {
-  return 0.7 * numbers * (numbers + 1) * rows * (rows + width) / (2 * width);
+double cycles_of_products(double rows, int width, int products) {
+  return 0.7 * products * rows * (rows + width) / (2 * width);
+}
+/// Cycles of a product with the inverse of the points' block.
+double cycles_of_inverse(const Pattern& points, int width, bool axes_alike) {
+  const int axes = axes_alike ? points.dimension : 1;
+  const double rows = points.points * points.dimension / axes;
+  return rows * (std::ceil(rows / width) * (0.4 + 0.35 * axes) + (axes_alike ? axes : 0)) + 20.0;
 }
 /// Cycles in which B, no part of the matrix any more, is written and multiplied with, a row and
 /// number.
@@ -111,15 +118,17 @@ constexpr double kCyclesOfNumber = 12.0;
 /// Replaces `tree` by the points' fronts and those of −ε − B A⁻¹ Bᵀ, if a pass of Newton's method
 /// is predicted to take less time with them; the number of the points' fronts, 0: nothing is
 /// replaced.
-int eliminate_points_first(const Pattern& pattern, int width, int numbers, Tree& tree) {
+int eliminate_points_first(const Pattern& pattern, int width, const Changing& changing, Tree& tree,
+                           bool& inverts) {
   const double before = tree.cycles + cycles_of_solves(tree, pattern, width, 2.0);
   Pattern multipliers{.dimension = 1,
                       .points = static_cast<int>(pattern.borders.size()),
                       .cliques = cliques_of_multipliers(pattern),
                       .borders = {}};
-  double after = kCyclesOfNumber * numbers * multipliers.points;
+  double after = kCyclesOfNumber * changing.numbers * multipliers.points;
+  const int of_entry = changing.products(pattern.dimension);
   for (const auto& clique : multipliers.cliques) {
-    after += cycles_of_products(static_cast<double>(clique.size()), width, numbers);
+    after += cycles_of_products(static_cast<double>(clique.size()), width, of_entry);
   }
   if (after >= before) return 0;  // which may have too many couplings to go on
   const Pattern points{.dimension = pattern.dimension,
@@ -127,9 +136,13 @@ int eliminate_points_first(const Pattern& pattern, int width, int numbers, Tree&
                        .cliques = pattern.cliques,
                        .borders = {}};
   Tree constant = best_tree(points, width), rest = best_tree(multipliers, width);
+  // Two solves, and nothing hides their latencies.
+  const double substitutions = cycles_of_solves(constant, points, width, 3.0);
+  const double products = 2.0 * cycles_of_inverse(points, width, changing.axes_alike);
   after += rest.cycles + cycles_of_solves(rest, multipliers, width, 2.0) +
-           cycles_of_solves(constant, points, width, 3.0);  // 2, and nothing hides their latencies
+           std::min(substitutions, products);
   if (after >= before) return 0;
+  inverts = products < substitutions;
   tree = std::move(constant);
   const auto fronts = static_cast<int>(tree.fronts.size());
   tree.cycles = rest.cycles;
@@ -237,13 +250,14 @@ int Program::entry(int row, int column) const {
   return front.base + (column - front.first) * front.stride + place_in(*this, front, row);
 }
 
-Program compile(const Pattern& pattern, int width, int numbers) {
+Program compile(const Pattern& pattern, int width, const Changing& changing) {
   Program program;
   program.width = width;
   const std::vector<int> sizes = sizes_of(pattern);
   Tree tree = best_tree(pattern, width);
-  if (numbers > 0) {
-    program.constant_fronts = eliminate_points_first(pattern, width, numbers, tree);
+  if (changing.numbers > 0) {
+    program.constant_fronts =
+        eliminate_points_first(pattern, width, changing, tree, program.inverts_points);
   }
   program.cycles = tree.cycles;
   place_rows(tree, sizes, program);

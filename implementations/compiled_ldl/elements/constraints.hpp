@@ -60,7 +60,7 @@ class Constraints {
   /// t = 2 u̇·B ẇ, which is Φ̇q v + Φ̇t but for what drivers prescribe.
   void velocity_terms(const S* v, S* t) const;
 
-  /// Of rows of Φq as Σ n_i e_i (gradient_numbers()): e_i of constraint k has (i, row, entry), to
+  /// Of rows of Φq as Σ n_i e_i (Changing): e_i of constraint k has (i, row, entry), to
   /// all of which `then` is applied.
   template <typename Then>
   void unit_entries(int k, Then then) const;
