@@ -139,10 +139,12 @@ int eliminate_points_first(const Pattern& pattern, int width, const Changing& ch
   // Two solves, and nothing hides their latencies.
   const double substitutions = cycles_of_solves(constant, points, width, 3.0);
   const double products = 2.0 * cycles_of_inverse(points, width, changing.axes_alike);
+  // Separate blocks of A are substituted side by side, so the inverse must be clearly faster.
+  const bool inverse = 2.0 * products < substitutions;
   after += rest.cycles + cycles_of_solves(rest, multipliers, width, 2.0) +
-           std::min(substitutions, products);
+           (inverse ? products : substitutions);
   if (after >= before) return 0;
-  inverts = products < substitutions;
+  inverts = inverse;
   tree = std::move(constant);
   const auto fronts = static_cast<int>(tree.fronts.size());
   tree.cycles = rest.cycles;
