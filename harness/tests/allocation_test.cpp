@@ -91,22 +91,49 @@ Scene spatial() {
   return {"spatial", Model(std::move(data)), {}, {}};
 }
 
-/// Allocations of `steps` steps after five of warm-up; the stretch passes a singular position of
-/// the four-bar in its middle, where passes, multipliers and pivots change most.
-long allocations_of_steps(const Variant& variant, const Scene& scene) {
-  constexpr int kSteps = 120;
-  constexpr int kWarmUp = 5;
+/// What all variants step; to find a stretch takes longer than to step it.
+struct Prepared {
+  Scene scene;
+  StepSettings settings;
+  Stretch stretch;
+};
+
+constexpr int kStretchSteps = 120;
+
+/// The stretch passes a singular position of the four-bar in its middle, where passes, multipliers
+/// and pivots change most.
+Prepared prepare(Scene scene) {
   StepSettings settings;
   settings.penalty = automatic_penalty(scene.model, settings);
-  const Stretch stretch = make_stretch(scene, settings.step, kSteps);
-  const auto simulation = create_simulation(variant, scene.model, settings);
-  simulation->set_state(stretch.initial);
+  Stretch stretch = make_stretch(scene, settings.step, kStretchSteps);
+  return {std::move(scene), settings, std::move(stretch)};
+}
+
+const std::vector<Prepared>& prepared() {
+  static const std::vector<Prepared> all = [] {
+    std::vector<Prepared> result;
+    for (const char* name : {"four-bar:1", "four-bar:10", "four-bar:40", "four-bar:10,fill=0.6",
+                             "four-bar:80", "four-bar:80,fill=1"}) {
+      result.push_back(prepare(load_scene(name)));
+    }
+    result.push_back(prepare(free_fall()));
+    result.push_back(prepare(spatial()));
+    return result;
+  }();
+  return all;
+}
+
+/// Allocations of the steps after five of warm-up.
+long allocations_of_steps(const Variant& variant, const Prepared& one) {
+  constexpr int kWarmUp = 5;
+  const auto simulation = create_simulation(variant, one.scene.model, one.settings);
+  simulation->set_state(one.stretch.initial);
   for (int i = 0; i < kWarmUp; ++i) {
     EXPECT_NE(simulation->step().status, StepStatus::factorization_failed);
   }
   int failed = 0;
   const long before = allocations();
-  for (int i = kWarmUp; i < kSteps; ++i) {
+  for (int i = kWarmUp; i < kStretchSteps; ++i) {
     if (simulation->step().status == StepStatus::factorization_failed) ++failed;
   }
   const long after = allocations();
@@ -119,18 +146,11 @@ class AllocationFreeStep : public ::testing::TestWithParam<NamedVariant> {};
 /// Zero on every scene, unless the variant says that its library allocates: then it must be true.
 TEST_P(AllocationFreeStep, OnEveryScene) {
   if (!test::counts_allocations()) GTEST_SKIP() << kNotCounted;
-  std::vector<Scene> scenes;
-  for (const char* name : {"four-bar:1", "four-bar:10", "four-bar:40", "four-bar:10,fill=0.6",
-                           "four-bar:80", "four-bar:80,fill=1"}) {
-    scenes.push_back(load_scene(name));
-  }
-  scenes.push_back(free_fall());
-  scenes.push_back(spatial());
   long most = 0;
-  for (const Scene& scene : scenes) {
-    SCOPED_TRACE(scene.name);
+  for (const Prepared& one : prepared()) {
+    SCOPED_TRACE(one.scene.name);
     try {
-      const long count = allocations_of_steps(*GetParam().variant, scene);
+      const long count = allocations_of_steps(*GetParam().variant, one);
       if (GetParam().variant->allocates.empty()) {
         EXPECT_EQ(count, 0);
       }
@@ -171,7 +191,7 @@ TEST(AllocationCounter, NoticesAStepThatAllocates) {
                         [](const Model& model, const StepSettings&) -> std::unique_ptr<Simulation> {
                           return std::make_unique<Allocating>(model);
                         }};
-  EXPECT_EQ(allocations_of_steps(variant, free_fall()), 115);
+  EXPECT_EQ(allocations_of_steps(variant, prepare(free_fall())), 115);
 }
 
 }  // namespace

@@ -127,15 +127,33 @@ TEST(Elimination, RandomPatternsAsEntryByEntry) {
 TEST(Elimination, RowsOfConstraintsWaitForTheirVariables) {
   // Variables 0 to 2; row 3 has 0 and 2, row 4 has 1, row 5 none.
   const SymmetricPattern pattern(6, {{3, 0}, {3, 2}, {4, 1}});
-  EXPECT_EQ(rows_behind({2, 1, 0}, pattern), (std::vector<int>{5, 2, 1, 4, 0, 3}));
+  EXPECT_EQ(rows_behind({2, 1, 0}, pattern, {-1, -1, -1}), (std::vector<int>{5, 2, 1, 4, 0, 3}));
   const auto pendulum = saddle_point_pattern(load_scene("chain:1").model);  // x, y and its rod
-  expect_counts(pendulum, rows_behind({0, 1}, pendulum), 2 + 2 + 1, 4 + 4 + 1, 2, 2, 2);
+  expect_counts(pendulum, rows_behind({0, 1}, pendulum, {-1}), 2 + 2 + 1, 4 + 4 + 1, 2, 2, 2);
+}
+
+TEST(Elimination, ASubstitutionComesRightAfterItsVariable) {
+  // Variables 0 to 2; row 3 has 0 and 2 and owns 0, row 4 has 0 and 1 and waits for 2, too.
+  const SymmetricPattern pattern(5, {{3, 0}, {3, 2}, {4, 0}, {4, 1}});
+  EXPECT_EQ(rows_behind({0, 1, 2}, pattern, {0, -1}), (std::vector<int>{0, 3, 1, 2, 4}));
+  EXPECT_EQ(rows_behind({0, 1, 2}, pattern, {-1, -1}), (std::vector<int>{0, 1, 4, 2, 3}));
+}
+
+TEST(Elimination, LinearConstraintsOwnWhatNoOtherHas) {
+  ModelData data{.points = {{"A", 0, {1.0, 0.0}}, {"B", 2, {0.0, 1.0}}},
+                 .mass = {{0, 0, 1.0}, {1, 1, 1.0}, {2, 2, 1.0}, {3, 3, 1.0}},
+                 .force = {0.0, 0.0, 0.0, 0.0},
+                 .initial_velocity = {0.0, 0.0, 0.0, 0.0}};
+  data.linear_constraints = {{.terms = {{0, 1.0}, {1, -2.0}}, .value = 1.0, .name = "largest"},
+                             {.terms = {{2, 1e-4}, {3, 1.0}}, .value = 1.0, .name = "far below"},
+                             {.terms = {{3, 1.0}}, .value = 1.0, .name = "nothing of its own"}};
+  EXPECT_EQ(owned_coordinates(Model(data)), (std::vector<int>{1, -1, -1}));
 }
 
 TEST(Elimination, TooManyAreNotCounted) {
   const auto pattern = arrow(10'001);
   EXPECT_EQ(eliminate(pattern, natural_order(pattern)), std::nullopt);
-  const auto json = elimination_json(pattern, pattern);
+  const auto json = elimination_json(pattern, pattern, {});
   EXPECT_TRUE(json["orderings"]["natural"].is_null());
   EXPECT_EQ(json["factor_nonzeros"], 2 * 10'001 - 1);
   EXPECT_EQ(json["widest"], 2);

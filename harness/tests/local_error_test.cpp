@@ -9,6 +9,7 @@
 
 #include "controls/controls.hpp"
 #include "run/initial_state.hpp"
+#include "run/judged_run.hpp"
 #include "run/run.hpp"
 #include "run/settings.hpp"
 #include "scene_file/load_scene.hpp"
@@ -73,16 +74,83 @@ TEST(LocalErrors, CountWhatAWrongEnergyIsAheadBy) {
   State moving = initial;
   moving.v[0] += 2.0;
   Judge judge(scene, moving, 0.0);
-  judge.add_local_error(0.0, moving, 0.1, 10);
+  judge.add_local_error(0.0, 1.0, 0.1, 10);
   EXPECT_EQ(judge.local_error_sum(), 0.0);
   State faster = moving;
   for (double& v : faster.v) v *= 1.01;
   judge.judge(0.1, faster);
-  judge.add_local_error(0.0, faster, 0.1, 10);
-  // Ten steps of 0.1 s at the speed of the last, which is to the first as 1.01 to 1.
   double speed = 0.0;
   for (const double v : faster.v) speed = std::hypot(speed, v);
-  EXPECT_NEAR(judge.local_error_sum(), speed * (std::sqrt(2 - 1 / 1.0201) - 1), 1e-12);
+  judge.add_local_error(0.0, speed, 0.1, 10);
+  // Ten steps of 0.1 s at the speed of the last, which is to the first as 1.01 to 1.
+  const double ahead = speed * (std::sqrt(2 - 1 / 1.0201) - 1);
+  EXPECT_NEAR(judge.local_error_sum(), ahead, 1e-12);
+  // Then five with too little, which take it back behind where it should be; the farthest counts.
+  State slower = moving;
+  for (double& v : slower.v) v *= 0.99;
+  judge.judge(0.2, slower);
+  judge.add_local_error(0.0, speed, 0.1, 5);
+  EXPECT_NEAR(judge.local_error_sum(), ahead, 1e-12);
+  judge.add_local_error(0.0, speed, 0.1, 95);
+  EXPECT_NEAR(judge.local_error_sum(), 10 * speed * (1 - std::sqrt(2 - 1 / 0.9801)) - ahead,
+              1e-10);
+}
+
+TEST(LocalErrors, OfAMotionThatIsAheadAndThenBehindAreNotBoth) {
+  // Its energy is too large for a part of each turn and too small for the rest.
+  const Scene scene = shipped("problems/spatial_slider_crank.json");
+  RunSettings settings = settings_for(scene, Scheme::saddle_point, 1e-3, 4.0);
+  settings.step.tolerance = automatic_tolerance(scene.model, settings.step);
+  const RunSummary summary = run(scene, test::reference(), settings);
+  EXPECT_EQ(summary.status, RunStatus::plausible) << summary.reason;
+}
+
+/// Two rods of 1 m below each other, of 1 kg and of `mass`.
+Scene with_lower_rod(double mass) {
+  nlohmann::json scene = nlohmann::json::parse(R"({"points": [
+      {"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "B", "position": [0.8, -0.6]}, {"name": "C", "position": [1.6, -1.2]}],
+      "rods": [{"name": "upper", "between": ["A", "B"], "mass": 1, "length": 1},
+               {"name": "lower", "between": ["B", "C"], "length": 1}]})");
+  scene["rods"][1]["mass"] = mass;
+  return scene_of(scene, "test");
+}
+
+/// How often a run of `steps` steps makes a simulation that does steps again.
+int made_again(const Scene& scene, RunSettings settings, long steps) {
+  settings.duration = static_cast<double>(steps) * settings.step.step;
+  const Variant variant = test::reference();
+  const auto simulation = variant.create(scene.model, settings.step);
+  const State start = initial_state(scene.model);
+  simulation->set_state(start);
+  int made = 0;
+  JudgedRun judged(scene, variant, settings, start, {});
+  judged.begin({[&](State& state) { simulation->get_state(state); },
+                [&]() -> Simulation& { return *simulation; },
+                [&](const StepSettings& step) {
+                  ++made;
+                  return variant.create(scene.model, step);
+                }});
+  while (!judged.is_over()) judged.take(simulation->step());
+  EXPECT_EQ(judged.finish().steps, steps);
+  return made;
+}
+
+TEST(LocalErrors, AreNotLookedForWhereTheToleranceLeavesNone) {
+  const Scene scene = shipped("double_pendulum.json");
+  RunSettings settings = settings_for(scene, Scheme::penalty, 1e-3, 1.0);
+  settings.step.tolerance = automatic_tolerance(scene.model, settings.step);
+  EXPECT_EQ(made_again(scene, settings, 200), 0);
+  EXPECT_EQ(made_again(scene, settings, 4000), 1);  // what a step may leave adds up
+  RunSettings loose = settings, kept = settings, limited = settings;
+  loose.step.tolerance = 1e-6;
+  EXPECT_EQ(made_again(scene, loose, 200), 1);
+  kept.step.tangent = TangentReuse::kept;  // the tangent is older than a correction
+  EXPECT_EQ(made_again(scene, kept, 200), 1);
+  limited.step.max_passes = 1;  // steps do not get to the tolerance
+  EXPECT_EQ(made_again(scene, limited, 200), 1);
+  const Scene light = with_lower_rod(1e-6);
+  EXPECT_EQ(made_again(light, settings, 200), 1);
 }
 
 TEST(LocalErrors, AddUpAlongTheWay) {
@@ -116,17 +184,6 @@ TEST(LocalErrors, AddUpAlongTheWay) {
   EXPECT_LT(braked.sum(), 1e-5);
   speeds.add_speed({{1.0, 0.0}, {1.0, 0.0}}, onward, 1e-3, 1000, 0.0);  // no more than the way itself
   EXPECT_LT(speeds.sum(), 6e-4 + 2.0 * 1e-3 * 1000 + 1e-12);
-}
-
-/// Two rods of 1 m below each other, of 1 kg and of `mass`.
-Scene with_lower_rod(double mass) {
-  nlohmann::json scene = nlohmann::json::parse(R"({"points": [
-      {"name": "A", "position": [0, 0], "fixed": true},
-      {"name": "B", "position": [0.8, -0.6]}, {"name": "C", "position": [1.6, -1.2]}],
-      "rods": [{"name": "upper", "between": ["A", "B"], "mass": 1, "length": 1},
-               {"name": "lower", "between": ["B", "C"], "length": 1}]})");
-  scene["rods"][1]["mass"] = mass;
-  return scene_of(scene, "test");
 }
 
 TEST(LocalErrors, OfALightPartAreItsOwn) {

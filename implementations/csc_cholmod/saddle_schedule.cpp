@@ -2,6 +2,7 @@
 #include "saddle_schedule.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "schedule.hpp"
@@ -27,12 +28,41 @@ std::vector<int> model_places(const Coordinates& coordinates, const std::vector<
   return result;
 }
 
+/// By unknown: the linear row that is a substitution for it, or -1. A row takes the one with the
+/// largest coefficient of those that no other linear row has, unless that is far below its largest.
+std::vector<int> owners(const LoweredConstraints& lowered, int unknowns) {
+  constexpr double kFarBelow = 1e-3;
+  const LinearBlock& linear = lowered.linear;
+  std::vector<int> rows_with(unknowns), owner(unknowns, -1);
+  for (int column : linear.column) ++rows_with[column];
+  for (int row = 0; row < linear.count; ++row) {
+    double largest = 0.0, most = 0.0;
+    int owned = -1;
+    for (int t = linear.start[row]; t < linear.start[row + 1]; ++t) {
+      const double size = std::abs(linear.coefficient[t]);
+      largest = std::max(largest, size);
+      if (rows_with[linear.column[t]] > 1 || size <= most) continue;
+      most = size;
+      owned = linear.column[t];
+    }
+    if (most > kFarBelow * largest) owner[owned] = linear.first_row + row;
+  }
+  return owner;
+}
+
 }  // namespace
 
 std::vector<int> saddle_places(const LoweredConstraints& lowered, int unknowns) {
-  std::vector<int> after(lowered.rows());  // unknowns before each row
-  for_jacobian(lowered,
-               [&](int row, int column) { after[row] = std::max(after[row], column + 1); });
+  std::vector<int> all(lowered.rows());  // unknowns up to the last of each row
+  for_jacobian(lowered, [&](int row, int column) { all[row] = std::max(all[row], column + 1); });
+  const std::vector<int> owner = owners(lowered, unknowns);
+  std::vector<int> after = all;  // unknowns before each row
+  for_jacobian(lowered, [&](int row, int column) {
+    if (owner[column] >= 0) after[row] = std::max(after[row], all[owner[column]]);
+  });
+  for (int column = 0; column < unknowns; ++column) {
+    if (owner[column] >= 0) after[owner[column]] = column + 1;
+  }
   std::vector<int> next(unknowns + 1);  // place of the first row after so many unknowns
   for (int count : after) {
     if (count < unknowns) ++next[count + 1];

@@ -38,16 +38,28 @@ Pattern tangent_pattern(const Pattern& saddle, int n) {
 
 }  // namespace
 
-std::vector<int> interleaved_order(const Pattern& saddle, int n) {
+std::vector<int> interleaved_order(const Pattern& saddle, int n, const std::vector<int>& owned) {
   const std::vector<int> coordinates = shallow_order(tangent_pattern(saddle, n));
   std::vector<int> rank(n);
   for (int k = 0; k < n; ++k) rank[coordinates[k]] = k;
 
   // Multipliers that follow the coordinate of a rank; those without coordinates follow the first.
   std::vector<std::vector<int>> followers(n);
+  std::vector<int> last_of, owner(n, -1);  // by row: the last of its coordinates
   for (int multiplier = n; multiplier < saddle.columns(); ++multiplier) {
-    int last = 0;
-    for (const int row : Coordinates(saddle, n, multiplier)) last = std::max(last, rank[row]);
+    const int row = static_cast<int>(last_of.size());
+    if (owned[row] >= 0) owner[owned[row]] = row;
+    last_of.push_back(0);
+    for (const int i : Coordinates(saddle, n, multiplier)) {
+      last_of[row] = std::max(last_of[row], rank[i]);
+    }
+  }
+  for (int multiplier = n; multiplier < saddle.columns(); ++multiplier) {
+    int last = last_of[multiplier - n];
+    for (const int i : Coordinates(saddle, n, multiplier)) {
+      if (owner[i] >= 0) last = std::max(last, last_of[owner[i]]);
+    }
+    if (owned[multiplier - n] >= 0) last = rank[owned[multiplier - n]];
     followers[last].push_back(multiplier);
   }
   std::vector<int> order;

@@ -13,6 +13,10 @@ namespace mbs::csc_klu {
 /// the penalty form, but -(eps + Phi_q S^-1 Phi_q^T) with the row of the constraint whole.
 ///
 /// Example, one coordinate x and one multiplier: x, then the multiplier.
-[[nodiscard]] std::vector<int> interleaved_order(const Pattern& saddle, int n);
+/// But a row may own a coordinate (owned[row], or -1) that no other such row has. It is a
+/// substitution for it, and comes right after it. To a row that has an owned coordinate, those of
+/// its owner count as its own.
+[[nodiscard]] std::vector<int> interleaved_order(const Pattern& saddle, int n,
+                                                 const std::vector<int>& owned);
 
 }  // namespace mbs::csc_klu

@@ -1,6 +1,8 @@
 // The pattern of the saddle-point matrix and where its values are, found once.
 #include "saddle_pattern.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "elimination_order.hpp"
@@ -28,6 +30,28 @@ void visit_blocks(const JacobianPattern<dim>& jacobian, int n, Visit visit) {
       visit(n + jacobian.block_row[block], dim * p);
     }
   }
+}
+
+/// By row: of a linear constraint the coordinate with the largest coefficient of those that no
+/// other has, unless that is far below the row's largest; else -1.
+template <int dim>
+std::vector<int> owned_coordinates(const JacobianPattern<dim>& jacobian, int n) {
+  constexpr double kFarBelow = 1e-3;
+  const std::size_t rows = jacobian.model_row.size();
+  std::vector<int> rows_with(n, 0), owned(rows, -1);
+  std::vector<double> enough(rows, 0.0);
+  visit_linear(jacobian, n, [&](int multiplier, int coordinate, double coefficient) {
+    ++rows_with[coordinate];
+    double& least = enough[multiplier - n];
+    least = std::max(least, kFarBelow * std::abs(coefficient));
+  });
+  visit_linear(jacobian, n, [&](int multiplier, int coordinate, double coefficient) {
+    const int row = multiplier - n;
+    if (rows_with[coordinate] > 1 || std::abs(coefficient) <= enough[row]) return;
+    enough[row] = std::abs(coefficient);
+    owned[row] = coordinate;
+  });
+  return owned;
 }
 
 template <int dim>
@@ -62,7 +86,8 @@ SaddlePattern<dim>::SaddlePattern(const Model& model, const JacobianPattern<dim>
                                   const std::vector<ElementBlock>& elements,
                                   const std::vector<HessianEntry>& hessians)
     : pattern(saddle_pattern(model, jacobian, elements, hessians)),
-      order(interleaved_order(pattern, model.variables())),
+      order(interleaved_order(pattern, model.variables(),
+                              owned_coordinates(jacobian, model.variables()))),
       shares(elements, pattern, [](int, int) { return false; }) {
   const int n = model.variables();
   visit_blocks(jacobian, n, [&](int multiplier, int coordinate) {

@@ -2,9 +2,38 @@
 #include "assembly.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace mbs::csc_ldl {
+
+namespace {
+
+/// Of each row, a variable that it is a substitution for: of a linear row the one with the largest
+/// coefficient of those that no other linear row has, unless that is far below the row's largest,
+/// as it is divided by; -1 for others.
+std::vector<int> owned_variables(const Model& model) {
+  constexpr double kFarBelow = 1e-3;
+  std::vector<int> rows_with(model.variables(), 0);
+  for (const LinearConstraint& linear : model.linear_constraints()) {
+    for (const LinearConstraint::Term& term : linear.terms) ++rows_with[term.coordinate];
+  }
+  std::vector<int> owned(model.constraints() - model.linear_constraints().size(), -1);
+  for (const LinearConstraint& linear : model.linear_constraints()) {
+    double largest = 0.0;
+    for (const auto& term : linear.terms) largest = std::max(largest, std::abs(term.coefficient));
+    double most = kFarBelow * largest;
+    owned.push_back(-1);
+    for (const auto& [variable, coefficient] : linear.terms) {
+      if (rows_with[variable] > 1 || std::abs(coefficient) <= most) continue;
+      most = std::abs(coefficient);
+      owned.back() = variable;
+    }
+  }
+  return owned;
+}
+
+}  // namespace
 
 Numbering number_unknowns(const Model& model, bool saddle_point, Order kind) {
   const int n = model.variables();
@@ -17,7 +46,10 @@ Numbering number_unknowns(const Model& model, bool saddle_point, Order kind) {
 
   EliminationProblem problem;
   problem.variables = n;
-  if (saddle_point) problem.rows = constraints.count();
+  if (saddle_point) {
+    problem.rows = constraints.count();
+    problem.owned = owned_variables(model);
+  }
   const auto couple = [&](int i, int j) {
     if (i < j) problem.entries.emplace_back(i, j);
   };

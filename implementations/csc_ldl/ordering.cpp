@@ -40,26 +40,48 @@ std::vector<int> amd(const Lists& adjacent) {
   return order;
 }
 
-/// Of each unknown, how many have to go before it: of a row all of its variables.
-std::vector<int> waits(const Lists& adjacent, int variables) {
-  std::vector<int> left(adjacent.size(), 0);
-  for (std::size_t row = variables; row < left.size(); ++row) {
-    left[row] = static_cast<int>(adjacent[row].size());
+/// Which unknowns have to wait for others.
+struct Waiting {
+  std::vector<int> left;  ///< of each unknown, how many have to go before it
+  Lists rows;             ///< of each variable, those that wait for it
+};
+
+Waiting waiting(const EliminationProblem& problem, const Lists& adjacent) {
+  Waiting result{std::vector<int>(adjacent.size(), 0), Lists(problem.variables)};
+  std::vector<int> owner(problem.variables, -1), waits_for;
+  for (int row = 0; row < problem.rows; ++row) {
+    if (problem.owned[row] >= 0) owner[problem.owned[row]] = problem.variables + row;
   }
-  return left;
+  for (int row = 0; row < problem.rows; ++row) {
+    const int unknown = problem.variables + row;
+    waits_for = {problem.owned[row]};
+    if (problem.owned[row] < 0) {
+      waits_for = adjacent[unknown];
+      for (const int variable : adjacent[unknown]) {
+        if (owner[variable] < 0) continue;
+        const std::vector<int>& others = adjacent[owner[variable]];
+        waits_for.insert(waits_for.end(), others.begin(), others.end());
+      }
+      std::ranges::sort(waits_for);
+      waits_for.erase(std::unique(waits_for.begin(), waits_for.end()), waits_for.end());
+    }
+    result.left[unknown] = static_cast<int>(waits_for.size());
+    for (const int variable : waits_for) result.rows[variable].push_back(unknown);
+  }
+  return result;
 }
 
 /// The same order, but rows that come too early are held back until they may go.
-std::vector<int> held_back(const std::vector<int>& order, const Lists& adjacent, int variables) {
-  std::vector<int> left = waits(adjacent, variables), result;
+std::vector<int> held_back(const std::vector<int>& order, Waiting waiting) {
+  std::vector<int> result;
   std::vector<bool> held(order.size(), false);
   for (const int next : order) {
-    held[next] = left[next] > 0;
+    held[next] = waiting.left[next] > 0;
     if (held[next]) continue;
     result.push_back(next);
-    if (next >= variables) continue;
-    for (const int row : adjacent[next]) {
-      if (row >= variables && --left[row] == 0 && held[row]) result.push_back(row);
+    if (next >= static_cast<int>(waiting.rows.size())) continue;
+    for (const int row : waiting.rows[next]) {
+      if (--waiting.left[row] == 0 && held[row]) result.push_back(row);
     }
   }
   return result;
@@ -90,20 +112,19 @@ Lists filled(const Lists& adjacent, const std::vector<int>& order) {
 /// already. Unknowns of one round stand side by side, so that consecutive rows of L do not wait for
 /// each other.
 std::vector<int> lowest_tree(const std::vector<int>& first_order, const Lists& later,
-                             const Lists& adjacent, int variables) {
+                             Waiting waiting) {
   const int n = static_cast<int>(first_order.size());
   Lists earlier(n);  // each in the first order
   for (const int i : first_order) {
     for (const int j : later[i]) earlier[j].push_back(i);
   }
-  std::vector<int> left = waits(adjacent, variables);
   std::vector<bool> gone(n, false), ready(n, false);
   std::vector<int> mark(n, -1), blocked(n, -1), first(n, 0);
 
   // With u the first of v and its neighbours, all of these are coupled if u is coupled to each:
   // what comes after u and is coupled to it is coupled among itself.
   const auto is_ready = [&](int v) {
-    if (left[v] > 0) return false;
+    if (waiting.left[v] > 0) return false;
     while (first[v] < static_cast<int>(earlier[v].size()) && gone[earlier[v][first[v]]]) ++first[v];
     if (first[v] == static_cast<int>(earlier[v].size())) return true;
     const int u = earlier[v][first[v]];
@@ -139,13 +160,14 @@ std::vector<int> lowest_tree(const std::vector<int>& first_order, const Lists& l
     candidates = next;
     for (std::size_t k = begin; k < order.size(); ++k) {
       gone[order[k]] = true;
-      if (order[k] < variables) {
-        for (const int row : adjacent[order[k]]) left[row] -= row >= variables;
-      }
+      if (order[k] >= static_cast<int>(waiting.rows.size())) continue;
+      for (const int row : waiting.rows[order[k]]) --waiting.left[row];
     }
     for (std::size_t k = begin; k < order.size(); ++k) {
       std::ranges::for_each(earlier[order[k]], consider);
       std::ranges::for_each(later[order[k]], consider);
+      if (order[k] >= static_cast<int>(waiting.rows.size())) continue;
+      std::ranges::for_each(waiting.rows[order[k]], consider);
     }
   }
   return order;
@@ -155,9 +177,10 @@ std::vector<int> lowest_tree(const std::vector<int>& first_order, const Lists& l
 
 std::vector<int> elimination_order(const EliminationProblem& problem, Order kind) {
   const Lists adjacent = neighbours(problem);
-  const std::vector<int> order = held_back(amd(adjacent), adjacent, problem.variables);
+  const Waiting all_waiting = waiting(problem, adjacent);
+  const std::vector<int> order = held_back(amd(adjacent), all_waiting);
   if (kind == Order::amd) return order;
-  return lowest_tree(order, filled(adjacent, order), adjacent, problem.variables);
+  return lowest_tree(order, filled(adjacent, order), all_waiting);
 }
 
 }  // namespace mbs::csc_ldl

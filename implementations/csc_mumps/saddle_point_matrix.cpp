@@ -10,9 +10,39 @@
 
 namespace mbs::csc_mumps {
 
+namespace {
+
+/// Of linear rows the coordinate with the largest coefficient of those that no other linear row
+/// has, unless that is far below the row's largest; of other rows -1.
+std::vector<int> owned_coordinates(const Model& model) {
+  constexpr double kFarBelow = 1e-3;
+  const auto linears = model.linear_constraints();
+  std::vector<int> rows_with(model.variables(), 0), owned(model.constraints(), -1);
+  for (const LinearConstraint& linear : linears) {
+    for (const LinearConstraint::Term& term : linear.terms) ++rows_with[term.coordinate];
+  }
+  for (std::size_t k = 0; k < linears.size(); ++k) {
+    const auto size = [](const LinearConstraint::Term& term) { return std::abs(term.coefficient); };
+    const auto& terms = linears[k].terms;
+    double most =
+        terms.empty() ? 0.0 : kFarBelow * size(*std::ranges::max_element(terms, {}, size));
+    for (const LinearConstraint::Term& term : terms) {
+      if (rows_with[term.coordinate] > 1 || size(term) <= most) continue;
+      most = size(term);
+      owned[owned.size() - linears.size() + k] = term.coordinate;
+    }
+  }
+  return owned;
+}
+
+}  // namespace
+
 SaddlePointMatrix::SaddlePointMatrix(const Model& model, const Assembly& assembly,
                                      const StepSettings& settings)
-    : assembly_(assembly), variables_(model.variables()), constraints_(model.constraints()) {
+    : assembly_(assembly),
+      variables_(model.variables()),
+      constraints_(model.constraints()),
+      owned_(owned_coordinates(model)) {
   std::vector<std::pair<int, int>> entries;
   for (const MassEntry& mass : model.mass()) entries.emplace_back(mass.col, mass.row);
   assembly.forces().visit_couplings(
@@ -47,11 +77,24 @@ std::vector<int> SaddlePointMatrix::elimination_order() const {
       for (std::size_t j = 0; j < i; ++j) graph.add(row[i].column, row[j].column);
     }
   }
-  // Of a coordinate its position, of a multiplier that of its last coordinate, or 0.
-  std::vector<int> rank = MultifrontalSolver::minimum_degree(std::move(graph));
+  // Of a coordinate its position, of a multiplier that of its last coordinate, or 0; of one that
+  // owns a coordinate the position of that. Whoever has it waits for the owner's others too.
+  std::vector<int> rank = MultifrontalSolver::minimum_degree(std::move(graph)), last_of;
   for (const auto& row : rows) {
     int last = 0;
     for (const RowEntry& entry : row) last = std::max(last, rank[entry.column]);
+    last_of.push_back(last);
+  }
+  std::vector<int> owner(variables_, -1);
+  for (int k = 0; k < constraints_; ++k) {
+    if (owned_[k] >= 0) owner[owned_[k]] = k;
+  }
+  for (int k = 0; k < constraints_; ++k) {
+    int last = owned_[k] >= 0 ? rank[owned_[k]] : last_of[k];
+    for (const RowEntry& entry : rows[k]) {
+      const int other = owner[entry.column];
+      if (other >= 0 && owned_[k] < 0) last = std::max(last, last_of[other]);
+    }
     rank.push_back(last);
   }
   std::vector<int> order(rank.size());

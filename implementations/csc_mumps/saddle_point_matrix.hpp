@@ -22,7 +22,8 @@ class SaddlePointMatrix {
   /// One an entry of the pattern; never moves.
   [[nodiscard]] std::span<double> values() { return values_; }
   /// When each variable should be eliminated, from 1: coordinates in an order of minimum degree for
-  /// T0 + Phi_q' Phi_q, each multiplier right after the last of its coordinates.
+  /// T0 + Phi_q' Phi_q, each multiplier right after the last of its coordinates, or after the one
+  /// that it owns (README.md).
   [[nodiscard]] std::vector<int> elimination_order() const;
 
   /// The values, for the Phi_q and forces evaluated last. False if there is a NaN or an infinity.
@@ -31,6 +32,7 @@ class SaddlePointMatrix {
  private:
   const Assembly& assembly_;
   const int variables_, constraints_;
+  std::vector<int> owned_;         // by row: the coordinate that it is a substitution for, or -1
   ColumnPattern inertia_pattern_;  // of T0: the union of those of M and K
   std::vector<double> mass_;       // on it
   std::vector<int> force_places_;  // on it, of the forces' entries

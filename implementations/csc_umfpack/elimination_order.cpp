@@ -10,7 +10,8 @@
 
 namespace mbs::csc_umfpack {
 
-std::vector<int> elimination_order(const SparsityPattern& T, const Lists& rows) {
+std::vector<int> elimination_order(const SparsityPattern& T, const Lists& rows,
+                                   const std::vector<int>& owned) {
   const int n = T.variables();
   std::vector<int> coordinates(n);
   const int status =
@@ -20,11 +21,20 @@ std::vector<int> elimination_order(const SparsityPattern& T, const Lists& rows) 
   }
   std::vector<int> places(n);
   for (int k = 0; k < n; ++k) places[coordinates[k]] = k + 1;
-  Lists last;  // for every row, the place after which its multiplier can follow; 0: at once
-  for (int row = 0; row < rows.count(); ++row, last.end_list()) {
+  std::vector<int> owner(n, -1), all;  // all: for every row, the place of its last coordinate, or 0
+  for (int row = 0; row < rows.count(); ++row) {
+    if (owned[row] >= 0) owner[owned[row]] = row;
     int place = 0;
     for (const int coordinate : rows[row]) place = std::max(place, places[coordinate]);
-    last.items.push_back(place);
+    all.push_back(place);
+  }
+  Lists last;  // for every row, the place after which its multiplier can follow; 0: at once
+  for (int row = 0; row < rows.count(); ++row, last.end_list()) {
+    int place = all[row];
+    for (const int coordinate : rows[row]) {
+      if (owner[coordinate] >= 0) place = std::max(place, all[owner[coordinate]]);
+    }
+    last.items.push_back(owned[row] >= 0 ? places[owned[row]] : place);
   }
   const Lists ready = transpose(last, n + 1);
   std::vector<int> order;

@@ -2,6 +2,7 @@
 #include "saddle_point_matrix.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "elimination_order.hpp"
 
@@ -12,6 +13,29 @@ Lists element_coordinates(const ForceLayout& forces, int dimension) {
   Lists sets;
   add_element_coordinates(forces, dimension, sets);
   return sets;
+}
+
+/// By row: the coordinate that it is a substitution for, or -1. Of a linear row it is the one with
+/// the largest coefficient of those that no other linear row has, unless that is far below the
+/// row's largest.
+std::vector<int> owned_coordinates(const JacobianLayout& layout, int variables) {
+  constexpr double kFarBelow = 1e-3;
+  std::vector<int> rows_with(variables, 0);
+  for (const LinearConstraint::Term& term : layout.terms) ++rows_with[term.coordinate];
+  std::vector<int> owned(layout.rows() - layout.linears.size(), -1);
+  for (const JacobianLayout::Linear& linear : layout.linears) {
+    double largest = 0.0, most = 0.0;
+    int found = -1;
+    for (int k = linear.first; k < linear.last; ++k) {
+      const auto& [coordinate, coefficient] = layout.terms[k];
+      largest = std::max(largest, std::abs(coefficient));
+      if (rows_with[coordinate] > 1 || std::abs(coefficient) <= most) continue;
+      most = std::abs(coefficient);
+      found = coordinate;
+    }
+    owned.push_back(most > kFarBelow * largest ? found : -1);
+  }
+  return owned;
 }
 
 }  // namespace
@@ -29,7 +53,8 @@ SaddlePointSchedule<D>::SaddlePointSchedule(const SparsityPattern& mass,
       places(element_places<D>(pattern, forces)) {
   Lists coupled = rows;
   add_element_coordinates(forces, D, coupled);
-  order = elimination_order(union_pattern(mass, coupled), rows);
+  order = elimination_order(union_pattern(mass, coupled), rows,
+                            owned_coordinates(layout, mass.variables()));
   const int n = mass.variables();
   for (const auto& block : layout.blocks) {
     Block at{pattern.position(block.offset, n + block.row)};

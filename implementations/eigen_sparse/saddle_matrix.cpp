@@ -2,20 +2,50 @@
 #include "saddle_matrix.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace mbs::eigen_sparse {
 namespace {
 
-/// Where the unknowns, then the multipliers are stored. The unknowns keep their order; a multiplier
-/// follows the last one that its row of Phi_q has.
-std::vector<int> interleaved(const RowSparseMatrix& jacobian) {
-  const auto unknowns = static_cast<int>(jacobian.cols());
-  std::vector<int> in_front(jacobian.rows()), order(jacobian.rows());
-  for (int row = 0; row < jacobian.rows(); ++row) {
-    for (int k = jacobian.outerIndexPtr()[row]; k < jacobian.outerIndexPtr()[row + 1]; ++k) {
-      in_front[row] = std::max(in_front[row], jacobian.innerIndexPtr()[k] + 1);
+/// Of each row the unknown that it is a substitution for, or -1: of a linear row (from `first` on)
+/// the one with the largest coefficient of those that no other linear row has, unless that is far
+/// below the row's largest.
+std::vector<int> owned_unknowns(const RowSparseMatrix& jacobian, int first) {
+  constexpr double kFarBelow = 1e-3;
+  std::vector<int> rows_with(jacobian.cols()), owned(jacobian.rows(), -1);
+  for (int k = jacobian.outerIndexPtr()[first]; k < jacobian.nonZeros(); ++k) {
+    ++rows_with[jacobian.innerIndexPtr()[k]];
+  }
+  for (int row = first; row < jacobian.rows(); ++row) {
+    double most = kFarBelow * jacobian.row(row).cwiseAbs().toDense().maxCoeff();
+    for (RowSparseMatrix::InnerIterator it(jacobian, row); it; ++it) {
+      if (rows_with[it.col()] > 1 || std::abs(it.value()) <= most) continue;
+      most = std::abs(it.value());
+      owned[row] = static_cast<int>(it.col());
     }
+  }
+  return owned;
+}
+
+/// Where the unknowns, then the multipliers are stored. The unknowns keep their order; a multiplier
+/// follows the last one that its row of Phi_q has. But a row that owns an unknown follows that one,
+/// and rows that have it wait for the unknowns of its owner too.
+std::vector<int> interleaved(const RowSparseMatrix& jacobian, const std::vector<int>& owned) {
+  const auto unknowns = static_cast<int>(jacobian.cols());
+  std::vector<int> last(jacobian.rows()), order(jacobian.rows()), owner(unknowns, -1);
+  for (int row = 0; row < jacobian.rows(); ++row) {
+    if (owned[row] >= 0) owner[owned[row]] = row;
+    for (RowSparseMatrix::InnerIterator it(jacobian, row); it; ++it) {
+      last[row] = std::max(last[row], static_cast<int>(it.col()) + 1);
+    }
+  }
+  std::vector<int> in_front = last;
+  for (int row = 0; row < jacobian.rows(); ++row) {
+    for (RowSparseMatrix::InnerIterator it(jacobian, row); it; ++it) {
+      if (owner[it.col()] >= 0) in_front[row] = std::max(in_front[row], last[owner[it.col()]]);
+    }
+    if (owned[row] >= 0) in_front[row] = owned[row] + 1;
   }
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
@@ -60,7 +90,8 @@ SaddleMatrix::SaddleMatrix(const Model& model, const Coordinates& coordinates,
                            Stiffness stiffness, Reorder reorder)
     : triangle_(triangle),
       variables_(model.variables()),
-      place_(interleaved(constraints.jacobian())) {
+      place_(interleaved(constraints.jacobian(),
+                         owned_unknowns(constraints.jacobian(), constraints.quadratic()))) {
   const RowSparseMatrix& jacobian = constraints.jacobian();
   const SparseMatrix upper_left = stiffness == Stiffness::added
                                       ? stiffness_pattern(model, coordinates)

@@ -160,7 +160,8 @@ json describe_json(const Scene& scene, const StepSettings& settings) {
       {"drivers_end", finite_or_null(driver_end(model))},
       {"artificial_fill", fill_json(scene.fill)},
       {"elements", elements_json(scene)}};
-  result["elimination"] = elimination_json(tangent_pattern(model), saddle_point_pattern(model));
+  result["elimination"] = elimination_json(tangent_pattern(model), saddle_point_pattern(model),
+                                           owned_coordinates(model));
   add_points(result, scene);
   add_structure(result, model, structure);
   add_settings(result, model, structure, settings);

@@ -4,7 +4,9 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <span>
 
 #include "model_math/kinematics.hpp"
 #include "scene/tangent_pattern.hpp"
@@ -135,27 +137,66 @@ std::vector<int> amd_order(const SymmetricPattern& pattern) {
   return {permutation.indices().data(), permutation.indices().data() + size};
 }
 
-std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPattern& pattern) {
-  std::vector<int> left(at(pattern.size()), 0), result;
-  for (Index row = order.size(); row < left.size(); ++row) {
-    left[row] = pattern.start[row + 1] - pattern.start[row];
-    if (left[row] == 0) result.push_back(static_cast<int>(row));
+std::vector<int> owned_coordinates(const Model& model) {
+  constexpr double kFarBelow = 1e-3;
+  std::vector<int> rows_with(at(model.variables()), 0);
+  for (const LinearConstraint& linear : model.linear_constraints()) {
+    for (const LinearConstraint::Term& term : linear.terms) ++rows_with[at(term.coordinate)];
   }
-  for (const int variable : order) {
-    result.push_back(variable);
-    for (int k = pattern.start[at(variable)]; k < pattern.start[at(variable) + 1]; ++k) {
-      const int row = pattern.rows[at(k)];
-      if (at(row) >= order.size() && --left[at(row)] == 0) result.push_back(row);
+  std::vector<int> owned(at(model.constraints()) - model.linear_constraints().size(), -1);
+  for (const LinearConstraint& linear : model.linear_constraints()) {
+    double largest = 0.0, most = 0.0;
+    int found = -1;
+    for (const auto& [coordinate, coefficient] : linear.terms) {
+      largest = std::max(largest, std::abs(coefficient));
+      if (rows_with[at(coordinate)] > 1 || std::abs(coefficient) <= most) continue;
+      most = std::abs(coefficient);
+      found = coordinate;
     }
+    owned.push_back(most > kFarBelow * largest ? found : -1);
+  }
+  return owned;
+}
+
+std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPattern& pattern,
+                             const std::vector<int>& owned) {
+  const Index variables = order.size(), size = at(pattern.size());
+  std::vector<std::size_t> place(variables);
+  for (Index k = 0; k < variables; ++k) place[at(order[k])] = k + 1;
+  std::vector<Index> last(size - variables, 0);  // of a row: as many variables before it, by itself
+  std::vector<int> owner(variables, -1);
+  const auto neighbours = [&pattern](Index unknown) {
+    const auto rows = pattern.rows.begin();
+    return std::span(rows + pattern.start[unknown], rows + pattern.start[unknown + 1]);
+  };
+  for (Index row = 0; row < last.size(); ++row) {
+    if (owned[row] >= 0) owner[at(owned[row])] = static_cast<int>(row);
+    for (const int i : neighbours(variables + row)) last[row] = std::max(last[row], place[at(i)]);
+  }
+  std::vector<std::vector<int>> after(variables +
+                                      1);  // rows, by how many variables are before them
+  for (Index row = 0; row < last.size(); ++row) {
+    Index behind = last[row];
+    for (const int i : neighbours(variables + row)) {
+      if (owner[at(i)] >= 0) behind = std::max(behind, last[at(owner[at(i)])]);
+    }
+    if (owned[row] >= 0) behind = place[at(owned[row])];
+    after[behind].push_back(static_cast<int>(variables + row));
+  }
+  std::vector<int> result = after[0];
+  for (Index k = 0; k < variables; ++k) {
+    result.push_back(order[k]);
+    result.insert(result.end(), after[k + 1].begin(), after[k + 1].end());
   }
   return result;
 }
 
-json elimination_json(const SymmetricPattern& tangent, const SymmetricPattern& saddle_point) {
+json elimination_json(const SymmetricPattern& tangent, const SymmetricPattern& saddle_point,
+                      const std::vector<int>& owned) {
   const std::vector<int> order = amd_order(tangent);
   const auto natural = eliminate(tangent, natural_order(tangent));
   const auto amd = eliminate(tangent, order);
-  const auto rows = eliminate(saddle_point, rows_behind(order, saddle_point));
+  const auto rows = eliminate(saddle_point, rows_behind(order, saddle_point, owned));
   json result = {{"ordering", "AMD"},
                  {"orderings",
                   {{"natural", elimination_json(natural)},

@@ -54,15 +54,24 @@ std::vector<int> natural_order(const SymmetricPattern& pattern);
 /// Approximate minimum degree [Amestoy, Davis, Duff, 1996].
 std::vector<int> amd_order(const SymmetricPattern& pattern);
 
-/// `order` of the first unknowns of `pattern`, and each of the others right after the last of those
-/// that it is coupled with: so the sparse implementations order the saddle-point matrix (12).
-std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPattern& pattern);
+/// By constraint: of a linear one the coordinate with the largest coefficient of those that no
+/// other linear one has, unless that is far below its largest. It is a substitution for that
+/// coordinate. -1 for others.
+std::vector<int> owned_coordinates(const Model& model);
 
-/// Of the patterns of tangent and saddle-point matrix. Keys: ordering ("AMD"), whose
-/// factor_nonzeros, per_column (non-zeros of L a column), flops, height, widest and supernodes
-/// follow, null if not computed; orderings {"natural", "AMD", "saddle-point"}: the same keys each,
-/// or null; the last is of the saddle-point matrix.
+/// `order` of the first unknowns of `pattern`, and each of the others, the rows, right after the
+/// last of those that it is coupled with: so the sparse implementations order the saddle-point
+/// matrix (12). A row that owns an unknown (owned[row], or -1) comes right after that one. Rows
+/// that are coupled with an owned one wait for what its owner is coupled with, too.
+std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPattern& pattern,
+                             const std::vector<int>& owned);
+
+/// Of the patterns of tangent and saddle-point matrix, and owned_coordinates(). Keys: ordering
+/// ("AMD"), whose factor_nonzeros, per_column (non-zeros of L a column), flops, height, widest and
+/// supernodes follow, null if not computed; orderings {"natural", "AMD", "saddle-point"}: the same
+/// keys each, or null; the last is of the saddle-point matrix.
 nlohmann::json elimination_json(const SymmetricPattern& tangent,
-                                const SymmetricPattern& saddle_point);
+                                const SymmetricPattern& saddle_point,
+                                const std::vector<int>& owned);
 
 }  // namespace mbs

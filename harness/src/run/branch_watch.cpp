@@ -22,25 +22,31 @@ constexpr double kSame = 1e-5;     // of the length: more than what constraints 
 constexpr int kMostUncertain = 8;  // looks
 constexpr double kApart = 3e-3;    // of the length: less is not yet another assembly
 
-/// The sign of its determinant by elimination with row pivots, which passes over zeros, or 0 where a
-/// pivot is too small. (A determinant of many rows is small wherever it is.) Overwrites it.
+/// The sign of its determinant by elimination with row pivots, which passes over zeros, or 0 where
+/// a pivot is too small. (A determinant of many rows is small wherever it is.) Overwrites it.
 int sign_of(SquareMatrix& matrix) {
-  const Eigen::Index size = matrix.rows();
+  const auto size = static_cast<std::size_t>(matrix.rows());
+  double* const first = matrix.data();  // in rows; plain loops, since blocks are small
   int sign = 1;
-  for (Eigen::Index k = 0; k < size; ++k) {
-    Eigen::Index at = 0;
-    const double most = matrix.col(k).tail(size - k).cwiseAbs().maxCoeff(&at);
+  for (std::size_t k = 0; k < size; ++k) {
+    double* row = first + k * size;
+    double* pivots = row;
+    for (std::size_t i = k + 1; i < size; ++i) {
+      double* const other = first + i * size;
+      if (std::abs(other[k]) > std::abs(pivots[k])) pivots = other;
+    }
+    const double pivot = pivots[k], most = std::abs(pivot);
     if (!(most > kUnknown && std::isfinite(most))) return 0;
-    if (at != 0) {
-      matrix.row(k).tail(size - k).swap(matrix.row(k + at).tail(size - k));
+    if (pivots != row) {
+      std::swap_ranges(row + k, row + size, pivots + k);
       sign = -sign;
     }
-    const double pivot = matrix(k, k);
     if (pivot < 0.0) sign = -sign;
-    for (Eigen::Index i = k + 1; i < size; ++i) {
-      if (matrix(i, k) == 0.0) continue;
-      const double factor = matrix(i, k) / pivot;
-      matrix.row(i).tail(size - k - 1) -= factor * matrix.row(k).tail(size - k - 1);
+    for (std::size_t i = k + 1; i < size; ++i) {
+      double* const other = first + i * size;
+      if (other[k] == 0.0) continue;
+      const double factor = other[k] / pivot;
+      for (std::size_t j = k + 1; j < size; ++j) other[j] -= factor * row[j];
     }
   }
   return sign;
@@ -113,7 +119,7 @@ void BranchWatch::find_signs(double t, const State& state) {
     const ConstraintBlock& block = matrices_->block(m);
     SquareMatrix& square = matrices_->matrix(m);
     const Eigen::Index size = square.rows();
-    double least = 0.0;  // length of a row that has a direction
+    double least = 0.0;                   // length of a row that has a direction
     if (BlockJacobian::is_open(block)) {  // one freedom: the direction of motion below
       const std::vector<double>& below = is_carried(m) ? tangent_ : state.v;
       const double sign = is_carried(m) ? 1.0 : turned(block, state);
@@ -221,7 +227,8 @@ std::string BranchWatch::look(double t, const State& state) {
     const Part& part = parts_[part_of_[m]];
     const std::optional<FollowedCurve> followed = follow(part, t, state);
     const auto lost = [&] {
-      return fmt::format("at t = {:g} s {} cannot be followed by their constraints alone", t, place_of(m));
+      return fmt::format("at t = {:g} s {} cannot be followed by their constraints alone", t,
+                         place_of(m));
     };
     if (!followed && uncertain_ < kMostUncertain) {
       is_certain = false;

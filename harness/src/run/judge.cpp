@@ -16,7 +16,6 @@
 #include "model_math/known_motion.hpp"
 #include "model_math/turning.hpp"
 #include "model_math/vector3.hpp"
-#include "run/scene_distance.hpp"
 #include "scene/row_names.hpp"
 
 namespace mbs {
@@ -160,12 +159,13 @@ std::string Judge::judge(double t, const State& state) {
   return turned.empty() ? lost : turned;
 }
 
-void Judge::add_local_error(double local, const State& judged, double step, long steps) {
-  if (conservative_ && so_far_.last_kinetic > 0.0) {
-    local += step * largest_distance(*scene_, length_, judged.v, frame_velocity_) *
-             (std::sqrt(1 + so_far_.last_energy_difference / so_far_.last_kinetic) - 1);
-  }
+void Judge::add_local_error(double local, double speed, double step, long steps) {
   so_far_.local_error += static_cast<double>(steps) * local;
+  if (!conservative_ || !(so_far_.last_kinetic > 0.0)) return;
+  const double energy = 1 + so_far_.last_energy_difference / so_far_.last_kinetic;
+  so_far_.ahead +=
+      static_cast<double>(steps) * step * speed * (std::sqrt(std::max(energy, 0.0)) - 1);
+  so_far_.farthest_ahead = std::max(so_far_.farthest_ahead, std::abs(so_far_.ahead));
 }
 
 void Judge::add_balance(double excess, double work, long steps) {
@@ -214,7 +214,7 @@ std::string Judge::judge_energy(double t, const State& state) {
   const double kinetic = kinetic_energy(scene_->model, carriage_ ? moved_v_ : state.v);
   const double potential = carriage_ ? potential_energy(scene_->model, 0.0, moved_q_)
                                      : potential_energy(scene_->model, t, state.q);
-  const double difference = std::abs(kinetic + potential - initial_energy_);
+  const double difference = kinetic + potential - initial_energy_;
   if (!std::isfinite(kinetic) || !std::isfinite(difference)) {
     spoil();
     return "the state is too large to be judged";
@@ -223,7 +223,7 @@ std::string Judge::judge_energy(double t, const State& state) {
   if (!conservative_) return "";
   so_far_.last_kinetic = kinetic;
   so_far_.last_energy_difference = difference;
-  so_far_.energy_difference = std::max(so_far_.energy_difference, difference);
+  so_far_.energy_difference = std::max(so_far_.energy_difference, std::abs(difference));
   if (*energy_drift_max() <= bounds_.energy_drift) return "";
   return fmt::format("energy drifted by {:.2e} of its scale (allowed {:g})", *energy_drift_max(),
                      bounds_.energy_drift);

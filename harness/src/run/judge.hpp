@@ -50,16 +50,19 @@ class Judge {
 
   /// Adds what `steps` steps (of `step` s) like the last judged one leave: `local` (m) each, and
   /// the way by which a speed with that much too much or too little energy is ahead or behind, step
-  /// v drift/2 with v the speed of the fastest point.
-  void add_local_error(double local, const State& judged, double step, long steps);
+  /// v drift/2 with v = `speed` (m/s), that of the fastest point. What one step is ahead by and
+  /// another behind is no error of both.
+  void add_local_error(double local, double speed, double step, long steps);
   /// Adds what `steps` steps like the last one leave in the balance of a scene that does not
   /// conserve energy: change of energy less `work`, and the size of that, J each.
   void add_balance(double excess, double work, long steps);
   /// Largest |sum of the excess| over the run, over the larger of the largest kinetic energy and
   /// the work so far; none without add_balance().
   [[nodiscard]] std::optional<double> imbalance_max() const { return so_far_.imbalance; }
-  /// Sum of what add_local_error() got and of the way ahead or behind, m.
-  [[nodiscard]] double local_error_sum() const { return so_far_.local_error; }
+  /// Sum of what add_local_error() got and the farthest that the motion was ahead or behind, m.
+  [[nodiscard]] double local_error_sum() const {
+    return so_far_.local_error + so_far_.farthest_ahead;
+  }
   /// The velocity of `judged`, the last state, in the frame of feet that are carried along; n, m/s.
   [[nodiscard]] const std::vector<double>& velocity(const State& judged) const {
     return carriage_ ? moved_v_ : judged.v;
@@ -72,14 +75,15 @@ class Judge {
   struct Figures {
     std::vector<double> twists;  // of the torsion springs and torque laws, continued; rad
     double energy_scale = 0.0;
-    double energy_difference = 0.0;                           // J, the largest
+    double energy_difference = 0.0;                           // J, the largest size
     double last_kinetic = 0.0, last_energy_difference = 0.0;  // J, of the last judged state
     std::optional<double> position_error;
     double violation = 0.0;           // m^2, m
     double relative_violation = 0.0;  // as RunBounds
     bool off_branch = false;
-    double local_error = 0.0;         // m
-    double excess = 0.0, work = 0.0;  // J
+    double local_error = 0.0;                  // m
+    double ahead = 0.0, farthest_ahead = 0.0;  // m; farthest_ahead: the largest |ahead|
+    double excess = 0.0, work = 0.0;           // J
     std::optional<double> imbalance;
   };
   [[nodiscard]] const Figures& figures() const { return so_far_; }

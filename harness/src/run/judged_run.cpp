@@ -65,7 +65,8 @@ double JudgedRun::time(long step) const { return static_cast<double>(step) * set
 long JudgedRun::judged_after(long step) const {
   constexpr double kGoldenRatio = 0.6180339887498949;
   const long block = step == 0 ? 0 : (step - 1) / interval_ + 1;
-  const double share = std::fmod(static_cast<double>(block + 1) * kGoldenRatio, 1.0);
+  const double turned = static_cast<double>(block + 1) * kGoldenRatio;
+  const double share = turned - std::floor(turned);
   const long place = static_cast<long>(share * static_cast<double>(interval_));
   return std::min(steps_, block * interval_ + place + 1);
 }
@@ -208,20 +209,22 @@ void JudgedRun::balance_energy() {
 void JudgedRun::add_local_errors() {
   const long steps = summary_.steps - good_.step;
   const double step = settings_.step.step;
+  const std::vector<double>& v = judge_.velocity(state_);
+  off_.resize(v.size(), 0.0);
   if (!local_half_) {  // the trapezoidal rule
-    off_.resize(state_.a.size());
     for (std::size_t i = 0; i < off_.size(); ++i) {
       off_[i] = step * step / 12 * (state_.a[i] - before_.a[i]);
     }
-    local_errors_.add_lag(off_, judge_.velocity(state_), steps);
   }
-  judge_.add_local_error(local_half_ ? local_half_->error(before_, state_) : 0.0, state_, step,
+  const double speed = local_errors_.add_lag(off_, v, steps);
+  judge_.add_local_error(local_half_ ? local_half_->error(before_, state_) : 0.0, speed, step,
                          steps);
+  fastest_ = std::max(fastest_, speed);
   add_speed_error();
 }
 
 /// By some of the steps that are judged, 16 in a run or one in 1024: it takes as long as a few
-/// steps.
+/// steps. Not by those that cannot have left enough.
 void JudgedRun::add_speed_error() {
   constexpr long kMost = 1024, kTimes = 16;
   const long step = summary_.steps, since = step - done_again_;
@@ -229,15 +232,20 @@ void JudgedRun::add_speed_error() {
   if (step != steps_ && since < std::min(kMost, steps_ / kTimes - interval_)) return;
   // Steps that were not projected as the others are not comparable.
   if (step % settings_.step.projections_every != 0) return;
+  // Even if all steps left so much: the sum grows with the square of time.
+  const double negligible = 0.1 * AccurateBounds{}.local_error * judge_.length() /
+                            (static_cast<double>(steps_) * time(steps_));
+  if (summary_.steps_at_limit == 0 &&
+      most_left(scene_.model, settings_.step, fastest_) < negligible) {
+    done_again_ = step;
+    return;
+  }
   if (!again_) {  // its set-up is no more judging than that of the run is a step
     const auto begin = Clock::now();
     again_.emplace(access_.create, scene_.model, settings_.step,
                    static_cast<double>(summary_.passes) / static_cast<double>(step));
     judging_ -= Clock::now() - begin;
   }
-  // Even if all steps left so much: the sum grows with the square of time.
-  const double negligible = 0.1 * AccurateBounds{}.local_error * judge_.length() /
-                            (static_cast<double>(steps_) * time(steps_));
   local_errors_.add_speed(again_->error(before_, state_, negligible), judge_.velocity(state_),
                           settings_.step.step, since,
                           balance_ ? balance_->braked(time(step), state_) : 0.0);

@@ -87,8 +87,8 @@ class JudgedRun {
   long next_judged_;  // step
   long next_look_;    // step; beyond the last where there is nothing to look at
   long last_look_ = 0;
-  State state_;       // the last one that was looked at
-  State before_;      // one step before the one that is judged next
+  State state_;   // the last one that was looked at
+  State before_;  // one step before the one that is judged next
   Judge judge_;
   LastGood good_;
   BranchWatch watch_;
@@ -96,8 +96,9 @@ class JudgedRun {
   long judgements_ = 0, balanced_ = 0;   // balanced_: step
   std::optional<StepAgain> again_;       // of the trapezoidal forms
   long done_again_ = 0;                  // step
+  double fastest_ = 0.0;                 // m/s, of a point at a judged step
   LocalErrors local_errors_;
-  std::vector<double> off_;              // n, m
+  std::vector<double> off_;  // n, m
   std::optional<HalfStepRun> half_;
   std::optional<LocalHalfSteps> local_half_;
   bool adds_local_errors_;    // nothing better tells, and constraints do not fix all

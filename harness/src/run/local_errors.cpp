@@ -8,15 +8,18 @@
 
 namespace mbs {
 
-void LocalErrors::add_lag(std::span<const double> off, std::span<const double> v, long steps) {
+double LocalErrors::add_lag(std::span<const double> off, std::span<const double> v, long steps) {
   point_vectors(scene_, length_, off, error_);
   point_vectors(scene_, length_, v, velocity_);
   points_.resize(velocity_.size());
+  double fastest = 0.0;
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const double speed = std::sqrt(dot(velocity_[p], velocity_[p]));
     if (speed == 0.0) continue;  // a NaN goes on
     points_[p].lag += static_cast<double>(steps) * std::abs(dot(error_[p], velocity_[p])) / speed;
+    fastest = std::max(fastest, speed);
   }
+  return fastest;
 }
 
 void LocalErrors::add_speed(const SpeedError& error, std::span<const double> v, double step,
@@ -38,8 +41,8 @@ void LocalErrors::add_speed(const SpeedError& error, std::span<const double> v, 
     if (speed == 0.0) continue;
     const double mean = std::abs(sums.gain) / samples_;
     const double rms = std::sqrt(sums.gain_squared / samples_);
-    const double gained = steps_ * std::max(0.0, mean - 2 * rms / std::sqrt(samples_)) +
-                          rms * std::sqrt(steps_);
+    const double gained =
+        steps_ * std::max(0.0, mean - 2 * rms / std::sqrt(samples_)) + rms * std::sqrt(steps_);
     sums.way += time * (gained / speed > speed ? speed : gained / speed);
   }
 }

@@ -30,8 +30,9 @@ class LocalErrors {
   /// `scene` must outlive this; unit vectors count as `length` (m) long.
   LocalErrors(const Scene& scene, double length) : scene_(scene), length_(length) {}
 
-  /// `steps` steps that each left the positions `off` (n, m) at the velocity `v` (n, m/s).
-  void add_lag(std::span<const double> off, std::span<const double> v, long steps);
+  /// `steps` steps that each left the positions `off` (n, m) at the velocity `v` (n, m/s). Returns
+  /// the speed of the fastest point, m/s.
+  double add_lag(std::span<const double> off, std::span<const double> v, long steps);
   /// `steps` steps of `step` (s) that each left the velocity too high by `error` while dampers took
   /// `braked` (1/s) of the kinetic energy.
   void add_speed(const SpeedError& error, std::span<const double> v, double step, long steps,

@@ -28,9 +28,9 @@ class StepAgain {
   /// step.
   StepAgain(const Create& create, const Model& model, const StepSettings& settings, double passes);
 
-  /// Of the velocity that the next step begins with, v + dt/2 a; `after` is one step after `before`.
-  /// Not finite where the step could not be done again. What is below `negligible` (m/s) everywhere is
-  /// not followed and taken to stay.
+  /// Of the velocity that the next step begins with, v + dt/2 a; `after` is one step after
+  /// `before`. Not finite where the step could not be done again. What is below `negligible` (m/s)
+  /// everywhere is not followed and taken to stay.
   const SpeedError& error(const State& before, const State& after, double negligible);
 
  private:
@@ -44,5 +44,11 @@ class StepAgain {
   State again_, later_, again_later_;
   SpeedError error_;
 };
+
+/// The largest velocity, m/s, that a step of the penalty form can leave whose passes ended at the
+/// tolerance, each with a tangent of its own, where the fastest point moves at `speed`, m/s: what
+/// (2) makes of the tolerance, and what (6) does to the lightest coordinate, since the tangent is
+/// one correction older. Infinite for other settings.
+double most_left(const Model& model, const StepSettings& settings, double speed);
 
 }  // namespace mbs
