@@ -12,18 +12,43 @@
 namespace mbs::compiled_ldl {
 namespace {
 
-/// Every multiplier comes right after the last of its points: late enough that a large alpha
-/// costs no digits, early enough that it costs no fill.
+/// Points that have to go before each multiplier: of a substitution the one that it is solved for.
+/// Another has, in place of what is solved for, the other points of that substitution.
+std::vector<std::vector<int>> points_before(const Pattern& pattern) {
+  const auto count = static_cast<int>(pattern.borders.size());
+  std::vector<std::vector<int>> before = pattern.borders, others(pattern.points);
+  for (int m = 0; m < count; ++m) {
+    if (!pattern.is_substitution(m)) continue;
+    before[m] = {pattern.solved[m]};
+    auto& of_point = others[pattern.solved[m]];
+    of_point.insert(of_point.end(), pattern.borders[m].begin(), pattern.borders[m].end());
+  }
+  for (int m = 0; m < count; ++m) {
+    if (pattern.is_substitution(m)) continue;
+    for (const int p : pattern.borders[m]) {
+      before[m].insert(before[m].end(), others[p].begin(), others[p].end());
+    }
+  }
+  return before;
+}
+
+/// Every multiplier comes right after the last of these points: late enough that a large alpha
+/// costs no digits, early enough that it costs no fill. Substitutions come first: what is solved
+/// for may be light, and is to lean on nothing but its own rows.
 std::vector<int> insert_multipliers(const std::vector<int>& points, const Pattern& pattern) {
   std::vector<int> place(pattern.points);
   for (int k = 0; k < pattern.points; ++k) place[points[k]] = k;
+  const std::vector<std::vector<int>> before = points_before(pattern);
   std::vector<std::vector<int>> after(pattern.points + 1);
-  for (int m = 0; m < static_cast<int>(pattern.borders.size()); ++m) {
-    int last = pattern.points;
-    for (const int p : pattern.borders[m]) {
-      last = last == pattern.points ? place[p] : std::max(last, place[p]);
+  for (const bool substitutions : {true, false}) {
+    for (int m = 0; m < static_cast<int>(before.size()); ++m) {
+      if (pattern.is_substitution(m) != substitutions) continue;
+      int last = pattern.points;
+      for (const int p : before[m]) {
+        last = last == pattern.points ? place[p] : std::max(last, place[p]);
+      }
+      after[last].push_back(pattern.points + m);
     }
-    after[last].push_back(pattern.points + m);
   }
   std::vector<int> order;
   for (int k = 0; k <= pattern.points; ++k) {

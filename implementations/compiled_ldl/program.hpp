@@ -16,6 +16,11 @@ struct Pattern {
   int points = 0;                         ///< nodes 0 … points - 1
   std::vector<std::vector<int>> cliques;  ///< points that are coupled with each other
   std::vector<std::vector<int>> borders;  ///< of each multiplier: its points
+  /// Of each multiplier whose row is a substitution: the point of a coordinate that it can be
+  /// solved for and that no other substitution has. -1 for others; none where the list is empty.
+  std::vector<int> solved = {};
+
+  [[nodiscard]] bool is_substitution(int m) const { return !solved.empty() && solved[m] >= 0; }
 };
 
 /// Columns that are eliminated together: `pivots` of them, with rows below in `border` others. They

@@ -1,6 +1,7 @@
 // Patterns and rows of a model.
 #include "scene.hpp"
 
+#include <cmath>
 #include <map>
 
 namespace mbs::compiled_ldl {
@@ -42,6 +43,29 @@ class Nodes {
   int count_ = 0;
 };
 
+/// Of each linear constraint a coordinate that no other has: that with the largest coefficient,
+/// which is divided by; -1 where all are small beside the largest of the row.
+std::vector<int> solved_coordinates(const Model& model) {
+  constexpr double kSmall = 1e-3;
+  std::vector<int> count(model.variables(), 0), solved;
+  for (const LinearConstraint& constraint : model.linear_constraints()) {
+    for (const auto& term : constraint.terms) ++count[term.coordinate];
+  }
+  for (const LinearConstraint& constraint : model.linear_constraints()) {
+    double largest = 0.0, of_solved = 0.0;
+    int best = -1;
+    for (const auto& term : constraint.terms) {
+      const double size = std::fabs(term.coefficient);
+      largest = std::max(largest, size);
+      if (count[term.coordinate] > 1 || size <= of_solved) continue;
+      best = term.coordinate;
+      of_solved = size;
+    }
+    solved.push_back(of_solved > kSmall * largest ? best : -1);
+  }
+  return solved;
+}
+
 }  // namespace
 
 Pattern pattern_of(const Model& model, bool multipliers, bool second_derivatives) {
@@ -67,6 +91,11 @@ Pattern pattern_of(const Model& model, bool multipliers, bool second_derivatives
     for (const auto& term : constraint.terms)
       clique.push_back(nodes.of_coordinate(term.coordinate));
     add(Nodes::sorted(std::move(clique)), false);
+  }
+  if (!multipliers) return pattern;
+  pattern.solved.resize(pattern.borders.size() - model.linear_constraints().size(), -1);
+  for (const int k : solved_coordinates(model)) {
+    pattern.solved.push_back(k < 0 ? -1 : nodes.of_coordinate(k));
   }
   return pattern;
 }

@@ -210,15 +210,16 @@ const double* Schur<D>::assemble_column(const Front& front, int j, int rows,
       V of_number = V{};
 #pragma GCC unroll 6
       for (int l = 0; l < N; l += kApart, products += L) {
-        V factor = V{} + of_column[l];
         if constexpr (kAlike) {  // n_k · n_l
-          factor *= load<double, L>(n + i * rows + k);
+          V factor = load<double, L>(n + i * rows + k) * of_column[l];
 #pragma GCC unroll 3
           for (int x = 1; x < D; ++x) {
             factor += load<double, L>(n + (i + x) * rows + k) * of_column[l + x];
           }
+          of_number += load<double, L>(products) * factor;
+        } else {
+          of_number += load<double, L>(products) * of_column[l];
         }
-        of_number += load<double, L>(products) * factor;
       }
       sum += kAlike ? of_number : load<double, L>(n + i * rows + k) * of_number;
     }

@@ -670,8 +670,8 @@ typename Short<F, lanes_for(P)>::Type Panels<F>::times_transposed(
   return even + odd;
 }
 
-/// (C L⁻ᵀ)ᵀ x, of the further pivots of its front. C is in the cache of every substitution, unlike
-/// W.
+/// (C L⁻ᵀ)ᵀ x, of the further pivots of its front. Of large fronts, C is in the cache of every
+/// substitution, unlike W.
 template <typename F>
 typename Short<F, kPanel>::Type Panels<F>::times_inside(const Panel& panel, const F* x) const {
   constexpr int L = kWidest<F>;
@@ -702,7 +702,8 @@ void Panels<F>::backward(const Run& run, F* y) const {
     V x0 = load<F, N>(y + panel.first), x1 = V{}, x2 = V{}, x3 = V{};
     int k = 0;
     if constexpr (P == kPanel) {
-      if (panel.inside > 0) {
+      constexpr int kLarge = 64;  // below, the sums over lanes take longer than W's way
+      if (panel.inside > kLarge) {
         x0 -= load<F, N>(factors + 2 * P * N) * times_inside(panel, y + panel.first + P);
         k = panel.inside;
       }
