@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "elimination_tree.hpp"
@@ -77,16 +78,31 @@ Tree best_tree(const Pattern& pattern, int width) {
   const Graph all = pattern.borders.empty() ? points : graph_of(nodes, cliques);
   std::vector<int> given(pattern.points);
   std::iota(given.begin(), given.end(), 0);
-  Tree best = eliminate(all, insert_multipliers(minimum_degree(points, Tie::longest), pattern),
-                        sizes, width);
-  // An order with many times the fill is not the fastest, and may not fit the memory: a star's from
-  // both ends.
-  const std::size_t most = 4 * best.fill;
-  for (const auto& order : {minimum_degree(points, Tie::latest), from_both_ends(points), given}) {
-    Tree tree = eliminate(all, insert_multipliers(order, pattern), sizes, width, most);
-    if (!tree.fronts.empty() && tree.cycles < best.cycles) best = std::move(tree);
+  const std::vector<std::vector<int>> orders = {minimum_degree(points, Tie::longest),
+                                                minimum_degree(points, Tie::latest),
+                                                from_both_ends(points), given};
+  const auto fastest = [&](const Pattern& of, std::size_t most) {
+    Tree best;
+    for (const auto& order : orders) {
+      Tree tree = eliminate(all, insert_multipliers(order, of), sizes, width, most);
+      if (tree.fronts.empty()) continue;
+      // An order with many times the fill is not the fastest, and may not fit the memory: a star's
+      // from both ends.
+      if (best.fronts.empty()) most = std::min(most, 4 * tree.fill);
+      if (best.fronts.empty() || tree.cycles < best.cycles) best = std::move(tree);
+    }
+    return best;
+  };
+  Tree best = fastest(pattern, std::numeric_limits<std::size_t>::max() / 4);
+  if (std::all_of(pattern.solved.begin(), pattern.solved.end(), [](int p) { return p < 0; })) {
+    return best;
   }
-  return best;
+  // Substitutions make more fronts, and small ones, of which time is predicted too short.
+  constexpr double kClearly = 0.9;
+  Pattern waiting = pattern;
+  waiting.solved.clear();
+  Tree late = fastest(waiting, 4 * best.fill);
+  return late.fronts.empty() || best.cycles < kClearly * late.cycles ? best : late;
 }
 
 // Points eliminated once and for all.
