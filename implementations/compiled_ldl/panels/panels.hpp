@@ -42,6 +42,8 @@ class Panels {
   static constexpr int kMargin = 16;  // numbers before and behind, which vectors may touch
   /// Two vectors of rows of a panel, and what becomes of them, need 32 registers.
   static constexpr bool kPairs = kRegisterDoubles == 8;
+  /// Columns of more numbers are fetched ahead, and substituted by sums over lanes.
+  static constexpr int kLarge = 64;
   /// What start() copies: fronts, of large ones the columns from their panel's diagonal on. What
   /// lies between, if it is short, is copied along.
   struct Copied {
@@ -482,6 +484,9 @@ void Panels<F>::take_up_rows(const Panel& panel, int row) {
   constexpr int L = kWidest<F>, kAhead = 24;
   using W = typename Short<F, L>::Type;
   F* target = matrix() + panel.columns + row;
+  // Columns lie too far apart for the processor to see which comes next. Those of a short front are
+  // in the cache, and what lies that far behind is not its own.
+  const bool large = panel.stride > kLarge;
   W s[P][R];
 #pragma GCC unroll 8
   for (int k = 0; k < P; ++k) {
@@ -494,9 +499,10 @@ void Panels<F>::take_up_rows(const Panel& panel, int row) {
     const F* g = factors_.data() + from->factors + (kPanel + 1 + behind) * kPanel;
     for (int j = 0; j < kPanel; ++j) {
       W c[R];
-      // Columns lie too far apart for the processor to see which comes next.
-      __builtin_prefetch(below + (j + kAhead) * panel.stride);
-      if (R > 1) __builtin_prefetch(below + (j + kAhead) * panel.stride + (R - 1) * L);
+      if (large) {
+        __builtin_prefetch(below + (j + kAhead) * panel.stride);
+        if (R > 1) __builtin_prefetch(below + (j + kAhead) * panel.stride + (R - 1) * L);
+      }
 #pragma GCC unroll 2
       for (int r = 0; r < R; ++r) c[r] = load<F, L>(below + j * panel.stride + r * L);
 #pragma GCC unroll 8
@@ -702,7 +708,6 @@ void Panels<F>::backward(const Run& run, F* y) const {
     V x0 = load<F, N>(y + panel.first), x1 = V{}, x2 = V{}, x3 = V{};
     int k = 0;
     if constexpr (P == kPanel) {
-      constexpr int kLarge = 64;  // below, the sums over lanes take longer than W's way
       if (panel.inside > kLarge) {
         x0 -= load<F, N>(factors + 2 * P * N) * times_inside(panel, y + panel.first + P);
         k = panel.inside;
