@@ -2,6 +2,8 @@
 #include "program.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "elimination_tree.hpp"
@@ -11,18 +13,43 @@
 namespace mbs::compiled_ldl {
 namespace {
 
-/// Every multiplier comes right after the last of its points: late enough that a large alpha
-/// costs no digits, early enough that it costs no fill.
+/// Points that have to go before each multiplier: of a substitution the one that it is solved for.
+/// Another has, in place of what is solved for, the other points of that substitution.
+std::vector<std::vector<int>> points_before(const Pattern& pattern) {
+  const auto count = static_cast<int>(pattern.borders.size());
+  std::vector<std::vector<int>> before = pattern.borders, others(pattern.points);
+  for (int m = 0; m < count; ++m) {
+    if (!pattern.is_substitution(m)) continue;
+    before[m] = {pattern.solved[m]};
+    auto& of_point = others[pattern.solved[m]];
+    of_point.insert(of_point.end(), pattern.borders[m].begin(), pattern.borders[m].end());
+  }
+  for (int m = 0; m < count; ++m) {
+    if (pattern.is_substitution(m)) continue;
+    for (const int p : pattern.borders[m]) {
+      before[m].insert(before[m].end(), others[p].begin(), others[p].end());
+    }
+  }
+  return before;
+}
+
+/// Every multiplier comes right after the last of these points: late enough that a large alpha
+/// costs no digits, early enough that it costs no fill. Substitutions come first: what is solved
+/// for may be light, and is to lean on nothing but its own rows.
 std::vector<int> insert_multipliers(const std::vector<int>& points, const Pattern& pattern) {
   std::vector<int> place(pattern.points);
   for (int k = 0; k < pattern.points; ++k) place[points[k]] = k;
+  const std::vector<std::vector<int>> before = points_before(pattern);
   std::vector<std::vector<int>> after(pattern.points + 1);
-  for (int m = 0; m < static_cast<int>(pattern.borders.size()); ++m) {
-    int last = pattern.points;
-    for (const int p : pattern.borders[m]) {
-      last = last == pattern.points ? place[p] : std::max(last, place[p]);
+  for (const bool substitutions : {true, false}) {
+    for (int m = 0; m < static_cast<int>(before.size()); ++m) {
+      if (pattern.is_substitution(m) != substitutions) continue;
+      int last = pattern.points;
+      for (const int p : before[m]) {
+        last = last == pattern.points ? place[p] : std::max(last, place[p]);
+      }
+      after[last].push_back(pattern.points + m);
     }
-    after[last].push_back(pattern.points + m);
   }
   std::vector<int> order;
   for (int k = 0; k <= pattern.points; ++k) {
@@ -51,16 +78,31 @@ Tree best_tree(const Pattern& pattern, int width) {
   const Graph all = pattern.borders.empty() ? points : graph_of(nodes, cliques);
   std::vector<int> given(pattern.points);
   std::iota(given.begin(), given.end(), 0);
-  Tree best = eliminate(all, insert_multipliers(minimum_degree(points, Tie::longest), pattern),
-                        sizes, width);
-  // An order with many times the fill is not the fastest, and may not fit the memory: a star's from
-  // both ends.
-  const std::size_t most = 4 * best.fill;
-  for (const auto& order : {minimum_degree(points, Tie::latest), from_both_ends(points), given}) {
-    Tree tree = eliminate(all, insert_multipliers(order, pattern), sizes, width, most);
-    if (!tree.fronts.empty() && tree.cycles < best.cycles) best = std::move(tree);
+  const std::vector<std::vector<int>> orders = {minimum_degree(points, Tie::longest),
+                                                minimum_degree(points, Tie::latest),
+                                                from_both_ends(points), given};
+  const auto fastest = [&](const Pattern& of, std::size_t most) {
+    Tree best;
+    for (const auto& order : orders) {
+      Tree tree = eliminate(all, insert_multipliers(order, of), sizes, width, most);
+      if (tree.fronts.empty()) continue;
+      // An order with many times the fill is not the fastest, and may not fit the memory: a star's
+      // from both ends.
+      if (best.fronts.empty()) most = std::min(most, 4 * tree.fill);
+      if (best.fronts.empty() || tree.cycles < best.cycles) best = std::move(tree);
+    }
+    return best;
+  };
+  Tree best = fastest(pattern, std::numeric_limits<std::size_t>::max() / 4);
+  if (std::all_of(pattern.solved.begin(), pattern.solved.end(), [](int p) { return p < 0; })) {
+    return best;
   }
-  return best;
+  // Substitutions make more fronts, and small ones, of which time is predicted too short.
+  constexpr double kClearly = 0.9;
+  Pattern waiting = pattern;
+  waiting.solved.clear();
+  Tree late = fastest(waiting, 4 * best.fill);
+  return late.fronts.empty() || best.cycles < kClearly * late.cycles ? best : late;
 }
 
 // Points eliminated once and for all.
@@ -101,8 +143,14 @@ double cycles_of_solves(const Tree& tree, const Pattern& pattern, int width, dou
 }
 
 /// Cycles in which the numbers of −ε − B A⁻¹ Bᵀ are found, with those of so many rows in a clique.
-double cycles_of_products(double rows, int width, int numbers) {
-  return 0.7 * numbers * (numbers + 1) * rows * (rows + width) / (2 * width);
+double cycles_of_products(double rows, int width, int products) {
+  return 0.7 * products * rows * (rows + width) / (2 * width);
+}
+/// Cycles of a product with the inverse of the points' block.
+double cycles_of_inverse(const Pattern& points, int width, bool axes_alike) {
+  const int axes = axes_alike ? points.dimension : 1;
+  const double rows = points.points * points.dimension / axes;
+  return rows * (std::ceil(rows / width) * (0.4 + 0.35 * axes) + (axes_alike ? axes : 0)) + 20.0;
 }
 /// Cycles in which B, no part of the matrix any more, is written and multiplied with, a row and
 /// number.
@@ -111,15 +159,17 @@ constexpr double kCyclesOfNumber = 12.0;
 /// Replaces `tree` by the points' fronts and those of −ε − B A⁻¹ Bᵀ, if a pass of Newton's method
 /// is predicted to take less time with them; the number of the points' fronts, 0: nothing is
 /// replaced.
-int eliminate_points_first(const Pattern& pattern, int width, int numbers, Tree& tree) {
+int eliminate_points_first(const Pattern& pattern, int width, const Changing& changing, Tree& tree,
+                           bool& inverts) {
   const double before = tree.cycles + cycles_of_solves(tree, pattern, width, 2.0);
   Pattern multipliers{.dimension = 1,
                       .points = static_cast<int>(pattern.borders.size()),
                       .cliques = cliques_of_multipliers(pattern),
                       .borders = {}};
-  double after = kCyclesOfNumber * numbers * multipliers.points;
+  double after = kCyclesOfNumber * changing.numbers * multipliers.points;
+  const int of_entry = changing.products(pattern.dimension);
   for (const auto& clique : multipliers.cliques) {
-    after += cycles_of_products(static_cast<double>(clique.size()), width, numbers);
+    after += cycles_of_products(static_cast<double>(clique.size()), width, of_entry);
   }
   if (after >= before) return 0;  // which may have too many couplings to go on
   const Pattern points{.dimension = pattern.dimension,
@@ -127,9 +177,15 @@ int eliminate_points_first(const Pattern& pattern, int width, int numbers, Tree&
                        .cliques = pattern.cliques,
                        .borders = {}};
   Tree constant = best_tree(points, width), rest = best_tree(multipliers, width);
+  // Two solves, and nothing hides their latencies.
+  const double substitutions = cycles_of_solves(constant, points, width, 3.0);
+  const double products = 2.0 * cycles_of_inverse(points, width, changing.axes_alike);
+  // Separate blocks of A are substituted side by side, so the inverse must be clearly faster.
+  const bool inverse = 2.0 * products < substitutions;
   after += rest.cycles + cycles_of_solves(rest, multipliers, width, 2.0) +
-           cycles_of_solves(constant, points, width, 3.0);  // 2, and nothing hides their latencies
+           (inverse ? products : substitutions);
   if (after >= before) return 0;
+  inverts = inverse;
   tree = std::move(constant);
   const auto fronts = static_cast<int>(tree.fronts.size());
   tree.cycles = rest.cycles;
@@ -237,13 +293,14 @@ int Program::entry(int row, int column) const {
   return front.base + (column - front.first) * front.stride + place_in(*this, front, row);
 }
 
-Program compile(const Pattern& pattern, int width, int numbers) {
+Program compile(const Pattern& pattern, int width, const Changing& changing) {
   Program program;
   program.width = width;
   const std::vector<int> sizes = sizes_of(pattern);
   Tree tree = best_tree(pattern, width);
-  if (numbers > 0) {
-    program.constant_fronts = eliminate_points_first(pattern, width, numbers, tree);
+  if (changing.numbers > 0) {
+    program.constant_fronts =
+        eliminate_points_first(pattern, width, changing, tree, program.inverts_points);
   }
   program.cycles = tree.cycles;
   place_rows(tree, sizes, program);

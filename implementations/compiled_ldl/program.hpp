@@ -16,6 +16,11 @@ struct Pattern {
   int points = 0;                         ///< nodes 0 … points - 1
   std::vector<std::vector<int>> cliques;  ///< points that are coupled with each other
   std::vector<std::vector<int>> borders;  ///< of each multiplier: its points
+  /// Of each multiplier whose row is a substitution: the point of a coordinate that it can be
+  /// solved for and that no other substitution has. -1 for others; none where the list is empty.
+  std::vector<int> solved = {};
+
+  [[nodiscard]] bool is_substitution(int m) const { return !solved.empty() && solved[m] >= 0; }
 };
 
 /// Columns that are eliminated together: `pivots` of them, with rows below in `border` others. They
@@ -61,8 +66,9 @@ struct Program {
   double cycles = 0.0;  ///< predicted time of a factorization
   std::vector<int> row_of_node;
   std::vector<int> front_of_row;
-  std::vector<Front> fronts;  ///< in order of elimination
-  int constant_fronts = 0;    ///< the first ones, which no multiplier borders on: compile()
+  std::vector<Front> fronts;    ///< in order of elimination
+  int constant_fronts = 0;      ///< the first ones, which no multiplier borders on: compile()
+  bool inverts_points = false;  ///< solves with these take the inverse
   std::vector<Group> groups;
   std::vector<int> border_rows;
   std::vector<int> positions;
@@ -71,10 +77,22 @@ struct Program {
   [[nodiscard]] int entry(int row, int column) const;
 };
 
-/// `width`: how many numbers a processor handles at once. `numbers`: if the points' block A of the
-/// matrix [A Bᵀ; B −ε] never changes, of how many numbers a row of B is made, else 0. The program
-/// may be that of A, whose fronts are constant, and −ε − B A⁻¹ Bᵀ, if this is predicted faster.
-Program compile(const Pattern& pattern, int width, int numbers = 0);
+/// What changes of a matrix [A Bᵀ; B −ε]: rows of B are Σ n_i e_i with n_i that change and e_i that
+/// do not.
+struct Changing {
+  int numbers = 0;          ///< n_i of a row, at most; 0: A changes too
+  bool axes_alike = false;  ///< A is one matrix for each axis of space, and so is B for given n_i
+
+  /// Products that make one entry of B A⁻¹ Bᵀ.
+  [[nodiscard]] int products(int dimension) const {
+    const int vectors = numbers / dimension;
+    return axes_alike ? vectors * vectors * (dimension + 1) : numbers * (numbers + 1);
+  }
+};
+
+/// `width`: how many numbers a processor handles at once. If A never changes, the program may be
+/// that of A, whose fronts are constant, and −ε − B A⁻¹ Bᵀ, if this is predicted faster.
+Program compile(const Pattern& pattern, int width, const Changing& changing = {});
 
 /// What chooses the kernel of a panel: its pivots, and the lanes of vectors for rows below, 0:
 /// none.

@@ -7,10 +7,12 @@
 #include "elimination_tree.hpp"
 #include "panels/fronts.hpp"
 #include "panels/panels.hpp"
+#include "scene.hpp"
 
 namespace {
 
-using namespace mbs::compiled_ldl;  // NOLINT: a test of this namespace alone
+using namespace mbs;                // NOLINT: a test of this implementation alone
+using namespace mbs::compiled_ldl;  // NOLINT
 
 using Random = std::mt19937;
 double number(Random& random) { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); }
@@ -163,6 +165,60 @@ bool full_orders_are_given_up() {
          eliminate(star, minimum_degree(star, Tie::longest), sizes, 8).fill == kPoints - 1;
 }
 
+/// A body of two points with many others on it, a rod from each of these to a point of its own.
+Pattern body_with_rods(int dimension, int rods, bool substitutions) {
+  Pattern pattern{.dimension = dimension, .points = 2 + 2 * rods, .cliques = {}, .borders = {}};
+  for (int i = 0; i < pattern.points; ++i) pattern.cliques.push_back({i});
+  pattern.cliques.push_back({0, 1});
+  for (int i = 2; i < 2 + rods; ++i) {
+    pattern.borders.push_back({i, i + rods});
+    pattern.solved.push_back(-1);
+    for (int x = 0; x < dimension; ++x) {
+      pattern.borders.push_back({0, 1, i});
+      pattern.solved.push_back(substitutions ? i : -1);
+    }
+  }
+  return pattern;
+}
+
+/// Rows of the points on a body do not wait for the body's own points, rods do.
+bool substitutions_come_early() {
+  constexpr int kRods = 40;
+  const Pattern pattern = body_with_rods(2, kRods, true);
+  for (const int width : {1, 4, 8}) {
+    const Program program = compile(pattern, width);
+    const int body = std::max(program.row_of_node[0], program.row_of_node[1]);
+    int early = 0;
+    for (std::size_t m = 0; m < pattern.borders.size(); ++m) {
+      const int row = program.row_of_node[pattern.points + m];
+      if (pattern.solved[m] < 0 && row < body) return false;
+      if (pattern.solved[m] >= 0) early += row < body;
+    }
+    // What comes late would be a block of its own: 80 rows beside 40 of the rods.
+    const Program late = compile(body_with_rods(2, kRods, false), width);
+    if (early < 2 * kRods - 4 || 3 * program.storage > late.storage * 2) return false;
+  }
+  return true;
+}
+
+/// Of two rows with the same coordinate neither is solved for it, none is for a small coefficient.
+bool substitutions_are_found() {
+  ModelData data;
+  data.dimension = 2;
+  for (int i = 0; i < 4; ++i) {
+    data.points.push_back({.name = "B", .offset = 2 * i});
+    for (int x = 0; x < 2; ++x) data.mass.push_back({2 * i + x, 2 * i + x, 1.0});
+  }
+  data.dot_constraints.push_back({0, 1, 0, 1, 1.0, "rod"});
+  data.linear_constraints.push_back({{{0, 3.0}, {2, 1.0}, {5, 2.0}}, 0.0, "the largest is shared"});
+  data.linear_constraints.push_back({{{0, 1.0}, {7, 1e-6}}, 0.0, "small"});
+  data.initial_velocity.resize(8, 0.0);
+  data.force.resize(8, 0.0);
+  const Model model(data);
+  return pattern_of(model, true, false).solved == std::vector{-1, 2, -1} &&
+         pattern_of(model, false, false).solved.empty();
+}
+
 }  // namespace
 
 int main() {
@@ -184,9 +240,19 @@ int main() {
     std::printf("a chain is not eliminated from both ends\n");
     ++failed;
   }
+  if (!substitutions_come_early()) {
+    std::printf("substitutions wait for more than what they are solved for\n");
+    ++failed;
+  }
+  if (!substitutions_are_found()) {
+    std::printf("linear rows are not the substitutions that they should be\n");
+    ++failed;
+  }
   for (int trial = 0; trial < 300; ++trial) {
     const int dimension = 2 + trial % 2, points = 1 + trial % 37, more = trial % 5 * points / 4;
-    const Pattern pattern = random_pattern(random, dimension, points, more, trial % 3 == 0);
+    const Pattern pattern = trial % 7 == 6
+                                ? body_with_rods(dimension, points, true)
+                                : random_pattern(random, dimension, points, more, trial % 3 == 0);
     const double in_double = residual<Panels<double>, double>(random, pattern, 8);
     const double in_float = residual<Panels<float>, float>(random, pattern, 8);
     const double in_lanes = residual<Fronts<Lanes>, Lanes>(random, pattern, 1);

@@ -1,6 +1,9 @@
 // Patterns and rows of a model.
 #include "scene.hpp"
 
+#include <cmath>
+#include <map>
+
 namespace mbs::compiled_ldl {
 namespace {
 
@@ -40,6 +43,29 @@ class Nodes {
   int count_ = 0;
 };
 
+/// Of each linear constraint a coordinate that no other has: that with the largest coefficient,
+/// which is divided by; -1 where all are small beside the largest of the row.
+std::vector<int> solved_coordinates(const Model& model) {
+  constexpr double kSmall = 1e-3;
+  std::vector<int> count(model.variables(), 0), solved;
+  for (const LinearConstraint& constraint : model.linear_constraints()) {
+    for (const auto& term : constraint.terms) ++count[term.coordinate];
+  }
+  for (const LinearConstraint& constraint : model.linear_constraints()) {
+    double largest = 0.0, of_solved = 0.0;
+    int best = -1;
+    for (const auto& term : constraint.terms) {
+      const double size = std::fabs(term.coefficient);
+      largest = std::max(largest, size);
+      if (count[term.coordinate] > 1 || size <= of_solved) continue;
+      best = term.coordinate;
+      of_solved = size;
+    }
+    solved.push_back(of_solved > kSmall * largest ? best : -1);
+  }
+  return solved;
+}
+
 }  // namespace
 
 Pattern pattern_of(const Model& model, bool multipliers, bool second_derivatives) {
@@ -66,14 +92,45 @@ Pattern pattern_of(const Model& model, bool multipliers, bool second_derivatives
       clique.push_back(nodes.of_coordinate(term.coordinate));
     add(Nodes::sorted(std::move(clique)), false);
   }
+  if (!multipliers) return pattern;
+  pattern.solved.resize(pattern.borders.size() - model.linear_constraints().size(), -1);
+  for (const int k : solved_coordinates(model)) {
+    pattern.solved.push_back(k < 0 ? -1 : nodes.of_coordinate(k));
+  }
   return pattern;
 }
 
-int gradient_numbers(const Model& model) {
+namespace {
+
+/// M couples no axis with another, and has the same numbers in all of them.
+bool has_mass_alike(const Model& model) {
+  const int D = model.dimension();
+  std::vector<int> first(model.variables());
+  for (const Point& point : model.points()) {
+    if (!point.is_fixed()) std::fill_n(first.begin() + point.offset, D, point.offset);
+  }
+  std::map<std::array<int, 2>, std::vector<double>> blocks;  // of two points: in each axis
+  for (const MassEntry& entry : model.mass()) {
+    const int row = first[entry.row], column = first[entry.col];
+    if (entry.row - row != entry.col - column) return false;
+    auto& block = blocks[{std::max(row, column), std::min(row, column)}];
+    block.resize(D, 0.0);
+    block[entry.row - row] += entry.value;
+  }
+  return std::all_of(blocks.begin(), blocks.end(), [](const auto& block) {
+    const auto& of_axes = block.second;
+    return std::all_of(of_axes.begin(), of_axes.end(), [&](double x) { return x == of_axes[0]; });
+  });
+}
+
+}  // namespace
+
+Changing changing_of(const Model& model) {
   const auto& dots = model.dot_constraints();
   const bool distances =
       model.bilinear_constraints().empty() && std::all_of(dots.begin(), dots.end(), is_distance);
-  return distances ? model.dimension() : 2 * model.dimension();
+  return {distances ? model.dimension() : 2 * model.dimension(),
+          model.linear_constraints().empty() && has_mass_alike(model)};
 }
 
 Program program_of(const Model& model, const StepSettings& settings, int width) {
@@ -82,7 +139,7 @@ Program program_of(const Model& model, const StepSettings& settings, int width) 
                         !settings.geometric_stiffness &&
                         settings.precision == Precision::double_precision;
   return compile(pattern_of(model, has_multiplier_rows(settings), settings.geometric_stiffness),
-                 width, constant ? gradient_numbers(model) : 0);
+                 width, constant ? changing_of(model) : Changing{});
 }
 
 Rows::Rows(const Model& model, const Program& program)

@@ -24,8 +24,8 @@ inline bool has_multiplier_rows(const StepSettings& s) { return s.scheme != Sche
 inline bool is_rattle(const StepSettings& s) {
   return s.scheme != Scheme::penalty && s.scheme != Scheme::saddle_point;
 }
-/// A row of Φq is Σ n_i e_i with n_i that change and e_i that do not: how many there are at most.
-int gradient_numbers(const Model& model);
+/// What changes of the saddle-point matrix where M is all of its points' block.
+Changing changing_of(const Model& model);
 inline bool is_distance(const DotConstraint& c) { return c.a == c.c && c.b == c.d; }
 /// Compiles that of these settings; `width` as in compile().
 Program program_of(const Model& model, const StepSettings& settings, int width);

@@ -126,8 +126,7 @@ System<S, F, D>::System(std::span<const Model* const> models,
   fill_constants();
   if constexpr (kDouble) {
     if (program.constant_fronts > 0) {
-      const int numbers = gradient_numbers(*models[0]);
-      schur_ = std::make_unique<Schur<D>>(program, constraints, numbers, fronts);
+      schur_ = std::make_unique<Schur<D>>(program, constraints, changing_of(*models[0]), fronts);
     }
   }
   drive(0.0);

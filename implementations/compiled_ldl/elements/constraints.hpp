@@ -60,7 +60,7 @@ class Constraints {
   /// t = 2 u̇·B ẇ, which is Φ̇q v + Φ̇t but for what drivers prescribe.
   void velocity_terms(const S* v, S* t) const;
 
-  /// Of rows of Φq as Σ n_i e_i (gradient_numbers()): e_i of constraint k has (i, row, entry), to
+  /// Of rows of Φq as Σ n_i e_i (Changing): e_i of constraint k has (i, row, entry), to
   /// all of which `then` is applied.
   template <typename Then>
   void unit_entries(int k, Then then) const;
@@ -116,8 +116,8 @@ class Constraints {
   Array<S> vectors_, earlier_vectors_;  // A = B w, C = Bᵀ u, gradients of each other quadratic one
   Array<S> force_;                      // g h of Eq. (16)
   std::vector<RowPlace> pair_rows_;
-  std::vector<Place> quad_rows_;    // four of each
-  std::vector<Place> term_places_;  // saddle-point forms: of each term
+  std::vector<Place> quad_rows_;  // four of each
+  std::vector<int> term_places_;  // saddle-point forms: of each term
   struct Product {
     int at, one, other;  // storage, two terms
   };
@@ -226,7 +226,8 @@ void Constraints<S, D>::add_linear(std::span<const Model* const> models, const R
   }
 }
 
-/// Places of Φq in the saddle-point matrix: the multiplier's row in the columns of its points.
+/// Places of Φq in the saddle-point matrix: the multiplier's row in the columns of its points. Only
+/// linear rows may come before some of these (Pattern::solved).
 template <typename S, int D>
 void Constraints<S, D>::find_rows(const Program& program) {
   int k = 0;
@@ -244,7 +245,8 @@ void Constraints<S, D>::find_rows(const Program& program) {
   }
   for (const Terms& terms : linear_) {
     for (int i = terms.begin; i < terms.end; ++i) {
-      term_places_.push_back(place_of(program, row(k), term_rows_[i]));
+      const auto [column, below] = std::minmax({row(k), term_rows_[i]});
+      term_places_.push_back(program.entry(below, column));
     }
     ++k;
   }
@@ -477,7 +479,7 @@ template <typename S, int D>
 template <typename F>
 void Constraints<S, D>::add_constant(F* matrix, const S& s) const {
   for (std::size_t i = 0; i < term_places_.size(); ++i) {
-    matrix[term_places_[i].at] += static_cast<F>(term_coefficients_[i]);
+    matrix[term_places_[i]] += static_cast<F>(term_coefficients_[i]);
   }
   for (const Product& product : products_) {
     matrix[product.at] +=

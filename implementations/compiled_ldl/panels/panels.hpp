@@ -42,6 +42,8 @@ class Panels {
   static constexpr int kMargin = 16;  // numbers before and behind, which vectors may touch
   /// Two vectors of rows of a panel, and what becomes of them, need 32 registers.
   static constexpr bool kPairs = kRegisterDoubles == 8;
+  /// Columns of more numbers are fetched ahead, and substituted by sums over lanes.
+  static constexpr int kLarge = 64;
   /// What start() copies: fronts, of large ones the columns from their panel's diagonal on. What
   /// lies between, if it is short, is copied along.
   struct Copied {
@@ -51,12 +53,12 @@ class Panels {
     int first = 0;    // row of the first pivot
     int columns = 0;  // storage of its diagonal block
     int stride = 0;
-    int earlier = 0;          // panels of its front before it
-    int inside = 0;           // further columns of its front
-    int below = 0;            // rows below, those of these columns included
-    int factors = 0;          // where M, Mᵀ, D⁻¹ and W are
-    int rows = 0;             // where the list of its rows below is
-    bool contiguous = false;  // these rows follow each other
+    int earlier = 0;    // panels of its front before it
+    int inside = 0;     // further columns of its front
+    int below = 0;      // rows below, those of these columns included
+    int factors = 0;    // where M, Mᵀ, D⁻¹ and W are
+    int rows = 0;       // where the list of its rows below is
+    int following = 0;  // how many of these rows follow each other, from the first on
     int strips_begin = 0, strips_end = 0;
     bool is_two = false;  // the border: two rows that are neighbours also where they go
   };
@@ -107,6 +109,7 @@ class Panels {
   template <int P, int L>
   void subtract_below(const Panel& panel, const typename Short<F, lanes_for(P)>::Type& z,
                       F* y) const;
+  typename Short<F, kPanel>::Type times_inside(const Panel& panel, const F* x) const;
   /// Mᵀ z, of its columns.
   template <int P>
   static typename Short<F, lanes_for(P)>::Type times_transposed(
@@ -179,7 +182,10 @@ void Panels<F>::add_front(const Front& front) {
     panel.is_two = front.border == 2 && strips_end - strips_begin == 1;
     for (int i = 0; i < panel.inside; ++i) rows_.push_back(panel.first + pivots + i);
     for (int i = 0; i < front.border; ++i) rows_.push_back(program_.border_rows[front.rows + i]);
-    panel.contiguous = panel.below > 0 && rows_.back() - rows_[panel.rows] == panel.below - 1;
+    while (panel.following < panel.below &&
+           rows_[panel.rows + panel.following] == rows_[panel.rows] + panel.following) {
+      ++panel.following;
+    }
     panel.factors = next_factors_;
     next_factors_ = panel.factors + lanes_for(pivots) * (2 * pivots + 1 + round_up(panel.below, 8));
     next_factors_ = round_up(next_factors_, 8);
@@ -429,7 +435,7 @@ void Panels<F>::subtract_below(const Panel& panel, const typename Short<F, lanes
     W sum = load<F, L>(below + i) * z[0];
 #pragma GCC unroll 8
     for (int j = 1; j < P; ++j) sum += load<F, L>(below + j * panel.stride + i) * z[j];
-    if (L > 4 && panel.contiguous) {
+    if (L > 4 && i + count <= panel.following) {
       store<F, L>(y + rows[i], load<F, L>(y + rows[i]) - first_lanes<F, L>(sum, count));
     } else {
       for (int l = 0; l < count; ++l) y[rows[i + l]] -= sum[l];
@@ -475,9 +481,12 @@ void Panels<F>::take_up_earlier(const Panel& panel) {
 template <typename F>
 template <int P, int R>
 void Panels<F>::take_up_rows(const Panel& panel, int row) {
-  constexpr int L = kWidest<F>;
+  constexpr int L = kWidest<F>, kAhead = 24;
   using W = typename Short<F, L>::Type;
   F* target = matrix() + panel.columns + row;
+  // Columns lie too far apart for the processor to see which comes next. Those of a short front are
+  // in the cache, and what lies that far behind is not its own.
+  const bool large = panel.stride > kLarge;
   W s[P][R];
 #pragma GCC unroll 8
   for (int k = 0; k < P; ++k) {
@@ -490,6 +499,10 @@ void Panels<F>::take_up_rows(const Panel& panel, int row) {
     const F* g = factors_.data() + from->factors + (kPanel + 1 + behind) * kPanel;
     for (int j = 0; j < kPanel; ++j) {
       W c[R];
+      if (large) {
+        __builtin_prefetch(below + (j + kAhead) * panel.stride);
+        if (R > 1) __builtin_prefetch(below + (j + kAhead) * panel.stride + (R - 1) * L);
+      }
 #pragma GCC unroll 2
       for (int r = 0; r < R; ++r) c[r] = load<F, L>(below + j * panel.stride + r * L);
 #pragma GCC unroll 8
@@ -536,12 +549,24 @@ void Panels<F>::update_border(const Panel& panel) {
 template <typename F>
 template <int P>
 void Panels<F>::update_border_at_once(const Panel& last) {
-  constexpr int K = 8;  // columns
   for (int i = last.strips_begin; i < last.strips_end; ++i) {
     const Strip& strip = strips_[i];
     int k = 0;
-    for (; k + K <= strip.columns; k += K) update_columns<P, K>(last, strip, k);
-    for (; k < strip.columns; ++k) update_columns<P, 1>(last, strip, k);
+    for (; k + 8 <= strip.columns; k += 8) update_columns<P, 8>(last, strip, k);
+    if (k + 4 <= strip.columns) update_columns<P, 4>(last, strip, k), k += 4;
+    switch (strip.columns - k) {
+      case 3:
+        update_columns<P, 3>(last, strip, k);
+        break;
+      case 2:
+        update_columns<P, 2>(last, strip, k);
+        break;
+      case 1:
+        update_columns<P, 1>(last, strip, k);
+        break;
+      default:
+        break;
+    }
   }
 }
 
@@ -651,6 +676,22 @@ typename Short<F, lanes_for(P)>::Type Panels<F>::times_transposed(
   return even + odd;
 }
 
+/// (C L⁻ᵀ)ᵀ x, of the further pivots of its front. Of large fronts, C is in the cache of every
+/// substitution, unlike W.
+template <typename F>
+typename Short<F, kPanel>::Type Panels<F>::times_inside(const Panel& panel, const F* x) const {
+  constexpr int L = kWidest<F>;
+  using W = typename Short<F, L>::Type;
+  const F* below = matrix_.data() + kMargin + panel.columns + kPanel;
+  W sums[kPanel] = {};
+  for (int i = 0; i < panel.inside; i += L) {
+    const W x_i = first_lanes<F, L>(load<F, L>(x + i), panel.inside - i);
+#pragma GCC unroll 8
+    for (int j = 0; j < kPanel; ++j) sums[j] += load<F, L>(below + j * panel.stride + i) * x_i;
+  }
+  return lane_sums<F>(sums);
+}
+
 /// x = Mᵀ (z − Wᵀ x below).
 template <typename F>
 template <int P, int L>
@@ -660,11 +701,18 @@ void Panels<F>::backward(const Run& run, F* y) const {
   if constexpr (L == 0) return;
   for (int i = run.end - 1; i >= run.begin; --i) {
     const Panel& panel = panels_[i];
-    const F* transposed = factors_.data() + panel.factors + P * N;
+    const F* factors = factors_.data() + panel.factors;
+    const F* transposed = factors + P * N;
     const F* g = transposed + (P + 1) * N;
     const int* rows = rows_.data() + panel.rows;
     V x0 = load<F, N>(y + panel.first), x1 = V{}, x2 = V{}, x3 = V{};
     int k = 0;
+    if constexpr (P == kPanel) {
+      if (panel.inside > kLarge) {
+        x0 -= load<F, N>(factors + 2 * P * N) * times_inside(panel, y + panel.first + P);
+        k = panel.inside;
+      }
+    }
     for (; k + 4 <= panel.below; k += 4) {
       x0 -= load<F, N>(g + k * N) * y[rows[k]];
       x1 -= load<F, N>(g + k * N + N) * y[rows[k + 1]];

@@ -141,6 +141,36 @@ inline void invert_triangle(const V (&l)[P], V (&m)[P]) {
 
 // Transposition of the columns of a panel, which lie in registers.
 
+/// The sums over the lanes of eight vectors.
+template <typename F, typename V>
+inline typename Short<F, 8>::Type lane_sums(const V (&c)[8]) {
+  typename Short<F, 8>::Type sums;
+  if constexpr (sizeof(V) == 8 * sizeof(F)) {
+    V pairs[4], fours[2];
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) {
+      pairs[i] = __builtin_shufflevector(c[2 * i], c[2 * i + 1], 0, 8, 2, 10, 4, 12, 6, 14) +
+                 __builtin_shufflevector(c[2 * i], c[2 * i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+    }
+#pragma GCC unroll 2
+    for (int i = 0; i < 2; ++i) {
+      const V &a = pairs[2 * i], &b = pairs[2 * i + 1];
+      fours[i] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13) +
+                 __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+    sums = __builtin_shufflevector(fours[0], fours[1], 0, 1, 2, 3, 8, 9, 10, 11) +
+           __builtin_shufflevector(fours[0], fours[1], 4, 5, 6, 7, 12, 13, 14, 15);
+  } else {
+#pragma GCC unroll 8
+    for (int j = 0; j < 8; ++j) {
+      F sum = c[j][0];
+      for (int i = 1; i < static_cast<int>(sizeof(V) / sizeof(F)); ++i) sum += c[j][i];
+      sums[j] = sum;
+    }
+  }
+  return sums;
+}
+
 /// Rows of four columns of four numbers each, the first `count`, N numbers apart.
 template <int N, typename F, typename V>
 inline void store_four(const V& c0, const V& c1, const V& c2, const V& c3, int count, F* rows) {
