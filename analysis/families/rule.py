@@ -168,7 +168,8 @@ class _Rule:
             costs, weights = data.costs(scheme), data.weights(data.losses[scheme].index)
             names = [name for name in costs if (scheme, name) in self.models and (costs[name] == 0).any()]
             features, rows = data.features.loc[costs.index], numpy.arange(len(costs))
-            times, costs = numpy.array([self.caution[scheme, name] * predicted(self.models[scheme, name], features) for name in names]).T, costs[names].to_numpy()
+            times = numpy.array([self.caution[scheme, name] * predicted(self.models[scheme, name], features) for name in names]).T
+            costs = costs[names].to_numpy()
             best = {}
             for places in (some for size in range(1, CANDIDATES[scheme] + 1) for some in combinations(range(len(names)), size)):
                 cost = costs[rows, numpy.array(places)[times[:, places].argmin(axis=1)]]
