@@ -1,4 +1,6 @@
 // What neither energy nor constraints show: lags, found by what single steps leave.
+#include "run/local_errors.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +10,6 @@
 #include "controls/controls.hpp"
 #include "run/initial_state.hpp"
 #include "run/judged_run.hpp"
-#include "run/local_errors.hpp"
 #include "run/run.hpp"
 #include "run/settings.hpp"
 #include "scene_file/load_scene.hpp"
@@ -55,8 +56,7 @@ TEST(LocalErrors, AddUpToTheLagOfLongSteps) {
 TEST(LocalErrors, OfHigherOrdersAreFoundByHalfSteps) {
   const Scene scene = shipped("point_mass_pendulum.json");
   for (const Scheme scheme : {Scheme::rattle4, Scheme::rattle6}) {
-    const RunSummary coarse =
-        run(scene, test::reference(), settings_for(scene, scheme, 0.15, 60.0));
+    const RunSummary coarse = run(scene, test::reference(), settings_for(scene, scheme, 0.15, 60.0));
     EXPECT_EQ(coarse.status, RunStatus::degraded) << static_cast<int>(scheme);
     RunSettings fine = settings_for(scene, scheme, 0.02, 5.0);
     const RunSummary sound = run(scene, test::reference(), fine);
@@ -92,7 +92,8 @@ TEST(LocalErrors, CountWhatAWrongEnergyIsAheadBy) {
   judge.add_local_error(0.0, speed, 0.1, 5);
   EXPECT_NEAR(judge.local_error_sum(), ahead, 1e-12);
   judge.add_local_error(0.0, speed, 0.1, 95);
-  EXPECT_NEAR(judge.local_error_sum(), 10 * speed * (1 - std::sqrt(2 - 1 / 0.9801)) - ahead, 1e-10);
+  EXPECT_NEAR(judge.local_error_sum(), 10 * speed * (1 - std::sqrt(2 - 1 / 0.9801)) - ahead,
+              1e-10);
 }
 
 TEST(LocalErrors, OfAMotionThatIsAheadAndThenBehindAreNotBoth) {
@@ -175,14 +176,13 @@ TEST(LocalErrors, AddUpAlongTheWay) {
   EXPECT_GT(speeds.sum(), 3e-4);
   EXPECT_LT(speeds.sum(), 6e-4);
   EXPECT_LT(shaken.sum(), 5e-5);
-  EXPECT_EQ(brief.sum(), 0.0);     // a stiff damper turned it round
+  EXPECT_EQ(brief.sum(), 0.0);  // a stiff damper turned it round
   LocalErrors braked(scene, 1.0);  // as if all was taken away before each sample
   for (int i = 0; i < 100; ++i) {
     braked.add_speed({{1e-6, 5.0}, {1e-6, 5.0}}, onward, 1e-3, 10, 1e6);
   }
   EXPECT_LT(braked.sum(), 1e-5);
-  speeds.add_speed({{1.0, 0.0}, {1.0, 0.0}}, onward, 1e-3, 1000,
-                   0.0);  // no more than the way itself
+  speeds.add_speed({{1.0, 0.0}, {1.0, 0.0}}, onward, 1e-3, 1000, 0.0);  // no more than the way itself
   EXPECT_LT(speeds.sum(), 6e-4 + 2.0 * 1e-3 * 1000 + 1e-12);
 }
 
