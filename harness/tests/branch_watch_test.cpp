@@ -127,6 +127,15 @@ TEST(ClosedParts, LeaveOutWhatHangsOnALoop) {
   }
 }
 
+TEST(BranchWatch, TellsLoopsFromRodsOnFeet) {
+  const auto has_loop = [](const Scene& scene) {
+    return BranchWatch(scene, initial_state(scene.model), 1.0, true).has_loop();
+  };
+  EXPECT_TRUE(has_loop(crank_rocker()));
+  EXPECT_FALSE(has_loop(load_scene(MBS_ROOT "/harness/scenes/double_pendulum.json")));
+  EXPECT_FALSE(has_loop(load_scene(MBS_ROOT "/harness/scenes/pendulum.json")));
+}
+
 TEST(BranchWatch, FindsJumpsOfLoopsThatAreCarriedOrHaveSomethingHanging) {
   for (const Scene& scene : {crank_rocker(), carried_crank_rocker()}) {
     RunSettings settings;

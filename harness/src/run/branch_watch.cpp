@@ -67,6 +67,7 @@ BranchWatch::BranchWatch(const Scene& scene, const State& start, double length, 
   const bool is_driven =
       !scene.model.driven_points().empty() || !scene.model.driven_values().empty();
   for (ConstraintBlock& part : parts.free) {
+    if (part.rows.size() > 1) has_loop_ = true;
     add_part(std::move(part), {}, matrices);
     parts_.back().is_carried = is_driven;
   }

@@ -22,6 +22,24 @@ double LocalErrors::add_lag(std::span<const double> off, std::span<const double>
   return fastest;
 }
 
+double LocalErrors::add_shift(std::span<const double> off, std::span<const double> v, double step,
+                              long steps) {
+  point_vectors(scene_, length_, off, error_);
+  point_vectors(scene_, length_, v, velocity_);
+  points_.resize(velocity_.size());
+  const double time = static_cast<double>(steps) * step;
+  time_ += time;
+  double fastest = 0.0;  // squared
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    Sums& sums = points_[p];
+    const double squared = dot(error_[p], error_[p]);
+    sums.lag += static_cast<double>(steps) * std::sqrt(squared);  // a NaN goes on
+    sums.shift += time * squared / (step * step);
+    fastest = std::max(fastest, dot(velocity_[p], velocity_[p]));
+  }
+  return std::sqrt(fastest);
+}
+
 void LocalErrors::add_speed(const SpeedError& error, std::span<const double> v, double step,
                             long steps, double braked) {
   point_vectors(scene_, length_, error.now, error_);
@@ -50,7 +68,7 @@ void LocalErrors::add_speed(const SpeedError& error, std::span<const double> v, 
 double LocalErrors::sum() const {
   double largest = 0.0;
   for (const Sums& sums : points_) {
-    const double total = sums.lag + sums.way;
+    const double total = sums.lag + sums.way + std::sqrt(time_ * sums.shift);
     // Not std::max, which would drop a NaN.
     if (!(total <= largest)) largest = std::isnan(total) ? HUGE_VAL : total;
   }

@@ -11,9 +11,11 @@
 namespace mbs {
 
 /// Adds up errors of single steps along the way of each point; across it the constraints take them
-/// away. A point is off by the sum of its lags and by the way that a wrong speed goes:
+/// away if they leave one freedom. A point is off by the sum of its lags and by the way that a
+/// wrong speed goes:
 ///
-///   lag  = sum of |off . v|/|v|                          m
+///   lag  = sum of |off . v|/|v|, or of |off|             m
+///   way of shifts = t sqrt(mean of |off/dt|^2)           m
 ///   gain of v^2/2 by the lesser of now . v and later . v, if their signs agree, m^2/s^2
 ///   way  = sum of dt gain/|v|, at most dt |v|            m
 ///
@@ -33,6 +35,11 @@ class LocalErrors {
   /// `steps` steps that each left the positions `off` (n, m) at the velocity `v` (n, m/s). Returns
   /// the speed of the fastest point, m/s.
   double add_lag(std::span<const double> off, std::span<const double> v, long steps);
+  /// The same for steps of `step` (s) of a motion with more freedoms. A rule that leaves `off` in a
+  /// step also shifts the speed by off/step. With one freedom the shift comes back with the motion,
+  /// or energy shows it. Freedoms that pass energy on to each other keep some of it, about its root
+  /// mean square.
+  double add_shift(std::span<const double> off, std::span<const double> v, double step, long steps);
   /// `steps` steps of `step` (s) that each left the velocity too high by `error` while dampers took
   /// `braked` (1/s) of the kinetic energy.
   void add_speed(const SpeedError& error, std::span<const double> v, double step, long steps,
@@ -45,6 +52,7 @@ class LocalErrors {
   struct Sums {
     double lag = 0.0, way = 0.0;
     double gain = 0.0, gain_squared = 0.0;  // of samples
+    double shift = 0.0;                     // sum of dt |off/dt|^2, m^2/s
   };
 
   const Scene& scene_;
@@ -52,6 +60,7 @@ class LocalErrors {
   std::vector<Vector3> error_, later_, velocity_;  // of one sample
   std::vector<Sums> points_;
   double samples_ = 0.0, steps_ = 0.0;  // m, N, without what dampers took away
+  double time_ = 0.0;                   // t of shifts, s
 };
 
 }  // namespace mbs
