@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <numeric>
 #include <random>
+#include <utility>
 
 #include "elimination_tree.hpp"
 #include "panels/fronts.hpp"
@@ -224,28 +225,16 @@ bool substitutions_are_found() {
 int main() {
   Random random(1);
   int failed = 0;
-  if (!full_orders_are_given_up()) {
-    std::printf("an order that fills in completely is not given up\n");
-    ++failed;
-  }
-  if (!worked_example_is_compiled()) {
-    std::printf("three points in a row are not compiled as program.hpp says\n");
-    ++failed;
-  }
-  if (!dependency_chain_counts()) {
-    std::printf("chains of fronts are not predicted as they should be\n");
-    ++failed;
-  }
-  if (!chain_is_eliminated_from_both_ends()) {
-    std::printf("a chain is not eliminated from both ends\n");
-    ++failed;
-  }
-  if (!substitutions_come_early()) {
-    std::printf("substitutions wait for more than what they are solved for\n");
-    ++failed;
-  }
-  if (!substitutions_are_found()) {
-    std::printf("linear rows are not the substitutions that they should be\n");
+  const std::pair<bool, const char*> facts[] = {
+      {full_orders_are_given_up(), "an order that fills in completely is not given up"},
+      {worked_example_is_compiled(), "three points in a row are not compiled as program.hpp says"},
+      {dependency_chain_counts(), "chains of fronts are not predicted as they should be"},
+      {chain_is_eliminated_from_both_ends(), "a chain is not eliminated from both ends"},
+      {substitutions_come_early(), "substitutions wait for more than what they are solved for"},
+      {substitutions_are_found(), "linear rows are not the substitutions that they should be"}};
+  for (const auto& [holds, otherwise] : facts) {
+    if (holds) continue;
+    std::printf("%s\n", otherwise);
     ++failed;
   }
   for (int trial = 0; trial < 300; ++trial) {

@@ -173,8 +173,7 @@ std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPatte
     if (owned[row] >= 0) owner[at(owned[row])] = static_cast<int>(row);
     for (const int i : neighbours(variables + row)) last[row] = std::max(last[row], place[at(i)]);
   }
-  std::vector<std::vector<int>> after(variables +
-                                      1);  // rows, by how many variables are before them
+  std::vector<std::vector<int>> after(variables + 1);  // rows, by the variables before them
   for (Index row = 0; row < last.size(); ++row) {
     Index behind = last[row];
     for (const int i : neighbours(variables + row)) {

@@ -8,10 +8,14 @@
 
 namespace mbs {
 
-double LocalErrors::add_lag(std::span<const double> off, std::span<const double> v, long steps) {
+void LocalErrors::take(std::span<const double> off, std::span<const double> v) {
   point_vectors(scene_, length_, off, error_);
   point_vectors(scene_, length_, v, velocity_);
   points_.resize(velocity_.size());
+}
+
+double LocalErrors::add_lag(std::span<const double> off, std::span<const double> v, long steps) {
+  take(off, v);
   double fastest = 0.0;
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const double speed = std::sqrt(dot(velocity_[p], velocity_[p]));
@@ -24,9 +28,7 @@ double LocalErrors::add_lag(std::span<const double> off, std::span<const double>
 
 double LocalErrors::add_shift(std::span<const double> off, std::span<const double> v, double step,
                               long steps) {
-  point_vectors(scene_, length_, off, error_);
-  point_vectors(scene_, length_, v, velocity_);
-  points_.resize(velocity_.size());
+  take(off, v);
   const double time = static_cast<double>(steps) * step;
   time_ += time;
   double fastest = 0.0;  // squared
@@ -42,10 +44,8 @@ double LocalErrors::add_shift(std::span<const double> off, std::span<const doubl
 
 void LocalErrors::add_speed(const SpeedError& error, std::span<const double> v, double step,
                             long steps, double braked) {
-  point_vectors(scene_, length_, error.now, error_);
+  take(error.now, v);
   point_vectors(scene_, length_, error.later, later_);
-  point_vectors(scene_, length_, v, velocity_);
-  points_.resize(velocity_.size());
   const double time = static_cast<double>(steps) * step, kept = std::exp(-braked * time);
   samples_ = kept * samples_ + 1.0;
   steps_ = kept * steps_ + static_cast<double>(steps);

@@ -45,10 +45,13 @@ class LocalErrors {
   void add_speed(const SpeedError& error, std::span<const double> v, double step, long steps,
                  double braked);
 
-  /// Largest lag + way of a point so far, m.
+  /// Largest lag + way + way of shifts of a point so far, m.
   [[nodiscard]] double sum() const;
 
  private:
+  /// error_ and velocity_ of each point.
+  void take(std::span<const double> off, std::span<const double> v);
+
   struct Sums {
     double lag = 0.0, way = 0.0;
     double gain = 0.0, gain_squared = 0.0;  // of samples

@@ -553,20 +553,14 @@ void Panels<F>::update_border_at_once(const Panel& last) {
     const Strip& strip = strips_[i];
     int k = 0;
     for (; k + 8 <= strip.columns; k += 8) update_columns<P, 8>(last, strip, k);
-    if (k + 4 <= strip.columns) update_columns<P, 4>(last, strip, k), k += 4;
-    switch (strip.columns - k) {
-      case 3:
-        update_columns<P, 3>(last, strip, k);
-        break;
-      case 2:
-        update_columns<P, 2>(last, strip, k);
-        break;
-      case 1:
-        update_columns<P, 1>(last, strip, k);
-        break;
-      default:
-        break;
+    if (k + 4 <= strip.columns) {
+      update_columns<P, 4>(last, strip, k);
+      k += 4;
     }
+    const int left = strip.columns - k;
+    if (left == 3) update_columns<P, 3>(last, strip, k);
+    if (left == 2) update_columns<P, 2>(last, strip, k);
+    if (left == 1) update_columns<P, 1>(last, strip, k);
   }
 }
 

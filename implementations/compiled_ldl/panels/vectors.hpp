@@ -139,8 +139,6 @@ inline void invert_triangle(const V (&l)[P], V (&m)[P]) {
   }
 }
 
-// Transposition of the columns of a panel, which lie in registers.
-
 /// The sums over the lanes of eight vectors.
 template <typename F, typename V>
 inline typename Short<F, 8>::Type lane_sums(const V (&c)[8]) {
@@ -170,6 +168,8 @@ inline typename Short<F, 8>::Type lane_sums(const V (&c)[8]) {
   }
   return sums;
 }
+
+// Transposition of the columns of a panel, which lie in registers.
 
 /// Rows of four columns of four numbers each, the first `count`, N numbers apart.
 template <int N, typename F, typename V>
