@@ -4,6 +4,7 @@ import math
 import pandas
 import pytest
 
+from analysis.core.files import ROOT
 from analysis.map import ledger, paper
 from analysis.map.claims_libraries import compilers, dense_pairs, tuned_blas
 from analysis.map.claims_maps import over_fill, regions
@@ -21,6 +22,12 @@ PLAIN, AXPY, NEW = "ublas_sparse/plain", "ublas_sparse/axpy_prod", "new_dense/on
 IDS = {"T1", "T2", "F2", "F4", "F5", "F6", "F7", "C1", "C2", "C3", "C4", "C5"}
 FILLS = ["natural", 0.2, 0.5, 0.75, 1.0]
 COLUMNS = [{"variables": size, "fills": FILLS} for size in (10, 50, 82, 100, 1000, 2000, 3000, 4000, 5000)]
+
+
+def test_the_folders_that_claims_name_have_the_role():
+    named = {name.split("/")[0] for name in (*paper.STARTING.values(), paper.NOT_OPTIMISED, *sum(paper.SYSTEMS.values(), ()))}
+    sources = (ROOT / "implementations").glob("*/implementation.cpp")
+    assert named == {path.parent.name for path in sources if "Role::paper" in path.read_text()}
 
 
 def load(rows):

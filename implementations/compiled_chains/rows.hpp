@@ -5,10 +5,11 @@
 
 namespace mbs::compiled_chains {
 
+/// The same P with Q at (5, −2): d[0] = P − A = (0, −ℓ), e = Q − P = (0, −ℓ).
 template <class V, class Rods>
 struct RowBlock : Block<V, Rods> {
-  Vec<V> d[Rods::kMost];
-  Vec<V> e;
+  Vec<V> d[Rods::kMost];  // of its rods, from the fixed point
+  Vec<V> e;               // of its link, to the next point inwards
 };
 
 /// ε⁻¹ (Φq a + Φ̇q v) of a distance.

@@ -12,6 +12,7 @@
 
 namespace mbs::compiled_chains {
 
+/// S = 2 I, so σ = 4, and O = −I: scaled = ½ I, gain = {−½, 0, 0, −½}.
 template <class V>
 struct Factors {
   Sym<V> scaled;  // S/σ: its adjugate is S⁻¹
@@ -21,7 +22,8 @@ struct Factors {
   Factors(const Factors&) = delete;  // see Vec
 };
 
-/// State and factors of a point, in the units of README.md.
+/// State and factors of a point, in the units of README.md. P of the example of Topology, at rest
+/// at (5, −1), with 1 m in these units ℓ: x = (0, −ℓ), w = 0, rods[0] of A - P, link of P - Q.
 template <class V, class Rods>
 struct Block {
   Vec<V> x, u, w;       // position, acceleration, velocity

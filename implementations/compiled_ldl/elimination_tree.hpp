@@ -9,6 +9,8 @@
 
 namespace mbs::compiled_ldl {
 
+/// Three nodes in a row, 0 - 1 - 2, in the order {0, 2, 1} give the fronts {pivots 0, border 1},
+/// {2, 1} and {1, none}, and fill = 2; or one front of all pivots where that takes less time.
 struct TreeFront {
   std::vector<int> pivots;  ///< nodes, in order of elimination
   std::vector<int> border;  ///< nodes, in no order

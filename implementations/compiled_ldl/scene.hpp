@@ -31,6 +31,8 @@ inline bool is_distance(const DotConstraint& c) { return c.a == c.c && c.b == c.
 Program program_of(const Model& model, const StepSettings& settings, int width);
 
 /// Vectors of coordinates have `extent` numbers: the program's rows, then those of fixed points.
+/// The points A, B, C, D of the example of Pairs: of_point = {16, 0, 2, 18}, of_coordinate =
+/// {0, 1, 2, 3}, extent = 20.
 struct Rows {
   Rows(const Model& model, const Program& program);
 

@@ -17,14 +17,17 @@ sizeof static static_assert static_cast struct switch template this thread_local
 unsigned using virtual void volatile wchar_t while xor xor_eq""".split())
 TAKEN = {"mbs", "std", "null", "reference", "limit", "control", "controls", "main", "all", "clean", "help", "install", "test",
          "harness", "engines", "registry", "implementation", "simulation"}  # names of the harness, of C++ and of CMake
-LIBRARIES = {"none": ("none", "", '""'),
-             "eigen": ("Eigen", "MPL-2.0", 'std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION)'),
-             "blas": ("LAPACK", "BSD-3-Clause", '"TODO: as the library reports it"')}  # (name, licence, version as C++)
+EIGEN = 'std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION)'
+COLUMNS = "\n  // The lower half of T by rows is its upper half by columns, the default of {}."
+IN_PLACE = "\n  // Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Upper> works in place and allocates nothing."
+LIBRARIES = {"none": ("none", "", '""', "", ""),  # (name, licence, version as C++, include, how it takes what is stored)
+             "eigen": ("Eigen", "MPL-2.0", EIGEN, "#include <Eigen/Cholesky>\n", COLUMNS.format("Eigen") + IN_PLACE),
+             "blas": ("LAPACK", "BSD-3-Clause", '""', "", COLUMNS.format("LAPACK"))}
 
 
 def new(arguments):
-    parser = Parser(prog="study/new", description="Writes the folder of a new implementation: it compiles, is in the list, "
-                    "and has empty functions to fill in: predict, constraints, Jacobian, residual, tangent, solve, correct, project, the step.")
+    parser = Parser(prog="study/new", description="Writes the folder of a new implementation: it compiles, is in the list, and has empty "
+                    "functions to fill in: predict, constraints, Jacobian, residual, tangent, factorize, solve, correct, project, the step.")
     parser.add_argument("name", metavar="NAME", help="its folder: lower case, digits, _")
     parser.add_argument("--library", default="none", choices=list(LIBRARIES), help="what it links (none)")
     options = parser.parse_args(arguments)
@@ -41,7 +44,8 @@ def new(arguments):
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
-    commands = {"study/setup": "installs what is missing, builds all", "cmake --build build --target mbs": "after each function",
+    commands = {"study/setup": "if it has not run yet: installs what is missing, builds all",
+                "cmake --build build --target mbs": "after each function",
                 f"build/mbs check --ladder --implementation {options.name}": "the first quantity that is wrong, and how it usually gets so",
                 "build/mbs reference four-bar:1 --moved": "the reference's numbers",
                 f"build/mbs check --implementation {options.name}": "the whole gate",
@@ -65,9 +69,8 @@ def add_to_list(name):
 
 
 def write(folder, name, library):
-    known, licence, version = LIBRARIES[library]
-    values = {"NAME": name, "LIBRARY": known, "LICENCE": licence, "VERSION": version,
-              "INCLUDES": "#include <Eigen/Core>\n\n" if library == "eigen" else ""}
+    known, licence, version, include, storage = LIBRARIES[library]
+    values = {"NAME": name, "LIBRARY": known, "LICENCE": licence, "VERSION": version, "INCLUDE": include, "STORAGE": storage}
     for path in sorted(SKELETON.iterdir()):
         stem, _, only = path.name.partition("@")
         if only in ("", library):

@@ -86,6 +86,9 @@ struct Pairs {
 
 /// Up to four points a, b, c, d and two vectors: A at a, −A at b, C at c, −C at d. The distinct
 /// free ones among them, in the order of elimination, have σ_A A + σ_C C.
+/// A planar angle at B, a = A, c = C and b = d = B, with A, C and B on rows 0, 2 and 4: points =
+/// {0, 1, 0}, {2, 0, 1}, {4, −1, −1}; its places are those of the blocks (0, 0), (2, 0), (4, 0),
+/// (2, 2), (4, 2), (4, 4).
 struct Quad {
   struct Point {
     int row = 0;

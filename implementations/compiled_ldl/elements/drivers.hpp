@@ -5,6 +5,8 @@
 
 namespace mbs::compiled_ldl {
 
+/// A driven point A on rows 16-17 and a rod A - B, constraint 0, of driven length: point_rows_ =
+/// {16}, touched_ = {0}, values_ = {{0, 0, ṡ, s̈}}.
 template <typename S, int D>
 class Drivers {
  public:

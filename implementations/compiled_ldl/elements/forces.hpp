@@ -5,6 +5,8 @@
 
 namespace mbs::compiled_ldl {
 
+/// Two springs and a torsion spring in the plane: direction_ = {e_x e_y} of each spring,
+/// torsion_directions_ = {A_x A_y C_x C_y}, across_ = p of each spring.
 template <typename S, int D>
 class Forces {
  public:

@@ -6,7 +6,8 @@
 
 namespace mbs::compiled_ldl {
 
-/// Stored are D⁻¹ and M = L⁻¹ by rows, and by columns once they are asked for.
+/// Stored are D⁻¹ and M = L⁻¹ by rows, and by columns once they are asked for. Of [4 1; 1 3], with
+/// L = [1 0; ¼ 1] and D = (4, 11/4): inverse_ = {¼, 4/11}, rows_ = {1 0}, {−¼ 1}.
 template <int N>
 class SmallFactors {
  public:

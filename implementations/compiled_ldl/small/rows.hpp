@@ -9,7 +9,8 @@
 
 namespace mbs::compiled_ldl {
 
-/// N numbers, one a coordinate of q, in its order; padded with zeros.
+/// N numbers, one a coordinate of q, in its order; padded with zeros. Six in vectors of four:
+/// kVectors = 2, kSize = 8, v = {q0 q1 q2 q3}, {q4 q5 0 0}.
 template <int N>
 struct SmallRow {
   static constexpr int kLanes = std::min(lanes_for(N), kRegisterDoubles);
@@ -48,7 +49,8 @@ struct SmallRow {
   }
 };
 
-/// Columns of a symmetric matrix, of which the lower halves count.
+/// Columns of a symmetric matrix, of which the lower halves count: [4 1; 1 3] is column = {4 1},
+/// {· 3}, whatever the · is.
 template <int N>
 struct SmallMatrix {
   using Row = SmallRow<N>;

@@ -1,7 +1,7 @@
 // Describes @NAME@ to the harness.
 #include "mbs/implementation.hpp"
 
-@INCLUDES@#include <memory>
+#include <memory>
 #include <string>
 
 #include "simulation.hpp"

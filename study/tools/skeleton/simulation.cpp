@@ -13,6 +13,8 @@ Stepper::Stepper(const Model& model, const StepSettings& settings)
   Phi_q_.resize(m * n);
   f_.resize(n);
   T_.resize(n * n);
+  // TODO: M from model.mass(), which lists its lower half alone. Q is model.force(). A fixed point
+  // has the offset -1 and no entries in q. There may be no constraint at all, m = 0.
 }
 
 void Stepper::do_set_state(const State& state) { state_ = state; }
@@ -30,8 +32,12 @@ bool Stepper::do_show_first_pass(FirstPass& pass) {
 }
 
 StepOutcome Stepper::do_step() {
-  // TODO: predict; then passes of residual, tangent, solve, correct until max |Delta q| <= settings_.tolerance, Phi and
-  // Phi_q evaluated anew after each; then project.
+  // TODO: predict(), Phi and Phi_q; then passes, settings_.max_passes at most:
+  //   residual, tangent, factorize() (false: StepStatus::factorization_failed, at once), solve()
+  //   with -f, correct(), Phi and Phi_q anew, lambda += alpha Phi, Eq. (1).
+  // The pass with max |Delta q| <= settings_.tolerance is the last; it does all of that too.
+  // Then project() what settings_.projections says: nothing, v', or v' and a'.
+  // phases_.enter(Phase::solve);  // optional, for mbs bench --phases: what follows is this
   return {StepStatus::pass_limit, 1};
 }
 
@@ -45,8 +51,10 @@ void Stepper::evaluate_residual() {}
 
 void Stepper::evaluate_tangent() {}
 
-// A library may call a NaN in T a success (Eigen's LLT does): look at the solution.
-bool Stepper::solve(std::vector<double>& /*right*/) { return false; }
+// A library may call a NaN in T a success (Eigen's LLT does): look at the diagonal of the factor.
+bool Stepper::factorize() { return false; }
+
+void Stepper::solve(std::vector<double>& /*right*/) {}
 
 void Stepper::correct(const std::vector<double>& /*delta*/) {}
 

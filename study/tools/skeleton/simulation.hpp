@@ -1,7 +1,7 @@
-// One simulation of one model. What is marked TODO is to be filled in; paper/README.md has the equations.
+// One simulation of one model. Fill in what is marked TODO; paper/README.md has the equations.
 #pragma once
 
-#include <vector>
+@INCLUDE@#include <vector>
 
 #include "mbs/simulation.hpp"
 
@@ -24,15 +24,16 @@ class Stepper final : public Simulation {
   void evaluate_jacobian();                // TODO: Phi_q at q', Eq. (7)
   void evaluate_residual();                // TODO: f, Eq. (3)
   void evaluate_tangent();                 // TODO: T, Eq. (5)
-  bool solve(std::vector<double>& right);  // TODO: right becomes T^-1 right; false: T was refused, or has a NaN
-  void correct(const std::vector<double>& delta);  // TODO: q', v', a', Eq. (4), then lambda, Eq. (1)
+  bool factorize();                        // TODO: T; false: it was refused, or has a NaN
+  void solve(std::vector<double>& right);  // TODO: T^-1 right in its place, with the last factors
+  void correct(const std::vector<double>& delta);  // TODO: q', v', a' of the new q', Eq. (2)
   void project();                                  // TODO: v', then a', Eq. (6)
 
   const Model& model_;
   StepSettings settings_;
   State state_;  // from predict() on, q', v', a'
 
-  // Row by row: entry (i, j) of a matrix with n columns is at i * n + j. Store them as you like.
+  // Row by row: entry (i, j) of a matrix with n columns is at i * n + j. Store them as you like.@STORAGE@
   std::vector<double> Phi_;    // m
   std::vector<double> Phi_q_;  // m x n
   std::vector<double> f_;      // n
