@@ -67,9 +67,9 @@ def _calm(records):
 def disturbed(record):
     """Whether others ran on its processor: by the clock its turns, or all of a process without turns, took clearly longer than by
     the processor's time."""
-    rows = [row for row in record.output.get("rows", {}).values() if row.get("cpu_us") and row.get("stretch_us")]
     if record.cell.get("kind", "bench") != "bench":
         return record.done and record.seconds - STARTING > DISTURBED * record.machine.get("cpu_s", math.inf)
+    rows = [row for row in record.output.get("rows", {}).values() if row.get("cpu_us") and row.get("stretch_us")]
     return bool(rows) and sum(sum(row["stretch_us"]) for row in rows) > DISTURBED * sum(sum(row["cpu_us"]) for row in rows)
 
 

@@ -202,7 +202,7 @@ def test_power_law_exponent():
 
 def test_others_are_seen_in_every_timed_process_and_said():
     def timed(seconds, **machine):
-        return Record("c/x.json", {"kind": "simulate", "timed": True}, "done", "", seconds, [], {}, machine=machine)
+        return Record("c/x.json", {"kind": "simulate", "timed": True}, "done", "", seconds, [], {}, {"rows": []}, machine=machine)
     found = disturbance([timed(1.0, cpu_s=0.99, steal=0.01, mhz=2400.0), timed(1.0, cpu_s=0.7, steal=0.2, mhz=2500.0), timed(1.0)])
     assert found == {"processes": 2, "disturbed": 1, "steal": 0.2, "mhz": [2400.0, 2500.0]}
     assert told(found) == "others ran on the processor in 1 of 2 timed processes; the host took up to 20.0 % of its time; 2400 to 2500 MHz"
