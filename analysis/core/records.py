@@ -17,7 +17,7 @@ from analysis.core.files import digest, read_bytes, write_text
 
 RUN_ENDED = "done"  # status of a cell whose program ended as it should
 KINDS = {"cell": dict, "status": str, "reason": str, "seconds": (int, float), "command": list, "context": dict}
-MORE = {"output": dict, "series": dict}  # which a record may have
+MORE = {"output": dict, "series": dict, "machine": dict}  # which a record may have
 FORM = re.compile(r'\{"sha256": "([0-9a-f]{64})",\n"record": (\{.*\})\}\n', re.S)
 
 
@@ -35,6 +35,7 @@ class Record:
     context: dict    # machine, build and BLAS of the run
     output: dict = field(default_factory=dict)  # what the program printed
     series: dict = field(default_factory=dict)  # {column: values} of the motion, where the cell keeps some
+    machine: dict = field(default_factory=dict)  # of a timed cell: study/core/machine.py, and "cpu_s", processor time of its process
     digest: str = ""  # of the file's text
 
     @property

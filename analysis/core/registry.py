@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 NULL = "null/null"  # the harness's control: a simulation that does nothing
+TWIN = "+twin"  # a second instance of a contender in the same process: what is told apart where nothing differs
 ANCHOR = "csc_klu/refactor"  # stands on no BLAS: in common to the processes of all pairs and builds
 
 

@@ -9,6 +9,7 @@ import markupsafe
 import matplotlib.pyplot as plt
 
 from analysis.core import records, schema
+from analysis.core.disturbance import disturbance, told
 from analysis.core.files import ROOT, read_object, write_json, write_text
 from analysis.core.parts import parts
 from analysis.core.style import save, stamp
@@ -28,12 +29,13 @@ def write_part(folder, part):
         records.need_same_origin(record, view.context, f"{folder}/raw/{part}")
     tables = schema.write_tables(folder, part, _module(part, "tables").build(found, view), found)
     figures = _saved(folder / part / "figures", _module(part, "figures").draw(tables, view), view)
-    known = _module(part, "page").context(tables, view)
+    known, others = _module(part, "page").context(tables, view), disturbance(found)
     write_text(folder / f"{part}.html", template(ROOT / "analysis" / part / "page.html.j2").render(
-        **_frame(folder, part), **known, figures=figures, schema=schema.of_part(part)))
+        **_frame(folder, part), **known, disturbance=told(others), figures=figures, schema=schema.of_part(part)))
     said = _module(part, "sentences")
     write_json(folder / part / "answers.json", {
-        "answers": said.answers(tables, view), "cases": said.cases(tables, view) if hasattr(said, "cases") else []})
+        "answers": said.answers(tables, view), "cases": said.cases(tables, view) if hasattr(said, "cases") else [],
+        "disturbance": others})
     for name, known in (said.files(tables, view) if hasattr(said, "files") else {}).items():
         write_json(folder / part / name, known)
 

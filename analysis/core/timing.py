@@ -14,12 +14,14 @@ from dataclasses import dataclass, replace
 import numpy
 import pandas
 
+from analysis.core.registry import TWIN
+
 CONFIDENCE = 0.95
 PHASES = ("evaluation", "assembly", "factorization", "solve", "projection", "other")  # of a step: counters phase_…
 EQUIVALENT = 1.05  # who is shown to take at most so many times the fastest's time is as fast
 LEFT_OUT, ALONE = "-left-out", "-alone"  # ends of roles of study.core.timing.measure
 DISTURBED = 1.1  # the clock over the processor's time, from which a process counts as disturbed
-TWIN = "+twin"  # a second instance of a contender in the same process: what is told apart where nothing differs
+STARTING = 0.02  # s that a process may wait for its files
 COLUMNS = ("scene", "implementation", "environment", "process", "layout", "status", "reason", "step_us", "low_us", "high_us",
            "clock_us", "samples", "record")
 
@@ -63,7 +65,10 @@ def _calm(records):
 
 
 def disturbed(record):
-    """Whether others ran on its processor: by the clock its turns took clearly longer than by the processor's time."""
+    """Whether others ran on its processor: by the clock its turns, or all of a process without turns, took clearly longer than by
+    the processor's time."""
+    if record.cell.get("kind", "bench") != "bench":
+        return record.done and record.seconds - STARTING > DISTURBED * record.machine.get("cpu_s", math.inf)
     rows = [row for row in record.output.get("rows", {}).values() if row.get("cpu_us") and row.get("stretch_us")]
     return bool(rows) and sum(sum(row["stretch_us"]) for row in rows) > DISTURBED * sum(sum(row["cpu_us"]) for row in rows)
 
@@ -123,13 +128,16 @@ class Ratio:
 
 
 NONE = Ratio(math.nan, math.nan, math.nan)
+NO_VARIANCE = (0.0, 1)
 
 
 class Paired:
     """Samples of one scene's rows, by contender and process: what ratios are taken of. Whoever asks for many keeps it;
-    `ratio` and `rank` take the rows themselves as well."""
+    `ratio` and `rank` take the rows themselves as well. `beyond`: a variance of the logarithm of a ratio that more processes do not
+    lessen, and its degrees of freedom."""
 
-    def __init__(self, rows):
+    def __init__(self, rows, beyond=NO_VARIANCE):
+        self.beyond = beyond
         self.logs = {}  # {name: {(environment, process): logarithms of samples}}
         good = rows[rows.status == "ok"]
         # {process: its layout}; in sets without layouts each process stands for itself
@@ -148,7 +156,7 @@ def ratio(rows, first, second):
     """Time of `first` over that of `second` in `rows` of one scene; NaN where they share no process. Of one
     layout, or process, there is no interval: it reaches from 0 to infinity."""
     rows = paired(rows)
-    return of_logs([numpy.mean(one) for one in by_layout(rows, log_ratios(rows, first, second))])
+    return of_logs([numpy.mean(one) for one in by_layout(rows, log_ratios(rows, first, second))], *rows.beyond)
 
 
 def by_layout(rows, logs):
@@ -159,17 +167,21 @@ def by_layout(rows, logs):
     return list(found.values())
 
 
-def of_logs(logs):
-    """The Ratio whose logarithm is the mean of `logs`, independent of each other."""
+def of_logs(logs, more=0.0, of=1):
+    """The Ratio whose logarithm is the mean of `logs`, independent of each other. `more`: a further variance of that mean, which
+    was found with `of` degrees of freedom; those of both together are Welch's and Satterthwaite's."""
     if not len(logs):
         return NONE
     middle = float(numpy.mean(logs))
     if len(logs) == 1:
         return Ratio(math.exp(middle), 0.0, math.inf)
     from scipy import stats
-    error = float(numpy.std(logs, ddof=1)) / math.sqrt(len(logs))
-    half = stats.t.ppf((1 + CONFIDENCE) / 2, len(logs) - 1) * error
-    chance = float(stats.t.sf(middle / error, len(logs) - 1)) if error else float(middle <= 0)
+    error, freedom = float(numpy.std(logs, ddof=1)) / math.sqrt(len(logs)), len(logs) - 1
+    if more:
+        own, error = error, math.hypot(error, math.sqrt(more))
+        freedom = int(error**4 / (own**4 / freedom + more**2 / of) + 1e-9)  # whole, for tables
+    half = stats.t.ppf((1 + CONFIDENCE) / 2, freedom) * error
+    chance = float(stats.t.sf(middle / error, freedom)) if error else float(middle <= 0)
     return Ratio(*(math.exp(middle + shift) for shift in (0.0, -half, half)), chance)
 
 

@@ -26,7 +26,7 @@ DIGITS = 7  # of samples
 class Contest:
     """A scene and form of the step that contenders were timed on. `rows`: those of timing.processes that count; `able`: who
     may be ranked; `lost`: {name: (status, reason)} of the others; `failed`: those of them of whom nothing is known; `look`:
-    {name: µs a step} of a first look; `rank`: names → timing.Ranking, as the part itself does it."""
+    {name: µs a step} of a first look; `rank`: names → timing.Ranking, as the part itself does it; `beyond`: of timing.Paired."""
     part: str
     scene: str
     form: str
@@ -38,6 +38,7 @@ class Contest:
     failed: list
     look: dict
     rank: Callable
+    beyond: tuple = timing.NO_VARIANCE
 
     @property
     def family(self):
@@ -78,7 +79,7 @@ def of_map(folder):
                                  {name: (row.status, row.reason) for name, row in lost.iterrows() if name in names},
                                  [name for name in names if name in lost.index and lost.status[name] in FAILURES],
                                  rows.groupby("implementation").pilot_us.first().dropna().to_dict(),
-                                 lambda names, scene=scene: results.rank(scene, names)))
+                                 lambda names, scene=scene: results.rank(scene, names), results.beyond(scene)))
     return found
 
 
@@ -146,7 +147,7 @@ def _contest(one, number):
     keys = list(dict.fromkeys(zip(one.rows.environment, one.rows.process, one.rows.record)))
     layouts = timing.Paired(one.rows).layouts
     return {"part": one.part, "scene": one.scene, "form": one.form, "family": one.family, "n": one.n, "fill": _short(one.fill),
-            "able": [number[name] for name in one.able], "failed": [number[name] for name in one.failed],
+            "beyond": one.beyond, "able": [number[name] for name in one.able], "failed": [number[name] for name in one.failed],
             "lost": [[number[name], *why] for name, why in one.lost.items()],
             "look": [[number[name], _short(us)] for name, us in one.look.items()],
             "processes": [[environment, int(process), bool(one.part == "map" and process > AFTER), record, layouts.get(process, "")]

@@ -10,8 +10,10 @@ function median(values) {
 const mean = (values) => values.reduce((sum, one) => sum + one, 0) / values.length;
 
 // Samples of one contest by contender and process. `rows`: [name, process, samples], a process being {environment, number, layout}.
+// `beyond`: a variance of a ratio's logarithm that more processes do not lessen, and its degrees of freedom.
 class Paired {
-  constructor(rows) {
+  constructor(rows, beyond = [0, 1]) {
+    this.beyond = beyond;
     this.logs = new Map();
     this.layouts = new Map(rows.filter(([, process]) => process.layout).map(([, process]) => [process.number, process.layout]));
     this.known = new Map();
@@ -24,7 +26,7 @@ class Paired {
   // Time of `first` over that of `second`; NaN where they share no process. Of one layout, or process, there is no interval.
   ratio(first, second) {
     const key = `${first}\n${second}`;
-    if (!this.known.has(key)) this.known.set(key, interval(this.byLayout(this.logRatios(first, second))));
+    if (!this.known.has(key)) this.known.set(key, interval(this.byLayout(this.logRatios(first, second)), ...this.beyond));
     return this.known.get(key);
   }
 
@@ -91,12 +93,14 @@ function difference(first, second) {
   return median(Array.from({length: count}, (_, i) => first.logs[i] - second.logs[i]));
 }
 
-function interval(logs) {
+function interval(logs, more, of) {
   if (!logs.length) return {value: NaN, low: NaN, high: NaN};
   const middle = mean(logs);
   if (logs.length === 1) return {value: Math.exp(middle), low: 0, high: Infinity};
   const spread = Math.sqrt(logs.reduce((sum, one) => sum + (one - middle) ** 2, 0) / (logs.length - 1));
-  const half = DATA.quantiles[logs.length - 2] * spread / Math.sqrt(logs.length);
+  const own = spread / Math.sqrt(logs.length), error = Math.hypot(own, Math.sqrt(more));
+  const freedom = more ? Math.floor(error ** 4 / (own ** 4 / (logs.length - 1) + more ** 2 / of) + 1e-9) : logs.length - 1;
+  const half = DATA.quantiles[freedom - 1] * error;
   return {value: Math.exp(middle), low: Math.exp(middle - half), high: Math.exp(middle + half)};
 }
 
@@ -114,8 +118,8 @@ function ranking(winner, ratios) {
 // is alone wins only if nobody failed (analysis/map/cells.py).
 function rankContest(contest, names) {
   const able = new Set(contest.able.filter((name) => names.has(name)));
-  contest.paired ??= new Paired(contest.rows);
-  contest.again ??= new Paired(contest.rows.filter(([, process]) => process.again));
+  contest.paired ??= new Paired(contest.rows, contest.beyond);
+  contest.again ??= new Paired(contest.rows.filter(([, process]) => process.again), contest.beyond);
   let found = contest.paired.rank(able);
   if (!found) return null;
   const lead = found.ratios.filter(([name]) => contest.again.logs.has(name));

@@ -1,4 +1,5 @@
 # What page.html.j2 shows of families of mechanisms.
+from analysis.core.controls import judged
 from analysis.core.text import number
 from analysis.families.bounds import bounds
 from analysis.families.rule import missed, summary
@@ -15,7 +16,7 @@ def context(tables, view):
     for row in scenes[~scenes.status.isin(["ok", "slower"])].to_dict("records"):
         lost.setdefault((row["status"], row["reason"]), {}).setdefault(row["implementation"], []).append(f"{row['scene']}, {row['scheme']}")
     held = tables["held"]
-    return {"settings": view.settings, "ranked": ranked, "bounds": bounds(tables),
+    return {"settings": view.settings, "ranked": ranked, "controls": judged(tables["controls"]), "bounds": bounds(tables),
             "times": {name: rows.to_dict("records") for name, rows in times.groupby(["scene", "scheme"], sort=False)},
             "lost": [(*what, list(names.items())) for what, names in lost.items()],
             "formulas": _formulas(tables["steps"]), "judged": summary(held) if len(held) else None, "missed": missed(held).to_dict("records") if len(held) else [],

@@ -4,6 +4,7 @@ import pandas
 
 from analysis.core import timing
 from analysis.core.contest import agreed, by_scene, cells_of, contests, grouped, ratio_to, rival_of
+from analysis.core.controls import controls
 from analysis.core.schema import conform, of_part
 from analysis.core.statistics import power_law_exponent, power_law_interval
 from analysis.families import defaults
@@ -19,7 +20,7 @@ def build(records, view):
     place = {scene: at for at, scene in enumerate(view.settings["scenes"])}
     about = {record.cell["scene"]: record for record in by_role.get("about", []) if record.done}
     layers = {"libraries": registry.libraries, "all": [name for name in registry.variants if name not in registry.examples]}
-    scenes, winners = [], []
+    scenes, winners, twins = [], [], []
     for scheme in SCHEMES:
         looks = {scene: cells_of(rows, scene, {}) for scene, rows in by_scene(by_role.get(f"{scheme}-look", []))}
         for scene, rows, cells in contests(by_role, scheme):
@@ -29,6 +30,7 @@ def build(records, view):
             scenes += [known | {key: value for key, value in cells[name].items() if key in schema["scenes"]}
                        | {"look_us": looks[scene].get(name, {}).get("step_us")}
                        | ratio_to("to_rival", rows, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
+            twins += [{"scheme": scheme} | row for row in controls(rows).to_dict("records")]
             winners += [known | {"layer": layer} | _winner(rows, cells, names) for layer, names in layers.items()]
     mechanisms = [{"family": family_of(scene), "scene": scene, "dimension": record.output.get("dimension")}
                   | {name: value for name, value in record.output.get("features", {}).items() if name in schema["mechanisms"]}
@@ -38,7 +40,7 @@ def build(records, view):
     fills = tables["mechanisms"][["scene", "fill"]].dropna()
     first = {name: tables[name][tables[name].scheme == SCHEMES[0]].merge(fills, on="scene").to_dict("records") for name in ("scenes", "winners")}
     return tables | {"defaults": defaults.table(first["scenes"], first["winners"]), "growth": growth(tables["scenes"], tables["mechanisms"]),
-                     "orderings": orderings(about)} | judged(tables, registry)
+                     "orderings": orderings(about), "controls": pandas.DataFrame(twins)} | judged(tables, registry)
 
 
 def family_of(scene):

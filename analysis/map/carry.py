@@ -1,4 +1,4 @@
-# What a result carries beyond its own run: controls, where nothing differs (A/A), and where the spread of a ratio comes from.
+# Where the spread of a ratio comes from: what a result carries beyond its own run.
 import math
 
 import numpy
@@ -8,33 +8,8 @@ from analysis.core import timing
 from analysis.core.timing import CONFIDENCE, TWIN
 from analysis.map.timed import AFTER
 
-FALSE = 0.01  # a run is no evidence if its share of false decisions would be found by chance so seldom
 SOURCES = {"round": "turns of one process", "process": "processes of one layout", "layout": "layouts of the program",
            "seed": "seeds of the artificial fill"}
-
-
-def controls(timed):
-    """A row for each contender that was timed twice in the same processes: {"scene", "implementation", "ratio", "low",
-    "high", "decided", "record"}; decided: the interval excludes 1, which is false."""
-    rows = []
-    for scene, group in timed[(timed.status == "ok") & (timed.process > AFTER)].groupby("scene"):
-        paired = timing.Paired(group)
-        for twin in sorted(name for name in paired.logs if name.endswith(TWIN)):
-            name = twin.removesuffix(TWIN)
-            found = timing.ratio(paired, twin, name)
-            rows.append({"scene": scene, "implementation": name, "ratio": found.value, "low": found.low, "high": found.high,
-                         "decided": found.low > 1 or found.high < 1, "record": " ".join(group[group.implementation == twin].record)})
-    return pandas.DataFrame(rows)
-
-
-def judged(table):
-    """{"pairs", "false", "widest", "chance", "sound"} of `controls`: how many were decided though nothing differs, the ratio
-    furthest from 1, and how likely so many are by chance."""
-    from scipy import stats
-    pairs, false = len(table), int(table.decided.sum()) if len(table) else 0
-    chance = float(stats.binom.sf(false - 1, pairs, 1 - CONFIDENCE)) if pairs else math.nan
-    widest = max(table.ratio, key=lambda one: abs(math.log(one))) if pairs else math.nan
-    return {"pairs": pairs, "false": false, "widest": widest, "chance": chance, "sound": bool(pairs) and chance >= FALSE}
 
 
 def components(timed, seeds):
@@ -45,6 +20,25 @@ def components(timed, seeds):
     found = found.groupby("source").agg(percent=("variance", lambda one: 100 * math.sqrt(one.mean())), scenes=("variance", "size"),
                                         record=("record", lambda one: " ".join(dict.fromkeys(" ".join(one).split()))))
     return found.reindex([source for source in SOURCES if source in found.index]).reset_index()
+
+
+def within(paired, first, second):
+    """(low, high) of the ratio in these very layouts of the program, at this place of the fill: by what processes of one layout differ
+    by, or, where each has one process, by its rounds. (NaN, NaN) where neither tells it."""
+    groups = timing.by_layout(paired, timing.log_ratios(paired, first, second))
+    freedom = sum(map(len, groups)) - len(groups)
+    if freedom:
+        variance = sum(float(numpy.var(one)) * len(one) for one in groups) / freedom
+    else:
+        _, variance = _rounds(paired, first, second)
+        freedom = 2 * len(groups)  # at least: a process tells it with three rounds or more
+    if not variance:
+        return math.nan, math.nan
+    from scipy import stats
+    error = math.sqrt(variance * sum(1 / len(one) for one in groups)) / len(groups)
+    middle = float(numpy.mean([numpy.mean(one) for one in groups]))
+    half = float(stats.t.ppf((1 + CONFIDENCE) / 2, freedom)) * error
+    return math.exp(middle - half), math.exp(middle + half)
 
 
 def _of_scenes(timed):
@@ -58,17 +52,25 @@ def _of_scenes(timed):
             yield from ({"source": source, "variance": variance, "record": names} for source, variance in variances.items())
 
 
+def of_seeds(seeds):
+    """(variance of a ratio's logarithm between seeds of the fill, its degrees of freedom); timing.NO_VARIANCE where none was measured."""
+    found = [*_of_seeds(seeds)]
+    return (float(numpy.mean([one["variance"] for one in found])), sum(one["freedom"] for one in found)) if found else timing.NO_VARIANCE
+
+
 def _of_seeds(seeds):
     """The variance between scenes that differ in the seed of their fill alone, for each size and fill."""
     for _, group in seeds[seeds.status == "ok"].groupby(["variables", "fill_asked"]):
         scenes = [timing.Paired(rows) for _, rows in group.groupby("scene")]
         pair = _leaders(scenes[0])
-        logs = [list(timing.log_ratios(paired, *pair).values()) for paired in scenes] if pair else []
-        logs = [one for one in logs if len(one) > 1]
-        if len(logs) > 1:
-            within = numpy.mean([numpy.var(one, ddof=1) / len(one) for one in logs])
-            between = numpy.var([numpy.mean(one) for one in logs], ddof=1)
-            yield {"source": "seed", "variance": max(0.0, between - within), "record": " ".join(group.record)}
+        logs = [timing.log_ratios(paired, *pair) for paired in scenes] if pair else []
+        table = pandas.DataFrame([one for one in logs if one]).dropna(axis=1).to_numpy()  # a seed a row, a process of all a column
+        if min(table.shape) > 1:
+            means = table.mean(axis=1)  # all seeds have the same layouts, so that these tell nothing of the seeds
+            rest = table - means[:, None] - table.mean(axis=0) + table.mean()
+            within = (rest**2).sum() / (len(means) - 1) / (table.shape[1] - 1) / table.shape[1]
+            yield {"source": "seed", "variance": max(0.0, float(numpy.var(means, ddof=1) - within)), "freedom": len(means) - 1,
+                   "record": " ".join(group.record)}
 
 
 def nested(groups, rounds):
@@ -103,10 +105,3 @@ def _rounds(paired, first, second):
             one = float(numpy.var(paired.logs[first][key][:count] - paired.logs[second][key][:count], ddof=1))
             found.append((one, math.pi / 2 * one / count))
     return tuple(map(float, numpy.mean(found, axis=0))) if found else (0.0, 0.0)
-
-
-def disturbance(records):
-    """One row: how many timed processes there were, and in how many others ran on their processor."""
-    timed = [one for one in records if one.cell.get("timed") and one.cell["kind"] == "bench" and one.done]
-    found = [one for one in timed if timing.disturbed(one)]
-    return pandas.DataFrame([{"processes": len(timed), "disturbed": len(found), "record": " ".join(one.name for one in found)}])

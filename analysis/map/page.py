@@ -1,4 +1,5 @@
 # What the page of the map says besides its figures.
+from analysis.core.controls import judged
 from analysis.map import carry, losses, paper, summary
 from analysis.map.ledger import by_id
 from analysis.map.results import of
@@ -20,9 +21,8 @@ def context(tables, view):
             "verdicts": losses.verdicts(tables["verification"], results.implementations), "losses": losses.losses(results),
             "not_reached": list(scenes[scenes.reason != ""].scene), "entries": view.registry.entries,
             "coverage": view.registry.coverage, "variants": list(view.registry.variants),
-            "controls": carry.judged(tables["controls"]), "twins": tables["controls"].to_dict("records"), "spread": [
+            "controls": judged(tables["controls"]), "twins": tables["controls"].to_dict("records"), "spread": [
                 row | {"of": carry.SOURCES[row["source"]]} for row in tables["spread"].to_dict("records")],
-            "disturbance": tables["disturbance"].to_dict("records")[0],
             "processes": results.timing[results.timing.status == "ok"].record.nunique()}
 
 

@@ -1,9 +1,9 @@
 # What figures, claims and pages ask the tables of a set: who was timed, ratios and rankings of a scene.
 from functools import cache, cached_property
 
-from analysis.core import timing
-from analysis.core.registry import NULL
-from analysis.map import timed
+from analysis.core.registry import NULL, TWIN
+from analysis.core.timing import NO_VARIANCE
+from analysis.map import carry, timed
 from analysis.map.timed import layers
 
 FAILURES = ("disagrees", "crashed", "timeout", "out-of-memory", "unsupported", "diverged", "failed", "refused")
@@ -50,7 +50,15 @@ class Results:
     @cache
     def _paired(self, scene):
         """What statistics need of a scene's rows: wide tables are slow to walk through."""
-        return timed.Scene(self.rows(scene))
+        return timed.Scene(self.rows(scene), self.beyond(scene))
+
+    def beyond(self, scene):
+        """What timing.Paired takes: artificial fill is placed elsewhere by another seed."""
+        return self._of_seeds if self.rows(scene).fill_asked.notna().any() else NO_VARIANCE
+
+    @cached_property
+    def _of_seeds(self):
+        return carry.of_seeds(with_samples(self.tidy[self.tidy.kind == "seeds"]))
 
     @cached_property
     def _statuses(self):
@@ -80,7 +88,7 @@ class Results:
         """Rows of `variant` at natural fill on all pairs that it was timed on."""
         rows = self.timing
         return rows[(rows.status == "ok") & (rows.folder + "/" + rows.variant == variant) & rows.fill_asked.isna() &
-                    ~rows.implementation.str.endswith(timing.TWIN)]
+                    ~rows.implementation.str.endswith(TWIN)]
 
     def usual(self, variant):
         """The pair that a variant is ranked on."""
@@ -103,6 +111,10 @@ class Results:
         """Time of `slow` over that of `fast`; None if they cannot be compared."""
         found = self._paired(scene).ratio(slow, fast)
         return None if found.value != found.value else found
+
+    def within(self, scene, slow, fast):
+        """carry.within of their ratio."""
+        return carry.within(self._paired(scene).of(slow, fast), slow, fast)
 
     def failed(self, scene, names):
         return self._with(scene, names, FAILURES)

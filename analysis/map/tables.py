@@ -2,6 +2,7 @@
 import pandas
 
 from analysis.core import schema
+from analysis.core.controls import controls
 from analysis.map import carry, tidy
 from analysis.map.cells import table as cells
 from analysis.map.claims_libraries import compilers, dense_pairs, tuned_blas
@@ -9,6 +10,7 @@ from analysis.map.claims_maps import over_fill, regions
 from analysis.map.claims_solvers import pivoting, solvers, sparse_against_dense
 from analysis.map.claims_starting import starting_sparse, table1, table2_claims
 from analysis.map.results import Results, with_samples
+from analysis.map.timed import AFTER
 
 # The claims ledger: each claim of the paper with our figure, its interval and a computed verdict; in the order of the rows.
 LEDGER = (table1, table2_claims, dense_pairs, solvers, pivoting, starting_sparse, tuned_blas, sparse_against_dense,
@@ -26,6 +28,5 @@ def build(records, view):
     found = {name: schema.conform(frame, known[name], f"map/{name}.csv") for name, frame in found.items()}
     results = Results(found, view)
     seeds = results.tidy[results.tidy.kind == "seeds"]
-    return found | {"cells": cells(results), "claims": pandas.DataFrame(claims(results)), "controls": carry.controls(results.timing),
-                    "spread": carry.components(results.timing, with_samples(seeds)),
-                    "disturbance": carry.disturbance(records)}
+    return found | {"cells": cells(results), "claims": pandas.DataFrame(claims(results)), "spread": carry.components(results.timing, with_samples(seeds)),
+                    "controls": controls(results.timing[results.timing.process > AFTER])}

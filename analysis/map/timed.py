@@ -25,10 +25,10 @@ def timed_rows(records):
 
 
 class Scene:
-    """The timed rows of one scene: all of its processes, and those of role "again" alone."""
+    """The timed rows of one scene: all of its processes, and those of role "again" alone. `beyond`: of timing.Paired."""
 
-    def __init__(self, rows):
-        self.all, self.again = timing.Paired(rows), timing.Paired(rows[rows.process > AFTER])
+    def __init__(self, rows, beyond=timing.NO_VARIANCE):
+        self.all, self.again = timing.Paired(rows, beyond), timing.Paired(rows[rows.process > AFTER], beyond)
 
     def rank(self, names):
         """timing.Ranking among `names`."""
@@ -39,10 +39,14 @@ class Scene:
         others = {name: timing.ratio(self.all, name, first.winner) for name in found.ratios if name not in first.ratios}
         return timing.Ranking(first.winner, timing.by_time(first.winner, first.ratios | others))
 
+    def of(self, slow, fast):
+        """The processes that the ratio of two contenders is taken of."""
+        both = [set(self.again.logs.get(name, ())) for name in (slow, fast)]
+        return self.again if len(both[0] & both[1]) > 1 else self.all
+
     def ratio(self, slow, fast):
         """timing.Ratio of two contenders."""
-        both = [set(self.again.logs.get(name, ())) for name in (slow, fast)]
-        return timing.ratio(self.again if len(both[0] & both[1]) > 1 else self.all, slow, fast)
+        return timing.ratio(self.of(slow, fast), slow, fast)
 
 
 def leaders(rankings):

@@ -8,6 +8,7 @@ import pandas
 import pytest
 
 from analysis.core import site
+from analysis.core.files import ROOT
 from analysis.core.schema import conform, of_part
 from analysis.families import bounds, by_hand, defaults, figures, page, rule, sentences, tables, times
 from analysis.tests.test_limit_report import REGISTRY, about, bench, gate
@@ -77,6 +78,18 @@ def test_a_scene_where_nobody_agrees_has_its_reason():
     found = made(described(SCENES[0]), bench("penalty-look", SCENES[0], 1, one_a="failed: it died"))
     row = found["winners"].iloc[0]
     assert row.winner == "" and row.reason == "failed: it died"
+
+
+def test_controls_have_rows_and_their_twins_no_place():
+    found = made(described(SCENES[0]), bench("penalty-look", SCENES[0], 1, one_a=2.0), [measured(SCENES[0], number, **{"one_a": 2.0, "one_a+twin": 2.0 + 0.001 * number}) for number in (1, 2, 3)])
+    [row] = found["controls"].to_dict("records")
+    assert (row["scene"], row["scheme"], row["implementation"], row["decided"]) == (SCENES[0], "penalty", "one/a", False) and row["ratio"] > 1
+    assert list(found["scenes"].implementation) == ["one/a"] and page.context(found, VIEW)["controls"]["pairs"] == 1
+
+
+@pytest.mark.parametrize("path", ["analysis/families", "analysis/accuracy", "study/tools/merge"])
+def test_pages_say_that_their_intervals_are_uncorrected(path):
+    assert "uncorrected for their number" in (ROOT / path / "page.html.j2").read_text(encoding="utf-8")
 
 
 def test_orders_of_elimination_have_rows_where_they_were_computed():

@@ -71,6 +71,12 @@ def test_a_cell_is_decided_equal_or_open():
     assert found[3].winners == (A,) and found[3].ranking.second is None
 
 
+def test_a_cell_keeps_the_interval_within_its_build_beside_that_of_a_new_one():
+    rows = [row | {"layout": f"layouts/mbs-{row['process'] % 2}"} for row in cell(A, 10, 2.0, 2.2, 2.01, 2.21) + cell(B, 10, 1.0, 1.0, 1.0, 1.0)]
+    found = table(some(rows)).iloc[0]
+    assert found.low < found.within_low < found.margin < found.within_high < found.high
+
+
 def test_left_alone_one_wins_over_the_excluded_but_not_over_the_failed():
     decided = {status: map_cells(some(cell(A, 10, 1.0, 1.0) + failed(B, 10, status)), [A, B])[0].decided
                for status in ("excluded", "crashed", "disagrees")}

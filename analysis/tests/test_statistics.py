@@ -8,6 +8,8 @@ import pytest
 from analysis.core.records import Record
 from analysis.core.statistics import median, power_law_exponent
 from analysis.core.timing import counted, rank, ratio
+from analysis.core import controls, timing
+from analysis.core.disturbance import disturbance, told
 from analysis.map import carry
 from analysis.map.timed import AFTER
 
@@ -88,6 +90,46 @@ def test_the_spread_is_told_by_its_sources():
     assert mean["process"] == pytest.approx(1.0, rel=0.1) and mean["layout"] == pytest.approx(4.0, rel=0.15)
 
 
+def seeded(random, seeds, between, inside):
+    """Rows of two contenders on scenes that differ in the seed of their fill, in the same four layouts."""
+    layouts, found = 0.1 * random.standard_normal(4), []
+    for seed in range(seeds):
+        shift = between * random.standard_normal()
+        for number, layout in enumerate(layouts, start=1):
+            time = math.exp(0.5 + shift + layout + inside * random.standard_normal())
+            found += [row | {"scene": f"s{seed}"} for row in rows("b", {number: (time,)}) + rows("a", {number: (1.0,)})]
+    return pandas.DataFrame(found).assign(record="r", fill_asked=0.2)
+
+
+def test_the_interval_at_artificial_fill_is_that_for_other_seeds_where_these_were_timed():
+    random, covered, variances = numpy.random.default_rng(11), 0, []
+    for _ in range(100):
+        groups = pandas.concat(seeded(random, 3, 0.05, 0.01).assign(variables=n) for n in (22, 50, 100, 160))
+        beyond = carry.of_seeds(groups)
+        variances.append(beyond[0])
+        logs = 0.05 * random.standard_normal() + 0.02 * random.standard_normal(8)  # of one seed, in eight layouts
+        table = pandas.DataFrame([row for number, log in enumerate(logs) for row in rows("b", {number: (math.exp(log),)}) + rows("a", {number: (1.0,)})])
+        found, alone = timing.ratio(timing.Paired(table, beyond), "b", "a"), ratio(table, "b", "a")
+        assert found.low <= alone.low and found.high >= alone.high and found.value == alone.value
+        covered += found.low <= 1.0 <= found.high
+    assert covered >= 88 and numpy.sqrt(numpy.mean(variances)) == pytest.approx(0.05, rel=0.1)
+    assert beyond[1] == 8 and carry.of_seeds(groups.iloc[:0]) == timing.NO_VARIANCE
+
+
+@pytest.mark.parametrize("each", [1, 3])
+def test_the_interval_within_these_layouts_is_narrower_and_holds_their_own_mean(each):
+    random, covered = numpy.random.default_rng(12), 0
+    for _ in range(100):
+        table = in_layouts(random, 1.2, 8, each, 0.04, 0.01 if each > 1 else 0.0)
+        if each == 1:  # then rounds alone tell it
+            table["samples"] = [tuple(one * numpy.exp(0.01 * random.standard_normal(9))) for one in table.samples.map(lambda some: some[0])]
+        low, high = carry.within(timing.Paired(table), "a", "b")
+        wide = ratio(table, "a", "b")
+        assert low > wide.low and high < wide.high
+        covered += low <= 1.2 * math.exp(numpy.mean([in_layouts.shift[place] for place in range(8)])) <= high
+    assert covered >= 88
+
+
 def test_controls_count_what_is_decided_though_nothing_differs():
     random = numpy.random.default_rng(10)
 
@@ -96,7 +138,7 @@ def test_controls_count_what_is_decided_though_nothing_differs():
             rows("a", {AFTER + n: (1.0,) for n in range(1, 9)}) +
             rows("a+twin", {AFTER + n: (shift * math.exp(0.01 * random.standard_normal()),) for n in range(1, 9)})
         ).assign(scene=f"four-bar:{scene}", record="r") for scene in range(1, scenes + 1)])
-    sound, unsound = (carry.judged(carry.controls(table(shift, 40))) for shift in (1.0, 1.02))
+    sound, unsound = (controls.judged(controls.controls(table(shift, 40))) for shift in (1.0, 1.02))
     assert sound["pairs"] == 40 and sound["false"] <= 6 and sound["sound"]
     assert unsound["false"] > 30 and not unsound["sound"] and unsound["widest"] > 1.01
 
@@ -156,3 +198,12 @@ def test_power_law_exponent():
     sizes = numpy.array([100.0, 200, 400, 1000])
     assert power_law_exponent(sizes, 7 * sizes**1.05) == pytest.approx(1.05)
     assert numpy.isnan(power_law_exponent(sizes[:2], sizes[:2]))
+
+
+def test_others_are_seen_in_every_timed_process_and_said():
+    def timed(seconds, **machine):
+        return Record("c/x.json", {"kind": "simulate", "timed": True}, "done", "", seconds, [], {}, {"rows": []}, machine=machine)
+    found = disturbance([timed(1.0, cpu_s=0.99, steal=0.01, mhz=2400.0), timed(1.0, cpu_s=0.7, steal=0.2, mhz=2500.0), timed(1.0)])
+    assert found == {"processes": 2, "disturbed": 1, "steal": 0.2, "mhz": [2400.0, 2500.0]}
+    assert told(found) == "others ran on the processor in 1 of 2 timed processes; the host took up to 20.0 % of its time; 2400 to 2500 MHz"
+    assert told(disturbance([])) == told(None) == ""

@@ -18,7 +18,7 @@ class Cell:
     role: str = ""          # what the part wants it for: a folder of its records
     number: int = 0         # of equal cells: the process
     program: str = "mbs"    # or another one of the build: mbs_reference, or a layout of `mbs`
-    timed: bool = False     # has the machine for itself
+    timed: bool = False     # has the machine for itself, and stays on one of its processors
     seconds: float = 60.0   # limit
     memory_mb: int = 4096   # limit
     keep: tuple = ()        # columns of the motion that the record keeps ("outputs": those of the scene) ...

@@ -52,31 +52,32 @@ class Ended:
     stdout: str
     stderr: str  # its end
     seconds: float
+    cpu_s: float  # processor time of it and of its children
 
 
-def run(command, seconds, memory_mb):
-    """Runs `command` in ROOT; it and all its children are gone when this returns or raises."""
+def run(command, seconds, memory_mb, alone=False):
+    """Runs `command` in ROOT; it and all its children are gone when this returns or raises. `alone`: it stays on one processor."""
     if _signals:  # a pool's thread would die of the first, with a traceback
         own = threading.current_thread() is threading.main_thread()
         raise Signalled(_signals[0]) if own else StudyError("interrupted")
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         begin = time.monotonic()
-        child = subprocess.Popen(_limited(command, memory_mb), cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out,
+        child = subprocess.Popen([*_on_one(alone), *_limited(command, memory_mb)], cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out,
                                  stderr=err, start_new_session=True, env=os.environ | ONE_THREAD)
         try:
             ended = _ends(child, seconds)
             if not ended:
-                child.terminate()  # so that it can say in what it was
+                os.kill(child.pid, signal.SIGTERM)  # so that it can say in what it was
                 _ends(child, GRACE)
         finally:
-            _end_group(child)
+            cpu_s = _end_group(child)
         code = child.returncode if ended else None
         if ended and -code in ENDS:  # sent to this process's group, too, before the child had left it: no result
             raise StudyError(f"interrupted: {command[0]} was ended by {signal.Signals(-code).name} from outside; "
                              "the same command goes on from there")
         took = time.monotonic() - begin
         stdout, stderr = _text(out), _text(err, tail=4000)
-    return Ended(*_judge(code, stderr, seconds, memory_mb), code, stdout, stderr, took)
+    return Ended(*_judge(code, stderr, seconds, memory_mb), code, stdout, stderr, took, cpu_s)
 
 
 def _ends(child, seconds):
@@ -105,12 +106,20 @@ def _limited(command, memory_mb):
             str(OUTPUT_LIMIT // 512), str(memory_mb * 1024), *command]
 
 
+def _on_one(alone):
+    """Words before a command that keep it on one processor: the last that this process may use."""
+    return ["taskset", "--cpu-list", str(max(os.sched_getaffinity(0)))] if alone else []
+
+
 def _end_group(child):
+    """Its processor time, s."""
     try:
         os.killpg(child.pid, signal.SIGKILL)
     except ProcessLookupError:
         pass
-    child.wait()
+    _, status, used = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)  # Popen has not seen it
+    return used.ru_utime + used.ru_stime
 
 
 def _text(file, tail=None):

@@ -1,6 +1,5 @@
 # study/run --cluster: the columns of a set as jobs of a cluster. This machine measures nothing: it hands jobs over, watches
 # them and draws. What a node does is node.py's; how a cluster is spoken to is a profile's: study/cluster/README.md.
-import shutil
 import signal
 import subprocess
 import time
@@ -10,7 +9,7 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, write_json
 from study.core import locks, studyset as sets
 from study.core.front import duration, follow
-from study.core.node import home, own_sets, refusals
+from study.core.node import forget, home, own_sets, refusals
 from study.core.studyset import StudySet
 
 PROFILES = ROOT / "study" / "cluster"
@@ -58,8 +57,8 @@ def run(profile, only, chosen, folder, cluster, columns):
 
 
 def _plan(profile, only, chosen, folder, columns):
-    shutil.rmtree(home(folder) / "refused", ignore_errors=True)  # a node may be another one by now
-    (home(folder) / "refused").mkdir(parents=True)
+    (home(folder) / "refused").mkdir(parents=True, exist_ok=True)
+    forget(folder)
     write_json(home(folder) / "plan.json", {"profile": profile.name, "only": only, "parts": chosen, "columns": columns, "grace": GRACE})
 
 

@@ -1,7 +1,7 @@
 # Who takes part: a variant of an implementation in one build of the program on one BLAS and LAPACK pair.
 from dataclasses import dataclass, replace
 
-from analysis.core.registry import NULL
+from analysis.core.registry import NULL, TWIN
 
 SYSTEM = "system"  # no pair is asked for: what the loader finds
 
@@ -31,6 +31,11 @@ class Contender:
 
 CONTROL = Contender(NULL, NULL)
 REFERENCE = Contender("reference/reference", "reference/reference")
+
+
+def twin_of(one):
+    """The same once more, to be timed beside it: nothing differs."""
+    return replace(one, name=one.name + TWIN, variant=one.variant + TWIN)
 
 
 def on_usual_pairs(registry, pairs, names):

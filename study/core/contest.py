@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from analysis.core.timing import LEFT_OUT, processes as rows_of
 from study.core.cell import Cell
+from study.core.contender import twin_of
 from study.core.gate import agreeing
 from study.core.timing import measure
 
@@ -14,13 +15,16 @@ CHECK_S = 60  # of a contender, in the gate
 
 
 def contest(lab, scene, contenders, role, settings=(), *, own, always=False, wide=(), processes, samples, patience=1.0, stretch=(),
-            look=STEPS):
+            look=STEPS, control=False):
     """Rows of the look. Roles of the records: `role`-look, `role`-gate and `role`. `own`: names of those that are no libraries;
-    `always`: they are gated and timed whatever they take; `wide`: names of those that are up to WIDE; `settings`: of the step; `stretch`: that is timed, else the scene's; `look`: steps of the look."""
+    `always`: they are gated and timed whatever they take; `wide`: names of those that are up to WIDE; `settings`: of the step; `stretch`: that is timed, else the scene's; `look`: steps of the look; `control`: the fastest library is timed beside itself."""
     rows = rows_of(measure(lab, scene, contenders, processes=1, repetitions=1, role=f"{role}-look",
                            settings=("--steps", look, "--patience", patience, *settings)))
     asked = near(rows, contenders, own, always, wide)
     here = agreeing(lab, scene, asked, f"{role}-gate", settings, each=CHECK_S, seconds=CHECK_S * (1 + len(asked)), drop=True)
+    if control:
+        times = rows[rows.status == "ok"].groupby("implementation").step_us.median()
+        here += [twin_of(one) for one in sorted((one for one in here if one.name not in own), key=lambda one: times[one.name])[:1]]
     measure(lab, scene, here, processes=processes, repetitions=samples, settings=(*settings, *stretch), role=role)
     return rows
 

@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 
 from analysis.core.errors import StudyError
-from study.core import child
+from study.core import child, machine
 from study.core.cell import LAYOUT
 
 USAGE = 2  # the exit status of a program that refuses what it is asked for
@@ -47,9 +47,11 @@ def run(cell, context, scratch=None):
     `scratch`: the folder for what the program writes."""
     with tempfile.TemporaryDirectory(dir=scratch) as folder:
         output, motion = Path(folder) / "output.json", Path(folder) / "motion.csv"
-        ended = child.run(command_of(cell, str(output), str(motion)), cell.seconds, cell.memory_mb)
+        before = machine.ticks()
+        ended = child.run(command_of(cell, str(output), str(motion)), cell.seconds, cell.memory_mb, cell.timed)
         record = {"cell": cell.document(), "command": command_of(cell), "seconds": round(ended.seconds, 6),
-                  "context": context or {}, "status": "done", "reason": "", "output": {}, "series": {}}
+                  "context": context or {}, "status": "done", "reason": "", "output": {}, "series": {},
+                  "machine": machine.since(before) | {"cpu_s": round(ended.cpu_s, 6)} if cell.timed else {}}
         if ended.status != "exited" or ended.code not in (0, 1):
             return record | _failure(ended)
         try:

@@ -3,12 +3,19 @@
 # What has a record is never run again, so that a plan that was interrupted, begun anew, comes to the same point.
 # A plan must therefore ask for the same cells where it gets the same records.
 import os
+import re
+import shutil
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
 
 from analysis.core import records
+from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, write_json
 from study.core import executor, locks
 from study.core.executor import program_of
+
+ROOM = 2**20  # bytes: where less is free, a failure is none of the program
+NOT_WRITTEN = re.compile(r"cannot write|No space left|Disk quota|Read-only file system")
 
 
 class Lab:
@@ -108,6 +115,10 @@ class Lab:
             return self._skipped(cell, "dropped", f"the budget of {self.budget:.0f} s was spent")
         context = self._asked_of(cell)
         data = executor.run(cell, context if cell.own and cell.contenders else None, self.set.scratch)
+        if data["status"] != records.RUN_ENDED and (NOT_WRITTEN.search(data["reason"]) or ROOM > min(
+                shutil.disk_usage(folder).free for folder in (tempfile.gettempdir(), self.set.scratch))):
+            raise StudyError(f"no space is left on a disk, or it cannot be written to ({program}: {data['reason']}): nothing is kept of "
+                             "that run; make room and run it again")
         if not data["context"]:
             data["context"] = self._context(cell, context)
         if not self._path(cell).exists():  # a node that was given up may be at work still: the first record stays

@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 from analysis.core.errors import StudyError
+from study.core import machine
 
 POLL = 0.5  # s
 
@@ -21,11 +22,15 @@ def noting(folder):
     return _hold(Path(folder) / ".noting", f"{folder}/.noting is held for longer than anybody needs it", 60)
 
 
+@contextlib.contextmanager
 def only_one_study(wait=False, tell=print):
-    """Holds the machine for a study; with `wait` behind the others."""
+    """Holds the machine for a study; with `wait` behind the others. Says so where the machine is busy."""
     path = Path(tempfile.gettempdir()) / "mbs-study.lock"
     held = f"another study is measuring on this machine ({path} is held): wait until it is done, or queue with --wait"
-    return _hold(path, held, float("inf") if wait else 0, tell)
+    with _hold(path, held, float("inf") if wait else 0, tell):
+        if said := machine.busy():
+            tell(said)
+        yield
 
 
 def only_one_timing():

@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 from analysis.core.errors import StudyError
-from analysis.core.files import ROOT
+from analysis.core.files import ROOT, read_object
 from analysis.core.parts import parts
 from study.core import child, cluster, locks, profile as profiles
 from study.core.front import Display, duration, run_workflow
@@ -76,6 +76,7 @@ def run(arguments):
     if way:
         need_modules()
         cluster.run(profile, options.only, chosen, folder, way, columns_of(profile, chosen))
+        _say_disturbance(folder)
         print(f"site: {folder / 'index.html'}")
         return 0
     with locks.only_one(folder), locks.only_one_study(options.wait):
@@ -88,8 +89,18 @@ def run(arguments):
         print(f"{len(studyset.contenders)} implementations, {len(columns)} parts: at most "
               f"{duration(sum(sum(names.values()) for names in columns.values()))}; the site grows in {folder}/index.html")
         run_workflow(studyset, columns)
+    _say_disturbance(folder)
     print(f"site: {folder / 'index.html'}")
     return 0
+
+
+def _say_disturbance(folder):
+    """What else ran while the parts of a set timed."""
+    from analysis.core.disturbance import told  # needs pandas
+    for part in parts():
+        path = folder / part / "answers.json"
+        if said := path.exists() and told(read_object(path).get("disturbance")):
+            print(f"{part}: {said}")
 
 
 def columns_of(profile, chosen):

@@ -4,7 +4,6 @@ import os
 import re
 import socket
 import tempfile
-from dataclasses import replace
 from pathlib import Path
 
 from analysis.core.errors import StudyError
@@ -12,7 +11,7 @@ from analysis.core.files import ROOT, digest, read_object, write_json, write_tex
 from analysis.core.records import Record
 from study.core import executor, locks, profile as profiles
 from study.core.cell import LAYOUT, Cell
-from study.core.contender import control
+from study.core.contender import control, twin_of
 from study.core.executor import program_of
 from study.core.studyset import context_of, start, writable
 
@@ -41,10 +40,20 @@ def own_sets(folder):
     return sorted(Path(one) for one in named if one)
 
 
-def begin(folder):
-    """The set of what the plan says, of this node's kind."""
+def forget(folder):
+    """Has nodes asked again that were refused for what may be mended, as a full disk, or with another program."""
+    for path in (home(folder) / "refused").glob("*"):
+        _, _, program, *_ = [*path.read_text().splitlines(), "", "", ""]
+        if not program or program != digest(ROOT / program_of()):
+            path.unlink()
+
+
+def begin(folder, no_evidence=""):
+    """The set of what the plan says, of this node's kind. `no_evidence`: why it is none, for whoever reads the set."""
     plan = read_object(home(folder) / "plan.json")
-    start(folder, profiles.load(plan["profile"], plan["parts"]), plan["only"], plan["parts"])
+    found = start(folder, profiles.load(plan["profile"], plan["parts"]), plan["only"], plan["parts"])
+    if no_evidence:
+        write_json(folder / "set.json", found.facts | {"no_evidence": no_evidence})
 
 
 def first(studyset):
@@ -52,13 +61,13 @@ def first(studyset):
     try:
         begin(studyset.folder)
     except StudyError as error:
-        write_text(home(studyset.folder) / "refused" / name(), f"{error}\n\n")
+        write_text(home(studyset.folder) / "refused" / name(), f"{error}\n\n\n")
         raise
 
 
 def admit(studyset):
     """StudyError unless this node is of the set's kind, has room and passes its A/A control; it is not asked again then."""
-    folder, own, alone = studyset.folder, None, False
+    folder, own, alone, lasting = studyset.folder, None, False, ""
     try:
         writable(Path(tempfile.gettempdir()))
         context = context_of(control(studyset.registry, studyset.profile.blas))
@@ -71,12 +80,13 @@ def admit(studyset):
         elif not (home(folder) / "nodes" / name()).exists() and not only.exists():
             reason = uncontrolled(studyset)
             own, alone = _beside(folder, _slug(name())) if reason else None, True
+        lasting = digest(ROOT / program_of())
     except (StudyError, OSError) as error:  # neither of this set nor of another one: its disk is full, its program does not run
         reason = str(error)
     if reason:
         if own:
-            _begin_beside(folder, own, alone)
-        write_text(home(folder) / "refused" / name(), f"{reason}\n{own or ''}\n")
+            _begin_beside(folder, own, reason if alone else "")
+        write_text(home(folder) / "refused" / name(), f"{reason}\n{own or ''}\n{lasting}\n")
         raise StudyError(f"{name()} is not of this set: {reason}")
     write_text(home(folder) / "nodes" / name(), "admitted\n")
 
@@ -91,11 +101,12 @@ def another(studyset, context):
 
 
 def uncontrolled(studyset):
-    """Why the A/A control of this node failed, in which a contender is timed beside itself; "" if it did not."""
-    from analysis.core.timing import TWIN, processes, ratio  # needs pandas
+    """Why the A/A control of this node failed, in which a contender is timed beside itself; "" if it did not. StudyError where it
+    does not run."""
+    from analysis.core.timing import processes, ratio  # needs pandas
     from study.core.timing import LAYOUTS
     one = studyset.contenders[0]
-    twin = replace(one, name=one.name + TWIN, variant=one.variant + TWIN)
+    twin = twin_of(one)
     with locks.only_one_timing():
         for _ in range(TRIES):
             found = []
@@ -103,7 +114,10 @@ def uncontrolled(studyset):
                 cell = Cell("bench", CONTROL_SCENE, (one, twin), (*CONTROL_WORDS, "--seed", number), "control", number,
                             f"{LAYOUT}{number}", timed=True).settled()
                 found.append(Record("control", **executor.run(cell, None, studyset.scratch)))
-            seen = ratio(processes(found), twin.name, one.name)
+            rows = processes(found)
+            for row in rows[rows.status != "ok"].itertuples():  # its ratio would be none, and none is decided
+                raise StudyError(f"its A/A control does not run: {row.status}: {row.reason}")
+            seen = ratio(rows, twin.name, one.name)
             if not (seen.low > 1 or seen.high < 1):
                 return ""
     return f"its A/A control failed: {one.name} takes {seen.low:.3f} to {seen.high:.3f} times its own time"
@@ -114,15 +128,15 @@ def _beside(folder, slug):
     return None if (home(folder) / "beside").exists() else folder.with_name(f"{folder.name}-{slug}")
 
 
-def _begin_beside(folder, own, alone):
+def _begin_beside(folder, own, failed):
     writable(own)
-    if alone:  # whose control failed: no other node is measured with it
+    if failed:  # no other node is measured with one whose control failed
         write_text(home(own) / "only", f"{name()}\n")
     with locks.only_one(own, 60):
         if not (own / "set.json").exists():
             write_text(home(own) / "beside", f"{folder}\n")
             write_json(home(own) / "plan.json", read_object(home(folder) / "plan.json"))
-            begin(own)
+            begin(own, failed)
 
 
 def _slug(text):

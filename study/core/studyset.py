@@ -186,7 +186,8 @@ def kept_facts(known, profile, only, chosen):
     if (known.folder / "profile.yaml").read_bytes() != _settings(profile).encode():
         raise _other(known.folder, "the profile's settings")
     return {"date": old["date"], "programs": old["programs"],
-            "parts": [*old["parts"], *(part for part in chosen if part not in old["parts"])]}
+            "parts": [*old["parts"], *(part for part in chosen if part not in old["parts"])],
+            **{key: old[key] for key in ("no_evidence",) if key in old}}
 
 
 def _settings(profile):

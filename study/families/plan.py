@@ -11,6 +11,7 @@ from study.core.setting import Setting
 SETTINGS = {"scenes": list,     # families with their sizes, as the program takes them, the most telling first
             "processes": dict,  # of a scene, by scheme
             "samples": int}     # of a process and contender
+CONTROLS = 3  # scenes on which the fastest library is timed beside itself
 FAR = 8.0  # times the fastest library
 STEPS = 100  # of the stretch that is timed, but on the four-bar: others take about the same passes all along
 LOOK, PROCESSES = 40, 3  # steps of a look; processes where a step takes long
@@ -26,8 +27,10 @@ def columns(settings):
 
 
 def run(lab, column):
+    listed = lab.settings["scenes"]
+    controls = {listed[len(listed) * place // CONTROLS] for place in range(CONTROLS) if listed}  # from small to large
     here, looks, compared = usual(lab), {}, read_json(RULE).get("candidates", {})  # the next rule needs their times where others were faster
-    for scene in lab.settings["scenes"] if here else []:
+    for scene in listed if here else []:
         record = about(lab, scene)
         elsewhere(lab, Cell("bench", scene, role="penalty-look"))
         for scheme in SCHEMES:
@@ -45,7 +48,7 @@ def run(lab, column):
             look = max(4, round(LOOK * shorter))
             rows = contest(lab, scene, [one for one in chosen if one not in behind], scheme, setting.words(), own=lab.registry.own, wide=compared.get(scheme, ()),
                            stretch=() if scene.startswith("four-bar:") and step_s < SHORT_S else ("--steps", max(4, round(STEPS * shorter))),
-                           look=look, patience=max(1.0, 2 * look * step_s),
+                           look=look, control=scene in controls, patience=max(1.0, 2 * look * step_s),
                            processes=min(lab.settings["processes"][scheme], PROCESSES if shorter < 1 else 99), samples=lab.settings["samples"])
             before.append(multiples(rows, lab.registry.libraries))
 

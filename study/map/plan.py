@@ -54,7 +54,7 @@ def run(lab, column):
             timed.append(TimedScene(lab, scene, *fit(lab, scene, lab.contenders)))
     for one in timed:
         one.time(lab.settings["processes"])
-    _phases(lab, timed[0])  # before `again`, which takes all that is left
+    _phases(lab, timed[0])  # what is small comes before `again`, which takes all that is left
     _operations(lab, natural)
     _seeds(lab, timed)
     for one in timed:

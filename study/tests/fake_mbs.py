@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # Stands in for `mbs` in tests: same command lines and output, invented numbers, and the misbehaviour that its
 # implementation names say. FAKE_MACHINE and FAKE_COMMIT change the fingerprint, FAKE_DIRTY makes the tree dirty,
-# FAKE_NEW is one more variant and how many times good_sparse/only's time it takes: "new_one/only=0.5".
+# FAKE_CRASH is a contender that ends its process, FAKE_NEW is one more variant and how many times good_sparse/only's time it takes: "new_one/only=0.5".
 import json
 import math
 import os
@@ -48,7 +48,7 @@ def options(name):
 
 
 def misbehave(name):
-    if name == "bad/crash":
+    if name in ("bad/crash", os.environ.get("FAKE_CRASH")):
         print(f"mbs bench: ended by SIGSEGV in {name}/{sys.argv[2]}", file=sys.stderr, flush=True)
         os.kill(os.getpid(), signal.SIGSEGV)
     if name == "bad/hang":

@@ -304,6 +304,25 @@ def test_what_the_budget_has_no_room_for_has_a_record_that_says_so(mbs, tmp_path
     assert again.left == pytest.approx(lab.left)
 
 
+@pytest.mark.parametrize("text, free", [("echo 'mbs: cannot write x.json: No space left on device' >&2; exit 2", 2**30),
+                                        ("echo 'mbs: odd' >&2; exit 2", 0), ("echo nothing", 0)])
+def test_what_a_full_disk_ended_is_no_result(mbs, tmp_path, monkeypatch, text, free):
+    mbs(text)
+    monkeypatch.setattr(shutil, "disk_usage", lambda folder: SimpleNamespace(free=free))
+    with pytest.raises(StudyError, match="no space is left on a disk.*nothing is kept of that run"):
+        Lab(Set(tmp_path), "part", "column").run(cells(1))
+    assert not list((tmp_path / "raw").rglob("*.json"))
+
+
+@pytest.mark.parametrize("timed", [True, False])
+def test_what_is_timed_stays_on_one_processor_and_says_how_it_was_disturbed(mbs, tmp_path, timed):
+    mbs("""/usr/bin/python3 -c 'import os; print("{\\"free\\": %d}" % len(os.sched_getaffinity(0)))'""")
+    [record] = Lab(Set(tmp_path), "part", "column").run(cells(1, timed=timed))
+    assert record.output["free"] == (1 if timed else cores())
+    assert set(record.machine) == ({"steal", "mhz", "cpu_s"} if timed else set())
+    assert not timed or 0 < record.machine["cpu_s"] < record.seconds + 0.1
+
+
 def test_a_program_that_is_not_built_is_unavailable(tmp_path):
     record = Lab(Set(tmp_path), "part", "column").one(replace(CELL, program="no_such_program"))
     assert (record.status, record.reason) == ("unavailable", "build/no_such_program is missing: study/setup builds it")
@@ -618,6 +637,7 @@ def test_threads_that_write_one_file_at_once_do_not_disturb_each_other(tmp_path)
 def test_locks_are_held_once_and_waited_for(tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setattr(locks, "POLL", 0.02)
+    monkeypatch.setattr(os, "getloadavg", lambda: (0.1, 0, 0))
     with locks.only_one_study():
         with pytest.raises(StudyError, match="queue with --wait"), locks.only_one_study():
             pass
@@ -632,6 +652,15 @@ def test_locks_are_held_once_and_waited_for(tmp_path, monkeypatch):
         order.append("first")
     thread.join(timeout=10)
     assert order == ["first", "second"] and told == ["waiting until another study is done"]
+
+
+def test_a_busy_machine_is_said_when_a_study_begins(tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    for load, said in ((0.1, []), (1.7, ["the machine is busy (load 1.7 over the last minute): times may be too long"])):
+        monkeypatch.setattr(os, "getloadavg", lambda load=load: (load, 0, 0))
+        told = []
+        with locks.only_one_study(tell=told.append):
+            assert told == said
 
 
 @pytest.mark.parametrize("command", [["run", "--results", ""], ["figures", ""], ["store", ""], ["add", "klu", "--to", ""],

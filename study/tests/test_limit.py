@@ -10,6 +10,7 @@ import pytest
 from analysis.core.registry import Registry
 from study.core import contest
 from study.core.contender import Contender
+from study.families import plan as families
 from study.limit import plan
 from study.tests.conftest import ROOT, study
 
@@ -64,6 +65,22 @@ def measured(monkeypatch):
         monkeypatch.setattr(module, "measure", measure)
         monkeypatch.setattr(module, "rows_of", lambda table: table)
     return found
+
+
+def test_the_fastest_library_is_timed_beside_itself_where_a_control_is_asked_for(measured):
+    times = {"one/a": 2.0, "one/b": 1.5, "own/x": 1.0, "own/y": 1.2}
+    measured.said = lambda scene, names: rows(**{name.replace("/", "_"): times[name] for name in names if name in times})
+    for control, twins in ((False, []), (True, ["one/b+twin"])):
+        contest.contest(Asked(), "ladder:2", Asked().contenders, "penalty", own=REGISTRY.own, always=True, processes=2, samples=1, control=control)
+        assert measured.asked[-1][2] == [*times, *twins]
+
+
+def test_families_have_controls_from_small_to_large(monkeypatch):
+    asked = []
+    monkeypatch.setattr(families, "about", lambda lab, scene: SimpleNamespace(done=False))
+    monkeypatch.setattr(families, "contest", lambda lab, scene, *_, control, **__: asked.append((scene, control)) or rows())
+    families.run(Asked(scenes=[f"chain:{n}" for n in range(6)], processes={"penalty": 2, "saddle-point": 2}), "mechanisms")
+    assert {scene for scene, control in asked if control} == {"chain:0", "chain:2", "chain:4"} and len(asked) == 12
 
 
 def test_who_is_not_timed_at_one_size_is_not_tried_at_a_larger_one(measured):

@@ -95,7 +95,15 @@ def test_a_fill_is_put_between_where_another_leads(run):
     winners = found["cells"][found["cells"].layer == "libraries"].set_index("scene").winner
     if winners["four-bar:4"] != winners["four-bar:4,fill=1.00"]:
         assert "four-bar:4,fill=0.76" in winners.index
-        assert set(found["tidy"].scene[found["tidy"].kind == "seeds"]) == {f"four-bar:4,fill=0.76,seed={one}" for one in (1, 2)}
+
+
+def test_other_seeds_are_timed_before_the_leaders_take_what_is_left(run):
+    lab = run(columns=[{"variables": 10, "seconds": 90, "fills": ["natural", 0.8, 1.0]}])
+    roles = [name.split("/")[1] for name in lab.names]
+    assert max(place for place, role in enumerate(roles) if role == "seeds") < roles.index("again")
+    rows = made(lab)["tidy"]
+    rows = rows[rows.kind == "seeds"]
+    assert set(rows.status) == {"ok"} and set(rows.scene) == {f"four-bar:4,fill=0.80,seed={one}" for one in (1, 2)}
 
 
 @pytest.mark.slow

@@ -3,13 +3,15 @@ import json
 import shutil
 from types import SimpleNamespace
 
+import numpy
+import pandas
 import pytest
 
 from analysis.core.errors import StudyError
-from analysis.core.files import ROOT
+from analysis.core.files import ROOT, write_json
 from analysis.core.timing import Ranking, Ratio
 from study.tests.conftest import study
-from study.tools.merge import agreement
+from study.tools.merge import agreement, machine
 from study.tools.merge.agreement import Agreement, Question
 from study.tools.merge.main import _said, labels, need_alike
 
@@ -55,16 +57,49 @@ def test_a_fresh_run_is_held_to_the_decided_cells(monkeypatch):
         assert agreement.held(cells, None) == {"libraries": (1, inner)}
 
 
-@pytest.mark.parametrize("key, value, words", [("commit", "other", "commit"), ("libraries", "Eigen 9", "libraries"),
-                                               ("dirty", "true", "tree with changes")])
-def test_other_builds_and_dirty_trees_are_refused(key, value, words):
-    context = {"commit": "c", "compiler": "g", "flags": "f", "build_type": "Release", "libraries": "l", "dirty": "false", "cpu_model": "p"}
-    sets = [SimpleNamespace(folder=name, facts={"context": one, "date": name}) for name, one in
-            (("first", context), ("second", context | {key: value}))]
-    need_alike(sets[0], sets[0])
-    with pytest.raises(StudyError, match=words):
-        need_alike(*sets)
-    assert labels(sets) == ["p, first", "p, second"]
+def test_who_is_robust_is_among_those_that_hold_on_all():
+    found = agreed({"a": ONE, "b": Ratio(1.06, 1.055, 1.07)}, {"b": ONE, "a": Ratio(1.2, 1.0, 1.4)})
+    assert found.common == ["a"] and found.worst["b"] < found.worst["a"] and found.robust == "a"
+
+
+def test_what_days_and_machines_add_to_a_ratio_is_told():
+    random = numpy.random.default_rng(3)
+    cells = [agreed(*({"a": ONE, "b": Ratio(*numpy.exp([log, log - 0.001, log + 0.001]))} for shift in 0.1 * random.standard_normal(3)
+                      for log in 1.0 + shift + 0.03 * random.standard_normal(2))) for _ in range(300)]
+    found = agreement.components(cells, ["m1", "m1", "m2", "m2", "m3", "m3"])
+    assert found["day"] == (pytest.approx(3, rel=0.1), 300) and found["processor"] == (pytest.approx(10, rel=0.1), 300)
+    alone = agreement.components(cells[:1], ["m1", "m2", "m3", "m4", "m5", "m6"])
+    assert [*alone] == ["processor"] and agreement.components([agreed({"a": ONE}, {"a": ONE})], ["m1", "m2"]) == {}
+
+
+@pytest.mark.parametrize("key, value, words", [("blas_loaded", "/usr/lib/x86_64-linux-gnu/atlas/libblas.so", "blas_loaded"),
+                                               ("commit", "other", "commit"), ("libraries", "Eigen 9", "libraries"), ("dirty", "true", "tree with changes")])
+def test_other_builds_and_dirty_trees_are_refused(tmp_path, key, value, words):
+    context = {"commit": "c", "compiler": "g", "flags": "f", "build_type": "Release", "libraries": "l", "dirty": "false", "cpu_model": "p",
+               "blas": "openblas", "blas_loaded": "/usr/lib/aarch64-linux-gnu/libblas.so"}
+    arm, intel = context, context | {"blas_loaded": "/usr/lib/x86_64-linux-gnu/libblas.so"}
+    first, alike, *others = [SimpleNamespace(folder=tmp_path / name, facts={"context": one, "date": "today"}) for name, one in
+                             (("first", arm), ("alike", intel), ("second", arm | {key: value}), ("third", arm))]
+    write_json(tmp_path / "first" / "contexts" / "own-atlas.json", context)
+    write_json(tmp_path / "third" / "contexts" / "own-atlas.json", context | {key: value})
+    need_alike(first, alike)
+    for other in others:
+        with pytest.raises(StudyError, match=words):
+            need_alike(first, other)
+    assert labels([first, alike]) == [f"p, today, {tmp_path}/first", f"p, today, {tmp_path}/alike"]
+
+
+def test_a_set_whose_controls_failed_is_refused(tmp_path, monkeypatch):
+    sets = [SimpleNamespace(folder=tmp_path / name, facts={"context": {"dirty": "false"}} | more) for name, more in
+            (("sound", {}), ("alone", {"no_evidence": "its A/A control failed"}))]
+    for builds in (True, False):
+        need_alike(sets[0], sets[0], builds)
+        with pytest.raises(StudyError, match="alone is no evidence: its A/A control failed"):
+            need_alike(*sets, builds)
+    twins = pandas.DataFrame({"ratio": 1.1, "decided": [True] * 6 + [False] * 20})
+    monkeypatch.setattr(machine, "table", lambda folder, part, name: twins if part == "families" else twins[:0])
+    with pytest.raises(StudyError, match="6 of 26 A/A controls were decided, more than chance allows"):
+        need_alike(sets[0], sets[0])
 
 
 @pytest.mark.skipif(not SETS, reason="no stored set")

@@ -101,9 +101,30 @@ def test_a_failed_control_is_a_set_of_its_node(begun, monkeypatch):
     refused(begun, "its A/A control failed: .* times its own time")
     [own] = node.own_sets(begun.folder)
     assert own.name == "set-first" and (node.home(own) / "only").read_text() == "first\n"
+    assert StudySet(own).facts["no_evidence"].startswith("its A/A control failed") and "no_evidence" not in begun.facts
     node.admit(StudySet(own))  # which says whose it is, and is measured
     monkeypatch.setenv("SLURMD_NODENAME", "second")
     refused(StudySet(own), "it is that of first alone")
+
+
+def test_a_control_that_does_not_run_is_no_passed_one(begun, monkeypatch):
+    monkeypatch.setenv("FAKE_CRASH", f"{begun.contenders[0].name}+twin")
+    refused(begun, "its A/A control does not run: crashed: SIGSEGV")
+    assert node.own_sets(begun.folder) == []
+
+
+def test_who_is_refused_stays_so_but_for_what_may_be_mended(begun, monkeypatch, tmp_path):
+    monkeypatch.setenv("FAKE_MACHINE", "another")
+    refused(begun, "another machine")
+    monkeypatch.setenv("SLURMD_NODENAME", "full")
+    monkeypatch.setattr(shutil, "disk_usage", lambda folder: SimpleNamespace(free=0))
+    refused(begun, "less than 100 MB free")
+    cluster._plan(begun.profile, [], ["map"], begun.folder, {})
+    assert [*node.refusals(begun.folder)] == ["first"] and len(node.own_sets(begun.folder)) == 1
+    (tmp_path / "mbs").write_text("built anew")
+    monkeypatch.setenv("MBS_PROGRAM", str(tmp_path / "mbs"))
+    cluster._plan(begun.profile, [], ["map"], begun.folder, {})
+    assert node.refusals(begun.folder) == {}
 
 
 def test_a_node_that_cannot_run_the_program_is_refused(begun, monkeypatch):

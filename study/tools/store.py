@@ -1,6 +1,7 @@
 # study/store [DIR] [NAME]: a finished set as results/NAME: an archive of records a part, its tables and answers.
 #
 # Pages and figures are left out, since study/figures draws them from these; pictures that a text shows are kept.
+import contextlib
 import os
 import re
 import shutil
@@ -15,6 +16,7 @@ from study.core.main import columns_of
 from study.core.options import Parser, directory
 from study.core.studyset import need_records, newest, opened
 from study.tools import fragments
+from study.tools.merge import machine
 
 RESULTS = ROOT / "results"
 MOST = 3  # sets
@@ -49,6 +51,9 @@ def faults(kept):
     """What is wrong with a set, a line each: a tree with changes, several commits or machines, a part that is missing, tables that were
     changed or are not those of its records."""
     usual = kept.facts["context"]
+    with contextlib.suppress(StudyError):  # of a changed table, which is said below
+        if why := machine.no_evidence(kept):
+            yield f"{kept.folder} is no evidence: {why}"
     for path in (kept.folder / "set.json", *sorted((kept.folder / "contexts").glob("*.json"))):
         context = read_json(path)
         context = context.get("context", context)

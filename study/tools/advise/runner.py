@@ -1,6 +1,5 @@
 # One `mbs simulate` of the advice as a cell, and its row; what `mbs describe` says of the scene.
 import math
-import resource
 import shlex
 import time
 from pathlib import Path
@@ -138,17 +137,11 @@ class Runner:
             self.automatic[setting.scheme, step] = found["tolerance"]
 
     def _timed(self, cell):
-        known, began, used = len(self.lab.names), time.monotonic(), _children()
+        known, began = len(self.lab.names), time.monotonic()
         record = self.lab.one(cell)
         if len(self.lab.names) > known:
             if time.monotonic() - began > 0.9 * record.seconds:
-                self.wall, self.processor = self.wall + record.seconds, self.processor + _children() - used
+                self.wall, self.processor = self.wall + record.seconds, self.processor + record.machine.get("cpu_s", 0.0)
             else:  # read from a file
                 self.began -= record.seconds
         return record
-
-
-def _children():
-    """Processor time of the children that have ended, s."""
-    found = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return found.ru_utime + found.ru_stime

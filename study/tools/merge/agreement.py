@@ -1,14 +1,26 @@
 # What several sets say of the same question: per scene and layer, who is among the best on each machine, and on all.
+import math
+import re
 from dataclasses import dataclass
 
+import numpy
+import pandas
+from scipy import stats
+
 from analysis.core import schema
-from analysis.core.timing import EQUIVALENT, Ranking, Ratio
+from analysis.core.files import read_object
+from analysis.core.timing import CONFIDENCE, EQUIVALENT, NONE, Ranking, Ratio
 from analysis.core.view import View
 from analysis.map.results import Results
 from study.core import executor
+from study.core.timing import LAYOUTS
+from study.tools.merge import machine
 
+QUANTILE = float(stats.t.ppf((1 + CONFIDENCE) / 2, LAYOUTS - 1))  # of intervals over layouts
+SOURCES = {"day": "days on one machine", "processor": "machines"}  # of a ratio's spread between sets
 LAYERS = {"libraries": "libraries", "all": "all, own code included"}
-ALIKE = ("commit", "compiler", "flags", "build_type", "libraries")  # of sets that may be compared
+ALIKE = ("commit", "compiler", "flags", "build_type", "libraries", "blas", "blas_loaded")  # of sets that may be compared
+SYSTEM = re.compile(r"[\w-]+-linux-gnu")  # in paths: a library of another architecture is the same one
 
 
 @dataclass(frozen=True)
@@ -23,12 +35,21 @@ class Question:
 def unlike(first, other):
     """What differs between two sets that are not to be compared, in words; "" if they may be."""
     for one in (first, other):
-        if str(one.facts["context"].get("dirty")).lower() != "false":
+        if why := machine.no_evidence(one):
+            return f"{one.folder} is no evidence: {why}"
+        if any(str(context.get("dirty")).lower() != "false" for context in contexts(one).values()):
             return f"{one.folder} was measured from a tree with changes"
-    if differs := executor.differing(first.facts["context"], other.facts["context"], ALIKE):
-        key, mine, its = differs
-        return f"{other.folder} is of another build than {first.folder}: {key} is '{its}', not '{mine}'"
+    mine, its = contexts(first), contexts(other)
+    for name in [name for name in mine if name in its]:
+        if differs := executor.differing(mine[name], its[name], ALIKE):
+            return f"{other.folder} is of another build than {first.folder}: {differs[0]} is '{differs[2]}', not '{differs[1]}' ({name})"
     return ""
+
+
+def contexts(studyset):
+    """{file: the context in it} of a set and of its environments."""
+    found = {"set.json": studyset.facts["context"]} | {path.name: read_object(path) for path in sorted((studyset.folder / "contexts").glob("*.json"))}
+    return {name: one | {"blas_loaded": SYSTEM.sub("", str(one.get("blas_loaded")))} for name, one in found.items()}
 
 
 def questions(studyset):
@@ -103,8 +124,8 @@ class Agreement:
 
     @property
     def robust(self):
-        """Whom to take where nobody knows the machine: the least worst loss."""
-        return next(iter(self.worst), "")
+        """Whom to take where nobody knows the machine: the least worst loss, of those inside on all, else of all."""
+        return next((name for name in self.worst if name in self.common), next(iter(self.worst), ""))
 
     @property
     def verdict(self):
@@ -117,6 +138,22 @@ def agreements(sets, asked=questions):
     shared = [one for one in found[0] if all(one in other for other in found)]
     everything = {one for other in found for one in other}
     return [Agreement(one, tuple(other[one] for other in found)) for one in shared], len(everything) - len(shared)
+
+
+def components(agreed, machines):
+    """{"day", "processor": (standard deviation of a ratio in %, cells that tell it)}: what sets of one machine, and machines, add to
+    what a set's intervals say of the ratio of two contenders. `machines`: of each set which it is of."""
+    found = {"day": [], "processor": []}
+    for one in agreed:
+        both = [[ranking.ratios.get(name, NONE) for name in (one.winners[0], one.machines[0].second)] for ranking in one.machines]
+        if not all(0 < ratio.low <= ratio.high < math.inf for pair in both for ratio in pair):
+            continue  # not told by all
+        own = numpy.mean([sum((math.log(ratio.high / ratio.low) / 2 / QUANTILE) ** 2 for ratio in pair) for pair in both])
+        logs = pandas.Series([math.log(second.value / first.value) for first, second in both]).groupby(list(machines))
+        day = numpy.fmax(own, logs.var().mean())  # which no machine with one set tells
+        found["day"] += [day - own] if logs.size().max() > 1 else []
+        found["processor"] += [max(0.0, logs.mean().var() - day * (1 / logs.size()).mean())] if logs.ngroups > 1 else []
+    return {source: (100 * math.sqrt(numpy.mean(some)), len(some)) for source, some in found.items() if some}
 
 
 def mechanisms(sets, agreed=None):

@@ -4,8 +4,8 @@ import pandas
 from scipy.stats import gmean
 
 from analysis.core import records, schema
+from analysis.core.controls import judged
 from analysis.core.files import read_object
-from analysis.map import carry
 
 RATES = {"flops_per_ns": "multiply-adds in the widest vectors, operations a ns", "divisions_per_ns": "divisions in the widest vectors, a ns",
          "add_ns": "latency of an addition, ns", "fused_ns": "latency of a multiply-add, ns", "divide_ns": "latency of a division, ns",
@@ -23,8 +23,15 @@ def rates(studyset):
 
 
 def controls(studyset):
-    """carry.judged of a set's map."""
-    return carry.judged(table(studyset.folder, "map", "controls"))
+    """`judged` of a set's controls, on the map and on mechanisms."""
+    return judged(pandas.concat(table(studyset.folder, part, "controls") for part in ("map", "families")))
+
+
+def no_evidence(studyset):
+    """Why a set says nothing: its controls failed, or those of its node; "" if they did not, or it has none."""
+    found, known = controls(studyset), studyset.facts.get("no_evidence", "")
+    return known or (f"{found['false']} of {found['pairs']} A/A controls were decided, more than chance allows"
+                     if found["pairs"] and not found["sound"] else "")
 
 
 def gains(sets):

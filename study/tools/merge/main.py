@@ -24,14 +24,15 @@ def merge(arguments):
         raise StudyError("needs two different sets or more")
     sets = [opened(folder) for folder in options.sets]
     fresh = opened(options.fresh) if options.fresh else None
-    for one in () if options.other_builds else (*sets, *([fresh] if fresh else [])):
-        need_alike(sets[0], one)
+    for one in (*sets, *([fresh] if fresh else [])):
+        need_alike(sets[0], one, options.other_builds)
     if options.to.exists() and any(options.to.iterdir()) and not (options.to / "agreement.csv").exists():
         raise StudyError(f"{options.to} is not empty and holds no merged sets: name another directory with --to")
     agreed, alone = agreement.agreements(sets)
     if not agreed:
         raise StudyError("the sets have no question in common: each needs the map or the families")
     machines = labels(sets)
+    spread = agreement.components(agreed, [one.facts["context"]["machine"] for one in sets])
     table = pandas.DataFrame(row(one, machines) for one in agreed)
     counts = {layer: {verdict: int(((table.layer == layer) & (table.verdict == verdict)).sum()) for verdict in ("decided", "several", "differs")}
               for layer in agreement.LAYERS if (table.layer == layer).any()}
@@ -43,12 +44,14 @@ def merge(arguments):
         machines=about, counts=counts, layers=agreement.LAYERS, alone=alone, held=found, fresh=fresh.facts if fresh else None, rates=machine.RATES,
         rows=table.sort_values("verdict", key=lambda one: one.map(ORDER), kind="stable").to_dict("records"), own=sets[0].registry.own,
         gains={name: one for name, one in machine.gains(sets).items() if name in sets[0].registry.variants},
-        mechanisms=agreement.shares(agreement.mechanisms(sets, agreed))))
+        spread={agreement.SOURCES[source]: one for source, one in spread.items()}, mechanisms=agreement.shares(agreement.mechanisms(sets, agreed))))
     for layer, count in counts.items():
         total = sum(count.values())
         print(f"{agreement.LAYERS[layer]}: {total} common cells, {count['decided']} with one winner everywhere, {count['several']} with several, "
               f"{count['differs']} differ by machine")
         print(*_said([one for one in agreed if one.question.layer == layer], machines), sep="\n")
+    for source, (percent, cells) in spread.items():
+        print(f"{agreement.SOURCES[source]} alone make {percent:.2f} % of a ratio (standard deviation, {cells} cells)")
     for layer, (cells, inner) in found.items():
         print(f"{agreement.LAYERS[layer]}: of {cells} decided cells the fresh set's winner lies in {inner} ({100 * inner / cells:.0f} %)")
     print(f"page: {options.to / 'index.html'}")
@@ -65,17 +68,20 @@ def _said(agreed, machines):
     yield from (f"  {one.question.scene}, {one.question.form}: {' | '.join(one.winners)}" for one in both if not one.alike)
 
 
-def need_alike(first, other):
-    """StudyError naming what differs between two sets that are not to be merged."""
-    what = agreement.unlike(first, other)
+def need_alike(first, other, builds=False):
+    """StudyError naming why two sets are not to be merged. `builds`: they may be of other ones."""
+    why = machine.no_evidence(other)
+    what = f"{other.folder} is no evidence: {why}" if why else "" if builds else agreement.unlike(first, other)
     if what:
         raise StudyError(f"{what}: such sets are not merged")
 
 
 def labels(sets):
-    """A name for each: its processor, and its date where two have the same."""
+    """A name for each: its processor, its date where two have the same, and its folder where these are the same too."""
     names = [one.facts["context"]["cpu_model"] for one in sets]
-    return [f"{name}, {one.facts['date']}" if names.count(name) > 1 else name for name, one in zip(names, sets)]
+    for more in ([one.facts["date"] for one in sets], [one.folder for one in sets]):
+        names = [f"{name}, {its}" if names.count(name) > 1 else name for name, its in zip(names, more)]
+    return names
 
 
 def row(one, machines):

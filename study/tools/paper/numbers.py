@@ -10,6 +10,7 @@ from scipy.stats import gmean
 
 from analysis.accuracy import sentences as accuracy
 from analysis.core import timing
+from analysis.core.controls import judged
 from analysis.core.files import ROOT
 from analysis.core.text import number, span
 from analysis.families import rule as rules
@@ -112,7 +113,7 @@ def _design(known):
 
 
 def _controls(known):
-    found = carry.judged(known.tables("map")["controls"])
+    found = judged(known.tables("map")["controls"])
     if not found["pairs"]:
         return "No contender was timed against itself in this set, so how often it decides falsely is not measured."
     return (f"As a control, {found['pairs']} times a contender was timed against itself: {found['false']} were decided, which is false; the ratio "

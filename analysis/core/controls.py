@@ -1,0 +1,33 @@
+# Controls: a contender that was timed twice in the same processes (A/A). Nothing differs, so what is decided is decided falsely.
+import math
+
+import pandas
+
+from analysis.core import timing
+from analysis.core.timing import CONFIDENCE, TWIN
+
+FALSE = 0.01  # a run is no evidence if its share of false decisions would be found by chance so seldom
+
+
+def controls(timed):
+    """A row for each scene and contender with a twin: {"scene", "implementation", "ratio", "low", "high", "decided", "record"};
+    decided: the interval excludes 1."""
+    rows = []
+    for scene, group in timed[timed.status == "ok"].groupby("scene"):
+        paired = timing.Paired(group)
+        for twin in sorted(name for name in paired.logs if name.endswith(TWIN)):
+            name = twin.removesuffix(TWIN)
+            found = timing.ratio(paired, twin, name)
+            rows.append({"scene": scene, "implementation": name, "ratio": found.value, "low": found.low, "high": found.high,
+                         "decided": found.low > 1 or found.high < 1, "record": " ".join(group[group.implementation == twin].record)})
+    return pandas.DataFrame(rows)
+
+
+def judged(table):
+    """{"pairs", "false", "widest", "chance", "sound"} of `controls`: how many were decided though nothing differs, the ratio
+    furthest from 1, and how likely so many are by chance."""
+    from scipy import stats
+    pairs, false = len(table), int(table.decided.sum()) if len(table) else 0
+    chance = float(stats.binom.sf(false - 1, pairs, 1 - CONFIDENCE)) if pairs else math.nan
+    widest = max(table.ratio, key=lambda one: abs(math.log(one))) if pairs else math.nan
+    return {"pairs": pairs, "false": false, "widest": widest, "chance": chance, "sound": bool(pairs) and chance >= FALSE}
