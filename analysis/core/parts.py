@@ -1,4 +1,4 @@
-# The one list of parts: study/parts.yaml.
+# The one list of parts, and of pages beside theirs: study/parts.yaml.
 import yaml
 
 from analysis.core.files import ROOT
@@ -8,4 +8,13 @@ LIST = ROOT / "study" / "parts.yaml"
 
 def parts():
     """{name: its question}, in order."""
+    return _listed()["parts"]
+
+
+def pages():
+    """{name: its folder in analysis/ and its title}, of those whose parts are there."""
+    return {name: one for name, one in _listed()["pages"].items() if parts().keys() >= set(one["parts"])}
+
+
+def _listed():
     return yaml.safe_load(LIST.read_text(encoding="utf-8"))

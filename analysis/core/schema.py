@@ -8,7 +8,7 @@ import yaml
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_object, write, write_json
-from analysis.core.records import archive_of
+from analysis.core.records import archive_of, need_same_origin, read_part
 
 TYPES = ("text", "number", "flag")
 DIGESTS = "tables.json"  # of a part: those of its records and tables
@@ -70,11 +70,22 @@ def digest_of(records):
     return digest("\n".join(f"{one.name} {one.digest}" for one in records))
 
 
+def records_of(folder, part, context):
+    """All records of a part, by name; StudyError naming a table that was changed, a record that was or that is of another machine or
+    commit than the set's `context`."""
+    need_unchanged(folder, part)
+    found = read_part(folder, part)
+    need_same_records(folder, part, found)
+    for record in found:
+        need_same_origin(record, context, f"{folder}/raw/{part}")
+    return found
+
+
 def need_same_records(folder, part, records):
     """StudyError if a stored set's records are not those that its tables were made of."""
     archive, kept = archive_of(folder, part), Path(folder) / part / DIGESTS
     if archive.exists() and kept.exists() and read_object(kept, records=str)["records"] != digest_of(records):
-        raise StudyError(f"{archive} holds other records than those of {kept}: restore both")
+        raise StudyError(f"{Path(folder) / part}: its tables are not those of its records: {archive} holds other records than {kept} says: restore both")
 
 
 def read_table(folder, part, name):

@@ -8,10 +8,10 @@ import jinja2
 import markupsafe
 import matplotlib.pyplot as plt
 
-from analysis.core import records, schema
+from analysis.core import schema
 from analysis.core.disturbance import disturbance, told
 from analysis.core.files import ROOT, read_object, write_json, write_text
-from analysis.core.parts import parts
+from analysis.core.parts import pages, parts
 from analysis.core.style import save, stamp
 from analysis.core.text import between, ends, number
 from analysis.core.view import View
@@ -22,11 +22,8 @@ HERE = Path(__file__).parent
 def write_part(folder, part):
     """Tables, figures and page of a part from its records. The front page is left to the caller: beside another part at work it would
     overwrite that one's page by one to come."""
-    schema.need_unchanged(folder, part)
-    view, found = View(folder, part), records.read_part(folder, part)
-    schema.need_same_records(folder, part, found)
-    for record in found:
-        records.need_same_origin(record, view.context, f"{folder}/raw/{part}")
+    view = View(folder, part)
+    found = schema.records_of(folder, part, view.context)
     tables = schema.write_tables(folder, part, _module(part, "tables").build(found, view), found)
     figures = _saved(folder / part / "figures", _module(part, "figures").draw(tables, view), view)
     known, others = _module(part, "page").context(tables, view), disturbance(found)
@@ -41,12 +38,12 @@ def write_part(folder, part):
 
 
 def write_index(folder):
-    """index.html: the answers of the parts that are done; explore.html; and a page for each of the other parts."""
-    answers, known = answers_of(folder), _module("explorer", "page").context(folder)
-    pages = {"explore": (ROOT / "analysis" / "explorer" / "page.html.j2", known),
-             "index": (HERE / "index.html.j2", {"answers": answers, "examples": known["examples"]})}
-    pages |= {part: (HERE / "pending.html.j2", {}) for part, said in answers.items() if said is None}
-    for name, (path, more) in pages.items():
+    """index.html: the answers of the parts that are done; the further pages; and a page for each of the other parts."""
+    answers, known = answers_of(folder), {name: _module(one["folder"], "page").context(folder) for name, one in pages().items()}
+    made = {name: (ROOT / "analysis" / one["folder"] / "page.html.j2", known[name]) for name, one in pages().items()}
+    made |= {part: (HERE / "pending.html.j2", {}) for part, said in answers.items() if said is None}
+    made["index"] = (HERE / "index.html.j2", {"answers": answers, "examples": {name: one["examples"] for name, one in known.items()}})
+    for name, (path, more) in made.items():
         write_text(folder / f"{name}.html", template(path).render(**_frame(folder, name), **more))
 
 
@@ -63,7 +60,7 @@ def _module(part, name):
 def _frame(folder, part):
     """What the frame of every page shows."""
     view = View(folder, part)
-    return {"part": part, "parts": parts(), "question": parts().get(part, ""), "facts": view.facts,
+    return {"part": part, "parts": parts(), "pages": pages(), "question": parts().get(part, ""), "facts": view.facts,
             "context": view.context, "libraries": view.registry.versions}
 
 

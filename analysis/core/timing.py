@@ -9,12 +9,13 @@
 # Times are those of the processor: a turn takes a few milliseconds, and whoever is interrupted in one would lose by
 # the clock what others did meanwhile. `clock_us` beside them tells how much that was.
 import math
+from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy
 import pandas
 
-from analysis.core.registry import TWIN
+from analysis.core.registry import NULL, TWIN
 
 CONFIDENCE = 0.95
 PHASES = ("evaluation", "assembly", "factorization", "solve", "projection", "other")  # of a step: counters phase_…
@@ -287,3 +288,22 @@ def rank(rows, names=None):
         if faster is None:
             return Ranking(winner, by_time(winner, ratios))
         winner = faster
+
+
+def differing(rows):
+    """{name: reason} of one scene: the passes over its stretch must be equal. The most common number among ranked
+    contenders (others are copies of one code) stands; without one nobody can be trusted."""
+    totals = {}
+    for row in rows[(rows.status == "ok") & (rows.implementation != NULL)].itertuples():
+        totals.setdefault(row.implementation, set()).add(row.passes)
+    votes = Counter(min(values) for name, values in totals.items() if len(values) == 1 and "+" not in name)
+    ranked = votes.most_common(2)
+    tie = bool(totals) and (not ranked or len(ranked) > 1 and ranked[0][1] == ranked[1][1])
+    right = None if tie or not ranked else ranked[0][0]
+    return {name: f"{_text(values)} passes over the stretch, most others {_text({right})}" if right is not None else
+            f"{_text(values)} passes over the stretch, and no number is that of most"
+            for name, values in totals.items() if values != {right}}
+
+
+def _text(values):
+    return "/".join(f"{value:.0f}" for value in sorted(values))

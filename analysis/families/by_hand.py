@@ -34,6 +34,13 @@ def table(data, worth, unknown):
     return pandas.DataFrame(rows)
 
 
+def summary(cases):
+    """Losses of some rows of the table, on the scenes where they are known."""
+    known = cases.scenes - cases.unknown
+    return {"mean_loss": (cases.mean_loss * known).sum() / known.sum() if known.sum() else numpy.nan, "worst_loss": cases.worst_loss.max(),
+            "unknown": int(cases.unknown.sum())}
+
+
 def limit(values, costs):
     """(cost, limit, who is taken below it, who above): of the least cost. costs: a row for each of values, a column for each name."""
     order = numpy.argsort(values, kind="stable")

@@ -2,7 +2,7 @@
 import pandas
 
 from analysis.core.text import number
-from analysis.families.by_hand import SHOWN
+from analysis.families import by_hand
 from analysis.families.figures import best_form, fastest_own
 from analysis.families.rule import document, summary
 
@@ -50,15 +50,13 @@ def _defaults(rows):
 def cases(tables, view):
     """Rows of the front page's table: the rule by hand, that of `mbs describe`, and what code without a library gains."""
     found, held = [], tables["held"]
-    for (scheme, library), rows in tables["by_hand"].groupby(["scheme", "library"], sort=False) if len(tables["by_hand"]) else ():
-        known = rows.scenes - rows.unknown
-        found.append({"case": f"{scheme.capitalize()} form: {'; or '.join(map(where, rows.to_dict('records')))}",
-                      "link": "families.html#by-hand", "take": library + _lost((rows.mean_loss * known).sum() / known.sum() if known.sum() else None,
-                                                                             rows.worst_loss.max(), int(rows.scenes.sum()), int(rows.unknown.sum()))})
+    for scheme, rows in tables["by_hand"].groupby("scheme", sort=False) if len(tables["by_hand"]) else ():
+        taken = [f"{library}: {', or '.join(map(where, some.to_dict('records')))}" for library, some in rows.groupby("library", sort=False)]
+        found.append({"case": f"{scheme.capitalize()} form", "link": "families.html#by-hand",
+                      "take": "; ".join(taken) + _lost(by_hand.summary(rows), int(rows.scenes.sum()))})
     if len(held):
-        of = summary(held)
         found.append({"case": "You have a scene file", "link": "families.html#rule",
-                      "take": f"what `build/mbs describe` names, by predicted times{_lost(of['mean_loss'], of['worst_loss'], len(held), of['unknown'])}"})
+                      "take": f"what `build/mbs describe` names, by predicted times{_lost(summary(held), len(held))}"})
     ahead = fastest_own(tables["scenes"], view.registry)
     if len(ahead):
         names = ", ".join(f"{name} on {count}" for name, count in ahead.implementation.value_counts().items())
@@ -71,14 +69,14 @@ def cases(tables, view):
 def where(row):
     """The limits of a case of the rule by hand."""
     return ", ".join(f"{'from' if end == 'least' else 'below'} {number(row[f'{end}_{name}'])}{NAMES[name]}{' on' if end == 'least' else ''}"
-                   for name in SHOWN for end in ("least", "below") if not pandas.isna(row[f"{end}_{name}"])) or "always"
+                   for name in by_hand.SHOWN for end in ("least", "below") if not pandas.isna(row[f"{end}_{name}"])) or "always"
 
 
-def _lost(mean, worst, count, unknown):
-    if pandas.isna(mean):
+def _lost(found, count):
+    if pandas.isna(found["mean_loss"]):
         return ""
-    return (f"; on families left out {100 * mean:.1f} % slower than the fastest library on average, {100 * worst:.0f} % at worst "
-            f"({count} cases{_unknown(unknown, '; {}')})")
+    return (f"; on families left out {100 * found['mean_loss']:.1f} % slower than the fastest library on average, {100 * found['worst_loss']:.0f} % "
+            f"at worst ({count} cases{_unknown(found['unknown'], '; {}')})")
 
 
 def files(tables, view):

@@ -1,12 +1,10 @@
-# Which processes of a timed scene count, who is fastest there, and whose stretch took another number of passes.
+# Which processes of a timed scene count, and who is fastest there.
 #
 # A scene has a few processes of all ("time"), and then more of those who lead ("again"), with more samples. Leaders are
 # compared by the latter alone: they are the better ones, and nobody was chosen by them.
-from collections import Counter
 from dataclasses import replace
 
 from analysis.core import timing
-from analysis.core.registry import NULL
 
 ROLES = ("time", "again")  # of timed cells, before what timing.measure adds to them
 AFTER = 100   # added to the numbers of the processes of role "again"
@@ -59,22 +57,3 @@ def _numbered(record):
     if record.role != "again":
         return record
     return replace(record, cell=record.cell | {"number": AFTER + record.cell["number"]})
-
-
-def differing(rows):
-    """{name: reason} of one scene: the passes over its stretch must be equal. The most common number among ranked
-    contenders (others are copies of one code) stands; without one nobody can be trusted."""
-    totals = {}
-    for row in rows[(rows.status == "ok") & (rows.implementation != NULL)].itertuples():
-        totals.setdefault(row.implementation, set()).add(row.passes)
-    votes = Counter(min(values) for name, values in totals.items() if len(values) == 1 and "+" not in name)
-    ranked = votes.most_common(2)
-    tie = bool(totals) and (not ranked or len(ranked) > 1 and ranked[0][1] == ranked[1][1])
-    right = None if tie or not ranked else ranked[0][0]
-    return {name: f"{_text(values)} passes over the stretch, most others {_text({right})}" if right is not None else
-            f"{_text(values)} passes over the stretch, and no number is that of most"
-            for name, values in totals.items() if values != {right}}
-
-
-def _text(values):
-    return "/".join(f"{value:.0f}" for value in sorted(values))

@@ -10,10 +10,11 @@ from analysis.core import records, schema
 from analysis.core.files import write_json
 from analysis.core.records import Record
 from analysis.core.style import Look
+from analysis.core.timing import differing
 from analysis.map import figures, losses, sentences, summary, tables, tidy
 from analysis.map.cells import map_cells, table
 from analysis.map.maps import bounds, broken
-from analysis.map.timed import AFTER, Scene, differing, timed_rows
+from analysis.map.timed import AFTER, Scene, timed_rows
 from analysis.tests.map_tables import cell, failed, registry, results, scene, view
 
 A, B, C, OWN = "eigen_dense/llt", "csc_klu/refactor", "csc_cholmod/simplicial", "ours/best"

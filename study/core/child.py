@@ -1,4 +1,5 @@
-# Runs one `mbs` as a child with a hard time limit and a memory limit, and says how it ended.
+# Runs one `mbs` as a child with a hard time limit and a memory limit, and says how it ended; or what has children of its own.
+import contextlib
 import ctypes
 import errno
 import os
@@ -55,8 +56,9 @@ class Ended:
     cpu_s: float  # processor time of it and of its children
 
 
-def run(command, seconds, memory_mb, alone=False):
-    """Runs `command` in ROOT; it and all its children are gone when this returns or raises. `alone`: it stays on one processor."""
+def run(command, seconds=None, memory_mb=None, alone=False):
+    """Runs `command` in ROOT, within limits if they are given; it and all its children are gone when this returns or raises. `alone`: it
+    stays on one processor."""
     if _signals:  # a pool's thread would die of the first, with a traceback
         own = threading.current_thread() is threading.main_thread()
         raise Signalled(_signals[0]) if own else StudyError("interrupted")
@@ -96,6 +98,20 @@ def die_with(parent):
         os._exit(1)
 
 
+@contextlib.contextmanager
+def with_all(command):
+    """A Popen of `command` in ROOT, for its output. It and all that it started are told to end when the block is left, or when
+    this process ends, however that ends: told, not killed, as compilers have process groups that only their ninja knows."""
+    script = """[ "$PPID" = "$1" ] || exit; shift; trap 'trap "" TERM; kill 0; wait' TERM; "$@" & wait $!"""
+    process = subprocess.Popen(["setpriv", "--pdeathsig", "TERM", "/bin/bash", "-c", script, "bash", str(os.getpid()), *command], cwd=ROOT,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True)
+    with process:  # closes its output and waits for its end
+        try:
+            yield process
+        finally:
+            process.terminate()
+
+
 def _limited(command, memory_mb):
     """The words that start `command` so that it never outlives this process, nor passes its limits. By programs of the
     system: what Python runs between fork and exec makes it copy the tables of its memory, 8 ms with pandas loaded."""
@@ -103,7 +119,7 @@ def _limited(command, memory_mb):
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), command[0])
     script = '[ "$PPID" = "$1" ] || exit; ulimit -c 0; ulimit -f "$2"; ulimit -v "$3"; shift 3; exec "$@"'
     return ["setpriv", "--pdeathsig", "KILL", "/bin/sh", "-c", script, "sh", str(os.getpid()),
-            str(OUTPUT_LIMIT // 512), str(memory_mb * 1024), *command]
+            str(OUTPUT_LIMIT // 512), str(memory_mb * 1024) if memory_mb else "unlimited", *command]
 
 
 def _on_one(alone):

@@ -35,6 +35,29 @@ class Display:
         self.shown = ""
 
 
+def set_up(log):
+    """Runs study/setup, unless MBS_PROGRAM stands in for what it builds."""
+    if "MBS_PROGRAM" not in os.environ:
+        build([str(ROOT / "study" / "setup")], "set-up", log)
+
+
+def build(command, stage, log):
+    """Runs a command that builds; shows its last line while it works, and its end if it fails, which is a StudyError."""
+    log.parent.mkdir(parents=True, exist_ok=True)
+    display, lines = Display(), []
+    display.show(stage)
+    with open(log, "a", encoding="utf-8") as file, child.with_all(command) as process:
+        for line in process.stdout:
+            lines = lines[-20:] + [line.rstrip()]
+            file.write(line)
+            display.show(stage, line.strip())
+        code = process.wait()
+    display.end()
+    if code != 0:
+        print("\n".join(lines), file=sys.stderr)
+        raise StudyError(f"{stage} failed, see above (log: {log})")
+
+
 def run_workflow(studyset, columns, stored=False):
     """Runs the workflow to its end. `columns`: {part: {column: seconds}}. Raises StudyError, or KeyboardInterrupt
     once all children are gone."""

@@ -57,6 +57,11 @@ def plan_of(part):
     return importlib.import_module(f"study.{part}.plan")
 
 
+def columns_of(profile, chosen):
+    """{part: {column: seconds at most}}, in the order of the list."""
+    return {part: plan_of(part).columns(profile.parts[part]) for part in parts() if part in chosen}
+
+
 def by_share(columns):
     """`columns` and `run` of a plan whose columns share out the part's seconds: {column: (its share, what runs it, of a lab)}."""
     def seconds(settings):

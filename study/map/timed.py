@@ -2,9 +2,9 @@
 # without those whose stretch takes another number of passes, and then more of those who lead.
 from dataclasses import dataclass, field, replace
 
-from analysis.core.timing import LEFT_OUT, TWIN
+from analysis.core.timing import LEFT_OUT, TWIN, differing
 from analysis.map import timed
-from analysis.map.timed import differing, layers, leaders, timed_rows
+from analysis.map.timed import layers, leaders, timed_rows
 from study.core.cell import Cell
 from study.core.contender import CONTROL, Contender
 from study.core.timing import measure

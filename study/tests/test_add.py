@@ -9,18 +9,22 @@ from analysis.core import records, schema
 from analysis.core.errors import StudyError
 from analysis.core.files import digest, read_json, write_json
 from study.core.contender import CONTROL, Contender
-from study.core.studyset import context_of, listed
+from study.core.lab import Lab
+from study.core.studyset import StudySet, context_of, listed
+from study.core.timing import measure as timed
 from study.tests.conftest import FAKE, ROOT, TEMPORARY
 from study.tools import add
 
 pytestmark = pytest.mark.slow
 NEW = "new_one/only"
-SCENES = {"four-bar:4": 10, "four-bar:10": 22}
+LED = ("good_dense/first", "good_sparse/only")
+CONTESTS = [("map", "four-bar:4", "penalty", ()), ("map", "four-bar:10", "penalty", ()),
+            *(("families", "four-bar:6", scheme, ("--scheme", scheme, "--steps", "40")) for scheme in ("penalty", "saddle-point"))]
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A set whose map has two scenes, led by good_dense/first before good_sparse/only."""
+    """A set whose map has two scenes and whose families one in both forms, led by good_dense/first before good_sparse/only."""
     monkeypatch.setattr(tempfile, "tempdir", TEMPORARY.name)
     monkeypatch.setenv("MBS_PROGRAM", str(FAKE))
     monkeypatch.setattr(add, "PASSES", (2, 3))
@@ -28,17 +32,19 @@ def folder(tmp_path, monkeypatch):
     for pair in ("openblas", "system"):
         context = context_of(Contender(CONTROL.name, CONTROL.variant, pair))
         write_json(folder / "contexts" / f"own-{pair}.json", context)
-    write_json(folder / "set.json", {"profile": "smoke", "only": [], "parts": ["map"], "programs": {}, "context": context,
+    write_json(folder / "set.json", {"profile": "smoke", "only": [], "parts": ["families", "map"], "programs": {}, "context": context,
                                      "date": "2026-01-01 10:00"})
     (folder / "profile.yaml").write_text((ROOT / "study" / "profiles" / "smoke.yaml").read_text())
-    cells = [{"scene": scene, "layer": layer, "variables": size, "winner": "good_dense/first", "second": "good_sparse/only"}
-             for scene, size in SCENES.items() for layer in ("libraries", "all")]
-    scenes = [{"scene": scene, "variables": size, "steps": 100, "start": 0.1} for scene, size in SCENES.items()]
-    tidy = [{"kind": "timing", "scene": scene, "implementation": name, "step_us": 10.0}
-            for scene in SCENES for name in ("good_dense/first", "good_sparse/only")]
-    found = {name: pandas.DataFrame() for name in schema.of_part("map")}
-    schema.write_tables(folder, "map", found | {"cells": pandas.DataFrame(cells), "scenes": pandas.DataFrame(scenes),
-                                               "tidy": pandas.DataFrame(tidy)}, [])
+    rows = {"families": [], "map": []}
+    for part, scene, scheme, words in CONTESTS:
+        lab = Lab(StudySet(folder), part, "column")
+        lab.set.clear()
+        found = timed(lab, scene, [Contender(name, name, "openblas") for name in LED], processes=2, repetitions=2, settings=words)
+        rows[part] += [{"scene": scene, "layer": layer, "variables": 10, "winner": LED[0], "second": LED[1], "record": found[0].name}
+                       | ({"scheme": scheme} if part == "families" else {}) for layer in ("libraries", "all")]
+    for part, leaders in rows.items():
+        schema.write_tables(folder, part, {name: pandas.DataFrame() for name in schema.of_part(part)} | {add.TABLES[part]: pandas.DataFrame(leaders)},
+                            records.read_part(folder, part))
     return folder
 
 
@@ -53,11 +59,21 @@ def test_a_faster_newcomer_takes_the_cells(folder, monkeypatch, capsys):
     monkeypatch.setenv("FAKE_DIRTY", "true")
     monkeypatch.setenv("FAKE_COMMIT", "fedcba9")
     table = measure(folder, monkeypatch, 0.3)
-    assert len(table) == 4 and set(table.hands) == {"changes"} and set(table.status) == {"ok"}
+    assert len(table) == 6 and set(table.hands) == {"changes"} and set(table.status) == {"ok"}
     assert ((table.low < table.ratio) & (table.ratio < table.high) & (table.high < 1)).all()
     assert set(table.before) == {"good_dense/first"} and set(table.processes) == {3}
     assert set(zip(table.commit, table.dirty.astype(str))) == {("fedcba9", "True")}
-    assert "4 cells change hands, 0 are open, 0 stay, 0 were not timed" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert all(f"{part}: {count} cells change hands, 0 are open, 0 stay, 0 were not timed" in told for part, count in (("families", 2), ("map", 4)))
+
+
+def test_who_serves_a_form_is_asked_and_timed_in_it_as_the_set_did(folder, monkeypatch):
+    table = measure(folder, monkeypatch, name="good_dense/first")
+    assert set(zip(table.part, table.scheme)) == {("map", "penalty"), ("families", "penalty"), ("families", "saddle-point")}
+    found = [one for path in (folder / "raw" / "added").rglob("*.json") for one in [records.read(path, path.name)]]
+    saddle = [one for one in found if "saddle-point" in one.command]
+    assert {one.role for one in saddle} == {"gate", "time"} and all("40" in one.command for one in saddle if one.role == "time")
+    assert set(measure(folder, monkeypatch, 2.0).scheme) == {"penalty"}  # the newcomer serves that alone
 
 
 def test_all_take_turns_in_the_same_processes_and_records_have_digests(folder, monkeypatch):
@@ -68,8 +84,8 @@ def test_all_take_turns_in_the_same_processes_and_records_have_digests(folder, m
     found = {name: records.read(folder / "raw" / "added" / name, name) for name in names["records"]}
     assert {name: digest(folder / "raw" / "added" / name) for name in found} == names["records"]
     assert len(list(base.rglob("*.json"))) == len(found)
-    timed = [one for one in found.values() if one.role == "time"]
-    assert len(timed) == 6 and all(one.cell["contenders"] == [NEW, "good_dense/first", "good_sparse/only"] for one in timed)
+    turns = [one for one in found.values() if one.role == "time"]
+    assert len(turns) == 9 and all(one.cell["contenders"] == [NEW, *LED] for one in turns)
     assert {one.role for one in found.values()} == {"time", "gate"}
 
 
@@ -88,7 +104,7 @@ def test_a_leader_that_became_slower_loses_its_cells(folder, monkeypatch, tmp_pa
 
 def test_asked_again_nothing_is_measured_and_of_another_program_everything(folder, monkeypatch, tmp_path):
     def stamps():
-        return {path: path.stat().st_mtime_ns for path in (folder / "raw").rglob("*.json")}
+        return {path: path.stat().st_mtime_ns for path in (folder / "raw" / "added").rglob("*.json")}
     before, first = measure(folder, monkeypatch, 0.5), stamps()
     assert measure(folder, monkeypatch, 0.5).equals(before) and stamps() == first
     edited = tmp_path / "mbs.py"
@@ -137,6 +153,21 @@ def test_a_changed_table_is_named(folder, monkeypatch):
         measure(folder, monkeypatch, 0.5)
 
 
+def test_a_changed_record_is_named_loose_or_packed(folder, monkeypatch):
+    one, *_ = (folder / "raw" / "families" / "column" / "time").iterdir()
+    whole = one.read_text()
+    one.write_text(whole.replace('"seconds":', '"seconds":1'))
+    with pytest.raises(StudyError, match=f"{one.name} is changed"):
+        measure(folder, monkeypatch, 0.5)
+    one.write_text(whole)
+    records.pack(folder, "families", records.archive_of(folder, "families"))
+    assert len(measure(folder, monkeypatch, 0.5)) == 6
+    records.write(one, read_json(one)["record"] | {"seconds": 1e6})  # with its right digest
+    records.pack(folder, "families", records.archive_of(folder, "families"))
+    with pytest.raises(StudyError, match="families: its tables are not those of its records"):
+        measure(folder, monkeypatch, 0.5)
+
+
 def test_the_newest_of_this_machine_is_the_default_and_without_one_it_says_what_to_do(folder, monkeypatch, tmp_path):
     monkeypatch.setattr(add, "RESULTS", folder.parent)
     monkeypatch.setattr(add, "ROOT", folder.parent)
@@ -156,7 +187,7 @@ def test_unknown_names_and_sets(folder, monkeypatch, tmp_path):
         add.add([NEW, "--to", str(tmp_path / "nowhere")])
 
 
-def test_it_keeps_to_a_fifth_of_the_maps_time(folder, monkeypatch):
+def test_it_keeps_to_a_fifth_of_a_runs_time(folder, monkeypatch):
     monkeypatch.setattr(add, "SHARE", 0.0)
     table = measure(folder, monkeypatch, 0.5)
     assert set(table.status) == {"dropped"} and "budget" in table.reason[0] and set(table.hands) == {"not timed"}

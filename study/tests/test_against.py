@@ -23,7 +23,7 @@ def programs(tmp_path, monkeypatch):
     monkeypatch.setenv("MBS_PROGRAM", str(paths["new"]))
     monkeypatch.setattr(tempfile, "tempdir", TEMPORARY.name)
     monkeypatch.setattr(against, "_resolve", lambda name: "0123456789abcdef")
-    monkeypatch.setattr(against, "_build", lambda revision: "against/old")
+    monkeypatch.setattr(against, "_build", lambda revision, log: "against/old")
     program_of = executor.program_of
     for module in (executor, studyset, against):
         monkeypatch.setattr(module, "program_of", lambda name="mbs", build="": str(paths["old"]) if build

@@ -12,6 +12,14 @@ def shell(text, seconds=10, memory_mb=512):
     return child.run(["/bin/bash", "-c", text], seconds, memory_mb)
 
 
+def ended_soon(pid):
+    for _ in range(50):  # until init has collected it
+        if not os.path.exists(f"/proc/{pid}") or "Z" in open(f"/proc/{pid}/stat").read().split()[2]:
+            return True
+        time.sleep(0.1)
+    return False
+
+
 @pytest.mark.parametrize("command, status, reason", [
     ("exit 0", "exited", "exit status 0"),
     ("echo 'mbs: no such scene' >&2; exit 2", "exited", "mbs: no such scene"),
@@ -36,12 +44,7 @@ def test_time_limit_ends_grandchildren_too(tmp_path):
     begin = time.monotonic()
     ended = shell(f"sleep 100 & echo $! > {pid_file}; wait", seconds=0.5)
     assert ended.status == "timeout" and time.monotonic() - begin < 5
-    pid = int(pid_file.read_text())
-    for _ in range(50):  # until init has collected it
-        if not os.path.exists(f"/proc/{pid}") or "Z" in open(f"/proc/{pid}/stat").read().split()[2]:
-            return
-        time.sleep(0.1)
-    pytest.fail("the grandchild lives on")
+    assert ended_soon(int(pid_file.read_text()))
 
 
 def test_a_signal_whose_exception_was_swallowed_ends_the_study_before_the_next_child(monkeypatch):
@@ -57,3 +60,18 @@ def test_what_is_sent_to_the_whole_group_is_no_result_of_the_child(name):
         child.run(["/usr/bin/python3", "-c", "import os, signal\n"
                    f"signal.signal(signal.SIG{name}, signal.SIG_DFL)\n"  # a shell may have had it ignored
                    f"os.kill(os.getpid(), signal.SIG{name})"], 10, 512)
+
+
+def test_without_limits_it_runs_to_its_end():
+    ended = child.run(["/bin/bash", "-c", "ulimit -v; exit 3"])
+    assert (ended.code, ended.stdout) == (3, "unlimited\n")
+
+
+def test_what_was_started_beside_ends_with_the_block_too(tmp_path):
+    pid_file = tmp_path / "pid"
+    with child.with_all(["/bin/bash", "-c", "echo begun; exit 7"]) as process:
+        assert process.stdout.read() == "begun\n" and process.wait() == 7
+    with pytest.raises(KeyError), child.with_all(["/bin/bash", "-c", f"sleep 100 & echo $! > {pid_file}; echo begun; wait"]) as process:
+        process.stdout.readline()
+        raise KeyError
+    assert ended_soon(int(pid_file.read_text()))

@@ -24,7 +24,8 @@ from analysis.core.registry import Registry
 from analysis.core.style import save
 from analysis.core.text import number
 from analysis.core.view import View, facts_of
-from study.core import child, executor, front, locks, main, profile, studyset
+from study import main
+from study.core import child, executor, front, locks, profile, studyset
 from study.core.cell import Cell
 from study.core.contender import Contender, by_environment, on_usual_pairs
 from study.core.front import duration

@@ -1,15 +1,20 @@
-# The common layer imports nothing from above it, and no modules import each other in a circle.
+# The common layer imports nothing from above it, no modules import each other in a circle, and a part can be deleted.
 import ast
+import re
 import subprocess
 
-from analysis.core.files import ROOT
-from analysis.core.parts import parts
+import yaml
+
+from analysis.core import parts as lists, site
+from analysis.core.files import ROOT, write_json
+from analysis.core.parts import pages, parts
 
 BUILDS_UPON = {("accuracy", "scenes"),  # standard problems with their references
                ("extremes", "scenes"),  # the same problems
                ("limit", "scenes"),     # the same scenes
                ("families", "limit"),   # looks, gates and times of a scene
                ("tuning", "limit")}     # cells and verdicts of a scene
+TOOLS_UPON = {"merge": {"map"}, "paper": set(parts())}  # which ask for what these parts have found
 PATHS = [path for path in subprocess.run(["git", "ls-files", "study/*.py", "analysis/*.py"], cwd=ROOT, capture_output=True,
                                          text=True, check=True).stdout.split("\n")[:-1] if (ROOT / path).exists()]
 
@@ -67,6 +72,39 @@ def test_what_is_imported_is_there():
 def test_the_common_layer_imports_nothing_from_above():
     allowed = {"analysis.core": set(), "study.core": {"analysis.core"}}
     assert wrong((name, one) for name, one in edges() if layer(name) in allowed and layer(one) not in allowed[layer(name)]) == []
+
+
+def test_the_common_layer_names_nothing_from_above():
+    """Not as a text, either, from which a module could be loaded; parts come from their list."""
+    above = {path.split("/")[1] for path in PATHS if path.count("/") > 1} - {"core", "tests"}
+    named = []
+    for name in GRAPH:
+        if layer(name).endswith(".core"):
+            tree = ast.parse((ROOT / MODULES[name]).read_text(encoding="utf-8"))
+            named += [(name, node.value) for node in ast.walk(tree) if isinstance(node, ast.Constant) and re.match(r"(study|analysis)\.(?!core)\w", str(node.value))]
+            named += [(name, one.value) for node in ast.walk(tree) if isinstance(node, ast.Call) for one in node.args
+                      if isinstance(one, ast.Constant) and one.value in above]
+    assert named == []
+
+
+def test_of_a_part_others_know_only_what_is_said_here():
+    allowed = {**{f"analysis.{one['folder']}": set(one["parts"]) for one in pages().values()},
+               **{f"study.tools.{name}": known for name, known in TOOLS_UPON.items()}}
+    outside = [(name, one) for name, one in edges() if part(one) in parts() and part(name) not in (*parts(), "tests")]
+    assert wrong((name, one) for name, one in outside
+                 if part(one) not in next((known for place, known in allowed.items() if name.startswith(f"{place}.")), ())) == []
+
+
+def test_without_a_part_the_site_has_no_page_that_needs_it(tmp_path, monkeypatch):
+    known = yaml.safe_load(lists.LIST.read_text(encoding="utf-8"))
+    del known["parts"]["map"]
+    write_json(tmp_path / "parts.yaml", known)
+    monkeypatch.setattr(lists, "LIST", tmp_path / "parts.yaml")
+    context = {"commit": "0" * 40, "dirty": False, "cpu_model": "P", "num_cpus": 1, "compiler": "", "flags": "", "kernel": "", "machine": ""}
+    write_json(tmp_path / "set.json", {"profile": "quick", "only": [], "parts": ["families"], "programs": {}, "context": context, "date": ""})
+    write_json(tmp_path / "registry.json", {"implementations": []})
+    site.write_index(tmp_path)
+    assert "explore.html" not in (tmp_path / "index.html").read_text() and not (tmp_path / "explore.html").exists()
 
 
 def test_parts_import_their_twin_and_only_those_that_they_build_upon():

@@ -1,6 +1,7 @@
 # The battery: a study that is killed at random moments, a full disk, files that are damaged. Afterwards the rerun ends
 # alike, nothing finished is measured again, no process is left, and what is wrong is one line that names the file.
 import contextlib
+import errno
 import json
 import os
 import random
@@ -61,7 +62,7 @@ def finished(folder):
 
 
 def alive(mark):
-    """Command lines of the processes that a run has left."""
+    """Command lines of the processes that a run has."""
     found = []
     for entry in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError):
@@ -82,10 +83,15 @@ def kill(folder, program, after, sign, group):
     with contextlib.suppress(ProcessLookupError):
         (os.killpg if group else os.kill)(process.pid, sign)
     errors = process.communicate(timeout=180)[1]
+    return process.returncode, errors, left_by(mark)
+
+
+def left_by(mark):
+    """Command lines of the processes that a run has left, some seconds after its end."""
     end = time.monotonic() + 10
     while (left := alive(mark)) and time.monotonic() < end:
         time.sleep(0.1)
-    return process.returncode, errors, left
+    return left
 
 
 @pytest.mark.parametrize("chain", [pytest.param(chain, marks=pytest.mark.xdist_group(f"kills {chain}"))
@@ -115,6 +121,24 @@ def test_killed_at_any_moment_it_resumes_and_loses_nothing(whole, program, tmp_p
     assert not list(folder.rglob(".partial-*")) and (folder / "index.html").exists()
     before = finished(folder)
     assert run(folder, program).returncode == 0 and finished(folder) == before
+
+
+@pytest.mark.parametrize("sign", SIGNALS)
+def test_killed_while_it_sets_up_it_leaves_no_process(tmp_path, sign):
+    """On a copy of the study whose set-up starts others and never ends."""
+    for name in ("study", "analysis"):
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("tests", "__pycache__"))
+    (tmp_path / "study" / "setup").write_text("#!/bin/bash\nsleep 600 & echo begun\nsleep 600\n")
+    mark, log = uuid.uuid4().hex, tmp_path / "set" / "run.log"
+    own = {key: value for key, value in environment(**{MARK: mark}).items() if key != "MBS_PROGRAM"}
+    process = subprocess.Popen([tmp_path / "study" / "run", "--profile", "smoke", "--wait", "--results", log.parent], env=own, start_new_session=True,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+    while sum("sleep 600" in line for line in alive(mark)) < 2:
+        assert process.poll() is None
+        time.sleep(0.05)
+    os.kill(process.pid, sign)
+    process.wait(timeout=60)
+    assert left_by(mark) == []
 
 
 def test_a_second_study_waits_or_is_refused_while_the_first_measures(program, tmp_path):
@@ -162,6 +186,19 @@ def test_a_full_disk_is_one_line_and_the_rerun_ends_alike(whole, program, small_
     assert kept.items() <= finished(folder).items() and tables(folder) == tables(whole[0])
 
 
+def test_without_room_for_a_page_it_is_one_line_and_the_rerun_ends_alike(whole, program, tmp_path):
+    """Where no small disk can be mounted, either: a limit of what Python may write to a file (programs have one of their own)."""
+    folder, most = tmp_path / "set", (whole[0] / f"{PART}.html").stat().st_size // 1024
+    limited = ["/bin/bash", "-c", 'ulimit -S -f "$1"; shift; exec "$@"', "bash", str(most // 2), *COMMAND, "--results", folder]
+    done = subprocess.run(limited, capture_output=True, text=True, timeout=300, env=environment(program))
+    assert done.returncode == 2 and one_line(done.stderr) and os.strerror(errno.EFBIG) in done.stderr, done.stderr
+    kept = finished(folder)
+    assert set(kept) == set(folder / path.relative_to(whole[0]) for path in finished(whole[0])) and not (folder / f"{PART}.html").exists()
+    done = run(folder, program)
+    assert done.returncode == 0, done.stderr
+    assert kept == finished(folder) and tables(folder) == tables(whole[0]) and (folder / f"{PART}.html").exists()
+
+
 def fill(place):
     with contextlib.suppress(OSError), open(place / "filler", "wb", buffering=0) as file:
         while True:
@@ -199,42 +236,43 @@ def rewrite(path, change):
     path.write_text(json.dumps(data))
 
 
+EVERY = ("run", "figures", "add")
 NAMED = {  # damage: (file that the line names, what is done to it, commands that must see it)
-    "truncated record": (record_in, cut, ("run", "figures")),
-    "record of zeros": (record_in, lambda path: path.write_bytes(bytes(path.stat().st_size)), ("run", "figures")),
-    "changed digit of a record": (record_in, lambda path: edit(path, '"kind":"', '"kind":"x'), ("run", "figures")),
-    "record that is a list": (record_in, lambda path: path.write_text("[]"), ("run", "figures")),
+    "truncated record": (record_in, cut, EVERY),
+    "record of zeros": (record_in, lambda path: path.write_bytes(bytes(path.stat().st_size)), EVERY),
+    "changed digit of a record": (record_in, lambda path: edit(path, '"kind":"', '"kind":"x'), EVERY),
+    "record that is a list": (record_in, lambda path: path.write_text("[]"), EVERY),
     "other record with a right digest": (record_in, lambda path: forge(path, lambda data: data.update(seconds=1e6)),
-                                         ("run", "figures")),
+                                         EVERY),
     "wrong-typed record with a right digest": (record_in, lambda path: forge(path, lambda data: data.update(output=[])),
-                                               ("run", "figures")),
+                                               EVERY),
     "record without its cell, right digest": (record_in, lambda path: forge(path, lambda data: data.pop("cell")),
-                                              ("run", "figures")),
+                                              EVERY),
     "record of nobody's": (lambda folder: record_in(folder).with_name("more.json"),
-                           lambda path: shutil.copy(record_in(path.parents[4]), path), ("run", "figures")),
+                           lambda path: shutil.copy(record_in(path.parents[4]), path), EVERY),
     "record of another machine, without a stamp": (
         record_in, lambda path: (forge(path, lambda data: data["context"].update(machine="another")),
-                                 shutil.rmtree(path.parents[4] / ".done")), ("run", "figures")),
-    "changed table": (lambda folder: folder / PART / "maps.csv", lambda path: edit(path, "0", "1"), ("run", "figures")),
-    "removed table": (lambda folder: folder / PART / "maps.csv", Path.unlink, ("run", "figures")),
+                                 shutil.rmtree(path.parents[4] / ".done")), EVERY),
+    "changed table": (lambda folder: folder / PART / "maps.csv", lambda path: edit(path, "0", "1"), EVERY),
+    "removed table": (lambda folder: folder / PART / "maps.csv", Path.unlink, EVERY),
     "digests that are a list": (lambda folder: folder / PART / "tables.json", lambda path: path.write_text("[]"),
-                                ("run", "figures")),
+                                EVERY),
     "digests of another type": (lambda folder: folder / PART / "tables.json", lambda path: path.write_text('{"tables": 3}'),
-                                ("run", "figures")),
-    "set that is a list": (lambda folder: folder / "set.json", lambda path: path.write_text("[1]"), ("run", "figures")),
+                                EVERY),
+    "set that is a list": (lambda folder: folder / "set.json", lambda path: path.write_text("[1]"), EVERY),
     "set that is binary": (lambda folder: folder / "set.json", lambda path: path.write_bytes(os.urandom(300)),
-                           ("run", "figures")),
+                           EVERY),
     "set with parts that are a number": (lambda folder: folder / "set.json",
-                                         lambda path: rewrite(path, lambda data: data.update(parts=3)), ("run", "figures")),
+                                         lambda path: rewrite(path, lambda data: data.update(parts=3)), EVERY),
     "set with a context that is a text": (lambda folder: folder / "set.json",
                                           lambda path: rewrite(path, lambda data: data.update(context="x")),
-                                          ("run", "figures")),
-    "set that is deep": (lambda folder: folder / "set.json", lambda path: path.write_text("[" * 100000), ("run", "figures")),
+                                          EVERY),
+    "set that is deep": (lambda folder: folder / "set.json", lambda path: path.write_text("[" * 100000), EVERY),
     "binary profile": (lambda folder: folder / "profile.yaml", lambda path: path.write_bytes(b"\xff\xfe\x00\x80" * 50),
-                       ("figures",)),
-    "profile that is a number": (lambda folder: folder / "profile.yaml", lambda path: path.write_text("3\n"), ("figures",)),
+                       ("figures", "add")),
+    "profile that is a number": (lambda folder: folder / "profile.yaml", lambda path: path.write_text("3\n"), ("figures", "add")),
     "stamp that is a list": (lambda folder: folder / ".done" / PART / "maps", lambda path: path.write_text("[]"),
-                             ("run", "figures")),
+                             EVERY),
     "registry that is a list": (lambda folder: folder / "registry.json", lambda path: path.write_text("[]"), ("figures",)),
     "context that is a list": (lambda folder: next((folder / "contexts").glob("*.json")),
                                lambda path: (path.write_text("[]"), record_in(path.parent.parent).unlink()), ("run",)),
@@ -248,8 +286,9 @@ def test_what_is_damaged_is_named_in_one_line(whole, program, tmp_path, damage):
         folder = Path(shutil.copytree(whole[0], tmp_path / command))
         path = where(folder)
         change(path)
-        arguments = [*COMMAND, "--results", folder] if command == "run" else [ROOT / "study" / "figures", folder]
-        done = subprocess.run(arguments, capture_output=True, text=True, timeout=120, env=environment(program))
+        arguments = {"run": [*COMMAND, "--results", folder], "figures": [ROOT / "study" / "figures", folder],
+                     "add": [ROOT / "study" / "add", "csc_klu", "--to", folder, "--wait"]}
+        done = subprocess.run(arguments[command], capture_output=True, text=True, timeout=120, env=environment(program))
         assert done.returncode == 2, (command, done.stdout, done.stderr)
         assert one_line(done.stderr) and path.name in done.stderr, (command, done.stderr)
 

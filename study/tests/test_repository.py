@@ -14,8 +14,9 @@ from study.tools import fragments
 
 TRACKED = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\n")[:-1]
 SETS = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))
-# A measured number: one with a unit of time or a ratio behind it. Steps, durations and masses of scenes are settings.
-MEASURED = re.compile(r"\d(?:[\d.,]*\d)?\s?(?:µs|ns|times (?:faster|slower|less)|× (?:faster|slower))")
+# A measured number: one with a unit of time or a ratio behind it, or that is said to be measured. Steps, durations and masses of
+# scenes are settings.
+MEASURED = re.compile(r"\d(?:[\d.,]*\d)?\s?(?:µs|ns|times (?:faster|slower|less|as (?:fast|slow|long))|× (?:faster|slower))|measured \d|about a second")
 
 
 def test_the_top_level_holds_what_the_readme_names():
@@ -54,12 +55,17 @@ def test_numbers_in_texts_are_those_of_the_sets(path):
 
 def test_no_measured_number_is_typed():
     typed = {}
-    for path in fragments.texts():
+    for path in [*fragments.texts(), *(ROOT / name for name in TRACKED if name.endswith(".j2"))]:
         own = fragments.MARKED.sub("", path.read_text(encoding="utf-8"))
         found = MEASURED.findall(own)
         if found:
             typed[str(path.relative_to(ROOT))] = found
     assert typed == {}
+
+
+@pytest.mark.parametrize("text", ["4 µs", "1.5 times faster", "2 times as long", "(measured 0.593 at N = 1)", "takes about a second"])
+def test_a_measured_number_is_seen(text):
+    assert MEASURED.search(text) and not MEASURED.search(re.sub(r"\d|about a second", "", text))
 
 
 def test_at_most_three_sets_are_stored_each_of_a_clean_tree():

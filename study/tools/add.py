@@ -1,4 +1,5 @@
-# study/add NAME: times a new or changed implementation against those who lead the cells of a set's map.
+# study/add NAME: times a new or changed implementation against those who lead the cells of a set: its mechanisms, in both forms of
+# the step, and its map.
 #
 # The newcomer, the leader and the runner-up of the libraries and the leader of all take turns in fresh processes: what
 # the set has of the others is never paired with new samples. Records: SET/raw/added/NAME/, the result: SET/added/NAME.csv.
@@ -10,20 +11,21 @@ from dataclasses import dataclass, replace
 from analysis.core import schema, timing
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_json, write, write_json
-from analysis.map.timed import differing
 from study.core import executor, locks, profile as profiles
 from study.core.contender import CONTROL, on_usual_pairs
 from study.core.executor import program_of
 from study.core.gate import verdicts
-from study.core.main import set_up
+from study.core.front import duration, set_up
 from study.core.options import Parser, directory
-from study.core.front import duration
-from study.core.studyset import StudySet, context_of, listed, opened, select, sets_in, writable
+from study.core.setting import Setting
+from study.core.studyset import StudySet, context_of, listed, need_records, opened, select, sets_in, writable
 from study.core.timing import measure
 from study.tools import shelf
 
+TABLES = {"families": "winners", "map": "cells"}  # of the parts that say who leads
 SHARE = 0.2     # of the time that all parts of the set's profile have
-PASSES = (3, 5)  # processes of all scenes before there are more of any
+GATES = 0.5     # of this, at most, for checks
+PASSES = (3, 5)  # processes of all contests before there are more of any
 MOST_SAMPLES, TURN = 40, 0.005  # of a process; s, the least that a turn takes
 GATE_S = 20     # s of a check
 NOT_TIMED = ("dropped", "slower", "timeout")  # statuses of who might still be the fastest
@@ -34,8 +36,8 @@ SAME = ("machine", "compiler", "flags", "build_type")  # of two contexts
 
 
 def add(arguments):
-    parser = Parser(prog="study/add", description="Measures a new or changed implementation into a set of the same machine "
-                    "and libraries: the newcomer beside the leaders of each cell of its map, in fresh common processes.")
+    parser = Parser(prog="study/add", description="Measures a new or changed implementation into a set of the same machine and libraries: "
+                    "the newcomer beside the leaders of each cell of its mechanisms and its map, in fresh common processes.")
     parser.add_argument("name", metavar="NAME", help="folder or folder/variant")
     parser.add_argument("--to", type=directory, metavar="SET", help="its directory (the newest of this machine and build in results/ and results/local)")
     parser.add_argument("--wait", action="store_true", help="queue behind a study that is running")
@@ -49,20 +51,21 @@ def add(arguments):
         folder = options.to or newest(known)
         writable(folder)
         with locks.only_one(folder):
+            need_records(StudySet(folder))
             table = measured(folder, options.name, known)
     tell(table, folder, options.name)
     return 0
 
 
 def newest(known):
-    """The newest set with a map of this machine and build, stored or one's own."""
-    found = [one for one in sets_in(RESULTS, RESULTS / "local") if "map" in one.facts["parts"]]
+    """The newest set with leaders of this machine and build, stored or one's own."""
+    found = [one for one in sets_in(RESULTS, RESULTS / "local") if TABLES.keys() & set(one.facts["parts"])]
     now = context_of(replace(CONTROL, blas=next(name for name, why in known.pairs.items() if not why)))
     for one in found:
         if not executor.differing(one.facts["context"], now, SAME):
             return one.folder
     others = ", ".join(f"{one.folder.relative_to(ROOT)} is of {one.facts['context'].get('cpu_model', 'another')}" for one in found)
-    raise StudyError(f"no set with a map is of this machine and build{f' ({others})' * bool(others)}: study/run --part map makes one in "
+    raise StudyError(f"no set with mechanisms or a map is of this machine and build{f' ({others})' * bool(others)}: study/run --part map makes one in "
                      "some minutes, with every implementation in it; for a first look: build/mbs bench four-bar:10 four-bar:40")
 
 
@@ -82,34 +85,79 @@ class _Present(StudySet):
         return {"context": next(iter(self.present.values()))}
 
 
+@dataclass(frozen=True, eq=False)
+class Contest:
+    """A scene and form of the step that somebody leads in the set. `led`: rows with layer, winner and second; `form`, `stretch`: words of
+    the command line, as the set's records have them; `steps`, `start`: of the stretch; `times`: µs a step, for the number of samples only."""
+    part: str
+    scene: str
+    scheme: str
+    variables: float
+    led: list
+    form: tuple
+    stretch: tuple
+    steps: float
+    start: float
+    times: dict
+    newcomers: list
+
+    def rivals(self, there):
+        """The leader and the runner-up of the libraries, and the leader of all; those that are still there."""
+        names = dict.fromkeys(name for row in self.led for name in ((row.winner, row.second) if row.layer == "libraries" else (row.winner,)))
+        return [name for name in names if name in there and name not in self.newcomers]
+
+
+def contests(studyset, newcomers, known):
+    """Those that one of the newcomers serves; StudyError naming a record or table of the set that was changed."""
+    found = []
+    for part in studyset.facts["parts"]:
+        there = {one.name: one for one in schema.records_of(studyset.folder, part, studyset.facts["context"])}
+        if part not in TABLES:
+            continue
+        rows = schema.read_table(studyset.folder, part, TABLES[part])
+        rows = (rows if "scheme" in rows else rows.assign(scheme=Setting().scheme))[rows.winner != ""]
+        for (scene, scheme), led in rows.groupby(["scene", "scheme"], sort=False):
+            records = [there[name] for name in dict.fromkeys(" ".join(led.record).split())]
+            timed = timing.processes(records)
+            timed = timed[timed.status == "ok"]
+            found.append(Contest(part, scene, scheme, led.variables.iloc[0], list(led.itertuples()), _words(records[0], "--scheme"),
+                                 _words(records[0], "--steps"), timed.steps.iloc[0], timed.start.iloc[0],
+                                 timed.groupby("implementation").step_us.median().to_dict(),
+                                 [name for name in newcomers if known.serves(name, *Setting(scheme).needs)]))
+    return [one for one in found if one.newcomers]
+
+
+def _words(record, option):
+    words = record.cell["settings"]
+    return tuple(words[words.index(option):][:2]) if option in words else ()
+
+
 def measured(folder, name, known):
     """The table of one newcomer, or several variants of one, which is written."""
     newcomers = select(known, [name], "")
-    cells = schema.read_table(folder, "map", "cells")
-    cells = cells[cells.winner != ""]
-    steps = schema.read_table(folder, "map", "scenes").set_index("scene")
-    times = _times(schema.read_table(folder, "map", "tidy"))
     profile = profiles.read(folder / "profile.yaml", StudySet(folder).facts["profile"], [])
-    rivals = {*cells.winner, *cells[cells.layer == "libraries"].second} & set(known.variants)
+    asked = contests(StudySet(folder), newcomers, known)
+    if not asked:
+        raise StudyError(f"{folder} has neither mechanisms nor a map that {name} could be timed on: study/run --part map families measures them")
+    rivals = {rival for one in asked for rival in one.rivals(known.variants)}
     contenders = {one.name: one for one in on_usual_pairs(known, profile.blas, [*newcomers, *sorted(rivals - set(newcomers))])}
     present = contexts(folder, contenders.values())
     column = name.replace("/", ".")
     lab = shelf.ToolLab(_Present(folder, present), "added", column, SHARE * sum(part["seconds"] for part in profile.parts.values()))
     _begin(folder, column, lab)
-    scenes = list(dict.fromkeys(cells.scene))
-    chosen = {scene: _rivals(cells[cells.scene == scene], newcomers, contenders) for scene in scenes}
-    verdicts, records = {}, {}
+    verdicts = _gates(lab, asked, contenders)
+    records, share = {}, 0.6 * lab.left / max(1, len(asked) * PASSES[-1])
     for count in PASSES:
-        for scene in scenes:
-            verdicts[scene] = verdicts.get(scene) or _gate(lab, scene, newcomers, contenders)
-            fit = [contenders[one] for one in newcomers if verdicts[scene][one][0] == "ok"]
-            if fit and chosen[scene]:
-                records[scene] = measure(lab, scene, [*fit, *(contenders[one] for one in chosen[scene])], processes=count,
-                                         **_size(lab, times.get(scene, {}), chosen[scene], steps.steps[scene], len(scenes)))
+        for one in asked:
+            fit = [contenders[name] for name in one.newcomers if verdicts[one][name][0] == "ok"]
+            chosen = one.rivals(contenders)
+            if fit and chosen:
+                records[one] = measure(lab, one.scene, [*fit, *(contenders[name] for name in chosen)], processes=count,
+                                       **_size(share, one, chosen))
     lab.display.end()
     context = present[contenders[newcomers[0]].environment]
-    rows = [row | {"commit": context["commit"], "dirty": context["dirty"]} for scene in scenes
-            for row in _rows(cells[cells.scene == scene], known, verdicts[scene], records.get(scene, []), steps.loc[scene])]
+    rows = [row | {"commit": context["commit"], "dirty": context["dirty"]} for one in asked
+            for row in _rows(one, known, verdicts[one], records.get(one, []))]
     return _finish(folder, column, lab, rows)
 
 
@@ -148,54 +196,44 @@ def _begin(folder, column, lab):
     lab.set.clear()
 
 
-def _rivals(cells, newcomers, contenders):
-    """Names: the leader and the runner-up of the libraries, and the leader of all; those that are still there."""
-    libraries = cells[cells.layer == "libraries"]
-    names = dict.fromkeys([*libraries.winner, *libraries.second, *cells[cells.layer == "all"].winner])
-    return [name for name in names if name in contenders and name not in newcomers]
+def _gates(lab, asked, contenders):
+    """{contest: {newcomer: (status, reason)}}"""
+    whole, found = lab.budget, {}
+    lab.budget = GATES * whole
+    for one in asked:
+        said = verdicts(lab, one.scene, [contenders[name] for name in one.newcomers], settings=one.form, each=GATE_S, seconds=2 * GATE_S, drop=True)
+        found[one] = {who.name: ("ok", "") if verdict[0] == "agrees" else verdict for who, verdict in said.items()}
+    lab.budget = whole
+    return found
 
 
-def _gate(lab, scene, newcomers, contenders):
-    """{newcomer: (status, reason)}. Being right takes nothing of the budget of times."""
-    spent = lab.spent
-    said = verdicts(lab, scene, [contenders[name] for name in newcomers], each=GATE_S, seconds=2 * GATE_S)
-    lab.budget += lab.spent - spent
-    return {one.name: ("ok", "") if found[0] == "agrees" else found for one, found in said.items()}
-
-
-def _times(tidy):
-    """{scene: {implementation: µs a step}} that the set has; for the number of samples only."""
-    return {scene: rows.groupby("implementation").step_us.median().dropna().to_dict()
-            for scene, rows in tidy[tidy.kind == "timing"].groupby("scene")}
-
-
-def _size(lab, times, rivals, steps, scenes):
-    """How many samples fill a process's share of the budget, and when one has waited too long for a stretch."""
-    stretches = [1e-6 * steps * times[name] for name in rivals if name in times] or [1.0]
+def _size(share, contest, rivals):
+    """How many samples fill a process's share of the budget, s, and when one has waited too long for a stretch."""
+    stretches = [1e-6 * contest.steps * contest.times[name] for name in rivals if name in contest.times] or [1.0]
     turns = sum(max(one, TURN) for one in (*stretches, max(stretches)))  # the newcomer taken for as slow as the slowest
-    samples = min(max(round(0.6 * lab.budget / (scenes * PASSES[-1]) / turns), 1), MOST_SAMPLES)
+    samples = min(max(round(share / turns), 1), MOST_SAMPLES)
     patience = max(PATIENT * max(stretches), 0.5)
-    return {"repetitions": samples, "settings": ("--patience", f"{patience:.3g}"),
+    return {"repetitions": samples, "settings": (*contest.form, *contest.stretch, "--patience", f"{patience:.3g}"),
             "seconds": 30 + 3 * samples * turns + 5 * patience}
 
 
-def _rows(cells, known, verdicts, records, asked):
-    """A row for each layer of a scene and newcomer that has a place in it. `verdicts`: of the newcomers."""
+def _rows(contest, known, verdicts, records):
+    """A row for each layer and newcomer that has a place in it. `verdicts`: of the newcomers."""
     rows = timing.processes(records)
     good = rows[rows.status == "ok"]
-    wrong = differing(rows) if len(rows) else {}
-    if len(good) and set(zip(good.steps, good.start)) != {(asked.steps, asked.start)}:
+    wrong = timing.differing(rows) if len(rows) else {}
+    if len(good) and set(zip(good.steps, good.start)) != {(contest.steps, contest.start)}:
         wrong = dict.fromkeys(verdicts, "the program times another stretch than the set's") | wrong
-    for cell in cells.itertuples():
+    for cell in contest.led:
         others = [name for name in good.implementation.unique() if name not in verdicts and "+" not in name and name not in wrong
                   and (cell.layer == "all" or name not in known.own)]
         for name in verdicts:
             if cell.layer == "libraries" and name in known.own:
                 continue
             status, reason = _standing(rows[rows.implementation == name], verdicts[name], wrong.get(name))
-            row = {"scene": cell.scene, "variables": cell.variables, "layer": cell.layer, "implementation": name, "before": cell.winner,
-                   "hands": "not timed" if status in NOT_TIMED else "stays", "record": records[0].name if records else "",
-                   "status": status, "reason": reason}
+            row = {"part": contest.part, "scene": contest.scene, "scheme": contest.scheme, "variables": contest.variables, "layer": cell.layer,
+                   "implementation": name, "before": cell.winner, "hands": "not timed" if status in NOT_TIMED else "stays",
+                   "record": records[0].name if records else "", "status": status, "reason": reason}
             yield row | (_compared(rows, name, timing.rank(rows, others), cell.winner) if status == "ok" else {})
 
 
@@ -235,10 +273,11 @@ def _finish(folder, column, lab, rows):
 def tell(table, folder, name):
     print(f"\ntime of {name} over that of the fastest other one, timed anew (95 % interval)")
     for row in table.itertuples():
-        print(f"{row.scene:24} {row.layer:10} " + (f"{row.status}: {row.reason}" if row.status != "ok" or not row.rival else (
+        print(f"{row.scene:24} {row.scheme:12} {row.layer:10} " + (f"{row.status}: {row.reason}" if row.status != "ok" or not row.rival else (
             f"{row.implementation} ÷ {row.rival}: {row.ratio:.3f} ({row.low:.3f} to {row.high:.3f})"
             + ("" if row.hands == "stays" else f": {row.hands}{' hands' if row.hands == 'changes' else ''}"))))
-    counts = Counter(table.hands)
-    print(f"{counts['changes']} cells change hands, {counts['open']} are open, {counts['stays']} stay, "
-          f"{counts['not timed']} were not timed")
+    for part, rows in table.groupby("part", sort=False):
+        counts = Counter(rows.hands)
+        print(f"{part}: {counts['changes']} cells change hands, {counts['open']} are open, {counts['stays']} stay, "
+              f"{counts['not timed']} were not timed")
     print(f"table: {folder / 'added' / name.replace('/', '.')}.csv")

@@ -4,7 +4,6 @@
 # alike; inside each all implementations take turns. A ratio is that of two neighbours, its interval one over pairs.
 import json
 import subprocess
-import sys
 from dataclasses import replace
 
 import pandas
@@ -16,7 +15,7 @@ from study.core import child, locks, profile as profiles
 from study.core.cell import Cell
 from study.core.contender import by_environment, control, on_usual_pairs
 from study.core.executor import program_of
-from study.core.main import set_up
+from study.core.front import build as built, set_up
 from study.core.options import Parser, directory, rounds
 from study.core.studyset import context_of, listed, need_own, select, writable
 from study.tools import shelf
@@ -45,7 +44,7 @@ def against(arguments):
     writable(folder)
     with locks.only_one(folder), locks.only_one_study(options.wait):
         set_up(folder / "run.log")
-        build = _build(revision)
+        build = _build(revision, folder / "run.log")
         table = _measure(folder, options, revision, build)
     write(folder / "ratios.csv", lambda partial: table.to_csv(partial, index=False))
     _tell(table, revision)
@@ -61,7 +60,7 @@ def _resolve(name):
     return found.stdout.strip()
 
 
-def _build(revision):
+def _build(revision, log):
     """Builds `mbs` of `revision` in a work tree of its own; the name of that build (executor.program_of)."""
     build = f"against/{revision}/build"
     tree = (ROOT / program_of(build=build)).parent.parent
@@ -70,12 +69,7 @@ def _build(revision):
                                         ["git", "worktree", "add", "--detach", str(tree), revision]]),
             ["cmake", "-S", str(tree), "-B", str(tree / "build"), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"],
             ["cmake", "--build", str(tree / "build"), "--target", "mbs_program"]]:
-        print(f"{revision}: {' '.join(command[:2])} …", flush=True)
-        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-        if done.returncode != 0:
-            lines = (done.stdout + done.stderr).strip().splitlines()[-15:]
-            print("\n".join(lines), file=sys.stderr)
-            raise StudyError(f"{revision} could not be built, see above")
+        built(command, f"{revision}: {' '.join(command[:2])}", log)
     return build
 
 

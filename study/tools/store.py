@@ -12,8 +12,8 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, read_json
 from analysis.core.parts import parts
 from study.core import locks
-from study.core.main import columns_of
 from study.core.options import Parser, directory
+from study.core.profile import columns_of
 from study.core.studyset import need_records, newest, opened
 from study.tools import fragments
 from study.tools.merge import machine
@@ -71,12 +71,9 @@ def _lacking(kept):
 
 def _faults_of(folder, part, context):
     try:
-        schema.need_unchanged(folder, part)
-        there, tables = records.read_part(folder, part), folder / part / schema.DIGESTS
+        there, tables = schema.records_of(folder, part, context), folder / part / schema.DIGESTS
         if not tables.exists() or read_json(tables)["records"] != schema.digest_of(there):
             yield f"{folder / part}: its tables are not those of its records: run study/figures {folder}"
-        for record in there:
-            records.need_same_origin(record, context, f"{folder}/raw/{part}")
     except StudyError as error:
         yield str(error)
 

@@ -48,6 +48,12 @@ def gains(sets):
     return dict(sorted(found.items(), key=lambda one: one[1][-1]))
 
 
+def claims(sets):
+    """[(id, claim, the paper's number, [its row in each machine's ledger, or None])]"""
+    ledgers = [{(row["id"], row["claim"], row["paper"]): row for row in table(one.folder, "map", "claims").to_dict("records")} for one in sets]
+    return [(*name, [one.get(name) for one in ledgers]) for name in dict.fromkeys(name for one in ledgers for name in one)]
+
+
 def table(folder, part, name):
     """A table of a set; empty where the set lacks the part, or is of an older schema without it."""
     kept = folder / part / schema.DIGESTS

@@ -44,7 +44,8 @@ def merge(arguments):
         machines=about, counts=counts, layers=agreement.LAYERS, alone=alone, held=found, fresh=fresh.facts if fresh else None, rates=machine.RATES,
         rows=table.sort_values("verdict", key=lambda one: one.map(ORDER), kind="stable").to_dict("records"), own=sets[0].registry.own,
         gains={name: one for name, one in machine.gains(sets).items() if name in sets[0].registry.variants},
-        spread={agreement.SOURCES[source]: one for source, one in spread.items()}, mechanisms=agreement.shares(agreement.mechanisms(sets, agreed))))
+        spread={agreement.SOURCES[source]: one for source, one in spread.items()}, mechanisms=agreement.shares(agreement.mechanisms(sets, agreed)),
+        claims=machine.claims(sets)))
     for layer, count in counts.items():
         total = sum(count.values())
         print(f"{agreement.LAYERS[layer]}: {total} common cells, {count['decided']} with one winner everywhere, {count['several']} with several, "

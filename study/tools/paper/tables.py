@@ -176,7 +176,7 @@ def leaves(known):
         if row["link"].endswith("#by-hand"):
             take, _, lost = row["take"].partition("; on families left out ")
             rows.append({"case": row["case"], "take": take, "slower than the fastest": lost.replace(" slower than the fastest library", "")})
-    return table(rows, {"case": r"P{78mm}", "take": r"P{34mm}", "slower than the fastest": r"P{56mm}"})
+    return table(rows, {"case": r"P{22mm}", "take": r"P{94mm}", "slower than the fastest": r"P{52mm}"})
 
 
 def defaults(known):

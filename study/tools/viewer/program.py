@@ -2,11 +2,11 @@
 import json
 import math
 import os
-import subprocess
 from pathlib import Path
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
+from study.core import child
 from study.core.executor import program_of
 from study.tools.viewer.scene import from_description
 
@@ -19,7 +19,7 @@ STEPS_OF_A_RUN = 1e8     # at most: mbs refuses more
 
 def describe(scene):
     """The Scene of `mbs describe SCENE --json`. Raises StudyError with the program's own words."""
-    code, out, words = _run(["describe", scene, "--json"])
+    code, out, words = _run("describe", scene, "--json")
     if code != 0:
         raise StudyError(_failure("describe", code, words))
     try:
@@ -76,17 +76,17 @@ def _affordable(scene, implementation, step, duration, say):
 
 
 def _simulate(scene, implementation, step, duration, more):
-    return _run(["simulate", scene, "--implementation", implementation, "--step", repr(step),
-                 "--duration", repr(duration), *more])
+    return _run("simulate", scene, "--implementation", implementation, "--step", repr(step),
+                "--duration", repr(duration), *more)
 
 
-def _run(arguments):
+def _run(command, scene, *more):
     """(exit status, standard output, lines of standard error)"""
-    executable = ROOT / program_of()  # an absolute MBS_PROGRAM stays as it is
-    if not os.access(executable, os.X_OK):
+    if not os.access(ROOT / program_of(), os.X_OK):  # an absolute MBS_PROGRAM stays as it is
         raise StudyError(f"{program_of()} is not built yet: run study/setup")
-    done = subprocess.run([executable, *map(str, arguments)], stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
-    return done.returncode, done.stdout, [line for line in done.stderr.splitlines() if line.strip()]
+    place = os.path.abspath(scene) if scene.endswith(".json") or os.path.exists(scene) else scene  # a child runs elsewhere
+    ended = child.run([program_of(), command, place, *map(str, more)])
+    return ended.code, ended.stdout, [line for line in ended.stderr.splitlines() if line.strip()]
 
 
 def _last(words):

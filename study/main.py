@@ -4,15 +4,15 @@ import importlib.util
 import os
 import shlex
 import signal
-import subprocess
 import sys
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, read_object
 from analysis.core.parts import parts
 from study.core import child, cluster, locks, profile as profiles
-from study.core.front import Display, duration, run_workflow
+from study.core.front import duration, run_workflow, set_up
 from study.core.options import Parser, directory
+from study.core.profile import columns_of
 from study.core.studyset import listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, writable
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
@@ -103,11 +103,6 @@ def _say_disturbance(folder):
             print(f"{part}: {said}")
 
 
-def columns_of(profile, chosen):
-    """{part: {column: seconds at most}}, in the order of the list."""
-    return {part: profiles.plan_of(part).columns(profile.parts[part]) for part in parts() if part in chosen}
-
-
 def figures(arguments):
     parser = Parser(prog="study/figures", description="Draws every table, figure and page of a set again, from its records.")
     parser.add_argument("set", nargs="?", type=directory, help="its directory (the newest in results/)")
@@ -155,27 +150,6 @@ def dry_run(profile, chosen, folder, only, way):
         total += seconds
     print(f"at most {duration(total)}, besides set-up and build")
     return 0
-
-
-def set_up(log):
-    """Runs study/setup, unless MBS_PROGRAM stands in for what it builds; shows its last line while it works and all of its end
-    if it fails."""
-    if "MBS_PROGRAM" in os.environ:
-        return
-    log.parent.mkdir(parents=True, exist_ok=True)
-    display, lines = Display(), []
-    display.show("set-up")
-    with open(log, "a", encoding="utf-8") as file:
-        process = subprocess.Popen([str(ROOT / "study" / "setup")], stdout=subprocess.PIPE,
-                                   stderr=subprocess.STDOUT, text=True, errors="replace")
-        for line in process.stdout:
-            lines = lines[-20:] + [line.rstrip()]
-            file.write(line)
-            display.show("set-up", line.strip())
-    display.end()
-    if process.wait() != 0:
-        print("\n".join(lines), file=sys.stderr)
-        raise StudyError(f"set-up failed, see above (log: {log})")
 
 
 def need_modules():
