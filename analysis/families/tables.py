@@ -22,14 +22,14 @@ def build(records, view):
     scenes, winners = [], []
     for scheme in SCHEMES:
         looks = {scene: cells_of(rows, scene, {}) for scene, rows in by_scene(by_role.get(f"{scheme}-look", []))}
-        for scene, rows, cells in contests(by_role, scheme):
+        for scene, timed, cells in contests(by_role, scheme):
             known = {"family": family_of(scene), "scene": scene, "scheme": scheme,
                      "variables": about[scene].output.get("variables") if scene in about else None}
-            rival = rival_of(rows, cells, registry)
+            rival = rival_of(timed, cells, registry)
             scenes += [known | {key: value for key, value in cells[name].items() if key in schema["scenes"]}
                        | {"look_us": looks[scene].get(name, {}).get("step_us")}
-                       | ratio_to("to_rival", rows, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
-            winners += [known | {"layer": layer} | _winner(rows, cells, names) for layer, names in layers.items()]
+                       | ratio_to("to_rival", timed, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
+            winners += [known | {"layer": layer} | _winner(timed, cells, names) for layer, names in layers.items()]
     mechanisms = [{"family": family_of(scene), "scene": scene, "dimension": record.output.get("dimension")}
                   | {name: value for name, value in record.output.get("features", {}).items() if name in schema["mechanisms"]}
                   | {"record": record.name} for scene, record in about.items()]
@@ -47,9 +47,8 @@ def family_of(scene):
     return f"{name}, filled" if "fill=" in options else name
 
 
-def _winner(rows, cells, names):
-    there = agreed(cells, names)
-    found = timing.rank(rows[rows.status == "ok"], there) if len(rows) else None
+def _winner(timed, cells, names):
+    found = timing.rank(timed, agreed(cells, names))
     if found is None:
         lost = next((one for one in cells.values() if one["status"] != "ok"), None)
         return {"winner": "", "reason": f"{lost['status']}: {lost['reason']}" if lost else "nobody takes part",
