@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 from analysis.core import records, schema
 from analysis.core.files import ROOT, read_object, write_json, write_text
 from analysis.core.parts import parts
-from analysis.core.style import save, stamp
+from analysis.core.style import save
 from analysis.core.text import between, ends, number
 from analysis.core.view import View
 
@@ -27,7 +27,8 @@ def write_part(folder, part):
     for record in found:
         records.need_same_origin(record, view.context, f"{folder}/raw/{part}")
     tables = schema.write_tables(folder, part, _module(part, "tables").build(found, view), found)
-    figures = _saved(folder / part / "figures", _module(part, "figures").draw(tables, view), view)
+    drawn = _module(part, "figures").draw(tables, view) if (ROOT / "analysis" / part / "figures.py").exists() else {}
+    figures = _saved(folder / part / "figures", drawn, view)
     known = _module(part, "page").context(tables, view)
     write_text(folder / f"{part}.html", template(ROOT / "analysis" / part / "page.html.j2").render(
         **_frame(folder, part), **known, figures=figures, schema=schema.of_part(part)))
@@ -83,7 +84,6 @@ def _saved(base, figures, view):
     """Writes NAME.svg of each figure into `base`; {name: the file in base 64}."""
     about = f"{view.context.get('cpu_model', '')} · {view.facts['date'][:10]} · {view.part}, profile {view.facts['profile']}"
     for name, figure in figures.items():
-        stamp(figure, about)
-        save(figure, base / f"{name}.svg")
+        save(figure, base / f"{name}.svg", about)
     plt.close("all")
     return {name: base64.b64encode((base / f"{name}.svg").read_bytes()).decode() for name in figures}
