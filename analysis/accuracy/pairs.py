@@ -4,6 +4,7 @@ import pandas
 
 from analysis.core import timing
 from analysis.core.outcomes import FINISHED
+from analysis.accuracy.points import USED
 
 STEP = 1.25e-3  # s
 FORMS, PRECISION, REUSE = "form", "precision", "reuse"
@@ -23,7 +24,7 @@ def error_class(error):
 
 def table(scene, made, measured):
     """A row for each pair and implementation of a scene whose settings were both timed."""
-    mine = measured[(measured.role == "pair") & (measured.status != "dropped")]
+    mine = measured.loc[(measured.role == "pair") & (measured.status != "dropped"), measured.columns.intersection([*USED, "layout"])]
     found = []
     for kind, pairs in PAIRS.items():
         for first, second in pairs:

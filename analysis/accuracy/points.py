@@ -14,6 +14,7 @@ KEY = ["scene", "implementation", "setting", "step"]
 LOOK, ROUNDS, RUN = "look", "rounds", "run"  # where a time is from: one process, several, an untimed run
 NOT_JUDGED = "not-judged"                    # the status of a point without a run of its own
 ROLES = {"look": LOOK, "time": ROUNDS}       # of timed cells, before the slash
+USED = [*KEY, "role", "process", "status", "reason", "step_us", "steps", "passes", "variables", "record"]  # of many counters
 
 
 def setting_of(record):
@@ -88,10 +89,9 @@ def _key(row):
 
 def _processes(measured, roles):
     """{key: its rows, without what the budget left out}"""
-    found = {}
-    for row in measured.to_dict("records"):
-        if row["role"] in roles and row["status"] != "dropped":
-            found.setdefault(_key(row), []).append(row)
+    found, asked = {}, measured.role.isin(list(roles)) & (measured.status != "dropped")
+    for row in measured.loc[asked, measured.columns.intersection(USED)].to_dict("records"):
+        found.setdefault(_key(row), []).append(row)
     return found
 
 
@@ -119,7 +119,7 @@ def _seconds(process, row):
 def rounds(table, measured):
     """The rows of a scene's points in rounds as analysis.core.timing ranks them: "implementation" is a label of the
     point. Processes of one number follow each other on the machine, and count as one process."""
-    times = _processes(measured, ("time",))
+    times = _processes(measured[measured.scene.isin(table.scene)], ("time",))
     rows = [{"implementation": label(point), "process": one["process"], "status": one["status"], "seconds": _seconds(one, point)}
             for point in table[table.time_from == ROUNDS].to_dict("records") for one in times[_key(point)]]
     return timing.apart(pandas.DataFrame(rows, columns=["implementation", "process", "status", "seconds"]), "seconds")

@@ -27,7 +27,7 @@ def winners(table, measured, errors, libraries):
     """A row for each scene, layer and required error, also where nobody meets it."""
     rows = []
     for scene, points in table.groupby("scene", sort=False):
-        samples = rounds(points, measured)
+        samples = timing.Paired(rounds(points, measured))
         for layer in LAYERS:
             mine = of_layer(table, layer, libraries)
             reached, dropped = mine[mine.status.isin(FINISHED)].error.min(), (mine.status == "dropped").any()

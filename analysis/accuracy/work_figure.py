@@ -84,9 +84,10 @@ def _series(rows, front, look):
 
 def _panel(axes, rows, series, front, won):
     done = rows[rows.status.isin((*FINISHED, NOT_JUDGED)) & rows.time.notna() & rows.error.notna()]
+    others = [numpy.empty((0, 2))]  # a line with gaps: hundreds of lines would take seconds
     for key, mine in done.sort_values("step").groupby(["implementation", "setting"], sort=False):
         if key not in series:
-            axes.plot(mine.time, mine.error, **OTHERS)
+            others += [mine[["time", "error"]], [[numpy.nan, numpy.nan]]]
     for (name, setting), (line, pieces) in series.items():
         axes.plot([], [], **line, label=f"{name}, {setting}")
         for piece in pieces:
@@ -94,7 +95,7 @@ def _panel(axes, rows, series, front, won):
             axes.hlines(piece.error, piece.time_low, piece.time_high, color=line["color"], linewidth=1.0, zorder=3)
     front = front.sort_values("time")
     axes.plot(front.time, front.error, color="black", linewidth=4, alpha=0.22, zorder=2, drawstyle="steps-post", label="front")
-    axes.plot([], [], **OTHERS, label="others")
+    axes.plot(*numpy.concatenate(others).T, **OTHERS, label="others")
     for required in won.required:
         axes.axhline(required, color="black", linewidth=0.8, linestyle=(0, (2, 2)), zorder=1.5)
     axes.plot(won.time, won.error, linestyle="none", zorder=5, **RING, label=RINGED if len(won) else None)

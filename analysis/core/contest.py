@@ -1,5 +1,5 @@
 # Contests on scenes (study/core/contest.py): what is known of each contender of a scene, and who is fastest there.
-import pandas
+import math
 
 from analysis.core import timing
 from analysis.core.statistics import median
@@ -15,12 +15,13 @@ def grouped(records):
 
 
 def contests(by_role, role):
-    """(scene, rows of its timed processes, {contender: its cell}) for each scene of a role; of some there is a first look."""
+    """(scene, what was timed there, {contender: its cell}) for each scene of a role; of some there is a first look."""
     said = verdicts_of(by_role.get(f"{role}-gate", []))
     looks, timed = (dict(by_scene(by_role.get(one, []))) for one in (f"{role}-look", role))
     for scene, rows in (looks | timed).items():
         look, rows = looks.get(scene, rows[:0]), timed.get(scene, rows[:0])
-        yield scene, rows, {name: looked(one) for name, one in cells_of(look, scene, said).items()} | cells_of(rows, scene, said)
+        cells = {name: looked(one) for name, one in cells_of(look, scene, said).items()} | cells_of(rows, scene, said)
+        yield scene, timing.Paired(rows[rows.status == "ok"]), cells
 
 
 def by_scene(records):
@@ -37,7 +38,10 @@ def verdicts_of(records):
 
 
 def cells_of(rows, scene, verdicts):
-    return {name: _cell(group, verdicts.get((scene, name))) for name, group in rows.groupby("implementation")}
+    groups = {}
+    for row in rows.to_dict("records"):
+        groups.setdefault(row["implementation"], []).append(row)
+    return {name: _cell(groups[name], verdicts.get((scene, name))) for name in sorted(groups)}
 
 
 def looked(cell):
@@ -53,30 +57,32 @@ def looked(cell):
 def _cell(rows, verdict):
     """What is known of a contender in a scene. Who failed in one process has failed; a disturbed process may make one
     look slow. Without a verdict the gate was not asked."""
-    good, lost = rows[rows.status == "ok"], rows[~rows.status.isin(["ok", "dropped", "slower"])]
-    first = lost.iloc[0] if len(lost) else good.iloc[0] if len(good) else rows.iloc[0]
-    row = {"implementation": rows.implementation.iloc[0], "status": "ok", "reason": "", "verdict": "", "record": first.record}
-    if len(lost) or good.empty:
-        return row | {"status": first.status, "reason": first.reason}
+    good = [row for row in rows if row["status"] == "ok"]
+    lost = [row for row in rows if row["status"] not in ("ok", "dropped", "slower")]
+    first = (lost or good or rows)[0]
+    row = {"implementation": first["implementation"], "status": "ok", "reason": "", "verdict": "", "record": first["record"]}
+    if lost or not good:
+        return row | {"status": first["status"], "reason": first["reason"]}
     if verdict:
         row["verdict"] = verdict[0]
         if verdict[0] not in ("agrees", "dropped"):
             row |= {"status": verdict[0], "reason": verdict[1]}
-    step, passes = median(good.step_us), good.passes.iloc[0] / good.steps.iloc[0]
-    row |= {"processes": len(good), "step_us": step, "low_us": good.step_us.min(),
-            "high_us": good.step_us.max(), "passes": passes, "pass_us": step / passes, "setup_us": median(good.setup_us),
-            "memory_bytes": median(good.memory_bytes), "position_error": good.get("position_error", pandas.Series([None])).iloc[0]}
-    if "phase_other" in good and good.phase_other.notna().all():
-        shares = {phase: median(good[f"phase_{phase}"]) for phase in PHASES}
+    values = lambda key: [one.get(key) for one in good]
+    step, passes = median(values("step_us")), first["passes"] / first["steps"]
+    row |= {"processes": len(good), "step_us": step, "low_us": min(values("step_us")), "high_us": max(values("step_us")),
+            "passes": passes, "pass_us": step / passes, "setup_us": median(values("setup_us")),
+            "memory_bytes": median(values("memory_bytes")), "position_error": first.get("position_error")}
+    shares = {phase: median(values(f"phase_{phase}")) for phase in PHASES}
+    if not math.isnan(shares["other"]):
         row |= {f"{phase}_us": step * share / sum(shares.values()) for phase, share in shares.items()}
     return row
 
 
-def ratio_to(what, rows, name, other, cell):
+def ratio_to(what, paired, name, other, cell):
     """{what: time of `name` over that of `other`, with its interval}, where both were timed."""
     if cell["status"] != "ok" or other is None or name == other:
         return {what: 1.0} if name == other and cell["status"] == "ok" else {}
-    found = timing.ratio(rows, name, other)
+    found = timing.ratio(paired, name, other)
     return {what: found.value, f"{what}_low": found.low, f"{what}_high": found.high}
 
 
@@ -84,7 +90,7 @@ def agreed(cells, names):
     return [name for name in names if name in cells and cells[name]["status"] == "ok" and cells[name]["verdict"] == "agrees"]
 
 
-def rival_of(rows, cells, registry):
+def rival_of(paired, cells, registry):
     """The fastest library of a scene, of those that the gate agrees with; None if there is none."""
-    found = timing.rank(rows[rows.status == "ok"], agreed(cells, registry.libraries))
+    found = timing.rank(paired, agreed(cells, registry.libraries))
     return found.winner if found else None

@@ -1,4 +1,6 @@
 # The one list of parts, and of pages beside theirs: study/parts.yaml.
+from functools import cache
+
 import yaml
 
 from analysis.core.files import ROOT
@@ -6,6 +8,7 @@ from analysis.core.files import ROOT
 LIST = ROOT / "study" / "parts.yaml"
 
 
+@cache
 def parts():
     """{name: its question}, in order."""
     return _listed()["parts"]

@@ -10,6 +10,7 @@ import math
 import re
 import tarfile
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 from analysis.core.errors import StudyError
@@ -50,16 +51,16 @@ class Record:
     def done(self):
         return self.status == RUN_ENDED
 
-    @property
+    @cached_property
     def options(self):
-        """{option: value} of a cell whose options all have one."""
-        words = self.cell["settings"]
-        return {key.removeprefix("--"): value for key, value in zip(words[::2], words[1::2])}
+        """{option: its value as text, "" without one} of its cell."""
+        words = [str(word) for word in self.cell["settings"]]
+        return {word.removeprefix("--"): "" if after.startswith("--") else after
+                for word, after in zip(words, [*words[1:], "--"]) if word.startswith("--")}
 
     def option(self, name):
         """The number behind an option of its cell; NaN without one."""
-        words = [str(word) for word in self.cell["settings"]]
-        return float(words[words.index(name) + 1]) if name in words else math.nan
+        return float(self.options.get(name.removeprefix("--"), math.nan))
 
     @property
     def verdicts(self):

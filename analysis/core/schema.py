@@ -1,6 +1,7 @@
 # The one schema of all tables: analysis/PART/schema.yaml says of every table its columns, each [type, unit, meaning].
 # Tables are written and read through it, and the pages print it.
 import math
+from functools import cache
 from pathlib import Path
 
 import pandas
@@ -14,6 +15,7 @@ TYPES = ("text", "number", "flag")
 DIGESTS = "tables.json"  # of a part: those of its records and tables
 
 
+@cache
 def of_part(part):
     return read(ROOT / "analysis" / part / "schema.yaml")
 

@@ -12,7 +12,7 @@ from analysis.core import schema
 from analysis.core.disturbance import disturbance, told
 from analysis.core.files import ROOT, read_object, write_json, write_text
 from analysis.core.parts import pages, parts
-from analysis.core.style import save, stamp
+from analysis.core.style import save
 from analysis.core.text import between, ends, number
 from analysis.core.view import View
 
@@ -25,7 +25,8 @@ def write_part(folder, part):
     view = View(folder, part)
     found = schema.records_of(folder, part, view.context)
     tables = schema.write_tables(folder, part, _module(part, "tables").build(found, view), found)
-    figures = _saved(folder / part / "figures", _module(part, "figures").draw(tables, view), view)
+    drawn = _module(part, "figures").draw(tables, view) if (ROOT / "analysis" / part / "figures.py").exists() else {}
+    figures = _saved(folder / part / "figures", drawn, view)
     known, others = _module(part, "page").context(tables, view), disturbance(found)
     write_text(folder / f"{part}.html", template(ROOT / "analysis" / part / "page.html.j2").render(
         **_frame(folder, part), **known, disturbance=told(others), figures=figures, schema=schema.of_part(part)))
@@ -82,7 +83,6 @@ def _saved(base, figures, view):
     """Writes NAME.svg of each figure into `base`; {name: the file in base 64}."""
     about = f"{view.context.get('cpu_model', '')} · {view.facts['date'][:10]} · {view.part}, profile {view.facts['profile']}"
     for name, figure in figures.items():
-        stamp(figure, about)
-        save(figure, base / f"{name}.svg")
+        save(figure, base / f"{name}.svg", about)
     plt.close("all")
     return {name: base64.b64encode((base / f"{name}.svg").read_bytes()).decode() for name in figures}

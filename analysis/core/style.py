@@ -6,6 +6,7 @@ import matplotlib.pyplot as plt
 import numpy
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
+from matplotlib.transforms import Bbox
 
 from analysis.core.files import write
 
@@ -142,16 +143,29 @@ def plain(value):
     return f"${'' if digits == '1' else digits + '·'}10^{{{int(power)}}}$"
 
 
-def stamp(figure, text):
-    """A line above all of a figure: of which machine and day it is, wherever it is shown."""
-    figure.draw_without_rendering()  # which is when layouts place what there is
-    box, (width, height) = figure.get_tightbbox(), figure.get_size_inches()
-    figure.set_layout_engine("none")
-    figure.text(box.x0 / width, (box.y1 + 0.08) / height, text, fontsize=8, color=GREY, va="bottom")
-
-
-def save(figure, path):
-    """Writes a figure in the format of the suffix of `path`; equal figures give equal files."""
-    kind = Path(path).suffix
-    write(path, lambda partial: figure.savefig(partial, format=kind[1:] or "png", bbox_inches="tight",
+def save(figure, path, above=""):
+    """Writes a figure in the format of the suffix of `path`; equal figures give equal files. `above`: a line over all of it, which
+    says of which machine and day it is, wherever it is shown."""
+    box, kind, (width, height) = _placed(figure), Path(path).suffix, figure.get_size_inches()
+    if above:
+        line = figure.text(box.x0 / width, (box.y1 + 0.08) / height, above, fontsize=8, color=GREY, va="bottom")
+        box = Bbox.union([box, line.get_window_extent().transformed(figure.dpi_scale_trans.inverted())])
+    box = box.padded(matplotlib.rcParams["savefig.pad_inches"])
+    write(path, lambda partial: figure.savefig(partial, format=kind[1:] or "png", bbox_inches=box,
                                                metadata={"Date": None} if kind == ".svg" else None))
+
+
+def _placed(figure):
+    """The box of all that a figure has, inches; its layout is made once, where `savefig` with "tight" would draw all of it for that.
+    Minor ticks without labels take no room, but time."""
+    minor = {axis.minor: axis.minor.locator for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)
+             if isinstance(axis.minor.formatter, NullFormatter)}
+    for ticker in minor:
+        ticker.locator = NullLocator()
+    if figure.get_layout_engine():
+        figure.get_layout_engine().execute(figure)
+        figure.set_layout_engine(None)
+    box = figure.get_tightbbox().frozen()
+    for ticker, locator in minor.items():
+        ticker.locator = locator
+    return box

@@ -58,13 +58,13 @@ def table(engines, ours, rounds, own):
     rows = []
     for subject, theirs in engines.groupby("subject", sort=False):
         timed = samples(rounds[rounds.subject == subject])
-        mine = ours[ours.subject == subject]
+        mine, paired = ours[ours.subject == subject], timing.Paired(timed)
         sides = {side: (every, _timed(every, OURS, timed))
                  for side in SIDES for every in [of_side(mine, side, own)]}
         for name, of_engine in _timed(theirs, ENGINE, timed).groupby("name", sort=False):
             for limit, best in _reached(of_engine):
                 for side, (every, compared) in sides.items():
-                    rows.append(_row(subject, name, limit, best, side, _fastest(compared, best.error), every, timed))
+                    rows.append(_row(subject, name, limit, best, side, _fastest(compared, best.error), every, paired))
     return pandas.DataFrame(rows)
 
 
@@ -73,10 +73,10 @@ def native(engines, rounds):
     found = []
     for subject, theirs in engines.groupby("subject", sort=False):
         timed = samples(rounds[rounds.subject == subject])
-        done = _timed(theirs, ENGINE, timed)
+        done, paired = _timed(theirs, ENGINE, timed), timing.Paired(timed)
         for row in done[done.name.str.endswith(NATIVE)].to_dict("records"):
             generic = row | {"name": row["name"].removesuffix(NATIVE)}
-            ratio = timing.ratio(timed, key(generic), row["key"])
+            ratio = timing.ratio(paired, key(generic), row["key"])
             if ratio.value == ratio.value:
                 found.append({"subject": subject, "engine": generic["name"], "setting": row["setting"], "over": row["over"],
                               "value": row["value"], "native_time": row["time"], "ratio": ratio.value, "low": ratio.low,
@@ -118,13 +118,13 @@ def _fastest(rows, error):
     return None if meeting.empty else meeting.loc[meeting.time.idxmin()]
 
 
-def _row(subject, engine, limit, best, side, mine, every, timed):
+def _row(subject, engine, limit, best, side, mine, every, paired):
     found = {"subject": subject, "engine": engine, "limit": limit, "side": side, "engine_setting": best.setting,
              "over": best.over, "engine_value": best.value, "engine_status": best.status, "engine_error": best.error,
              "engine_time": best.time, "record": best.record, "reason": ""}
     if mine is None:
         return found | {"reason": unreached(every, best.error)}
-    ratio = timing.ratio(timed, best.key, mine.key)
+    ratio = timing.ratio(paired, best.key, mine.key)
     return found | {"implementation": mine["name"], "setting": mine.setting, "step": mine.value, "error": mine.error,
                     "time": mine.time, "ratio": ratio.value, "low": ratio.low, "high": ratio.high,
                     "record": f"{best.record} {mine.record}"}

@@ -38,8 +38,8 @@ def _engine(record, subject):
 
 
 def _ours(record, subject):
-    words, output = record.cell["settings"], record.output
-    options = {key: value for key, value in _options(words) if key not in ("duration", "judge-every", "repeats")}
+    output = record.output
+    options = {key: value for key, value in record.options.items() if key not in ("duration", "judge-every", "repeats")}
     step, scheme = float(options.pop("step")), options.pop("scheme")
     times = output.get("least_us") or output.get("step_us") or {}
     whole = output.get("status") in FINISHED
@@ -47,14 +47,6 @@ def _ours(record, subject):
             "setting": ", ".join([scheme, *(f"{key} {value}".strip() for key, value in options.items())]),
             "time": 1e-6 * times["mean"] * output["steps"] / output["duration"] if times else None,
             "error": subject.our_error(record) if whole and record.role == OURS else None}
-
-
-def _options(words):
-    """(option, value) pairs of a command line; an option without a value has ""."""
-    for place, word in enumerate(words):
-        if word.startswith("--"):
-            value = words[place + 1] if place + 1 < len(words) else "--"
-            yield word.removeprefix("--"), "" if value.startswith("--") else value
 
 
 def key(one):

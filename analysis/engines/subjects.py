@@ -62,8 +62,7 @@ class Subject:
 
     def distance(self, times, places):
         """Largest distance of `places` (point, axis, time) from where they should be."""
-        known = (andrews.positions if self.name == ANDREWS else positions)(times)
-        return float(numpy.hypot(*(places - known).swapaxes(0, 1)).max())
+        return float(numpy.hypot(*(places - _known(self.name, tuple(times))).swapaxes(0, 1)).max())
 
 
 OTHERS = {one.name: one for one in (
@@ -79,6 +78,12 @@ def subject_of(name):
     loops, regular = int(name.split("-")[2]), name.endswith("-regular")
     return Subject(name, f"N = {loops}" + (f", first {REGULAR_S:g} s" if regular else ""), f"four-bar:{loops}",
                    REGULAR_S if regular else DURATION_S, ("--loops", loops), regular, loops)
+
+
+@functools.cache
+def _known(name, times):
+    """Where the points of a subject should be; most runs are judged at the same times."""
+    return (andrews.positions if name == ANDREWS else positions)(numpy.array(times))
 
 
 def positions(times, longest=LONGEST):

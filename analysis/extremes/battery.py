@@ -36,20 +36,21 @@ def table(records, registry):
             times = record.series.get("t", [])
             same = place, len(times)  # all runs of a cell are judged at the same times
             if same not in truths:
-                truths[same] = judge.true_motion(cell, references.get(cell.name, {}), times)
+                motion = judge.true_motion(cell, references.get(cell.name, {}), times)
+                truths[same] = judge.allowed(cell, motion[0]), *motion
             found.append((order, _row(record, cell, name, settings[record.role], *truths[same])))
     return pandas.DataFrame([row for _, row in sorted(found, key=lambda one: one[0])])
 
 
-def _row(record, cell, name, setting, solutions, own, truth):
+def _row(record, cell, name, setting, limit, solutions, own, truth):
     status, reason = of_run(record)
     # Its own word, where it knows the exact motion, covers instants and points that are not kept.
     reported = (record.output.get("position_error_max") or 0.0) / cell.length
-    error = judge.error_of(record, solutions, cell.length)
+    far = judge.apart(record, solutions, cell.length)
+    error = judge.error_of(record, far)
     error = error if not reported > error else reported
-    limit = judge.allowed(cell, solutions)
     beyond = limit + (own or 0.0)
-    since = judge.wrong_from(record, solutions, cell.length, beyond)
+    since = judge.wrong_from(record, far, beyond)
     harmless = judge.harmless(cell, record.output.get("failed_at"))
     verdict = verdicts.verdict(status, error, beyond, since, harmless) if solutions and record.done and status not in NOT_RUN else ""
     return {"axis": cell.axis, "value": cell.label, "implementation": name, "setting": setting, "status": status,

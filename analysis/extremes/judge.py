@@ -50,21 +50,22 @@ def allowed(cell, solutions):
     return CLASS * min(1.0, float(way)) if way > STILL else CLASS
 
 
-def error_of(record, solutions, length):
-    """Largest distance of a point that the record keeps from where it should be, at any time, in lengths; where several
-    motions are possible, from the nearest of them. NaN where it has not all of its motion, or nothing is known."""
-    if of_run(record)[0] not in WHOLE or not solutions or not record.series.get("t"):
-        return float("nan")
-    return min(distances(record.series, solution, length).max() for solution in solutions)
+def apart(record, solutions, length):
+    """Of each motion that is possible, at each instant kept, the largest distance of a point from where it should be, in
+    lengths; [] where nothing is known."""
+    return [distances(record.series, solution, length) for solution in solutions] if record.series.get("t") else []
 
 
-def wrong_from(record, solutions, length, limit):
+def error_of(record, far):
+    """The largest of a run's distances, `apart`, where several motions are possible from the nearest of them. NaN where it has
+    not all of its motion, or nothing is known."""
+    return min(one.max() for one in far) if far and of_run(record)[0] in WHOLE else float("nan")
+
+
+def wrong_from(record, far, limit):
     """The first instant kept at which it is off by more than `limit` lengths, s; None if it is at none."""
-    times = record.series.get("t", [])
-    if not times or not solutions:
-        return None
-    off = ~(numpy.min([distances(record.series, solution, length) for solution in solutions], axis=0) <= limit)
-    return float(times[off.argmax()]) if off.any() else None
+    off = ~(numpy.min(far, axis=0) <= limit) if far else numpy.zeros(0, bool)
+    return float(record.series["t"][off.argmax()]) if off.any() else None
 
 
 def harmless(cell, failed_at):

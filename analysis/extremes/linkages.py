@@ -3,7 +3,7 @@
 # Each point is where two loci meet; `side` says at which of their two meetings. As long as a linkage does not come to the place
 # where both meetings are one, its change point, the side stays what it was. That is the closed form.
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 
 import numpy
 from scipy.interpolate import CubicHermiteSpline
@@ -240,7 +240,7 @@ class Linkage(Motion):
         return {key: value for key, value in found.items() if value}
 
 
-@lru_cache(maxsize=64)
+@cache
 def _turned(linkage, end):
     """The angle of a free crank over time until `end`: dt = sqrt(I / 2(E - V)) d angle, by Gauss' rule of four points in each of many cells."""
     sign, (inertia, potential) = numpy.sign(linkage.rate), linkage.energy(numpy.array([linkage.start]))

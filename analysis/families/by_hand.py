@@ -42,16 +42,16 @@ def summary(cases):
 
 
 def limit(values, costs):
-    """(cost, limit, who is taken below it, who above): of the least cost. costs: a row for each of values, a column for each name."""
+    """(cost, limit, the column that is taken below it, that above): of the least cost. costs: a row for each of values."""
     order = numpy.argsort(values, kind="stable")
-    values, below = values[order], numpy.cumsum(costs.to_numpy()[order], axis=0)
+    values, below = values[order], numpy.cumsum(costs[order], axis=0)
     total = below[-1]
     places = numpy.flatnonzero(values[1:] > values[:-1])
     if not len(places):
-        return total.min(), numpy.inf, *[costs.columns[total.argmin()]] * 2
+        return total.min(), numpy.inf, *[total.argmin()] * 2
     cost = below[places].min(axis=1) + (total - below[places]).min(axis=1)
     best = places[cost.argmin()]
-    return cost.min(), _round(values[best], values[best + 1]), costs.columns[below[best].argmin()], costs.columns[(total - below[best]).argmin()]
+    return cost.min(), _round(values[best], values[best + 1]), below[best].argmin(), (total - below[best]).argmin()
 
 
 def _round(least, most):
@@ -63,21 +63,22 @@ def _round(least, most):
 def _cases(data, scheme, worth, unknown):
     """[(where, library)]"""
     costs = data.costs(scheme).fillna(unknown)
-    costs, features = costs.mul(data.weights(costs.index), axis=0), data.features.loc[costs.index]
-    total = costs.sum()
-    tried = [(total.min(), [(EVERYWHERE, total.idxmin())])]
+    features, names = data.features.loc[costs.index], costs.columns
+    costs = costs.to_numpy() * data.weights(costs.index)[:, None]
+    total = costs.sum(axis=0)
+    tried = [(total.min(), [(EVERYWHERE, total.argmin())])]
     for first, second in permutations(NUMBERS[scheme]):
         cost, *found = limit(features[first].to_numpy(), costs)
         tried.append((cost, _parted(EVERYWHERE, first, *found)))
         values = sorted(set(features[first]))
         for at in (_round(*ends) for ends in zip(values, values[1:])):
             low = (features[first] < at).to_numpy()
-            parts = _parted(EVERYWHERE, first, at, costs[low].sum().idxmin(), costs[~low].sum().idxmin())
+            parts = _parted(EVERYWHERE, first, at, costs[low].sum(axis=0).argmin(), costs[~low].sum(axis=0).argmin())
             for side, inside in ((0, low), (1, ~low)):
                 cost, *found = limit(features[second].to_numpy()[inside], costs[inside])
                 split = _parted(parts[side][0], second, *found)
-                tried.append((cost + costs[~inside].sum().min(), [*parts[:side], *split, *parts[side + 1:]]))
-    return min(tried, key=lambda one: one[0] + worth * len(one[1]))[1]
+                tried.append((cost + costs[~inside].sum(axis=0).min(), [*parts[:side], *split, *parts[side + 1:]]))
+    return [(where, names[place]) for where, place in min(tried, key=lambda one: one[0] + worth * len(one[1]))[1]]
 
 
 def _parted(where, number, at, below, above):

@@ -132,8 +132,9 @@ def _alone(data):
                 left = one.index[[data.family[scene] == family for scene in one.index]]
                 if len(left) and len(rest.losses[scheme]):
                     costs = rest.costs(scheme).fillna(UNKNOWN)
-                    _, limit, below, above = by_hand.limit(rest.features.loc[costs.index, feature].to_numpy(), costs.mul(rest.weights(costs.index), axis=0))
-                    losses += [one.loc[scene, below if data.features.loc[scene, feature] < limit else above] for scene in left]
+                    _, limit, below, above = by_hand.limit(rest.features.loc[costs.index, feature].to_numpy(),
+                                                           costs.to_numpy() * rest.weights(costs.index)[:, None])
+                    losses += [one.loc[scene, costs.columns[below if data.features.loc[scene, feature] < limit else above]] for scene in left]
         rows.append({"feature": feature, "mean_loss": numpy.nanmean(losses), "worst_loss": numpy.nanmax(losses), "scenes": len(losses), "record": data.records})
     return pandas.DataFrame(rows)
 

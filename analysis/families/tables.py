@@ -5,6 +5,7 @@ import pandas
 from analysis.core import timing
 from analysis.core.contest import agreed, by_scene, cells_of, contests, grouped, ratio_to, rival_of
 from analysis.core.controls import controls
+from analysis.core.registry import TWIN
 from analysis.core.schema import conform, of_part
 from analysis.core.statistics import power_law_exponent, power_law_interval
 from analysis.families import defaults
@@ -23,15 +24,16 @@ def build(records, view):
     scenes, winners, twins = [], [], []
     for scheme in SCHEMES:
         looks = {scene: cells_of(rows, scene, {}) for scene, rows in by_scene(by_role.get(f"{scheme}-look", []))}
-        for scene, rows, cells in contests(by_role, scheme):
+        for scene, timed, cells in contests(by_role, scheme):
             known = {"family": family_of(scene), "scene": scene, "scheme": scheme,
                      "variables": about[scene].output.get("variables") if scene in about else None}
-            rival = rival_of(rows, cells, registry)
+            rival = rival_of(timed, cells, registry)
             scenes += [known | {key: value for key, value in cells[name].items() if key in schema["scenes"]}
                        | {"look_us": looks[scene].get(name, {}).get("step_us")}
-                       | ratio_to("to_rival", rows, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
-            twins += [{"scheme": scheme} | row for row in controls(rows).to_dict("records")]
-            winners += [known | {"layer": layer} | _winner(rows, cells, names) for layer, names in layers.items()]
+                       | ratio_to("to_rival", timed, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
+            winners += [known | {"layer": layer} | _winner(timed, cells, names) for layer, names in layers.items()]
+        twins += [{"scheme": scheme} | row for _, rows in by_scene([one for one in by_role.get(scheme, []) if _has_twin(one)])
+                  for row in controls(rows).to_dict("records")]
     mechanisms = [{"family": family_of(scene), "scene": scene, "dimension": record.output.get("dimension")}
                   | {name: value for name, value in record.output.get("features", {}).items() if name in schema["mechanisms"]}
                   | {"record": record.name} for scene, record in about.items()]
@@ -43,15 +45,18 @@ def build(records, view):
                      "orderings": orderings(about), "controls": pandas.DataFrame(twins)} | judged(tables, registry)
 
 
+def _has_twin(record):
+    return any(name.endswith(TWIN) for name in record.cell["contenders"])
+
+
 def family_of(scene):
     """The four-bar with artificial fill is no mechanism: a family of its own."""
     name, _, options = scene.partition(":")
     return f"{name}, filled" if "fill=" in options else name
 
 
-def _winner(rows, cells, names):
-    there = agreed(cells, names)
-    found = timing.rank(rows[rows.status == "ok"], there) if len(rows) else None
+def _winner(timed, cells, names):
+    found = timing.rank(timed, agreed(cells, names))
     if found is None:
         lost = next((one for one in cells.values() if one["status"] != "ok"), None)
         return {"winner": "", "reason": f"{lost['status']}: {lost['reason']}" if lost else "nobody takes part",

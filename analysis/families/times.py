@@ -44,4 +44,5 @@ def predicted(found, features):
 
 
 def _matrix(terms, features):
-    return numpy.array([features[features_of(term)].prod(axis=1) for term in terms], float).T
+    ones = numpy.ones(len(features))
+    return numpy.array([numpy.prod([ones, *(features[name] for name in features_of(term))], axis=0) for term in terms], float).T

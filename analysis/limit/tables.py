@@ -22,27 +22,27 @@ def build(records, view):
              "steps": [], "scenes": [], "leads": [], "batches": _batches(by_role.get("batch", [])),
              "sweeps": _sweeps(by_role.get("sweep", []))}
     for role in (*FORMS, *KINDS):
-        for scene, rows, cells in contests(by_role, role):
+        for scene, timed, cells in contests(by_role, role):
             names = sorted((name for name in cells if name in order), key=order.get)  # without anchors of other pairs
             if role in FORMS:
                 loops = int(scene.partition(":")[2])
                 known = {"scene": scene, "kind": "four-bar", "dimension": 2, "variables": 2 * loops + 2}
                 found["steps"] += [{"form": FORMS[role], "loops": loops, "variables": known["variables"]} | cells[name]
-                                   | ratio_to("multiple", rows, name, LIMIT, cells[name]) for name in names]
+                                   | ratio_to("multiple", timed, name, LIMIT, cells[name]) for name in names]
             else:
                 known = {"scene": scene, "kind": role} | {key: about.get(scene, {}).get(key) for key in ("dimension", "variables")}
-                rival = rival_of(rows, cells, registry)
-                found["scenes"] += [known | cells[name] | ratio_to("to_rival", rows, name, rival, cells[name]) for name in names]
+                rival = rival_of(timed, cells, registry)
+                found["scenes"] += [known | cells[name] | ratio_to("to_rival", timed, name, rival, cells[name]) for name in names]
             if role in KINDS or set(registry.libraries) & set(cells):
-                found["leads"] += [known | one for one in _leads(rows, cells, registry)]
+                found["leads"] += [known | one for one in _leads(timed, cells, registry)]
     known = of_part("limit")
     tables = {name: conform(pandas.DataFrame(rows), known[name], f"limit/{name}.csv") for name, rows in found.items()}
     return tables | {"held": pandas.DataFrame(must_hold(registry.own, tables) if registry.own else [])}
 
 
-def _leads(rows, cells, registry):
+def _leads(timed, cells, registry):
     """A row for each variant of our own: how many times faster than the fastest library it is; or why that is not known."""
-    rival = rival_of(rows, cells, registry)
+    rival = rival_of(timed, cells, registry)
     for name in (name for name in registry.variants if name in registry.own and name in cells):
         cell = cells[name]
         row = {"implementation": name, "rival": rival, "status": cell["status"],
@@ -53,7 +53,7 @@ def _leads(rows, cells, registry):
         elif rival is None:
             yield row | {"status": "dropped", "reason": "no library was timed that the gate agrees with"}
         else:
-            found = timing.ratio(rows, rival, name)
+            found = timing.ratio(timed, rival, name)
             yield row | {"lead": found.value, "low": found.low, "high": found.high}
 
 
@@ -82,15 +82,11 @@ def _batches(records):
 def _batch(record):
     cell = record.cell
     for name in cell["contenders"]:
-        row = {"scene": cell["scene"], "sets": int(record.option("--sets")), "implementation": name, "environment": "",
-               "process": cell["number"], "status": record.status, "reason": record.reason, "record": record.name}
-        found = record.output.get("rows", {}).get(f"{name}/{cell['scene']}/batch", {})
-        if record.done and (found.get("error_occurred") or not found):
-            status, _, reason = found.get("error_message", "crashed: mbs bench gave no row of it").partition(": ")
-            row |= {"status": status, "reason": reason}
-        elif record.done:
-            row |= {"status": "ok"} | {key: found[key] for key in ("variables", "lanes", "step_us", "alone_us", "gain")}
-        yield row
+        found = record.output.get("rows", {}).get(f"{name}/{cell['scene']}/batch")
+        status, reason = timing.outcome(record, found)
+        yield {"scene": cell["scene"], "sets": int(record.option("--sets")), "implementation": name, "environment": "",
+               "process": cell["number"], "status": status, "reason": reason, "record": record.name} | {
+               key: found[key] for key in ("variables", "lanes", "step_us", "alone_us", "gain") if status == "ok"}
 
 
 def _sweeps(records):

@@ -1,7 +1,7 @@
 # Claims about the starting versions and the symbolic preprocessing: T1, T2, C2.
-from analysis.core.timing import rank, ratio
+from analysis.core.timing import PHASES, rank, ratio, student
 from analysis.map import paper
-from analysis.map.compare import Versus, over_sizes, profiled, share_interval
+from analysis.map.compare import Versus, over_sizes
 from analysis.map.ledger import Rule, compared, factor, judged, unmeasured
 from analysis.map.results import with_samples
 
@@ -19,15 +19,16 @@ def table1(results):
 
 
 def _share(results, kind, size, group, phases, share):
-    name = paper.STARTING[kind]
-    cell = profiled(results, name, size)
+    name, rows = paper.STARTING[kind], results.tidy
+    cell = rows[(rows.kind == "phases") & (rows.status == "ok") & (rows.implementation == name) & (rows.variables == size)]
     head = "T1", f"starting {kind} version, {size} variables: {group} takes {share} % of the time", f"{share} %"
     rule = Rule(share - SHARE_BAND, share + SHARE_BAND)
     if len(cell) < PROCESSES:
         what = f"{len(cell)} process{'es' if len(cell) > 1 else ''} of {name} profiled" if len(cell) else f"{name} not profiled"
         return unmeasured(head, f"{what} at n = {size}; an interval needs {PROCESSES}.", rule, " %")
-    shares = [100 * value for value in share_interval(cell, phases)]
-    return judged(head, [(f"n = {size}", shares, " ".join(cell.record))], rule, name, " %")
+    mine, whole = (cell[[f"phase_{phase}" for phase in some]].sum(axis=1) for some in (phases, PHASES))
+    middle, half, _ = student(100 * mine / whole)
+    return judged(head, [(f"n = {size}", (middle, middle - half, middle + half), " ".join(cell.record))], rule, name, " %")
 
 
 def table2_claims(results):

@@ -1,8 +1,6 @@
 # Comparisons within a scene that figures and claims share.
 from dataclasses import dataclass
 
-from analysis.core.timing import PHASES
-
 COVERED = 82  # variables that a run has to reach to speak of the paper's figures of 10 to 160
 
 
@@ -40,21 +38,3 @@ def over_sizes(results, slow, fast, low=0, high=float("inf"), reaching=0):
     found = [best(results, results.natural(size), slow, fast) for size in results.sizes if low <= size <= high]
     found = [one for one in found if one]
     return found if found and found[-1].size >= reaching else []
-
-
-def profiled(results, name, size):
-    """Rows of the profiled processes of a contender at a size."""
-    tidy = results.tidy
-    return tidy[(tidy.kind == "phases") & (tidy.status == "ok") & (tidy.implementation == name) & (tidy.variables == size)]
-
-
-def share_interval(rows, phases):
-    """(share, low, high) of `phases` together: mean over the profiled processes with Student's interval."""
-    from scipy import stats
-    shares = (rows[[f"phase_{phase}" for phase in phases]].sum(axis=1)
-              / rows[[f"phase_{phase}" for phase in PHASES]].sum(axis=1))
-    middle = float(shares.mean())
-    if len(shares) < 2:
-        return middle, 0.0, 1.0
-    half = stats.t.ppf(0.975, len(shares) - 1) * float(shares.std(ddof=1)) / len(shares) ** 0.5
-    return middle, middle - half, middle + half

@@ -84,6 +84,7 @@ class Results:
         """Sizes that were timed at their own fill."""
         return sorted(self.samples(natural_only=True).variables.unique())
 
+    @cache
     def alternatives(self, variant):
         """Rows of `variant` at natural fill on all pairs that it was timed on."""
         rows = self.timing

@@ -1,10 +1,10 @@
 # The rows of the tidy table, of the scenes and of the gate, from records.
 import pandas
 
+from analysis.core import timing
 from analysis.core.registry import NULL
 from analysis.core.schema import of_part
 from analysis.core.statistics import median
-from analysis.core.timing import processes
 from analysis.map.timed import timed_rows
 
 QUESTION = ["constraints", "start", "steps", "step", "passes", "penalty", "tolerance", "fill_seed", "record"]
@@ -36,7 +36,7 @@ def tidy(records):
 
 def _of(records, *roles):
     """Rows of the processes of these roles."""
-    return processes([one for one in records if one.role in roles])
+    return timing.processes([one for one in records if one.role in roles])
 
 
 def _pairs(rows):
@@ -63,15 +63,14 @@ def _rejected(records):
 def _operations(records):
     """A row for each operation that was timed alone, and for each contender of a process that gave none."""
     for one, cell in ((one, one.cell) for one in records if one.role == "operations"):
-        base = {"scene": cell["scene"], "environment": cell["environment"], "process": cell["number"], "record": one.name,
-                "status": one.status, "reason": one.reason}
+        base = {"scene": cell["scene"], "environment": cell["environment"], "process": cell["number"], "record": one.name}
         if not one.done:
-            yield from (base | {"implementation": name} for name in cell["contenders"])
+            yield from (base | {"implementation": name, "status": one.status, "reason": one.reason} for name in cell["contenders"])
         for name, row in one.output.get("rows", {}).items():
             contender = next((one for one in cell["contenders"] if name.startswith(f"{one.partition('+')[0]}/")), "")
-            known = base | {"implementation": contender, "operation": name.rsplit("/", 1)[-1]}
-            yield known | ({"status": "failed", "reason": row.get("error_message", "")} if row.get("error_occurred") else
-                           {"status": "ok", "reason": "", "samples": tuple(row["cpu_us"]), "operation_us": median(row["cpu_us"])})
+            status, reason = timing.outcome(one, row)
+            yield base | {"implementation": contender, "operation": name.rsplit("/", 1)[-1], "status": status, "reason": reason} | (
+                {"samples": tuple(row["cpu_us"]), "operation_us": median(row["cpu_us"])} if status == "ok" else {})
 
 
 def scenes(records):

@@ -31,7 +31,8 @@ def build(records, view):
             if problem is None:
                 raise StudyError(f"{record.name}: {record.cell['scene']} is no standard problem of study/scenes/problems.yaml")
             if record.role == "gate":
-                found["gate"] += _verdicts(problem, record)
+                found["gate"] += [{"problem": problem.name, "implementation": name, "verdict": verdict, "reason": reason, "record": record.name}
+                                  for name, (verdict, reason) in record.verdicts.items()]
             else:
                 runs.setdefault(problem.name, {})[record.cell["contenders"][0], record.option("--step")] = record
     for problem in listed.values():
@@ -42,12 +43,6 @@ def build(records, view):
     for rows in found.values():  # as the lists have problems and implementations; steps and cases stay as they are
         rows.sort(key=lambda row: [order.get(row.get(key), 0) for key in ("problem", "implementation")])
     return {name: pandas.DataFrame(rows) for name, rows in found.items()}
-
-
-def _verdicts(problem, record):
-    """One row a contender."""
-    return [{"problem": problem.name, "implementation": name, "verdict": verdict, "reason": reason, "record": record.name}
-            for name, (verdict, reason) in record.verdicts.items()]
 
 
 def problem_rows(problem, runs):

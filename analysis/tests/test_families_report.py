@@ -157,9 +157,9 @@ def test_the_front_page_has_the_rule_by_hand_and_that_of_describe():
 
 
 def test_cases_by_hand_part_where_the_fastest_changes():
-    cost, at, below, above = by_hand.limit(numpy.array([30.0, 1.0, 2.0, 20.0]), pandas.DataFrame({"a": [1.0, 0.0, 0.0, 1.0], "b": [0.0, 1.0, 1.0, 0.0]}))
-    assert (cost, at, below, above) == (0.0, 6.0, "a", "b")
-    assert by_hand.limit(numpy.array([2.0, 2.0]), pandas.DataFrame({"a": [1.0, 0.0], "b": [0.0, 0.5]}))[:3] == (0.5, numpy.inf, "b")
+    cost, at, below, above = by_hand.limit(numpy.array([30.0, 1.0, 2.0, 20.0]), numpy.array([[1.0, 0.0], [0.0, 1.0], [0.0, 1.0], [1.0, 0.0]]))
+    assert (cost, at, below, above) == (0.0, 6.0, 0, 1)
+    assert by_hand.limit(numpy.array([2.0, 2.0]), numpy.array([[1.0, 0.0], [0.0, 0.5]]))[:3] == (0.5, numpy.inf, 1)
 
 
 def test_a_rule_is_judged_on_what_it_was_not_fitted_on():

@@ -1,4 +1,4 @@
-# Runs Snakemake in the background and shows the part, the cells done of all and the time left.
+# Runs Snakemake, or what draws pages, in the background and shows the part, the cells done of all and the time left.
 import os
 import shutil
 import signal
@@ -59,15 +59,16 @@ def build(command, stage, log):
 
 
 def run_workflow(studyset, columns, stored=False):
-    """Runs the workflow to its end. `columns`: {part: {column: seconds}}. Raises StudyError, or KeyboardInterrupt
-    once all children are gone."""
+    """Runs the workflow to its end; of what is `stored` the pages alone, without it. `columns`: {part: {column: seconds}}. Raises
+    StudyError, or KeyboardInterrupt once all children are gone."""
     write_json(studyset.folder / ".parts.json", list(columns))
     studyset.progress.unlink(missing_ok=True)
-    follow(studyset, _command(studyset, stored), _Cells(studyset, columns))
+    pages = ["/usr/bin/python3", "-m", "study.core.job", ".", "pages"]
+    follow(studyset, pages if stored else _command(studyset), _Cells(studyset, columns))
 
 
 def follow(studyset, command, show, ends=(signal.SIGTERM, signal.SIGKILL)):
-    """Runs Snakemake to its end; meanwhile `show` is called with a Display. `ends`: signals that stop it, each after the one before."""
+    """Runs a command to its end; meanwhile `show` is called with a Display. `ends`: signals that stop it, each after the one before."""
     display = Display()
     with open(studyset.log, "a", encoding="utf-8") as log:
         begin = log.tell()
@@ -99,11 +100,10 @@ def _why(log, begin):
     return f"a stage failed: {(wrong or lines or ['no word of it'])[-1][:300]}"
 
 
-def _command(studyset, stored):
+def _command(studyset):
     return ["/usr/bin/python3", "-m", "snakemake", "--snakefile", str(ROOT / "study" / "Snakefile"),
             "--directory", str(studyset.folder), "--cores", "all", "--scheduler", "greedy",
-            "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor", *(["--forceall"] if stored else []),
-            "--config", f"stored={int(stored)}"]
+            "--rerun-triggers", "mtime", "--rerun-incomplete", "--nolock", "--nocolor"]
 
 
 class _Cells:
@@ -129,7 +129,7 @@ class _Cells:
 
 
 def _stop(process, ends):
-    """Ends Snakemake and everything that it started here."""
+    """Ends the command and everything that it started here."""
     for sign in ends:
         if process.poll() is not None:
             return

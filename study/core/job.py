@@ -1,15 +1,19 @@
 # One job of the workflow: the cells of a part or, on a cluster, of a column; a page; the front page.
+import gc
+import importlib
 import os
 import select
 import signal
 import sys
 import threading
 import traceback
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
 from analysis.core.errors import StudyError
 from study.core import child, locks, node
-from study.core.lab import Lab
+from study.core.lab import Lab, cores
 from study.core.profile import plan_of
 from study.core.studyset import StudySet, finish, need_records
 
@@ -22,7 +26,7 @@ def main(arguments):
     child.end_on_signals()
     folder, verb, *rest = arguments
     try:
-        verbs = {"run": run, "page": page, "index": index, "start": node.first, "column": column, "draw": draw}
+        verbs = {"run": run, "page": page, "pages": pages, "index": index, "start": node.first, "column": column, "draw": draw}
         verbs[verb](StudySet(Path(folder).resolve()), *rest)
         return 0
     except StudyError as error:
@@ -33,7 +37,7 @@ def main(arguments):
         return 130
     except Exception as error:  # a fault of the study, or records that are not what they were; the log has it all
         traceback.print_exc()
-        print(f"error: {' '.join(rest)}: {type(error).__name__}: {' '.join(str(error).split())[:300]}", file=sys.stderr)
+        print(f"error: {' '.join(rest) or verb}: {type(error).__name__}: {' '.join(str(error).split())[:300]}", file=sys.stderr)
     return 1
 
 
@@ -68,7 +72,20 @@ def draw(studyset, part):
 
 def page(studyset, part):
     from analysis.core import site  # these need modules that take a second to load
+    gc.disable()  # it would go over all records again and again, a quarter of the time
     site.write_part(studyset.folder, part)
+    gc.enable()
+
+
+def pages(studyset):
+    """All pages of a stored set, as many at once as there are cores, and the front page. What draws them takes seconds to load:
+    once, in this process, whose copies draw."""
+    parts = studyset.facts["parts"]
+    for part in parts:
+        importlib.import_module(f"analysis.{part}.tables")
+    with ProcessPoolExecutor(cores(), get_context("fork"), child.die_with, (os.getpid(),)) as pool:
+        list(pool.map(page, [studyset] * len(parts), parts))
+    index(studyset)
 
 
 def index(studyset):

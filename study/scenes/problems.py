@@ -1,5 +1,6 @@
 # The standard problems of problems.yaml: what is run, and what it is judged by.
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import yaml
@@ -37,6 +38,7 @@ class Problem:
         return [column for column in outputs if column.split(".")[0] in self.judged]
 
 
+@cache
 def read_list(path=LIST):
     """(names of the two that are compared, [Problem])"""
     data = yaml.safe_load(path.read_text(encoding="utf-8"))

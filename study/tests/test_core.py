@@ -10,8 +10,8 @@ import threading
 import time
 from dataclasses import fields, replace
 from pathlib import Path
-from types import SimpleNamespace
 
+import matplotlib.pyplot as plt
 import numpy
 import pandas
 import pytest
@@ -513,7 +513,7 @@ def test_a_folder_of_a_user_is_left_alone(tmp_path, command):
 def test_the_workflow_runs_in_a_folder_of_any_name(tmp_path):
     folder = tmp_path / "a: b"
     write_json(folder / ".parts.json", ["stability"])
-    done = subprocess.run([*front._command(studyset.StudySet(folder), False), "--dry-run"], cwd=folder, capture_output=True, text=True)
+    done = subprocess.run([*front._command(studyset.StudySet(folder)), "--dry-run"], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0 and ".done/stability.page" in done.stdout + done.stderr, done.stderr
 
 
@@ -612,9 +612,10 @@ def test_a_figure_that_is_cut_short_leaves_what_a_set_removes(tmp_path):
         written.append(partial.name)
         partial.write_text("half")
         raise KeyboardInterrupt
-    written = []
+    written, figure = [], plt.figure()
+    figure.savefig = killed
     with pytest.raises(KeyboardInterrupt):
-        save(SimpleNamespace(savefig=killed), tmp_path / "one.svg")
+        save(figure, tmp_path / "one.svg")
     assert fnmatch.fnmatch(written[0], ".partial-*") and not any(tmp_path.iterdir())
 
 

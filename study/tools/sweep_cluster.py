@@ -34,8 +34,9 @@ def run(words, table, count, cluster):
             end_jobs(folder, cluster)
         for number, part in enumerate(parts, 1):
             if not part.exists():
-                raise StudyError(f"part {number} of {count} is not done: {_last(_text(folder / f'log-{number}'), 'it has said nothing')}; "
-                                 "the same command goes on where it was")
+                log = folder / f"log-{number}"
+                said = _last(log.read_text(errors="replace") if log.exists() else "", "it has said nothing")
+                raise StudyError(f"part {number} of {count} is not done: {said}; the same command goes on where it was")
         done = subprocess.run([program, "merge-sweep", *map(str, parts), "--output", str(table)], capture_output=True, text=True)
         if done.returncode >= USAGE or done.returncode < 0:
             raise StudyError(_last(done.stderr, "mbs merge-sweep does not work"))
@@ -52,10 +53,6 @@ def _array(folder, cluster, parts):
         display.show("sweep", f"{sum(part.exists() for part in parts)} of {len(parts)} parts")
         time.sleep(1)
     display.end()
-
-
-def _text(path):
-    return path.read_text(errors="replace") if path.exists() else ""
 
 
 def _last(text, otherwise):

@@ -1,5 +1,4 @@
 # The command line of study/view: from a scene to an HTML page and a PNG sheet.
-import math
 import os
 import re
 import tempfile
@@ -49,7 +48,7 @@ def _options(arguments):
                         "it, the scene is simulated now")
     parser.add_argument("--output", metavar="FILE.html", help="the page (SCENE.html, here)")
     parser.add_argument("--png", metavar="FILE.png", help="write a contact sheet of the motion too")
-    parser.add_argument("--window", nargs=2, type=_number, metavar="S",
+    parser.add_argument("--window", nargs=2, type=float, metavar="S",
                         help="first and last time of the sheet (all of the motion)")
     parser.add_argument("--up", choices="xyz", help="axis that points up in 3D (against "
                         "gravity; y without gravity)")
@@ -63,13 +62,6 @@ def _options(arguments):
     options = parser.parse_args(arguments)
     _check(options)
     return options
-
-
-def _number(text):
-    value = float(text)
-    if not math.isfinite(value):
-        raise ValueError
-    return value
 
 
 def _check(options):
