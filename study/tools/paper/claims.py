@@ -12,7 +12,7 @@ from analysis.families import bounds, rule
 from analysis.families.figures import fastest_own
 from analysis.limit import held as limits
 from study.tools.merge import agreement, machine
-from study.tools.paper.numbers import DENSE, HYBRID, SCALAR, losses, percent, real_mechanisms
+from study.tools.paper.numbers import DENSE, HYBRID, SCALAR, losses, percent, phases, profiled, real_mechanisms
 
 PAPER_PENALTY = 1e8  # the factor of 2008, at 1.25 ms
 
@@ -34,6 +34,7 @@ def claims():
         Claim("single", "The best single library is within 1.3 times of the fastest on average over mechanisms", "families", "real", _single),
         Claim("assembly", "Sparse assembly makes dense Cholesky faster in every filled cell", "map", "fill", _assembly),
         Claim("overtakes", "Somewhere a dense factorization is as fast as the fastest library, or it is that one", "map", "fill", _overtakes),
+        Claim("phases", "Once assembly is sparse, most of a step with dense Cholesky at the own fill is its factorization", "limit", "fill", _phases),
         Claim("compared", "Full sets of several processors are stored, of one commit", "families", "machines", _compared, True),
         Claim("together", "The sets of several processors are of the paper's own commit and build", "families", "machines", _together, True),
         Claim("machines", "On nine of ten mechanisms all stored machines have a library in common that is fastest or within 5 % of it", "families", "machines",
@@ -87,6 +88,13 @@ def _overtakes(known):
     equivalent = cells[(cells.layer == "libraries") & (cells.winner != "")].equivalent
     dense = equivalent.str.split().map(lambda names: not known.registry.dense.isdisjoint(names)).astype(bool)
     return _counted(dense, lambda count, _: count > 0, "at least one cell; here {count} of {total}")
+
+
+def _phases(known):
+    rows = profiled(known)
+    rows = rows[rows.implementation == HYBRID]
+    share = phases(rows.iloc[0])["factorization"] if len(rows) else None
+    return (None, "") if share is None else (share > 0.5, f"more than half; here {percent(share)}")
 
 
 def _compared(known):

@@ -213,11 +213,12 @@ def engines(known):
 
 
 def _times(rows):
-    known = rows.ratio.dropna()
+    known = rows[rows.ratio.notna()]
     if known.empty:
         return "–"
     missed = len(rows) - len(known)
-    return f"{number(known.median())} ({number(known.min())} to {number(known.max())})" + (f"; {missed} of {len(rows)} errors not reached" if missed else "")
+    return (f"{number(known.ratio.median())} ({number(known.ratio.min())} to {number(known.ratio.max())}), slower in {(known.low > 1).sum()} of {len(known)}"
+            + (f"; {missed} of {len(rows)} errors not reached" if missed else ""))
 
 
 def mechanisms(known):
