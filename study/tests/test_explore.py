@@ -297,6 +297,22 @@ def test_own_measurements_are_drawn_over_ours(page):
     assert browser.value("document.querySelectorAll('#near-0 .own').length") == 2
 
 
+def test_what_is_copied_chosen_and_pasted(page):
+    browser = page("scene=ladder:10")
+    browser.value("Object.defineProperty(navigator, 'clipboard', {value: {writeText: async (text) => { window.copied = text; }}})")
+    press(browser, "link")
+    assert browser.value("copied") == browser.value("location.href") and "scene=ladder" in browser.value("copied")
+    lines = browser.value("""[...document.querySelectorAll('#copy .command')].map((one) => {
+      one.querySelector('button').click(); return [one.querySelector('pre').textContent, copied]; })""")
+    assert len(lines) == 3 and all(line == copied for line, copied in lines)
+    browser.value(f"""(() => {{ const data = new DataTransfer(), file = document.getElementById('file');
+      data.items.add(new File([{json.dumps(PRINTED)}], 'bench.txt')); file.files = data.files; file.dispatchEvent(new Event('change')); }})()""")
+    browser.wait("explorer.state.mine?.scene === 'four-bar:10' && document.querySelectorAll('#near-0 .own').length === 2")
+    browser.value(f"""(() => {{ const mine = document.getElementById('mine'); mine.value = {json.dumps(json.dumps(DESCRIBED))};
+      mine.dispatchEvent(new ClipboardEvent('paste')); }})()""")
+    browser.wait("document.getElementById('pin').dataset.n === '50'")
+
+
 def test_rows_marks_and_files(page):
     browser = page("scene=ladder:10&no=own")
     browser.value("document.querySelector('#near-0 .bar').dispatchEvent(new MouseEvent('click'))")
