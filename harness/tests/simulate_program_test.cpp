@@ -1,5 +1,6 @@
 // `mbs simulate` from the outside: its summary, its trajectories, its errors.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <charconv>
@@ -55,6 +56,29 @@ TEST_F(SimulateProgram, WarnsWhereAlmostNothingIsJudged) {
   EXPECT_NE(seldom.errors.find("--judge-every 100000 judges 1 of 400 steps"), std::string::npos)
       << seldom.errors;
   EXPECT_EQ(simulate(arguments + "20").errors, "");
+}
+
+/// Page faults of the children that have ended.
+long page_faults_of_children() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  return usage.ru_minflt;
+}
+
+// Eigen takes workspace from the heap in each factorization of this size.
+TEST_F(SimulateProgram, StepsTakeNoNewPages) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "this allocator has no limit to set";
+#endif
+  std::vector<long> faults;
+  for (const std::string duration : {"0.02", "0.12"}) {
+    const long before = page_faults_of_children();
+    const auto run = test::run_mbs(
+        "simulate grid:10x10 --implementation eigen_dense/llt --step 1e-3 --duration " + duration);
+    ASSERT_EQ(run.status, 0) << run.errors;
+    faults.push_back(page_faults_of_children() - before);
+  }
+  EXPECT_LT(faults[1] - faults[0], 1000);  // ten a step
 }
 
 TEST_F(SimulateProgram, SummaryHasEveryField) {

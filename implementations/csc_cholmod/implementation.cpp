@@ -68,9 +68,9 @@ Implementation implementation() {
                     .serves = {.terms = kTerms, .saddle_point = true},
                     .tried_for = "simplicial"},
                    tried_supernodal<Tuning::amd>("supernodal_amd",
-                                                 "AMD's order, supernodes of up to 32 columns"),
+                                                 "AMD's order, supernodes of up to 16 columns"),
                    tried_supernodal<Tuning::metis>(
-                       "supernodal_metis", "order of METIS, supernodes of up to 32 columns"),
+                       "supernodal_metis", "order of METIS, supernodes of up to 16 columns"),
                    tried_supernodal<Tuning::defaults>(
                        "supernodal_defaults", "AMD's order, supernodes as CHOLMOD has them")},
       .role = Role::paper,

@@ -20,12 +20,12 @@ namespace {
 /// LDL' saves the square roots; its factorization and solves together are the quicker ones.
 constexpr int kSimplicialLl = 0;
 
-/// Supernodes are merged up to so many columns whatever the zeros (README.md): few for mechanisms
-/// with little fill, a whole small matrix where it fills.
-constexpr std::size_t kMergedColumns[] = {32, 128};
+/// Supernodes are merged up to so many columns whatever the zeros (README.md): fewer for mechanisms
+/// with little fill, more where T fills.
+constexpr std::size_t kMergedColumns[] = {16, 32};
 // What a supernode and an operation cost, us; only their ratio matters.
-constexpr double kSupernodeTime = 4.0;
-constexpr double kOperationTime = 2.5e-4;
+constexpr double kSupernodeTime = 0.4;
+constexpr double kOperationTime = 6e-5;
 
 /// A quiet cholmod_common for one job at a time.
 struct Common : cholmod_common {
@@ -42,12 +42,16 @@ struct Common : cholmod_common {
   Common& operator=(const Common&) = delete;
 };
 
+/// Whether parallel regions that begin on this thread are to be plain calls.
+thread_local bool on_this_thread = false;
+
 /// While it lives, parallel regions of the OpenMP runtime that CHOLMOD brought along, if any, run
 /// on the calling thread. Its supernodal code asks for four threads by number, which no environment
 /// variable but OMP_THREAD_LIMIT overrides; at these sizes they cost several times what they save.
 class OneThread {
  public:
   OneThread() {
+    on_this_thread = true;
     if (set_levels() != nullptr) {
       levels_ = get_levels()();
       set_levels()(0);
@@ -55,6 +59,7 @@ class OneThread {
   }
   ~OneThread() {
     if (set_levels() != nullptr) set_levels()(levels_);
+    on_this_thread = false;
   }
   OneThread(const OneThread&) = delete;
   OneThread& operator=(const OneThread&) = delete;
@@ -308,3 +313,14 @@ std::string library_version() {
 }
 
 }  // namespace mbs::csc_cholmod
+
+/// What GCC's OpenMP runtime enters a parallel region by, in front of its own: for a team of one
+/// that wakes waiting threads, of which there are none, by a system call at each region's end. The
+/// supernodal code has a region or two per supernode. Whoever else calls it gets the runtime's own.
+extern "C" [[gnu::visibility("default")]] void GOMP_parallel(void (*region)(void*), void* data,
+                                                              unsigned threads, unsigned flags) {
+  static const auto runtime =
+      reinterpret_cast<decltype(&GOMP_parallel)>(dlsym(RTLD_NEXT, "GOMP_parallel"));
+  if (mbs::csc_cholmod::on_this_thread || runtime == nullptr) return region(data);
+  runtime(region, data, threads, flags);
+}

@@ -17,7 +17,7 @@ enum class Factorization {
 /// How CHOLMOD is asked for it.
 enum class Tuning {
   own,       ///< what was fastest here: README.md, "CHOLMOD's settings"
-  amd,       ///< the same in AMD's order, supernodes of up to 32 columns
+  amd,       ///< the same in AMD's order, supernodes of up to 16 columns
   metis,     ///< the same in that of METIS
   defaults,  ///< in AMD's order, supernodes as CHOLMOD merges them by itself
 };

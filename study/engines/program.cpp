@@ -1,8 +1,11 @@
 // The command line of an engine's program, the loop that is timed, and the line of JSON.
+#include <malloc.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <climits>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -174,6 +177,10 @@ void note_complaint(const std::string& text) {
 }
 
 int run_program(const Program& program, int argc, char** argv) {
+#if defined(__GLIBC__)  // freed memory stays with the process, as in mbs (harness/mbs/main.cpp)
+  mallopt(M_TRIM_THRESHOLD, INT_MAX);
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+#endif
   CLI::App app{program.engine + " " + program.version +
                ": the N-four-bar mechanism or the double pendulum"};
   Options options;

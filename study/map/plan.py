@@ -56,10 +56,10 @@ def run(lab, column):
         one.time(lab.settings["processes"])
     _phases(lab, timed[0])  # before `again`, which takes all that is left
     _operations(lab, natural)
+    _seeds(lab, timed)
     for one in timed:
         one.again(lab.settings["again"])
     _add_between(lab, timed)
-    _seeds(lab, timed)
 
 
 def _unavailable(lab, scene):
