@@ -72,10 +72,11 @@ class Registry:
 
     @property
     def coverage(self):
-        """{term or setting: names of the variants that serve it}, beyond the paper's step on its own scenes."""
-        every = dict.fromkeys(word for kind in ("terms", "settings") for one in self.variants.values() for word in one.get(kind, []))
-        return {word: [name for name, one in self.variants.items() if word in (*one.get("terms", []), *one.get("settings", []))]
-                for word in every}
+        """{terms and settings: names of the variants that serve just these}, beyond the paper's step on its own scenes; the most first."""
+        found = {}
+        for name, one in self.variants.items():
+            found.setdefault((*one.get("terms", []), *one.get("settings", [])), []).append(name)
+        return dict(sorted(found.items(), key=lambda one: -len(one[0])))
 
     def serves(self, name, *settings):
         """Whether a variant serves settings by name; everyone serves the paper's step."""

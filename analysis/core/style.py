@@ -15,7 +15,7 @@ from analysis.core.files import write
 DENSE = ("#E69F00", "#D55E00", "#8C4A1F", "#F2C14E", "#B03A48")
 SPARSE = ("#7A1F5C", "#CC79A7", "#0072B2", "#56B4E9", "#5B3A9E", "#8A8A00", "#009E73", "#8FBF5A",
           "#A6A6D9", "#00707A")
-ALTERNATIVES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#8A8A00", "#4D4D4D")
+ALTERNATIVES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#8A8A00", "#5B3A9E")
 SHADES = ((None, 0.0), ("white", 0.42), ("black", 0.38), ("white", 0.68), ("black", 0.62))
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", "p", ">", "h", "d")
 DASHES = ("-", (0, (4, 1.5)), (0, (1, 1)), (0, (6, 1.5, 1, 1.5)), (0, (3, 1, 1, 1, 1, 1)))

@@ -132,13 +132,16 @@ function fillError(found, state) {
                ["error, m", (row) => short(row.point.error)], ["s a simulated second", (row) => short(row.point.time)]]);
 }
 
+// The machine of a set, with its commit where that is not the one of the set beside it.
+const machineOf = (set, beside) => set.machine + (set.commit === beside.commit ? "" : ` at commit ${set.commit.slice(0, 10)}`);
+
 // What the sets of other machines say of the same contest.
 function elsewhere(found, contest, winner) {
   return DATA.sets.filter((set) => set !== found.set).map((set) => {
     const there = set.contests.find((one) => one.part === contest.part && one.scene === contest.scene && one.form === contest.form);
     const ranking = there && rankContest(there, found.names), mine = ranking?.ratios.find(([name]) => name === winner)?.[1];
     if (!ranking) return "";
-    return ` On ${set.machine} ${ranking.winner === winner ? "it leads too" : `${ranking.winner} leads${mine ? `, and ${winner} takes ${times(mine)}` : ""}`}.`;
+    return ` On ${machineOf(set, found.set)} ${ranking.winner === winner ? "it leads too" : `${ranking.winner} leads${mine ? `, and ${winner} takes ${times(mine)}` : ""}`}.`;
   });
 }
 

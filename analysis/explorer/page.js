@@ -49,7 +49,7 @@ function options(select, groups, value) {
 
 function fillControls() {
   const set = setOf(state), asked = caseOf(state);
-  options(place("machine"), [["", DATA.sets.map((one) => [one.name, `${one.machine} (${one.date.slice(0, 10)})`])]], set.name);
+  options(place("machine"), [["", DATA.sets.map((one) => [one.name, `${machineOf(one, DATA.sets[0])} (${one.date.slice(0, 10)})`])]], set.name);
   const scenes = (family) => [...new Map(set.contests.filter((one) => one.family === family).map((one) => [one.scene, one.n]))].sort((a, b) => a[1] - b[1]);
   options(place("scene"), [["", [["", state.mine ? `mine: ${state.mine.scene}` : "none: the numbers below"]]],
                            ...familiesOf(set).map((family) => [family, scenes(family).map(([scene, n]) => [scene, `${scene} (n = ${n})`])])], state.mine ? "" : state.scene);
@@ -88,7 +88,7 @@ function fillMap(found) {
   const width = Math.max(280, Math.min(900, place("map").clientWidth)), list = [...wins].sort((a, b) => b[1] - a[1]);
   const label = `Map of the fastest of those that are left, over n and fill: ${list.map(([name, count]) => `${name} on ${count}`).join(", ")}`;
   const caption = "A circle is a mechanism, a square the four-bar with its own or artificial fill; inside: another that is as fast; empty: not decided. "
-    + `${found.form} form, ${found.set.machine}, ${found.set.date.slice(0, 10)}. A click takes a mark as the case.`;
+    + `${found.form} form, ${machineOf(found.set, DATA.sets[0])}, ${found.set.date.slice(0, 10)}. A click takes a mark as the case.`;
   place("map").replaceChildren(...(marks.length ? [drawMap(marks, here, width, label), element("figcaption", {}, caption)] : []));
   place("winners").replaceChildren(element("ul", {}, ...list.map(([name, count]) => element("li", {},
     element("span", {class: "swatch", style: `background:${colourOf(name)}`}), `${name}: in front, or as fast, on ${count} of ${marks.length}`))));

@@ -18,7 +18,7 @@ MOST = 200  # processes of an interval
 def context(folder):
     """`data`: of the set in `folder`, and of stored sets of other processors beside it; `examples`: (question, state in the
     address, answer)."""
-    sets = {one: data.read(one) for one in (folder, *_others(folder))}
+    sets = {one: data.read(one) for one in (folder, *others(folder))}
     names = list(dict.fromkeys(name for found in sets.values() for name in data.names_of(found)))
     number = {name: place for place, name in enumerate(names)}
     registries = [Folder(one).registry for one in sets]
@@ -31,15 +31,15 @@ def context(folder):
     return {"data": text.replace("<", "\\u003c"), "examples": examples(contests, registries[0])}
 
 
-def _others(folder):
-    """Stored sets beside this one, of other processors."""
-    known = {facts_of(folder)["context"].get("cpu_model")}
-    for path in sorted(folder.parent.glob("*/set.json")):
-        stored = any((path.parent / "raw").glob("*.tar.xz"))
-        model = facts_of(path.parent)["context"].get("cpu_model") if stored else None
-        if model and model not in known:
-            known.add(model)
-            yield path.parent
+def others(folder):
+    """Of each other processor a stored set beside this one, of the same commit where there is one."""
+    mine = facts_of(folder)["context"]
+    stored = [path.parent for path in sorted(folder.parent.glob("*/set.json")) if any((path.parent / "raw").glob("*.tar.xz"))]
+    contexts = {one: facts_of(one)["context"] for one in stored}
+    found = {}
+    for one in sorted(stored, key=lambda one: contexts[one].get("commit") != mine.get("commit")):
+        found.setdefault(contexts[one].get("cpu_model"), one)
+    return [one for model, one in found.items() if model not in (None, "", mine.get("cpu_model"))]
 
 
 def _about(name, registries):

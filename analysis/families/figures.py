@@ -116,5 +116,5 @@ def held_figure(held):
     right.set_ylabel("loss of the choice, %")
     right.set_title("Time lost by the chosen library")
     right.legend(fontsize=8.5, loc="upper left")
-    figure.suptitle("Each family predicted by the others", x=0.01, ha="left", fontsize=10)
+    figure.suptitle("Each family predicted by the others; the choice is among libraries", x=0.01, ha="left", fontsize=10)
     return figure

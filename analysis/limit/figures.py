@@ -73,7 +73,7 @@ def over_size(bounds, rows, look, own):
         known = mine[(mine.multiple_low > 0) & (mine.multiple_high < numpy.inf)]
         multiples.fill_between(known.variables, known.multiple_low, known.multiple_high, color=style["color"], alpha=0.15,
                                linewidth=0)
-    times.set_title("N-four-bar, penalty form: a step between what is needed and what is taken")
+    times.set_title("N-four-bar, penalty form: the best variant of each library, and all code of our own")
     times.set_ylabel("time per step, µs")
     multiples.set_ylabel("multiple of the limit code")
     for axes, unit in ((times, ""), (multiples, "×")):

@@ -20,7 +20,7 @@ def context(tables, view):
             "pairs": [pair | {"used": _used(results, pair["name"])} for pair in view.registry.listed.get("blas", [])],
             "verdicts": losses.verdicts(tables["verification"], results.implementations), "losses": losses.losses(results),
             "not_reached": list(scenes[scenes.reason != ""].scene), "entries": view.registry.entries,
-            "coverage": view.registry.coverage, "variants": list(view.registry.variants),
+            "coverage": view.registry.coverage,
             "controls": judged(tables["controls"]), "twins": tables["controls"].to_dict("records"), "spread": [
                 row | {"of": carry.SOURCES[row["source"]]} for row in tables["spread"].to_dict("records")],
             "processes": results.timing[results.timing.status == "ok"].record.nunique()}

@@ -34,7 +34,7 @@ def distributions(table, machine):
         axes.set(xscale="log", title=f"N = {size:g}, deadline {1e3 * step:g} ms")
         line_each(axes, names)
     figure.supxlabel("time of a step, µs", fontsize=10)
-    figure.suptitle("Times of steps, as observed in one run", x=0.01, ha="left", fontsize=12)
+    figure.suptitle("Times of steps, as observed in one run: libraries and code of our own", x=0.01, ha="left", fontsize=12)
     others = sorted(set(table.status[table.median_us.notna()]) - {"ok"})
     below(figure, 4, left + [_entry(f"hollow: {', '.join(others)}", GREY, "o", markerfacecolor="white")] * bool(others))
     return figure
@@ -89,7 +89,7 @@ def sizes(table):
     grid[0].set_xlim(LEFT if (table.largest == 0).any() else 0.6 * min(known, default=1), 1.6 * max(known, default=1))
     number_axis(grid[0].xaxis)
     figure.supxlabel("N of the four-bar (n = 2N + 2 variables)", fontsize=10)
-    figure.suptitle("Largest N in real time", x=0.01, ha="left", fontsize=12)
+    figure.suptitle("Largest N in real time: libraries and code of our own", x=0.01, ha="left", fontsize=12)
     below(figure, 4, [*(_entry(f"{form}: kept up with", *FORMS[form][:2]) for form in shown),
                       _entry("next size tried: not kept up with", GREY, "X"), _entry("right: N, steps missed (lost by the null process)"), *left])
     return figure

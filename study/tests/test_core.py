@@ -582,6 +582,7 @@ def test_selections():
             studyset.select(REGISTRY, [only])
     assert REGISTRY.own == {"own/c"} and REGISTRY.libraries == ["one/a", "one/b"] and REGISTRY.dense == {"one/b"}
     assert REGISTRY.serves("own/c", "kept", "penalty") and not REGISTRY.serves("one/a", "kept")
+    assert [*REGISTRY.coverage.items()] == [(("kept",), ["own/c"]), ((), ["one/a", "one/b"])]
     pairs = {"all": "openblas", "own": "atlas"}
     assert [one.blas for one in on_usual_pairs(REGISTRY, pairs, ["one/a", "own/c"])] == ["openblas", "system"]
 

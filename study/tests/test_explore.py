@@ -11,11 +11,13 @@ from analysis.accuracy.winners import fastest, meeting
 from analysis.core import site, timing
 from analysis.core.files import ROOT, read_json, write_json
 from analysis.explorer import data
+from analysis.explorer.page import others
 from study.tests.test_site import BEYOND, HIDDEN
+from study.tools import fragments
 
-STORED = sorted(path.parent for path in (ROOT / "results").glob("*/set.json"))[0]
+STORED = fragments.main_set()
 QUESTIONS = 200
-SECOND = "Another processor"  # of a copy beside the set
+SECOND, COMMIT = "Another processor", "0" * 40  # of a copy beside the set
 WITHOUT = ("own", "gpl", "dense")
 DESCRIBED = {"scene": "<img src=x onerror=alert(1)>", "variables": 50, "tangent": {"fill": 0.2}, "warnings": ["<b>a step too long</b>"],
              "scheme": {"take": "penalty"}, "features": {"n": 50, "per_column": 1e5, "flops": 9000, "tangent": 500, "fill": 20}}
@@ -39,7 +41,7 @@ def folder(tmp_path_factory):
     for name in ("first", "second"):
         shutil.copytree(STORED, base / name, ignore=shutil.ignore_patterns("engines", "extremes*"))
     facts = read_json(base / "second" / "set.json")
-    write_json(base / "second" / "set.json", facts | {"context": facts["context"] | {"cpu_model": SECOND}})
+    write_json(base / "second" / "set.json", facts | {"context": facts["context"] | {"cpu_model": SECOND, "commit": COMMIT}})
     site.write_index(base / "first")
     return base / "first"
 
@@ -82,10 +84,45 @@ def winner(browser):
     return browser.value("explorer.shown.near[0]?.ranking.winner ?? ''")
 
 
-def test_it_is_small_and_whole(folder):
-    text = (folder / "explore.html").read_text(encoding="utf-8")
+@pytest.fixture(scope="module")
+def shipped(tmp_path_factory):
+    """The main set among all that are stored, with its pages."""
+    base = tmp_path_factory.mktemp("shipped")
+    for stored in (ROOT / "results").glob("*/set.json"):
+        (base / stored.parent.name).mkdir()
+        for path in stored.parent.iterdir():
+            (base / stored.parent.name / path.name).symlink_to(path)
+    site.write_index(base / STORED.name)
+    return base / STORED.name
+
+
+def test_what_is_shipped_is_small_and_whole(shipped):
+    text = (shipped / "explore.html").read_text(encoding="utf-8")
     assert len(text.encode()) < 3e6
     assert "http://" not in text.replace("http://www.w3.org/", "") and "https://" not in text
+
+
+def test_the_site_is_of_the_commit_that_the_rule_names_or_says_of_which(browser, shipped):
+    commit = read_json(fragments.RULE)["commit"]
+    assert commit[:10] in (shipped / "index.html").read_text(encoding="utf-8")
+    browser.open(shipped / "explore.html")
+    commits, machines = (browser.value(asked) for asked in (
+        "DATA.sets.map((one) => one.commit)", "[...document.getElementById('machine').options].map((one) => one.text)"))
+    assert commits[0] == commit and len(machines) == len(commits)
+    assert [one[:10] in text for one, text in zip(commits, machines)] == [one != commit for one in commits]
+
+
+def test_other_processors_are_shown_with_the_same_commit_where_there_is_one(tmp_path):
+    def stored(name, cpu, commit):
+        facts = read_json(STORED / "set.json")
+        write_json(tmp_path / name / "set.json", facts | {"context": facts["context"] | {"cpu_model": cpu, "commit": commit}})
+        (tmp_path / name / "raw").mkdir()
+        (tmp_path / name / "raw" / "map.tar.xz").touch()
+        return tmp_path / name
+    mine, old = stored("mine", "x", "new"), stored("a-old", "y", "old")
+    assert others(mine) == [old] and others(old) == [mine]
+    new = stored("b-new", "y", "new")
+    assert others(mine) == [new] and others(old) == [mine]
 
 
 def test_winners_are_those_of_python(page, found):
@@ -211,8 +248,12 @@ def test_the_case_can_be_chosen_and_stands_in_the_address(page):
     assert said(browser) == before and browser.value("location.hash") == address
     put(browser, "scene", "four-bar:49", "change")
     assert browser.value("explorer.shown.near[0].exact") and browser.value("document.getElementById('n').value") == "100"
-    assert f"On {SECOND} it leads too." in said(browser)
+    there = f"{SECOND} at commit {COMMIT[:10]}"
+    assert f"On {there} it leads too." in said(browser)
+    machines = browser.value("[...document.getElementById('machine').options].map((one) => one.text)")
+    assert "commit" not in machines[0] and machines[1].startswith(there)
     put(browser, "machine", "second", "change")
+    assert there in browser.value("document.querySelector('#map figcaption').textContent")
     assert browser.value("explorer.shown.set.machine") == SECOND and "machine=second" in browser.value("location.hash")
     assert browser.value("explorer.state.scene") == "four-bar:49" and f"On {SECOND}" not in said(browser)
 
@@ -254,6 +295,22 @@ def test_own_measurements_are_drawn_over_ours(page):
     address = browser.value("location.hash")
     page(address[1:])
     assert browser.value("document.querySelectorAll('#near-0 .own').length") == 2
+
+
+def test_what_is_copied_chosen_and_pasted(page):
+    browser = page("scene=ladder:10")
+    browser.value("Object.defineProperty(navigator, 'clipboard', {value: {writeText: async (text) => { window.copied = text; }}})")
+    press(browser, "link")
+    assert browser.value("copied") == browser.value("location.href") and "scene=ladder" in browser.value("copied")
+    lines = browser.value("""[...document.querySelectorAll('#copy .command')].map((one) => {
+      one.querySelector('button').click(); return [one.querySelector('pre').textContent, copied]; })""")
+    assert len(lines) == 3 and all(line == copied for line, copied in lines)
+    browser.value(f"""(() => {{ const data = new DataTransfer(), file = document.getElementById('file');
+      data.items.add(new File([{json.dumps(PRINTED)}], 'bench.txt')); file.files = data.files; file.dispatchEvent(new Event('change')); }})()""")
+    browser.wait("explorer.state.mine?.scene === 'four-bar:10' && document.querySelectorAll('#near-0 .own').length === 2")
+    browser.value(f"""(() => {{ const mine = document.getElementById('mine'); mine.value = {json.dumps(json.dumps(DESCRIBED))};
+      mine.dispatchEvent(new ClipboardEvent('paste')); }})()""")
+    browser.wait("document.getElementById('pin').dataset.n === '50'")
 
 
 def test_rows_marks_and_files(page):

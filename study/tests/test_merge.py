@@ -102,6 +102,26 @@ def test_a_set_whose_controls_failed_is_refused(tmp_path, monkeypatch):
         need_alike(sets[0], sets[0])
 
 
+def fake(name, commit, cpu, **context):
+    known = {"commit": commit, "cpu_model": cpu, "compiler": "g", "flags": "f", "build_type": "Release", "libraries": "l", "dirty": "false"}
+    return SimpleNamespace(folder=name, facts={"context": known | context})
+
+
+@pytest.mark.parametrize("others, chosen", [
+    ([], []), ([("b", "new", "y")], ["a", "b"]), ([("b", "old", "y")], []), ([("b", "new", "x")], []),
+    ([("b", "old", "x"), ("c", "old", "y")], ["b", "c"]),                          # the main one alone was measured anew
+    ([("b", "old", "x"), ("c", "new", "y")], ["a", "c"]),                          # then the other processor, too
+    ([("b", "old", "x"), ("c", "old", "y"), ("d", "new", "y")], ["a", "d"]),
+    ([("b", "new", "y"), ("c", "new", "y"), ("d", "new", "z")], ["a", "b", "d"])])  # one of each processor
+def test_processors_are_compared_by_sets_of_one_build(others, chosen):
+    assert [one.folder for one in agreement.compared(fake("a", "new", "x"), [fake(*one) for one in others])] == chosen
+
+
+def test_a_set_of_a_tree_with_changes_is_not_compared():
+    assert agreement.compared(fake("a", "new", "x", dirty="true"), [fake("b", "new", "y")]) == []
+    assert agreement.compared(fake("a", "new", "x"), [fake("b", "new", "y", dirty="true")]) == []
+
+
 @pytest.mark.skipif(not SETS, reason="no stored set")
 def test_two_sets_become_a_page_and_a_table(tmp_path):
     for day in (1, 2):

@@ -1,4 +1,5 @@
 # study/paper: the paper in the repository is of its set, and each way to be wrong is found. No LaTeX is needed.
+import re
 import shutil
 
 import pytest
@@ -44,10 +45,13 @@ def test_the_paper_is_of_the_set_that_the_rule_names(known, found):
 
 
 def test_readme_rule_and_paper_are_of_one_commit(known):
-    named = [names.split(", ") for path in fragments.texts() for _, names, *_ in fragments.MARKED.findall(path.read_text(encoding="utf-8"))]
-    assert {names[0] for names in named} == {known.folder.name} == {read_json(fragments.RULE)["set"]}
-    there = {*(name for names in named for name in names), *(one.folder.name for one in known.machines)}
-    assert {read_json(ROOT / "results" / name / "set.json")["context"]["commit"] for name in there} == {known.context["commit"]}
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    rule = read_json(fragments.RULE)
+    assert (rule["set"], rule["commit"]) == (known.folder.name, known.context["commit"])
+    assert set(re.findall(r"results/([\w.+-]+)[/`]", readme)) - {"local"} == {known.folder.name}
+    for one in known.compared:  # those of another commit are shown with it
+        assert one.context["commit"] == known.compared[0].context["commit"]
+        assert known.together or all(one.context["commit"][:10] in text for text in (readme, artifact.FILE.read_text(encoding="utf-8")))
 
 
 def test_every_number_has_a_source_and_most_are_measured(found):
@@ -109,23 +113,34 @@ def test_a_dirty_or_mixed_or_stale_set_is_found(known, tmp_path):
 
 @pytest.fixture
 def beside(known, tmp_path, monkeypatch):
-    """The set in a results folder of its own, with one of another processor beside it; the other's facts can be changed."""
+    """The set in a results folder of its own as `first`, with others beside it whose facts are changed: name=facts."""
     monkeypatch.setattr(known_sets, "ROOT", tmp_path)
-    for name in ("first", "second"):
-        (tmp_path / "results" / name).mkdir(parents=True)
-        for path in known.folder.iterdir():
-            (tmp_path / "results" / name / path.name).symlink_to(path)
+    monkeypatch.setattr(fragments, "main_set", lambda: tmp_path / "results" / "first")
 
-    def change(**context):
+    def change(**others):
         facts = read_json(known.folder / "set.json")
-        write_json(tmp_path / "results" / "second" / "set.json", facts | {"context": facts["context"] | {"cpu_model": "Another processor"} | context})
+        for name, context in {"first": {}, **others}.items():
+            (tmp_path / "results" / name).mkdir(parents=True)
+            for path in known.folder.iterdir():
+                if path.name != "set.json":
+                    (tmp_path / "results" / name / path.name).symlink_to(path)
+            write_json(tmp_path / "results" / name / "set.json", facts | {"context": facts["context"] | context})
         return Known(tmp_path / "results" / "first")
     return change
 
 
+ANOTHER, OLD = {"cpu_model": "Another processor"}, {"commit": "0" * 40}
+
+
+def names(sets):
+    return [one.folder.name for one in sets]
+
+
 def test_a_set_of_another_machine_and_the_same_build_is_compared(beside):
-    both = beside()
-    assert list(audit.of_sets(both)) == [] and [one.folder.name for one in both.others] == ["second"]
+    both = beside(second=ANOTHER)
+    assert list(audit.of_sets(both)) == [] and names(both.compared) == names(both.sets) == ["first", "second"] and both.together
+    assert "Beside it, of the same build, to compare processors: `second`" in artifact._set(both)
+    assert "on 2 processors the same library is fastest" in fragments.fragment("cases")
     assert all(len(set(one.winners)) == 1 for one in both.agreed) and both.agreed
     count = numbers(both)
     assert count["machines.same"].text == count["machines.all"].text != "0" and count["machines.differ"].text == "0"
@@ -135,10 +150,42 @@ def test_a_set_of_another_machine_and_the_same_build_is_compared(beside):
 
 
 @pytest.mark.parametrize("context, said", [
-    ({"commit": "0" * 40}, "commit is '0000"), ({"libraries": "Eigen 9"}, "libraries is 'Eigen 9'"), ({"dirty": "true"}, "tree with changes")])
-def test_a_set_of_another_build_beside_it_is_refused(beside, context, said):
-    other = beside(**context)
-    assert other.others == [] and any(said in line and "remove it" in line for line in audit.of_sets(other))
+    (ANOTHER | OLD, "commit is '0000"), (ANOTHER | {"libraries": "Eigen 9"}, "libraries is 'Eigen 9'"),
+    (ANOTHER | {"dirty": "true"}, "tree with changes"), ({}, "a set of this build already")])
+def test_a_set_that_is_compared_with_none_is_refused(beside, context, said):
+    other = beside(second=context)
+    assert other.compared == [] and any(said in line and "remove it" in line for line in audit.of_sets(other))
+
+
+def test_a_set_alone_is_compared_with_none(beside):
+    alone = beside()
+    assert alone.compared == [] and names(alone.sets) == ["first"] and "Beside" not in artifact._set(alone)
+    claimed, count = artifact.judged(alone), numbers(alone)
+    assert [claimed[name][0] for name in ("compared", "together", "machines", "vector")] == [None] * 4
+    assert "`study/merge SET SET`" in artifact._claims(alone, claimed) and count["machines.first"].text == NOT_MEASURED
+    assert "first" in tables.machines(alone) and "Not measured" in tables.differs(alone) and "processors" not in fragments.fragment("cases")
+
+
+def test_where_the_main_set_has_none_beside_it_two_of_another_commit_are_compared(beside):
+    """As when one processor alone was measured anew: nothing that is said of it and nothing of the two is taken for the other."""
+    three = beside(old=OLD, other=ANOTHER | OLD)
+    assert names(three.compared) == ["old", "other"] and names(three.sets) == ["first", "old", "other"] and not three.together
+    assert not any("remove it" in line for line in audit.of_sets(three) if "machines are compared" in line)
+    claimed, count = artifact.judged(three), numbers(three)
+    assert claimed["compared"] == (True, "two or more; here old, other") and claimed["together"][0] is False and claimed["machines"][0]
+    assert (count["machines.first"].text, count["machines.commit"].text, count["set.name"].text) == ("old", "0" * 10, "first")
+    assert (count["machines.rate"].text, count["machines.count"].text) == ("1 on other", "2")
+    assert "first" not in tables.machines(three) and "old (0000000000)" in tables.claims(three)
+    assert "Beside it, of another build, commit `0000000000`, to compare processors: `old`" in artifact._set(three)
+    assert "`study/merge results/old results/other`" in artifact._claims(three, claimed) and "`other/raw/map" in artifact._archives(three)
+    assert set(audit.stamp(three)["tables"]) == {"first", "old", "other"}
+    assert "on 2 processors (sets old, other, commit 0000000000) the same library" in fragments.fragment("cases")
+
+
+def test_a_set_of_the_main_commit_joins_by_itself(beside):
+    three = beside(old=OLD | ANOTHER, other=ANOTHER)
+    assert names(three.compared) == ["first", "other"] and three.together
+    assert any("results/old is of another build" in line for line in audit.of_sets(three))
 
 
 def test_built_files_of_another_set_are_found(known, tmp_path, monkeypatch):

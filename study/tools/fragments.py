@@ -1,7 +1,7 @@
 # Numbers in texts: a README has places between marks that are filled from stored sets, and nowhere else a measured
 # number.
 #
-#   <!-- from SET: cases -->          or of several machines: <!-- from SET, SET: cases -->
+#   <!-- from the stored sets: cases -->
 #   …
 #   <!-- end -->
 import json
@@ -13,7 +13,7 @@ from analysis.core.files import ROOT, RULE, as_json, read_json, write_text
 from analysis.core.view import Folder
 from study.tools.merge import agreement
 
-MARKED = re.compile(r"(<!-- from ([\w.+-]+(?:, [\w.+-]+)*): (\S+) -->\n)(.*?)(<!-- end -->)", re.S)
+MARKED = re.compile(r"(<!-- from the stored sets: (\S+) -->\n)(.*?)(<!-- end -->)", re.S)
 
 
 def main_set():
@@ -25,29 +25,33 @@ def main_set():
 
 
 def filled(text):
-    """A text with its marked places as their sets say them now."""
-    return MARKED.sub(lambda one: one[1] + fragment(one[2].split(", "), one[3]) + one[5], text)
+    """A text with its marked places as the stored sets say them now."""
+    return MARKED.sub(lambda one: one[1] + fragment(one[2]) + one[4], text)
 
 
-def fragment(names, what):
-    """"cases": the table of the first set, with a row about the machines of all of them; a part's name: its answers as a list."""
-    folders = [ROOT / "results" / name for name in names]
-    known = site.answers_of(folders[0])
+def fragment(what):
+    """"cases": the table of the main set, with a row about the processors that are compared; a part's name: its answers as a list."""
+    main = main_set()
+    known = site.answers_of(main)
     if what == "cases":
-        rows = [case for one in known.values() if one for case in one["cases"]] + _machines(folders)
+        others = [Folder(path.parent) for path in sorted(main.parent.glob("*/set.json")) if path.parent != main]
+        rows = [case for one in known.values() if one for case in one["cases"]] + _machines(Folder(main), others)
         return "".join(["| your case | take this |\n|---|---|\n", *(f"| {row['case']} | {row['take']} |\n" for row in rows)])
     if known.get(what) is None:
-        raise StudyError(f"{folders[0]} has no answers of '{what}'")
+        raise StudyError(f"{main} has no answers of '{what}'")
     return "".join(f"- {one['text']}\n" for one in known[what]["answers"])
 
 
-def _machines(folders):
-    """The row that says what holds on several machines; none of one."""
-    if len(folders) < 2:
+def _machines(main, others):
+    """The row that says what holds on several processors; none of one. Sets of another build than the main one are named."""
+    sets = agreement.compared(main, others)
+    if not sets:
         return []
-    count = agreement.shares(agreement.mechanisms([Folder(one) for one in folders]))
+    count = agreement.shares(agreement.mechanisms(sets))
+    names = ", ".join(one.folder.name for one in sets)
+    where = "" if sets[0] is main else f" (sets {names}, commit {sets[0].facts['context']['commit'][:10]})"
     return [{"case": "Your processor is another one",
-             "take": f"what `build/mbs bench` names there; on {len(folders)} processors the same library is fastest on {count['same']} of {count['all']} "
+             "take": f"what `build/mbs bench` names there; on {len(sets)} processors{where} the same library is fastest on {count['same']} of {count['all']} "
                      f"mechanisms, on {count['common']} more one is nowhere shown to be over 5 % slower than the fastest, {count['differ']} differ"}]
 
 

@@ -52,6 +52,19 @@ def contexts(studyset):
     return {name: one | {"blas_loaded": SYSTEM.sub("", str(one.get("blas_loaded")))} for name, one in found.items()}
 
 
+def compared(first, others):
+    """Of a set and others those that processors are compared by: `first` with one of its build from each other processor; where there
+    is none, the first of `others` that has such; [] if none has."""
+    for base in (first, *others):
+        found = {base.facts["context"]["cpu_model"]: base}
+        for one in others:
+            if not unlike(base, one):
+                found.setdefault(one.facts["context"]["cpu_model"], one)
+        if len(found) > 1:
+            return [*found.values()]
+    return []
+
+
 def questions(studyset):
     """{Question: Ranking} of one set's map and mechanisms."""
     return dict([*_map(studyset), *_families(studyset)])

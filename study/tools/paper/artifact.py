@@ -43,13 +43,20 @@ def told(known):
 
 
 def _set(known):
-    said = [f"`{one.folder.name}` of {one.facts['date'][:10]}, {one.context['cpu_model']}" for one in known.machines]
-    return f"Set {said[0]}, commit `{known.context['commit'][:10]}`." + "".join(f" Beside it, of the same commit: {one}." for one in said[1:]) + "\n"
+    first, *others = (f"`{one.folder.name}` of {one.facts['date'][:10]}, {one.context['cpu_model']}" for one in known.sets)
+    commits = [f"`{one.context['commit'][:10]}`" for one in known.sets]
+    text = f"Set {first}, commit {commits[0]}."
+    if known.together:
+        text += f" Beside it, of the same build, to compare processors: {'; '.join(others)}."
+    elif known.compared:
+        text += f" Beside it, of another build, commit {commits[1]}, to compare processors: {'; '.join(others)}."
+    return text + "\n"
 
 
 def _claims(known, claimed):
     """claim → command → what it should give → minutes → where"""
-    merge = f"`study/merge {' '.join(f'results/{one.folder.name}' for one in known.machines)}` | {{}} | 1 | its page"
+    sets = " ".join(f"results/{one.folder.name}" for one in known.compared) or "SET SET"
+    merge = f"`study/merge {sets}` | {{}} | 1 | its page"
     rows = [f"| {one.text} ({SAYS[claimed[one.name][0]]}) | {(merge if one.merged else _run(known, one)).format(claimed[one.name][1] or '–')}; "
             f"section {one.where} |\n" for one in claims()]
     return "| claim | command | expected | minutes | where |\n|---|---|---|---|---|\n" + "".join(rows)
@@ -62,5 +69,5 @@ def _run(known, one):
 
 def _archives(known):
     rows = [f"| `{one.folder.name}/raw/{path.name}` | {path.stat().st_size / 2**20:.2f} | `{digest(path)}` |\n"
-            for one in known.machines for path in sorted((one.folder / "raw").glob("*.tar.xz"))]
+            for one in known.sets for path in sorted((one.folder / "raw").glob("*.tar.xz"))]
     return "| archive | MB | SHA-256 |\n|---|---|---|\n" + "".join(rows)

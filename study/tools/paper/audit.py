@@ -33,11 +33,13 @@ def source():
 
 
 def of_sets(known):
-    """What is wrong with the set, and with those of other machines beside it."""
-    yield from faults(known)
-    for one in known.beside:
-        what = agreement.unlike(known, one)
-        yield from [f"{what}: machines are compared by sets of one build; measure it anew, or remove it"] if what else faults(one)
+    """What is wrong with the set and those that are compared; other stored sets."""
+    for one in known.sets:
+        yield from faults(one)
+    for one in known.stored:
+        if one not in known.sets:
+            what = agreement.unlike(known, one) or f"{one.folder} is of a processor that has a set of this build already"
+            yield f"{what}: machines are compared by sets of one build; measure it anew, or remove it"
 
 
 def of_text(text, found, claimed):
@@ -72,8 +74,8 @@ def of_references(text, bibliography):
 
 
 def stamp(known):
-    """What the built files are of: the set, its commit, its tables and those of other machines."""
-    kept = {one.folder.name: {part: digest(one.folder / part / schema.DIGESTS) for part in one.facts["parts"]} for one in known.machines}
+    """What the built files are of: the set, its commit, its tables and those of the compared sets."""
+    kept = {one.folder.name: {part: digest(one.folder / part / schema.DIGESTS) for part in one.facts["parts"]} for one in known.sets}
     return {"set": known.folder.name, "commit": known.context["commit"], "tables": kept}
 
 

@@ -12,7 +12,7 @@ from analysis.families import bounds, rule
 from analysis.families.figures import fastest_own
 from analysis.limit import held as limits
 from study.tools.merge import agreement, machine
-from study.tools.paper.numbers import DENSE, HYBRID, SCALAR, losses, percent, real_mechanisms
+from study.tools.paper.numbers import DENSE, HYBRID, SCALAR, losses, percent, phases, profiled, real_mechanisms
 
 PAPER_PENALTY = 1e8  # the factor of 2008, at 1.25 ms
 
@@ -34,8 +34,10 @@ def claims():
         Claim("single", "The best single library is within 1.3 times of the fastest on average over mechanisms", "families", "real", _single),
         Claim("assembly", "Sparse assembly makes dense Cholesky faster in every filled cell", "map", "fill", _assembly),
         Claim("overtakes", "Somewhere a dense factorization is as fast as the fastest library, or it is that one", "map", "fill", _overtakes),
-        Claim("compared", "Full sets of several processors are stored, all of this commit", "families", "machines", _compared, True),
-        Claim("machines", "On nine of ten mechanisms all stored machines have a library in common that is fastest or within 5 % of it", "families", "machines",
+        Claim("phases", "Once assembly is sparse, most of a step with dense Cholesky at the own fill is its factorization", "limit", "fill", _phases),
+        Claim("compared", "Full sets of several processors are stored, of one commit", "families", "machines", _compared, True),
+        Claim("together", "The sets of several processors are of the paper's own commit and build", "families", "machines", _together, True),
+        Claim("machines", "On nine of ten mechanisms all machines that are compared have a library in common that is fastest or within 5 % of it", "families", "machines",
               _machines, True),
         Claim("vector", "Dense kernels gain more than code that works number by number on machines whose widest vectors do more", "limit", "machines", _vector, True),
         Claim("rule", "The rule keeps its bounds on families left out", "families", "price", _rule),
@@ -88,22 +90,36 @@ def _overtakes(known):
     return _counted(dense, lambda count, _: count > 0, "at least one cell; here {count} of {total}")
 
 
+def _phases(known):
+    rows = profiled(known)
+    rows = rows[rows.implementation == HYBRID]
+    share = phases(rows.iloc[0])["factorization"] if len(rows) else None
+    return (None, "") if share is None else (share > 0.5, f"more than half; here {percent(share)}")
+
+
 def _compared(known):
-    return (True if known.others else None), f"two or more; here {len(known.machines)}"
+    return (True if known.compared else None), f"two or more; here {', '.join(one.folder.name for one in known.compared) or 'one'}"
+
+
+def _together(known):
+    first = next(iter(known.compared), None)
+    return (known.together, f"{known.context['commit'][:10]}; here {first.context['commit'][:10]}") if first else (None, "")
 
 
 def _machines(known):
-    if not known.others:
+    if not known.compared:
         return None, ""
-    count = agreement.shares(agreement.mechanisms(known.machines, known.agreed))
+    count = agreement.shares(agreement.mechanisms(known.compared, known.agreed))
     return (10 * (count["all"] - count["differ"]) >= 9 * count["all"] if count["all"] else None), (
         f"nine of ten; here {count['same'] + count['common']} of {count['all']}")
 
 
 def _vector(known):
     """Of each other machine: whether the one with the higher rate is the one where the dense step gained more than the scalar one."""
-    gained, rates = machine.gains(known.machines), [machine.rates(one).get("flops_per_ns") for one in known.machines]
-    if not known.others or None in rates or HYBRID not in gained or SCALAR not in gained:
+    if not known.compared:
+        return None, ""
+    gained, rates = machine.gains(known.compared), [machine.rates(one).get("flops_per_ns") for one in known.compared]
+    if None in rates or HYBRID not in gained or SCALAR not in gained:
         return None, ""
     dense = [vector / scalar for vector, scalar in zip(gained[HYBRID][1:], gained[SCALAR][1:])]
     return (all((one < 1) == (rate > rates[0]) for one, rate in zip(dense, rates[1:])),

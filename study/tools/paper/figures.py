@@ -17,14 +17,13 @@ from study.tools.paper.numbers import DENSE, HYBRID, led, profiled, real_mechani
 
 TEXT = 6.69      # inches, width of the paper's text
 SCALE = 0.78     # of letters and lines on paper: what figures have at 9.5 is 7.4 points
-NAMED = 6        # libraries of the figure of mechanisms with marks of their own
 END = 1.5        # ratio at which it ends
 FRONT = 3        # points that make a front
 STEPS = 14       # implementations of the figure of steps
 PHASES_OF = (DENSE, HYBRID, "csc_cholmod/supernodal", "csc_cholmod/simplicial", "csc_ldl/uplooking", "eigen_sparse/ldlt", "csc_klu/refactor",
              "compiled_ldl/fronts")
 NOTHING = "Not measured in this set."
-MARKS = ("o", "s", "^", "D", "v", "P")
+MARKS = ("o", "s", "^", "D", "v", "P", "X", "*")  # of the libraries that lead on most mechanisms
 
 
 def figures(known):
@@ -135,14 +134,14 @@ def engines(known):
 
 
 def mechanisms(known):
-    """A line a mechanism at its own fill: each library's time over that of the fastest, with its interval. Libraries that lead
-    nowhere are grey; who takes more than the end of the axis is not drawn."""
+    """A line a mechanism at its own fill: each library's time over that of the fastest, with its interval. Those that lead
+    on no or few are grey; who takes more than the end of the axis is not drawn."""
     rows = known.tables("families")["scenes"]
     mine = real_mechanisms(known).sort_values("variables")
     if mine.empty:
         return nothing(NOTHING)
     rows = rows[(rows.status == "ok") & rows.implementation.isin(known.registry.libraries)].merge(mine[["scene", "scheme"]], on=["scene", "scheme"])
-    chosen = list(led(mine))[:NAMED]
+    chosen = list(led(mine))[:len(MARKS)]
     half = -(-len(mine) // 2)
     figure, panels = plt.subplots(1, 2, figsize=(8.4, 1.2 + 0.16 * half), gridspec_kw={"wspace": 0.75})
     for axes, some in zip(panels, (mine[:half], mine[half:])):

@@ -46,23 +46,27 @@ class Known(Folder):
         return self.facts["context"]
 
     @cached_property
-    def beside(self):
-        """The stored sets of other machines, as Known."""
-        found = [Known(path.parent) for path in sorted((ROOT / "results").glob("*/set.json")) if path.parent != self.folder]
-        return [one for one in found if one.context["cpu_model"] != self.context["cpu_model"]]
+    def stored(self):
+        """The other stored sets, as Known."""
+        return [Known(path.parent) for path in sorted((ROOT / "results").glob("*/set.json")) if path.parent != self.folder]
 
     @cached_property
-    def others(self):
-        """Those beside it that may be compared with it: of the same commit and build."""
-        return [one for one in self.beside if not agreement.unlike(self, one)]
+    def compared(self):
+        """The sets that processors are compared by: this one and those of its build, or, without any, sets of another build."""
+        return agreement.compared(self, self.stored)
 
     @property
-    def machines(self):
-        """This set and the others."""
-        return [self, *self.others]
+    def together(self):
+        """Whether this set is one of those that are compared."""
+        return any(one is self for one in self.compared)
+
+    @property
+    def sets(self):
+        """All that the paper is of: this one, and those beside it that are compared."""
+        return [self, *(one for one in self.compared if one is not self)]
 
     @cached_property
     def agreed(self):
-        """What they say together of libraries; [] of one machine."""
-        found = agreement.agreements(self.machines)[0] if self.others else []
+        """What the compared ones say together of libraries."""
+        found = agreement.agreements(self.compared)[0] if self.compared else []
         return [one for one in found if one.question.layer == "libraries"]

@@ -129,23 +129,24 @@ def _spread(known):
 
 
 def _machines(known):
-    """What machines say together, and what makes them differ."""
-    shares = agreement.shares(agreement.mechanisms(known.machines, known.agreed))
+    """What the compared sets say together, and what makes their machines differ."""
+    sets = known.compared or [known]
+    shares = agreement.shares(agreement.mechanisms(sets, known.agreed))
     kinds = [one.verdict for one in known.agreed if one.question.part == "map"]
     verdicts = {"cells": len(kinds)} | {verdict: kinds.count(verdict) for verdict in ("decided", "several", "differs")}
-    rates, gained = [machine.rates(one) for one in known.machines], machine.gains(known.machines)
+    rates, gained = [machine.rates(one) for one in sets], machine.gains(sets)
     beside = {name: [one[rate] / rates[0][rate] for one in rates[1:] if rate in one and rate in rates[0]]
               for name, rate in (("rate", "flops_per_ns"), ("latency", "add_ns"))}
     steps = {name: gained.get(variant, [])[1:] for name, variant in (("vector", HYBRID), ("scalar", SCALAR), ("blocks", BLOCKS))}
-    told = [f"{one.folder.name} is {one.context['cpu_model']}, {one.facts['date'][:10]}" for one in known.machines]
-    on = lambda values: listed(f"{number(value, 2)} on {one.folder.name}" for value, one in zip(values, known.others))
-    where = "of " + ", ".join(one.folder.name for one in known.machines)
+    told = [f"{one.folder.name} is {one.context['cpu_model']}, {one.facts['date'][:10]}" for one in sets]
+    on = lambda values: listed(f"{number(value, 2)} on {one.folder.name}" for value, one in zip(values, sets[1:]))
+    where = "of " + ", ".join(one.folder.name for one in sets)
     found = {name: Number(text, f"{table} {where}") for table, texts in (
-        ("set.json", {"count": str(len(told)), "names": "; ".join(told)}),
+        ("set.json", {"count": str(len(told)), "names": "; ".join(told), "first": sets[0].folder.name, "commit": sets[0].context["commit"][:10]}),
         ("families/scenes", {name: str(one) for name, one in shares.items()} | {name: on(one) for name, one in steps.items()}),
         ("map/tidy", {name: str(one) for name, one in verdicts.items()}),
         ("raw/limit", {name: on(one) for name, one in beside.items()})) for name, text in texts.items()}
-    return found if known.others else dict.fromkeys(found)
+    return found if known.compared else dict.fromkeys(found)
 
 
 def _gate(known):

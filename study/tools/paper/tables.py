@@ -103,21 +103,22 @@ def _price(row):
 
 
 def claims(known):
-    """The claims of 2008, each with theirs, ours on each machine and the verdict; below, those that no set could judge, and why."""
-    sets = known.machines
-    others = [one.tables("map")["claims"].set_index(["id", "claim"]) for one in sets[1:]]
+    """The claims of 2008, each with theirs, ours in each set and the verdict, for which sets of another build do not count; below, those
+    without a verdict, and why."""
+    beside = {one.folder.name + ("" if known.together else f" ({one.context['commit'][:10]})"): one.tables("map")["claims"].set_index(["id", "claim"])
+              for one in known.sets[1:]}
     rows, without = [], {}
     for row in known.tables("map")["claims"].itertuples():
-        mine, verdicts = {"": row.id, "claim": row.claim, "2008": row.paper, sets[0].folder.name: _ours(row)}, [row.verdict]
-        for one, its in zip(sets[1:], others):
+        mine, verdicts = {"": row.id, "claim": row.claim, "2008": row.paper, known.folder.name: _ours(row)}, [row.verdict]
+        for head, its in beside.items():
             there = its.loc[(row.id, row.claim)] if (row.id, row.claim) in its.index else None
-            mine[one.folder.name] = "–" if there is None else _ours(there)
-            verdicts += [] if there is None else [there.verdict]
+            mine[head] = "–" if there is None else _ours(there)
+            verdicts += [there.verdict] if known.together and there is not None else []
         if {*verdicts} <= {ledger.UNMEASURED, ledger.INCOMPARABLE}:
             without.setdefault((row.id, row.reason), []).append(row.claim)
         else:
             rows.append(mine | {"verdict": "; ".join(dict.fromkeys(verdicts))})
-    width = 44 / len(sets)
+    width = 44 / len(known.sets)
     heads = {head: r"P{%.0fmm}" % width for head in rows[0] if head not in ("", "claim", "2008", "verdict")} if rows else {}
     return table(rows, {"": "l", "claim": r"P{61mm}", "2008": r"P{18mm}"} | heads | {"verdict": r"P{21mm}"}, long=True) + _without(without)
 
@@ -134,12 +135,13 @@ def _ours(row):
 
 
 def machines(known):
-    """What was measured on each machine, a column each."""
-    found, gained = [_machine(one) for one in known.machines], machine.gains(known.machines)
-    rows = [{"": what} | {one.folder.name: mine[what] for one, mine in zip(known.machines, found)} for what in found[0]]
-    rows += [{"": f"a step with {name}, times that on {known.folder.name}"} | {one.folder.name: number(value) for one, value in zip(known.machines, gained[name])}
-             for name in GAINED if name in gained and known.others]
-    return table(rows, {"": r"P{72mm}"} | {one.folder.name: r"P{%.0fmm}" % (96 / len(known.machines)) for one in known.machines})
+    """What was measured on each machine that is compared, a column each."""
+    sets = known.compared or [known]
+    found, gained = [_machine(one) for one in sets], machine.gains(sets)
+    rows = [{"": what} | {one.folder.name: mine[what] for one, mine in zip(sets, found)} for what in found[0]]
+    rows += [{"": f"a step with {name}, times that on {sets[0].folder.name}"} | {one.folder.name: number(value) for one, value in zip(sets, gained[name])}
+             for name in GAINED if name in gained and known.compared]
+    return table(rows, {"": r"P{72mm}"} | {one.folder.name: r"P{%.0fmm}" % (96 / len(sets)) for one in sets})
 
 
 def _machine(one):
@@ -159,14 +161,14 @@ def differs(known):
     rows, found = [], sorted((one for one in known.agreed if one.verdict == "differs"), key=lambda one: -one.worst.get(one.robust, math.inf))
     for one in found[:DIFFERING]:
         row = {"scene": one.question.scene, "form": one.question.form.partition("-")[0], "n": number(one.question.variables, 5)}
-        for there, ranking in zip(known.machines, one.machines):
+        for there, ranking in zip(known.compared, one.machines):
             others = [f"{name} {interval(ranking.ratios[name])}" for name in dict.fromkeys(one.winners)
                       if name != ranking.winner and name in ranking.ratios]
             row[there.folder.name] = "; ".join([ranking.winner, *others])
         rows.append(row | {"robust": f"{one.robust} {number(one.worst.get(one.robust))}"})
-    width = 88 / len(known.machines)
-    return table(rows, {"scene": r"P{27mm}", "form": "l", "n": "r"} | {one.folder.name: r"P{%.0fmm}" % width for one in known.machines}
-                 | {"robust": r"P{30mm}"}) if rows else tex("None." if known.others else "Not measured in this set.")
+    heads = {there.folder.name: r"P{%.0fmm}" % (88 / len(known.compared)) for there in known.compared}
+    return table(rows, {"scene": r"P{27mm}", "form": "l", "n": "r"} | heads | {"robust": r"P{30mm}"}) if rows else tex(
+        "None." if known.compared else "Not measured in this set.")
 
 
 def leaves(known):
@@ -211,11 +213,12 @@ def engines(known):
 
 
 def _times(rows):
-    known = rows.ratio.dropna()
+    known = rows[rows.ratio.notna()]
     if known.empty:
         return "–"
     missed = len(rows) - len(known)
-    return f"{number(known.median())} ({number(known.min())} to {number(known.max())})" + (f"; {missed} of {len(rows)} errors not reached" if missed else "")
+    return (f"{number(known.ratio.median())} ({number(known.ratio.min())} to {number(known.ratio.max())}), slower in {(known.low > 1).sum()} of {len(known)}"
+            + (f"; {missed} of {len(rows)} errors not reached" if missed else ""))
 
 
 def mechanisms(known):
