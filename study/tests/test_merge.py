@@ -3,13 +3,14 @@ import json
 import shutil
 from types import SimpleNamespace
 
+import pandas
 import pytest
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
 from analysis.core.timing import Ranking, Ratio
 from study.tests.conftest import study
-from study.tools.merge import agreement
+from study.tools.merge import agreement, machine
 from study.tools.merge.agreement import Agreement, Question
 from study.tools.merge.main import _said, labels, need_alike
 
@@ -65,6 +66,14 @@ def test_other_builds_and_dirty_trees_are_refused(key, value, words):
     with pytest.raises(StudyError, match=words):
         need_alike(*sets)
     assert labels(sets) == ["p, first", "p, second"]
+
+
+def test_a_claim_has_a_row_with_the_verdict_of_each_machine(monkeypatch):
+    ledgers = {"first": [{"id": "T1", "claim": "c", "paper": "2×", "verdict": "confirmed"}],
+               "second": [{"id": "T1", "claim": "c", "paper": "2×", "verdict": "refuted"}, {"id": "F7", "claim": "d", "paper": "", "verdict": "mixed"}]}
+    monkeypatch.setattr(machine, "table", lambda folder, *_: pandas.DataFrame(ledgers[folder]))
+    found = machine.claims([SimpleNamespace(folder=name) for name in ledgers])
+    assert [(id, [row and row["verdict"] for row in rows]) for id, _, _, rows in found] == [("T1", ["confirmed", "refuted"]), ("F7", [None, "mixed"])]
 
 
 @pytest.mark.skipif(not SETS, reason="no stored set")

@@ -135,7 +135,7 @@ def test_killed_while_it_sets_up_it_leaves_no_process(tmp_path, sign):
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
     while sum("sleep 600" in line for line in alive(mark)) < 2:
         assert process.poll() is None
-        time.sleep(0.05)
+        time.sleep(0.3)
     os.kill(process.pid, sign)
     process.wait(timeout=60)
     assert left_by(mark) == []
