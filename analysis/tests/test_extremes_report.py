@@ -217,7 +217,7 @@ def test_the_guard_is_compared_with_kept_pivots_over_processes():
 
 def render(found):
     template = site.template(ROOT / "analysis" / "extremes" / "page.html.j2")
-    return template.render(**page.context(found, VIEW), figures={}, schema={}, part="extremes", parts={},
+    return template.render(**page.context(found, VIEW), figures={}, schema={}, part="extremes", parts={}, pages={},
                                        question="?", facts=FACTS, libraries=["c"], context=dict.fromkeys(("cpu_model", "num_cpus", "commit", "compiler",
                                                                                         "flags", "kernel", "machine", "dirty"), "c"))
 

@@ -1,6 +1,7 @@
 # study/merge: what holds on several machines.
 import json
 import shutil
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy
@@ -104,7 +105,7 @@ def test_a_set_whose_controls_failed_is_refused(tmp_path, monkeypatch):
 
 def fake(name, commit, cpu, **context):
     known = {"commit": commit, "cpu_model": cpu, "compiler": "g", "flags": "f", "build_type": "Release", "libraries": "l", "dirty": "false"}
-    return SimpleNamespace(folder=name, facts={"context": known | context})
+    return SimpleNamespace(folder=Path(name), facts={"context": known | context})
 
 
 @pytest.mark.parametrize("others, chosen", [
@@ -114,7 +115,7 @@ def fake(name, commit, cpu, **context):
     ([("b", "old", "x"), ("c", "old", "y"), ("d", "new", "y")], ["a", "d"]),
     ([("b", "new", "y"), ("c", "new", "y"), ("d", "new", "z")], ["a", "b", "d"])])  # one of each processor
 def test_processors_are_compared_by_sets_of_one_build(others, chosen):
-    assert [one.folder for one in agreement.compared(fake("a", "new", "x"), [fake(*one) for one in others])] == chosen
+    assert [one.folder.name for one in agreement.compared(fake("a", "new", "x"), [fake(*one) for one in others])] == chosen
 
 
 def test_a_set_of_a_tree_with_changes_is_not_compared():
