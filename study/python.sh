@@ -11,5 +11,5 @@ system_python() {
   fi
   unset PYTHONHOME VIRTUAL_ENV
   export PYTHONPATH="$here/.." PYTHONNOUSERSITE=1 MPLBACKEND=Agg
-  exec /usr/bin/python3 -m study.main "$@"
+  exec /usr/bin/python3 -P -m study.main "$@"  # -P: not the study of the folder that it is typed in
 }
