@@ -171,25 +171,24 @@ def by_layout(rows, logs):
 
 
 def of_logs(logs, more=0.0, of=1):
-    """The Ratio whose logarithm is the mean of `logs`, independent of each other. `more`: a further variance of that mean, which
-    was found with `of` degrees of freedom; those of both together are Welch's and Satterthwaite's."""
+    """The Ratio whose logarithm is the mean of `logs`, independent of each other. `more`, `of`: as `student` takes them."""
     if not len(logs):
         return NONE
     if len(logs) == 1:
         return Ratio(math.exp(logs[0]), 0.0, math.inf)
-    middle, error, freedom = float(numpy.mean(logs)), float(numpy.std(logs, ddof=1)) / math.sqrt(len(logs)), len(logs) - 1
-    if more:
-        own, error = error, math.hypot(error, math.sqrt(more))
-        freedom = int(error**4 / (own**4 / freedom + more**2 / of) + 1e-9)  # whole, for tables
-    half = special.stdtrit(freedom, (1 + CONFIDENCE) / 2) * error
+    middle, half, error, freedom = student(logs, more, of)
     chance = float(special.stdtr(freedom, -middle / error)) if error else float(middle <= 0)
     return Ratio(*(math.exp(middle + shift) for shift in (0.0, -half, half)), chance)
 
 
-def student(values):
-    """(mean, half of Student's interval, standard error) of two values or more, independent of each other."""
-    error = float(numpy.std(values, ddof=1)) / math.sqrt(len(values))
-    return float(numpy.mean(values)), special.stdtrit(len(values) - 1, (1 + CONFIDENCE) / 2) * error, error
+def student(values, more=0.0, of=1):
+    """(mean, half of Student's interval, standard error, degrees of freedom) of two values or more, independent of each other. `more`: a
+    further variance of the mean, which was found with `of` degrees of freedom; those of both together are Welch's and Satterthwaite's."""
+    error, freedom = float(numpy.std(values, ddof=1)) / math.sqrt(len(values)), len(values) - 1
+    if more:
+        own, error = error, math.hypot(error, math.sqrt(more))
+        freedom = int(error**4 / (own**4 / freedom + more**2 / of) + 1e-9)  # whole, for tables
+    return float(numpy.mean(values)), special.stdtrit(freedom, (1 + CONFIDENCE) / 2) * error, error, freedom
 
 
 def log_ratios(rows, first, second):

@@ -3,6 +3,7 @@ import math
 
 import numpy
 import pandas
+from scipy import special
 
 from analysis.core import timing
 from analysis.core.timing import CONFIDENCE, TWIN
@@ -34,10 +35,9 @@ def within(paired, first, second):
         freedom = 2 * len(groups)  # at least: a process tells it with three rounds or more
     if not variance:
         return math.nan, math.nan
-    from scipy import stats
     error = math.sqrt(variance * sum(1 / len(one) for one in groups)) / len(groups)
     middle = float(numpy.mean([numpy.mean(one) for one in groups]))
-    half = float(stats.t.ppf((1 + CONFIDENCE) / 2, freedom)) * error
+    half = float(special.stdtrit(freedom, (1 + CONFIDENCE) / 2)) * error
     return math.exp(middle - half), math.exp(middle + half)
 
 

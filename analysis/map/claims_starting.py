@@ -27,7 +27,7 @@ def _share(results, kind, size, group, phases, share):
         what = f"{len(cell)} process{'es' if len(cell) > 1 else ''} of {name} profiled" if len(cell) else f"{name} not profiled"
         return unmeasured(head, f"{what} at n = {size}; an interval needs {PROCESSES}.", rule, " %")
     mine, whole = (cell[[f"phase_{phase}" for phase in some]].sum(axis=1) for some in (phases, PHASES))
-    middle, half, _ = student(100 * mine / whole)
+    middle, half, *_ = student(100 * mine / whole)
     return judged(head, [(f"n = {size}", (middle, middle - half, middle + half), " ".join(cell.record))], rule, name, " %")
 
 

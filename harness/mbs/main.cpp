@@ -1,10 +1,8 @@
 // The program `mbs`: list, describe, simulate, sweep, check, reference, limit, bench.
-#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <climits>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -12,6 +10,7 @@
 #include <string>
 
 #include "environment/environment.hpp"
+#include "environment/kept_memory.hpp"
 #include "mbs/run_program.hpp"
 #include "printable.hpp"
 
@@ -26,17 +25,6 @@ void limit_memory() {
   ::getrlimit(RLIMIT_AS, &limit);
   limit.rlim_cur = std::min(limit.rlim_cur, bytes);
   ::setrlimit(RLIMIT_AS, &limit);
-#endif
-}
-
-/// Memory that is freed stays with the process, as every real-time program wants it. By default
-/// glibc gives the top of the heap back from 128 KiB on: a library that allocates its workspace in
-/// each factorization then gets new pages each time, which can take longer than the arithmetic.
-void keep_memory() {
-#if defined(__GLIBC__)
-  constexpr int kLargest = 32 << 20;  // B, that glibc takes for this limit
-  ::mallopt(M_TRIM_THRESHOLD, INT_MAX);
-  ::mallopt(M_MMAP_THRESHOLD, kLargest);
 #endif
 }
 
@@ -70,7 +58,7 @@ int main(int argc, char** argv) {
   try {
     if (!has_stack()) return fail("the stack's limit is below 8 MiB (ulimit -Hs), which mbs needs");
     limit_memory();
-    keep_memory();
+    mbs::keep_memory();
     std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is an error like any other full disk
     mbs::settle_environment(argc, argv);
     return finish(mbs::run_program(argc, argv));

@@ -1,16 +1,14 @@
 // The command line of an engine's program, the loop that is timed, and the line of JSON.
-#include <malloc.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <chrono>
-#include <climits>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "engine.hpp"
+#include "environment/kept_memory.hpp"
 #include "judge.hpp"
 
 namespace engines {
@@ -177,10 +175,7 @@ void note_complaint(const std::string& text) {
 }
 
 int run_program(const Program& program, int argc, char** argv) {
-#if defined(__GLIBC__)  // freed memory stays with the process, as in mbs (harness/mbs/main.cpp)
-  mallopt(M_TRIM_THRESHOLD, INT_MAX);
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-#endif
+  mbs::keep_memory();
   CLI::App app{program.engine + " " + program.version +
                ": the N-four-bar mechanism or the double pendulum"};
   Options options;

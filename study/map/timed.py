@@ -1,12 +1,12 @@
 # A scene of the map, the N-four-bar at a size with its own fill or an artificial one, and how it is timed: a few processes of all,
 # without those whose stretch takes another number of passes, and then more of those who lead.
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
-from analysis.core.timing import LEFT_OUT, TWIN, differing
+from analysis.core.timing import LEFT_OUT, differing
 from analysis.map import timed
 from analysis.map.timed import layers, leaders, timed_rows
 from study.core.cell import Cell
-from study.core.contender import CONTROL, Contender
+from study.core.contender import CONTROL, Contender, twin_of
 from study.core.timing import measure
 
 LEAST_SAMPLES, MOST_SAMPLES = 1, 40
@@ -58,7 +58,7 @@ class TimedScene:
         chosen = [one for one in self.costs if one.name in names]
         if len(chosen) > 1 and count:
             fastest = {ranking.winner for ranking in rankings.values() if ranking}
-            twins = [replace(one, name=one.name + TWIN, variant=one.variant + TWIN) for one in chosen if one.name in fastest]
+            twins = [twin_of(one) for one in chosen if one.name in fastest]
             self.records += self.processes([*chosen, *twins], count, "again")
 
     @property
