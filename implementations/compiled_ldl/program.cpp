@@ -200,17 +200,20 @@ int eliminate_points_first(const Pattern& pattern, int width, const Changing& ch
 
 /// Columns long enough for vectors of 2, 4 or 8 numbers that begin below the pivots of a panel. In
 /// a front of one panel those of 8 may reach into what the next column keeps of the pivots, which
-/// are in registers by then, and behind the last column into kBehind numbers.
+/// are in registers by then, and behind the last column into kBehind numbers. Columns of wide
+/// fronts are whole blocks of eight numbers, and do not all begin in the same few places of a cache.
 int stride_of(const Front& front, int width) {
   const int rows = front.pivots + front.border;
   if (width == 1) return rows;
+  if (front.pivots > kPanel) {
+    const int blocks = round_up(rows, kPanel);
+    return blocks % 128 == 0 ? blocks + kPanel : blocks;
+  }
   int stride = std::max(lanes_for(front.pivots), rows);
   if (front.border > 0) {
     const int lanes = lanes_for(front.border), rounded = round_up(front.border, lanes);
-    const bool may_reach = lanes == 8 && front.pivots <= kPanel;
-    stride = std::max(rows, may_reach ? rounded : front.pivots + rounded);
+    stride = std::max(rows, lanes == 8 ? rounded : front.pivots + rounded);
   }
-  if (front.pivots > kPanel) stride = std::max(stride, round_up(rows, width));
   return stride <= 4 ? stride : round_up(stride, 4);
 }
 constexpr int kBehind = 8;
@@ -309,10 +312,9 @@ Program compile(const Pattern& pattern, int width, const Changing& changing) {
   return program;
 }
 
-PanelShape panel_shape(const Front& front, int from) {
-  const int pivots = std::min(kPanel, front.pivots - from);
-  if (from + pivots < front.pivots) return {pivots, 8};
-  return {pivots, front.border == 0 ? 0 : lanes_for(front.border)};
+FrontShape front_shape(const Front& front) {
+  if (front.pivots > kPanel) return {(front.pivots - 1) % kPanel + 1, kPanel, true};
+  return {front.pivots, front.border == 0 ? 0 : lanes_for(front.border), false};
 }
 
 }  // namespace mbs::compiled_ldl

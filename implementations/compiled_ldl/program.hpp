@@ -94,13 +94,13 @@ struct Changing {
 /// that of A, whose fronts are constant, and −ε − B A⁻¹ Bᵀ, if this is predicted faster.
 Program compile(const Pattern& pattern, int width, const Changing& changing = {});
 
-/// What chooses the kernel of a panel: its pivots, and the lanes of vectors for rows below, 0:
-/// none.
-struct PanelShape {
+/// What chooses the kernel of a front: the pivots of its last panel, the lanes of vectors for rows
+/// below, 0: none, and whether there are panels before that one.
+struct FrontShape {
   int pivots = 0, lanes = 0;
-  bool operator==(const PanelShape&) const = default;
+  bool wide = false;
+  bool operator==(const FrontShape&) const = default;
 };
-/// Of the panel that begins with this pivot of its front.
-PanelShape panel_shape(const Front& front, int from);
+FrontShape front_shape(const Front& front);
 
 }  // namespace mbs::compiled_ldl
