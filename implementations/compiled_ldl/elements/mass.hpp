@@ -31,8 +31,8 @@ void store_rows(S* x, const V& v) {
 /// Blocks that are multiples of the unit matrix, as rods and bodies in space have them, keep one
 /// number. All else is in strips of rows, as many as a register holds, that keep their columns
 /// where one of them is not zero: with two rows a strip, rows (1 2 0) and (2 5 0) are one strip
-/// with columns 0 and 1, values 1, 2 and 2, 5. If strips have most of all columns, the lower half is
-/// kept in their place.
+/// with columns 0 and 1, values 1, 2 and 2, 5. If strips have most of all columns, the lower half
+/// is kept in their place.
 template <typename S, int D>
 class Mass {
  public:
@@ -132,7 +132,7 @@ Mass<S, D>::Mass(std::span<const Model* const> models, const Program& program, c
   }
   size_ = program.size;
   const bool full = 2 * kRows * others.size() > static_cast<std::size_t>(size_) * size_;
-  full && kLanesOf<S> == 1 && size_ > kFew ? add_half(others) : add_strips(others);
+  full&& kLanesOf<S> == 1 && size_ > kFew ? add_half(others) : add_strips(others);
 }
 
 template <typename S, int D>

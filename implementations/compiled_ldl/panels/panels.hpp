@@ -26,13 +26,14 @@ class Panels {
   /// `definite`: only positive pivots are accepted.
   Panels(const Program& program, bool definite);
 
-  /// What every factorization begins with.
-  F* constants() { return constants_.data() + kMargin; }
+  /// What every factorization begins with, written before start().
+  F* constants() {
+    all_changed_ = true;
+    return constants_.data() + kMargin;
+  }
   /// The matrix, valid from start() until factorize_and_solve().
   F* matrix() { return matrix_.data() + kMargin; }
-  void start() {
-    for (const Copied& c : copied_) std::copy_n(constants() + c.begin, c.count, matrix() + c.begin);
-  }
+  void start();
 
   /// Fronts: the program's constant ones, or those behind them.
   enum class Part { all, constant, changing };
@@ -42,11 +43,6 @@ class Panels {
 
  private:
   static constexpr int kMargin = 16;  // numbers before and behind, which vectors may touch
-  /// What start() copies: fronts, of large ones the columns from their panel's diagonal on. What
-  /// lies between, if it is short, is copied along.
-  struct Copied {
-    int begin = 0, count = 0;
-  };
   struct Panel {
     int first = 0;    // row of the first pivot
     int columns = 0;  // storage
@@ -73,7 +69,6 @@ class Panels {
   }
   void add_front(const Front& front);
   void add_panel(const Front& front);
-  void add_copied(const Front& front);
   void add_run(const FrontShape& shape, int last);
   template <int P>
   void choose_kernels(Run& run, const FrontShape& shape) const;
@@ -114,6 +109,7 @@ class Panels {
 
   const Program& program_;
   bool definite_;
+  bool all_changed_ = true;  // since start(), and not only what the program lists
   Array<F> constants_, matrix_, factors_;
   std::vector<Panel> panels_;
   std::vector<Run> runs_;
@@ -121,7 +117,6 @@ class Panels {
   FrontShape last_shape_;  // while tables are made, as the next
   int next_factors_ = 0;
   std::vector<Strip> strips_;
-  std::vector<Copied> copied_;
   WideFronts<F> wide_;
 };
 
@@ -147,7 +142,6 @@ Panels<F>::Panels(const Program& program, bool definite)
 
 template <typename F>
 void Panels<F>::add_front(const Front& front) {
-  add_copied(front);
   const FrontShape shape = front_shape(front);
   if (shape.wide) {
     wide_.add(front);
@@ -177,20 +171,6 @@ void Panels<F>::add_panel(const Front& front) {
   panel.strips_end = static_cast<int>(strips_.size());
   panel.is_two = front.border == 2 && panel.strips_end - panel.strips_begin == 1;
   panels_.push_back(panel);
-}
-
-template <typename F>
-void Panels<F>::add_copied(const Front& front) {
-  constexpr int kWhole = 4 * kPanel;  // columns; of few rows, parts take longer than all
-  for (int j = 0; j < front.pivots; ++j) {
-    const int above = j < kWhole ? 0 : j / kPanel * kPanel;
-    const int begin = front.base + j * front.stride + above, count = front.stride - above;
-    if (!copied_.empty() && begin - (copied_.back().begin + copied_.back().count) <= kMargin) {
-      copied_.back().count = begin + count - copied_.back().begin;
-    } else {
-      copied_.push_back({begin, count});
-    }
-  }
 }
 
 /// `last`: number of the new panel or wide front.
@@ -275,6 +255,21 @@ void Panels<F>::set_wide_kernels(Run& run) const {
   run.backward = &Panels::template backward_wide<P>;
 }
 
+template <typename F>
+void Panels<F>::start() {
+  const F* from = constants_.data() + kMargin;
+  if (all_changed_) {
+    std::copy(constants_.begin(), constants_.end(), matrix_.begin());
+    all_changed_ = false;
+    return;
+  }
+  constexpr int L = kWidest<F>;
+  for (const Range& range : program_.changing) {
+    for (int i = range.begin; i < range.end; i += L)
+      store<F, L>(matrix() + i, load<F, L>(from + i));
+  }
+}
+
 // Elimination of a run of panels.
 
 template <typename F>
@@ -282,6 +277,7 @@ bool Panels<F>::factorize_and_solve(F* y, Part part) {
   bool accepted = true;
   const auto runs = runs_of(part);
   for (const Run& run : runs) accepted &= (this->*run.eliminate)(run, y);
+  all_changed_ |= !accepted;  // what is not a number may be anywhere
   for (auto run = runs.rbegin(); run != runs.rend(); ++run) (this->*run->backward)(*run, y);
   return accepted;
 }
@@ -562,13 +558,13 @@ bool Panels<F>::eliminate_wide(const Run& run, F* y) {
 template <typename F>
 template <int P>
 void Panels<F>::forward_wide(const Run& run, F* y) {
-  for (int i = run.begin; i < run.end; ++i) wide_.template forward<P>(i, matrix(), y);
+  for (int i = run.begin; i < run.end; ++i) wide_.template forward<P>(i, y);
 }
 
 template <typename F>
 template <int P>
 void Panels<F>::backward_wide(const Run& run, F* y) {
-  for (int i = run.end - 1; i >= run.begin; --i) wide_.template backward<P>(i, matrix(), y);
+  for (int i = run.end - 1; i >= run.begin; --i) wide_.template backward<P>(i, y);
 }
 
 }  // namespace mbs::compiled_ldl

@@ -11,11 +11,12 @@
 
 namespace mbs::compiled_ldl {
 
-/// Of each panel are stored what Panels has, M, Mᵀ, D⁻¹ and C L⁻ᵀ in place of C, but not W. A
-/// panel takes up what those before it subtract, a few rows of all its columns at a time. While
-/// these are in registers they become C L⁻ᵀ, and the right-hand side below loses their C z. So the
-/// matrix is loaded and stored once. Rows are counted from the front's first; columns begin on
-/// multiples of eight numbers, and so do panels.
+/// Of each panel are stored what Panels has, M, Mᵀ, D⁻¹ and C L⁻ᵀ, but not W; the matrix stays what
+/// it is. A panel takes up what those before it subtract, a few rows of all its columns at a time.
+/// While these are in registers they become C L⁻ᵀ, and the right-hand side loses their C L⁻ᵀ z. So
+/// the matrix is loaded once. C L⁻ᵀ of eight pivots' rows is a row of blocks, each column by
+/// column: rows 16 … 23 have 16 columns of eight numbers, behind the 8 columns of rows 8 … 15. The
+/// border's rows have columns of their own.
 template <typename F>
 class WideFronts {
  public:
@@ -31,43 +32,62 @@ class WideFronts {
   template <int P, bool kDefinite>
   bool eliminate(int k, F* matrix, F* y);
   template <int P>
-  void forward(int k, const F* matrix, F* y);
+  void forward(int k, F* y);
   template <int P>
-  void backward(int k, const F* matrix, F* y);
+  void backward(int k, F* y);
 
  private:
   static constexpr int L = kWidest<F>;
   static constexpr int kPairs = kRegisterDoubles == 8 ? 2 : 1;  // vectors of rows at a time
-  static constexpr int kOfPanel = 2 * kPanel * kPanel;          // numbers of M and Mᵀ
-  /// Columns of more numbers are fetched ahead.
-  static constexpr int kLarge = 64;
+  static constexpr int kBlock = kPanel * kPanel;
   using W = typename Short<F, L>::Type;
   using Eight = typename Short<F, kPanel>::Type;
   struct Wide {
     int first = 0, pivots = 0, border = 0;
-    int base = 0, stride = 0;
-    int padded = 0;    // rows, a multiple of eight
-    int inverses = 0;  // where D⁻¹ is
-    int factors = 0;   // where M and Mᵀ of the first panel are
-    int rows = 0;      // where Program::border_rows has its border
+    int base = 0, stride = 0;    // of the matrix
+    int panels = 0, length = 0;  // of the border's columns, a multiple of eight
+    int inverses = 0;            // where D⁻¹ is
+    int factors = 0;             // where M and Mᵀ of the first panel are
+    int blocks = 0;              // where C L⁻ᵀ of the pivots' rows is
+    int columns = 0;             // and of the border's
+    int rows = 0;                // where Program::border_rows has its border
     int strips_begin = 0, strips_end = 0;
   };
+  /// C L⁻ᵀ of some rows: its first column, how far apart columns are, and vectors of rows.
+  struct Rows {
+    F* at;
+    int stride, next;
+  };
 
-  void take_right(const Wide& front, const F* y);
-  void scale_rows(const Wide& front, const F* rows, int columns);
+  /// Of the k-th eight pivots.
+  Rows pivot_rows(const Wide& front, int k) {
+    return {factors_.data() + front.blocks + kBlock / 2 * k * (k - 1), kPanel, kBlock * k};
+  }
+  Rows border_rows(const Wide& front) { return {factors_.data() + front.columns, front.length, L}; }
+  F* factors_of(const Wide& front, int k) {
+    return factors_.data() + front.factors + 2 * kBlock * k;
+  }
+
+  F* take_right(const Wide& front, F* y);
+  void give_right(const Wide& front, F* y) const;
+  void add_border(const Wide& front, F* y) const;
+  template <int P>
+  static void store_pivots(F* right, const Eight& x);
+  void scale_rows(const Wide& front, const F* rows, int stride, int columns);
   template <int P, int R>
-  static void take_up(const F* rows, int stride, const F* scaled, int columns, W (&s)[P][R]);
+  static void take_up(Rows rows, const F* scaled, int columns, W (&s)[P][R]);
   template <int P, bool kDefinite>
-  bool eliminate_panel(const Wide& front, F* columns, int from);
+  bool eliminate_panel(const Wide& front, const F* matrix, int k, F* right);
   template <int P, int R>
-  void finish_rows(const Wide& front, F* columns, int from, int row, const F* l, const F* z);
+  void finish_rows(int stride, const F* target, Rows rows, int from, const F* l, const F* z,
+                   F* right);
   template <int P>
-  void forward_panel(const Wide& front, const F* columns, int from);
+  void forward_panel(const Wide& front, int k, F* right);
   template <int P>
-  void backward_panel(const Wide& front, const F* columns, int from);
+  void backward_panel(const Wide& front, int k, F* right);
   void update_border(const Wide& front, F* matrix);
   template <int K>
-  void update_columns(const Wide& front, F* matrix, const Strip& strip, int column) const;
+  void update_columns(const Wide& front, F* matrix, const Strip& strip, int column);
 
   const Program& program_;
   std::vector<Wide> fronts_;
@@ -75,7 +95,7 @@ class WideFronts {
   int next_ = 0, longest_ = 0;
   Array<F> factors_;
   Array<F> scaled_;  // eight rows of C L⁻ᵀ D⁻¹, column by column
-  Array<F> right_;   // a right-hand side of a front, what its border loses behind it
+  Array<F> right_;   // a right-hand side of a front, from a multiple of eight on the border's
 };
 
 template <typename F>
@@ -86,13 +106,16 @@ void WideFronts<F>::add(const Front& front) {
   wide.border = front.border;
   wide.base = front.base;
   wide.stride = front.stride;
-  wide.padded = round_up(front.pivots + front.border, kPanel);
+  wide.panels = (front.pivots + kPanel - 1) / kPanel;
+  wide.length = round_up(front.border, kPanel);
   wide.rows = front.rows;
-  const int columns = round_up(front.pivots, kPanel);
+  const int padded = wide.panels * kPanel;
   wide.inverses = next_;
-  wide.factors = next_ + columns;
-  next_ = wide.factors + columns / kPanel * kOfPanel;
-  longest_ = std::max(longest_, wide.padded);
+  wide.factors = wide.inverses + padded;
+  wide.blocks = wide.factors + wide.panels * 2 * kBlock;
+  wide.columns = wide.blocks + kBlock / 2 * wide.panels * (wide.panels - 1);
+  next_ = wide.columns + padded * wide.length;
+  longest_ = std::max(longest_, padded + wide.length);
   wide.strips_begin = static_cast<int>(strips_.size());
   add_strips<F>(program_, front, strips_);
   wide.strips_end = static_cast<int>(strips_.size());
@@ -101,48 +124,81 @@ void WideFronts<F>::add(const Front& front) {
 
 template <typename F>
 void WideFronts<F>::allocate() {
-  factors_.resize(next_, F(0));
+  factors_.resize(next_ + kPanel, F(0));
   scaled_.resize(longest_ * kPanel, F(0));
   right_.resize(longest_, F(0));
+}
+
+// Right-hand sides. What lies behind a front's rows in y is left as it is.
+
+/// That of the front's pivots, behind it zeros from a multiple of eight on; y itself if there is no
+/// border.
+template <typename F>
+F* WideFronts<F>::take_right(const Wide& front, F* y) {
+  y += front.first;
+  if (front.border == 0) return y;
+  F* right = right_.data();
+  const int padded = front.panels * kPanel;
+  for (int i = 0; i < padded; i += L) {
+    store<F, L>(right + i, first_lanes<F, L>(load<F, L>(y + i), front.pivots - i));
+  }
+  for (int i = 0; i < front.length; i += L) store<F, L>(right + padded + i, W{});
+  return right;
+}
+
+template <typename F>
+void WideFronts<F>::give_right(const Wide& front, F* y) const {
+  if (front.border == 0) return;
+  y += front.first;
+  for (int i = 0; i < front.pivots; i += L) {
+    store<F, L>(y + i, first_lanes_or<F, L>(load<F, L>(right_.data() + i), load<F, L>(y + i),
+                                            front.pivots - i));
+  }
+}
+
+/// P numbers of the pivots.
+template <typename F>
+template <int P>
+void WideFronts<F>::store_pivots(F* right, const Eight& x) {
+  store<F, kPanel>(right, first_lanes_or<F, kPanel>(x, load<F, kPanel>(right), P));
+}
+
+template <typename F>
+void WideFronts<F>::add_border(const Wide& front, F* y) const {
+  const int* rows = program_.border_rows.data() + front.rows;
+  const F* right = right_.data() + front.panels * kPanel;
+  for (int i = 0; i < front.border; ++i) y[rows[i]] += right[i];
 }
 
 // Elimination from the left.
 
 template <typename F>
-void WideFronts<F>::take_right(const Wide& front, const F* y) {
-  std::copy_n(y + front.first, front.pivots, right_.data());
-  std::fill(right_.data() + front.pivots, right_.data() + front.padded, F(0));
-}
-
-template <typename F>
 template <int P, bool kDefinite>
 bool WideFronts<F>::eliminate(int k, F* matrix, F* y) {
   const Wide& front = fronts_[k];
-  F* columns = matrix + front.base;
-  take_right(front, y);
+  F* right = take_right(front, y);
   bool accepted = true;
-  int from = 0;
-  for (; from + kPanel < front.pivots; from += kPanel) {
-    accepted &= eliminate_panel<kPanel, kDefinite>(front, columns, from);
+  const int last = front.panels - 1;
+  for (int i = 0; i < last; ++i) {
+    accepted &= eliminate_panel<kPanel, kDefinite>(front, matrix + front.base, i, right);
   }
-  accepted &= eliminate_panel<P, kDefinite>(front, columns, from);
-  std::copy_n(right_.data(), front.pivots, y + front.first);
+  accepted &= eliminate_panel<P, kDefinite>(front, matrix + front.base, last, right);
+  give_right(front, y);
   if (front.border == 0) return accepted;
-  const int* rows = program_.border_rows.data() + front.rows;
-  for (int i = 0; i < front.border; ++i) y[rows[i]] += right_[front.pivots + i];
+  add_border(front, y);
   update_border(front, matrix);
   return accepted;
 }
 
 /// scaled_ = D⁻¹ C of eight rows in the first so many columns.
 template <typename F>
-void WideFronts<F>::scale_rows(const Wide& front, const F* rows, int columns) {
+void WideFronts<F>::scale_rows(const Wide& front, const F* rows, int stride, int columns) {
   const F* inverse = factors_.data() + front.inverses;
   F* scaled = scaled_.data();
   for (int j = 0; j < columns; ++j) {
 #pragma GCC unroll 4
     for (int i = 0; i < kPanel; i += L) {
-      store<F, L>(scaled + j * kPanel + i, load<F, L>(rows + j * front.stride + i) * inverse[j]);
+      store<F, L>(scaled + j * kPanel + i, load<F, L>(rows + j * stride + i) * inverse[j]);
     }
   }
 }
@@ -150,20 +206,13 @@ void WideFronts<F>::scale_rows(const Wide& front, const F* rows, int columns) {
 /// s −= C D⁻¹ Cᵀ of the first so many columns: C of R vectors of rows, D⁻¹ Cᵀ of P columns.
 template <typename F>
 template <int P, int R>
-[[gnu::always_inline]] inline void WideFronts<F>::take_up(const F* rows, int stride,
-                                                          const F* scaled, int columns,
+[[gnu::always_inline]] inline void WideFronts<F>::take_up(Rows rows, const F* scaled, int columns,
                                                           W (&s)[P][R]) {
-  constexpr int kAhead = 24;
-  // Columns lie too far apart for the processor to see which comes next. Those of a short front are
-  // in the cache, and what lies that far behind is not its own.
-  const bool large = stride > kLarge;
-  for (int j = 0; j < columns; ++j, rows += stride, scaled += kPanel) {
+  const F* column = rows.at;
+  for (int j = 0; j < columns; ++j, column += rows.stride, scaled += kPanel) {
     W c[R];
 #pragma GCC unroll 2
-    for (int r = 0; r < R; ++r) {
-      if (large) __builtin_prefetch(rows + kAhead * stride + r * L);
-      c[r] = load<F, L>(rows + r * L);
-    }
+    for (int r = 0; r < R; ++r) c[r] = load<F, L>(column + r * rows.next);
 #pragma GCC unroll 8
     for (int k = 0; k < P; ++k) {
       const F of_column = scaled[k];
@@ -175,19 +224,20 @@ template <int P, int R>
 
 template <typename F>
 template <int P, bool kDefinite>
-bool WideFronts<F>::eliminate_panel(const Wide& front, F* columns, int from) {
-  F* diagonal = columns + from * front.stride + from;
-  F* inverses = factors_.data() + front.inverses + from;
-  F* factors = factors_.data() + front.factors + from / kPanel * kOfPanel;
-  F* right = right_.data() + from;
-  scale_rows(front, columns + from, from);
+bool WideFronts<F>::eliminate_panel(const Wide& front, const F* matrix, int k, F* right) {
+  const int from = k * kPanel;
+  const F* target = matrix + from * front.stride;
+  F* factors = factors_of(front, k);
+  F* z_of = right + from;
+  Rows rows = pivot_rows(front, k);
+  scale_rows(front, rows.at, rows.stride, from);
   alignas(64) F block[P * kPanel];
 #pragma GCC unroll 4
   for (int i = 0; i < kPanel; i += L) {
     W s[P][1];
 #pragma GCC unroll 8
-    for (int j = 0; j < P; ++j) s[j][0] = load<F, L>(diagonal + j * front.stride + i);
-    take_up<P, 1>(columns + from + i, front.stride, scaled_.data(), from, s);
+    for (int j = 0; j < P; ++j) s[j][0] = load<F, L>(target + j * front.stride + from + i);
+    take_up<P, 1>({rows.at + i, rows.stride, 0}, scaled_.data(), from, s);
 #pragma GCC unroll 8
     for (int j = 0; j < P; ++j) store<F, L>(block + j * kPanel + i, s[j][0]);
   }
@@ -203,45 +253,52 @@ bool WideFronts<F>::eliminate_panel(const Wide& front, F* columns, int from) {
     store<F, kPanel>(block + j * kPanel, l[j]);
     store<F, kPanel>(factors + j * kPanel, m[j]);
     scale[j] = inverse[j];
-    z += m[j] * right[j];
+    z += m[j] * z_of[j];
   }
-  store_transposed<F, P, P, kPanel>(m, factors + kPanel * kPanel);
-  store<F, kPanel>(inverses, scale);
-  z *= scale;
-  if constexpr (P < kPanel) {  // the first rows of the border
-    Eight below = load<F, kPanel>(right);
-#pragma GCC unroll 8
-    for (int j = 0; j < P; ++j) {
-      store<F, kPanel>(diagonal + j * front.stride, a[j]);
-      below -= a[j] * z[j];
+  store_transposed<F, P, P, kPanel>(m, factors + kBlock);
+  store<F, kPanel>(factors_.data() + front.inverses + from, scale);
+  store_pivots<P>(z_of, z * scale);
+  if constexpr (P == kPanel) {
+    int b = k + 1;
+    for (; kPairs == 2 && L == kPanel && b + 1 < front.panels; b += 2) {
+      finish_rows<P, kPairs>(front.stride, target + b * kPanel, pivot_rows(front, b), from, block,
+                             z_of, right + b * kPanel);
     }
-    z = first_lanes_or<F, kPanel>(z, below, P);
+    for (; b < front.panels; ++b) {
+      rows = pivot_rows(front, b);
+      for (int i = 0; i < kPanel; i += L, rows.at += L) {
+        finish_rows<P, 1>(front.stride, target + b * kPanel + i, rows, from, block, z_of,
+                          right + b * kPanel + i);
+      }
+    }
   }
-  store<F, kPanel>(right, z);
-  int row = from + kPanel;
-  for (; row + kPairs * L <= front.padded; row += kPairs * L) {
-    finish_rows<P, kPairs>(front, columns, from, row, block, right);
+  rows = border_rows(front);
+  F* below = right + front.panels * kPanel;
+  int i = 0;
+  for (; i + kPairs * L <= front.length; i += kPairs * L, rows.at += kPairs * L) {
+    finish_rows<P, kPairs>(front.stride, target + front.pivots + i, rows, from, block, z_of,
+                           below + i);
   }
-  for (; row < front.padded; row += L) {
-    finish_rows<P, 1>(front, columns, from, row, block, right);
+  for (; i < front.length; i += L, rows.at += L) {
+    finish_rows<P, 1>(front.stride, target + front.pivots + i, rows, from, block, z_of, below + i);
   }
   return accepted;
 }
 
-/// R vectors of rows below the panel's block, of which `l` has L and `z` the solution.
+/// R vectors of rows below the panel's block, of which `l` has L and `z` the solution. `target`:
+/// the matrix in the panel's first column; `right`: the right-hand side.
 template <typename F>
 template <int P, int R>
-void WideFronts<F>::finish_rows(const Wide& front, F* columns, int from, int row, const F* l,
-                                const F* z) {
-  F* target = columns + from * front.stride + row;
+void WideFronts<F>::finish_rows(int stride, const F* target, Rows rows, int from, const F* l,
+                                const F* z, F* right) {
   W s[P][R];
 #pragma GCC unroll 8
   for (int k = 0; k < P; ++k) {
 #pragma GCC unroll 2
-    for (int r = 0; r < R; ++r) s[k][r] = load<F, L>(target + k * front.stride + r * L);
+    for (int r = 0; r < R; ++r) s[k][r] = load<F, L>(target + k * stride + r * L);
   }
-  take_up<P, R>(columns + row, front.stride, scaled_.data(), from, s);
-  F* right = right_.data() + row;
+  take_up<P, R>(rows, scaled_.data(), from, s);
+  F* to = rows.at + from * rows.stride;
   W y[R];
 #pragma GCC unroll 2
   for (int r = 0; r < R; ++r) y[r] = load<F, L>(right + r * L);
@@ -257,7 +314,7 @@ void WideFronts<F>::finish_rows(const Wide& front, F* columns, int from, int row
 #pragma GCC unroll 2
     for (int r = 0; r < R; ++r) {
       y[r] -= s[k][r] * z_k;
-      store<F, L>(target + k * front.stride + r * L, s[k][r]);
+      store<F, L>(to + k * rows.stride + r * rows.next, s[k][r]);
     }
   }
 #pragma GCC unroll 2
@@ -268,12 +325,12 @@ void WideFronts<F>::finish_rows(const Wide& front, F* columns, int from, int row
 
 template <typename F>
 void WideFronts<F>::update_border(const Wide& front, F* matrix) {
-  const F* border = matrix + front.base + front.pivots;
+  const Rows rows = border_rows(front);
   for (int begin = front.strips_begin, end; begin < front.strips_end; begin = end) {
     const int first = strips_[begin].column;
     for (end = begin; end < front.strips_end && strips_[end].column == first;) ++end;
     for (int k = 0; k < strips_[end - 1].columns; k += kPanel) {
-      scale_rows(front, border + first + k, front.pivots);
+      scale_rows(front, rows.at + first + k, rows.stride, front.pivots);
       for (int i = begin; i < end; ++i) update_columns<kPanel>(front, matrix, strips_[i], k);
     }
   }
@@ -282,8 +339,7 @@ void WideFronts<F>::update_border(const Wide& front, F* matrix) {
 /// The columns of a strip from `column` on, at most K. scaled_ has their rows.
 template <typename F>
 template <int K>
-void WideFronts<F>::update_columns(const Wide& front, F* matrix, const Strip& strip,
-                                   int column) const {
+void WideFronts<F>::update_columns(const Wide& front, F* matrix, const Strip& strip, int column) {
   if (strip.columns - column < K) {
     if constexpr (K > 1) update_columns<K - 1>(front, matrix, strip, column);
     return;
@@ -291,12 +347,12 @@ void WideFronts<F>::update_columns(const Wide& front, F* matrix, const Strip& st
   constexpr int N = std::max(4, L);  // a strip may have four rows
   using V = typename Short<F, N>::Type;
   F* target = matrix + strip.target + column * strip.stride;
-  const F* rows = matrix + front.base + front.pivots + strip.begin;
+  const F* rows = border_rows(front).at + strip.begin;
   const F* scaled = scaled_.data();
   V s[K];
 #pragma GCC unroll 8
   for (int k = 0; k < K; ++k) s[k] = load<F, N>(target + k * strip.stride);
-  for (int j = 0; j < front.pivots; ++j, rows += front.stride, scaled += kPanel) {
+  for (int j = 0; j < front.pivots; ++j, rows += front.length, scaled += kPanel) {
     const V c = first_lanes<F, N>(load<F, N>(rows), strip.rows);
 #pragma GCC unroll 8
     for (int k = 0; k < K; ++k) s[k] -= c * scaled[k];
@@ -309,83 +365,80 @@ void WideFronts<F>::update_columns(const Wide& front, F* matrix, const Strip& st
 
 template <typename F>
 template <int P>
-void WideFronts<F>::forward(int k, const F* matrix, F* y) {
+void WideFronts<F>::forward(int k, F* y) {
   const Wide& front = fronts_[k];
-  const F* columns = matrix + front.base;
-  take_right(front, y);
-  int from = 0;
-  for (; from + kPanel < front.pivots; from += kPanel) forward_panel<kPanel>(front, columns, from);
-  forward_panel<P>(front, columns, from);
-  std::copy_n(right_.data(), front.pivots, y + front.first);
-  const int* rows = program_.border_rows.data() + front.rows;
-  for (int i = 0; i < front.border; ++i) y[rows[i]] += right_[front.pivots + i];
+  F* right = take_right(front, y);
+  const int last = front.panels - 1;
+  for (int i = 0; i < last; ++i) forward_panel<kPanel>(front, i, right);
+  forward_panel<P>(front, last, right);
+  give_right(front, y);
+  add_border(front, y);
 }
 
 /// z = D⁻¹ M y in place of the pivots' y; y −= C L⁻ᵀ z below.
 template <typename F>
 template <int P>
-void WideFronts<F>::forward_panel(const Wide& front, const F* columns, int from) {
-  const F* factors = factors_.data() + front.factors + from / kPanel * kOfPanel;
-  const F* panel = columns + from * front.stride;
-  F* right = right_.data();
-  Eight z = times_columns<F, P, kPanel>(factors, load<F, kPanel>(right + from));
+void WideFronts<F>::forward_panel(const Wide& front, int k, F* right) {
+  const int from = k * kPanel;
+  Eight z = times_columns<F, P, kPanel>(factors_of(front, k), right + from);
   z *= load<F, kPanel>(factors_.data() + front.inverses + from);
-  Eight block = z;
-  if constexpr (P < kPanel) {
-    Eight below = load<F, kPanel>(right + from);
-#pragma GCC unroll 8
-    for (int j = 0; j < P; ++j) below -= load<F, kPanel>(panel + j * front.stride + from) * z[j];
-    block = first_lanes_or<F, kPanel>(z, below, P);
-  }
-  store<F, kPanel>(right + from, block);
-  for (int i = from + kPanel; i < front.padded; i += L) {
-    W even = load<F, L>(right + i), odd = W{};
+  store_pivots<P>(right + from, z);
+  const auto subtract = [&](Rows rows, F* y) {
+    const F* columns = rows.at + from * rows.stride;
+    W even = load<F, L>(y), odd = W{};
 #pragma GCC unroll 8
     for (int j = 0; j < P; ++j) {
       W& sum = j % 2 == 0 ? even : odd;
-      sum -= load<F, L>(panel + j * front.stride + i) * z[j];
+      sum -= load<F, L>(columns + j * rows.stride) * z[j];
     }
-    store<F, L>(right + i, even + odd);
+    store<F, L>(y, even + odd);
+  };
+  for (int b = k + 1; P == kPanel && b < front.panels; ++b) {
+    Rows rows = pivot_rows(front, b);
+#pragma GCC unroll 4
+    for (int i = 0; i < kPanel; i += L, rows.at += L) subtract(rows, right + b * kPanel + i);
   }
+  Rows rows = border_rows(front);
+  right += front.panels * kPanel;
+  for (int i = 0; i < front.length; i += L, rows.at += L) subtract(rows, right + i);
 }
 
 template <typename F>
 template <int P>
-void WideFronts<F>::backward(int k, const F* matrix, F* y) {
+void WideFronts<F>::backward(int k, F* y) {
   const Wide& front = fronts_[k];
-  const F* columns = matrix + front.base;
-  take_right(front, y);
+  F* right = take_right(front, y);
   const int* rows = program_.border_rows.data() + front.rows;
-  for (int i = 0; i < front.border; ++i) right_[front.pivots + i] = y[rows[i]];
-  int from = (front.pivots - 1) / kPanel * kPanel;
-  backward_panel<P>(front, columns, from);
-  while ((from -= kPanel) >= 0) backward_panel<kPanel>(front, columns, from);
-  std::copy_n(right_.data(), front.pivots, y + front.first);
+  for (int i = 0; i < front.border; ++i) right[front.panels * kPanel + i] = y[rows[i]];
+  backward_panel<P>(front, front.panels - 1, right);
+  for (int i = front.panels - 2; i >= 0; --i) backward_panel<kPanel>(front, i, right);
+  give_right(front, y);
 }
 
 /// x = Mᵀ (z − D⁻¹ (C L⁻ᵀ)ᵀ x below).
 template <typename F>
 template <int P>
-void WideFronts<F>::backward_panel(const Wide& front, const F* columns, int from) {
-  const F* factors = factors_.data() + front.factors + from / kPanel * kOfPanel;
-  F* right = right_.data();
-  const F* panel = columns + from * front.stride;
+void WideFronts<F>::backward_panel(const Wide& front, int k, F* right) {
+  const int from = k * kPanel;
   W sums[kPanel] = {};
-  const auto add = [&](int row, const W& x) {
+  const auto add = [&](Rows rows, const F* x) {
+    const F* columns = rows.at + from * rows.stride;
+    const W x_i = load<F, L>(x);
 #pragma GCC unroll 8
-    for (int j = 0; j < P; ++j) sums[j] += load<F, L>(panel + j * front.stride + row) * x;
+    for (int j = 0; j < P; ++j) sums[j] += load<F, L>(columns + j * rows.stride) * x_i;
   };
-  for (int i = from + kPanel; i < front.padded; i += L) add(i, load<F, L>(right + i));
-  Eight z = load<F, kPanel>(right + from);
-  if constexpr (P < kPanel) {  // rows of the border in the panel's block
-    for (int i = 0; i < kPanel; i += L) {
-      add(from + i, first_lanes_or<F, L>(W{}, load<F, L>(right + from + i), P - i));
-    }
+  Rows rows = border_rows(front);
+  for (int i = 0; i < front.length; i += L, rows.at += L) {
+    add(rows, right + front.panels * kPanel + i);
   }
-  z -= load<F, kPanel>(factors_.data() + front.inverses + from) * lane_sums<F>(sums);
-  Eight x = times_columns<F, P, kPanel>(factors + kPanel * kPanel, z);
-  if constexpr (P < kPanel) x = first_lanes_or<F, kPanel>(x, load<F, kPanel>(right + from), P);
-  store<F, kPanel>(right + from, x);
+  for (int b = front.panels - 1; P == kPanel && b > k; --b) {  // the newest part of x comes last
+    rows = pivot_rows(front, b);
+#pragma GCC unroll 4
+    for (int i = 0; i < kPanel; i += L, rows.at += L) add(rows, right + b * kPanel + i);
+  }
+  const Eight z = load<F, kPanel>(right + from) -
+                  load<F, kPanel>(factors_.data() + front.inverses + from) * lane_sums<F>(sums);
+  store_pivots<P>(right + from, times_columns<F, P, kPanel>(factors_of(front, k) + kBlock, z));
 }
 
 }  // namespace mbs::compiled_ldl
