@@ -145,9 +145,10 @@ inline void invert_triangle(const V (&l)[P], V (&m)[P]) {
   }
 }
 
-/// Σ x_j c_j of P columns of N numbers each; x: a vector, or where numbers are in memory.
-template <typename F, int P, int N, typename X>
-inline typename Short<F, N>::Type times_columns(const F* columns, const X& x) {
+/// Σ x_j c_j of P columns of N numbers each.
+template <typename F, int P, int N>
+inline typename Short<F, N>::Type times_columns(const F* columns,
+                                                const typename Short<F, N>::Type& x) {
   using V = typename Short<F, N>::Type;
   V even = load<F, N>(columns) * x[0], odd = V{};
 #pragma GCC unroll 8

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <type_traits>
 #include <vector>
 
 #include "panels/strips.hpp"
@@ -380,7 +379,7 @@ template <typename F>
 template <int P>
 void WideFronts<F>::forward_panel(const Wide& front, int k, F* right) {
   const int from = k * kPanel;
-  Eight z = times_columns<F, P, kPanel>(factors_of(front, k), right + from);
+  Eight z = times_columns<F, P, kPanel>(factors_of(front, k), load<F, kPanel>(right + from));
   z *= load<F, kPanel>(factors_.data() + front.inverses + from);
   store_pivots<P>(right + from, z);
   const auto subtract = [&](Rows rows, F* y) {
