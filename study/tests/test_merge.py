@@ -122,6 +122,14 @@ def test_a_set_of_a_tree_with_changes_is_not_compared():
     assert agreement.compared(fake("a", "new", "x"), [fake("b", "new", "y", dirty="true")]) == []
 
 
+def test_a_claim_has_a_row_with_the_verdict_of_each_machine(monkeypatch):
+    ledgers = {"first": [{"id": "T1", "claim": "c", "paper": "2×", "verdict": "confirmed"}],
+               "second": [{"id": "T1", "claim": "c", "paper": "2×", "verdict": "refuted"}, {"id": "F7", "claim": "d", "paper": "", "verdict": "mixed"}]}
+    monkeypatch.setattr(machine, "table", lambda folder, *_: pandas.DataFrame(ledgers[folder]))
+    found = machine.claims([SimpleNamespace(folder=name) for name in ledgers])
+    assert [(id, [row and row["verdict"] for row in rows]) for id, _, _, rows in found] == [("T1", ["confirmed", "refuted"]), ("F7", [None, "mixed"])]
+
+
 @pytest.mark.skipif(not SETS, reason="no stored set")
 def test_two_sets_become_a_page_and_a_table(tmp_path):
     for day in (1, 2):

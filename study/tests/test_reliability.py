@@ -133,9 +133,10 @@ def test_killed_while_it_sets_up_it_leaves_no_process(tmp_path, sign):
     own = {key: value for key, value in environment(**{MARK: mark}).items() if key != "MBS_PROGRAM"}
     process = subprocess.Popen([tmp_path / "study" / "run", "--profile", "smoke", "--wait", "--results", log.parent], env=own, start_new_session=True,
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+    end = time.monotonic() + 300  # that it has begun
     while sum("sleep 600" in line for line in alive(mark)) < 2:
-        assert process.poll() is None
-        time.sleep(0.05)
+        assert process.poll() is None and time.monotonic() < end
+        time.sleep(0.3)
     os.kill(process.pid, sign)
     process.wait(timeout=60)
     assert left_by(mark) == []

@@ -84,7 +84,7 @@ def _run(command, scene, *more):
     """(exit status, standard output, lines of standard error)"""
     if not os.access(ROOT / program_of(), os.X_OK):  # an absolute MBS_PROGRAM stays as it is
         raise StudyError(f"{program_of()} is not built yet: run study/setup")
-    place = os.path.abspath(scene) if scene.endswith(".json") or os.path.exists(scene) else scene  # a child runs elsewhere
+    place = os.path.abspath(scene) if os.path.isfile(scene) else scene  # a child runs elsewhere
     ended = child.run([program_of(), command, place, *map(str, more)])
     return ended.code, ended.stdout, [line for line in ended.stderr.splitlines() if line.strip()]
 
