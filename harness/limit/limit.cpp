@@ -37,15 +37,12 @@ bool all_equal(const Items& a, const Items& b) {
                     [](const auto& x, const auto& y) { return equal(x, y); });
 }
 
-/// Whether the equations of both are the same, whatever their names and starts.
+/// Whether the equations of both are the same, whatever their names and starts. The factory has
+/// refused all but planar distances, masses and constant forces.
 bool same_mechanism(const Model& model, const Model& other) {
-  return model.dimension() == 2 && all_equal(model.points(), other.points()) &&
+  return all_equal(model.points(), other.points()) &&
          all_equal(model.dot_constraints(), other.dot_constraints()) &&
-         all_equal(model.mass(), other.mass()) && all_equal(model.force(), other.force()) &&
-         model.constraints() == other.constraints() && model.springs().empty() &&
-         model.torsion_springs().empty() && model.force_laws().empty() &&
-         model.torque_laws().empty() && model.couples().empty() && model.driven_points().empty() &&
-         model.driven_values().empty();
+         all_equal(model.mass(), other.mass()) && all_equal(model.force(), other.force());
 }
 
 /// N of the N-four-bar. Throws Unsupported if the model is anything else.

@@ -97,6 +97,19 @@ TEST(LoaderEnvironment, EffectIsJudgedByTheMappedFiles) {
   fs::remove_all(root);
 }
 
+TEST(ForeignBlas, IsAnotherMakersOrAnotherBuild) {
+  const std::string blas = "/r/openblas-serial/libblas.so.3", lapack = "/r/lapack/liblapack.so.3";
+  const std::string openblas = "/r/openblas-serial/libopenblas-r0.3.21.so";  // the BLAS needs it
+  const std::string other = "/r/openblas-pthread/libopenblasp-r0.3.21.so";
+  const std::string goto2 = "/opt/libgoto2.so";
+  EXPECT_EQ(why_foreign({blas, lapack}, {blas, lapack, openblas}), "");
+  EXPECT_TRUE(why_foreign({blas, lapack}, {blas, lapack, openblas, other}).starts_with(other));
+  EXPECT_TRUE(why_foreign({blas, lapack}, {goto2, blas, lapack, openblas}).starts_with(goto2));
+  EXPECT_TRUE(why_foreign({}, {openblas}).starts_with(openblas));
+  const std::string atlas = "/r/atlas/libblas.so.3.10.3";
+  EXPECT_EQ(why_foreign({atlas, lapack}, {atlas, lapack, "/r/libatlas.so.3.10.3"}), "");
+}
+
 TEST(AskedBlas, IsFoundAnywhereInTheCommandLine) {
   const auto asked = [](std::vector<const char*> arguments) {
     return asked_blas(static_cast<int>(arguments.size()), arguments.data());
@@ -151,6 +164,14 @@ TEST(BlasSelection, WithoutItTheSystemDecides) {
       "--benchmark_format=json");
   ASSERT_EQ(run.status, 0) << run.errors;
   EXPECT_EQ(nlohmann::json::parse(run.output).at("context").at("blas"), "system");
+}
+
+TEST(BlasSelection, WithoutItALibraryBesideTheSystemsIsRefused) {
+  const BlasPair& flame = pair_called(blas_pairs(), "blis-flame");
+  if (!why_unavailable(flame).empty()) GTEST_SKIP() << why_unavailable(flame);
+  const auto run = test::run_mbs("list", "LD_PRELOAD=" + flame.preload.string());
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.errors.find("libflame"), std::string::npos) << run.errors;
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST(Factory, ThePapersMechanismAtAnyFillNeedsTheDefaultAlone) {
 TEST(Factory, TermsAreNamedWithTheItemThatHasThem) {
   const auto why = [](const char* name) { return why_not_served(Terms{}, model_of(name)); };
   EXPECT_EQ(why("chain, planar"), "");
-  EXPECT_EQ(why("chain, spatial"), "three dimensions: the scene has all of it");
+  EXPECT_EQ(why("chain, spatial"), "three dimensions: the scene has dimension 3");
   EXPECT_NE(why("springs, planar").find("springs: the scene has spring '"), std::string::npos);
   EXPECT_NE(why("bilinear, planar").find("bilinear constraints: the scene has constraint '"), std::string::npos);
   EXPECT_EQ(why("driven rod, planar"), "drivers: the scene has driven point 'P'");
@@ -74,9 +74,17 @@ std::unique_ptr<BatchSimulation> never_a_batch(std::span<const Model* const> /*m
   return nullptr;
 }
 
-TEST(Factory, RefusesSimulationsAndBatchesBeforeAnythingRuns) {
+std::unique_ptr<Operations> never_operations(const Model& /*model*/) {
+  ADD_FAILURE() << "was called";
+  return nullptr;
+}
+
+TEST(Factory, RefusesAllThatItMakesBeforeAnythingRuns) {
   const Model& springs = model_of("springs, planar");
-  const Variant variant{.name = "plain", .create = never, .create_batch = never_a_batch};
+  const Variant variant{.name = "plain",
+                        .create = never,
+                        .operations = never_operations,
+                        .create_batch = never_a_batch};
   const std::vector<const Model*> models{&model_of("chain, planar"), &springs};
   const std::vector<StepSettings> settings(2);
   const auto message = [](const auto& call) -> std::string {
@@ -90,12 +98,14 @@ TEST(Factory, RefusesSimulationsAndBatchesBeforeAnythingRuns) {
   const std::string alone = message([&] { create_simulation(variant, springs, {}); });
   EXPECT_TRUE(alone.starts_with("it does not serve springs: the scene has spring '")) << alone;
   EXPECT_EQ(message([&] { create_batch(variant, models, settings); }), alone);
+  EXPECT_EQ(message([&] { create_operations(variant, springs); }), alone);
   EXPECT_EQ(message([&] { create_simulation(variant, *models[0], {.scheme = Scheme::rattle}); }),
             "it does not offer --scheme rattle (mbs list tells who does)");
 }
 
-TEST(Factory, OffersNoBatchWhereThereIsNone) {
+TEST(Factory, OffersNoBatchAndNoOperationsWhereThereAreNone) {
   EXPECT_EQ(create_batch(null_variant(), {}, {}), nullptr);
+  EXPECT_EQ(create_operations(null_variant(), model_of("chain, planar")), nullptr);
 }
 
 TEST(Factory, WhatAVariantDoesNotServeIsSaid) {

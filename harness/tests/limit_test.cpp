@@ -117,11 +117,11 @@ void expect_refused(const char* what, Change change) {
   ModelData data = four_bar(3);
   change(data);
   const Model model(std::move(data));
-  EXPECT_THROW((void)limit::variant().create(model, StepSettings{}), Unsupported) << what;
+  EXPECT_THROW((void)create_simulation(limit::variant(), model, {}), Unsupported) << what;
 }
 
 TEST(LimitCode, RefusesEveryOtherModel) {
-  EXPECT_NO_THROW((void)limit::variant().create(Model(four_bar(3)), StepSettings{}));
+  EXPECT_NO_THROW((void)create_simulation(limit::variant(), Model(four_bar(3)), {}));
   expect_refused("length", [](ModelData& d) { d.dot_constraints[2].value = 1.21; });
   expect_refused("mass", [](ModelData& d) { d.mass[0].value *= 1.001; });
   expect_refused("stored zero", [](ModelData& d) { d.mass.push_back({7, 0, 0.0}); });
@@ -135,7 +135,7 @@ TEST(LimitCode, RefusesEveryOtherModel) {
   expect_refused("driven", [](ModelData& d) { d.driven_values = {{0, TimeFunction(1.0)}}; });
   for (const char* name : {"four-bar:3,fill=0.9"}) {
     const Scene scene = load_scene(name);
-    EXPECT_THROW((void)limit::variant().create(scene.model, StepSettings{}), Unsupported);
+    EXPECT_THROW((void)create_simulation(limit::variant(), scene.model, {}), Unsupported);
   }
 }
 

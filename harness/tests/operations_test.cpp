@@ -115,5 +115,13 @@ TEST(BenchProgram, RefusesOperationsOfWhoOffersNone) {
   EXPECT_NE(run.output.find("unsupported"), std::string::npos) << run.output;
 }
 
+TEST(BenchProgram, RefusesOperationsOnScenesThatTheVariantDoesNotServe) {
+  const auto run = test::run_mbs("bench '" MBS_ROOT "/harness/scenes/examples/bump_stop.json'"
+                                 " --operations --implementation ublas_sparse");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.output.find("unsupported: it does not serve force laws"), std::string::npos)
+      << run.output;
+}
+
 }  // namespace
 }  // namespace mbs

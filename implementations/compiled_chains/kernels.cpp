@@ -13,8 +13,8 @@ Topology topology_of(const Model& model) {
   auto topology = find_chain(model);
   if (topology) return std::move(*topology);
   throw Unsupported(
-      "the scene is not a chain of free points (planar; masses and distances alone, each between "
-      "neighbours or with at most two fixed points): use compiled_ldl/fronts");
+      "the scene is not a chain of free points (masses and distances between neighbours, at most "
+      "two distances from a point to fixed ones): use compiled_ldl/fronts");
 }
 
 }  // namespace

@@ -9,15 +9,7 @@
 namespace mbs::compiled_chains {
 namespace topology {
 
-bool has_only_distances(const Model& model) {
-  return model.dimension() == 2 && model.variables() > 0 && model.bilinear_constraints().empty() &&
-         model.linear_constraints().empty() && model.springs().empty() &&
-         model.torsion_springs().empty() && model.couples().empty() &&
-         model.driven_points().empty() && model.driven_values().empty() &&
-         model.driven_mass().empty();
-}
-
-/// The free points as numbers 0, 1, … by their place in q.
+/// The free points as numbers 0, 1, … by their place in q: each has two entries.
 struct Graph {
   std::vector<std::array<int, 2>> neighbours;  // -1: none
   std::vector<int> degree;
@@ -33,12 +25,8 @@ struct Graph {
   }
 };
 
-/// Two entries of q a free point, in pairs: offset / 2 numbers them.
-bool tiles_in_pairs(const Model& model) {
-  for (const Point& point : model.points()) {
-    if (point.is_vector || (!point.is_fixed() && point.offset % 2 != 0)) return false;
-  }
-  return model.variables() % 2 == 0;
+bool has_vectors(const Model& model) {
+  return std::ranges::any_of(model.points(), &Point::is_vector);
 }
 
 std::optional<Graph> graph_of(const Model& model) {
@@ -50,7 +38,7 @@ std::optional<Graph> graph_of(const Model& model) {
     if (a != b && !graph.connect(a, b)) return std::nullopt;
   }
   for (const DotConstraint& row : model.dot_constraints()) {
-    if (row.a != row.c || row.b != row.d || row.a == row.b) return std::nullopt;
+    if (row.a == row.b) return std::nullopt;
     const Point& a = model.points()[row.a];
     const Point& b = model.points()[row.b];
     if (a.is_fixed() && b.is_fixed()) return std::nullopt;
@@ -197,7 +185,7 @@ bool add_distances(const Model& model, const std::vector<int>& place_of, Topolog
 }  // namespace topology
 
 std::optional<Topology> find_chain(const Model& model) {
-  if (!topology::has_only_distances(model) || !topology::tiles_in_pairs(model)) return std::nullopt;
+  if (model.variables() == 0 || topology::has_vectors(model)) return std::nullopt;
   const auto graph = topology::graph_of(model);
   if (!graph) return std::nullopt;
   const auto order = topology::order_of(*graph);

@@ -74,19 +74,18 @@ void print_updates(std::ostream& out, const Program& program, const Front& front
   }
 }
 
-/// Runs are counted over all fronts: panels of one shape that follow each other.
+/// Runs are counted over all fronts: those of one shape that follow each other.
 struct Runs {
-  PanelShape shape;
+  FrontShape shape;
   int count = 0;
 
   void print(std::ostream& out, const Front& front) {
-    for (int from = 0; from < front.pivots; from += kPanel) {
-      const PanelShape next = panel_shape(front, from);
-      if (count == 0 || next != shape) ++count;
-      shape = next;
-      out << (from == 0 ? "; panels " : ", ") << shape.pivots << 'x' << shape.lanes << " in run "
-          << count - 1;
-    }
+    const FrontShape next = front_shape(front);
+    if (count == 0 || next != shape) ++count;
+    shape = next;
+    out << "; panels ";
+    if (shape.wide) out << (front.pivots - 1) / kPanel << " of " << kPanel << "x8 and ";
+    out << shape.pivots << 'x' << shape.lanes << " in run " << count - 1;
   }
 };
 

@@ -200,17 +200,21 @@ int eliminate_points_first(const Pattern& pattern, int width, const Changing& ch
 
 /// Columns long enough for vectors of 2, 4 or 8 numbers that begin below the pivots of a panel. In
 /// a front of one panel those of 8 may reach into what the next column keeps of the pivots, which
-/// are in registers by then, and behind the last column into kBehind numbers.
+/// are in registers by then, and behind the last column into kBehind numbers. Columns of wide
+/// fronts are whole blocks of eight numbers, and do not all begin in the same few places of a
+/// cache.
 int stride_of(const Front& front, int width) {
   const int rows = front.pivots + front.border;
   if (width == 1) return rows;
+  if (front.pivots > kPanel) {
+    const int blocks = round_up(front.pivots + round_up(front.border, kPanel), kPanel);
+    return blocks % 128 == 0 ? blocks + kPanel : blocks;
+  }
   int stride = std::max(lanes_for(front.pivots), rows);
   if (front.border > 0) {
     const int lanes = lanes_for(front.border), rounded = round_up(front.border, lanes);
-    const bool may_reach = lanes == 8 && front.pivots <= kPanel;
-    stride = std::max(rows, may_reach ? rounded : front.pivots + rounded);
+    stride = std::max(rows, lanes == 8 ? rounded : front.pivots + rounded);
   }
-  if (front.pivots > kPanel) stride = std::max(stride, round_up(rows, width));
   return stride <= 4 ? stride : round_up(stride, 4);
 }
 constexpr int kBehind = 8;
@@ -286,6 +290,62 @@ void place_updates(Program& program) {
   }
 }
 
+/// Marks what elements add to, and what fronts subtract from or write into.
+class Changes {
+ public:
+  Changes(const Program& program) : program_(program), is_changed_(program.storage / 8 + 1) {}
+
+  void of_elements(const Pattern& pattern, const std::vector<int>& sizes) {
+    for (std::size_t c = pattern.constant; c < pattern.cliques.size(); ++c) {
+      for (const int p : pattern.cliques[c]) {
+        for (const int q : pattern.cliques[c]) couple(p, q, sizes);
+      }
+    }
+    for (std::size_t m = 0; m < pattern.borders.size(); ++m) {
+      const int multiplier = pattern.points + static_cast<int>(m);
+      for (const int p : pattern.borders[m]) couple(multiplier, p, sizes);
+    }
+  }
+  void of_fronts() {
+    for (const Front& front : program_.fronts) {
+      if (!front_shape(front).wide) {
+        for (int i = 0; i < front.pivots * front.stride; ++i) mark(front.base + i);
+      }
+      for (int g = front.groups_begin; g < front.groups_end; ++g) {
+        const Group& group = program_.groups[g];
+        const int* places = program_.positions.data() + group.positions - group.begin;
+        for (int k = group.begin; k < group.end; ++k) {
+          const int column = group.base + (k - group.begin) * group.stride;
+          for (int i = k; i < front.border; ++i) mark(column + places[i]);
+        }
+      }
+    }
+  }
+  [[nodiscard]] std::vector<Range> ranges() const {
+    std::vector<Range> all;
+    for (int k = 0; k < static_cast<int>(is_changed_.size()); ++k) {
+      if (!is_changed_[k]) continue;
+      if (all.empty() || all.back().end != 8 * k) all.push_back({8 * k, 8 * k});
+      all.back().end += 8;
+    }
+    return all;
+  }
+
+ private:
+  void mark(int place) { is_changed_[place / 8] = true; }
+  void couple(int p, int q, const std::vector<int>& sizes) {
+    const int first = program_.row_of_node[p], other = program_.row_of_node[q];
+    for (int i = first; i < first + sizes[p]; ++i) {
+      for (int j = other; j < other + sizes[q]; ++j) {
+        mark(program_.entry(std::max(i, j), std::min(i, j)));
+      }
+    }
+  }
+
+  const Program& program_;
+  std::vector<bool> is_changed_;
+};
+
 }  // namespace
 
 int Program::entry(int row, int column) const {
@@ -306,13 +366,18 @@ Program compile(const Pattern& pattern, int width, const Changing& changing) {
   place_rows(tree, sizes, program);
   place_borders(tree, sizes, program);
   place_updates(program);
+  if (width == 1) return program;
+  Changes changes(program);
+  // Those of points eliminated first are written as a whole.
+  if (program.constant_fronts == 0) changes.of_elements(pattern, sizes);
+  changes.of_fronts();
+  program.changing = changes.ranges();
   return program;
 }
 
-PanelShape panel_shape(const Front& front, int from) {
-  const int pivots = std::min(kPanel, front.pivots - from);
-  if (from + pivots < front.pivots) return {pivots, 8};
-  return {pivots, front.border == 0 ? 0 : lanes_for(front.border)};
+FrontShape front_shape(const Front& front) {
+  if (front.pivots > kPanel) return {(front.pivots - 1) % kPanel + 1, kPanel, true};
+  return {front.pivots, front.border == 0 ? 0 : lanes_for(front.border), false};
 }
 
 }  // namespace mbs::compiled_ldl

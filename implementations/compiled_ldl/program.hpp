@@ -15,6 +15,7 @@ struct Pattern {
   int dimension = 2;
   int points = 0;                         ///< nodes 0 … points - 1
   std::vector<std::vector<int>> cliques;  ///< points that are coupled with each other
+  int constant = 0;  ///< cliques before this one couple them by numbers that never change
   std::vector<std::vector<int>> borders;  ///< of each multiplier: its points
   /// Of each multiplier whose row is a substitution: the point of a coordinate that it can be
   /// solved for and that no other substitution has. -1 for others; none where the list is empty.
@@ -45,6 +46,11 @@ struct Group {
   bool contiguous = false;  ///< these places follow each other
 };
 
+/// Numbers of the storage that follow each other.
+struct Range {
+  int begin = 0, end = 0;
+};
+
 /// Three planar points in a row, 0 - 1 - 2, eliminated from both ends, one number at a time: point
 /// 0 has rows 0-1, point 2 rows 2-3, point 1 rows 4-5, so row_of_node = {0, 4, 2} and front_of_row
 /// = {0, 0, 1, 1, 2, 2}. Each front has two pivots, each end a border of two:
@@ -72,6 +78,9 @@ struct Program {
   std::vector<Group> groups;
   std::vector<int> border_rows;
   std::vector<int> positions;
+  /// What a factorization may find changed, in whole vectors of eight numbers; width 1: none is
+  /// listed. Wide fronts keep the matrix, all others write into it.
+  std::vector<Range> changing;
 
   /// Where the entry (row, column) lies, row >= column, both coupled.
   [[nodiscard]] int entry(int row, int column) const;
@@ -94,13 +103,13 @@ struct Changing {
 /// that of A, whose fronts are constant, and −ε − B A⁻¹ Bᵀ, if this is predicted faster.
 Program compile(const Pattern& pattern, int width, const Changing& changing = {});
 
-/// What chooses the kernel of a panel: its pivots, and the lanes of vectors for rows below, 0:
-/// none.
-struct PanelShape {
+/// What chooses the kernel of a front: the pivots of its last panel, the lanes of vectors for rows
+/// below, 0: none, and whether there are panels before that one.
+struct FrontShape {
   int pivots = 0, lanes = 0;
-  bool operator==(const PanelShape&) const = default;
+  bool wide = false;
+  bool operator==(const FrontShape&) const = default;
 };
-/// Of the panel that begins with this pivot of its front.
-PanelShape panel_shape(const Front& front, int from);
+FrontShape front_shape(const Front& front);
 
 }  // namespace mbs::compiled_ldl

@@ -76,6 +76,7 @@ Pattern pattern_of(const Model& model, bool multipliers, bool second_derivatives
   for (const MassEntry& entry : model.mass()) {
     pattern.cliques.push_back({nodes.of_coordinate(entry.row), nodes.of_coordinate(entry.col)});
   }
+  pattern.constant = static_cast<int>(pattern.cliques.size());
   for (const Spring& s : model.springs()) pattern.cliques.push_back(nodes.clique({s.a, s.b}));
   for (const TorsionSpring& s : model.torsion_springs()) {
     pattern.cliques.push_back(nodes.clique({s.a, s.b, s.c, s.d}));

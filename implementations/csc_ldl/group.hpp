@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <stdexcept>
 #include <type_traits>
 #include <vector>
 
@@ -146,9 +147,10 @@ struct Group {
         return f(std::integral_constant<int, 3>{});
       case 4:
         return f(std::integral_constant<int, 4>{});
-      default:
+      case 6:
         return f(std::integral_constant<int, 6>{});
     }
+    throw std::logic_error("components of a group are 2, 3, 4 or 6");
   }
 
   int dimension_ = 0, variables_ = 0;

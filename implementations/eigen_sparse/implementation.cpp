@@ -1,6 +1,8 @@
 // What this folder offers: description and factories.
 #include "mbs/implementation.hpp"
 
+#include <stdexcept>
+
 #include "adjustable_simulation.hpp"
 #include "rattle_simulation.hpp"
 #include "rounded_solver.hpp"
@@ -44,7 +46,7 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
     case Scheme::multistep6:
       break;
   }
-  throw Unsupported("multistep6 is not served");
+  throw std::logic_error("multistep6 is not among what eigen_sparse serves");
 }
 
 constexpr Terms kTerms{

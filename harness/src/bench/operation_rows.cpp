@@ -8,6 +8,7 @@
 #include <new>
 
 #include "model_math/kinematics.hpp"
+#include "registry/factory.hpp"
 
 namespace mbs {
 namespace {
@@ -120,7 +121,7 @@ void OperationRows::prepare(Subject& subject) {
     return;
   }
   try {
-    subject.operations = subject.cell.variant->operations(model);
+    subject.operations = create_operations(*subject.cell.variant, model);
     const StepSettings& settings = subject.cell.scene->settings;
     const double factor = eq5_factor(settings);
     const auto start = model.initial_position();

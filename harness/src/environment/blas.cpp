@@ -1,8 +1,10 @@
 // The table of pairs, and how the dynamic loader is told to take one of them.
 #include "environment/blas.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <link.h>
 
 #include <algorithm>
 #include <array>
@@ -17,16 +19,20 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kBlas = "libblas.so.3";
-constexpr std::array kMakers{"openblas", "atlas", "blis", "flame", "mkl", "armpl"};
+constexpr std::array kMakers{"openblas", "goto", "atlas", "blis", "flame", "mkl", "armpl"};
 constexpr const char* kLapack = "liblapack.so.3";
 
-/// Files of a pair behind all links; those that do not exist as they are named.
+/// The file behind all links; one that does not exist as it is named.
+std::string real_file(const fs::path& file) {
+  std::error_code error;
+  const fs::path real = fs::canonical(file, error);
+  return error ? file.string() : real.string();
+}
+
 std::vector<std::string> real_files(const BlasPair& pair) {
   std::vector<std::string> files;
   for (const fs::path& file : {pair.blas_file, pair.lapack_file, pair.preload}) {
-    std::error_code error;
-    const fs::path real = fs::canonical(file, error);
-    if (!file.empty()) files.push_back(error ? file.string() : real.string());
+    if (!file.empty()) files.push_back(real_file(file));
   }
   return files;
 }
@@ -134,11 +140,34 @@ std::string why_not_in_effect(const BlasPair& pair, const std::vector<BlasPair>&
       }
     }
   }
+  return why_foreign(mine, mapped);
+}
+
+std::vector<std::string> generic_blas_files() {
+  std::vector<std::string> files;
+  for (const char* name : {kBlas, kLapack}) {
+    void* library = dlopen(name, RTLD_LAZY | RTLD_NOLOAD);
+    const link_map* map = nullptr;
+    if (library == nullptr) continue;
+    if (dlinfo(library, RTLD_DI_LINKMAP, &map) == 0) files.push_back(real_file(map->l_name));
+    dlclose(library);
+  }
+  return files;
+}
+
+std::string why_foreign(const std::vector<std::string>& own,
+                        const std::vector<std::string>& mapped) {
   for (const std::string& file : mapped) {
-    const auto is_maker = [&](const char* maker) {
-      return file.find(maker) != std::string::npos && pair.name.find(maker) == std::string::npos;
+    const fs::path folder = fs::path(file).parent_path();
+    const auto is_foreign = [&](const char* maker) {
+      const auto is_of = [&](const std::string& one) {
+        const fs::path place = fs::path(one).parent_path();
+        return one.find(maker) != std::string::npos &&
+               (folder == place || folder == place.parent_path());
+      };
+      return file.find(maker) != std::string::npos && std::ranges::none_of(own, is_of);
     };
-    if (std::ranges::any_of(kMakers, is_maker)) {
+    if (std::ranges::any_of(kMakers, is_foreign)) {
       return file + " is loaded too (an implementation links it by its own name?)";
     }
   }

@@ -46,4 +46,13 @@ std::vector<std::pair<std::string, std::string>> loader_environment(const BlasPa
 std::string why_not_in_effect(const BlasPair& pair, const std::vector<BlasPair>& all,
                               const std::vector<std::string>& mapped);
 
+/// The files behind the generic names libblas.so.3 and liblapack.so.3 in this process.
+std::vector<std::string> generic_blas_files();
+
+/// What is wrong if `own` files are to be the only BLAS and LAPACK of a process with these files
+/// mapped; empty if nothing. A file with a maker's name has to be of the same maker and in the
+/// folder of one of `own` or the folder above, where Debian has libatlas.
+std::string why_foreign(const std::vector<std::string>& own,
+                        const std::vector<std::string>& mapped);
+
 }  // namespace mbs

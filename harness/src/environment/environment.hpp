@@ -12,7 +12,8 @@ namespace mbs {
 /// anything of it differs, sets it and executes the program again. To be called first in main(),
 /// before a library could have started threads.
 /// @param argv the program's arguments, null-terminated
-/// Throws UsageError if the program cannot be executed again, or --blas cannot be had.
+/// Throws UsageError if the program cannot be executed again, --blas cannot be had, or without it
+/// another BLAS or LAPACK than the system's is loaded too.
 void settle_environment(int argc, char** argv);
 
 /// OMP_NUM_THREADS and the others that must be "1".

@@ -117,7 +117,7 @@ std::string command_line(const std::vector<std::string>& arguments) {
 }
 
 std::vector<std::string> blas_files(const std::string& maps) {
-  static const std::regex name("/lib[^/]*(blas|lapack|mkl|blis|atlas|flame|armpl)[^/]*$");
+  static const std::regex name("/lib[^/]*(blas|lapack|mkl|blis|goto|atlas|flame|armpl)[^/]*$");
   std::vector<std::string> files;
   std::istringstream stream(maps);
   for (std::string line; std::getline(stream, line);) {

@@ -91,9 +91,11 @@ void settle_environment(int argc, char** argv) {
   const auto missing = missing_variables(pair);
   if (missing.empty()) {
     const std::string wrong =
-        pair ? why_not_in_effect(*pair, blas_pairs(), loaded_blas_files()) : "";
+        pair ? why_not_in_effect(*pair, blas_pairs(), loaded_blas_files())
+             : why_foreign(generic_blas_files(), loaded_blas_files());
     if (wrong.empty()) return;
-    throw UsageError(fmt::format("--blas {}: did not take effect: {}", *asked, wrong));
+    throw UsageError(pair ? fmt::format("--blas {}: did not take effect: {}", *asked, wrong)
+                          : "the system's BLAS and LAPACK are not the only ones: " + wrong);
   }
   const std::string& first = missing.front().first;
   std::string tried = executed_for();

@@ -151,7 +151,7 @@ Terms all_terms() {
 
 std::vector<std::pair<Term, std::string>> terms_of(const Model& model) {
   Finder finder;
-  if (model.dimension() == 3) finder.add(Term::spatial, "all of it");
+  if (model.dimension() == 3) finder.add(Term::spatial, "dimension 3");
   finder.find(Term::dots, "constraint", model.dot_constraints(),
               [](const auto& one) { return !is_distance(one); });
   finder.find(Term::bilinear, "constraint", model.bilinear_constraints());
@@ -213,6 +213,12 @@ std::unique_ptr<BatchSimulation> create_batch(const Variant& variant,
   if (variant.create_batch == nullptr) return nullptr;
   for (std::size_t i = 0; i < models.size(); ++i) require_served(variant, *models[i], settings[i]);
   return variant.create_batch(models, settings);
+}
+
+std::unique_ptr<Operations> create_operations(const Variant& variant, const Model& model) {
+  if (variant.operations == nullptr) return nullptr;
+  require_served(variant, model, {});
+  return variant.operations(model);
 }
 
 std::vector<std::string> served_settings(const Serves& serves) {

@@ -1,4 +1,5 @@
-// The one way to simulations and batches: what a variant does not serve is refused here, before anything runs.
+// The one way to simulations, batches and operations: what a variant does not serve is refused
+// here, before anything runs.
 #pragma once
 
 #include <memory>
@@ -37,6 +38,9 @@ std::unique_ptr<Simulation> create_simulation(const Variant& variant, const Mode
 std::unique_ptr<BatchSimulation> create_batch(const Variant& variant,
                                               std::span<const Model* const> models,
                                               std::span<const StepSettings> settings);
+
+/// variant.operations(); nullptr if the variant offers none. Throws as create_simulation().
+std::unique_ptr<Operations> create_operations(const Variant& variant, const Model& model);
 
 /// The settings beyond the defaults that a variant serves, for people; empty if none.
 std::vector<std::string> served_settings(const Serves& serves);

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "elements/symmetric.hpp"
 #include "panels/vectors.hpp"
 #include "scene.hpp"
 
@@ -30,7 +31,8 @@ void store_rows(S* x, const V& v) {
 /// Blocks that are multiples of the unit matrix, as rods and bodies in space have them, keep one
 /// number. All else is in strips of rows, as many as a register holds, that keep their columns
 /// where one of them is not zero: with two rows a strip, rows (1 2 0) and (2 5 0) are one strip
-/// with columns 0 and 1, values 1, 2 and 2, 5.
+/// with columns 0 and 1, values 1, 2 and 2, 5. If strips have most of all columns, the lower half
+/// is kept in their place.
 template <typename S, int D>
 class Mass {
  public:
@@ -67,11 +69,13 @@ class Mass {
   };
 
   static constexpr int kRows = kLanesOf<S> == 1 ? kWidest<S> : 1;
+  static constexpr int kFew = 32;  // rows whose strips take no longer than the half
   /// By first row of a strip and column.
   using StripValues = std::map<std::pair<int, int>, std::array<S, kRows>>;
 
   static bool is_multiple(const Block& block);
   void add_strips(const StripValues& all);
+  void add_half(const StripValues& all);
   template <typename First>
   void multiply(const S* x, S* y, const S& factor, First first) const;
 
@@ -80,6 +84,8 @@ class Mass {
   std::vector<int> multiple_columns_, columns_;
   Array<S> multiples_, values_;  // kRows of each column
   std::vector<Strip> strips_;
+  int size_ = 0;
+  Array<S> half_;  // of M, as add_symmetric_product() takes it
 };
 
 template <typename S, int D>
@@ -124,7 +130,9 @@ Mass<S, D>::Mass(std::span<const Model* const> models, const Program& program, c
       values[row % kRows] = block.values[i];
     }
   }
-  add_strips(others);
+  size_ = program.size;
+  const bool full = 2 * kRows * others.size() > static_cast<std::size_t>(size_) * size_;
+  full&& kLanesOf<S> == 1 && size_ > kFew ? add_half(others) : add_strips(others);
 }
 
 template <typename S, int D>
@@ -134,6 +142,18 @@ void Mass<S, D>::add_strips(const StripValues& all) {
     columns_.push_back(place.second);
     values_.insert(values_.end(), values.begin(), values.end());
     strips_.back().columns_end = static_cast<int>(columns_.size());
+  }
+}
+
+template <typename S, int D>
+void Mass<S, D>::add_half(const StripValues& all) {
+  const int stride = round_up(size_, 8);
+  half_.resize(static_cast<std::size_t>(stride) * size_, S(0.0));
+  for (const auto& [place, values] : all) {
+    for (int i = 0; i < kRows; ++i) {
+      const int row = place.first + i, column = place.second;
+      if (row >= column && row < size_) half_[column * stride + row] = values[i];
+    }
   }
 }
 
@@ -163,6 +183,11 @@ void Mass<S, D>::multiply(const S* x, S* y, const S& factor, First first) const 
       for (int i = 0; i < D; ++i) sum[i] += multiples_[multiple] * xj[i];
     }
     for (int i = 0; i < D; ++i) y[row.row + i] = first(row.row + i, sum[i]);
+  }
+  if constexpr (kLanesOf<S> == 1) {
+    if (!half_.empty()) {
+      return add_symmetric_product(half_.data(), round_up(size_, 8), size_, factor, x, y);
+    }
   }
   int k = 0;
   const auto term = [&](int at) {

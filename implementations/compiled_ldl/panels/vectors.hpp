@@ -30,15 +30,21 @@ constexpr int lanes_for(int count) { return count <= 2 ? 2 : count <= 4 ? 4 : 8;
 template <typename F>
 inline constexpr int kWidest = std::min<int>(8, 8 * kRegisterDoubles / sizeof(F));
 
-/// v with zeros behind its first `count` lanes.
+/// The first `count` lanes of v, behind them those of `others`.
 template <typename F, int N>
-typename Short<F, N>::Type first_lanes(const typename Short<F, N>::Type& v, int count) {
+typename Short<F, N>::Type first_lanes_or(const typename Short<F, N>::Type& v,
+                                          const typename Short<F, N>::Type& others, int count) {
   using Index = std::conditional_t<sizeof(F) == 8, long long, int>;
   using Lanes __attribute__((vector_size(N * sizeof(F)))) = Index;
   Lanes lane;
 #pragma GCC unroll 8
   for (int i = 0; i < N; ++i) lane[i] = i;
-  return lane < static_cast<Index>(count) ? v : typename Short<F, N>::Type{};
+  return lane < static_cast<Index>(count) ? v : others;
+}
+/// v with zeros behind its first `count` lanes.
+template <typename F, int N>
+typename Short<F, N>::Type first_lanes(const typename Short<F, N>::Type& v, int count) {
+  return first_lanes_or<F, N>(v, typename Short<F, N>::Type{}, count);
 }
 
 /// Stores the first P lanes only, in pieces that later loads can be forwarded from.
@@ -137,6 +143,20 @@ inline void invert_triangle(const V (&l)[P], V (&m)[P]) {
 #pragma GCC unroll 8
     for (int j = 0; j <= k; ++j) m[j] -= column * m[j][k];
   }
+}
+
+/// Σ x_j c_j of P columns of N numbers each.
+template <typename F, int P, int N>
+inline typename Short<F, N>::Type times_columns(const F* columns,
+                                                const typename Short<F, N>::Type& x) {
+  using V = typename Short<F, N>::Type;
+  V even = load<F, N>(columns) * x[0], odd = V{};
+#pragma GCC unroll 8
+  for (int j = 1; j < P; ++j) {
+    V& sum = j % 2 == 0 ? even : odd;
+    sum += load<F, N>(columns + j * N) * x[j];
+  }
+  return even + odd;
 }
 
 /// The sums over the lanes of eight vectors.

@@ -1,5 +1,5 @@
-// The kinds of things that a scene file may have. Each has a file here, with its reader and its
-// lowering; kinds.cpp has the table of all.
+// The kinds of things that a scene file may have. Each, or those that share their readers, has
+// a file here with reader and lowering; kinds.cpp has the table of all.
 #pragma once
 
 #include <span>

@@ -1,0 +1,443 @@
+// Fronts of several panels, for one simulation: blocks of eight rows and columns.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "panels/strips.hpp"
+#include "panels/vectors.hpp"
+#include "program.hpp"
+
+namespace mbs::compiled_ldl {
+
+/// Of each panel are stored what Panels has, M, Mᵀ, D⁻¹ and C L⁻ᵀ, but not W; the matrix stays what
+/// it is. A panel takes up what those before it subtract, a few rows of all its columns at a time.
+/// While these are in registers they become C L⁻ᵀ, and the right-hand side loses their C L⁻ᵀ z. So
+/// the matrix is loaded once. C L⁻ᵀ of eight pivots' rows is a row of blocks, each column by
+/// column: rows 16 … 23 have 16 columns of eight numbers, behind the 8 columns of rows 8 … 15. The
+/// border's rows have columns of their own.
+template <typename F>
+class WideFronts {
+ public:
+  explicit WideFronts(const Program& program) : program_(program) {}
+
+  /// After the last one, allocate().
+  void add(const Front& front);
+  void allocate();
+  [[nodiscard]] int count() const { return static_cast<int>(fronts_.size()); }
+
+  // Of front k, whose last panel has P pivots.
+  /// Factorizes and substitutes y forward; false if a pivot is not accepted.
+  template <int P, bool kDefinite>
+  bool eliminate(int k, F* matrix, F* y);
+  template <int P>
+  void forward(int k, F* y);
+  template <int P>
+  void backward(int k, F* y);
+
+ private:
+  static constexpr int L = kWidest<F>;
+  static constexpr int kPairs = kRegisterDoubles == 8 ? 2 : 1;  // vectors of rows at a time
+  static constexpr int kBlock = kPanel * kPanel;
+  using W = typename Short<F, L>::Type;
+  using Eight = typename Short<F, kPanel>::Type;
+  struct Wide {
+    int first = 0, pivots = 0, border = 0;
+    int base = 0, stride = 0;    // of the matrix
+    int panels = 0, length = 0;  // of the border's columns, a multiple of eight
+    int inverses = 0;            // where D⁻¹ is
+    int factors = 0;             // where M and Mᵀ of the first panel are
+    int blocks = 0;              // where C L⁻ᵀ of the pivots' rows is
+    int columns = 0;             // and of the border's
+    int rows = 0;                // where Program::border_rows has its border
+    int strips_begin = 0, strips_end = 0;
+  };
+  /// C L⁻ᵀ of some rows: its first column, how far apart columns are, and vectors of rows.
+  struct Rows {
+    F* at;
+    int stride, next;
+  };
+
+  /// Of the k-th eight pivots.
+  Rows pivot_rows(const Wide& front, int k) {
+    return {factors_.data() + front.blocks + kBlock / 2 * k * (k - 1), kPanel, kBlock * k};
+  }
+  Rows border_rows(const Wide& front) { return {factors_.data() + front.columns, front.length, L}; }
+  F* factors_of(const Wide& front, int k) {
+    return factors_.data() + front.factors + 2 * kBlock * k;
+  }
+
+  F* take_right(const Wide& front, F* y);
+  void give_right(const Wide& front, F* y) const;
+  void add_border(const Wide& front, F* y) const;
+  template <int P>
+  static void store_pivots(F* right, const Eight& x);
+  void scale_rows(const Wide& front, const F* rows, int stride, int columns);
+  template <int P, int R>
+  static void take_up(Rows rows, const F* scaled, int columns, W (&s)[P][R]);
+  template <int P, bool kDefinite>
+  bool eliminate_panel(const Wide& front, const F* matrix, int k, F* right);
+  template <int P, int R>
+  void finish_rows(int stride, const F* target, Rows rows, int from, const F* l, const F* z,
+                   F* right);
+  template <int P>
+  void forward_panel(const Wide& front, int k, F* right);
+  template <int P>
+  void backward_panel(const Wide& front, int k, F* right);
+  void update_border(const Wide& front, F* matrix);
+  template <int K>
+  void update_columns(const Wide& front, F* matrix, const Strip& strip, int column);
+
+  const Program& program_;
+  std::vector<Wide> fronts_;
+  std::vector<Strip> strips_;
+  int next_ = 0, longest_ = 0;
+  Array<F> factors_;
+  Array<F> scaled_;  // eight rows of C L⁻ᵀ D⁻¹, column by column
+  Array<F> right_;   // a right-hand side of a front, from a multiple of eight on the border's
+};
+
+template <typename F>
+void WideFronts<F>::add(const Front& front) {
+  Wide wide;
+  wide.first = front.first;
+  wide.pivots = front.pivots;
+  wide.border = front.border;
+  wide.base = front.base;
+  wide.stride = front.stride;
+  wide.panels = (front.pivots + kPanel - 1) / kPanel;
+  wide.length = round_up(front.border, kPanel);
+  wide.rows = front.rows;
+  const int padded = wide.panels * kPanel;
+  wide.inverses = next_;
+  wide.factors = wide.inverses + padded;
+  wide.blocks = wide.factors + wide.panels * 2 * kBlock;
+  wide.columns = wide.blocks + kBlock / 2 * wide.panels * (wide.panels - 1);
+  next_ = wide.columns + padded * wide.length;
+  longest_ = std::max(longest_, padded + wide.length);
+  wide.strips_begin = static_cast<int>(strips_.size());
+  add_strips<F>(program_, front, strips_);
+  wide.strips_end = static_cast<int>(strips_.size());
+  fronts_.push_back(wide);
+}
+
+template <typename F>
+void WideFronts<F>::allocate() {
+  factors_.resize(next_ + kPanel, F(0));
+  scaled_.resize(longest_ * kPanel, F(0));
+  right_.resize(longest_, F(0));
+}
+
+// Right-hand sides. What lies behind a front's rows in y is left as it is.
+
+/// That of the front's pivots, behind it zeros from a multiple of eight on; y itself if there is no
+/// border.
+template <typename F>
+F* WideFronts<F>::take_right(const Wide& front, F* y) {
+  y += front.first;
+  if (front.border == 0) return y;
+  F* right = right_.data();
+  const int padded = front.panels * kPanel;
+  for (int i = 0; i < padded; i += L) {
+    store<F, L>(right + i, first_lanes<F, L>(load<F, L>(y + i), front.pivots - i));
+  }
+  for (int i = 0; i < front.length; i += L) store<F, L>(right + padded + i, W{});
+  return right;
+}
+
+template <typename F>
+void WideFronts<F>::give_right(const Wide& front, F* y) const {
+  if (front.border == 0) return;
+  y += front.first;
+  for (int i = 0; i < front.pivots; i += L) {
+    store<F, L>(y + i, first_lanes_or<F, L>(load<F, L>(right_.data() + i), load<F, L>(y + i),
+                                            front.pivots - i));
+  }
+}
+
+/// P numbers of the pivots.
+template <typename F>
+template <int P>
+void WideFronts<F>::store_pivots(F* right, const Eight& x) {
+  store<F, kPanel>(right, first_lanes_or<F, kPanel>(x, load<F, kPanel>(right), P));
+}
+
+template <typename F>
+void WideFronts<F>::add_border(const Wide& front, F* y) const {
+  const int* rows = program_.border_rows.data() + front.rows;
+  const F* right = right_.data() + front.panels * kPanel;
+  for (int i = 0; i < front.border; ++i) y[rows[i]] += right[i];
+}
+
+// Elimination from the left.
+
+template <typename F>
+template <int P, bool kDefinite>
+bool WideFronts<F>::eliminate(int k, F* matrix, F* y) {
+  const Wide& front = fronts_[k];
+  F* right = take_right(front, y);
+  bool accepted = true;
+  const int last = front.panels - 1;
+  for (int i = 0; i < last; ++i) {
+    accepted &= eliminate_panel<kPanel, kDefinite>(front, matrix + front.base, i, right);
+  }
+  accepted &= eliminate_panel<P, kDefinite>(front, matrix + front.base, last, right);
+  give_right(front, y);
+  if (front.border == 0) return accepted;
+  add_border(front, y);
+  update_border(front, matrix);
+  return accepted;
+}
+
+/// scaled_ = D⁻¹ C of eight rows in the first so many columns.
+template <typename F>
+void WideFronts<F>::scale_rows(const Wide& front, const F* rows, int stride, int columns) {
+  const F* inverse = factors_.data() + front.inverses;
+  F* scaled = scaled_.data();
+  for (int j = 0; j < columns; ++j) {
+#pragma GCC unroll 4
+    for (int i = 0; i < kPanel; i += L) {
+      store<F, L>(scaled + j * kPanel + i, load<F, L>(rows + j * stride + i) * inverse[j]);
+    }
+  }
+}
+
+/// s −= C D⁻¹ Cᵀ of the first so many columns: C of R vectors of rows, D⁻¹ Cᵀ of P columns.
+template <typename F>
+template <int P, int R>
+[[gnu::always_inline]] inline void WideFronts<F>::take_up(Rows rows, const F* scaled, int columns,
+                                                          W (&s)[P][R]) {
+  const F* column = rows.at;
+  for (int j = 0; j < columns; ++j, column += rows.stride, scaled += kPanel) {
+    W c[R];
+#pragma GCC unroll 2
+    for (int r = 0; r < R; ++r) c[r] = load<F, L>(column + r * rows.next);
+#pragma GCC unroll 8
+    for (int k = 0; k < P; ++k) {
+      const F of_column = scaled[k];
+#pragma GCC unroll 2
+      for (int r = 0; r < R; ++r) s[k][r] -= c[r] * of_column;
+    }
+  }
+}
+
+template <typename F>
+template <int P, bool kDefinite>
+bool WideFronts<F>::eliminate_panel(const Wide& front, const F* matrix, int k, F* right) {
+  const int from = k * kPanel;
+  const F* target = matrix + from * front.stride;
+  F* factors = factors_of(front, k);
+  F* z_of = right + from;
+  Rows rows = pivot_rows(front, k);
+  scale_rows(front, rows.at, rows.stride, from);
+  alignas(64) F block[P * kPanel];
+#pragma GCC unroll 4
+  for (int i = 0; i < kPanel; i += L) {
+    W s[P][1];
+#pragma GCC unroll 8
+    for (int j = 0; j < P; ++j) s[j][0] = load<F, L>(target + j * front.stride + from + i);
+    take_up<P, 1>({rows.at + i, rows.stride, 0}, scaled_.data(), from, s);
+#pragma GCC unroll 8
+    for (int j = 0; j < P; ++j) store<F, L>(block + j * kPanel + i, s[j][0]);
+  }
+  Eight a[P], l[P], m[P];
+  F inverse[P];
+#pragma GCC unroll 8
+  for (int j = 0; j < P; ++j) a[j] = load<F, kPanel>(block + j * kPanel);
+  const bool accepted = decompose<F, P, kDefinite>(a, l, inverse);
+  invert_triangle<F, P>(l, m);
+  Eight scale = Eight{}, z = Eight{};
+#pragma GCC unroll 8
+  for (int j = 0; j < P; ++j) {
+    store<F, kPanel>(block + j * kPanel, l[j]);
+    store<F, kPanel>(factors + j * kPanel, m[j]);
+    scale[j] = inverse[j];
+    z += m[j] * z_of[j];
+  }
+  store_transposed<F, P, P, kPanel>(m, factors + kBlock);
+  store<F, kPanel>(factors_.data() + front.inverses + from, scale);
+  store_pivots<P>(z_of, z * scale);
+  if constexpr (P == kPanel) {
+    int b = k + 1;
+    for (; kPairs == 2 && L == kPanel && b + 1 < front.panels; b += 2) {
+      finish_rows<P, kPairs>(front.stride, target + b * kPanel, pivot_rows(front, b), from, block,
+                             z_of, right + b * kPanel);
+    }
+    for (; b < front.panels; ++b) {
+      rows = pivot_rows(front, b);
+      for (int i = 0; i < kPanel; i += L, rows.at += L) {
+        finish_rows<P, 1>(front.stride, target + b * kPanel + i, rows, from, block, z_of,
+                          right + b * kPanel + i);
+      }
+    }
+  }
+  rows = border_rows(front);
+  F* below = right + front.panels * kPanel;
+  int i = 0;
+  for (; i + kPairs * L <= front.length; i += kPairs * L, rows.at += kPairs * L) {
+    finish_rows<P, kPairs>(front.stride, target + front.pivots + i, rows, from, block, z_of,
+                           below + i);
+  }
+  for (; i < front.length; i += L, rows.at += L) {
+    finish_rows<P, 1>(front.stride, target + front.pivots + i, rows, from, block, z_of, below + i);
+  }
+  return accepted;
+}
+
+/// R vectors of rows below the panel's block, of which `l` has L and `z` the solution. `target`:
+/// the matrix in the panel's first column; `right`: the right-hand side.
+template <typename F>
+template <int P, int R>
+void WideFronts<F>::finish_rows(int stride, const F* target, Rows rows, int from, const F* l,
+                                const F* z, F* right) {
+  W s[P][R];
+#pragma GCC unroll 8
+  for (int k = 0; k < P; ++k) {
+#pragma GCC unroll 2
+    for (int r = 0; r < R; ++r) s[k][r] = load<F, L>(target + k * stride + r * L);
+  }
+  take_up<P, R>(rows, scaled_.data(), from, s);
+  F* to = rows.at + from * rows.stride;
+  W y[R];
+#pragma GCC unroll 2
+  for (int r = 0; r < R; ++r) y[r] = load<F, L>(right + r * L);
+#pragma GCC unroll 8
+  for (int k = 0; k < P; ++k) {
+#pragma GCC unroll 8
+    for (int j = 0; j < k; ++j) {
+      const F l_kj = l[j * kPanel + k];
+#pragma GCC unroll 2
+      for (int r = 0; r < R; ++r) s[k][r] -= s[j][r] * l_kj;
+    }
+    const F z_k = z[k];
+#pragma GCC unroll 2
+    for (int r = 0; r < R; ++r) {
+      y[r] -= s[k][r] * z_k;
+      store<F, L>(to + k * rows.stride + r * rows.next, s[k][r]);
+    }
+  }
+#pragma GCC unroll 2
+  for (int r = 0; r < R; ++r) store<F, L>(right + r * L, y[r]);
+}
+
+// What the border subtracts from other fronts, for all panels in one go.
+
+template <typename F>
+void WideFronts<F>::update_border(const Wide& front, F* matrix) {
+  const Rows rows = border_rows(front);
+  for (int begin = front.strips_begin, end; begin < front.strips_end; begin = end) {
+    const int first = strips_[begin].column;
+    for (end = begin; end < front.strips_end && strips_[end].column == first;) ++end;
+    for (int k = 0; k < strips_[end - 1].columns; k += kPanel) {
+      scale_rows(front, rows.at + first + k, rows.stride, front.pivots);
+      for (int i = begin; i < end; ++i) update_columns<kPanel>(front, matrix, strips_[i], k);
+    }
+  }
+}
+
+/// The columns of a strip from `column` on, at most K. scaled_ has their rows.
+template <typename F>
+template <int K>
+void WideFronts<F>::update_columns(const Wide& front, F* matrix, const Strip& strip, int column) {
+  if (strip.columns - column < K) {
+    if constexpr (K > 1) update_columns<K - 1>(front, matrix, strip, column);
+    return;
+  }
+  constexpr int N = std::max(4, L);  // a strip may have four rows
+  using V = typename Short<F, N>::Type;
+  F* target = matrix + strip.target + column * strip.stride;
+  const F* rows = border_rows(front).at + strip.begin;
+  const F* scaled = scaled_.data();
+  V s[K];
+#pragma GCC unroll 8
+  for (int k = 0; k < K; ++k) s[k] = load<F, N>(target + k * strip.stride);
+  for (int j = 0; j < front.pivots; ++j, rows += front.length, scaled += kPanel) {
+    const V c = first_lanes<F, N>(load<F, N>(rows), strip.rows);
+#pragma GCC unroll 8
+    for (int k = 0; k < K; ++k) s[k] -= c * scaled[k];
+  }
+#pragma GCC unroll 8
+  for (int k = 0; k < K; ++k) store<F, N>(target + k * strip.stride, s[k]);
+}
+
+// Substitution with the factors there are.
+
+template <typename F>
+template <int P>
+void WideFronts<F>::forward(int k, F* y) {
+  const Wide& front = fronts_[k];
+  F* right = take_right(front, y);
+  const int last = front.panels - 1;
+  for (int i = 0; i < last; ++i) forward_panel<kPanel>(front, i, right);
+  forward_panel<P>(front, last, right);
+  give_right(front, y);
+  add_border(front, y);
+}
+
+/// z = D⁻¹ M y in place of the pivots' y; y −= C L⁻ᵀ z below.
+template <typename F>
+template <int P>
+void WideFronts<F>::forward_panel(const Wide& front, int k, F* right) {
+  const int from = k * kPanel;
+  Eight z = times_columns<F, P, kPanel>(factors_of(front, k), load<F, kPanel>(right + from));
+  z *= load<F, kPanel>(factors_.data() + front.inverses + from);
+  store_pivots<P>(right + from, z);
+  const auto subtract = [&](Rows rows, F* y) {
+    const F* columns = rows.at + from * rows.stride;
+    W even = load<F, L>(y), odd = W{};
+#pragma GCC unroll 8
+    for (int j = 0; j < P; ++j) {
+      W& sum = j % 2 == 0 ? even : odd;
+      sum -= load<F, L>(columns + j * rows.stride) * z[j];
+    }
+    store<F, L>(y, even + odd);
+  };
+  for (int b = k + 1; P == kPanel && b < front.panels; ++b) {
+    Rows rows = pivot_rows(front, b);
+#pragma GCC unroll 4
+    for (int i = 0; i < kPanel; i += L, rows.at += L) subtract(rows, right + b * kPanel + i);
+  }
+  Rows rows = border_rows(front);
+  right += front.panels * kPanel;
+  for (int i = 0; i < front.length; i += L, rows.at += L) subtract(rows, right + i);
+}
+
+template <typename F>
+template <int P>
+void WideFronts<F>::backward(int k, F* y) {
+  const Wide& front = fronts_[k];
+  F* right = take_right(front, y);
+  const int* rows = program_.border_rows.data() + front.rows;
+  for (int i = 0; i < front.border; ++i) right[front.panels * kPanel + i] = y[rows[i]];
+  backward_panel<P>(front, front.panels - 1, right);
+  for (int i = front.panels - 2; i >= 0; --i) backward_panel<kPanel>(front, i, right);
+  give_right(front, y);
+}
+
+/// x = Mᵀ (z − D⁻¹ (C L⁻ᵀ)ᵀ x below).
+template <typename F>
+template <int P>
+void WideFronts<F>::backward_panel(const Wide& front, int k, F* right) {
+  const int from = k * kPanel;
+  W sums[kPanel] = {};
+  const auto add = [&](Rows rows, const F* x) {
+    const F* columns = rows.at + from * rows.stride;
+    const W x_i = load<F, L>(x);
+#pragma GCC unroll 8
+    for (int j = 0; j < P; ++j) sums[j] += load<F, L>(columns + j * rows.stride) * x_i;
+  };
+  Rows rows = border_rows(front);
+  for (int i = 0; i < front.length; i += L, rows.at += L) {
+    add(rows, right + front.panels * kPanel + i);
+  }
+  for (int b = front.panels - 1; P == kPanel && b > k; --b) {  // the newest part of x comes last
+    rows = pivot_rows(front, b);
+#pragma GCC unroll 4
+    for (int i = 0; i < kPanel; i += L, rows.at += L) add(rows, right + b * kPanel + i);
+  }
+  const Eight z = load<F, kPanel>(right + from) -
+                  load<F, kPanel>(factors_.data() + front.inverses + from) * lane_sums<F>(sums);
+  store_pivots<P>(right + from, times_columns<F, P, kPanel>(factors_of(front, k) + kBlock, z));
+}
+
+}  // namespace mbs::compiled_ldl
