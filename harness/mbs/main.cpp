@@ -29,6 +29,14 @@ void limit_memory() {
 #endif
 }
 
+/// As many files as are allowed: each job of a sweep has a handle, and its parts are merged together.
+void raise_files() {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_NOFILE, &limit);
+  limit.rlim_cur = limit.rlim_max;
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
 /// Memory that is freed stays with the process, as every real-time program wants it. By default
 /// glibc gives the top of the heap back from 128 KiB on: a library that allocates its workspace in
 /// each factorization then gets new pages each time, which can take longer than the arithmetic.
@@ -70,6 +78,7 @@ int main(int argc, char** argv) {
   try {
     if (!has_stack()) return fail("the stack's limit is below 8 MiB (ulimit -Hs), which mbs needs");
     limit_memory();
+    raise_files();
     keep_memory();
     std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is an error like any other full disk
     mbs::settle_environment(argc, argv);
