@@ -28,6 +28,14 @@ void limit_memory() {
 #endif
 }
 
+/// As many files as are allowed: each job of a sweep has a handle, and its parts are merged together.
+void raise_files() {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_NOFILE, &limit);
+  limit.rlim_cur = limit.rlim_max;
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
 /// Libraries put scratch memory of megabytes on the stack: without it they would crash.
 bool has_stack() {
   constexpr rlim_t kNeeded = 8u << 20;  // what Linux gives by default
@@ -58,6 +66,7 @@ int main(int argc, char** argv) {
   try {
     if (!has_stack()) return fail("the stack's limit is below 8 MiB (ulimit -Hs), which mbs needs");
     limit_memory();
+    raise_files();
     mbs::keep_memory();
     std::signal(SIGXFSZ, SIG_IGN);  // a file over the limit is an error like any other full disk
     mbs::settle_environment(argc, argv);

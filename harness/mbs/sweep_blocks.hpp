@@ -20,8 +20,8 @@ class SweepBlocks {
 
   [[nodiscard]] const SweepRows& rows() const { return rows_; }
   [[nodiscard]] long count() const { return (grid_.lanes() + size_ - 1) / size_; }
-  /// What is wrong with the first lane that makes no scene; empty if all do.
-  [[nodiscard]] std::string check(long block) const;
+  /// Throws UsageError of the first lane that makes no scene.
+  void check(long block) const;
   /// A line of outcomes, then the rows.
   [[nodiscard]] std::string run(long block) const;
 

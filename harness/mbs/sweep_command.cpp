@@ -4,6 +4,7 @@
 #include "mbs/commands.hpp"
 #include "mbs/sweep_options.hpp"
 #include "mbs/sweep_parts.hpp"
+#include "sweep/job_pool.hpp"
 #include "sweep/value_range.hpp"
 
 namespace mbs {
@@ -45,7 +46,7 @@ void add_sweep_command(CLI::App& app, int& status) {
   std::vector<CLI::Option*> apart;  // what the rows do not depend on
   apart.push_back(command
                       ->add_option("--jobs", options->jobs, "processes that run lanes side by side")
-                      ->check(CLI::Range(1, 1024))
+                      ->check(CLI::Range(1, kMostJobs))
                       ->capture_default_str());
   apart.push_back(command
                       ->add_option("--shard", options->shard,

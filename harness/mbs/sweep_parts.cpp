@@ -4,14 +4,19 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "mbs/file_names.hpp"
 #include "mbs/sweep_outcomes.hpp"
+#include "mbs/table_file.hpp"
 #include "printable.hpp"
+#include "sweep/value_range.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
 namespace {
+
+namespace fs = std::filesystem;
 
 std::string shown(const std::string& path) { return printable(path, kLongestPath); }
 
@@ -28,15 +33,39 @@ nlohmann::json without_shard(nlohmann::json head) {
   return head;
 }
 
+/// Which of how many parts it is, from 1.
+std::pair<long, long> shard_of(const Journal& part) {
+  const auto& shard = part.head().at("shard");
+  const long number = shard.at(0), count = shard.at(1);
+  if (number >= 1 && number <= count && count <= kMostLanes) return {number, count};
+  throw UsageError(fmt::format("{}: found part {} of {}, allowed is i of K with i from 1 to K",
+                               shown(part.path()), number, count));
+}
+
 void require_all_blocks(const Journal& part) {
-  const long first = part.head().at("shard").at(0).get<long>() - 1;
-  const long step = part.head().at("shard").at(1), count = part.head().at("blocks");
-  for (long block = first; block < count; block += step) {
+  const auto [number, step] = shard_of(part);
+  const long count = part.head().at("blocks");
+  for (long block = number - 1; block < count; block += step) {
     if (part.is_whole() && part.has(block)) continue;
     throw UsageError(fmt::format("{}: this part is not finished (block {} of {}), its command with "
                                  "--resume finishes it",
                                  shown(part.path()), block, count));
   }
+}
+
+/// What was left beside `path` by a process that was killed while it wrote the table.
+void remove_partial(const std::string& path) {
+  std::error_code ignored;
+  const fs::path table = fs::weakly_canonical(fs::absolute(path), ignored);
+  const std::string begin = table.filename().string() + ".", end = ".partial";
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::directory_iterator(table.parent_path(), ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() <= begin.size() + end.size() || !name.starts_with(begin) || !name.ends_with(end)) continue;
+    const std::string between = name.substr(begin.size(), name.size() - begin.size() - end.size());
+    if (between.find_first_not_of("0123456789-") == std::string::npos) left.push_back(entry.path());
+  }
+  for (const fs::path& file : left) fs::remove(file, ignored);
 }
 
 }  // namespace
@@ -45,13 +74,17 @@ void require_same_sweep(const Journal& journal, const nlohmann::json& head) {
   for (const auto& [key, value] : head.items()) {
     const auto found = journal.head().find(key);
     if (found != journal.head().end() && *found == value) continue;
-    const std::string what =
-        key == "program" ? "another build of mbs" : fmt::format("another sweep (not the same: {})", key);
+    const std::string what = key == "program"     ? "another build of mbs"
+                             : key == "libraries" ? "other libraries"
+                             : key == "processor" ? "another processor"
+                                                  : fmt::format("another sweep (not the same: {})", key);
     throw UsageError(fmt::format("{}: found {}, allowed is the same", shown(journal.path()), what));
   }
 }
 
-int write_table(const std::vector<const Journal*>& parts, TableFile& table) {
+int write_table(const std::vector<const Journal*>& parts, const std::string& output) {
+  remove_partial(output);
+  TableFile table(output);
   const nlohmann::json& head = parts.front()->head();
   table.write(head.at("columns"));
   Outcomes all;
@@ -67,10 +100,10 @@ int write_table(const std::vector<const Journal*>& parts, TableFile& table) {
 
 int finish_part(const Journal& part) {
   require_all_blocks(part);
-  const long first = part.head().at("shard").at(0).get<long>() - 1;
-  const long step = part.head().at("shard").at(1), count = part.head().at("blocks");
+  const auto [number, step] = shard_of(part);
+  const long count = part.head().at("blocks");
   Outcomes all;
-  for (long block = first; block < count; block += step) {
+  for (long block = number - 1; block < count; block += step) {
     std::string text = part.read(block);
     all.add(take_outcomes(text));
   }
@@ -86,31 +119,28 @@ int merge_sweep(const std::vector<std::string>& paths, const std::string& output
     if (is_same_file(path, output)) throw UsageError("--output: found a part, allowed is another file");
     journals.emplace_back(path);
   }
-  const auto count = journals.front().head().at("shard").at(1).get<std::size_t>();
-  std::vector<const Journal*> parts(count);
+  const long count = shard_of(journals.front()).second;
+  std::vector<const Journal*> parts(static_cast<std::size_t>(count));
   for (const Journal& journal : journals) {
     require_same_sweep(journal, without_shard(journals.front().head()));
-    const auto& shard = journal.head().at("shard");
-    if (shard.at(1) != count) {
-      throw UsageError(fmt::format("{}: it is one of {} parts, the first of {}", shown(journal.path()),
-                                   shard.at(1).get<long>(), count));
+    const auto [number, of] = shard_of(journal);
+    if (of != count) {
+      throw UsageError(fmt::format("{}: it is one of {} parts, the first of {}", shown(journal.path()), of, count));
     }
-    const Journal*& place = parts[shard.at(0).get<std::size_t>() - 1];
+    const Journal*& place = parts[static_cast<std::size_t>(number - 1)];
     if (place != nullptr) {
       throw UsageError(fmt::format("{}: part {} of {} is given twice (it is {} too)",
-                                   shown(journal.path()), shard.at(0).get<long>(), count,
-                                   shown(place->path())));
+                                   shown(journal.path()), number, count, shown(place->path())));
     }
     place = &journal;
   }
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
     if (parts[i] == nullptr) {
       throw UsageError(fmt::format("part {} of {} is missing", i + 1, count));
     }
     require_all_blocks(*parts[i]);
   }
-  TableFile table(output);
-  return write_table(parts, table);
+  return write_table(parts, output);
 }
 
 }  // namespace mbs

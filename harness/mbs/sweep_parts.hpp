@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "mbs/table_file.hpp"
 #include "sweep/journal.hpp"
 
 namespace mbs {
@@ -12,8 +11,9 @@ namespace mbs {
 /// Throws UsageError that says what differs.
 void require_same_sweep(const Journal& journal, const nlohmann::json& head);
 
-/// Writes the rows of all blocks, which the parts must have, says how it went; the exit status.
-int write_table(const std::vector<const Journal*>& parts, TableFile& table);
+/// Writes the rows of all blocks, which the parts must have, says how it went; the exit status. Removes what was
+/// left beside `output` by a process that was killed while it did this.
+int write_table(const std::vector<const Journal*>& parts, const std::string& output);
 
 /// Says how a part went; the exit status.
 int finish_part(const Journal& part);

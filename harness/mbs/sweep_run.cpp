@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <filesystem>
-#include <map>
 #include <vector>
 
+#include "atomic_file.hpp"
+#include "environment/environment.hpp"
 #include "mbs/file_names.hpp"
 #include "mbs/progress.hpp"
 #include "mbs/sweep_blocks.hpp"
@@ -47,15 +49,12 @@ Shard parse_shard(const std::string& text) {
 /// A value that makes no scene is bad input: found before anything runs.
 void require_lanes(int jobs, const std::vector<long>& mine, const SweepBlocks& blocks) {
   Progress progress(static_cast<double>(mine.size()), "blocks of lanes checked");
-  std::map<long, std::string> faults;
-  double done = 0.0;
-  for_blocks(jobs, mine, [&](long block) { return blocks.check(block); },
-             [&](long block, const std::string& fault) {
-               progress.at(++done);
-               if (!fault.empty()) faults.emplace(block, fault);
-               return faults.empty();
-             });
-  if (!faults.empty()) throw UsageError(faults.begin()->second);
+  const auto check = [&](long block) {
+    blocks.check(block);
+    return std::string();
+  };
+  for_blocks(jobs, mine, check, [](long, const std::string&) {},
+             [&](std::size_t done) { progress.at(static_cast<double>(done)); });
 }
 
 /// Whether rows can be kept beside it until it is written, so that a sweep can go on.
@@ -75,21 +74,6 @@ void require_no_other(const std::string& path) {
                                printable(path, kLongestPath)));
 }
 
-/// What was left beside `path` by a process that was killed while it wrote the table.
-void remove_partial(const std::string& path) {
-  std::error_code ignored;
-  const fs::path table = fs::weakly_canonical(fs::absolute(path), ignored);
-  const std::string begin = table.filename().string() + ".", end = ".partial";
-  std::vector<fs::path> left;
-  for (const auto& entry : fs::directory_iterator(table.parent_path(), ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.size() <= begin.size() + end.size() || !name.starts_with(begin) || !name.ends_with(end)) continue;
-    const std::string between = name.substr(begin.size(), name.size() - begin.size() - end.size());
-    if (between.find_first_not_of("0123456789-") == std::string::npos) left.push_back(entry.path());
-  }
-  for (const fs::path& file : left) fs::remove(file, ignored);
-}
-
 /// To go on with: what was done if it is of this sweep, or a new one.
 Journal open_journal(const std::string& output, const nlohmann::json& head) {
   if (!is_file(output)) {  // a pipe, a device: kept where nobody finds it
@@ -100,23 +84,25 @@ Journal open_journal(const std::string& output, const nlohmann::json& head) {
     fs::remove(path);
     return journal;
   }
-  const std::string path = output + ".journal";
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) return {path, head};
-  Journal journal(path);
+  Journal journal(output + ".journal", head);  // nobody else writes this table
   require_same_sweep(journal, head);
-  journal.open();  // nobody else writes this table
-  remove_partial(output);
   return journal;
 }
 
 nlohmann::json head_of(const SweepOptions& options, const SweepGrid& grid, const std::string& variant,
                        const SweepBlocks& blocks, const Shard& shard) {
-  return {{"scene", grid.base().name},
+  const EnvironmentRecord record = environment_record();
+  const auto recorded = [&record](const char* name) {
+    return std::ranges::find(record, name, &EnvironmentRecord::value_type::first)->second;
+  };
+  const auto text = [](const std::string& bytes) { return printable(bytes, std::string::npos); };
+  return {{"scene", text(grid.base().name)},
           {"implementation", variant},
-          {"options", options.identity},
+          {"options", text(options.identity)},
           {"file", checksum(grid.document().dump())},
           {"program", program_checksum()},
+          {"libraries", text(recorded("libraries") + "; " + recorded("blas_loaded"))},
+          {"processor", text(recorded("cpu_model"))},
           {"columns", blocks.rows().head()},
           {"lanes", grid.lanes()},
           {"blocks", blocks.count()},
@@ -130,11 +116,9 @@ void run_blocks(int jobs, const std::vector<long>& mine, const SweepBlocks& bloc
   }
   Progress progress(static_cast<double>(mine.size()), "blocks of lanes");
   for_blocks(jobs, open, [&](long block) { return blocks.run(block); },
-             [&](long block, const std::string& text) {
-               journal.add(block, text);
-               progress.at(static_cast<double>(journal.size()));
-               return true;
-             });
+             [&](long block, const std::string& rows) { journal.add(block, rows); },
+             [&, before = journal.size()](std::size_t done) { progress.at(static_cast<double>(before + done)); });
+  journal.scan();
 }
 
 }  // namespace
@@ -152,26 +136,29 @@ int sweep(const SweepOptions& options) {
     throw UsageError("--output: found a device or a pipe, allowed with --shard is a file, for mbs merge-sweep");
   }
   std::error_code ignored;
-  if (is_part && options.resume && fs::exists(options.output, ignored)) {
+  if (is_part && fs::exists(options.output, ignored)) {
+    if (!options.resume) {
+      throw UsageError(fmt::format("{}: found a file, allowed with --shard is a new one, or --resume",
+                                   printable(options.output, kLongestPath)));
+    }
     const Journal done(options.output);
     require_same_sweep(done, head);
     return finish_part(done);
   }
   static_cast<void>(AtomicFile(options.output));  // says at once what cannot be written
-  if (!options.resume) require_no_other(options.output + ".journal");
+  const std::string kept = options.output + ".journal";
+  if (!options.resume) require_no_other(kept);
   std::vector<long> mine;
   for (long block = shard.index; block < blocks.count(); block += shard.count) mine.push_back(block);
-  if (!fs::exists(options.output + ".journal", ignored)) {  // else it was done
-    require_lanes(options.jobs, mine, blocks);
-  }
+  const bool is_begun = fs::exists(kept, ignored) && fs::file_size(kept, ignored) > 0;
+  if (!is_begun) require_lanes(options.jobs, mine, blocks);  // else it was done
   Journal journal = open_journal(options.output, head);
   run_blocks(options.jobs, mine, blocks, journal);
   if (is_part) {
     fs::rename(journal.path(), options.output);
     return finish_part(journal);
   }
-  TableFile table(options.output);
-  const int status = write_table({&journal}, table);
+  const int status = write_table({&journal}, options.output);
   fs::remove(journal.path(), ignored);
   return status;
 }

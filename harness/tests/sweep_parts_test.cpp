@@ -12,6 +12,7 @@
 
 #include "support/folder.hpp"
 #include "support/program.hpp"
+#include "sweep/journal.hpp"
 
 namespace mbs {
 namespace {
@@ -22,14 +23,26 @@ const std::string kLanes =
 
 class SweepParts : public ::testing::Test {
  protected:
+  /// `before`: what the shell does first.
   [[nodiscard]] test::ProgramResult sweep(const std::string& arguments, const std::string& output,
-                                          const std::string& variant = "batch/lost_lane") const {
+                                          const std::string& variant = "batch/lost_lane",
+                                          const std::string& before = "") const {
     return test::run_program(MBS_CONTROLS, "sweep --implementation " + variant + " --output '" +
-                                               at(output) + "' " + arguments);
+                                               at(output) + "' " + arguments, before);
   }
-  [[nodiscard]] test::ProgramResult merge(const std::string& parts) const {
+  [[nodiscard]] test::ProgramResult merge(const std::string& parts, const std::string& before = "") const {
     return test::run_program(MBS_CONTROLS, "merge-sweep " + parts + " --output out.csv",
-                             "cd '" + folder_.file("") + "' &&");
+                             "cd '" + folder_.file("") + "' && " + before);
+  }
+  /// The part `from` again, with one thing of its head as `value`.
+  void change_head(const std::string& from, const std::string& to, const char* key, const nlohmann::json& value) const {
+    const Journal part(at(from));
+    nlohmann::json head = part.head();
+    head[key] = value;
+    Journal changed(at(to), head);
+    for (long block = 0; block < head.at("blocks").get<long>(); ++block) {
+      if (part.has(block)) changed.add(block, part.read(block));
+    }
   }
   void expect_refusal(const test::ProgramResult& run, const std::vector<std::string>& words) const {
     EXPECT_EQ(run.status, 2);
@@ -108,9 +121,51 @@ TEST_F(SweepParts, GoOnAfterAKill) {
   EXPECT_EQ(files(), 3U);
 }
 
+TEST_F(SweepParts, AFullDiskAtTheStartLeavesNothing) {
+  const auto full = sweep(kLanes, "t.csv", "batch/lost_lane", "ulimit -f 1;");  // not even the head of the journal
+  EXPECT_EQ(full.status, 2);
+  EXPECT_NE(full.errors.find("t.csv.journal: "), std::string::npos) << full.errors;
+  EXPECT_EQ(files(), 0U);
+  write("t.csv.journal", "");  // as a kill may leave it
+  EXPECT_EQ(sweep(kLanes + "--resume", "t.csv").status, 1);
+  sweep(kLanes, "whole.csv");
+  EXPECT_EQ(text("t.csv"), text("whole.csv"));
+}
+
+TEST_F(SweepParts, AFileMayHaveAnyName) {
+  const std::string scene = at("\xff.json");
+  std::filesystem::copy_file(MBS_ROOT "/harness/scenes/pendulum.json", scene);
+  const auto run = sweep("'" + scene + "' --duration 0.1 --vary gravity/1=-9,-8", "t.csv", "batch/sound");
+  EXPECT_EQ(run.status, 0) << run.errors;
+}
+
+TEST_F(SweepParts, NeedNoMoreFilesThanAreAllowed) {
+  const std::string few = "ulimit -Sn 8;";
+  EXPECT_EQ(sweep(kLanes + "--jobs 6", "whole.csv", "batch/sound", few).status, 1);
+  std::string parts;
+  for (int part = 1; part <= 6; ++part) {
+    const std::string name = std::to_string(part);
+    sweep(kLanes + "--shard " + name + "/6", name, "batch/sound");
+    parts += name + " ";
+  }
+  const auto merged = merge(parts, few);
+  EXPECT_EQ(merged.status, 1) << merged.errors;
+  EXPECT_EQ(text("out.csv"), text("whole.csv"));
+}
+
+TEST_F(SweepParts, AMergeThatWasKilledLeavesNothingToTheNext) {
+  sweep(kLanes + "--shard 1/1", "1");
+  write("out.csv.4711-0.partial", "half of a table");
+  EXPECT_EQ(merge("1").status, 1);
+  EXPECT_EQ(files(), 2U);
+}
+
 TEST_F(SweepParts, AFinishedPartIsNotDoneAgain) {
   sweep(kLanes + "--shard 1/2", "1");
   const auto before = std::filesystem::last_write_time(at("1"));
+  const auto again = sweep(kLanes + "--shard 1/2", "1");
+  EXPECT_EQ(again.status, 2);
+  EXPECT_NE(again.errors.find("--resume"), std::string::npos) << again.errors;
   EXPECT_EQ(sweep(kLanes + "--shard 1/2 --resume", "1").status, 1);
   EXPECT_EQ(std::filesystem::last_write_time(at("1")), before);
   EXPECT_EQ(sweep(kLanes + "--shard 2/2 --resume", "1").status, 2);  // another part
@@ -159,6 +214,18 @@ TEST_F(SweepParts, AnotherBuildIsRefused) {
   std::ofstream(copy, std::ios::app) << "another";
   test::run_program(copy, "sweep --implementation batch/lost_lane --shard 2/2 --output '" + at("2") + "' " + kLanes);
   expect_refusal(merge("1 2"), {"2: found another build of mbs"});
+}
+
+TEST_F(SweepParts, AnotherProcessorOrLibraryIsRefused) {
+  for (const char* part : {"1", "2"}) sweep(kLanes + "--shard " + part + "/2", part);
+  change_head("2", "elsewhere", "processor", "another");
+  expect_refusal(merge("1 elsewhere"), {"elsewhere: found another processor"});
+  change_head("2", "other", "libraries", "others");
+  expect_refusal(merge("1 other"), {"other: found other libraries"});
+  change_head("2", "third", "shard", {3, 2});
+  expect_refusal(merge("1 third"), {"third: found part 3 of 2"});
+  change_head("2", "none", "shard", {0, 2});
+  expect_refusal(merge("1 none"), {"none: found part 0 of 2"});
 }
 
 TEST_F(SweepParts, SamplesComeBesideGrids) {

@@ -39,6 +39,11 @@ TEST(SweepSample, HasTheDistributions) {
   }
 }
 
+TEST(SweepSample, NeverDrawsAnEnd) {
+  EXPECT_GT(random_share(0), 0.0);
+  EXPECT_LT(random_share(~std::uint64_t{0}), 1.0);
+}
+
 TEST(SweepSample, BelongsToItsSeed) {
   for (const bool sobol : {false, true}) {
     EXPECT_EQ(draw({kUniform}, {10, 3, sobol}), draw({kUniform}, {10, 3, sobol}));

@@ -144,18 +144,28 @@ def test_sweeps_are_asked_of_those_that_take_part():
     assert ("--lanes", 100) == lab.cells[0].settings[-4:-2] and lab.cells[0].timed
 
 
-@pytest.mark.parametrize("table, agree", [("table", True), ("$*", False)])
-def test_a_sweep_by_one_and_by_two_jobs_must_give_one_table(tmp_path, table, agree):
-    program = tmp_path / "mbs"  # stands in: the last word is the output
-    program.write_text(f"#!/bin/sh\nfor out; do :; done\necho {table} > $out\n")
+def swept(tmp_path, table="table", end=""):
+    """`sweep_process` on a program that stands in for `mbs`: its last word is the output."""
+    program = tmp_path / "mbs"
+    program.write_text(f"#!/bin/sh\nfor out; do :; done\necho {table} > $out\n{end}\n")
     program.chmod(0o755)
-    done = subprocess.run([ROOT / "study/limit/sweep_process", "four-bar:1", "--implementation", "a/b", "--vary", "x=1:2:3", "--lanes", "5",
+    return subprocess.run([ROOT / "study/limit/sweep_process", "four-bar:1", "--implementation", "a/b", "--vary", "x=1:2:3", "--lanes", "5",
                            "--duration", "0.1"], env=os.environ | {"MBS_PROGRAM": str(program)}, capture_output=True, text=True, check=False)
-    if not agree:
-        assert (done.returncode, done.stderr) == (1, "the tables by one and two jobs differ\n")
-        return
-    found = json.loads(done.stdout)
+
+
+def test_a_sweep_by_one_and_by_two_jobs_must_give_one_table(tmp_path):
+    done = swept(tmp_path, "$*")
+    assert (done.returncode, done.stderr) == (1, "the tables by one and two jobs differ\n")
+    found = json.loads(swept(tmp_path).stdout)
     assert [row["jobs"] for row in found["rows"]] == [1, 2] and all(row["wall_s"] > 0 < row["merge_s"] for row in found["rows"])
+    assert found["bytes"] == len("table\n")
+
+
+@pytest.mark.parametrize("failed, status, code", [(1, 1, 0), (5, 1, 2), (1, 2, 2)])
+def test_a_sweep_may_have_lanes_that_fail(tmp_path, failed, status, code):
+    said = f"mbs: a/b on four-bar:1: {failed} of 5 lanes failed: …"
+    done = swept(tmp_path, end=f"echo '{said}' >&2; exit {status}")
+    assert (done.returncode, done.stderr) == (code, f"{said}\n" if code else "")
 
 
 def test_nothing_is_asked_where_nobody_takes_part(measured):

@@ -6,7 +6,7 @@ import numpy
 import pytest
 
 from analysis.core.errors import StudyError
-from study.tests.conftest import ROOT
+from study.tests.conftest import PROGRAM, ROOT, study
 from study.tools import sweep
 
 HEAD = ("k,m,status,status_reason,failed_at,steps,passes_per_step,position_error_estimate,local_error_sum,"
@@ -67,3 +67,43 @@ def test_what_cannot_be_drawn_is_said(tmp_path, text, options, words):
     with pytest.raises(StudyError, match=words):
         sweep.sweep([str(path), *options])
     assert [*tmp_path.iterdir()] == [path] * (text is not None)
+
+
+@pytest.fixture
+def profile(tmp_path):
+    """A cluster that is this machine: its array runs at once."""
+    folder = tmp_path / "profile"
+    folder.mkdir()
+    array = 'for i in $(seq "$1"); do bash "$2" "$i" > log-"$i" 2>&1; done; echo all'
+    for name, text in {"array": array, "submit": "", "status": "echo success", "cancel": "", "config.yaml": ""}.items():
+        (folder / name).write_text(f"#!/bin/bash\n{text}\n")
+        (folder / name).chmod(0o755)
+    return folder
+
+
+def test_a_cluster_gives_the_table_of_these_words_only(tmp_path, profile):
+    path = tmp_path / "t.csv"
+
+    def words(gravity):
+        return "four-bar:1", "--vary", f"gravity/1={gravity}", "--implementation", "csc_klu/refactor", "--duration", "0.1"
+
+    def made(gravity):
+        return study("sweep", path, "--output", tmp_path / "t.png", "--cluster", profile, "--parts", 2, "--", *words(gravity))
+
+    (tmp_path / "t.csv.parts").mkdir()  # as a controller leaves it that is killed before it merges
+    for number in (1, 2):
+        subprocess.run([PROGRAM, "sweep", *words("-12,-11"), "--shard", f"{number}/2", "--output", tmp_path / f"t.csv.parts/part-{number}"],
+                       check=True, capture_output=True)
+    other = made("-9,-8")
+    assert other.returncode == 2 and "part 1 of 2 is not done: " in other.stderr and "another sweep" in other.stderr, other.stderr
+    assert not path.exists()
+    for _ in range(2):  # the second one only draws
+        assert made("-12,-11").returncode == 0
+        assert [line.partition(",")[0] for line in path.read_text().splitlines()[1:]] == ["-12", "-11"]
+        assert {one.name for one in (tmp_path / "t.csv.parts").iterdir()} == {"part.sh", ".lock", ".cluster"}
+    before, other = path.read_bytes(), made("-9,-8")
+    assert (other.returncode, path.read_bytes()) == (2, before) and "did not make" in other.stderr
+    path.rename(tmp_path / "mine.csv")
+    path.write_text("mine")  # nor what nobody made
+    (tmp_path / "t.csv.parts/part.sh").unlink()
+    assert made("-12,-11").returncode == 2 and path.read_text() == "mine"

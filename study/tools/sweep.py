@@ -37,7 +37,7 @@ def sweep(arguments):
         raise StudyError("found one of --cluster PROFILE and -- SCENE …, allowed are both or none (see study/sweep --help)")
     if options.parts < 1:
         raise StudyError(f"--parts: found {options.parts}, allowed is 1 or more")
-    if words and not Path(options.table).exists():
+    if words:
         sweep_cluster.run(words, options.table, options.parts, cluster.profile_folder(options.cluster))
     table, parameters, result = read(options.table, options.of)
     over = options.over or [name for name in parameters if table[name].nunique() > 1][:2] or parameters[:1]

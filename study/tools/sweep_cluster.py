@@ -16,43 +16,64 @@ from study.core.node import home
 
 def run(words, table, count, cluster):
     """`words`: what `mbs sweep` gets besides its output; `count`: parts; `cluster`: the profile's folder. What is done of parts
-    is kept beside the table until it is there."""
+    is kept beside the table until it is there. A table that these words made stays as it is."""
     if not (cluster / "array").is_file():
         raise StudyError(f"--cluster: {cluster} has no script array: study/cluster/README.md says what it does")
     folder = Path(f"{table}.parts").absolute()
+    script = _script(words, count, folder)
+    if Path(table).exists() and _text(folder / "part.sh") != script:
+        raise StudyError(f"{table}: found a file that this command did not make, allowed is another name; without --cluster it is drawn")
     home(folder).mkdir(parents=True, exist_ok=True)
-    parts, program = [folder / f"part-{number}" for number in range(1, count + 1)], str(ROOT / program_of())
+    parts = [folder / f"part-{number}" for number in range(1, count + 1)]
     with locks.only_one(folder):
         end_jobs(folder, cluster)
-        command = shlex.join([program, "sweep", *words, "--resume"])
-        write_text(folder / "part.sh", "# Runs one part; a lane that fails is a row, and no failure of the part.\n"
-                   f"cd {shlex.quote(os.getcwd())}\n"
-                   f'{command} --shard "$1/{count}" --output {shlex.quote(str(folder))}/part-"$1" || [ $? = 1 ]\n')
-        try:
-            _array(folder, cluster, parts)
-        finally:
-            end_jobs(folder, cluster)
-        for number, part in enumerate(parts, 1):
-            if not part.exists():
-                log = folder / f"log-{number}"
-                said = _last(log.read_text(errors="replace") if log.exists() else "", "it has said nothing")
-                raise StudyError(f"part {number} of {count} is not done: {said}; the same command goes on where it was")
-        done = subprocess.run([program, "merge-sweep", *map(str, parts), "--output", str(table)], capture_output=True, text=True)
-        if done.returncode >= USAGE or done.returncode < 0:
-            raise StudyError(_last(done.stderr, "mbs merge-sweep does not work"))
-        for path in [*parts, *folder.glob("log-*")]:
+        if not Path(table).exists():
+            write_text(folder / "part.sh", script)
+            _make(table, folder, cluster, parts)
+        for path in [*parts, *folder.glob("done-*"), *folder.glob("log-*")]:
             path.unlink(missing_ok=True)
 
 
-def _array(folder, cluster, parts):
-    given = subprocess.run([str(cluster / "array"), str(len(parts)), str(folder / "part.sh")], cwd=folder, capture_output=True, text=True)
+def _script(words, count, folder):
+    """Runs one part; a lane that fails is a row, and no failure of the part. A part that is there may be another sweep's: only
+    what `mbs` has taken as its own is done."""
+    command, beside = shlex.join([str(ROOT / program_of()), "sweep", *words, "--resume"]), shlex.quote(str(folder))
+    return (f"cd {shlex.quote(os.getcwd())}\n"
+            f'{command} --shard "$1/{count}" --output {beside}/part-"$1" || [ $? = 1 ] || exit 2\n'
+            f'touch {beside}/done-"$1"\n')
+
+
+def _make(table, folder, cluster, parts):
+    done = [folder / f"done-{number}" for number in range(1, len(parts) + 1)]
+    for mark in done:
+        mark.unlink(missing_ok=True)
+    try:
+        _array(folder, cluster, done)
+    finally:
+        end_jobs(folder, cluster)
+    for number, mark in enumerate(done, 1):
+        if not mark.exists():
+            raise StudyError(f"part {number} of {len(parts)} is not done: {_last(_text(folder / f'log-{number}'), 'it has said nothing')}; "
+                             "the same command goes on where it was")
+    merged = subprocess.run([str(ROOT / program_of()), "merge-sweep", *map(str, parts), "--output", str(table)], capture_output=True,
+                            text=True)
+    if merged.returncode >= USAGE or merged.returncode < 0:
+        raise StudyError(_last(merged.stderr, "mbs merge-sweep does not work"))
+
+
+def _array(folder, cluster, done):
+    given = subprocess.run([str(cluster / "array"), str(len(done)), str(folder / "part.sh")], cwd=folder, capture_output=True, text=True)
     if given.returncode:
         raise StudyError(f"{cluster / 'array'}: {_last(given.stderr, 'failed')}")
     display = Display()
     while runs(folder, cluster, given.stdout.strip()):
-        display.show("sweep", f"{sum(part.exists() for part in parts)} of {len(parts)} parts")
+        display.show("sweep", f"{sum(mark.exists() for mark in done)} of {len(done)} parts")
         time.sleep(1)
     display.end()
+
+
+def _text(path):
+    return path.read_text(errors="replace") if path.exists() else ""
 
 
 def _last(text, otherwise):

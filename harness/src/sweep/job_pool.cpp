@@ -1,20 +1,26 @@
-// One pipe each way a process: the number of a block there, its result back.
+// Processes that count in shared memory: nobody waits for another to be told what is next.
 #include "sweep/job_pool.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <semaphore.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -23,166 +29,159 @@
 namespace mbs {
 namespace {
 
-enum class Message : char { result, usage_error, failure };
+constexpr int kShowEvery = 200;  // ms
 
-struct Head {
-  Message kind = Message::result;
-  std::size_t size = 0;
+[[noreturn]] void fail_jobs(const char* what) {
+  throw std::runtime_error(fmt::format("--jobs: {}: {}", what, std::strerror(errno)));
+}
+
+/// How far a process has come; read by this one when it has ended.
+struct Course {
+  enum class End : char { none, done, usage_error, no_memory, failure } end = End::none;
+  std::size_t place = 0;          ///< among the blocks: of the one that it is at, or that threw
+  std::array<char, 2048> text{};  ///< of what was thrown
+
+  void finish(End how, const char* what) {
+    std::string_view(what).copy(text.data(), text.size() - 1);
+    end = how;
+  }
+  [[noreturn]] void rethrow() const {
+    if (end == End::usage_error) throw UsageError(text.data());
+    if (end == End::no_memory) throw std::bad_alloc();
+    throw std::runtime_error(text.data());
+  }
 };
 
-/// False where the other end is gone.
-bool write_all(int file, const void* data, std::size_t size) {
-  const char* at = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t count = ::write(file, at, size);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return false;
-    at += count;
-    size -= static_cast<std::size_t>(count);
-  }
-  return true;
+/// Memory of all processes.
+struct Shared {
+  std::atomic<std::size_t> next{0}, kept{0};
+  std::array<Course, kMostJobs> courses{};
+  sem_t keeping{};
+};
+
+struct Unmap {
+  void operator()(Shared* shared) const { ::munmap(shared, sizeof(Shared)); }
+};
+
+std::unique_ptr<Shared, Unmap> create_shared() {
+  void* memory =
+      ::mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) fail_jobs("no memory");
+  std::unique_ptr<Shared, Unmap> shared(new (memory) Shared);
+  if (::sem_init(&shared->keeping, /*pshared=*/1, 1) != 0) fail_jobs("no semaphore");
+  return shared;
 }
 
-bool read_all(int file, void* data, std::size_t size) {
-  char* at = static_cast<char*>(data);
-  while (size > 0) {
-    const ssize_t count = ::read(file, at, size);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return false;
-    at += count;
-    size -= static_cast<std::size_t>(count);
-  }
-  return true;
-}
-
-[[noreturn]] void serve(int requests, int results, const std::function<std::string(long)>& work) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) ::signal(signal, SIG_DFL);
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nothing goes on where the program is killed
-  long block = 0;
-  while (read_all(requests, &block, sizeof block)) {
-    Head head;
-    std::string text;
-    try {
-      text = work(block);
-    } catch (const UsageError& error) {
-      head.kind = Message::usage_error;
-      text = error.what();
-    } catch (const std::exception& error) {
-      head.kind = Message::failure;
-      text = error.what();
+/// While it lives, no other process has one.
+class Alone {
+ public:
+  explicit Alone(sem_t& semaphore) : semaphore_(semaphore) {
+    while (::sem_wait(&semaphore_) != 0) {  // a signal came
     }
-    head.size = text.size();
-    if (!write_all(results, &head, sizeof head) || !write_all(results, text.data(), text.size())) break;
   }
-  ::_exit(0);
-}
+  ~Alone() { ::sem_post(&semaphore_); }
+  Alone(const Alone&) = delete;
+  Alone& operator=(const Alone&) = delete;
+
+ private:
+  sem_t& semaphore_;
+};
 
 /// A process; ends when it is destroyed.
 class Job {
  public:
-  Job(const std::function<std::string(long)>& work, const std::vector<std::unique_ptr<Job>>& others) {
-    std::array<int, 2> there{}, back{};
-    if (::pipe(there.data()) != 0 || ::pipe(back.data()) != 0) fail("no pipe");
+  explicit Job(const std::function<void()>& run) {
+    const pid_t parent = ::getpid();
     process_ = ::fork();
-    if (process_ < 0) fail("no process");
+    if (process_ < 0) fail_jobs("no process");
     if (process_ == 0) {
-      for (const auto& other : others) {  // whose end must be seen when this program is killed
-        ::close(other->requests_);
-        ::close(other->results_);
-      }
-      ::close(there[1]);
-      ::close(back[0]);
-      serve(there[0], back[1], work);
+      for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::signal(signal, SIG_DFL);
+      ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nothing goes on where the program is killed ...
+      if (::getppid() == parent) run();    // ... or was, a moment ago
+      ::_exit(0);
     }
-    ::close(there[0]);
-    ::close(back[1]);
-    requests_ = there[1];
-    results_ = back[0];
+    handle_ = static_cast<int>(::syscall(SYS_pidfd_open, process_, 0));
+    if (handle_ < 0) fail_jobs("no handle");
   }
   ~Job() {
-    ::close(requests_);
-    ::close(results_);
     if (process_ < 0) return;
-    if (block_ >= 0) ::kill(process_, SIGTERM);  // what it would give is not wanted
-    ::waitpid(process_, nullptr, 0);
+    ::kill(process_, SIGTERM);  // what it would give is not wanted
+    wait();
   }
   Job(const Job&) = delete;
   Job& operator=(const Job&) = delete;
 
-  [[nodiscard]] bool is_busy() const { return block_ >= 0; }
-  [[nodiscard]] int results() const { return results_; }
+  /// Can be read when the process ends; negative then.
+  [[nodiscard]] int handle() const { return handle_; }
 
-  void begin(long block) {
-    block_ = block;
-    write_all(requests_, &block, sizeof block);  // where it fails, no result will come
-  }
-  std::pair<long, std::string> finish() {
-    Head head;
-    if (!read_all(results_, &head, sizeof head)) fail_lost();
-    std::string text(head.size, '\0');
-    if (!read_all(results_, text.data(), text.size())) fail_lost();
-    if (head.kind == Message::usage_error) throw UsageError(text);
-    if (head.kind == Message::failure) throw std::runtime_error(text);
-    return {std::exchange(block_, -1), std::move(text)};
+  /// Its status.
+  int wait() {
+    int status = 0;
+    ::waitpid(std::exchange(process_, -1), &status, 0);
+    ::close(std::exchange(handle_, -1));
+    return status;
   }
 
  private:
-  [[noreturn]] static void fail(const char* what) {
-    throw std::runtime_error(fmt::format("--jobs: {}: {}", what, std::strerror(errno)));
-  }
-  [[noreturn]] void fail_lost() {
-    int status = 0;
-    ::waitpid(std::exchange(process_, -1), &status, 0);
-    throw UsageError(fmt::format("a process of --jobs ended in block {} ({}); what was done stays for --resume",
-                                 block_, WIFSIGNALED(status) ? ::strsignal(WTERMSIG(status)) : "exit"));
-  }
-
   pid_t process_ = -1;
-  int requests_ = -1, results_ = -1;
-  long block_ = -1;
+  int handle_ = -1;
 };
 
 }  // namespace
 
 void for_blocks(int jobs, std::span<const long> blocks,
                 const std::function<std::string(long)>& work,
-                const std::function<bool(long, std::string)>& take) {
+                const std::function<void(long, const std::string&)>& keep,
+                const std::function<void(std::size_t)>& show) {
   if (jobs == 1 || blocks.size() < 2) {
-    for (const long block : blocks) {
-      if (!take(block, work(block))) return;
-    }
+    for (std::size_t i = 0; i < blocks.size(); show(++i)) keep(blocks[i], work(blocks[i]));
     return;
   }
+  const auto shared = create_shared();
+  const auto run = [&](Course& course) {
+    using enum Course::End;
+    try {
+      for (std::size_t place = 0; (place = shared->next++) < blocks.size();) {
+        const long block = blocks[course.place = place];
+        const std::string result = work(block);
+        const Alone turn(shared->keeping);
+        keep(block, result);
+        ++shared->kept;
+      }
+      return course.finish(done, "");
+    } catch (const UsageError& error) {
+      course.finish(usage_error, error.what());
+    } catch (const std::bad_alloc& error) {
+      course.finish(no_memory, error.what());
+    } catch (const std::exception& error) {
+      course.finish(failure, error.what());
+    }
+    shared->next = blocks.size();
+  };
   std::fflush(nullptr);
-  const auto before = ::signal(SIGPIPE, SIG_IGN);
   std::vector<std::unique_ptr<Job>> pool;
   while (pool.size() < std::min(static_cast<std::size_t>(jobs), blocks.size())) {
-    pool.push_back(std::make_unique<Job>(work, pool));
+    Course& course = shared->courses[pool.size()];
+    pool.push_back(std::make_unique<Job>([&] { run(course); }));
   }
-  std::size_t next = 0;
-  bool go_on = true;
-  while (true) {
+  const Course* first = nullptr;
+  for (std::size_t running = pool.size(); running > 0; show(shared->kept)) {
     std::vector<pollfd> waited;
-    std::vector<Job*> busy;
-    for (const auto& job : pool) {
-      if (!job->is_busy() && go_on && next < blocks.size()) job->begin(blocks[next++]);
-      if (!job->is_busy()) continue;
-      waited.push_back({job->results(), POLLIN, 0});
-      busy.push_back(job.get());
-    }
-    if (busy.empty()) break;
-    if (::poll(waited.data(), waited.size(), -1) < 0) {
-      if (errno == EINTR) continue;
-      throw std::runtime_error(fmt::format("--jobs: {}", std::strerror(errno)));
-    }
-    for (std::size_t i = 0; i < busy.size(); ++i) {
+    for (const auto& job : pool) waited.push_back({job->handle(), POLLIN, 0});
+    if (::poll(waited.data(), waited.size(), kShowEvery) < 0 && errno != EINTR) fail_jobs("no news");
+    for (std::size_t i = 0; i < pool.size(); ++i) {
       if (waited[i].revents == 0) continue;
-      auto [block, text] = busy[i]->finish();
-      go_on = take(block, std::move(text)) && go_on;
+      const int status = pool[i]->wait();
+      const Course& course = shared->courses[i];
+      --running;
+      if (course.end == Course::End::none) {
+        throw UsageError(fmt::format("a process of --jobs ended in block {} ({}); what was done stays for --resume",
+                                     blocks[course.place], WIFSIGNALED(status) ? ::strsignal(WTERMSIG(status)) : "exit"));
+      }
+      if (course.end != Course::End::done && (first == nullptr || course.place < first->place)) first = &course;
     }
   }
-  pool.clear();
-  ::signal(SIGPIPE, before);
+  if (first != nullptr) first->rethrow();
 }
 
 }  // namespace mbs

@@ -1,19 +1,24 @@
 // Pieces of work side by side in processes, since not every library may be used by two threads.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <string>
 
 namespace mbs {
 
-/// Calls `work` of each block and `take` with its result, which comes when it is there, in any order;
-/// no more are begun once `take` returns false. With several jobs `work` runs in processes that are
-/// copies of this one as it is now. A process has one block at a time, so that what is lost with all
-/// of them is a block a job. Rethrows a UsageError of `work`; throws std::runtime_error if a process
-/// is lost.
+inline constexpr int kMostJobs = 1024;
+
+/// Calls `work` of each block and `keep` with its result, and `show` now and then with how many are
+/// kept. With several jobs `work` and `keep` run in processes that are copies of this one as it is
+/// now; `keep` never in two at once. Each takes its next block by itself, in order, when its last is
+/// kept: what is lost with all of them is a block a job. After an exception no more are begun, those
+/// that were end, and what the first of them threw is thrown here: a UsageError, a std::bad_alloc or a
+/// std::runtime_error. Throws UsageError at once if a process is lost.
 void for_blocks(int jobs, std::span<const long> blocks,
                 const std::function<std::string(long)>& work,
-                const std::function<bool(long, std::string)>& take);
+                const std::function<void(long, const std::string&)>& keep,
+                const std::function<void(std::size_t)>& show);
 
 }  // namespace mbs

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <sstream>
+#include <string_view>
 
 #include "printable.hpp"
 #include "usage_error.hpp"
@@ -17,13 +18,24 @@
 namespace mbs {
 namespace {
 
-constexpr const char* kBegin = "mbs-sweep";
+constexpr std::string_view kBegin = "mbs-sweep ";
 constexpr std::size_t kLargestBlock = std::size_t{1} << 30;
 
 std::string digits(uLong crc) { return fmt::format("{:08x}", crc); }
 
 std::string checksum_of_block(long block, const std::string& text) {
   return checksum(fmt::format("{}\n{}", block, text));
+}
+
+/// False on failure, which errno names.
+bool append_all(int file, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t count = ::write(file, text.data(), text.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    text.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return true;
 }
 
 }  // namespace
@@ -45,27 +57,57 @@ std::string program_checksum() {
 
 Journal::Journal(const std::string& path) : path_(path), input_(path, std::ios::binary) {
   if (!input_) fail(std::strerror(errno));
-  std::string line, begin, sum, head;
-  std::getline(input_, line);
-  std::istringstream words(line);
-  words >> begin >> sum;
-  std::getline(words >> std::ws, head);
-  if (begin != kBegin) fail("it is no part of a sweep");
-  if (input_.eof() || sum != checksum(head)) fail("its head is damaged or was changed");
-  head_ = nlohmann::json::parse(head);
-  end_ = line.size() + 1;
+  if (!read_head()) fail("it is no part of a sweep");
   scan();
 }
 
-Journal::Journal(const std::string& path, const nlohmann::json& head) : path_(path), head_(head) {
-  take(::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
-  const std::string text = head.dump();
-  const std::string line = fmt::format("{} {} {}\n", kBegin, checksum(text), text);
-  if (::write(::fileno(file_.get()), line.data(), line.size()) != static_cast<ssize_t>(line.size())) {
-    fail(std::strerror(errno));
+Journal::Journal(const std::string& path, const nlohmann::json& head) : path_(path) {
+  const std::string text = head.dump();  // what cannot be written leaves no file
+  const int file = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (file < 0) fail(std::strerror(errno));
+  file_.reset(::fdopen(file, "w"));
+  if (::flock(file, LOCK_EX | LOCK_NB) != 0) fail("another mbs sweep is writing it");
+  input_.open(path_, std::ios::binary);  // locked first: nothing is added to what is read
+  if (!input_) fail(std::strerror(errno));
+  if (read_head()) {
+    scan();
+    if (!end_at(end_)) fail(std::strerror(errno));
+    is_whole_ = true;
+  } else {
+    begin(fmt::format("{}{} {}\n", kBegin, checksum(text), text));
+    head_ = head;
+  }
+}
+
+/// False where none was written to its end.
+bool Journal::read_head() {
+  std::string line, begin, sum, head;
+  std::getline(input_, line);
+  if (!kBegin.starts_with(line.substr(0, kBegin.size()))) fail("it is no part of a sweep");
+  if (input_.eof()) return false;
+  std::istringstream words(line);
+  words >> begin >> sum;
+  std::getline(words >> std::ws, head);
+  if (sum != checksum(head)) fail("its head is damaged or was changed");
+  head_ = nlohmann::json::parse(head);
+  end_ = line.size() + 1;
+  return true;
+}
+
+void Journal::begin(const std::string& line) {
+  if (!end_at(0) || !append_all(::fileno(file_.get()), line)) {
+    const int error = errno;
+    ::unlink(path_.c_str());
+    fail(std::strerror(error));
   }
   end_ = line.size();
-  input_.open(path_, std::ios::binary);
+}
+
+/// Cuts what is behind, and goes on writing there.
+bool Journal::end_at(std::size_t size) {
+  const int file = ::fileno(file_.get());
+  const auto end = static_cast<off_t>(size);
+  return ::ftruncate(file, end) == 0 && ::lseek(file, end, SEEK_SET) == end;
 }
 
 void Journal::fail(const std::string& what) const {
@@ -73,6 +115,8 @@ void Journal::fail(const std::string& what) const {
 }
 
 void Journal::scan() {
+  input_.clear();
+  input_.seekg(static_cast<std::streamoff>(end_));
   std::string line, text;
   while (std::getline(input_, line)) {
     is_whole_ = false;
@@ -88,7 +132,11 @@ void Journal::scan() {
     text.resize(size);
     input_.read(text.data(), static_cast<std::streamsize>(size));
     if (static_cast<std::size_t>(input_.gcount()) < size) return;
-    if (checksum_of_block(block, text) != sum) fail(fmt::format("block {} is damaged or was changed", block));
+    if (checksum_of_block(block, text) != sum) {
+      const bool is_last = input_.peek() == std::ifstream::traits_type::eof();
+      if (is_last && file_) return;  // it is done again
+      fail(fmt::format("block {} is damaged or was changed", block));
+    }
     const std::size_t offset = end_ + line.size() + 1;
     if (!blocks_.emplace(block, Record{offset, size}).second) {
       fail(fmt::format("block {} is there twice", block));
@@ -98,38 +146,24 @@ void Journal::scan() {
   }
 }
 
-void Journal::open() { take(::open(path_.c_str(), O_WRONLY | O_CLOEXEC)); }
-
-void Journal::take(int file) {
-  if (file < 0) fail(std::strerror(errno));
-  file_.reset(::fdopen(file, "w"));
-  if (::flock(file, LOCK_EX | LOCK_NB) != 0) fail("another mbs sweep is writing it");
-  if (::ftruncate(file, static_cast<off_t>(end_)) != 0 ||
-      ::lseek(file, static_cast<off_t>(end_), SEEK_SET) < 0) {
-    fail(std::strerror(errno));
-  }
-  is_whole_ = true;
-}
-
 void Journal::add(long block, const std::string& text) {
+  const int file = ::fileno(file_.get());
+  const off_t begin = ::lseek(file, 0, SEEK_CUR);  // copies of this process move it too
   const std::string head = fmt::format("block {} {} {}\n", block, text.size(), checksum_of_block(block, text));
-  const std::string all = head + text;
-  for (std::size_t done = 0; done < all.size();) {
-    const ssize_t count = ::write(::fileno(file_.get()), all.data() + done, all.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) fail(fmt::format("{} (what is done stays: --resume)", std::strerror(errno)));
-    done += static_cast<std::size_t>(count);
-  }
-  blocks_[block] = {end_ + head.size(), text.size()};
-  end_ += all.size();
+  if (append_all(file, head + text)) return;
+  const int error = errno;
+  end_at(static_cast<std::size_t>(begin));  // others may find room for theirs
+  fail(fmt::format("{} (what is done stays: --resume)", std::strerror(error)));
 }
 
 std::string Journal::read(long block) const {
-  const Record& record = blocks_.at(block);
-  std::string text(record.size, '\0');
+  const auto found = blocks_.find(block);
+  if (found == blocks_.end()) fail(fmt::format("block {} is not there", block));
+  const auto [offset, size] = found->second;
+  std::string text(size, '\0');
   input_.clear();
-  input_.seekg(static_cast<std::streamoff>(record.offset));
-  if (!input_.read(text.data(), static_cast<std::streamsize>(text.size()))) fail("it cannot be read");
+  input_.seekg(static_cast<std::streamoff>(offset));
+  if (!input_.read(text.data(), static_cast<std::streamsize>(size))) fail("it cannot be read");
   return text;
 }
 

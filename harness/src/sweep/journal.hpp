@@ -14,9 +14,11 @@ namespace mbs {
 /// What is damaged is refused; a last block that was not written to its end is not there.
 class Journal {
  public:
-  /// Reads what is there. Throws UsageError if it cannot be, is no journal or was changed.
+  /// To read. Throws UsageError if it cannot be, is no journal or was changed.
   explicit Journal(const std::string& path);
-  /// A new one, over what is there.
+  /// To write, which no other program does meanwhile: behind what is there, whatever its head; a new
+  /// one with `head` where none was written to its end. A last block that is damaged is dropped too.
+  /// Throws UsageError; then no file is left that was not there.
   Journal(const std::string& path, const nlohmann::json& head);
 
   [[nodiscard]] const std::string& path() const { return path_; }
@@ -25,10 +27,10 @@ class Journal {
   [[nodiscard]] std::size_t size() const { return blocks_.size(); }
   /// Whether the last block was written to its end.
   [[nodiscard]] bool is_whole() const { return is_whole_; }
-  /// To go on writing: drops what is not whole; refuses a file that another program writes to.
-  void open();
-  /// Written when this returns. Throws UsageError on a full disk.
+  /// Written when this returns, or not at all: throws UsageError on a full disk. Copies of this process
+  /// may add as well, one at a time; scan() then finds what is there.
   void add(long block, const std::string& text);
+  void scan();
   [[nodiscard]] std::string read(long block) const;
 
  private:
@@ -39,8 +41,9 @@ class Journal {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   [[noreturn]] void fail(const std::string& what) const;
-  void take(int file);
-  void scan();
+  bool read_head();
+  void begin(const std::string& line);
+  bool end_at(std::size_t size);
 
   std::string path_;
   nlohmann::json head_;

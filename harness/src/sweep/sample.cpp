@@ -13,9 +13,6 @@
 namespace mbs {
 namespace {
 
-/// Strictly between 0 and 1.
-double unit(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53; }
-
 double value_of(const Distribution& distribution, double share) {
   if (distribution.kind == Distribution::Kind::uniform) {
     return distribution.first + (distribution.second - distribution.first) * share;
@@ -24,6 +21,10 @@ double value_of(const Distribution& distribution, double share) {
 }
 
 }  // namespace
+
+double random_share(std::uint64_t bits) {  // the half must not be rounded: 52 bits
+  return (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52;
+}
 
 std::optional<Distribution> parse_distribution(const std::string& text, const std::string& path) {
   const bool uniform = text.starts_with("uniform:");
@@ -49,7 +50,7 @@ std::vector<std::vector<double>> draw(const std::vector<Distribution>& distribut
   for (long i = 0; i < sampling.count; ++i) {
     for (std::size_t k = 0; k < distributions.size(); ++k) {
       const std::uint64_t bits = sampling.sobol ? sobol() ^ shifts[k] : random();
-      values[k].push_back(value_of(distributions[k], unit(bits)));
+      values[k].push_back(value_of(distributions[k], random_share(bits)));
     }
   }
   return values;

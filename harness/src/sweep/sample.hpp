@@ -19,6 +19,9 @@ struct Distribution {
   double first = 0.0, second = 0.0;  ///< ends; mean and standard deviation
 };
 
+/// A number strictly between 0 and 1 of random bits.
+double random_share(std::uint64_t bits);
+
 /// "uniform:a:b" or "normal:mean:deviation"; nothing if it does not begin so. `path` is for errors.
 /// Throws UsageError.
 std::optional<Distribution> parse_distribution(const std::string& text, const std::string& path);

@@ -1,0 +1,80 @@
+// Blocks in processes: each is kept once, and the first fault is told.
+#include "sweep/job_pool.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <functional>
+#include <new>
+#include <numeric>
+#include <vector>
+
+#include "support/folder.hpp"
+#include "sweep/journal.hpp"
+#include "usage_error.hpp"
+
+namespace mbs {
+namespace {
+
+std::vector<long> blocks_to(long count) {
+  std::vector<long> blocks(static_cast<std::size_t>(count));
+  std::iota(blocks.begin(), blocks.end(), 0);
+  return blocks;
+}
+
+std::string text_of_block(long block) { return std::string(static_cast<std::size_t>(block * 37 % 5000), char('a' + block % 26)); }
+
+TEST(JobPool, KeepsEachBlockOnce) {
+  const test::Folder folder;
+  for (const int jobs : {1, 4}) {
+    Journal journal(folder.file(std::to_string(jobs)), {{"sweep", "of a test"}});
+    std::size_t kept = 0;
+    for_blocks(jobs, blocks_to(400), text_of_block,
+               [&](long block, const std::string& text) { journal.add(block, text); },
+               [&](std::size_t done) { kept = done; });
+    EXPECT_EQ(kept, 400U);
+    journal.scan();
+    EXPECT_TRUE(journal.is_whole());
+    ASSERT_EQ(journal.size(), 400U);
+    for (long block = 0; block < 400; ++block) EXPECT_EQ(journal.read(block), text_of_block(block));
+  }
+}
+
+void run_pool(int jobs, const std::function<void(long)>& work) {
+  const auto worked = [&](long block) {
+    work(block);
+    return std::string();
+  };
+  for_blocks(jobs, blocks_to(40), worked, [](long, const std::string&) {}, [](std::size_t) {});
+}
+
+std::string fault_of_pool(int jobs, const std::function<void(long)>& work) {
+  try {
+    run_pool(jobs, work);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(JobPool, TellsTheFirstFault) {
+  for (const int jobs : {1, 3}) {
+    EXPECT_EQ(fault_of_pool(jobs,
+                       [](long block) {
+                         if (block == 5) ::usleep(100'000);  // those behind it fail before
+                         if (block >= 5) throw UsageError("block " + std::to_string(block));
+                       }),
+              "block 5");
+    EXPECT_THROW(run_pool(jobs, [](long block) { if (block == 3) throw std::bad_alloc(); }), std::bad_alloc);
+    EXPECT_THROW(run_pool(jobs, [](long block) { if (block == 3) throw std::logic_error("of a test"); }), std::exception);
+  }
+}
+
+TEST(JobPool, EndsWhereAProcessIsLost) {
+  EXPECT_NE(fault_of_pool(2, [](long block) { if (block == 7) ::raise(SIGKILL); }).find("ended in block 7 (Killed)"), std::string::npos);
+  EXPECT_NE(fault_of_pool(2, [](long block) { if (block == 7) ::_exit(0); }).find("ended in block 7 (exit)"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace mbs
