@@ -60,6 +60,22 @@ std::vector<std::pair<int, int>> pairs_of(const Model& model, PatternOf which) {
   return pairs;
 }
 
+/// With ones; orderings read no values.
+Eigen::SparseMatrix<char> matrix_of(const SymmetricPattern& pattern) {
+  const int size = pattern.size();
+  Eigen::SparseMatrix<char> matrix(size, size);
+  matrix.resizeNonZeros(size + static_cast<Eigen::Index>(pattern.rows.size()));
+  matrix.coeffs().setOnes();
+  int* entry = matrix.innerIndexPtr();
+  for (int col = 0; col < size; ++col) {
+    *entry++ = col;  // Eigen's AMD puts columns without a diagonal last, untouched
+    const auto rows = pattern.rows.begin();
+    entry = std::copy(rows + pattern.start[at(col)], rows + pattern.start[at(col) + 1], entry);
+    matrix.outerIndexPtr()[col + 1] = static_cast<int>(entry - matrix.innerIndexPtr());
+  }
+  return matrix;
+}
+
 }  // namespace
 
 SymmetricPattern::SymmetricPattern(int size, const std::vector<std::pair<int, int>>& pairs)
@@ -121,20 +137,18 @@ std::vector<int> natural_order(const SymmetricPattern& pattern) {
 }
 
 std::vector<int> amd_order(const SymmetricPattern& pattern) {
-  const int size = pattern.size();
-  Eigen::SparseMatrix<char> matrix(size, size);  // AMD reads no values
-  matrix.resizeNonZeros(size + static_cast<Eigen::Index>(pattern.rows.size()));
-  matrix.coeffs().setOnes();
-  int* entry = matrix.innerIndexPtr();
-  for (int col = 0; col < size; ++col) {
-    *entry++ = col;  // Eigen puts columns without a diagonal last, untouched
-    const auto rows = pattern.rows.begin();
-    entry = std::copy(rows + pattern.start[at(col)], rows + pattern.start[at(col) + 1], entry);
-    matrix.outerIndexPtr()[col + 1] = static_cast<int>(entry - matrix.innerIndexPtr());
-  }
   Eigen::AMDOrdering<int>::PermutationType permutation;
-  Eigen::AMDOrdering<int>()(matrix.selfadjointView<Eigen::Lower>(), permutation);
-  return {permutation.indices().data(), permutation.indices().data() + size};
+  Eigen::AMDOrdering<int>()(matrix_of(pattern).selfadjointView<Eigen::Lower>(), permutation);
+  return {permutation.indices().data(), permutation.indices().data() + pattern.size()};
+}
+
+std::vector<int> colamd_order(const SymmetricPattern& pattern) {
+  if (pattern.size() == 0) return {};
+  Eigen::COLAMDOrdering<int>::PermutationType place;  // of each column
+  Eigen::COLAMDOrdering<int>()(matrix_of(pattern), place);
+  std::vector<int> order(at(pattern.size()));
+  for (int col = 0; col < pattern.size(); ++col) order[at(place.indices()[col])] = col;
+  return order;
 }
 
 std::vector<int> owned_coordinates(const Model& model) {
@@ -195,11 +209,13 @@ json elimination_json(const SymmetricPattern& tangent, const SymmetricPattern& s
   const std::vector<int> order = amd_order(tangent);
   const auto natural = eliminate(tangent, natural_order(tangent));
   const auto amd = eliminate(tangent, order);
+  const auto colamd = eliminate(tangent, colamd_order(tangent));
   const auto rows = eliminate(saddle_point, rows_behind(order, saddle_point, owned));
   json result = {{"ordering", "AMD"},
                  {"orderings",
                   {{"natural", elimination_json(natural)},
                    {"AMD", elimination_json(amd)},
+                   {"COLAMD", elimination_json(colamd)},
                    {"saddle-point", elimination_json(rows)}}}};
   for (const char* key :
        {"factor_nonzeros", "per_column", "flops", "height", "widest", "supernodes"}) {

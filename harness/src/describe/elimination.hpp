@@ -53,6 +53,9 @@ constexpr double full_flops(double n) { return n * (n + 1) * (2 * n + 1) / 6; }
 std::vector<int> natural_order(const SymmetricPattern& pattern);
 /// Approximate minimum degree [Amestoy, Davis, Duff, 1996].
 std::vector<int> amd_order(const SymmetricPattern& pattern);
+/// The same of the columns for any choice of pivots [Davis, Gilbert, Larimore, Ng, 2004], which
+/// knows nothing of symmetry: that of the product with the transpose.
+std::vector<int> colamd_order(const SymmetricPattern& pattern);
 
 /// By constraint: of a linear one the coordinate with the largest coefficient of those that no
 /// other linear one has, unless that is far below its largest. It is a substitution for that
@@ -68,8 +71,8 @@ std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPatte
 
 /// Of the patterns of tangent and saddle-point matrix, and owned_coordinates(). Keys: ordering
 /// ("AMD"), whose factor_nonzeros, per_column (non-zeros of L a column), flops, height, widest and
-/// supernodes follow, null if not computed; orderings {"natural", "AMD", "saddle-point"}: the same
-/// keys each, or null; the last is of the saddle-point matrix.
+/// supernodes follow, null if not computed; orderings {"natural", "AMD", "COLAMD", "saddle-point"}: the
+/// same keys each, or null; the last is of the saddle-point matrix.
 nlohmann::json elimination_json(const SymmetricPattern& tangent,
                                 const SymmetricPattern& saddle_point,
                                 const std::vector<int>& owned);
