@@ -29,7 +29,7 @@ TEST_P(SettingsTerms, Agree) {
     static const ReferenceRun none;
     const ReferenceRun& reference =
         suited ? test::kept_reference(setting.name, scene, settings) : none;
-    const Verdict verdict = check_implementation(scene, variant, settings, reference);
+    const Verdict verdict = check_in_process(scene, variant, settings, reference);
     const bool served = why_not_served(variant.variant->serves.terms, scene.model).empty();
     EXPECT_EQ(verdict.verdict, suited && served ? "agrees" : "unsupported") << verdict.reason;
   }

@@ -19,7 +19,7 @@ void expect_agreement(const NamedVariant& variant, const char* name, Projections
     const Scene scene{term.name, term.model, {}, {}};
     const StepSettings settings = term_settings(scene.model, {.projections = projections});
     const Verdict verdict =
-        check_implementation(scene, variant, settings, test::kept_reference(name, scene, settings));
+        check_in_process(scene, variant, settings, test::kept_reference(name, scene, settings));
     const bool served = why_not_served(variant.variant->serves.terms, scene.model).empty();
     EXPECT_EQ(verdict.verdict, served ? "agrees" : "unsupported") << verdict.reason;
   }

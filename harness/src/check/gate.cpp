@@ -144,56 +144,60 @@ std::vector<Check> run_checks(const Scene& scene, const NamedVariant& variant,
 Verdict interpret(Verdict verdict, const Isolated& result) {
   verdict.reason = result.reason;
   switch (result.fate) {
-    case Fate::finished:
+    case Fate::finished: {
+      const nlohmann::json found = nlohmann::json::parse(result.output);
+      found.at("verdict").get_to(verdict.verdict);
+      found.at("reason").get_to(verdict.reason);
+      found.at("checks").get_to(verdict.checks);
       break;
+    }
     case Fate::crashed:
       verdict.verdict = "crashed";
-      return verdict;
+      break;
     case Fate::timeout:
       verdict.verdict = "timeout";
-      return verdict;
+      break;
     case Fate::out_of_memory:
       verdict.verdict = "out-of-memory";
-      return verdict;
+      break;
     case Fate::threw:
       verdict.verdict = "crashed";
       verdict.reason = "threw " + result.reason;
-      return verdict;
-  }
-  const nlohmann::json json = nlohmann::json::parse(result.output);
-  if (json.contains("unsupported")) {
-    verdict.verdict = "unsupported";
-    verdict.reason = json["unsupported"].get<std::string>();
-    return verdict;
-  }
-  verdict.checks = json.at("checks").get<std::vector<Check>>();
-  verdict.verdict = "agrees";
-  for (const Check& check : verdict.checks) {
-    if (check.passed == false) {
-      verdict.verdict = "disagrees";
-      verdict.reason = check.name + ": " + check.detail;
       break;
-    }
   }
   return verdict;
 }
 
 }  // namespace
 
+Verdict check_in_process(const Scene& scene, const NamedVariant& variant,
+                         const StepSettings& settings, const ReferenceRun& reference,
+                         double seconds) {
+  Verdict verdict{scene.name, variant.name, "agrees", "", {}};
+  try {
+    verdict.checks = run_checks(scene, variant, settings, reference, seconds);
+  } catch (const Unsupported& reason) {
+    verdict.verdict = "unsupported";
+    verdict.reason = printable(reason.what(), 1000);
+  }
+  const auto failed = std::ranges::find(verdict.checks, std::optional(false), &Check::passed);
+  if (failed != verdict.checks.end()) {
+    verdict.verdict = "disagrees";
+    verdict.reason = failed->name + ": " + failed->detail;
+  }
+  return verdict;
+}
+
 Verdict check_implementation(const Scene& scene, const NamedVariant& variant,
                              const StepSettings& settings, const ReferenceRun& reference,
                              const IsolationLimits& limits) {
-  const auto work = [&]() -> std::string {
-    try {
-      return nlohmann::json{
-          {"checks", run_checks(scene, variant, settings, reference, limits.seconds)}}
-          .dump();
-    } catch (const Unsupported& reason) {
-      return nlohmann::json{{"unsupported", printable(reason.what(), 1000)}}.dump();
-    }
+  const auto work = [&] {  // without the names, which may be no UTF-8
+    const Verdict found = check_in_process(scene, variant, settings, reference, limits.seconds);
+    return nlohmann::json{
+        {"verdict", found.verdict}, {"reason", found.reason}, {"checks", found.checks}}
+        .dump();
   };
-  Verdict verdict{scene.name, variant.name, "", "", {}};
-  return interpret(std::move(verdict), run_isolated(work, limits));
+  return interpret({scene.name, variant.name, "", "", {}}, run_isolated(work, limits));
 }
 
 }  // namespace mbs

@@ -15,4 +15,10 @@ Verdict check_implementation(const Scene& scene, const NamedVariant& variant,
                              const StepSettings& settings, const ReferenceRun& reference,
                              const IsolationLimits& limits = {});
 
+/// The same in this process, which a fault ends and a hang stops: for tests, whose short checks take
+/// less time than a process each. `seconds` of processor time are what each check is cut to.
+Verdict check_in_process(const Scene& scene, const NamedVariant& variant,
+                         const StepSettings& settings, const ReferenceRun& reference,
+                         double seconds = IsolationLimits{}.seconds);
+
 }  // namespace mbs
