@@ -6,7 +6,9 @@ from analysis.families import by_hand
 from analysis.families.figures import best_form, fastest_own
 from analysis.families.rule import document, summary
 
-NAMES = {"per_column": " non-zeros a column of the factor", "dense": " % of a full factor's operations", "n": " variables"}
+LIMITS = {"per_column": ("the factor has {} or more non-zeros a column", "the factor has less than {} non-zeros a column"),
+          "dense": ("a factorization takes {} % or more of a full one's operations", "a factorization takes less than {} % of a full one's operations"),
+          "n": ("n ≥ {}", "n < {}")}
 
 
 def answers(tables, view):
@@ -48,8 +50,11 @@ def _defaults(rows):
 
 
 def cases(tables, view):
-    """Rows of the front page's table: the rule by hand, that of `mbs describe`, and what code without a library gains."""
+    """Rows of the front page's table: the rule of `mbs describe`, that by hand, and what code without a library gains."""
     found, held = [], tables["held"]
+    if len(held):
+        found.append({"case": "You have a scene file", "link": "families.html#rule",
+                      "take": f"what `build/mbs describe` names, by predicted times{_lost(summary(held), len(held))}"})
     for scheme, rows in tables["by_hand"].groupby("scheme", sort=False) if len(tables["by_hand"]) else ():
         taken = [f"{library}: {', or '.join(map(where, some.to_dict('records')))}" for library, some in rows.groupby("library", sort=False)]
         found.append({"case": f"{scheme.capitalize()} form", "link": "families.html#by-hand",
@@ -68,8 +73,8 @@ def cases(tables, view):
 
 def where(row):
     """The limits of a case of the rule by hand."""
-    return ", ".join(f"{'from' if end == 'least' else 'below'} {number(row[f'{end}_{name}'])}{NAMES[name]}{' on' if end == 'least' else ''}"
-                   for name in by_hand.SHOWN for end in ("least", "below") if not pandas.isna(row[f"{end}_{name}"])) or "always"
+    return " and ".join(LIMITS[name][end].format(number(row[f"{('least', 'below')[end]}_{name}"]))
+                        for name in by_hand.SHOWN for end in (0, 1) if not pandas.isna(row[f"{('least', 'below')[end]}_{name}"]))
 
 
 def _lost(found, count):

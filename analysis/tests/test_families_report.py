@@ -149,9 +149,9 @@ def test_a_time_is_the_sum_of_its_terms():
 
 def test_the_front_page_has_the_rule_by_hand_and_that_of_describe():
     tables = mechanisms()
-    parted, described, own = sentences.cases(tables, VIEW)
-    assert parted["case"] == "Penalty form" and parted["take"].startswith(
-        "one/a: below 10 non-zeros a column of the factor; one/b: from 10 non-zeros a column of the factor on; on families left out")
+    described, parted, own = sentences.cases(tables, VIEW)
+    assert parted["case"] == "By hand, penalty form" and parted["take"].startswith(
+        "one/a; but one/b if the factor has 10 or more non-zeros a column; on families left out")
     assert all("0.0 % slower than the fastest library on average, 0 % at worst" in row["take"] for row in (parted, described))
     assert described["take"].endswith("(18 cases)") and own["take"].startswith("fastest: own/x on 18")
 
