@@ -6,13 +6,14 @@ from study.core.contender import by_environment
 def verdicts(lab, scene, contenders, role="gate", settings=(), *, each, seconds, drop=False):
     """{contender: (verdict, reason)}. `each`: s that one contender may take; `seconds`: a process. Those of one environment
     share a process, which runs the reference once for all; if it ends early, its contenders are asked one by one, so that
-    only who ended it is lost."""
+    only who ended it is lost; not where it was out of time with enough for all of them, which is the reference's."""
     cells = [Cell("check", scene, group, (*settings, "--time-limit", f"{each:g}"), role, seconds=seconds)
              for group in by_environment(contenders).values()]
     found = {}
     for cell, record in zip(cells, lab.run(cells, drop)):
         group = cell.contenders
-        if record.done or record.status == "dropped" or len(group) == 1:
+        slow_reference = record.status == "timeout" and seconds >= each * (1 + len(group))
+        if record.done or record.status == "dropped" or slow_reference or len(group) == 1:
             found |= {one: record.verdicts[one.name] for one in group}
         else:
             for one in group:
