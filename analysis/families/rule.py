@@ -163,7 +163,8 @@ class _Rule:
         return name, times[name]
 
     def _compared(self, data):
-        """{form: names} of the least cost, each name counting as WORTH; of those who are the fastest somewhere."""
+        """{form: names} of the least cost, each name counting as WORTH; of those who are the fastest somewhere. Dense ones and sparse ones
+        are both among them: another family may fill more than all that are known, or less."""
         found = {}
         for scheme in data.losses:
             costs, weights = data.costs(scheme), data.weights(data.losses[scheme].index)
@@ -172,7 +173,9 @@ class _Rule:
             times = numpy.array([self.caution[scheme, name] * predicted(self.models[scheme, name], features) for name in names]).T
             costs = costs[names].to_numpy()
             best = {}
-            for places in (some for size in range(1, CANDIDATES[scheme] + 1) for some in combinations(range(len(names)), size)):
+            kinds = [bool(data.registry.variants[name].get("dense")) for name in names]
+            for places in (some for size in range(1, CANDIDATES[scheme] + 1) for some in combinations(range(len(names)), size)
+                           if {kinds[place] for place in some} == set(kinds)):
                 cost = costs[rows, numpy.array(places)[times[:, places].argmin(axis=1)]]
                 tried = ~numpy.isnan(cost)
                 best[places] = numpy.average(cost[tried], weights=weights[tried]) + WORTH * len(places) if tried.any() else numpy.inf

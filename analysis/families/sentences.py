@@ -56,12 +56,10 @@ def cases(tables, view):
         found.append({"case": "You have a scene file", "link": "families.html#rule",
                       "take": f"what `build/mbs describe` names, by predicted times{_lost(summary(held), len(held))}"})
     for scheme, rows in tables["by_hand"].groupby("scheme", sort=False) if len(tables["by_hand"]) else ():
-        taken = [f"{library}: {', or '.join(map(where, some.to_dict('records')))}" for library, some in rows.groupby("library", sort=False)]
-        found.append({"case": f"{scheme.capitalize()} form", "link": "families.html#by-hand",
+        usual, *others = sorted((some for _, some in rows.groupby("library", sort=False)), key=lambda some: -some.scenes.sum())
+        taken = [usual.library.iloc[0], *(f"but {some.library.iloc[0]} if {', or '.join(map(where, some.to_dict('records')))}" for some in others)]
+        found.append({"case": f"By hand, {scheme} form", "link": "families.html#by-hand",
                       "take": "; ".join(taken) + _lost(by_hand.summary(rows), int(rows.scenes.sum()))})
-    if len(held):
-        found.append({"case": "You have a scene file", "link": "families.html#rule",
-                      "take": f"what `build/mbs describe` names, by predicted times{_lost(summary(held), len(held))}"})
     ahead = fastest_own(tables["scenes"], view.registry)
     if len(ahead):
         names = ", ".join(f"{name} on {count}" for name, count in ahead.implementation.value_counts().items())

@@ -8,7 +8,7 @@ import numpy
 
 PASSES = {"penalty": "passes", "saddle-point": "saddle_passes"}
 OF_A_PASS = {  # by form and whether the implementation's matrices are dense
-    ("penalty", False): "1 n jacobian tangent factor flops n*widest",
+    ("penalty", False): "1 n jacobian tangent factor flops supernodes",
     ("penalty", True): "1 n jacobian n*n n*n*n",
     ("saddle-point", False): "1 n jacobian saddle_factor saddle_flops",
     ("saddle-point", True): "1 n jacobian n*m m*m*m n*n*m n*m*m stiff*n*n*n"}

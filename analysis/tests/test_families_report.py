@@ -130,6 +130,12 @@ def test_the_rule_compares_times_and_holds_on_families_left_out():
     assert [(form, name) for form, name, text, _ in page._formulas(tables["steps"]) if text.startswith("passes × (")] == [("penalty", "one/a"), ("penalty", "one/b")]
 
 
+def test_dense_and_sparse_ones_are_compared_though_known_families_hardly_ask_for_one(monkeypatch):
+    monkeypatch.setitem(REGISTRY.variants["one/b"], "dense", True)
+    held = mechanisms(lambda family, name: {"block": 2.7, "shell": 1.0}.get(family, 3.0) if name == "one/b" else 1.0)["held"]
+    assert set(held[held.family == "shell"].chosen) == {"one/b"}
+
+
 def test_who_scatters_must_be_ahead_by_more():
     times_of = rule.document(mechanisms(lambda family, name: {"chain": 2.0, "grid": 0.5}.get(family, 1.0) if name == "one/b" else 1.0))["times"]
     assert times_of["one/a"]["penalty"]["caution"] == pytest.approx(1) and 1.1 < times_of["one/b"]["penalty"]["caution"] < 1.5
