@@ -75,7 +75,7 @@ def _lead(axes, rows, scenes, look, marks, registry):
     axes.axhline(1.0, color=GREY, linewidth=0.9)
     _scales(axes, fastest.n, 1 / fastest.to_rival, "times as fast as the fastest library")
     axes.set_title("Fastest code of our own, which is no library; 95 % intervals")
-    axes.legend(handles=[Patch(facecolor=look.colour(name), label=name) for name in dict.fromkeys(fastest.implementation)], loc="center right",
+    axes.legend(handles=[Patch(facecolor=look.colour(name), label=name) for name in dict.fromkeys(fastest.implementation)], loc="upper left",
                 fontsize=8.5, frameon=True, framealpha=0.85, edgecolor="none")
 
 
