@@ -145,11 +145,10 @@ Verdict interpret(Verdict verdict, const Isolated& result) {
   verdict.reason = result.reason;
   switch (result.fate) {
     case Fate::finished: {
-      const nlohmann::json found = nlohmann::json::parse(result.output);
-      found.at("verdict").get_to(verdict.verdict);
-      found.at("reason").get_to(verdict.reason);
-      found.at("checks").get_to(verdict.checks);
-      break;
+      auto found = nlohmann::json::parse(result.output).get<Verdict>();
+      found.scene = verdict.scene;
+      found.implementation = verdict.implementation;
+      return found;
     }
     case Fate::crashed:
       verdict.verdict = "crashed";
@@ -191,11 +190,10 @@ Verdict check_in_process(const Scene& scene, const NamedVariant& variant,
 Verdict check_implementation(const Scene& scene, const NamedVariant& variant,
                              const StepSettings& settings, const ReferenceRun& reference,
                              const IsolationLimits& limits) {
-  const auto work = [&] {  // without the names, which may be no UTF-8
-    const Verdict found = check_in_process(scene, variant, settings, reference, limits.seconds);
-    return nlohmann::json{
-        {"verdict", found.verdict}, {"reason", found.reason}, {"checks", found.checks}}
-        .dump();
+  const auto work = [&] {
+    Verdict found = check_in_process(scene, variant, settings, reference, limits.seconds);
+    found.scene = found.implementation = "";  // they may be no UTF-8
+    return nlohmann::json(found).dump();
   };
   return interpret({scene.name, variant.name, "", "", {}}, run_isolated(work, limits));
 }
