@@ -35,8 +35,8 @@ class Asked:
 
     def run(self, cells, drop=False):
         self.cells += cells
-        return [SimpleNamespace(done=True, verdicts={one.name: ("disagrees" if one.name in self.wrong else "agrees", "") for one in cell.contenders})
-                for cell in cells if cell.kind == "check"]
+        return [SimpleNamespace(done=True, status="ok", verdicts={
+            one.name: ("disagrees" if one.name in self.wrong else "agrees", "") for one in cell.contenders}) for cell in cells if cell.kind == "check"]
 
     def one(self, cell):
         self.cells.append(cell)
