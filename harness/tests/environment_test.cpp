@@ -168,8 +168,8 @@ TEST(BlasFiles, AreThoseMappedOnceEach) {
       "7f8 r-xp 0 fe:00 5  /opt/intel/libmkl_core.so.2\n";
   EXPECT_EQ(
       blas_files(maps),
-      (std::vector<std::string>{"/usr/lib/x86_64-linux-gnu/openblas-serial/libopenblas-r0.3.21.so",
-                                "/opt/a b/liblapack.so.3", "/opt/intel/libmkl_core.so.2"}));
+      (std::vector<std::string>{"/opt/a b/liblapack.so.3", "/opt/intel/libmkl_core.so.2",
+                                "/usr/lib/x86_64-linux-gnu/openblas-serial/libopenblas-r0.3.21.so"}));
 }
 
 TEST(CommandLine, IsRepeatableButNamesNoFolders) {

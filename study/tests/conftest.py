@@ -55,7 +55,7 @@ def browser(tmp_path_factory):
 
 
 # What takes longest begins first, so that no worker is left alone with it in the end.
-LONGEST = ("smoke", "stored", "kills", "test_reliability.py", "test_advise.py", "test_store.py", "test_view_page.py")
+LONGEST = ("smoke", "nodes", "stored", "kills", "test_reliability.py", "test_advise.py", "test_store.py", "test_view_page.py")
 
 
 @pytest.hookimpl(tryfirst=True)  # before xdist reads the groups

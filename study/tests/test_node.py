@@ -15,6 +15,14 @@ from study.core.studyset import StudySet
 from study.tests.conftest import FAKE, ROOT, environment, study
 from study.tests.slurm import until
 
+
+def alone(name):
+    """Of a slow test that mostly waits: others run beside it."""
+    def marked(test):
+        return pytest.mark.slow(pytest.mark.xdist_group(f"nodes {name}")(test))
+    return marked
+
+
 PLAN = {"profile": "smoke", "only": [], "parts": ["map"]}
 # Jobs in turn on nodes a and b, which are machines of their own, but for those that were refused.
 SUBMIT = """#!/bin/bash
@@ -138,7 +146,7 @@ def test_a_full_disk_of_a_node_is_named(begun, monkeypatch):
     refused(begun, "less than 100 MB free for")
 
 
-@pytest.mark.slow
+@alone("kinds")
 def test_nodes_of_two_kinds_make_two_sets(profile, tmp_path):
     done = run(profile, tmp_path / "set")
     assert done.returncode == 0, done.stderr + (tmp_path / "set" / "run.log").read_text()[-3000:]
@@ -156,7 +164,7 @@ def test_nodes_of_two_kinds_make_two_sets(profile, tmp_path):
     assert done.returncode == 2 and done.stderr.count("\n") == 1 and str(record) in done.stderr
 
 
-@pytest.mark.slow
+@alone("kill")
 def test_jobs_of_a_killed_controller_are_ended(profile, tmp_path):
     folder = tmp_path / "set"
     process = subprocess.Popen([ROOT / "study" / "run", *RUN, "--results", folder, "--cluster", profile],
@@ -187,7 +195,7 @@ def test_bad_options_are_one_line(arguments, words, tmp_path):
     assert done.returncode == 2 and words in done.stderr and done.stderr.count("\n") == 1
 
 
-@pytest.mark.slow
+@alone("nothing")
 def test_a_program_that_does_not_run_is_one_line_and_the_folder_can_be_used(profile, tmp_path):
     for _ in range(2):
         done = study("run", *RUN, "--results", tmp_path / "set", "--cluster", profile, program="/bin/false", seconds=900)

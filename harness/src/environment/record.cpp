@@ -126,6 +126,7 @@ std::vector<std::string> blas_files(const std::string& maps) {
     const std::string path = line.substr(slash);
     if (std::regex_search(path, name)) add_once(files, path);
   }
+  std::ranges::sort(files);  // the kernel puts a small file into a gap now and then: the same libraries, another order
   return files;
 }
 
