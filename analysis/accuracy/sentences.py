@@ -26,11 +26,13 @@ def cases(tables, view):
         return []
     errors = {}
     for one in rows.itertuples():
-        take = f"{one.implementation}, {one.setting}, step {number(1e3 * one.step, 2)} ms" + ("" if one.settled else " (not decided)")
+        take = f"{one.implementation}, setting {one.setting}, step {number(1e3 * one.step, 2)} ms" + (
+            "" if one.settled else " (others are not shown to be slower)")
         errors.setdefault(take, []).append(number(one.required))
     said = [f"{', '.join(mine)} m: {take}" for take, mine in errors.items()]
-    return [{"case": f"You know the error that the motion may have (four-bar, {rows.variables.iloc[0]:.0f} variables)",
-             "link": "accuracy.html#short", "take": "; ".join(said) + ". study/advise finds it for your scene"}]
+    return [{"case": "You know the error that the motion may have", "link": "accuracy.html#short",
+             "take": f"what `study/advise` names for your scene; for the four-bar of {rows.variables.iloc[0]:.0f} variables and an error of "
+                     + "; ".join(said)}]
 
 
 def own_fill(winners):
