@@ -59,7 +59,8 @@ void print_rung(const RungReport& report) {
       fmt::print("    {}{}{}", found.quantity, found.row.empty() ? "" : ", ", found.row);
       if (!found.row.empty() || found.value) fmt::print(": {}", text(found.value));
       if (found.reference) fmt::print(", the reference has {}", text(found.reference));
-      fmt::print("{}{}\n", found.detail.empty() ? "" : "; ", found.detail);
+      fmt::print("{}{}{}\n", found.detail.empty() ? "" : "; ", found.detail,
+                 found.row.starts_with("row ") ? " (the largest difference; rows and columns count from 0)" : "");
     }
     if (!report.equation.empty()) fmt::print("    {} of paper/README.md\n", report.equation);
     if (!report.mistakes.empty()) fmt::print("    the usual mistakes:\n");
@@ -96,7 +97,10 @@ int climb_all(const std::vector<NamedVariant>& variants, double seconds,
       reports.push_back(report);
     });
     const bool failed = counts[RungResult::failed] > 0;
-    if (!not_served.empty()) fmt::print("  not served {}\n", fmt::join(not_served, "; "));
+    if (!not_served.empty()) {
+      fmt::print("  not served {}{}\n", not_served.front(),
+                 not_served.size() > 1 ? fmt::format(" and {} more (--json FILE names all)", not_served.size() - 1) : "");
+    }
     fmt::print("{}: {} rungs ok, {} not yet, {} not served\n",
                failed ? "stopped at the first rung that failed" : "all that it serves is right",
                counts[RungResult::ok], counts[RungResult::not_yet], not_served.size());
@@ -125,8 +129,14 @@ int check(const CheckOptions& options) {
   for (const std::string& name : options.scenes) scenes.push_back(load_scene(name));
   for (const Scene& scene : scenes) {
     const StepSettings settings = options.step.resolve(scene.model);
-    ReferenceRun reference;
-    if (why_unsuited(scene.model, settings).empty()) reference = run_reference(scene, settings);
+    const auto serves = [&](const NamedVariant& one) {
+      const Serves& served = one.variant->serves;
+      return why_not_served(served.terms, scene.model).empty() && why_not_served(served, settings).empty();
+    };
+    ReferenceRun reference;  // not run for nobody: on a large scene it takes minutes
+    if (why_unsuited(scene.model, settings).empty() && std::ranges::any_of(variants, serves)) {
+      reference = run_reference(scene, settings);
+    }
     for (const std::string& warning : setting_warnings(
              scene.model, settings,
              options.step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user)) {

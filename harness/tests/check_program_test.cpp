@@ -7,7 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "check/gate.hpp"
 #include "registry/registry.hpp"
+#include "run/settings.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/program.hpp"
 
 namespace mbs {
@@ -88,6 +91,23 @@ TEST(CheckProgram, AgreesOnScenesWithoutConstraints) {
   const auto run = test::run_mbs("check '" + scene + "'");
   EXPECT_EQ(run.status, 0) << run.output << run.errors;
   std::filesystem::remove(scene);
+}
+
+/// The reference fails with this penalty factor, and would say so.
+TEST(CheckProgram, RunsNoReferenceWhereNobodyServesTheScene) {
+  const auto run = test::run_mbs("check bodies:2,dimension=3 --penalty 1e300 --implementation minimal_dense");
+  EXPECT_EQ(run.status, 0) << run.errors;
+  EXPECT_NE(run.output.find("unsupported"), std::string::npos) << run.output;
+}
+
+TEST(CheckProgram, TooFewStepsToJudgeAreNoDisagreement) {
+  const Scene scene = load_scene("four-bar:1");
+  StepSettings settings;
+  settings.penalty = automatic_penalty(scene.model, settings);
+  const NamedVariant variant = select_variants({"minimal_dense"}).at(0);
+  const Verdict verdict = check_in_process(scene, variant, settings, run_reference(scene, settings), 1e-9);
+  EXPECT_EQ(verdict.verdict, "timeout");
+  EXPECT_NE(verdict.reason.find("0 steps, which agree"), std::string::npos) << verdict.reason;
 }
 
 TEST(CheckProgram, KeepsChecksThatWereNotRun) {

@@ -64,6 +64,7 @@ def test_a_faster_newcomer_takes_the_cells(folder, monkeypatch, capsys):
     assert set(table.before) == {"good_dense/first"} and set(table.processes) == {3}
     assert set(zip(table.commit, table.dirty.astype(str))) == {("fedcba9", "True")}
     told = capsys.readouterr().out
+    assert "contests of" in told and told.count(f"{NEW} among libraries: ") == 2  # a part each
     assert all(f"{part}: {count} cells change hands, 0 are open, 0 stay, 0 were not timed" in told for part, count in (("families", 2), ("map", 4)))
 
 
@@ -115,9 +116,11 @@ def test_asked_again_nothing_is_measured_and_of_another_program_everything(folde
     assert not set(stamps().values()) & set(first.values())
 
 
-def test_who_fails_the_gate_is_not_timed(folder, monkeypatch):
+def test_who_fails_the_gate_is_not_timed(folder, monkeypatch, capsys):
     monkeypatch.setenv("FAKE_BAD", "1")
     table = measure(folder, monkeypatch, name="bad/wrong")
+    told = capsys.readouterr().out
+    assert told.count("disagrees: ") == 2 and all(scene in told for scene in table.scene)  # a line a part
     assert set(table.status) == {"disagrees"} and "q differs by 0.4 m" in table.reason[0] and set(table.hands) == {"stays"}
 
 

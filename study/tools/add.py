@@ -145,6 +145,7 @@ def measured(folder, name, known):
     column = name.replace("/", ".")
     lab = shelf.ToolLab(_Present(folder, present), "added", column, SHARE * sum(part["seconds"] for part in profile.parts.values()))
     _begin(folder, column, lab)
+    print(f"{len(asked)} contests of {folder}, at most {duration(lab.budget)}", flush=True)
     verdicts = _gates(lab, asked, contenders)
     records, share = {}, 0.6 * lab.left / max(1, len(asked) * PASSES[-1])
     for count in PASSES:
@@ -272,11 +273,16 @@ def _finish(folder, column, lab, rows):
 
 def tell(table, folder, name):
     print(f"\ntime of {name} over that of the fastest other one, timed anew (95 % interval)")
-    for row in table.itertuples():
-        print(f"{row.scene:24} {row.scheme:12} {row.layer:10} " + (f"{row.status}: {row.reason}" if row.status != "ok" or not row.rival else (
-            f"{row.implementation} ÷ {row.rival}: {row.ratio:.3f} ({row.low:.3f} to {row.high:.3f})"
-            + ("" if row.hands == "stays" else f": {row.hands}{' hands' if row.hands == 'changes' else ''}"))))
     for part, rows in table.groupby("part", sort=False):
+        print(f"\n{part}")
+        ranked = rows[(rows.status == "ok") & (rows.rival != "")]
+        for row in ranked.itertuples():
+            print(f"{row.scene:24} {row.scheme:12} {row.layer:10} {row.implementation} ÷ {row.rival}: {row.ratio:.3f} ({row.low:.3f} to {row.high:.3f})"
+                  + ("" if row.hands == "stays" else f": {row.hands}{' hands' if row.hands == 'changes' else ''}"))
+        for (status, reason), left in rows.drop(ranked.index).fillna("").groupby(["status", "reason"], sort=False):
+            print(f"{status}{reason and ': '}{reason}: {', '.join(dict.fromkeys(left.scene))}")
+        for (who, layer), of in ranked.groupby(["implementation", "layer"], sort=False):
+            print(f"{who} among {layer}: {of.ratio.median():.2f} times the fastest other one in the middle of {len(of)}, {of.ratio.min():.2f} at best")
         counts = Counter(rows.hands)
         print(f"{part}: {counts['changes']} cells change hands, {counts['open']} are open, {counts['stays']} stay, "
               f"{counts['not timed']} were not timed")

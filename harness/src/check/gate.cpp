@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "check/batch_checks.hpp"
 #include "check/exact_checks.hpp"
@@ -17,6 +18,11 @@ namespace mbs {
 namespace {
 
 using Values = std::vector<double>;
+
+/// The time was over before there was enough to judge.
+struct OutOfTime : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// One step from the state of each probe; value = worst difference in units of its tolerance.
 Check lock_step(const NamedVariant& variant, const Model& model, const StepSettings& settings,
@@ -48,7 +54,7 @@ Check compare_multipliers(const ReferenceRun& reference, const Values& lambda, s
 }
 
 /// Runs the stretch, or what `seconds` allow of it; compares positions and passes with the
-/// reference's after every step.
+/// reference's after every step. Throws OutOfTime after fewer than 16 steps that agree.
 std::vector<Check> free_running(const NamedVariant& variant, const Model& model,
                                 const StepSettings& settings, const ReferenceRun& reference,
                                 double seconds) {
@@ -90,9 +96,12 @@ std::vector<Check> free_running(const NamedVariant& variant, const Model& model,
                                   outcome.passes, reference.outcomes[i].passes);
     }
   }
-  constexpr std::size_t kLeast = 16;
+  const std::size_t least = std::min<std::size_t>(16, reference.positions.size());
   if (*positions.passed) {
-    positions.passed = done >= std::min(kLeast, reference.positions.size());
+    if (done < least) {
+      throw OutOfTime(fmt::format("free-running: {} steps, which agree, in {:.2g} s; it takes {} to judge: a longer --time-limit",
+                                  done, seconds, least));
+    }
     multipliers =
         allowed.multipliers
             ? compare_multipliers(reference, state.lambda, done,
@@ -178,6 +187,9 @@ Verdict check_in_process(const Scene& scene, const NamedVariant& variant,
   } catch (const Unsupported& reason) {
     verdict.verdict = "unsupported";
     verdict.reason = printable(reason.what(), 1000);
+  } catch (const OutOfTime& reason) {
+    verdict.verdict = "timeout";
+    verdict.reason = reason.what();
   }
   const auto failed = std::ranges::find(verdict.checks, std::optional(false), &Check::passed);
   if (failed != verdict.checks.end()) {

@@ -37,7 +37,8 @@ struct GateLesson {
 std::vector<std::string> gate_mistakes(const std::string& check) {
   static const std::vector<GateLesson> lessons{
       {"lock-step",
-       {"do_set_state() leaves something of earlier steps behind: lambda, a time, kept factors",
+       {"the pass that converges, or that is the last, does not update lambda",
+        "do_set_state() leaves something of earlier steps behind: lambda, a time, kept factors",
         "Newton ends too early or too late: it ends after the pass whose max |Delta q| <= "
         "tolerance"}},
       {"free-running",
