@@ -81,12 +81,20 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return test::gtest_name(info.param.variant); });
 
 TEST(Ladder, ASoundImplementationGoesUpAsFarAsItServes) {
-  const auto run = test::run_program(MBS_CONTROLS, "check --ladder --implementation planted/right");
+  const std::string file = test::temporary_path("ladder.json");
+  const auto run = test::run_program(MBS_CONTROLS, "check --ladder --implementation planted/right --json '" + file + "'");
   EXPECT_EQ(run.status, 0) << run.output << run.errors;
   for (const char* line : {"  ok         Phi_q", "  ok         fill", "  ok         chain, planar",
-                           "chain, spatial", "  ok         --projections none",
-                           "; --scheme rattle"}) {
+                           "  ok         --projections none", " more (--json FILE names all)"}) {
     EXPECT_TRUE(contains(run.output, line)) << line << '\n' << run.output;
+  }
+  std::vector<std::string> not_served;
+  for (const json& row : json::parse(test::file_text(file)).at("rows")) {
+    if (row.at("result") == "not served") not_served.push_back(row.at("rung"));
+  }
+  std::filesystem::remove(file);
+  for (const char* rung : {"chain, spatial", "--scheme rattle"}) {
+    EXPECT_TRUE(std::ranges::count(not_served, rung)) << rung;
   }
   EXPECT_TRUE(contains(run.output, "\nall that it serves is right: ")) << run.output;
 }
