@@ -88,8 +88,9 @@ TEST(Ladder, ASoundImplementationGoesUpAsFarAsItServes) {
                            "  ok         --projections none", " more (--json FILE names all)"}) {
     EXPECT_TRUE(contains(run.output, line)) << line << '\n' << run.output;
   }
+  const json rows = json::parse(test::file_text(file)).at("rows");
   std::vector<std::string> not_served;
-  for (const json& row : json::parse(test::file_text(file)).at("rows")) {
+  for (const json& row : rows) {
     if (row.at("result") == "not served") not_served.push_back(row.at("rung"));
   }
   std::filesystem::remove(file);
