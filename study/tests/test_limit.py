@@ -35,7 +35,7 @@ class Asked:
 
     def run(self, cells, drop=False):
         self.cells += cells
-        return [SimpleNamespace(done=True, status="ok", verdicts={
+        return [SimpleNamespace(done=True, status="done", verdicts={
             one.name: ("disagrees" if one.name in self.wrong else "agrees", "") for one in cell.contenders}) for cell in cells if cell.kind == "check"]
 
     def one(self, cell):
