@@ -126,6 +126,14 @@ def test_a_change_is_tried_where_its_scheme_is_lost():
     assert found[LOOSE].chosen and found[SADDLE].chosen is None
 
 
+def test_a_change_is_tried_where_its_scheme_only_ends_once_and_far_off():
+    """As RATTLE on the four-bar, whose tight tolerance loses it at singular positions that one pass goes through."""
+    lost_but_once = lambda step: 0.5 if step < 2e-3 else None
+    _, found = search({SADDLE: lost_but_once, LOOSE: square, PENALTY: lambda step: 160 * step**2},
+                      {SADDLE: 10.0, LOOSE: 9.0, PENALTY: 10.0}, [PENALTY, SADDLE, LOOSE])
+    assert found[LOOSE].chosen and not found[SADDLE].chosen
+
+
 @pytest.mark.parametrize("status", ["refused", "crashed"])
 def test_a_pilot_that_fails_voids_no_step_that_others_have_shown(status):
     """As a driver that turns too far in a long step, which is refused."""

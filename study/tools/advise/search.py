@@ -3,7 +3,7 @@ import math
 from dataclasses import dataclass, field
 
 from analysis.core.outcomes import FINISHED
-from study.tools.advise.choice import enough, local_order, next_at, next_step
+from study.tools.advise.choice import counts, enough, local_order, next_at, next_step
 
 SCHEME = 2.0     # a scheme is followed while it promises less than this times the best one's time, as its changes may
 NEAR = 1.15      # make up for it; a change of it while it promises less than that
@@ -93,10 +93,11 @@ class Search:
                             or (parent.step_us() if self._tells(parent) else 0.0))
         return one.quick_us / at
 
-    @staticmethod
-    def _tells(one):
-        """Whether a setting's pilots tell which step it needs."""
-        return one and any(pilot.valid for pilot in one.pilots)
+    def _tells(self, one):
+        """Whether a setting's pilots tell which step it needs. Where one was lost, estimates must count: a scheme that is lost at a
+        singular position may lose it again at the next step, where a change of it passes."""
+        valid = [pilot for pilot in one.pilots if pilot.valid] if one else []
+        return bool(valid) and (len(valid) == len(one.pilots) or any(counts(pilot.step, valid, self.error) for pilot in valid))
 
     def parent(self, one):
         """The scheme without changes, where that is another setting."""
