@@ -8,6 +8,7 @@ from study.core import curves
 
 BEHIND = 4.0   # times the fastest with the default setting: who is slower is not tried in others
 BETWEEN = 2 / 3  # of the longer of two steps: half-way on a logarithmic scale, nearly; halvings that just miss a
+SHARE = 0.5      # of the budget that curves may take: errors without times rank nobody
 WORTH = 2.0      # required error would cost a factor of two; tried where the shorter step is so near the fastest
 
 
@@ -25,7 +26,7 @@ def follow(runs, speed):
             serving = runs.serving(name, [*speed[layer], *(one for one in contenders if one not in speed[layer])])
             if serving:
                 found[layer, name] = curves.Curve(layer, [(step, runs.run_cell(serving[0], name, step)) for step in runs.subject.steps], 2.0)
-    curves.follow(runs.lab, list(found.values()), runs.row, runs.longest, min(runs.lab.settings["errors"]), status="excluded")
+    curves.follow(runs.lab, list(found.values()), runs.row, runs.longest, min(runs.lab.settings["errors"]), SHARE, status="excluded")
     return {key: curve.rows for key, curve in found.items()}
 
 

@@ -31,7 +31,7 @@ class Lab:
     def __init__(self, column, settings=SETTINGS, lost=(), wrong=(), budget=1e9, variants=tuple(SPEED)):
         self.column, self.settings, self.registry = column, settings, registry()
         self.contenders = [Contender(name, name) for name in variants]
-        self.lost, self.wrong, self.left = dict(lost), wrong, budget
+        self.lost, self.wrong, self.left, self.budget = dict(lost), wrong, budget, budget
         self.records, self.asked = {}, []
 
     def tell(self, text):

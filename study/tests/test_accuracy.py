@@ -79,11 +79,17 @@ def test_a_resumed_plan_asks_for_nothing_new(whole):
 
 
 def test_a_spent_budget_leaves_rows_and_no_ranking():
-    lab, found = measured(budget=40)
-    assert len(lab.asked) <= 60 and len(found["left_out"]) > 10 and set(found["left_out"].status) == {"dropped"}
+    lab, found = measured(budget=20)
+    assert len(lab.asked) <= 40 and len(found["left_out"]) > 10 and set(found["left_out"].status) == {"dropped"}
     assert not found["winners"].settled.fillna(False).any()
     lab, found = measured(budget=1)
     assert len(lab.asked) == 1 and set(found["winners"].implementation) == {"not timed"}
+
+
+def test_curves_leave_half_of_the_budget_to_times():
+    lab, found = measured(budget=60)
+    assert any(cell.role.startswith("time/") for cell in lab.asked)
+    assert "share" in " ".join(found["left_out"].reason)
 
 
 def test_steps_between_are_tried_where_a_halving_just_misses(whole):
