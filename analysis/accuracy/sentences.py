@@ -1,6 +1,6 @@
 # What the page and the front page say, computed from the tables.
 from analysis.accuracy import pairs
-from analysis.accuracy.winners import LAYERS, met
+from analysis.accuracy.winners import LAYERS, NOT_TIMED, met
 from analysis.core.text import between, bounded, number
 
 WORDS = {"libraries": "Of the libraries", "all": "Of all, code without a library included,"}
@@ -10,7 +10,9 @@ def answers(tables, view):
     """One to four sentences that answer the part's question."""
     won = met(own_fill(tables["winners"]))
     if won.empty:
-        return [{"text": "Not measured: nobody reached a required error with a time.", "anchor": ""}]
+        dropped = (own_fill(tables["winners"]).implementation == NOT_TIMED).any()
+        return [{"text": "Not measured: " + ("the budget ended before those that may be the fastest were timed." if dropped else
+                                             "nobody reached a required error with a time."), "anchor": ""}]
     found = [{"text": of_layer(won[won.layer == layer], layer), "anchor": "short"}
              for layer in LAYERS if (won.layer == layer).any()]
     return found + [{"text": text, "anchor": anchor} for anchor, of in (("precision", of_precision), ("reuse", of_reuse))
@@ -22,17 +24,15 @@ def cases(tables, view):
     worth nothing without its step."""
     won = met(own_fill(tables["winners"]))
     rows = won[(won.layer == "libraries") & (won.variables == won.variables.max())].sort_values("required", ascending=False)
-    if rows.empty:
-        return []
     errors = {}
     for one in rows.itertuples():
         take = f"{one.implementation}, setting {one.setting}, step {number(1e3 * one.step, 2)} ms" + (
             "" if one.settled else " (others are not shown to be slower)")
         errors.setdefault(take, []).append(number(one.required))
-    said = [f"{', '.join(mine)} m: {take}" for take, mine in errors.items()]
+    said = "; ".join(f"{', '.join(mine)} m: {take}" for take, mine in errors.items())
     return [{"case": "You know the error that the motion may have", "link": "accuracy.html#short",
-             "take": f"what `study/advise` names for your scene; for the four-bar of {rows.variables.iloc[0]:.0f} variables and an error of "
-                     + "; ".join(said)}]
+             "take": "what `study/advise` names for your scene" + (
+                 f"; for the four-bar of {rows.variables.iloc[0]:.0f} variables and an error of {said}" if said else "")}]
 
 
 def own_fill(winners):

@@ -35,8 +35,10 @@ def winners(table, measured, errors, libraries):
             for required in errors:
                 none = {"implementation": NOT_TIMED if dropped or reached <= required else NOBODY, "candidates": 0,
                         "decided": None, "settled": None, "equivalent": ""}
-                rows.append({"scene": scene, "layer": layer, "required": required}
-                            | (fastest(meeting(here, required), samples) or none))
+                found = meeting(here, required)
+                if dropped and not (found.time_from == ROUNDS).any():  # the budget did not reach who may be faster
+                    found = found.iloc[:0]
+                rows.append({"scene": scene, "layer": layer, "required": required} | (fastest(found, samples) or none))
     return pandas.DataFrame(rows)
 
 

@@ -81,7 +81,7 @@ def test_a_resumed_plan_asks_for_nothing_new(whole):
 def test_a_spent_budget_leaves_rows_and_no_ranking():
     lab, found = measured(budget=20)
     assert len(lab.asked) <= 40 and len(found["left_out"]) > 10 and set(found["left_out"].status) == {"dropped"}
-    assert not found["winners"].settled.fillna(False).any()
+    assert set(found["winners"].implementation) == {"not timed"}  # by the looks, own code would not have been ahead
     lab, found = measured(budget=1)
     assert len(lab.asked) == 1 and set(found["winners"].implementation) == {"not timed"}
 
