@@ -425,6 +425,27 @@ def test_runs_are_held_to_a_motion_between_its_instants():
     assert truth.error(series) == pytest.approx(1e-3, rel=1e-3)
 
 
+class Turning:
+    """A lab of one point that turns at 40 rad/s, exactly."""
+
+    def run(self, cells):
+        found = []
+        for cell in cells:
+            words = dict(zip(cell.settings[::2], cell.settings[1::2]))
+            t = numpy.arange(0, round(float(words["--duration"]) / float(words["--step"])) + 1, cell.every) * float(words["--step"])
+            series = {"t": t, "p.x": numpy.cos(40 * t), "p.y": numpy.sin(40 * t), "p.vx": -40 * numpy.sin(40 * t), "p.vy": 40 * numpy.cos(40 * t)}
+            found.append(SimpleNamespace(done=True, output={"status": "ok", "status_reason": ""}, series=series))
+        return found
+
+
+def test_the_reference_has_as_many_instants_as_a_fast_motion_needs():
+    described = {"dimension": 2, "elements": {"points": [{"name": "p", "kind": "free"}]}}
+    truth = Truth(Turning(), "scene.json", described, Contender("lib/one", "lib/one"), 5.0, 1e-6)
+    t = [0.31234, 4.87654]
+    assert truth.uncertainty <= 1e-6 and truth.error({"t": t, "p.x": numpy.cos(40 * numpy.array(t)), "p.y": numpy.sin(
+        40 * numpy.array(t))}) <= 1e-6
+
+
 def test_the_search_keeps_the_fastest_row_of_each_setting_that_meets_an_error_and_no_luck():
     found = [{"setting": name, "status": status, "exact": exact, "us_per_second": time}
              for name, status, exact, time in (

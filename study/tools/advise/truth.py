@@ -9,14 +9,16 @@ from study.core.cell import Cell
 
 MOVING = ("free", "marker", "vector")  # of describe: what an error is of; markers are points of bodies, no coordinates
 POINTS = 20     # whose positions are compared, spread over the scene
-DENSE = 400     # instants of the reference; between them cubics through positions and velocities
+DENSE = 400     # instants of the reference, at least; between them cubics through positions and velocities
+DENSER, DENSEST = 4, 25600  # times as many where cubics would be off; at most
 INSTANTS = 150  # at which a run is compared, at least
 FIRST_STEP, HALVINGS = 5e-4, 4  # s, of the reference at most; how often it is halved until the schemes agree
 SCHEMES = ("saddle-point", "penalty")
 
 
 class Truth:
-    """`uncertainty`, m: by how much the two schemes differ at most; infinite if there is no reference."""
+    """`uncertainty`, m: by how much the two schemes differ at most, or cubics between the instants are off; infinite if there is no
+    reference."""
 
     def __init__(self, lab, scene, described, contender, duration, enough):
         self.duration, self.uncertainty = duration, math.inf
@@ -26,15 +28,21 @@ class Truth:
         self.columns = tuple(f"{point}.{axis}" for point in points for axis in axes)
         self.speeds = tuple(f"{point}.v{axis}" for point in points for axis in axes)
         self.shape = (len(points), len(axes))
-        for halving in range(HALVINGS):
-            every = math.ceil(duration / DENSE / FIRST_STEP) * 2**halving
-            found = [self._extrapolated(lab, scene, contender, scheme, every) for scheme in SCHEMES]
+        dense, halving = DENSE, 0
+        while halving < HALVINGS and dense <= DENSEST:
+            every = max(1, math.ceil(duration / dense / FIRST_STEP * 2**halving))
+            found = [self._extrapolated(lab, scene, contender, scheme, dense, every) for scheme in SCHEMES]
             if any(one is None for one in found):
+                halving += 1
                 continue
-            self.motion = CubicHermiteSpline(*found[0])
-            self.uncertainty = self._distance(found[0][1], found[1][1])
+            self.motion, between = CubicHermiteSpline(*found[0]), self._between(*found[0])
+            self.uncertainty = max(between, self._distance(found[0][1], found[1][1]))
             if self.uncertainty <= enough:
                 return
+            if between > enough:
+                dense *= DENSER
+            else:
+                halving += 1
 
     def every(self, step, duration):
         """Steps between two instants of a run."""
@@ -44,10 +52,14 @@ class Truth:
         """The largest distance of a point at any instant, m."""
         return self._distance(self.motion(series["t"]), self._of(series, self.columns))
 
-    def _extrapolated(self, lab, scene, contender, scheme, every):
-        """(t, q, v) by steps of duration/DENSE/every and half of that, to fourth order; None where a run was lost."""
+    def _between(self, t, q, v):
+        """How far cubics are off: those through every other instant are at the others, at half the distance an eighth of that or less."""
+        return self._distance(CubicHermiteSpline(t[::2], q[::2], v[::2])(t[1:-1:2]), q[1:-1:2]) / 8
+
+    def _extrapolated(self, lab, scene, contender, scheme, dense, every):
+        """(t, q, v) by steps of duration/dense/every and half of that, to fourth order; None where a run was lost."""
         cells = [Cell("simulate", scene, (contender,), (
-            "--step", f"{self.duration / DENSE / more:.12g}", "--duration", f"{self.duration:g}", "--scheme", scheme),
+            "--step", f"{self.duration / dense / more:.12g}", "--duration", f"{self.duration:g}", "--scheme", scheme),
             "reference", seconds=600, keep=self.columns + self.speeds, every=more) for more in (every, 2 * every)]
         coarse, fine = lab.run(cells)
         if any(of_run(one)[0] not in FINISHED for one in (coarse, fine)):
