@@ -5,6 +5,7 @@ from matplotlib.text import Text
 from matplotlib.ticker import LogLocator
 
 from analysis.accuracy import work_figure
+from analysis.accuracy.winners import met
 from analysis.core.style import GREY, SPARSE, Look, nothing
 from analysis.core.text import bounded
 from analysis.engines import figures as engine_figures
@@ -69,7 +70,11 @@ def work(known):
     for axes in (everyone, ratios_of_everyone):  # own code included
         figure.delaxes(axes)
     figure.set_layout_engine("none")  # which would count the legend to the axes
-    for axes, place in zip((front, ratios), GridSpec(1, 2, figure=figure, wspace=0.3)):
+    shown = (front, ratios)
+    if met(won).empty:  # nothing to be over
+        figure.delaxes(ratios)
+        shown = (front,)
+    for axes, place in zip(shown, GridSpec(1, len(shown), figure=figure, wspace=0.3)):
         axes.set_subplotspec(place)
     front.set_title(f"n = {mine.variables.max():.0f}")
     if ratios.get_legend():
@@ -120,7 +125,9 @@ def phases(known):
     """What a step of some variants consists of, at the largest size that was timed phase by phase."""
     rows = profiled(known)
     names = [name for name in PHASES_OF if name in set(rows.implementation)]
-    return limit.by_phase(rows, names, sorted(set(rows.loops)))
+    figure = limit.by_phase(rows, names, sorted(set(rows.loops)))
+    figure.set_figheight(0.65 * figure.get_figheight())
+    return figure
 
 
 def engines(known):
