@@ -118,7 +118,7 @@ class Panels {
   WideFronts<F> wide_;
 };
 
-// Each is compiled once, in a file of its own: kernels take long.
+// These are compiled once, beside the steps.
 extern template class Panels<double>;
 extern template class Panels<float>;
 
