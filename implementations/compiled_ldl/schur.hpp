@@ -285,4 +285,8 @@ void Schur<D>::add_forces(double* y) {
   for (int i = 0; i < first_; ++i) y[i] += change_[i];
 }
 
+// These are compiled once, beside the steps.
+extern template class Schur<2>;
+extern template class Schur<3>;
+
 }  // namespace mbs::compiled_ldl

@@ -146,4 +146,10 @@ void Drivers<S, D>::add_acceleration_terms(const Constraints<S, D>& constraints,
   }
 }
 
+// These are compiled once, beside the steps.
+extern template class Drivers<double, 2>;
+extern template class Drivers<double, 3>;
+extern template class Drivers<float, 2>;
+extern template class Drivers<float, 3>;
+
 }  // namespace mbs::compiled_ldl

@@ -205,4 +205,10 @@ void Mass<S, D>::multiply(const S* x, S* y, const S& factor, First first) const 
   }
 }
 
+// These are compiled once, beside the steps.
+extern template class Mass<double, 2>;
+extern template class Mass<double, 3>;
+extern template class Mass<float, 2>;
+extern template class Mass<float, 3>;
+
 }  // namespace mbs::compiled_ldl

@@ -1,4 +1,4 @@
-// The numbers of a program's fronts: block L D Lᵀ, fused with the substitution of a right-hand
+// The numbers of a program's fronts, for eight simulations side by side: block L D Lᵀ.
 #pragma once
 
 #include <algorithm>

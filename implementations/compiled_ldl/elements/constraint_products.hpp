@@ -1,0 +1,337 @@
+// Constraints: values and products with the Jacobian. Part of constraints.hpp.
+#pragma once
+
+#include <algorithm>
+#include <type_traits>
+
+#include "elements/constraints.hpp"
+
+namespace mbs::compiled_ldl {
+
+/// y = B x, or Bᵀ x.
+template <typename S, int D>
+void Constraints<S, D>::multiply(const S* matrix, const S* x, S* y, bool transposed) const {
+  for (int i = 0; i < D; ++i) {
+    S sum = S(0.0);
+    for (int j = 0; j < D; ++j) sum += matrix[transposed ? j * D + i : i * D + j] * x[j];
+    y[i] = sum;
+  }
+}
+
+template <typename S, int D>
+template <typename Then>
+void Constraints<S, D>::evaluate_with(const S* q, S* phi, bool exchange, Then then) {
+  if (exchange) {
+    u_.swap(earlier_u_);
+    vectors_.swap(earlier_vectors_);
+  }
+  int k = 0;
+  S* u = u_.data();
+  for (const Pair& pair : pairs_.list) {
+    for (int x = 0; x < D; ++x) u[x] = q[pair.a + x] - q[pair.b + x];
+    phi[k] = dot<D>(u, u) - value_[k];
+    then(k, phi[k]);
+    u += D;
+    ++k;
+  }
+  S* vectors = vectors_.data();
+  for (std::size_t i = 0; i < quads_.size(); ++i, ++k, vectors += kQuad) {
+    const Quad& quad = quads_[i];
+    S* a = vectors;
+    S* c = vectors + D;
+    for (int x = 0; x < D; ++x) c[x] = q[quad.a + x] - q[quad.b + x];
+    for (int x = 0; x < D; ++x) a[x] = q[quad.c + x] - q[quad.d + x];
+    if (matrix_of_quad_[i] >= 0) {
+      const S* matrix = matrices_.data() + matrix_of_quad_[i];
+      S u_copy[D], w[D];
+      for (int x = 0; x < D; ++x) u_copy[x] = c[x];
+      for (int x = 0; x < D; ++x) w[x] = a[x];
+      multiply(matrix, w, a, false);
+      phi[k] = dot<D>(u_copy, a) - value_[k];
+      multiply(matrix, u_copy, c, true);
+    } else {
+      phi[k] = dot<D>(c, a) - value_[k];
+    }
+    then(k, phi[k]);
+    find_gradients<D>(quad, a, c, vectors + 2 * D);
+  }
+  for (const Terms& terms : linear_) {
+    S sum = S(0.0);
+    for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * q[term_rows_[i]];
+    phi[k] = sum - value_[k];
+    then(k, phi[k]);
+    ++k;
+  }
+}
+
+/// y += Σ factor(k) times the gradient of constraint k, at free points.
+template <typename S, int D>
+template <typename Factor>
+void Constraints<S, D>::add_gradients(Factor factor, S* y) const {
+  int k = 0;
+  const S* u = u_.data();
+  for (; k < pairs_.two; ++k, u += D) {
+    const Pair& pair = pairs_.list[k];
+    const S s = factor(k) * S(2.0);
+    for (int x = 0; x < D; ++x) {
+      const S force = s * u[x];
+      y[pair.a + x] += force;
+      y[pair.b + x] -= force;
+    }
+  }
+  for (; k < pairs_.one; ++k, u += D) {
+    const Pair& pair = pairs_.list[k];
+    const S s = factor(k) * S(2.0);
+    for (int x = 0; x < D; ++x) y[pair.a + x] += s * u[x];
+  }
+  k = pairs_.count();
+  const S* g = quads_.empty() ? nullptr : vectors_.data() + 2 * D;
+  for (const Quad& quad : quads_) {
+    const S s = factor(k++);
+    for (int i = 0; i < quad.free; ++i) {
+      for (int x = 0; x < D; ++x) y[quad.points[i].row + x] += s * g[i * D + x];
+    }
+    g += kQuad;
+  }
+  for (const Terms& terms : linear_) {
+    const S s = factor(k++);
+    for (int i = terms.begin; i < terms.end; ++i) y[term_rows_[i]] += s * term_coefficients_[i];
+  }
+}
+
+template <typename S, int D>
+void Constraints<S, D>::add_transposed(const S* t, S* y) const {
+  add_gradients([t](int k) { return t[k]; }, y);
+}
+
+template <typename S, int D>
+void Constraints<S, D>::add_forces(const S* lambda, const S* phi, const S& alpha, const S& h,
+                                   S* y) const {
+  add_gradients([&](int k) { return -h * (lambda[k] + alpha * phi[k]); }, y);
+}
+
+template <typename S, int D>
+void Constraints<S, D>::product(const S* x, S* t, bool earlier) const {
+  int k = 0;
+  const S* u = (earlier ? earlier_u_ : u_).data();
+  for (const Pair& pair : pairs_.list) {
+    S sum = S(0.0);
+    for (int i = 0; i < D; ++i) sum += u[i] * (x[pair.a + i] - x[pair.b + i]);
+    t[k++] = sum * S(2.0);
+    u += D;
+  }
+  const S* vectors = (earlier ? earlier_vectors_ : vectors_).data();
+  for (const Quad& quad : quads_) {
+    S sum = S(0.0);
+    for (int i = 0; i < D; ++i) {
+      sum += vectors[i] * (x[quad.a + i] - x[quad.b + i]) +
+             vectors[D + i] * (x[quad.c + i] - x[quad.d + i]);
+    }
+    t[k++] = sum;
+    vectors += kQuad;
+  }
+  for (const Terms& terms : linear_) {
+    S sum = S(0.0);
+    for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * x[term_rows_[i]];
+    t[k++] = sum;
+  }
+}
+
+template <typename S, int D>
+void Constraints<S, D>::velocity_terms(const S* v, S* t) const {
+  int k = 0;
+  for (const Pair& pair : pairs_.list) {
+    S rate[D];
+    for (int x = 0; x < D; ++x) rate[x] = v[pair.a + x] - v[pair.b + x];
+    t[k++] = S(2.0) * dot<D>(rate, rate);
+  }
+  for (int i = 0; i < static_cast<int>(quads_.size()); ++i) t[k++] = quad_velocity_term(i, v);
+  while (k < count()) t[k++] = S(0.0);
+}
+
+template <typename S, int D>
+S Constraints<S, D>::quad_velocity_term(int i, const S* v) const {
+  const Quad& quad = quads_[i];
+  S u[D], w[D], turned[D];
+  for (int x = 0; x < D; ++x) u[x] = v[quad.a + x] - v[quad.b + x];
+  for (int x = 0; x < D; ++x) w[x] = v[quad.c + x] - v[quad.d + x];
+  if (matrix_of_quad_[i] < 0) return S(2.0) * dot<D>(u, w);
+  multiply(matrices_.data() + matrix_of_quad_[i], w, turned, false);
+  return S(2.0) * dot<D>(u, turned);
+}
+
+template <typename S, int D>
+template <typename Then>
+void Constraints<S, D>::values(const S* q, Then then) const {
+  int k = 0;
+  for (const Pair& pair : pairs_.list) {
+    S u[D];
+    for (int x = 0; x < D; ++x) u[x] = q[pair.a + x] - q[pair.b + x];
+    then(k, dot<D>(u, u) - value_[k]);
+    ++k;
+  }
+  for (std::size_t i = 0; i < quads_.size(); ++i, ++k) {
+    const Quad& quad = quads_[i];
+    S u[D], w[D], turned[D];
+    for (int x = 0; x < D; ++x) u[x] = q[quad.a + x] - q[quad.b + x];
+    for (int x = 0; x < D; ++x) w[x] = q[quad.c + x] - q[quad.d + x];
+    const int matrix = matrix_of_quad_[i];
+    if (matrix >= 0) multiply(matrices_.data() + matrix, w, turned, false);
+    then(k, dot<D>(u, matrix >= 0 ? turned : w) - value_[k]);
+  }
+  for (const Terms& terms : linear_) {
+    S sum = S(0.0);
+    for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * q[term_rows_[i]];
+    then(k, sum - value_[k]);
+    ++k;
+  }
+}
+
+/// A distance has the numbers u, another quadratic one A and C, a linear one 1.
+template <typename S, int D>
+template <typename Then>
+void Constraints<S, D>::unit_entries(int k, Then then) const {
+  if (k < pairs_.count()) {
+    const Pair& pair = pairs_.list[k];
+    for (int x = 0; x < D && k < pairs_.one; ++x) {
+      then(x, pair.a + x, S(2.0));
+      if (k < pairs_.two) then(x, pair.b + x, S(-2.0));
+    }
+    return;
+  }
+  const int at = k - pairs_.count();
+  if (at < static_cast<int>(quads_.size())) {
+    for (int i = 0; i < quads_[at].free; ++i) {
+      const Quad::Point& point = quads_[at].points[i];
+      for (int x = 0; x < D; ++x) {
+        then(x, point.row + x, S(point.sign_a));
+        then(D + x, point.row + x, S(point.sign_c));
+      }
+    }
+    return;
+  }
+  const Terms& terms = linear_[at - quads_.size()];
+  for (int i = terms.begin; i < terms.end; ++i) then(0, term_rows_[i], term_coefficients_[i]);
+}
+
+template <typename S, int D>
+template <typename Then>
+void Constraints<S, D>::gradient_numbers(Then then) const {
+  int k = 0;
+  for (; k < pairs_.count(); ++k) {
+    for (int x = 0; x < D; ++x) then(k, x, u_[k * D + x]);
+  }
+  for (std::size_t i = 0; i < quads_.size(); ++i, ++k) {
+    for (int x = 0; x < 2 * D; ++x) then(k, x, vectors_[i * kQuad + x]);
+  }
+  for (; k < count(); ++k) then(k, 0, S(1.0));
+}
+
+// Right-hand sides of the projections in one sweep.
+
+template <typename S, int D>
+void Constraints<S, D>::add_projection(const S* x, const S* v, const S& f, S* y) const {
+  constexpr bool kPresent = std::is_same_v<S, float>;
+  const S* u = u_.data();
+  const S* e = (kPresent ? u_ : earlier_u_).data();
+  for (int k = 0; k < pairs_.one; ++k, u += D, e += D) {
+    const Pair& pair = pairs_.list[k];
+    S sum = S(0.0), square = S(0.0), force[D];
+    for (int i = 0; i < D; ++i) sum += e[i] * (x[pair.a + i] - x[pair.b + i]);
+    sum *= S(4.0) * f;
+    for (int i = 0; i < D; ++i) force[i] = sum * e[i];
+    if (v != nullptr) {
+      for (int i = 0; i < D; ++i) {
+        const S rate = v[pair.a + i] - v[pair.b + i];
+        square += rate * rate;
+      }
+      square *= S(4.0) * f;
+      for (int i = 0; i < D; ++i) force[i] += square * u[i];
+    }
+    for (int i = 0; i < D; ++i) y[pair.a + i] -= force[i];
+    if (k >= pairs_.two) continue;
+    for (int i = 0; i < D; ++i) y[pair.b + i] += force[i];
+  }
+  const int behind =
+      quads_.empty() ? 0 : 2 * D;  // where there are none, there are no vectors either
+  const S* g = vectors_.data() + behind;
+  const S* earlier = (kPresent ? vectors_ : earlier_vectors_).data() + behind;
+  for (int k = 0; k < static_cast<int>(quads_.size()); ++k, g += kQuad, earlier += kQuad) {
+    const Quad& quad = quads_[k];
+    S sum = S(0.0);
+    for (int i = 0; i < quad.free; ++i) sum += dot<D>(earlier + i * D, x + quad.points[i].row);
+    sum *= f;
+    const S term = v == nullptr ? S(0.0) : f * quad_velocity_term(k, v);
+    for (int i = 0; i < quad.free; ++i) {
+      S* to = y + quad.points[i].row;
+      for (int j = 0; j < D; ++j) to[j] -= sum * earlier[i * D + j] + term * g[i * D + j];
+    }
+  }
+  for (const Terms& terms : linear_) {
+    S sum = S(0.0);
+    for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * x[term_rows_[i]];
+    sum *= f;
+    for (int i = terms.begin; i < terms.end; ++i) y[term_rows_[i]] -= sum * term_coefficients_[i];
+  }
+}
+
+// One constraint alone, for those that drivers touch.
+
+template <typename S, int D>
+bool Constraints<S, D>::touches(int k, const std::vector<int>& point_rows) const {
+  const auto is_one = [&](int row) {
+    return std::find(point_rows.begin(), point_rows.end(), row) != point_rows.end();
+  };
+  if (k < pairs_.count()) return is_one(pairs_.list[k].a) || is_one(pairs_.list[k].b);
+  const int i = k - pairs_.count();
+  if (i >= static_cast<int>(quads_.size())) return false;
+  const Quad& quad = quads_[i];
+  return is_one(quad.a) || is_one(quad.b) || is_one(quad.c) || is_one(quad.d);
+}
+
+template <typename S, int D>
+S Constraints<S, D>::product_of(int k, const S* x) const {
+  S sum = S(0.0);
+  if (k < pairs_.count()) {
+    const Pair& pair = pairs_.list[k];
+    for (int i = 0; i < D; ++i) sum += u_[k * D + i] * (x[pair.a + i] - x[pair.b + i]);
+    return S(2.0) * sum;
+  }
+  const int at = k - pairs_.count();
+  if (at < static_cast<int>(quads_.size())) {
+    const Quad& quad = quads_[at];
+    const S* a = vectors_.data() + at * kQuad;
+    for (int i = 0; i < D; ++i) {
+      sum += a[i] * (x[quad.a + i] - x[quad.b + i]) + a[D + i] * (x[quad.c + i] - x[quad.d + i]);
+    }
+    return sum;
+  }
+  const Terms& terms = linear_[at - quads_.size()];
+  for (int i = terms.begin; i < terms.end; ++i) sum += term_coefficients_[i] * x[term_rows_[i]];
+  return sum;
+}
+
+template <typename S, int D>
+void Constraints<S, D>::add_gradient(int k, const S& t, S* y) const {
+  if (k < pairs_.count()) {
+    const Pair& pair = pairs_.list[k];
+    for (int i = 0; i < D; ++i) {
+      const S force = S(2.0) * t * u_[k * D + i];
+      y[pair.a + i] += force;
+      y[pair.b + i] -= force;
+    }
+    return;
+  }
+  const int at = k - pairs_.count();
+  if (at < static_cast<int>(quads_.size())) {
+    const S* g = vectors_.data() + at * kQuad + 2 * D;
+    for (int i = 0; i < quads_[at].free; ++i) {
+      for (int x = 0; x < D; ++x) y[quads_[at].points[i].row + x] += t * g[i * D + x];
+    }
+    return;
+  }
+  const Terms& terms = linear_[at - quads_.size()];
+  for (int i = terms.begin; i < terms.end; ++i) y[term_rows_[i]] += t * term_coefficients_[i];
+}
+
+}  // namespace mbs::compiled_ldl

@@ -1,0 +1,9 @@
+// Panels in float.
+#include "panels/kernels.hpp"
+#include "panels/tables.hpp"
+
+namespace mbs::compiled_ldl {
+
+template class Panels<float>;
+
+}  // namespace mbs::compiled_ldl
