@@ -279,7 +279,9 @@ def tell(table, folder, name):
         for row in ranked.itertuples():
             print(f"{row.scene:24} {row.scheme:12} {row.layer:10} {row.implementation} ÷ {row.rival}: {row.ratio:.3f} ({row.low:.3f} to {row.high:.3f})"
                   + ("" if row.hands == "stays" else f": {row.hands}{' hands' if row.hands == 'changes' else ''}"))
-        for (status, reason), left in rows.drop(ranked.index).fillna("").groupby(["status", "reason"], sort=False):
+        others = rows.drop(ranked.index).fillna("")
+        others["reason"] = others.reason.str.replace(": the scene has .*", "", regex=True)  # of a term: where, in each of them
+        for (status, reason), left in others.groupby(["status", "reason"], sort=False):
             print(f"{status}{reason and ': '}{reason}: {', '.join(dict.fromkeys(left.scene))}")
         for (who, layer), of in ranked.groupby(["implementation", "layer"], sort=False):
             print(f"{who} among {layer}: {of.ratio.median():.2f} times the fastest other one in the middle of {len(of)}, {of.ratio.min():.2f} at best")
