@@ -30,7 +30,7 @@ from study.core import child, executor, front, locks, profile, studyset
 from study.core.cell import Cell
 from study.core.contender import Contender, by_environment, on_usual_pairs
 from study.core.front import duration
-from study.core.lab import Lab, cores
+from study.core.lab import BETWEEN, Lab, cores
 from study.core.options import Parser, positive
 from study.tests.conftest import FAKE, TEMPORARY, study
 
@@ -346,7 +346,17 @@ def test_untimed_cells_share_the_cores_and_timed_ones_have_the_machine(mbs, tmp_
     assert (tmp_path / "log").read_text().split() == ["begin", "end"] * 3
     lab = Lab(Set(tmp_path), "part", "others")
     records_of = lab.run(cells(4))
-    assert lab.spent == pytest.approx(sum(one.seconds for one in records_of) / cores())
+    seconds = [one.seconds for one in records_of]
+    assert lab.spent == pytest.approx(max(4 * BETWEEN + sum(seconds) / cores(), *seconds))
+
+
+def test_an_untimed_cell_that_is_alone_takes_its_whole_time_from_the_budget(mbs, tmp_path, monkeypatch):
+    monkeypatch.setattr("study.core.lab.cores", lambda: 4)
+    mbs('sleep 0.2; echo "{}"')
+    for _ in range(2):  # the second time it has a record
+        lab = Lab(Set(tmp_path), "part", "column")
+        record = lab.one(CELL)
+        assert lab.spent == pytest.approx(record.seconds)
 
 
 def test_a_skipped_cell_has_a_reason_and_stays(tmp_path):
