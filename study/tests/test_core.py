@@ -469,6 +469,11 @@ def test_profiles_fit_their_plans_and_keep_to_their_budgets(name):
         assert all(column.replace("-", "").replace("_", "").isalnum() for column in columns), part
 
 
+@pytest.mark.parametrize("name, minutes", [("quick", 10), ("full", 100)])
+def test_what_a_profile_takes_is_what_it_promises(name, minutes):
+    assert profile.planned(profile.columns_of(profile.load(name), parts())) <= 60 * minutes
+
+
 @pytest.mark.parametrize("change, words", [
     (lambda data: data.pop("title"), "missing or unknown: title"), (lambda data: data.update(parts=None), "parts needs settings"),
     (lambda data: data.update(blas=[]), "must name a pair for all"), (lambda data: data.update(more=1), "unknown: more"),
