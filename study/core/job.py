@@ -26,7 +26,7 @@ def main(arguments):
     child.end_on_signals()
     folder, verb, *rest = arguments
     try:
-        verbs = {"run": run, "page": page, "pages": pages, "index": index, "start": node.first, "column": column, "draw": draw}
+        verbs = {"run": run, "pages": pages, "index": index, "start": node.first, "column": column, "draw": draw}
         verbs[verb](StudySet(Path(folder).resolve()), *rest)
         return 0
     except StudyError as error:
