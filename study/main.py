@@ -12,8 +12,9 @@ from analysis.core.parts import parts
 from study.core import child, cluster, locks, profile as profiles
 from study.core.front import duration, run_workflow, set_up
 from study.core.options import Parser, directory
-from study.core.profile import columns_of
-from study.core.studyset import listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, writable
+from study.core.profile import columns_of, planned
+from study.core.studyset import (StudySet, listed, need_own, need_records, need_tables, newest, opened, reopen, select, start, unfinished,
+                                 writable)
 
 MODULES = {"yaml": "python3-yaml", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib",
            "jinja2": "python3-jinja2", "snakemake": "snakemake", "scipy": "python3-scipy"}
@@ -76,22 +77,24 @@ def run(arguments):
     if way:
         need_modules()
         cluster.run(profile, options.only, chosen, folder, way, columns_of(profile, chosen))
-        _say_disturbance(folder)
-        print(f"site: {folder / 'index.html'}")
-        return 0
-    with locks.only_one(folder), locks.only_one_study(options.wait):
+    else:
+        _run_here(profile, options.only, chosen, folder, options.wait)
+    _say_disturbance(folder)
+    print(f"site: {folder / 'index.html'}")
+    return 0
+
+
+def _run_here(profile, only, chosen, folder, wait):
+    with locks.only_one(folder), locks.only_one_study(wait):
         set_up(folder / "run.log")
         need_modules()
-        studyset = start(folder, profile, options.only, chosen)
+        studyset = start(folder, profile, only, chosen)
         columns = columns_of(profile, studyset.facts["parts"])
         reopen(studyset, columns)
         need_tables(studyset)
         print(f"{len(studyset.contenders)} implementations, {len(columns)} parts: at most "
-              f"{duration(sum(sum(names.values()) for names in columns.values()))}; the site grows in {folder}/index.html")
+              f"{duration(planned(unfinished(studyset, columns)))}; the site grows in {folder}/index.html")
         run_workflow(studyset, columns)
-    _say_disturbance(folder)
-    print(f"site: {folder / 'index.html'}")
-    return 0
 
 
 def _say_disturbance(folder):
@@ -140,15 +143,14 @@ def dry_run(profile, chosen, folder, only, way):
     if only and (ROOT / "build" / "mbs").exists():
         select(listed(), only)
     print(f"profile {profile.name}: {profile.title}\nresults: {folder}\nleft out: {profile.dropped}")
+    columns = columns_of(profile, chosen)
+    left = unfinished(StudySet(folder), columns)
     if way:
-        cluster.dry_run(columns_of(profile, chosen), folder)
+        cluster.dry_run(left)
         return 0
-    total = 0
-    for part, columns in columns_of(profile, chosen).items():
-        seconds = sum(0 if (folder / ".done" / part / column).exists() else most for column, most in columns.items())
-        print(f"  {part:10} {'done' if not seconds else 'at most ' + duration(seconds)}: {', '.join(columns)}")
-        total += seconds
-    print(f"at most {duration(total)}, besides set-up and build")
+    for part, names in columns.items():
+        print(f"  {part:10} {'at most ' + duration(planned({part: left[part]})) if left[part] else 'done'}: {', '.join(names)}")
+    print(f"at most {duration(planned(left))}, besides set-up and build")
     return 0
 
 

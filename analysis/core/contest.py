@@ -15,13 +15,14 @@ def grouped(records):
 
 
 def contests(by_role, role):
-    """(scene, what was timed there, {contender: its cell}) for each scene of a role; of some there is a first look."""
+    """(scene, what was timed there, {contender: its cell}, the same of the first look) for each scene of a role; some have no look."""
     said = verdicts_of(by_role.get(f"{role}-gate", []))
     looks, timed = (dict(by_scene(by_role.get(one, []))) for one in (f"{role}-look", role))
     for scene, rows in (looks | timed).items():
         look, rows = looks.get(scene, rows[:0]), timed.get(scene, rows[:0])
-        cells = {name: looked(one) for name, one in cells_of(look, scene, said).items()} | cells_of(rows, scene, said)
-        yield scene, timing.Paired(rows[rows.status == "ok"]), cells
+        first = cells_of(look, scene, said)
+        cells = {name: looked(one) for name, one in first.items()} | cells_of(rows, scene, said)
+        yield scene, timing.Paired(rows[rows.status == "ok"]), cells, first
 
 
 def by_scene(records):

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 
 from analysis.core import schema
 from analysis.core.disturbance import disturbance, told
-from analysis.core.files import ROOT, read_object, write_json, write_text
+from analysis.core.files import ROOT, read_json, read_object, write_json, write_text
 from analysis.core.parts import pages, parts
 from analysis.core.style import save
 from analysis.core.text import between, ends, number
@@ -38,12 +38,19 @@ def write_part(folder, part):
         write_json(folder / part / name, known)
 
 
-def write_index(folder):
-    """index.html: the answers of the parts that are done; the further pages; and a page for each of the other parts."""
-    answers, known = answers_of(folder), {name: _module(one["folder"], "page").context(folder) for name, one in pages().items()}
-    made = {name: (ROOT / "analysis" / one["folder"] / "page.html.j2", known[name]) for name, one in pages().items()}
-    made |= {part: (HERE / "pending.html.j2", {}) for part, said in answers.items() if said is None}
-    made["index"] = (HERE / "index.html.j2", {"answers": answers, "examples": {name: one["examples"] for name, one in known.items()}})
+def write_index(folder, part=None):
+    """index.html: the answers of the parts that are done; the further pages, where all that is new is `part` only those that are made
+    of it; and a page for each of the other parts."""
+    answers, examples, made = answers_of(folder), {}, {}
+    for name, one in pages().items():
+        kept = folder / f".{name}.json"  # what the front page shows of it
+        if part in (None, *one["parts"]) or not kept.exists():
+            known = _module(one["folder"], "page").context(folder)
+            made[name] = ROOT / "analysis" / one["folder"] / "page.html.j2", known
+            write_json(kept, known["examples"])
+        examples[name] = read_json(kept)
+    made |= {one: (HERE / "pending.html.j2", {}) for one, said in answers.items() if said is None}
+    made["index"] = HERE / "index.html.j2", {"answers": answers, "examples": examples}
     for name, (path, more) in made.items():
         write_text(folder / f"{name}.html", template(path).render(**_frame(folder, name), **more))
 

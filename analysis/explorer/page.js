@@ -78,7 +78,7 @@ function fillMap(found) {
   for (const contest of found.set.contests.filter((one) => one.form === (found.form ?? FORMS[0]))) {
     const ranking = rankContest(contest, found.names);
     if (!ranking) continue;
-    const open = !(ranking.decided || ranking.settled), others = ranking.equivalent.filter((name) => name !== ranking.winner);
+    const open = !ranking.settled, others = ranking.equivalent.filter((name) => name !== ranking.winner);
     for (const name of [ranking.winner, ...others]) wins.set(name, (wins.get(name) ?? 0) + 1);
     const title = `${contest.scene}: ${ranking.winner}${open ? " (not decided)" : ""}${others.length ? `; as fast: ${others.join(", ")}` : ""}`;
     marks.push({n: contest.n, fill: contest.fill, colour: colourOf(ranking.winner), inner: others.length ? colourOf(others[0]) : null, open, title,

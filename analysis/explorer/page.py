@@ -84,5 +84,5 @@ def examples(contests, registry):
 
 def _said(ranking):
     others = [name for name in ranking.equivalent if name != ranking.winner]
-    doubt = "" if ranking.decided or ranking.settled else " (not decided)"
+    doubt = "" if ranking.settled else " (not decided)"
     return f"{ranking.winner}{doubt}" + (f"; as fast: {', '.join(others)}" if others else "")

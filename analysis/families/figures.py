@@ -40,10 +40,9 @@ def real_map(tables, look, registry):
     shown = {}
     for row in rows.itertuples():
         members = row.equivalent.split()
-        known = row.settled or row.decided
         shown |= {name: look.colour(name) for name in members}
         left.plot(row.n, getattr(row, DECIDES), marker=marks[row.family], markersize=10.5, markeredgewidth=2.6, markeredgecolor=look.colour(members[0]),
-                  markerfacecolor=look.colour(members[1] if len(members) > 1 else members[0]) if known else "white", linestyle="none")
+                  markerfacecolor=look.colour(members[1] if len(members) > 1 else members[0]) if row.settled else "white", linestyle="none")
     _scales(left, rows.n, rows[DECIDES], LABEL)
     left.set_title("Fastest library, by size and sparsity of the factor")
     _lead(right, rows, scenes, look, marks, registry)

@@ -15,9 +15,9 @@ def answers(tables, view):
     scenes, mine = tables["scenes"], best_form(tables["winners"], "libraries")
     if mine.empty:
         return [{"text": "Not measured: no library was timed that the gate agrees with.", "anchor": ""}]
-    real = _real(mine)
+    real = mine[~mine.family.str.contains("filled")]  # without the four-bar with artificial fill
     found = [{"anchor": "map", "text": f"On {len(real)} mechanisms of {real.family.nunique()} families (n = {number(real.variables.min(), 5)} to "
-              f"{number(real.variables.max(), 5)}), in front among libraries, or as fast to 5 %: {_shares(real)}. Of {_said(real)} of the "
+              f"{number(real.variables.max(), 5)}), in front among libraries, or as fast to 5 %: {_shares(real)}. Of {int(real.settled.astype(bool).sum())} of the "
               f"{len(real)} this run says who is fastest."}]
     if len(tables["held"]):
         held = summary(tables["held"])
@@ -86,16 +86,6 @@ def files(tables, view):
     """rule.json, which `mbs describe` applies: harness/src/describe/README.md."""
     found = document(tables)
     return {"rule.json": {key: view.context[name] for key, name in (("machine", "cpu_model"), ("commit", "commit"))} | found} if found else {}
-
-
-def _real(rows):
-    """Without the four-bar with artificial fill."""
-    return rows[~rows.family.str.contains("filled")]
-
-
-def _said(rows):
-    """Of how many the fastest, or all that are as fast, are known."""
-    return int((rows.decided.astype(bool) | rows.settled.astype(bool)).sum())
 
 
 def _shares(rows):

@@ -3,7 +3,7 @@
 import pandas
 
 from analysis.core import timing
-from analysis.core.contest import agreed, by_scene, cells_of, contests, grouped, ratio_to, rival_of
+from analysis.core.contest import agreed, by_scene, contests, grouped, ratio_to, rival_of
 from analysis.core.controls import controls
 from analysis.core.registry import TWIN
 from analysis.core.schema import conform, of_part
@@ -23,13 +23,12 @@ def build(records, view):
     layers = {"libraries": registry.libraries, "all": [name for name in registry.variants if name not in registry.examples]}
     scenes, winners, twins = [], [], []
     for scheme in SCHEMES:
-        looks = {scene: cells_of(rows, scene, {}) for scene, rows in by_scene(by_role.get(f"{scheme}-look", []))}
-        for scene, timed, cells in contests(by_role, scheme):
+        for scene, timed, cells, looks in contests(by_role, scheme):
             known = {"family": family_of(scene), "scene": scene, "scheme": scheme,
                      "variables": about[scene].output.get("variables") if scene in about else None}
             rival = rival_of(timed, cells, registry)
             scenes += [known | {key: value for key, value in cells[name].items() if key in schema["scenes"]}
-                       | {"look_us": looks[scene].get(name, {}).get("step_us")}
+                       | {"look_us": looks.get(name, {}).get("step_us")}
                        | ratio_to("to_rival", timed, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
             winners += [known | {"layer": layer} | _winner(timed, cells, names) for layer, names in layers.items()]
         twins += [{"scheme": scheme} | row for _, rows in by_scene([one for one in by_role.get(scheme, []) if _has_twin(one)])

@@ -22,7 +22,7 @@ def build(records, view):
              "steps": [], "scenes": [], "leads": [], "batches": _batches(by_role.get("batch", [])),
              "sweeps": _sweeps(by_role.get("sweep", []))}
     for role in (*FORMS, *KINDS):
-        for scene, timed, cells in contests(by_role, role):
+        for scene, timed, cells, _ in contests(by_role, role):
             names = sorted((name for name in cells if name in order), key=order.get)  # without anchors of other pairs
             if role in FORMS:
                 loops = int(scene.partition(":")[2])

@@ -130,8 +130,7 @@ int check(const CheckOptions& options) {
   for (const Scene& scene : scenes) {
     const StepSettings settings = options.step.resolve(scene.model);
     const auto serves = [&](const NamedVariant& one) {
-      const Serves& served = one.variant->serves;
-      return why_not_served(served.terms, scene.model).empty() && why_not_served(served, settings).empty();
+      return why_not_served(one.variant->serves, scene.model, settings).empty();
     };
     ReferenceRun reference;  // not run for nobody: on a large scene it takes minutes
     if (why_unsuited(scene.model, settings).empty() && std::ranges::any_of(variants, serves)) {

@@ -123,6 +123,10 @@ TEST(Factory, WhatAVariantDoesNotServeIsSaid) {
     EXPECT_EQ(why_not_served(everything, settings), "") << option;
   }
   EXPECT_EQ(why_not_served(nothing, {}), "");
+  const Model& springs = model_of("springs, planar");
+  EXPECT_EQ(why_not_served(nothing, springs, {.precision = Precision::mixed}), "--precision mixed");
+  EXPECT_EQ(why_not_served(nothing, springs, {}), why_not_served(Terms{}, springs));
+  EXPECT_EQ(why_not_served(everything, springs, {.precision = Precision::mixed}), "");
 }
 
 TEST(Factory, RattleIsForScenesWithoutDriversAndDampers) {

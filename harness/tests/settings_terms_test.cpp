@@ -30,7 +30,7 @@ TEST_P(SettingsTerms, Agree) {
     const ReferenceRun& reference =
         suited ? test::kept_reference(setting.name, scene, settings) : none;
     const Verdict verdict = check_in_process(scene, variant, settings, reference);
-    const bool served = why_not_served(variant.variant->serves.terms, scene.model).empty();
+    const bool served = why_not_served(variant.variant->serves, scene.model, settings).empty();
     EXPECT_EQ(verdict.verdict, suited && served ? "agrees" : "unsupported") << verdict.reason;
   }
 }

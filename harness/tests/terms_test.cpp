@@ -20,7 +20,7 @@ void expect_agreement(const NamedVariant& variant, const char* name, Projections
     const StepSettings settings = term_settings(scene.model, {.projections = projections});
     const Verdict verdict =
         check_in_process(scene, variant, settings, test::kept_reference(name, scene, settings));
-    const bool served = why_not_served(variant.variant->serves.terms, scene.model).empty();
+    const bool served = why_not_served(variant.variant->serves, scene.model, settings).empty();
     EXPECT_EQ(verdict.verdict, served ? "agrees" : "unsupported") << verdict.reason;
   }
 }

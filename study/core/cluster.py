@@ -27,15 +27,12 @@ def profile_folder(name):
     return folder
 
 
-def dry_run(columns, folder):
-    """Prints the jobs that are not done, and the node-hours of their budgets."""
-    total = jobs = 0
-    for part, names in columns.items():
-        for column, seconds in names.items():
-            if not (folder / ".done" / part / column).exists():
-                print(f"  {part:10} {column:24} at most {duration(seconds)} of a node")
-                total, jobs = total + seconds, jobs + 1
-    print(f"{jobs} jobs, at most {total / 3600:.2f} node-hours")
+def dry_run(columns):
+    """Prints the jobs of these columns, and the node-hours of their budgets."""
+    jobs = [(part, column, seconds) for part, names in columns.items() for column, seconds in names.items()]
+    for part, column, seconds in jobs:
+        print(f"  {part:10} {column:24} at most {duration(seconds)} of a node")
+    print(f"{len(jobs)} jobs, at most {sum(seconds for _, _, seconds in jobs) / 3600:.2f} node-hours")
 
 
 def run(profile, only, chosen, folder, cluster, columns):

@@ -10,6 +10,7 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, read_json, write_json
 from study.core import child
 from study.core.job import FRONT
+from study.core.profile import planned
 
 
 class Display:
@@ -121,8 +122,8 @@ class _Cells:
     def _said(self, part, column, cells, text):
         if (part, column) != self.now:
             self.now, self.since = (part, column), time.monotonic()
-        ahead = sum(seconds for one, names in self.columns.items() for name, seconds in names.items()
-                    if not self.set.stamp(one, name).exists())
+        ahead = planned({one: {name: seconds for name, seconds in names.items() if not self.set.stamp(one, name).exists()}
+                         for one, names in self.columns.items()})
         left = duration(ahead - (time.monotonic() - self.since))
         place = list(self.columns).index(part) + 1
         return f"[{place}/{len(self.columns)}] {part}", f"{column}: {cells}, at most {left} left" + (f"; {text}" if text else "")

@@ -1,27 +1,39 @@
 # The gate: whose motion agrees with the reference's on a scene.
+from dataclasses import dataclass, replace
+
 from study.core.cell import Cell
 from study.core.contender import by_environment
 
 
-def verdicts(lab, scene, contenders, role="gate", settings=(), *, each, seconds, drop=False):
-    """{contender: (verdict, reason)}. `each`: s that one contender may take; `seconds`: a process. Those of one environment
-    share a process, which runs the reference once for all; if it ends early, its contenders are asked one by one, so that
-    only who ended it is lost; not where it was out of time with enough for all of them, which is the reference's."""
-    cells = [Cell("check", scene, group, (*settings, "--time-limit", f"{each:g}"), role, seconds=seconds)
-             for group in by_environment(contenders).values()]
-    found = {}
-    for cell, record in zip(cells, lab.run(cells, drop)):
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """Contenders on a scene. `settings`: of the step."""
+    scene: str
+    contenders: list
+    role: str = "gate"
+    settings: tuple = ()
+
+
+def verdicts(lab, asked, *, each, seconds=None, drop=False):
+    """[{contender: (verdict, reason)}] of each of `asked`, all at once. `each`: s that one contender may take; `seconds`: a process,
+    else enough for all of it and the reference. Those of one environment share a process, which runs the reference once for all; if it
+    ends early, its contenders are asked one by one, so that only who ended it is lost; not where it was out of time with enough for
+    all of them, which is the reference's."""
+    cells = [(one, Cell("check", one.scene, group, (*one.settings, "--time-limit", f"{each:g}"), one.role,
+                        seconds=seconds or each * (1 + len(one.contenders))))
+             for one in asked for group in by_environment(one.contenders).values()]
+    found = {one: {} for one in asked}
+    for (one, cell), record in zip(cells, lab.run([cell for _, cell in cells], drop)):
         group = cell.contenders
-        slow_reference = record.status == "timeout" and seconds >= each * (1 + len(group))
+        slow_reference = record.status == "timeout" and cell.seconds >= each * (1 + len(group))
         if record.done or record.status == "dropped" or slow_reference or len(group) == 1:
-            found |= {one: record.verdicts[one.name] for one in group}
+            found[one] |= {who: record.verdicts[who.name] for who in group}
         else:
-            for one in group:
-                found |= verdicts(lab, scene, [one], role, settings, each=each, seconds=seconds, drop=drop)
-    return found
+            for said in verdicts(lab, [replace(one, contenders=[who]) for who in group], each=each, seconds=seconds, drop=drop):
+                found[one] |= said
+    return list(found.values())
 
 
-def agreeing(lab, scene, contenders, *options, **limits):
-    """Those of `contenders` with whom the gate agrees, in their order."""
-    found = verdicts(lab, scene, contenders, *options, **limits)
-    return [one for one in contenders if found[one][0] == "agrees"]
+def agreeing(lab, asked, **limits):
+    """[those with whom the gate agrees, in their order] of each of `asked`."""
+    return [[who for who in one.contenders if said[who][0] == "agrees"] for one, said in zip(asked, verdicts(lab, asked, **limits))]

@@ -26,7 +26,7 @@ def main(arguments):
     child.end_on_signals()
     folder, verb, *rest = arguments
     try:
-        verbs = {"run": run, "page": page, "pages": pages, "index": index, "start": node.first, "column": column, "draw": draw}
+        verbs = {"run": run, "pages": pages, "index": index, "start": node.first, "column": column, "draw": draw}
         verbs[verb](StudySet(Path(folder).resolve()), *rest)
         return 0
     except StudyError as error:
@@ -47,7 +47,7 @@ def run(studyset, part):
         if not studyset.stamp(part, name).exists():
             _measure(studyset, part, name, seconds)
     page(studyset, part)
-    index(studyset)  # nothing else runs now
+    index(studyset, part)  # nothing else runs now
 
 
 def column(studyset, part, name):
@@ -88,9 +88,10 @@ def pages(studyset):
     index(studyset)
 
 
-def index(studyset):
+def index(studyset, part=None):
+    """`part`: all that is new since it was made."""
     from analysis.core import site
-    site.write_index(studyset.folder)
+    site.write_index(studyset.folder, part)
 
 
 def end_with(front):

@@ -15,6 +15,7 @@ from study.core import executor, locks
 from study.core.executor import program_of
 
 ROOM = 2**20  # bytes: where less is free, a failure is none of the program
+BETWEEN = 0.005  # s that the study itself takes for a cell, about: it writes the record, and plans
 NOT_WRITTEN = re.compile(r"cannot write|No space left|Disk quota|Read-only file system")
 
 
@@ -53,7 +54,7 @@ class Lab:
         so: order cells by their worth."""
         cells = [cell.settled() for cell in cells]
         self._expect(cells)
-        found, todo = {}, []
+        found, todo, known, before = {}, [], set(self.names), self.spent
         for cell in dict.fromkeys(cells):
             path = self._path(cell)
             if path.exists():
@@ -65,12 +66,12 @@ class Lab:
         alone = [cell for cell in todo if cell.timed]
         with ThreadPoolExecutor(cores()) as pool:
             others = [cell for cell in todo if not cell.timed]
-            for cell, record in zip(others, pool.map(lambda one: self._made(one, drop, cores()), others)):
-                found[cell] = record
+            found |= zip(others, pool.map(lambda one: self._made(one, drop), others))
+        longest = max((record.seconds for record in found.values() if record.name not in known), default=0.0)
+        self.spent = max(self.spent, before + longest)  # other cores were idle beside it
         if alone:
             with locks.only_one_timing():
-                for cell in alone:
-                    found[cell] = self._made(cell, drop, 1)
+                found |= {cell: self._made(cell, drop) for cell in alone}
         return [found[cell] for cell in cells]
 
     def skip(self, cell, status, reason):
@@ -104,10 +105,10 @@ class Lab:
 
     @property
     def left(self):
-        """Seconds of the budget, counted in those of the processes: the same in a run that was resumed."""
+        """Seconds of the budget, counted by the records: the same in a run that was resumed."""
         return self.budget - self.spent
 
-    def _made(self, cell, drop, at_once):
+    def _made(self, cell, drop):
         program = program_of(*cell.built.split("@"))
         if not cell.own and not (ROOT / program).exists():  # `mbs` is there, or nothing is
             return self._skipped(cell, "unavailable", f"{program} is missing: study/setup builds it")
@@ -123,7 +124,7 @@ class Lab:
             data["context"] = self._context(cell, context)
         if not self._path(cell).exists():  # a node that was given up may be at work still: the first record stays
             records.write(self._path(cell), data)
-        return self._keep(records.read(self._path(cell), self._name(cell)), at_once)
+        return self._keep(records.read(self._path(cell), self._name(cell)))
 
     def _asked_of(self, cell):
         """The context of a cell's environment."""
@@ -145,10 +146,10 @@ class Lab:
         """What is known of a cell that says nothing of it: other programs have compilers and libraries of their own."""
         return context if cell.own else {key: context[key] for key in executor.OF_ALL if key in context}
 
-    def _keep(self, record, at_once=None):
+    def _keep(self, record):
         if record.name not in self.names:
             self.names[record.name] = None  # in their order
-            self.spent += record.seconds / (at_once or (1 if record.cell["timed"] else cores()))
+            self.spent += BETWEEN + record.seconds / (1 if record.cell["timed"] else cores())
             self._show_state()
         return record
 

@@ -9,6 +9,7 @@ from analysis.core.files import ROOT, read_bytes
 from analysis.core.parts import parts
 
 FOLDER = ROOT / "study" / "profiles"
+STARTED, DRAWN = 4.5, 0.015  # s around the columns of a part, about: its process and pages; for each second of theirs, the last cells
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,11 @@ def plan_of(part):
 def columns_of(profile, chosen):
     """{part: {column: seconds at most}}, in the order of the list."""
     return {part: plan_of(part).columns(profile.parts[part]) for part in parts() if part in chosen}
+
+
+def planned(columns):
+    """s at most of {part: {column: seconds}}, with what is around the columns of each part."""
+    return sum(STARTED + (1 + DRAWN) * sum(names.values()) for names in columns.values() if names)
 
 
 def by_share(columns):

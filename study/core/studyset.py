@@ -222,32 +222,33 @@ def finish(studyset, part, column, names):
     write_json(studyset.stamp(part, column), {name: digest(base / name) for name in sorted(set(names))})
 
 
+def unfinished(studyset, columns):
+    """Those of `columns`, {part: {column: seconds}}, that are still to be run: also where a record is missing, or says that a program is
+    which is there now. StudyError naming a record that was changed."""
+    return {part: {name: seconds for name, seconds in names.items() for stamp in [studyset.stamp(part, name)]
+                   if not stamp.exists() or _missing(studyset, stamp) or _there_now(studyset, stamp)} for part, names in columns.items()}
+
+
 def reopen(studyset, columns):
-    """Makes the workflow run columns again of which a record is missing, or says that a program is which is there now,
-    and draw pages that are missing or empty; StudyError naming a record that was changed. `columns`: {part: names}."""
-    index = studyset.folder / "index.html"
-    for part, names in columns.items():
-        page = studyset.folder / f"{part}.html"
-        stamps = [studyset.stamp(part, column) for column in names]
-        again = [one for one in stamps if not one.exists() or _missing(studyset, one) or _there_now(studyset, one)]
-        if again or _empty(page):
-            for path in (*again, studyset.page(part), page, index):
+    """Makes the workflow run what is unfinished, and draw pages that are missing or empty."""
+    if _empty(studyset.folder / "index.html"):
+        studyset.page([*columns][-1]).unlink(missing_ok=True)  # it is drawn with each part
+    for part, names in unfinished(studyset, columns).items():
+        page, stamps = studyset.folder / f"{part}.html", [studyset.stamp(part, name) for name in names]
+        if names or _empty(page):
+            for path in (*(one for stamp in stamps for one in _there_now(studyset, stamp)), *stamps, studyset.page(part), page):
                 path.unlink(missing_ok=True)  # the workflow runs nothing whose results are all there
-    if _empty(index):
-        index.unlink(missing_ok=True)
 
 
 def _there_now(studyset, stamp):
-    """Removes a column's records of programs that were not there, and are now; whether there were any."""
+    """Paths of a column's records of programs that were not there, and are now."""
     base, found = studyset.folder / "raw" / stamp.parent.name, []
-    for name in read_object(stamp):
-        record = records.read(base / name, name)
-        program = record.cell["program"]
-        if record.status == "unavailable" and program != "mbs" and (ROOT / program_of(program)).exists():
-            found.append(base / name)
-    for path in found:
-        path.unlink()
-    return bool(found)
+    for path in [base / name for name in read_object(stamp)] if stamp.exists() else ():
+        record = records.read(path, path.name) if path.exists() else None
+        program = record and record.status == "unavailable" and record.cell["program"]
+        if program and program != "mbs" and (ROOT / program_of(program)).exists():
+            found.append(path)
+    return found
 
 
 def _empty(page):

@@ -5,7 +5,7 @@ from analysis.core.timing import LEFT_OUT
 from analysis.families.rule import shape
 from analysis.families.tables import SCHEMES
 from study.core.cell import Cell
-from study.core.contest import about, contest, elsewhere, usual
+from study.core.contest import Form, about, contests, elsewhere, times_of, usual
 from study.core.setting import Setting
 
 SETTINGS = {"scenes": list,     # families with their sizes, as the program takes them, the most telling first
@@ -30,14 +30,13 @@ def run(lab, column):
     listed = lab.settings["scenes"]
     controls = {listed[len(listed) * place // CONTROLS] for place in range(CONTROLS) if listed}  # from small to large
     here, looks, compared = usual(lab), {}, read_json(RULE).get("candidates", {})  # the next rule needs their times where others were faster
-    for scene in listed if here else []:
-        record = about(lab, scene)
+    for scene, record in zip(listed, about(lab, listed)) if here else []:
         elsewhere(lab, Cell("bench", scene, role="penalty-look"))
+        forms = []
         for scheme in SCHEMES:
             setting, step_s = Setting(scheme), expected(record, scheme)
-            before = looks.setdefault((shape(scene), scheme), [])
             chosen = [one for one in here if lab.registry.serves(one.variant, *setting.needs)]
-            behind = [one for one in chosen if falling(one.name, before)]
+            behind = [one for one in chosen if falling(one.name, looks.get((shape(scene), scheme), []))]
             for one in chosen if step_s > MOST_S else behind:
                 lab.skip(Cell("bench", scene, (one,), role=f"{scheme}-look{LEFT_OUT}"), "excluded",
                          f"a step would take above {MOST_S:g} s" if step_s > MOST_S else
@@ -46,11 +45,11 @@ def run(lab, column):
                 continue
             shorter = LONG_S / max(step_s, LONG_S)
             look = max(4, round(LOOK * shorter))
-            rows = contest(lab, scene, [one for one in chosen if one not in behind], scheme, setting.words(), own=lab.registry.own, wide=compared.get(scheme, ()),
-                           stretch=() if scene.startswith("four-bar:") and step_s < SHORT_S else ("--steps", max(4, round(STEPS * shorter))),
-                           look=look, control=scene in controls, patience=max(1.0, 2 * look * step_s),
-                           processes=min(lab.settings["processes"][scheme], PROCESSES if shorter < 1 else 99), samples=lab.settings["samples"])
-            before.append(multiples(rows, lab.registry.libraries))
+            forms.append(Form(scheme, [one for one in chosen if one not in behind], min(lab.settings["processes"][scheme], PROCESSES if shorter < 1 else 99),
+                              lab.settings["samples"], setting.words(), compared.get(scheme, ()), look=look, patience=max(1.0, 2 * look * step_s),
+                              stretch=() if scene.startswith("four-bar:") and step_s < SHORT_S else ("--steps", max(4, round(STEPS * shorter)))))
+        for form, rows in zip(forms, contests(lab, scene, forms, own=lab.registry.own, control=scene in controls)):
+            looks.setdefault((shape(scene), form.role), []).append(multiples(rows, lab.registry.libraries))
 
 
 def expected(record, scheme):
@@ -63,7 +62,7 @@ def expected(record, scheme):
 
 def multiples(rows, libraries):
     """{name: time of the look over the fastest library's}; of who was left out as too slow: infinite."""
-    times = rows[rows.status == "ok"].groupby("implementation").step_us.median()
+    times = times_of(rows)
     best = min((time for name, time in times.items() if name in libraries), default=None)
     slow = dict.fromkeys(rows[rows.status == "slower"].implementation, float("inf"))
     return slow | ({name: time / best for name, time in times.items()} if best else {})

@@ -5,8 +5,8 @@ from analysis.core.files import ROOT
 from analysis.core.timing import LEFT_OUT, processes as rows_of
 from analysis.limit.tables import LIMIT
 from study.core.cell import Cell
-from study.core.contest import CHECK_S, about, contest, elsewhere, near, usual
-from study.core.gate import verdicts
+from study.core.contest import CHECK_S, Form, about, contests, elsewhere, near, usual
+from study.core.gate import Asked, verdicts
 from study.core.profile import by_share
 from study.core.setting import Setting
 from study.core.timing import measure
@@ -51,7 +51,7 @@ def sizes(lab):
                  if row.implementation not in timed_once and row.status != "dropped"}
         if loops in known:
             asked = near(rows, here, {LIMIT, *lab.registry.own}, always=True)
-            verdicts(lab, scene, asked, "size-gate", each=CHECK_S, seconds=CHECK_S * (1 + len(asked)), drop=True)
+            verdicts(lab, [Asked(scene, asked, "size-gate")], each=CHECK_S, drop=True)
 
 
 def growth(lab):
@@ -80,11 +80,12 @@ def listed(settings):
 
 def scenes(lab):
     here = usual(lab)
-    for scene in listed(lab.settings) if here else []:
-        about(lab, scene.name)
+    chosen = listed(lab.settings) if here else []
+    about(lab, [scene.name for scene in chosen])
+    for scene in chosen:
         elsewhere(lab, Cell("bench", scene.name, role=f"{scene.kind}-look"))
-        contest(lab, scene.name, here, scene.kind, scene.settings, own={LIMIT, *lab.registry.own}, always=True,
-                processes=lab.settings["processes"], samples=lab.settings["samples"])
+        contests(lab, scene.name, [Form(scene.kind, here, lab.settings["processes"], lab.settings["samples"], scene.settings)],
+                 own={LIMIT, *lab.registry.own}, always=True)
 
 
 def batches(lab):

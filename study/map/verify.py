@@ -34,8 +34,8 @@ def fit(lab, scene, contenders):
     pilots = dict(zip(contenders, _pilots(lab, scene, contenders)))
     verdicts, rule, limit = {}, Rule(lab, scene, pilots), lab.settings["limits"]["check"]
     while todo := [one for one in rule.chosen(verdicts) if one not in verdicts]:
-        verdicts |= {one: found == "agrees" for one, (found, _) in gate.verdicts(
-            lab, scene.name, todo, each=limit / SLOW, seconds=limit).items()}
+        [said] = gate.verdicts(lab, [gate.Asked(scene.name, todo)], each=limit / SLOW, seconds=limit)
+        verdicts |= {one: found == "agrees" for one, (found, _) in said.items()}
     best = rule.best(verdicts)
     for one, pilot in pilots.items():
         if pilot.alive and one not in verdicts:

@@ -40,4 +40,4 @@ def gate(problem, contenders):
                 seconds=2 * CHECK_S)
 
 
-columns, run = by_share({"problems": (0.5, problems), "modelling": (0.5, modelling.run)})
+columns, run = by_share({"problems": (0.55, problems), "modelling": (0.45, modelling.run)})

@@ -13,7 +13,7 @@ from study.core.lab import Lab
 from study.core.studyset import StudySet, context_of, listed
 from study.core.timing import measure as timed
 from study.tests.conftest import FAKE, ROOT, TEMPORARY
-from study.tools import add
+from study.tools import add, shelf
 
 pytestmark = pytest.mark.slow
 NEW = "new_one/only"
@@ -122,6 +122,16 @@ def test_who_fails_the_gate_is_not_timed(folder, monkeypatch, capsys):
     told = capsys.readouterr().out
     assert told.count("disagrees: ") == 2 and all(scene in told for scene in table.scene)  # a line a part
     assert set(table.status) == {"disagrees"} and "q differs by 0.4 m" in table.reason[0] and set(table.hands) == {"stays"}
+
+
+def test_who_is_not_timed_is_told_by_the_term_that_is_not_served_not_by_its_places(tmp_path, capsys):
+    reasons = [f"it does not serve {term}: the scene has {what} (mbs list tells who does)"
+               for term, what in (("dots", "constraint 'a'"), ("dots", "constraint 'b'"), ("springs", "spring 'c'"))]
+    rows = [{"part": "families", "scene": f"robot:{place}", "layer": "all", "status": "unsupported", "reason": reason, "hands": "stays"}
+            for place, reason in enumerate(reasons)]
+    add.tell(shelf.table(rows, "added"), tmp_path, NEW)
+    lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("unsupported")]
+    assert lines == ["unsupported: it does not serve dots: robot:0, robot:1", "unsupported: it does not serve springs: robot:2"]
 
 
 @pytest.mark.parametrize("name, status", [("bad/crash", "crashed"), ("bad/passes", "disagrees"), ("bad/nan", "diverged")])

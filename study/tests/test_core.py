@@ -17,7 +17,7 @@ import numpy
 import pandas
 import pytest
 
-from analysis.core import records, schema
+from analysis.core import records, schema, site
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_json, read_object, write_json, write_text
 from analysis.core.parts import parts
@@ -30,7 +30,7 @@ from study.core import child, executor, front, locks, profile, studyset
 from study.core.cell import Cell
 from study.core.contender import Contender, by_environment, on_usual_pairs
 from study.core.front import duration
-from study.core.lab import Lab, cores
+from study.core.lab import BETWEEN, Lab, cores
 from study.core.options import Parser, positive
 from study.tests.conftest import FAKE, TEMPORARY, study
 
@@ -346,7 +346,17 @@ def test_untimed_cells_share_the_cores_and_timed_ones_have_the_machine(mbs, tmp_
     assert (tmp_path / "log").read_text().split() == ["begin", "end"] * 3
     lab = Lab(Set(tmp_path), "part", "others")
     records_of = lab.run(cells(4))
-    assert lab.spent == pytest.approx(sum(one.seconds for one in records_of) / cores())
+    seconds = [one.seconds for one in records_of]
+    assert lab.spent == pytest.approx(max(4 * BETWEEN + sum(seconds) / cores(), *seconds))
+
+
+def test_an_untimed_cell_that_is_alone_takes_its_whole_time_from_the_budget(mbs, tmp_path, monkeypatch):
+    monkeypatch.setattr("study.core.lab.cores", lambda: 4)
+    mbs('sleep 0.2; echo "{}"')
+    for _ in range(2):  # the second time it has a record
+        lab = Lab(Set(tmp_path), "part", "column")
+        record = lab.one(CELL)
+        assert lab.spent == pytest.approx(record.seconds)
 
 
 def test_a_skipped_cell_has_a_reason_and_stays(tmp_path):
@@ -459,6 +469,11 @@ def test_profiles_fit_their_plans_and_keep_to_their_budgets(name):
         assert all(column.replace("-", "").replace("_", "").isalnum() for column in columns), part
 
 
+@pytest.mark.parametrize("name, minutes", [("quick", 10), ("full", 100)])
+def test_what_a_profile_takes_is_what_it_promises(name, minutes):
+    assert profile.planned(profile.columns_of(profile.load(name), parts())) <= 60 * minutes
+
+
 @pytest.mark.parametrize("change, words", [
     (lambda data: data.pop("title"), "missing or unknown: title"), (lambda data: data.update(parts=None), "parts needs settings"),
     (lambda data: data.update(blas=[]), "must name a pair for all"), (lambda data: data.update(more=1), "unknown: more"),
@@ -524,16 +539,16 @@ def test_a_column_is_opened_again_only_where_a_record_is_missing(tmp_path):
         records.write(tmp_path / "raw" / "part" / column / "one.json", FIELDS)
         studyset.finish(known, "part", column, [f"{column}/one.json"])
     (tmp_path / "part.html").write_text("page")
-    studyset.reopen(known, {"part": ["a", "b"]})
+    studyset.reopen(known, {"part": {"a": 1.0, "b": 1.0}})
     assert known.stamp("part", "a").exists() and (tmp_path / "part.html").exists()
     (tmp_path / "raw" / "part" / "b" / "one.json").unlink()
     with pytest.raises(StudyError, match="one.json is missing"):
         studyset.need_records(known)
-    studyset.reopen(known, {"part": ["a", "b"]})
+    studyset.reopen(known, {"part": {"a": 1.0, "b": 1.0}})
     assert known.stamp("part", "a").exists() and not known.stamp("part", "b").exists()
     assert not (tmp_path / "part.html").exists()  # or nothing would be run
     records.write(tmp_path / "raw" / "part" / "a" / "one.json", FIELDS | {"seconds": 9.0})
-    for check in (studyset.need_records, lambda one: studyset.reopen(one, {"part": ["a"]})):
+    for check in (studyset.need_records, lambda one: studyset.reopen(one, {"part": {"a": 1.0}})):
         with pytest.raises(StudyError, match="is not the one that was measured"):
             check(known)
 
@@ -545,12 +560,32 @@ def test_a_column_is_opened_again_where_a_program_was_missing_and_is_there_now(t
         cell = FIELDS["cell"] | {"program": "engine"}
         records.write(known.folder / "raw" / "part" / "a" / f"{name}.json", FIELDS | {"cell": cell, "status": status})
     studyset.finish(known, "part", "a", ["a/absent.json", "a/other.json"])
-    studyset.reopen(known, {"part": ["a"]})
+    studyset.reopen(known, {"part": {"a": 1.0}})
     assert known.stamp("part", "a").exists()
     write_text(program, "")
-    studyset.reopen(known, {"part": ["a"]})
+    studyset.reopen(known, {"part": {"a": 1.0}})
     assert not known.stamp("part", "a").exists()
     assert [path.name for path in (known.folder / "raw" / "part" / "a").iterdir()] == ["other.json"]
+
+
+def test_a_dry_run_has_the_time_of_a_part_whose_programs_are_there_now(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(studyset, "ROOT", tmp_path)
+    known, chosen = studyset.StudySet(tmp_path / "set"), profile.load("smoke", ["engines"])
+    [columns] = profile.columns_of(chosen, ["engines"]).values()
+    for column in columns:
+        cell = FIELDS["cell"] | {"program": "study/engines/engine_ode"}
+        records.write(known.folder / "raw" / "engines" / column / "one.json", FIELDS | {"cell": cell, "status": "unavailable"})
+        studyset.finish(known, "engines", column, [f"{column}/one.json"])
+    main.dry_run(chosen, ["engines"], known.folder, [], None)
+    assert "engines    done: " in capsys.readouterr().out
+    write_text(tmp_path / "build" / "study" / "engines" / "engine_ode", "")
+    main.dry_run(chosen, ["engines"], known.folder, [], None)
+    assert f"engines    at most {duration(profile.planned({'engines': columns}))}: " in capsys.readouterr().out
+
+
+def test_the_time_that_is_planned_has_what_is_around_each_part_that_runs():
+    around = profile.planned({"one": {"a": 10.0, "b": 20.0}, "two": {"c": 1.0}, "done": {}}) - 31.0
+    assert around == pytest.approx(2 * profile.STARTED + profile.DRAWN * 31.0) and around > 0
 
 
 @pytest.mark.parametrize("damage", [Path.unlink, lambda path: path.write_text("")])
@@ -558,14 +593,26 @@ def test_a_page_that_is_missing_or_empty_is_drawn_again(tmp_path, damage):
     known = studyset.StudySet(tmp_path)
     for name in (".done/one.page", ".done/two.page", "one.html", "two.html", "index.html"):
         write_text(tmp_path / name, "page")
-    studyset.reopen(known, {"one": [], "two": []})
+    studyset.reopen(known, {"one": {}, "two": {}})
     assert known.page("one").exists() and known.page("two").exists() and (tmp_path / "index.html").exists()
     damage(tmp_path / "one.html")
-    studyset.reopen(known, {"one": [], "two": []})
-    assert not known.page("one").exists() and known.page("two").exists() and not (tmp_path / "index.html").exists()
-    write_text(tmp_path / "index.html", "")
-    studyset.reopen(known, {"two": []})
-    assert not (tmp_path / "index.html").exists() and known.page("two").exists()
+    studyset.reopen(known, {"one": {}, "two": {}})
+    assert not known.page("one").exists() and known.page("two").exists()
+    damage(tmp_path / "index.html")  # which is drawn with each part
+    studyset.reopen(known, {"one": {}, "two": {}})
+    assert not known.page("two").exists()
+
+
+def test_a_further_page_is_drawn_again_only_with_a_part_that_it_is_made_of(tmp_path):
+    context = {"commit": "0" * 40, "dirty": False, "cpu_model": "P", "num_cpus": 1, "compiler": "", "flags": "", "kernel": "", "machine": ""}
+    write_json(tmp_path / "set.json", {"profile": "quick", "only": [], "parts": ["map"], "programs": {}, "context": context, "date": ""})
+    write_json(tmp_path / "registry.json", {"implementations": []})
+    drawn = []
+    for part in (None, "tuning", "map", "tuning"):
+        site.write_index(tmp_path, part)
+        drawn.append(((tmp_path / "explore.html").stat().st_mtime_ns, (tmp_path / "index.html").stat().st_mtime_ns))
+    pages, fronts = zip(*drawn)
+    assert pages[0] == pages[1] < pages[2] == pages[3] and len(set(fronts)) == 4
 
 
 REGISTRY = Registry({"implementations": [

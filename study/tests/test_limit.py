@@ -71,16 +71,25 @@ def test_the_fastest_library_is_timed_beside_itself_where_a_control_is_asked_for
     times = {"one/a": 2.0, "one/b": 1.5, "own/x": 1.0, "own/y": 1.2}
     measured.said = lambda scene, names: rows(**{name.replace("/", "_"): times[name] for name in names if name in times})
     for control, twins in ((False, []), (True, ["one/b+twin"])):
-        contest.contest(Asked(), "ladder:2", Asked().contenders, "penalty", own=REGISTRY.own, always=True, processes=2, samples=1, control=control)
+        contest.contests(Asked(), "ladder:2", [contest.Form("penalty", Asked().contenders, 2, 1)], own=REGISTRY.own, always=True, control=control)
         assert measured.asked[-1][2] == [*times, *twins]
+
+
+def test_the_gates_of_all_forms_run_at_once_after_the_looks(measured):
+    lab, batches = Asked(), []
+    lab.run = lambda cells, drop: batches.append([cell.role for cell in cells]) or Asked.run(lab, cells, drop)
+    forms = [contest.Form(role, lab.contenders, 2, 1) for role in ("penalty", "saddle-point")]
+    assert len(contest.contests(lab, "ladder:2", forms, own=REGISTRY.own)) == 2
+    assert [role for role, *_ in measured.asked] == ["penalty-look", "saddle-point-look", "penalty", "saddle-point"]
+    assert batches == [["penalty-gate", "saddle-point-gate"]]
 
 
 def test_families_have_controls_from_small_to_large(monkeypatch):
     asked = []
-    monkeypatch.setattr(families, "about", lambda lab, scene: SimpleNamespace(done=False))
-    monkeypatch.setattr(families, "contest", lambda lab, scene, *_, control, **__: asked.append((scene, control)) or rows())
+    monkeypatch.setattr(families, "about", lambda lab, scenes: [SimpleNamespace(done=False)] * len(scenes))
+    monkeypatch.setattr(families, "contests", lambda lab, scene, forms, *, control, **_: asked.append((scene, control)) or [rows() for _ in forms])
     families.run(Asked(scenes=[f"chain:{n}" for n in range(6)], processes={"penalty": 2, "saddle-point": 2}), "mechanisms")
-    assert {scene for scene, control in asked if control} == {"chain:0", "chain:2", "chain:4"} and len(asked) == 12
+    assert {scene for scene, control in asked if control} == {"chain:0", "chain:2", "chain:4"} and len(asked) == 6
 
 
 def test_who_is_not_timed_at_one_size_is_not_tried_at_a_larger_one(measured):

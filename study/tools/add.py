@@ -14,7 +14,7 @@ from analysis.core.files import ROOT, digest, read_json, write, write_json
 from study.core import executor, locks, profile as profiles
 from study.core.contender import CONTROL, on_usual_pairs
 from study.core.executor import program_of
-from study.core.gate import verdicts
+from study.core.gate import Asked, verdicts
 from study.core.front import duration, set_up
 from study.core.options import Parser, directory
 from study.core.setting import Setting
@@ -199,13 +199,13 @@ def _begin(folder, column, lab):
 
 def _gates(lab, asked, contenders):
     """{contest: {newcomer: (status, reason)}}"""
-    whole, found = lab.budget, {}
+    whole = lab.budget
     lab.budget = GATES * whole
-    for one in asked:
-        said = verdicts(lab, one.scene, [contenders[name] for name in one.newcomers], settings=one.form, each=GATE_S, seconds=2 * GATE_S, drop=True)
-        found[one] = {who.name: ("ok", "") if verdict[0] == "agrees" else verdict for who, verdict in said.items()}
+    found = verdicts(lab, [Asked(one.scene, [contenders[name] for name in one.newcomers], settings=one.form) for one in asked],
+                     each=GATE_S, seconds=2 * GATE_S, drop=True)
     lab.budget = whole
-    return found
+    return {one: {who.name: ("ok", "") if verdict[0] == "agrees" else verdict for who, verdict in said.items()}
+            for one, said in zip(asked, found)}
 
 
 def _size(share, contest, rivals):
@@ -279,7 +279,9 @@ def tell(table, folder, name):
         for row in ranked.itertuples():
             print(f"{row.scene:24} {row.scheme:12} {row.layer:10} {row.implementation} ÷ {row.rival}: {row.ratio:.3f} ({row.low:.3f} to {row.high:.3f})"
                   + ("" if row.hands == "stays" else f": {row.hands}{' hands' if row.hands == 'changes' else ''}"))
-        for (status, reason), left in rows.drop(ranked.index).fillna("").groupby(["status", "reason"], sort=False):
+        others = rows.drop(ranked.index).fillna("")
+        others["reason"] = others.reason.str.replace(": the scene has .*", "", regex=True)  # of a term: where, in each of them
+        for (status, reason), left in others.groupby(["status", "reason"], sort=False):
             print(f"{status}{reason and ': '}{reason}: {', '.join(dict.fromkeys(left.scene))}")
         for (who, layer), of in ranked.groupby(["implementation", "layer"], sort=False):
             print(f"{who} among {layer}: {of.ratio.median():.2f} times the fastest other one in the middle of {len(of)}, {of.ratio.min():.2f} at best")

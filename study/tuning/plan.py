@@ -2,7 +2,7 @@
 from dataclasses import replace
 
 from study.core.contest import CHECK_S, usual
-from study.core.gate import agreeing
+from study.core.gate import Asked, agreeing
 from study.core.profile import by_share
 from study.core.timing import measure
 
@@ -13,10 +13,10 @@ SETTINGS = {"scenes": list,     # the most telling first
 
 
 def alternatives(lab):
-    """A scene at a time: the gate, then whoever it agrees with."""
+    """The gate; then, a scene at a time, whoever it agrees with."""
     here = asked(lab)
-    for scene in lab.settings["scenes"] if here else []:
-        good = agreeing(lab, scene, here, each=CHECK_S, seconds=4 * CHECK_S, drop=True)
+    gates = [Asked(scene, here) for scene in lab.settings["scenes"] if here]
+    for scene, good in zip(lab.settings["scenes"], agreeing(lab, gates, each=CHECK_S, seconds=4 * CHECK_S, drop=True)):
         measure(lab, scene, good, processes=lab.settings["processes"], repetitions=lab.settings["samples"],
                 settings=("--steps", lab.settings["steps"]))
 

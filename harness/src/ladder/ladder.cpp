@@ -253,7 +253,7 @@ RungReport Climber::gate(const std::string& rung, const Scene& scene, StepSettin
   report.command = fmt::format("mbs check {} --implementation {}{}{}", scene.name, variant_.name,
                                others.empty() ? "" : " ", others);
   // What is not served is said without running the reference.
-  const std::string refused = why_not_served(variant_.variant->serves, settings);
+  const std::string refused = why_not_served(variant_.variant->serves, scene.model, settings);
   if (refused.empty()) {
     judge(report, scene, settings);
   } else {

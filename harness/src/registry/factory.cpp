@@ -117,12 +117,10 @@ const std::string& name_of(Term term) {
 void require_served(const Variant& variant, const Model& model, const StepSettings& settings) {
   const std::string unsuited = why_unsuited(model, settings);
   if (!unsuited.empty()) throw Unsupported(unsuited);
-  const std::string setting = why_not_served(variant.serves, settings);
-  if (!setting.empty()) {
-    throw Unsupported("it does not offer " + setting + " (mbs list tells who does)");
-  }
-  const std::string term = why_not_served(variant.serves.terms, model);
-  if (!term.empty()) throw Unsupported("it does not serve " + term + " (mbs list tells who does)");
+  const std::string missing = why_not_served(variant.serves, model, settings);
+  if (missing.empty()) return;
+  throw Unsupported(fmt::format("it does not {} {} (mbs list tells who does)",
+                                missing.starts_with("--") ? "offer" : "serve", missing));
 }
 
 }  // namespace
@@ -187,6 +185,11 @@ std::string why_not_served(const Serves& serves, const StepSettings& s) {
   if (s.projections_every != 1 && !serves.projections_every) return "--projections-every";
   if (s.geometric_stiffness && !serves.geometric_stiffness) return "--geometric-stiffness";
   return is_precision_served(serves, s.precision) ? "" : "--precision " + name_of(s.precision);
+}
+
+std::string why_not_served(const Serves& serves, const Model& model, const StepSettings& settings) {
+  const std::string setting = why_not_served(serves, settings);
+  return setting.empty() ? why_not_served(serves.terms, model) : setting;
 }
 
 std::string why_unsuited(const Model& model, const StepSettings& settings) {

@@ -26,6 +26,9 @@ std::string why_not_served(const Terms& terms, const Model& model);
 /// Which setting a variant that serves `serves` does not offer, for people; empty if none.
 std::string why_not_served(const Serves& serves, const StepSettings& settings);
 
+/// The first of the settings, else of the terms, that a variant does not serve; empty if none.
+std::string why_not_served(const Serves& serves, const Model& model, const StepSettings& settings);
+
 /// Why no implementation can simulate `model` with `settings`; empty if nothing forbids it.
 std::string why_unsuited(const Model& model, const StepSettings& settings);
 

@@ -78,9 +78,7 @@ std::string why_not_offered(const std::string& variant, const Model& model,
   const auto variants = all_variants();
   const auto found = std::ranges::find(variants, variant, &NamedVariant::name);
   if (found == variants.end()) return "it is not in this build";
-  const Serves& serves = found->variant->serves;
-  std::string missing = why_not_served(serves, settings);
-  if (missing.empty()) missing = why_not_served(serves.terms, model);
+  const std::string missing = why_not_served(found->variant->serves, model, settings);
   return missing.empty() ? "" : "it does not serve " + missing;
 }
 

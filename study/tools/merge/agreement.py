@@ -197,8 +197,3 @@ def held(agreed, fresh):
             cells, inner = found.get(one.question.layer, (0, 0))
             found[one.question.layer] = (cells + 1, inner + (known[one.question].winner in one.common))
     return found
-
-
-def said(ranking):
-    """Whether a set says who is fastest, or of everyone whether it is as fast."""
-    return ranking.decided or ranking.settled

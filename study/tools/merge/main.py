@@ -62,8 +62,8 @@ def merge(arguments):
 def _said(agreed, machines):
     """On how many cells each set says who is fastest, or who all are as fast, and how many of these all say alike."""
     for place, label in enumerate(machines):
-        yield f"  {label}: {sum(agreement.said(one.machines[place]) for one in agreed)} decided or with all that are as fast"
-    both = [one for one in agreed if all(map(agreement.said, one.machines))]
+        yield f"  {label}: {sum(one.machines[place].settled for one in agreed)} decided or with all that are as fast"
+    both = [one for one in agreed if all(ranking.settled for ranking in one.machines)]
     alike = sum(one.alike for one in both)
     yield f"  {len(both)} so in all, {alike} of them alike" + (f" ({100 * alike / len(both):.0f} %)" if both else "")
     yield from (f"  {one.question.scene}, {one.question.form}: {' | '.join(one.winners)}" for one in both if not one.alike)

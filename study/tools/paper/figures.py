@@ -178,7 +178,7 @@ def _mechanisms(axes, mine, rows, chosen):
         axes.axhline(place + 0.5, color="#e6e6e6", linewidth=0.6, zorder=0)
     axes.set(xlim=(0.93, END), ylim=(len(mine) - 0.4, -0.6), xlabel="time ÷ that of the fastest library")
     marks = {True: "", False: " ?"}
-    said = mine.decided.fillna(False).astype(bool) | mine.settled.fillna(False).astype(bool)
+    said = mine.settled.fillna(False).astype(bool)
     axes.set_yticks(range(len(mine)), [f"{row.scene} ({row.variables:.0f}){marks[one]}" for row, one in zip(mine.itertuples(), said)], fontsize=7.0)
 
 

@@ -167,7 +167,7 @@ def real(known):
     leader, single = next(iter(leaders), ""), next(iter(lost), "")
     taken = scenes[(scenes.implementation == single) & scenes.scene.isin([*lost.get(single, {}).keys()])]
     found = {"mechanisms": len(rows), "families": rows.family.nunique(), "least": number(rows.variables.min(), 5),
-             "most": number(rows.variables.max(), 5), "said": (rows.decided.fillna(False) | rows.settled.fillna(False)).sum(),
+             "most": number(rows.variables.max(), 5), "said": rows.settled.fillna(False).sum(),
              "margin": number(rows.margin.median()), "leader": leader, "leads": leaders.get(leader), "shares": shares(leaders)}
     of_saddle = {"saddle": shares(led(saddle)), "saddle_of": len(saddle)}
     of_single = {"single": single, "single_on": lambda _: len(lost[single]), "mean": lambda _: number(gmean(lost[single])),
