@@ -269,23 +269,28 @@ template <class Use, template <class> class MassOf, class Rods,
 auto Storage<Use, MassOf, Rods, BlockOf>::get(int chain, const Topology& topology,
                                               const Units& units, State& state) const -> void {
   for (int k = 0; k <= last; ++k) {
+    const B& from = blocks[k];  // divided in all lanes at once, which takes as long as in one
+    const V q[2] = {from.x.x / units.length, from.x.y / units.length};
+    const V v[2] = {from.w.x / units.velocity, from.w.y / units.velocity};
+    const V a[2] = {from.u.x / units.acceleration, from.u.y / units.acceleration};
+    V rods[kRods];
+    for (int j = 0; j < kRods; ++j) rods[j] = from.rods[j] / units.multiplier;
+    const V link = from.link / units.multiplier;
     for (const bool forward : {true, false}) {
       const Slot to = slot(k, forward, topology);
       if (!to.here) continue;
       const int lane = 2 * chain + (forward ? 0 : 1);
-      const B& from = blocks[k];
-      const int i = to.here->coordinate;
-      state.q[i] = to.here->origin[0] + from.x.x[lane] / units.length;
-      state.q[i + 1] = to.here->origin[1] + from.x.y[lane] / units.length;
-      state.v[i] = from.w.x[lane] / units.velocity;
-      state.v[i + 1] = from.w.y[lane] / units.velocity;
-      state.a[i] = from.u.x[lane] / units.acceleration;
-      state.a[i + 1] = from.u.y[lane] / units.acceleration;
+      for (int axis = 0; axis < 2; ++axis) {
+        const int i = to.here->coordinate + axis;
+        state.q[i] = to.here->origin[axis] + q[axis][lane];
+        state.v[i] = v[axis][lane];
+        state.a[i] = a[axis][lane];
+      }
       const auto multiplier = [&](const Distance& distance, double value) {
-        if (distance.row >= 0) state.lambda[distance.row] = value / units.multiplier;
+        if (distance.row >= 0) state.lambda[distance.row] = value;
       };
-      for (int j = 0; j < kRods; ++j) multiplier(to.here->rods[j], from.rods[j][lane]);
-      if (to.link) multiplier(*to.link, from.link[lane]);
+      for (int j = 0; j < kRods; ++j) multiplier(to.here->rods[j], rods[j][lane]);
+      if (to.link) multiplier(*to.link, link[lane]);
     }
   }
 }

@@ -52,7 +52,11 @@ class Motion {
   [[nodiscard]] Vector3 axis(int point) const {
     return point < 0 ? Vector3{0.0, 0.0, 1.0} : position(point);
   }
-  [[nodiscard]] const std::vector<TimeFunction::Sample>& values() const { return known_.values(); }
+  /// Of constraint `c`, which is `row` of Phi.
+  template <class Constraint>
+  [[nodiscard]] TimeFunction::Sample value(const Constraint& c, std::size_t row) const {
+    return model_.driven_values().empty() ? TimeFunction::Sample{c.value} : known_.values()[row];
+  }
   [[nodiscard]] bool is_fixed(int point) const { return at(point).is_fixed(); }
   [[nodiscard]] const Point& at(int point) const {
     return model_.points()[static_cast<std::size_t>(point)];
@@ -240,16 +244,14 @@ void evaluate_constraints(const Model& model, double t, Coordinates q, std::span
   const Motion motion(model, t, q);
   require_size(phi.size(), model.constraints(), "phi");
   std::size_t row = 0;
-  const bool is_driven = !model.driven_values().empty();
-  const auto value = [&](const auto& c) {
-    return is_driven ? motion.values()[row].value : c.value;
-  };
   for_quadratic(model, [&](const auto& c) {  // Eq. (7)
-    phi[row] = product(c, motion.r(c.a, c.b), motion.r(c.c, c.d)) - value(c);
+    const Vector3 u = motion.r(c.a, c.b);
+    const bool is_distance = c.a == c.c && c.b == c.d;
+    phi[row] = product(c, u, is_distance ? u : motion.r(c.c, c.d)) - motion.value(c, row).value;
     ++row;
   });
-  for (const LinearConstraint& constraint : model.linear_constraints()) {  // Eq. (8)
-    phi[row] = sum_of_terms(constraint, q) - value(constraint);
+  for (const LinearConstraint& c : model.linear_constraints()) {  // Eq. (8)
+    phi[row] = sum_of_terms(c, q) - motion.value(c, row).value;
     ++row;
   }
 }
@@ -260,14 +262,13 @@ void constraint_rate(const Model& model, double t, Coordinates q, Coordinates v,
   require_size(v.size(), model.variables(), "v");
   require_size(rate.size(), model.constraints(), "rate");
   std::size_t row = 0;
-  const auto& values = motion.values();
   for_quadratic(model, [&](const auto& c) {
     rate[row] = product(c, motion.v(c.a, c.b), motion.r(c.c, c.d)) +
-                product(c, motion.r(c.a, c.b), motion.v(c.c, c.d)) - values[row].rate;
+                product(c, motion.r(c.a, c.b), motion.v(c.c, c.d)) - motion.value(c, row).rate;
     ++row;
   });
-  for (const LinearConstraint& constraint : model.linear_constraints()) {
-    rate[row] = sum_of_terms(constraint, v) - values[row].rate;
+  for (const LinearConstraint& c : model.linear_constraints()) {
+    rate[row] = sum_of_terms(c, v) - motion.value(c, row).rate;
     ++row;
   }
 }
@@ -278,14 +279,17 @@ void constraint_curvature(const Model& model, double t, Coordinates q, Coordinat
   require_size(v.size(), model.variables(), "v");
   require_size(curvature.size(), model.constraints(), "curvature");
   std::size_t row = 0;
-  const auto& values = motion.values();
   for_quadratic(model, [&](const auto& c) {  // Eq. (7)
     curvature[row] = 2 * product(c, motion.v(c.a, c.b), motion.v(c.c, c.d)) +
                      product(c, motion.a(c.a, c.b), motion.r(c.c, c.d)) +
-                     product(c, motion.r(c.a, c.b), motion.a(c.c, c.d)) - values[row].acceleration;
+                     product(c, motion.r(c.a, c.b), motion.a(c.c, c.d)) -
+                     motion.value(c, row).acceleration;
     ++row;
   });
-  for (; row < curvature.size(); ++row) curvature[row] = -values[row].acceleration;  // Eq. (8)
+  for (const LinearConstraint& c : model.linear_constraints()) {  // Eq. (8)
+    curvature[row] = -motion.value(c, row).acceleration;
+    ++row;
+  }
 }
 
 std::vector<JacobianEntry> jacobian(const Model& model, double t, Coordinates q) {

@@ -94,17 +94,19 @@ void JudgedRun::take(const StepOutcome& outcome) {
     if (is_over_) return;
     next_judged_ = judged_after(step);
   }
-  if (adds_local_errors_ && step < steps_ && step + 1 == next_judged_) {
-    const auto begin = Clock::now();
-    access_.get_state(before_);
-    judging_ += Clock::now() - begin;
-  }
+  const bool is_before = adds_local_errors_ && step < steps_ && step + 1 == next_judged_;
   constexpr long kBetween = 8;  // steps: what a jump changed is still there a little later
   const bool is_looked_at =
       watch_.is_needed() && (step >= next_look_ || step == steps_ ||
                              (step >= last_look_ + kBetween && is_unusual(outcome)));
-  if ((observer_ || half_ || is_looked_at) && !is_judged) access_.get_state(state_);
-  const State& present = is_judged ? good_.state : state_;
+  State& copy = is_before ? before_ : state_;
+  const bool is_for_others = observer_ || half_;  // what is copied for them anyway is no judging
+  if (is_before || ((is_for_others || is_looked_at) && !is_judged)) {
+    const auto begin = is_for_others ? Clock::time_point() : Clock::now();
+    access_.get_state(copy);
+    if (!is_for_others) judging_ += Clock::now() - begin;
+  }
+  const State& present = is_judged ? good_.state : copy;
   if (is_looked_at) look(present);
   if (is_over_) return;
   if (half_) half_->compare(present);

@@ -8,61 +8,73 @@
 
 namespace mbs {
 
-void LocalErrors::take(std::span<const double> off, std::span<const double> v) {
-  point_vectors(scene_, length_, off, error_);
-  point_vectors(scene_, length_, v, velocity_);
-  points_.resize(velocity_.size());
+namespace {
+
+auto entries_of(std::span<const double> x) {
+  return [x](std::size_t i) { return x[i]; };
+}
+
+}  // namespace
+
+LocalErrors::LocalErrors(const Scene& scene, double length) : scene_(scene), length_(length) {
+  const auto is_free = [](const Point& point) { return !point.is_fixed(); };
+  points_.resize(static_cast<std::size_t>(std::ranges::count_if(scene.model.points(), is_free)) +
+                 scene.elements.markers.size());
 }
 
 double LocalErrors::add_lag(std::span<const double> off, std::span<const double> v, long steps) {
-  take(off, v);
   double fastest = 0.0;
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    const double speed = std::sqrt(dot(velocity_[p], velocity_[p]));
-    if (speed == 0.0) continue;  // a NaN goes on
-    points_[p].lag += static_cast<double>(steps) * std::abs(dot(error_[p], velocity_[p])) / speed;
+  auto point = points_.begin();
+  const auto add = [&](const Vector3& error, const Vector3& velocity) {
+    Sums& sums = *point++;
+    const double speed = std::sqrt(dot(velocity, velocity));
+    if (speed == 0.0) return;  // a NaN goes on
+    sums.lag += static_cast<double>(steps) * std::abs(dot(error, velocity)) / speed;
     fastest = std::max(fastest, speed);
-  }
+  };
+  for_each_point(scene_, length_, add, entries_of(off), entries_of(v));
   return fastest;
 }
 
 double LocalErrors::add_shift(std::span<const double> off, std::span<const double> v, double step,
                               long steps) {
-  take(off, v);
   const double time = static_cast<double>(steps) * step;
   time_ += time;
   double fastest = 0.0;  // squared
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    Sums& sums = points_[p];
-    const double squared = dot(error_[p], error_[p]);
+  auto point = points_.begin();
+  const auto add = [&](const Vector3& error, const Vector3& velocity) {
+    Sums& sums = *point++;
+    const double squared = dot(error, error);
     sums.lag += static_cast<double>(steps) * std::sqrt(squared);  // a NaN goes on
     sums.shift += time * squared / (step * step);
-    fastest = std::max(fastest, dot(velocity_[p], velocity_[p]));
-  }
+    fastest = std::max(fastest, dot(velocity, velocity));
+  };
+  for_each_point(scene_, length_, add, entries_of(off), entries_of(v));
   return std::sqrt(fastest);
 }
 
 void LocalErrors::add_speed(const SpeedError& error, std::span<const double> v, double step,
                             long steps, double braked) {
-  take(error.now, v);
-  point_vectors(scene_, length_, error.later, later_);
   const double time = static_cast<double>(steps) * step, kept = std::exp(-braked * time);
   samples_ = kept * samples_ + 1.0;
   steps_ = kept * steps_ + static_cast<double>(steps);
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    Sums& sums = points_[p];
-    const double speed = std::sqrt(dot(velocity_[p], velocity_[p]));
-    const double now = dot(error_[p], velocity_[p]), later = dot(later_[p], velocity_[p]);
+  auto point = points_.begin();
+  const auto add = [&](const Vector3& off, const Vector3& off_later, const Vector3& velocity) {
+    Sums& sums = *point++;
+    const double speed = std::sqrt(dot(velocity, velocity));
+    const double now = dot(off, velocity), later = dot(off_later, velocity);
     const double gain = now * later < 0.0 ? 0.0 : std::abs(later) < std::abs(now) ? later : now;
     sums.gain = kept * sums.gain + gain;
     sums.gain_squared = kept * sums.gain_squared + gain * gain;
-    if (speed == 0.0) continue;
+    if (speed == 0.0) return;
     const double mean = std::abs(sums.gain) / samples_;
     const double rms = std::sqrt(sums.gain_squared / samples_);
     const double gained =
         steps_ * std::max(0.0, mean - 2 * rms / std::sqrt(samples_)) + rms * std::sqrt(steps_);
     sums.way += time * (gained / speed > speed ? speed : gained / speed);
-  }
+  };
+  for_each_point(scene_, length_, add, entries_of(error.now), entries_of(error.later),
+                 entries_of(v));
 }
 
 double LocalErrors::sum() const {

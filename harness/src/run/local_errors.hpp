@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "model_math/vector3.hpp"
 #include "run/step_again.hpp"
 #include "scene/scene.hpp"
 
@@ -30,7 +29,7 @@ namespace mbs {
 class LocalErrors {
  public:
   /// `scene` must outlive this; unit vectors count as `length` (m) long.
-  LocalErrors(const Scene& scene, double length) : scene_(scene), length_(length) {}
+  LocalErrors(const Scene& scene, double length);
 
   /// `steps` steps that each left the positions `off` (n, m) at the velocity `v` (n, m/s). Returns
   /// the speed of the fastest point, m/s.
@@ -49,9 +48,6 @@ class LocalErrors {
   [[nodiscard]] double sum() const;
 
  private:
-  /// error_ and velocity_ of each point.
-  void take(std::span<const double> off, std::span<const double> v);
-
   struct Sums {
     double lag = 0.0, way = 0.0;
     double gain = 0.0, gain_squared = 0.0;  // of samples
@@ -60,7 +56,6 @@ class LocalErrors {
 
   const Scene& scene_;
   double length_;
-  std::vector<Vector3> error_, later_, velocity_;  // of one sample
   std::vector<Sums> points_;
   double samples_ = 0.0, steps_ = 0.0;  // m, N, without what dampers took away
   double time_ = 0.0;                   // t of shifts, s
