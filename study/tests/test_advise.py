@@ -550,7 +550,7 @@ def test_runs_are_ranked_by_what_interruptions_do_not_reach(advised):
     assert timed
     for run in timed:
         summary = record_of(folder, run).output
-        assert run["step_us"] == summary["least_us"]["mean"] <= summary["step_us"]["mean"]
+        assert run["step_us"] == summary["least_us"]["mean"] <= summary["step_us"]["mean"] * (1 + 1e-6)  # both are rounded
         assert run["step_us_p99"] == summary["step_us"]["p99"]
 
 
