@@ -8,9 +8,10 @@ WORDS = {"libraries": "Of the libraries", "all": "Of all, code without a library
 
 def answers(tables, view):
     """One to four sentences that answer the part's question."""
-    won = met(own_fill(tables["winners"]))
+    asked = own_fill(tables["winners"])
+    won = met(asked)
     if won.empty:
-        dropped = (own_fill(tables["winners"]).implementation == NOT_TIMED).any()
+        dropped = (asked.implementation == NOT_TIMED).any()
         return [{"text": "Not measured: " + ("the budget ended before those that may be the fastest were timed." if dropped else
                                              "nobody reached a required error with a time."), "anchor": ""}]
     found = [{"text": of_layer(won[won.layer == layer], layer), "anchor": "short"}

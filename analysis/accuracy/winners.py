@@ -36,9 +36,8 @@ def winners(table, measured, errors, libraries):
                 none = {"implementation": NOT_TIMED if dropped or reached <= required else NOBODY, "candidates": 0,
                         "decided": None, "settled": None, "equivalent": ""}
                 found = meeting(here, required)
-                if dropped and not (found.time_from == ROUNDS).any():  # the budget did not reach who may be faster
-                    found = found.iloc[:0]
-                rows.append({"scene": scene, "layer": layer, "required": required} | (fastest(found, samples) or none))
+                ended = dropped and not (found.time_from == ROUNDS).any()  # the budget did not reach who may be faster
+                rows.append({"scene": scene, "layer": layer, "required": required} | (none if ended else fastest(found, samples) or none))
     return pandas.DataFrame(rows)
 
 
