@@ -149,7 +149,7 @@ function fillAnswer(found, state) {
   const lines = [], [first, second] = found.near, bold = (name) => element("b", {}, name), [best] = found.predicted, point = found.error?.ranking?.winner;
   if (!first) lines.push(["Nobody of those that are left was measured on such a mechanism."]);
   for (const {contest, ranking} of found.near) {
-    const others = ranking.equivalent.filter((name) => name !== ranking.winner), known = ranking.decided || others.length && ranking.settled;
+    const others = ranking.equivalent.filter((name) => name !== ranking.winner), known = ranking.decided || ranking.settled;
     lines.push([bold(ranking.winner), ` ${known ? "is fastest" : "leads, not decided,"} on ${about(contest)}, measured: `
                 + `${short(stepOf(contest, ranking.winner))} µs a step`, others.length ? `; as fast: ${others.join(", ")}` : "",
                 ranking.open.length ? `; open: ${ranking.open.join(", ")}` : "", ranking.second ? `. Next is ${ranking.second}: ${times(ranking.margin)}.` : ".",

@@ -243,8 +243,9 @@ def reopen(studyset, columns):
 def _there_now(studyset, stamp):
     """Paths of a column's records of programs that were not there, and are now."""
     base, found = studyset.folder / "raw" / stamp.parent.name, []
-    for path in [base / name for name in read_object(stamp)] if stamp.exists() else ():
-        record = records.read(path, path.name) if path.exists() else None
+    for name in read_object(stamp) if stamp.exists() else ():
+        path = base / name
+        record = records.read(path, name) if path.exists() else None
         program = record and record.status == "unavailable" and record.cell["program"]
         if program and program != "mbs" and (ROOT / program_of(program)).exists():
             found.append(path)

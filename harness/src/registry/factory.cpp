@@ -117,10 +117,12 @@ const std::string& name_of(Term term) {
 void require_served(const Variant& variant, const Model& model, const StepSettings& settings) {
   const std::string unsuited = why_unsuited(model, settings);
   if (!unsuited.empty()) throw Unsupported(unsuited);
-  const std::string missing = why_not_served(variant.serves, model, settings);
-  if (missing.empty()) return;
-  throw Unsupported(fmt::format("it does not {} {} (mbs list tells who does)",
-                                missing.starts_with("--") ? "offer" : "serve", missing));
+  const auto refuse = [](const char* verb, const std::string& missing) {
+    if (missing.empty()) return;
+    throw Unsupported(fmt::format("it does not {} {} (mbs list tells who does)", verb, missing));
+  };
+  refuse("offer", why_not_served(variant.serves, settings));
+  refuse("serve", why_not_served(variant.serves.terms, model));
 }
 
 }  // namespace
