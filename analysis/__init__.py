@@ -1,1 +1,1 @@
-# From tidy tables to statistics, figures and the report; README.md lists the parts.
+# From records to tables, figures and pages: README.md says how.

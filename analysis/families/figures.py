@@ -73,6 +73,8 @@ def _lead(axes, rows, scenes, look, marks, registry):
         axes.plot(row.n, 1 / row.to_rival, marker=marks[row.family], markersize=7.5, color=look.colour(row.implementation), linestyle="none")
     axes.axhline(1.0, color=GREY, linewidth=0.9)
     _scales(axes, fastest.n, 1 / fastest.to_rival, "times as fast as the fastest library")
+    low, top = axes.get_ylim()
+    axes.set_ylim(low, top * (top / low) ** 0.2)  # room for the legend, above all marks
     axes.set_title("Fastest code of our own, which is no library; 95 % intervals")
     axes.legend(handles=[Patch(facecolor=look.colour(name), label=name) for name in dict.fromkeys(fastest.implementation)], loc="upper left",
                 fontsize=8.5, frameon=True, framealpha=0.85, edgecolor="none")

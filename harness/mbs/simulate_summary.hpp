@@ -8,7 +8,7 @@
 
 namespace mbs {
 
-/// The summary for programs; the top README lists its keys.
+/// The summary for programs.
 nlohmann::json summary_json(const Scene& scene, const NamedVariant& variant,
                             const RunSettings& settings, const RunSummary& summary);
 

@@ -13,7 +13,7 @@
 namespace mbs {
 namespace {
 
-// With beta = alpha dt^2/4 and omega the rate of turning; fitted, see README.md here.
+// With beta = alpha dt^2/4 and omega the rate of turning; fitted, see penalty_window.md here.
 constexpr double kSlowestMode = 0.1;   // beta s_min omega dt >= this
 constexpr double kSingular = 3.0;      // beta s_row omega dt >= this
 constexpr double kNonlinear = 0.02;    // beta s_row (omega dt)^3 <= this

@@ -7,7 +7,7 @@
 
 namespace mbs {
 
-/// An estimate from the start alone; README.md here has the derivation and what it was fitted to.
+/// An estimate from the start alone; penalty_window.md here says where it is from.
 /// On mechanisms that meet singular positions it is right to a factor of about ten, others work
 /// below it too. Empty, lower > upper, if the step is too long for the motion or too short for the
 /// precision.

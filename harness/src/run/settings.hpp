@@ -23,7 +23,7 @@ namespace mbs {
 /// for a factor of 31 of the slowest mode, the lower bound for 4000 of the mean one, which singular
 /// positions need, and the upper bound stays clear of cancellation. The shorter a step, the nearer
 /// to a singular position the worst of them ends, where s is as turn^2; the longer, the more of the
-/// predictor's error alpha turns into forces: README.md here. 1 for a model
+/// predictor's error alpha turns into forces: automatic_settings.md here. 1 for a model
 /// without constraints.
 ///
 /// The saddle-point form: (4 / dt^2) 15 / (s_min x^2), but from 2.5e7 / s_mean, which is eps = 4e-8
