@@ -9,10 +9,11 @@ function(mbs_implementation)
   add_library(implementation_${name} STATIC ${arg_SOURCES})
   target_include_directories(implementation_${name} SYSTEM PRIVATE ${arg_INCLUDE_DIRECTORIES})
   target_link_libraries(implementation_${name} PUBLIC mbs_public PRIVATE ${arg_LIBRARIES})
+  list(LENGTH arg_SOURCES sources)
   # The preset for sanitizers has batches of its own.
   if(DEFINED arg_BATCH AND NOT CMAKE_UNITY_BUILD)
     set_target_properties(implementation_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${arg_BATCH})
-  elseif(NOT CMAKE_UNITY_BUILD)
+  elseif(NOT CMAKE_UNITY_BUILD AND sources GREATER 3)
     # Reading headers is half of the time to compile. This leaves the compiled code as it is.
     target_precompile_headers(implementation_${name} PRIVATE
       <algorithm> <array> <cmath> <memory> <span> <string> <utility> <vector> <mbs/implementation.hpp>

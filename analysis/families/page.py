@@ -11,17 +11,17 @@ def context(tables, view):
     known = mechanisms.set_index("scene").to_dict("index")
     ranked = [(name, known.get(name, {}), {(row["scheme"], row["layer"]): row for row in rows.to_dict("records")})
               for name, rows in winners.groupby("scene", sort=False)]
-    times = scenes[scenes.status.isin(["ok", "slower"]) & scenes.step_us.notna()].sort_values("step_us")
+    times = scenes[scenes.status.isin(["ok", "slower"]) & scenes.step_us.notna()]
     lost = {}
     for row in scenes[~scenes.status.isin(["ok", "slower"])].to_dict("records"):
         lost.setdefault((row["status"], row["reason"]), {}).setdefault(row["implementation"], []).append(f"{row['scene']}, {row['scheme']}")
     held = tables["held"]
     return {"settings": view.settings, "ranked": ranked, "controls": judged(tables["controls"]), "bounds": bounds(tables),
-            "times": {name: rows.to_dict("records") for name, rows in times.groupby(["scene", "scheme"], sort=False)},
+            "times": {name: rows.sort_values("step_us").to_dict("records") for name, rows in times.groupby(["scene", "scheme"], sort=False)},
             "lost": [(*what, list(names.items())) for what, names in lost.items()],
             "formulas": _formulas(tables["steps"]), "judged": summary(held) if len(held) else None, "missed": missed(held).to_dict("records") if len(held) else [],
             "by_family": [(family, summary(rows)) for family, rows in held.groupby("family", sort=False)],
-            "by_hand": tables["by_hand"].to_dict("records"), "where": where, "alone": tables["alone"].to_dict("records"), "defaults": tables["defaults"].to_dict("records"), "growth": tables["growth"].to_dict("records"),
+            **{name: tables[name].to_dict("records") for name in ("by_hand", "alone", "defaults", "growth")}, "where": where,
             "orderings": _wide(tables["orderings"])}
 
 
