@@ -14,6 +14,7 @@
 #include <set>
 
 #include "registry/registry.hpp"
+#include "support/folder.hpp"
 #include "support/program.hpp"
 
 namespace mbs {
@@ -191,10 +192,10 @@ TEST(BenchProgram, LeavesTheSlowOut) {
 
 /// What the program says on stderr when a control ends it, and how it ends.
 void expect_ending(const std::string& control, const std::string& signal, int status,
-                   const std::string& environment = "") {
+                   const std::string& environment = "", const std::string& more = "") {
   const std::string command =
       "bench four-bar:2 --implementation control/reference --implementation control/" + control +
-      kShort;
+      kShort + more;
   auto run = test::run_program(MBS_CONTROLS, command, environment);
   if (run.errors.empty() && !environment.empty()) {
     // A program that the system has to read again may take seconds to start.
@@ -217,7 +218,9 @@ TEST(BenchProgram, SaysWhoEndedIt) {
 }
 
 TEST(BenchProgram, SaysWhoWasRunningWhenItWasStopped) {
-  expect_ending("hangs", "SIGTERM", 124, "timeout 2");
+  const test::Folder folder;
+  expect_ending("hangs", "SIGTERM", 124, "timeout 2", "--benchmark_out=" + folder.file("out.json"));
+  EXPECT_TRUE(folder.is_empty()) << "half a file stays";
 }
 
 TEST(BenchProgram, TimesBatchesBesideTheirLanesAlone) {
