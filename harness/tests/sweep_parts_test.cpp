@@ -240,6 +240,8 @@ TEST_F(SweepParts, SamplesComeBesideGrids) {
   EXPECT_NE(text("a.csv"), text("d.csv"));
   expect_refusal(sweep("four-bar:1 --vary gravity/1=-9 --sample 3", "out.csv"), {"--sample", "uniform:a:b"});
   expect_refusal(sweep("four-bar:1 --vary gravity/1=normal:1:2", "out.csv"), {"--sample N"});
+  expect_refusal(sweep("four-bar:1 --vary gravity/1=-9 --sobol", "out.csv"), {"--sobol", "--sample"});
+  expect_refusal(sweep("four-bar:1 --vary gravity/1=-9 --seed 2", "out.csv"), {"--seed", "--sample"});
   expect_refusal(sweep("four-bar:1 --vary gravity/1=uniform:2:1 --sample 3", "out.csv"), {"a below b"});
   expect_refusal(sweep("four-bar:1 --vary gravity/1=normal:2:0 --sample 3", "out.csv"), {"above 0"});
 }
