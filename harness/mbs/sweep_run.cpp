@@ -61,7 +61,7 @@ void require_lanes(int jobs, const std::vector<long>& mine, const SweepBlocks& b
 bool is_file(const std::string& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
-  return !path.starts_with("/dev/") && !path.starts_with("/proc/") &&
+  return !is_open_already(path) && !path.starts_with("/proc/") &&
          (!fs::exists(status) || fs::is_regular_file(status));
 }
 

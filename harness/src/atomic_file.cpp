@@ -48,12 +48,6 @@ void remember(const std::string& path) {
   }
 }
 
-/// Whether it names what is open already: a pipe with both its ends, or a file to be kept.
-bool is_open_already(const std::string& path) {
-  return path == "/dev/stdout" || path == "/dev/stderr" || path.starts_with("/dev/fd/") ||
-         path.starts_with("/proc/self/fd/");
-}
-
 /// Creates a file beside `path` that nobody else has, and returns its name; empty on failure.
 std::string create_beside(const std::string& path) {
   for (int attempt = 0; attempt < 100; ++attempt) {
@@ -68,6 +62,11 @@ std::string create_beside(const std::string& path) {
 }
 
 }  // namespace
+
+bool is_open_already(const std::string& path) {
+  return path == "/dev/stdout" || path == "/dev/stderr" || path.starts_with("/dev/fd/") ||
+         path.starts_with("/proc/self/fd/");
+}
 
 AtomicFile::AtomicFile(std::string path) : name_(path), path_(std::move(path)) {
   const auto refuse = [this](const char* why) {

@@ -139,6 +139,17 @@ TEST_F(SweepParts, AFileMayHaveAnyName) {
   EXPECT_EQ(run.status, 0) << run.errors;
 }
 
+TEST_F(SweepParts, MayBeInMemory) {
+  const std::filesystem::path memory = "/dev/shm";
+  std::error_code error;
+  if (::access(memory.c_str(), W_OK) != 0) GTEST_SKIP() << "there is no /dev/shm";
+  const std::filesystem::path part = memory / std::filesystem::path(at("part")).parent_path().filename();
+  const auto run = test::run_program(MBS_CONTROLS, "sweep --implementation batch/sound --shard 1/2 --output '" +
+                                                       part.string() + "' " + kLanes);
+  EXPECT_EQ(run.status, 1) << run.errors;  // for the lanes that cannot be assembled
+  EXPECT_TRUE(std::filesystem::remove(part, error));
+}
+
 TEST_F(SweepParts, NeedNoMoreFilesThanAreAllowed) {
   const std::string few = "prlimit --nofile=12: ";  // the soft limit; sh itself needs more
   EXPECT_EQ(sweep(kLanes + "--jobs 12", "whole.csv", "batch/sound", few).status, 1);
