@@ -148,6 +148,7 @@ void SceneDocument::set_number(const std::string& path, double value) {
     throw Refused(fmt::format("{}: found {:g}, allowed is a finite number", path, value));
   }
   refusing([&] { return content_->document[find_number(content_->document, path)] = value; });
+  content_->unused = Unused::allowed;
 }
 
 const std::string& SceneDocument::name() const { return content_->name; }
@@ -157,7 +158,7 @@ std::string SceneDocument::describe(double step) const {
   return refusing([&] {
     StepSettings settings;
     settings.step = step;
-    return description_of(scene_of(content_->document, content_->name), settings).dump(2);
+    return description_of(content_->scene(), settings).dump(2);
   });
 }
 

@@ -12,7 +12,6 @@
 #include "run/run.hpp"
 #include "run/settings.hpp"
 #include "scene_file/json_node.hpp"
-#include "scene_file/load_scene.hpp"
 
 namespace mbs {
 namespace {
@@ -92,7 +91,7 @@ StepSettings chosen_settings(const Scene& scene, StepSettings settings) {
 }
 
 Stepper::Content::Content(const SceneDocument::Content& from, const StepperOptions& options)
-    : scene(scene_of(from.document, from.name)),
+    : scene(from.scene()),
       ranges(input_ranges(scene)),
       choice(choose(scene, options)),
       settings(chosen_settings(scene, choice.settings)),

@@ -354,6 +354,15 @@ TEST(SceneDocument, ChangesNumbersOfACopyAlone) {
   EXPECT_NE(one.describe().find("recommendation"), std::string::npos);
 }
 
+TEST(SceneDocument, ANumberMayTakeThePlaceOfAnExpression) {
+  SceneDocument scene = SceneDocument::parse(pendulum(R"("mass": 3)", R"("mass": "=2*m")")
+                                                 .replace(0, 1, R"({"parameters": {"m": 1}, )"));
+  EXPECT_EQ(refused_by([&] { Stepper{scene}; }), "not refused");
+  scene.set_number("rods/rod/mass", 4.0);  // nothing names m now
+  EXPECT_EQ(refused_by([&] { Stepper{scene}; }), "not refused");
+  EXPECT_EQ(scene.number("m"), 1.0);
+}
+
 TEST(SceneDocument, RefusesWhatIsNoSceneOrNumber) {
   expect_parts(refused_by([] { SceneDocument::parse("[]", "mine"); }),
                {"mine: found array, allowed is an object"});
