@@ -30,7 +30,11 @@ TimeFunction not_negative_driver(SceneReader& reader, const JsonNode& node, std:
   Driver driver;
   driver.least = 0.0;
   driver.range = allowed;
-  return read_driver(reader, *found, allowed, std::move(driver));
+  TimeFunction value = read_driver(reader, *found, allowed, std::move(driver));
+  if (const double always = value.at(0.0).value; value.is_constant() && always < 0.0) {
+    found->fail(fmt::format("{:g} at all times", always), allowed);
+  }
+  return value;
 }
 
 /// What is left of a spring's stiffness or damping when a law has the function.
