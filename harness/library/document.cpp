@@ -23,9 +23,7 @@ using nlohmann::json;
 /// What `mbs describe --json` prints; with `scheme`, of this form whatever suits the scene.
 json description_of(const Scene& scene, const StepSettings& settings,
                     const char* scheme = nullptr) {
-  if (!(settings.step >= 1e-12 && settings.step <= 1e6)) {
-    throw UsageError(fmt::format("the step is {:g} s: it must be 1e-12 to 1e6 s", settings.step));
-  }
+  require_step(settings.step);
   json description = describe_json(scene, settings);
   if (scheme != nullptr) {
     description["scheme"]["take"] = scheme;

@@ -267,6 +267,8 @@ TEST(Stepper, RefusesSettingsByTheirOwnNames) {
   const auto said = [&] { return refused_by([&] { Stepper(scene, options); }); };
   options.settings.max_passes = 0;
   EXPECT_EQ(said().find("max_passes is 0"), 0u) << said();
+  options.settings = {.step = 1e-200, .penalty = 0.0};  // the penalty factor would be infinite
+  EXPECT_EQ(said().find("step is 1e-200 s: it must be"), 0u) << said();
   options.settings = {.projections_every = 0};
   EXPECT_EQ(said().find("projections_every is 0"), 0u) << said();
   options.settings = {.scheme = Scheme::multistep6};
