@@ -133,10 +133,12 @@ TEST_F(SweepParts, AFullDiskAtTheStartLeavesNothing) {
 }
 
 TEST_F(SweepParts, AFileMayHaveAnyName) {
-  const std::string scene = at("\xff.json");
-  std::filesystem::copy_file(MBS_ROOT "/harness/scenes/double_pendulum.json", scene);
-  const auto run = sweep("'" + scene + "' --duration 0.1 --vary gravity/1=-9,-8", "t.csv", "batch/sound");
-  EXPECT_EQ(run.status, 0) << run.errors;
+  for (const char* name : {"\xff.json", "\xed\xa0\x80.json", "\xf4\x90\x80\x80.json"}) {
+    const std::string scene = at(name);
+    std::filesystem::copy_file(MBS_ROOT "/harness/scenes/double_pendulum.json", scene);
+    const auto run = sweep("'" + scene + "' --duration 0.1 --vary gravity/1=-9,-8", "t.csv", "batch/sound");
+    EXPECT_EQ(run.status, 0) << run.errors;
+  }
 }
 
 TEST_F(SweepParts, MayBeInMemory) {
