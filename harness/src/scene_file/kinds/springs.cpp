@@ -53,6 +53,11 @@ Vector3 difference(const ModelData& data, int a, int b) {
 /// z, in space the unit vector `axis`, which the direction must be perpendicular to.
 Vector3 axis_of(const ModelData& data, int axis, const Vector3& direction, const std::string& name,
                 const std::string& where) {
+  if (!(dot(direction, direction) > 0.0)) {
+    throw UsageError(fmt::format("{}: {}: found a direction between points that start at the same "
+                                 "place, allowed is a direction of length above 0",
+                                 printable(where), name));
+  }
   if (axis < 0) return {0.0, 0.0, 1.0};
   const Point& point = data.points[static_cast<std::size_t>(axis)];
   const Vector3 z = point.position;
