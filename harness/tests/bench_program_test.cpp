@@ -74,6 +74,13 @@ TEST(BenchProgram, WritesARowForEveryVariantAndScene) {
   EXPECT_EQ(names, expected);
 }
 
+TEST(BenchProgram, AFileMayHaveAnyName) {
+  const test::Folder folder;
+  fs::copy_file(MBS_ROOT "/harness/scenes/pendulum.json", folder.file("\xff.json"));
+  const json result = bench("'" + folder.file("\xff.json") + "' --implementation null");
+  EXPECT_EQ(result["benchmarks"][0]["name"], "null/null/" + folder.file("\\xFF.json"));
+}
+
 TEST(BenchProgram, HasTheRecordInItsContext) {
   const json context =
       bench("four-bar:1 --implementation null --benchmark_context=round=3")["context"];
