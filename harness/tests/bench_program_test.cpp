@@ -334,6 +334,8 @@ TEST(BenchProgram, RefusesBadInput) {
   expect_refusal("four-bar:1 --batch --operations", "--batch");
   expect_refusal("four-bar:1 --batch --phases", "--batch");
   expect_refusal("four-bar:1 --operations --phases", "--operations");
+  expect_refusal("four-bar:1 --operations --steps 3", "--steps");
+  expect_refusal("four-bar:1 --operations --start 1", "--start");
   expect_refusal("four-bar:1 --seed 99999999999999999999", "--seed is");
   expect_refusal("--implementation null no-scene", "no-scene");
   expect_refusal("four-bar:1 --summary --no-summary", "--no-summary");

@@ -34,6 +34,9 @@ void check(const BenchRequest& request) {
   if (request.operations && request.phases) {
     throw UsageError("--phases are those of steps: they do not go with --operations");
   }
+  if (request.operations && (request.steps || request.start)) {
+    throw UsageError("--steps and --start are those of steps: they do not go with --operations");
+  }
   if (request.summary && (request.batch || request.operations)) {
     throw UsageError("--summary is one of steps: it goes with neither --batch nor --operations");
   }
