@@ -9,6 +9,8 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -46,6 +48,21 @@ void remember(const std::string& path) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     if (::signal(signal, remove_and_die) == SIG_IGN) ::signal(signal, SIG_IGN);  // nohup
   }
+}
+
+/// The descriptor that such a name stands for.
+int descriptor_of(const std::string& path) {
+  if (path == "/dev/stdout") return STDOUT_FILENO;
+  if (path == "/dev/stderr") return STDERR_FILENO;
+  return std::atoi(path.c_str() + path.rfind('/') + 1);
+}
+
+/// Whatever is written to a file that is open already goes to its end, through the descriptor too:
+/// what the program prints later would else come over the beginning.
+void write_at_end(const std::string& path) {
+  std::fflush(nullptr);
+  const int file = descriptor_of(path), flags = ::fcntl(file, F_GETFL);
+  if (flags >= 0) ::fcntl(file, F_SETFL, flags | O_APPEND);
 }
 
 /// Creates a file beside `path` that nobody else has, and returns its name; empty on failure.
@@ -86,6 +103,7 @@ AtomicFile::AtomicFile(std::string path) : name_(path), path_(std::move(path)) {
   partial_ = direct ? path_ : create_beside(path_);
   if (partial_.empty()) refuse(std::strerror(errno));
   if (!direct) remember(partial_);
+  if (open_already) write_at_end(path_);
   stream_.open(partial_, std::ios::binary | (open_already ? std::ios::app : std::ios::out));
   if (!stream_) refuse(std::strerror(errno));
 }

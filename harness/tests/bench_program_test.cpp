@@ -370,6 +370,9 @@ TEST(BenchProgram, WritesToWhatIsOpenAlready) {
         test::run_program("sh", "-c \"'" MBS_PROGRAM "' " + command + kShort + end + "\"");
     EXPECT_EQ(run.status, 0) << run.errors;
     EXPECT_NE(run.output.find("benchmarks"), std::string::npos) << run.output;
+    if (*end != '\0') continue;
+    EXPECT_NE(run.output.find("{\n"), std::string::npos) << run.output;  // nothing over the other
+    EXPECT_NE(run.output.find(" variables, "), std::string::npos) << run.output;
   }
 }
 
