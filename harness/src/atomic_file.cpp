@@ -99,6 +99,9 @@ AtomicFile::AtomicFile(std::string path) : name_(path), path_(std::move(path)) {
   }
   // A rename would replace a link; and a device must be written to directly.
   if (fs::exists(status) && !open_already) path_ = fs::canonical(path_).string();
+  while (!fs::exists(status) && fs::is_symlink(path_)) {
+    path_ = (fs::path(path_).parent_path() / fs::read_symlink(path_)).string();
+  }
   const bool direct = open_already || (fs::exists(status) && !fs::is_regular_file(status));
   partial_ = direct ? path_ : create_beside(path_);
   if (partial_.empty()) refuse(std::strerror(errno));
