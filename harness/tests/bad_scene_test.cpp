@@ -261,7 +261,8 @@ TEST(BadScene, NothingTurnsADirectionOfNoLength) {
   for (const std::string& element :
        {R"("torsion_springs": [)" + law + R"("stiffness": 1}])",
         R"("torque_laws": [)" + law + R"("by_rate": {"rates": [0, 1], "torques": [0, 1]}}])",
-        std::string(R"("torques": [{"direction": ["P", "Q"], "torque": 1}])")}) {
+        std::string(R"("springs": [{"between": ["O", "P"]}, {"between": ["X", "P"]}],
+                      "torques": [{"direction": ["P", "Q"], "torque": 1}])")}) {
     expect_errors({{scene + element + "}", {"[0]: found a direction between points", "same place"}}});
   }
 }
