@@ -14,6 +14,7 @@
 #include "registry/setting_names.hpp"
 #include "run/output_values.hpp"
 #include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -39,6 +40,9 @@ auto refusing(Work work) {
 struct SceneDocument::Content {
   std::string name;
   nlohmann::json document;
+  Unused unused = Unused::refused;  // until a number is changed
+
+  [[nodiscard]] Scene scene() const { return scene_of(document, name, unused); }
 };
 
 /// An implementation, and the settings but for what is chosen from the scene.

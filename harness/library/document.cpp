@@ -23,9 +23,7 @@ using nlohmann::json;
 /// What `mbs describe --json` prints; with `scheme`, of this form whatever suits the scene.
 json description_of(const Scene& scene, const StepSettings& settings,
                     const char* scheme = nullptr) {
-  if (!(settings.step >= 1e-12 && settings.step <= 1e6)) {
-    throw UsageError(fmt::format("the step is {:g} s: it must be 1e-12 to 1e6 s", settings.step));
-  }
+  require_step(settings.step);
   json description = describe_json(scene, settings);
   if (scheme != nullptr) {
     description["scheme"]["take"] = scheme;
@@ -148,6 +146,7 @@ void SceneDocument::set_number(const std::string& path, double value) {
     throw Refused(fmt::format("{}: found {:g}, allowed is a finite number", path, value));
   }
   refusing([&] { return content_->document[find_number(content_->document, path)] = value; });
+  content_->unused = Unused::allowed;
 }
 
 const std::string& SceneDocument::name() const { return content_->name; }
@@ -157,7 +156,7 @@ std::string SceneDocument::describe(double step) const {
   return refusing([&] {
     StepSettings settings;
     settings.step = step;
-    return description_of(scene_of(content_->document, content_->name), settings).dump(2);
+    return description_of(content_->scene(), settings).dump(2);
   });
 }
 

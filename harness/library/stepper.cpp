@@ -12,7 +12,6 @@
 #include "run/run.hpp"
 #include "run/settings.hpp"
 #include "scene_file/json_node.hpp"
-#include "scene_file/load_scene.hpp"
 
 namespace mbs {
 namespace {
@@ -83,6 +82,7 @@ std::size_t place_of(int index, const std::vector<std::string>& names, const cha
 }
 
 StepSettings chosen_settings(const Scene& scene, StepSettings settings) {
+  require_step(settings.step);
   require_combination(settings);
   if (settings.penalty == 0.0) settings.penalty = automatic_penalty(scene.model, settings);
   if (settings.tolerance == 0.0) settings.tolerance = automatic_tolerance(scene.model, settings);
@@ -92,7 +92,7 @@ StepSettings chosen_settings(const Scene& scene, StepSettings settings) {
 }
 
 Stepper::Content::Content(const SceneDocument::Content& from, const StepperOptions& options)
-    : scene(scene_of(from.document, from.name)),
+    : scene(from.scene()),
       ranges(input_ranges(scene)),
       choice(choose(scene, options)),
       settings(chosen_settings(scene, choice.settings)),

@@ -44,7 +44,4 @@ void refuse_empty(CLI::App& command);
 /// The one variant that the value of --implementation names. Throws UsageError.
 NamedVariant select_variant(const std::string& name);
 
-/// Throws UsageError unless `step` (s) is a sensible time step.
-void require_step(double step);
-
 }  // namespace mbs

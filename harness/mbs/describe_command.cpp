@@ -7,6 +7,7 @@
 #include "describe/recommendation.hpp"
 #include "mbs/commands.hpp"
 #include "registry/registry.hpp"
+#include "registry/setting_names.hpp"
 #include "scene_file/load_scene.hpp"
 
 namespace mbs {

@@ -19,7 +19,8 @@ bool is_same_file(const std::string& a, const std::string& b) {
   const auto name = [&error](const std::string& path) {
     return fs::weakly_canonical(fs::absolute(path, error), error);
   };
-  return name(a) == name(b);
+  const fs::path first = name(a);
+  return !first.empty() && first == name(b);  // empty: where no file can be
 }
 
 void require_not_scene(const std::string& option, const std::string& path,

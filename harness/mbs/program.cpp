@@ -134,11 +134,6 @@ NamedVariant select_variant(const std::string& name) {
                                names.size(), fmt::join(names, ", ")));
 }
 
-void require_step(double step) {
-  if (step >= 1e-12 && step <= 1e6) return;
-  throw UsageError(fmt::format("--step is {:g} s: it must be 1e-12 to 1e6 s", step));
-}
-
 StepSettings StepOptions::resolve(const Model& model) const {
   StepSettings result = settings;
   require_step(result.step);

@@ -7,6 +7,7 @@
 #include "ladder/term_models.hpp"
 #include "mbs/commands.hpp"
 #include "reference/reference_simulation.hpp"
+#include "registry/setting_names.hpp"
 #include "run/initial_state.hpp"
 #include "run/settings.hpp"
 #include "scene/row_names.hpp"

@@ -44,7 +44,7 @@ class StepReport {
       : path_(path), summary_(request.summary), everyone_(request.implementations.empty()) {
     if (flags.format != "console") display_ = make_display_reporter(kStepCounters);
     if (!display_) fmt::print("{}\n", summary_ ? filled(origin()) : origin() + "\n");
-    if (!path.empty()) stream_.open(path, std::ios::trunc);
+    if (!path.empty()) stream_.open(path, std::ios::app);
     file_.SetOutputStream(&stream_);
     const benchmark::BenchmarkReporter::Context context;
     if (display_) display_->ReportContext(context);

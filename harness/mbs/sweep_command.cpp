@@ -35,14 +35,19 @@ void add_sweep_command(CLI::App& app, int& status) {
       ->capture_default_str();
   command->add_flag("--half-step", options->half_step,
                     "also simulate with half the step, and estimate the error by the difference");
-  command->add_option("--sample", options->sampling.count,
-                      "draw N sets of all numbers whose RANGE is a distribution. The other numbers "
-                      "make a grid, and each of its points gets these N sets")
-      ->check(CLI::Range(1L, kMostLanes));
+  CLI::Option* sample =
+      command
+          ->add_option("--sample", options->sampling.count,
+                       "draw N sets of all numbers whose RANGE is a distribution. The other numbers "
+                       "make a grid, and each of its points gets these N sets")
+          ->check(CLI::Range(1L, kMostLanes));
   command->add_option("--seed", options->sampling.seed, "of the random numbers of --sample")
-      ->capture_default_str();
-  command->add_flag("--sobol", options->sampling.sobol,
-                    "sample by a Sobol sequence, shifted by the seed, instead of at random");
+      ->capture_default_str()
+      ->needs(sample);
+  command
+      ->add_flag("--sobol", options->sampling.sobol,
+                 "sample by a Sobol sequence, shifted by the seed, instead of at random")
+      ->needs(sample);
   std::vector<CLI::Option*> apart;  // what the rows do not depend on
   apart.push_back(command
                       ->add_option("--jobs", options->jobs, "processes that run lanes side by side")

@@ -61,7 +61,7 @@ void require_lanes(int jobs, const std::vector<long>& mine, const SweepBlocks& b
 bool is_file(const std::string& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
-  return !path.starts_with("/dev/") && !path.starts_with("/proc/") &&
+  return !is_open_already(path) && !path.starts_with("/proc/") &&
          (!fs::exists(status) || fs::is_regular_file(status));
 }
 
@@ -101,8 +101,8 @@ nlohmann::json head_of(const SweepOptions& options, const SweepGrid& grid, const
           {"options", text(options.identity)},
           {"file", checksum(grid.document().dump())},
           {"program", program_checksum()},
-          {"libraries", text(recorded("libraries") + "; " + recorded("blas_loaded"))},
-          {"processor", text(recorded("cpu_model"))},
+          {"libraries", recorded("libraries") + "; " + recorded("blas_loaded")},
+          {"processor", recorded("cpu_model")},
           {"columns", blocks.rows().head()},
           {"lanes", grid.lanes()},
           {"blocks", blocks.count()},

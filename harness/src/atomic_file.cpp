@@ -9,6 +9,8 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -48,10 +50,19 @@ void remember(const std::string& path) {
   }
 }
 
-/// Whether it names what is open already: a pipe with both its ends, or a file to be kept.
-bool is_open_already(const std::string& path) {
-  return path == "/dev/stdout" || path == "/dev/stderr" || path.starts_with("/dev/fd/") ||
-         path.starts_with("/proc/self/fd/");
+/// The descriptor that such a name stands for.
+int descriptor_of(const std::string& path) {
+  if (path == "/dev/stdout") return STDOUT_FILENO;
+  if (path == "/dev/stderr") return STDERR_FILENO;
+  return std::atoi(path.c_str() + path.rfind('/') + 1);
+}
+
+/// Whatever is written to a file that is open already goes to its end, through the descriptor too:
+/// what the program prints later would else come over the beginning.
+void write_at_end(const std::string& path) {
+  std::fflush(nullptr);
+  const int file = descriptor_of(path), flags = ::fcntl(file, F_GETFL);
+  if (flags >= 0) ::fcntl(file, F_SETFL, flags | O_APPEND);
 }
 
 /// Creates a file beside `path` that nobody else has, and returns its name; empty on failure.
@@ -69,6 +80,11 @@ std::string create_beside(const std::string& path) {
 
 }  // namespace
 
+bool is_open_already(const std::string& path) {
+  return path == "/dev/stdout" || path == "/dev/stderr" || path.starts_with("/dev/fd/") ||
+         path.starts_with("/proc/self/fd/");
+}
+
 AtomicFile::AtomicFile(std::string path) : name_(path), path_(std::move(path)) {
   const auto refuse = [this](const char* why) {
     throw UsageError(fmt::format("cannot write '{}': {}", name_, why));
@@ -83,10 +99,14 @@ AtomicFile::AtomicFile(std::string path) : name_(path), path_(std::move(path)) {
   }
   // A rename would replace a link; and a device must be written to directly.
   if (fs::exists(status) && !open_already) path_ = fs::canonical(path_).string();
+  while (!fs::exists(status) && fs::is_symlink(path_)) {
+    path_ = (fs::path(path_).parent_path() / fs::read_symlink(path_)).string();
+  }
   const bool direct = open_already || (fs::exists(status) && !fs::is_regular_file(status));
   partial_ = direct ? path_ : create_beside(path_);
   if (partial_.empty()) refuse(std::strerror(errno));
   if (!direct) remember(partial_);
+  if (open_already) write_at_end(path_);
   stream_.open(partial_, std::ios::binary | (open_already ? std::ios::app : std::ios::out));
   if (!stream_) refuse(std::strerror(errno));
 }

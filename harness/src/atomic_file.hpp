@@ -6,6 +6,9 @@
 
 namespace mbs {
 
+/// Whether `path` names what is open already: a pipe with both its ends, or a file to be kept.
+bool is_open_already(const std::string& path);
+
 /// Writes to a file of its own beside `path` and renames it on commit(); without a commit nothing
 /// stays, also when SIGINT, SIGTERM or SIGHUP ends the program. Links are followed, devices and what
 /// is open already (/dev/stdout) written to directly. Up to four at a time.

@@ -251,6 +251,22 @@ TEST(BadScene, GivenVelocitiesOfPointsThatAreNoCoordinatesCount) {
                    "change by 2 m/s, allowed is 0.3 m/s"}}});
 }
 
+/// Two masses at one place, and what turns the direction between them.
+TEST(BadScene, NothingTurnsADirectionOfNoLength) {
+  const std::string scene = R"({"points": [{"name": "O", "position": [0, 0], "fixed": true},
+    {"name": "X", "position": [1, 0], "fixed": true}, {"name": "P", "position": [1, 1]},
+    {"name": "Q", "position": [1, 1]}],
+    "masses": [{"point": "P", "mass": 1}, {"point": "Q", "mass": 1}], )";
+  const std::string law = R"({"from": ["O", "X"], "to": ["P", "Q"], )";
+  for (const std::string& element :
+       {R"("torsion_springs": [)" + law + R"("stiffness": 1}])",
+        R"("torque_laws": [)" + law + R"("by_rate": {"rates": [0, 1], "torques": [0, 1]}}])",
+        std::string(R"("springs": [{"between": ["O", "P"]}, {"between": ["X", "P"]}],
+                      "torques": [{"direction": ["P", "Q"], "torque": 1}])")}) {
+    expect_errors({{scene + element + "}", {"[0]: found a direction between points", "same place"}}});
+  }
+}
+
 TEST(BadScene, VelocityAlongARodIsNamed) {
   expect_errors({{pendulum("[1, 0]", "[0, 0.5]"),
                   {"points[1].velocity: the velocities contradict", "that of \"B\", 0.5 m/s",

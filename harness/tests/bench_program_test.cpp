@@ -14,6 +14,7 @@
 #include <set>
 
 #include "registry/registry.hpp"
+#include "support/folder.hpp"
 #include "support/program.hpp"
 
 namespace mbs {
@@ -71,6 +72,13 @@ TEST(BenchProgram, WritesARowForEveryVariantAndScene) {
     }
   }
   EXPECT_EQ(names, expected);
+}
+
+TEST(BenchProgram, AFileMayHaveAnyName) {
+  const test::Folder folder;
+  fs::copy_file(MBS_ROOT "/harness/scenes/pendulum.json", folder.file("\xff.json"));
+  const json result = bench("'" + folder.file("\xff.json") + "' --implementation null");
+  EXPECT_EQ(result["benchmarks"][0]["name"], "null/null/" + folder.file("\\xFF.json"));
 }
 
 TEST(BenchProgram, HasTheRecordInItsContext) {
@@ -191,10 +199,10 @@ TEST(BenchProgram, LeavesTheSlowOut) {
 
 /// What the program says on stderr when a control ends it, and how it ends.
 void expect_ending(const std::string& control, const std::string& signal, int status,
-                   const std::string& environment = "") {
+                   const std::string& environment = "", const std::string& more = "") {
   const std::string command =
       "bench four-bar:2 --implementation control/reference --implementation control/" + control +
-      kShort;
+      kShort + more;
   auto run = test::run_program(MBS_CONTROLS, command, environment);
   if (run.errors.empty() && !environment.empty()) {
     // A program that the system has to read again may take seconds to start.
@@ -217,7 +225,9 @@ TEST(BenchProgram, SaysWhoEndedIt) {
 }
 
 TEST(BenchProgram, SaysWhoWasRunningWhenItWasStopped) {
-  expect_ending("hangs", "SIGTERM", 124, "timeout 2");
+  const test::Folder folder;
+  expect_ending("hangs", "SIGTERM", 124, "timeout 2", "--benchmark_out=" + folder.file("out.json"));
+  EXPECT_TRUE(folder.is_empty()) << "half a file stays";
 }
 
 TEST(BenchProgram, TimesBatchesBesideTheirLanesAlone) {
@@ -324,6 +334,8 @@ TEST(BenchProgram, RefusesBadInput) {
   expect_refusal("four-bar:1 --batch --operations", "--batch");
   expect_refusal("four-bar:1 --batch --phases", "--batch");
   expect_refusal("four-bar:1 --operations --phases", "--operations");
+  expect_refusal("four-bar:1 --operations --steps 3", "--steps");
+  expect_refusal("four-bar:1 --operations --start 1", "--start");
   expect_refusal("four-bar:1 --seed 99999999999999999999", "--seed is");
   expect_refusal("--implementation null no-scene", "no-scene");
   expect_refusal("four-bar:1 --summary --no-summary", "--no-summary");
@@ -358,6 +370,9 @@ TEST(BenchProgram, WritesToWhatIsOpenAlready) {
         test::run_program("sh", "-c \"'" MBS_PROGRAM "' " + command + kShort + end + "\"");
     EXPECT_EQ(run.status, 0) << run.errors;
     EXPECT_NE(run.output.find("benchmarks"), std::string::npos) << run.output;
+    if (*end != '\0') continue;
+    EXPECT_NE(run.output.find("\"context\""), std::string::npos) << run.output;  // none over the other
+    EXPECT_NE(run.output.find(" variables, "), std::string::npos) << run.output;
   }
 }
 

@@ -11,6 +11,7 @@
 #include "registry/registry.hpp"
 #include "run/settings.hpp"
 #include "scene_file/load_scene.hpp"
+#include "support/folder.hpp"
 #include "support/program.hpp"
 
 namespace mbs {
@@ -33,6 +34,17 @@ TEST(CheckProgram, WhatWasTriedAgreesAndBelongsToAVariant) {
       MBS_SANITIZE ? "four-bar:3 grid:2x2" : "four-bar:10 four-bar:20,fill=0.5 grid:4x4";
   const auto run = test::run_mbs("check " + scenes + " --time-limit 2000" + names);
   EXPECT_EQ(run.status, 0) << run.output << run.errors;
+}
+
+TEST(CheckProgram, AFileMayHaveAnyName) {
+  const test::Folder folder;
+  const std::string scene = folder.file("\xff.json"), verdicts = folder.file("verdicts");
+  fs::copy_file(MBS_ROOT "/harness/scenes/pendulum.json", scene);
+  const auto run = test::run_program(
+      MBS_CONTROLS, "check '" + scene + "' --implementation control/reference --json '" + verdicts + "'");
+  EXPECT_EQ(run.status, 0) << run.errors;
+  const std::string command = json::parse(test::file_text(verdicts)).at("context").at("command");
+  EXPECT_NE(command.find("\\xFF.json"), std::string::npos) << command;
 }
 
 TEST(CheckProgram, AllImplementationsAgree) {

@@ -1,9 +1,11 @@
 // Numbers of a scene as expressions of its parameters.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <numbers>
 
 #include "scene_file/load_scene.hpp"
+#include "support/folder.hpp"
 #include "support/scene_support.hpp"
 #include "sweep/sweep_grid.hpp"
 
@@ -77,6 +79,14 @@ TEST(Parameters, AreVariedByName) {
   const Scene first = grid.scene(0), last = grid.scene(3);
   EXPECT_DOUBLE_EQ(last.model.springs()[0].stiffness / first.model.springs()[0].stiffness, 4.0);
   EXPECT_DOUBLE_EQ(last.model.data().mass[0].value, 2.0 * first.model.data().mass[0].value);
+}
+
+TEST(Parameters, ANumberMayTakeThePlaceOfTheOnlyExpressionThatNamesOne) {
+  const test::Folder folder;
+  const std::string path = folder.file("scene.json");
+  std::ofstream(path) << scene(R"({"l": 2, "m": 3})", R"("=m")");
+  const SweepGrid grid(path, {"masses/B/mass=4,5"});
+  EXPECT_DOUBLE_EQ(grid.scene(1).model.data().mass[0].value, 5.0);
 }
 
 }  // namespace

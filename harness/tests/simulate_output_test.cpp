@@ -121,6 +121,9 @@ TEST_F(SimulateOutput, RefusesOneFileForBoth) {
   const auto run = simulate(scene() + to("--output", "out.csv") + to("--trajectory", "out.csv"));
   EXPECT_EQ(run.status, 2);
   EXPECT_NE(run.errors.find("same file"), std::string::npos) << run.errors;
+  const std::string one(300, 'a'), other(300, 'b');  // longer than a name may be
+  const auto longer = simulate(scene() + to("--output", one.c_str()) + to("--trajectory", other.c_str()));
+  EXPECT_NE(longer.errors.find("too long"), std::string::npos) << longer.errors;
   const auto empty = simulate(scene() + " --output ''");
   EXPECT_EQ(empty.status, 2);
   EXPECT_NE(empty.errors.find("--output"), std::string::npos) << empty.errors;

@@ -369,6 +369,14 @@ TEST_F(SimulateProgram, WritesToDevicesWithoutReplacingThem) {
   EXPECT_TRUE(folder.is_empty());
 }
 
+TEST_F(SimulateProgram, WritesWhereALinkLeadsThoughNothingIsThereYet) {
+  const test::Folder folder;
+  fs::create_symlink("target.csv", folder.file("link.csv"));
+  EXPECT_EQ(simulate("four-bar:2 --duration 0.1 --trajectory '" + folder.file("link.csv") + "'").status, 0);
+  EXPECT_TRUE(fs::is_symlink(folder.file("link.csv")));
+  EXPECT_TRUE(fs::is_regular_file(folder.file("target.csv")));
+}
+
 TEST_F(SimulateProgram, RefusesBadOptions) {
   for (const char* option : {"--step", "--duration", "--penalty", "--tolerance"}) {
     for (const char* value : {"0", "-1", "nan", "inf", "abc", "1e400", "''"}) {

@@ -267,6 +267,8 @@ TEST(Stepper, RefusesSettingsByTheirOwnNames) {
   const auto said = [&] { return refused_by([&] { Stepper(scene, options); }); };
   options.settings.max_passes = 0;
   EXPECT_EQ(said().find("max_passes is 0"), 0u) << said();
+  options.settings = {.step = 1e-200, .penalty = 0.0};  // the penalty factor would be infinite
+  EXPECT_EQ(said().find("step is 1e-200 s: it must be"), 0u) << said();
   options.settings = {.projections_every = 0};
   EXPECT_EQ(said().find("projections_every is 0"), 0u) << said();
   options.settings = {.scheme = Scheme::multistep6};
@@ -352,6 +354,15 @@ TEST(SceneDocument, ChangesNumbersOfACopyAlone) {
   other.set_number(path, 2 * one.number(path) + 1);
   EXPECT_NE(other.number(path), one.number(path));
   EXPECT_NE(one.describe().find("recommendation"), std::string::npos);
+}
+
+TEST(SceneDocument, ANumberMayTakeThePlaceOfAnExpression) {
+  SceneDocument scene = SceneDocument::parse(pendulum(R"("mass": 3)", R"("mass": "=2*m")")
+                                                 .replace(0, 1, R"({"parameters": {"m": 1}, )"));
+  EXPECT_EQ(refused_by([&] { Stepper{scene}; }), "not refused");
+  scene.set_number("rods/rod/mass", 4.0);  // nothing names m now
+  EXPECT_EQ(refused_by([&] { Stepper{scene}; }), "not refused");
+  EXPECT_EQ(scene.number("m"), 1.0);
 }
 
 TEST(SceneDocument, RefusesWhatIsNoSceneOrNumber) {

@@ -133,10 +133,23 @@ TEST_F(SweepParts, AFullDiskAtTheStartLeavesNothing) {
 }
 
 TEST_F(SweepParts, AFileMayHaveAnyName) {
-  const std::string scene = at("\xff.json");
-  std::filesystem::copy_file(MBS_ROOT "/harness/scenes/double_pendulum.json", scene);
-  const auto run = sweep("'" + scene + "' --duration 0.1 --vary gravity/1=-9,-8", "t.csv", "batch/sound");
-  EXPECT_EQ(run.status, 0) << run.errors;
+  for (const char* name : {"\xff.json", "\xed\xa0\x80.json", "\xf4\x90\x80\x80.json"}) {
+    const std::string scene = at(name);
+    std::filesystem::copy_file(MBS_ROOT "/harness/scenes/double_pendulum.json", scene);
+    const auto run = sweep("'" + scene + "' --duration 0.1 --vary gravity/1=-9,-8", "t.csv", "batch/sound");
+    EXPECT_EQ(run.status, 0) << run.errors;
+  }
+}
+
+TEST_F(SweepParts, MayBeInMemory) {
+  const std::filesystem::path memory = "/dev/shm";
+  std::error_code error;
+  if (::access(memory.c_str(), W_OK) != 0) GTEST_SKIP() << "there is no /dev/shm";
+  const std::filesystem::path part = memory / std::filesystem::path(at("part")).parent_path().filename();
+  const auto run = test::run_program(MBS_CONTROLS, "sweep --implementation batch/sound --shard 1/2 --output '" +
+                                                       part.string() + "' " + kLanes);
+  EXPECT_EQ(run.status, 1) << run.errors;  // for the lanes that cannot be assembled
+  EXPECT_TRUE(std::filesystem::remove(part, error));
 }
 
 TEST_F(SweepParts, NeedNoMoreFilesThanAreAllowed) {
@@ -240,6 +253,8 @@ TEST_F(SweepParts, SamplesComeBesideGrids) {
   EXPECT_NE(text("a.csv"), text("d.csv"));
   expect_refusal(sweep("four-bar:1 --vary gravity/1=-9 --sample 3", "out.csv"), {"--sample", "uniform:a:b"});
   expect_refusal(sweep("four-bar:1 --vary gravity/1=normal:1:2", "out.csv"), {"--sample N"});
+  expect_refusal(sweep("four-bar:1 --vary gravity/1=-9 --sobol", "out.csv"), {"--sobol", "--sample"});
+  expect_refusal(sweep("four-bar:1 --vary gravity/1=-9 --seed 2", "out.csv"), {"--seed", "--sample"});
   expect_refusal(sweep("four-bar:1 --vary gravity/1=uniform:2:1 --sample 3", "out.csv"), {"a below b"});
   expect_refusal(sweep("four-bar:1 --vary gravity/1=normal:2:0 --sample 3", "out.csv"), {"above 0"});
 }

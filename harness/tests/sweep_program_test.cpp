@@ -216,6 +216,13 @@ TEST_F(SweepProgram, RefusesBadInputBeforeAnythingRuns) {
   expect_refusal("'" + scene + "' --vary masses/C/mass=1,2", {"no \"C\" in masses", "one of B"});
 }
 
+TEST_F(SweepProgram, WhatItSaysComesBehindATableOnStandardOutput) {
+  file_ = "/dev/stdout";  // here a file
+  const auto run = sweep("four-bar:1 --duration 0.1 --vary gravity/1=-9,-8");
+  EXPECT_TRUE(run.output.starts_with("gravity/1,status,")) << run.output;
+  EXPECT_TRUE(run.output.ends_with("\n2 lanes: 2 plausible\n")) << run.output;
+}
+
 TEST_F(SweepProgram, WritesWholeTablesOnly) {
   std::ofstream(file_) << "mine\n";
   EXPECT_EQ(sweep("four-bar:2 --vary rods/A0-B0/mass=1,-1").status, 2);

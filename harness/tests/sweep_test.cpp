@@ -93,6 +93,8 @@ TEST(ValueRange, IsSpacedAsAsked) {
     EXPECT_NEAR(decades[static_cast<std::size_t>(i)], expected, 1e-14 * std::abs(expected));
   }
   EXPECT_EQ(decades.back(), -1e3);
+  EXPECT_NEAR(parse_range("1e-200:1e-180:3:log", "p")[1] / 1e-190, 1.0, 1e-12);  // their product is 0
+  EXPECT_NEAR(parse_range("1e-200:1e200:3:log", "p")[1], 1.0, 1e-12);            // their ratio is infinite
 }
 
 TEST(ValueRange, RefusesWhatIsNone) {

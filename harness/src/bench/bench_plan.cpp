@@ -34,6 +34,9 @@ void check(const BenchRequest& request) {
   if (request.operations && request.phases) {
     throw UsageError("--phases are those of steps: they do not go with --operations");
   }
+  if (request.operations && (request.steps || request.start)) {
+    throw UsageError("--steps and --start are those of steps: they do not go with --operations");
+  }
   if (request.summary && (request.batch || request.operations)) {
     throw UsageError("--summary is one of steps: it goes with neither --batch nor --operations");
   }
@@ -143,15 +146,16 @@ BenchPlan plan_bench(const BenchRequest& request) {
     }
     if (request.watch) request.watch(fmt::format("{}: reading the scene", name));
     const PlannedScene* scene = &plan.scenes.emplace_back(plan_scene(name, request));
+    const std::string& shown = scene->scene.name;
     if (control && !request.operations && !request.batch) {
-      plan.cells.push_back({fmt::format("{}/{}", kControl, name), scene, &null_variant(), true});
+      plan.cells.push_back({fmt::format("{}/{}", kControl, shown), scene, &null_variant(), true});
     }
     for (const NamedVariant& variant : variants) {
       // Asked for by name it becomes a row that says so.
       const bool offers = (!request.operations || variant.variant->operations != nullptr) &&
                           (!request.batch || variant.variant->create_batch != nullptr);
       if (!offers && request.implementations.empty()) continue;
-      plan.cells.push_back({fmt::format("{}/{}", variant.name, name), scene, variant.variant, false,
+      plan.cells.push_back({fmt::format("{}/{}", variant.name, shown), scene, variant.variant, false,
                             variant.entry == nullptr ||
                                 is_own_code(variant.entry->implementation, *variant.variant)});
     }

@@ -1,4 +1,4 @@
-// A handler that calls nothing but write(2) and raise(3).
+// A handler that calls nothing but write(2), sigaction(2) and raise(3).
 #include "bench/suspect.hpp"
 
 #include <unistd.h>
@@ -24,6 +24,7 @@ constexpr std::array<std::pair<int, std::string_view>, 6> kSignals{{{SIGSEGV, "S
                                                                     {SIGBUS, "SIGBUS"},
                                                                     {SIGILL, "SIGILL"},
                                                                     {SIGTERM, "SIGTERM"}}};
+std::array<struct sigaction, kSignals.size()> usual;  // what each signal does without the watch
 
 void tell_suspect(int signal) {
   std::array<char, kLongestName + 64> line;
@@ -43,7 +44,10 @@ void tell_suspect(int signal) {
   add("\n");
   if (::write(STDERR_FILENO, line.data(), length) < 0) {  // nowhere left to say so
   }
-  ::raise(signal);  // the default action again, on return
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    if (kSignals[i].first == signal) ::sigaction(signal, &usual[i], nullptr);
+  }
+  ::raise(signal);  // for who was there before, on return: files that are not whole are removed
 }
 
 }  // namespace
@@ -63,12 +67,17 @@ SuspectWatch::SuspectWatch() {
   ::sigaltstack(&stack, nullptr);
   struct sigaction action {};
   action.sa_handler = tell_suspect;
-  action.sa_flags = static_cast<int>(SA_ONSTACK | SA_RESETHAND);
-  for (const auto& [number, name] : kSignals) ::sigaction(number, &action, nullptr);
+  action.sa_flags = SA_ONSTACK;
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    ::sigaction(kSignals[i].first, &action, &usual[i]);
+    if (usual[i].sa_handler == SIG_IGN) ::sigaction(kSignals[i].first, &usual[i], nullptr);
+  }
 }
 
 SuspectWatch::~SuspectWatch() {
-  for (const auto& [number, name] : kSignals) std::signal(number, SIG_DFL);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    ::sigaction(kSignals[i].first, &usual[i], nullptr);
+  }
   stack_t stack{};
   stack.ss_flags = SS_DISABLE;
   ::sigaltstack(&stack, nullptr);

@@ -16,6 +16,7 @@
 #include "environment/build_info.hpp"
 #include "environment/environment.hpp"
 #include "environment/machine.hpp"
+#include "printable.hpp"
 #include "registry/registry.hpp"
 
 extern char** environ;
@@ -135,7 +136,7 @@ std::vector<std::string> loaded_blas_files() { return blas_files(whole_file("/pr
 EnvironmentRecord environment_record() {
   const BuildInfo& build = build_info();
   const std::vector<std::string> arguments = own_arguments();
-  return {
+  EnvironmentRecord record{
       {"mbs_version", build.version},
       {"commit", build.commit},
       {"dirty", build.dirty},
@@ -151,6 +152,9 @@ EnvironmentRecord environment_record() {
       {"threads_environment", threads_environment()},
       {"command", command_line(arguments)},
   };
+  // It ends up in JSON, and arguments and variables may hold any bytes.
+  for (auto& [key, value] : record) value = printable(value, std::string::npos);
+  return record;
 }
 
 }  // namespace mbs

@@ -90,6 +90,11 @@ void require_combination(const StepSettings& s) {
   }
 }
 
+void require_step(double step) {
+  if (step >= 1e-12 && step <= 1e6) return;
+  throw UsageError(fmt::format("--step is {:g} s: it must be 1e-12 to 1e6 s", step));
+}
+
 nlohmann::json settings_json(const StepSettings& s) {
   return {{"step", s.step},
           {"penalty", s.penalty},

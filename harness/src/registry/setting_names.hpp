@@ -37,6 +37,9 @@ bool is_explicit(Scheme scheme);
 /// together".
 void require_combination(const StepSettings& settings);
 
+/// Throws UsageError unless `step` (s) is a sensible time step.
+void require_step(double step);
+
 /// The settings that differ from "The step" of the paper, as on a command line: "--scheme rattle
 /// --projections-every 2"; empty if none does.
 std::string other_settings(const StepSettings& settings);

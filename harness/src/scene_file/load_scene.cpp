@@ -150,9 +150,9 @@ nlohmann::json load_document(const std::string& text) {
   return four_bar_document(parse_loops(text, std::string_view(text).substr(kFourBar.size())));
 }
 
-Scene scene_of(const nlohmann::json& document, const std::string& name) {
+Scene scene_of(const nlohmann::json& document, const std::string& name, Unused unused) {
   // Paths may hold any bytes; a scene's name ends up in JSON and must be UTF-8.
-  SceneData data = read_scene(document, name);
+  SceneData data = read_scene(document, name, unused);
   return {printable(name, kLongestName), Model(std::move(data.model)), {}, {},
           std::move(data.elements),      std::move(data.assembly)};
 }

@@ -21,13 +21,19 @@ SceneData parse_scene(std::string_view json, const std::string& where);
 /// scene or of the JSON file at a path. Throws UsageError.
 nlohmann::json load_document(const std::string& text);
 
+/// A parameter that no expression names: a mistake of who wrote the document; but a number that took
+/// an expression's place since may leave one.
+enum class Unused { refused, allowed };
+
 /// The scene that a document says; `name` is what it is called, in errors too. Throws UsageError.
-Scene scene_of(const nlohmann::json& document, const std::string& name);
+Scene scene_of(const nlohmann::json& document, const std::string& name,
+               Unused unused = Unused::refused);
 
 /// The same points, rods, velocities and outputs as four_bar() and four_bar_elements().
 nlohmann::json four_bar_document(int loops);
 
 /// parse_scene() of what is parsed already.
-SceneData read_scene(const nlohmann::json& document, const std::string& where);
+SceneData read_scene(const nlohmann::json& document, const std::string& where,
+                     Unused unused = Unused::refused);
 
 }  // namespace mbs

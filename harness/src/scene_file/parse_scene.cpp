@@ -22,8 +22,8 @@ SceneData parse_scene(std::string_view json, const std::string& where) {
   return read_scene(parse_json(json, where), where);
 }
 
-SceneData read_scene(const nlohmann::json& document, const std::string& where) {
-  const std::optional<nlohmann::json> numbers = with_numbers(document, where);
+SceneData read_scene(const nlohmann::json& document, const std::string& where, Unused unused) {
+  const std::optional<nlohmann::json> numbers = with_numbers(document, where, unused);
   SceneDraft draft = SceneReader(JsonNode(numbers ? *numbers : document, where)).read();
   choose_bases(draft);
   place(draft);

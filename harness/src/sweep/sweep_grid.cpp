@@ -85,7 +85,7 @@ Scene SweepGrid::scene(long lane) const {
   nlohmann::json document = document_;
   const std::vector<double> changed = values(lane);
   for (std::size_t i = 0; i < axes_.size(); ++i) document[axes_[i].number] = changed[i];
-  return scene_of(document, name_);
+  return scene_of(document, name_, Unused::allowed);  // base_ was looked at
 }
 
 std::string SweepGrid::describe(long lane) const {

@@ -70,12 +70,15 @@ std::vector<double> parse_range(const std::string& text, const std::string& path
     refuse_vary(path, in_quotes(text), "a:b:K, a:b:K:log or v1,v2,...");
   const double first = parse_number(parts[0], path), last = parse_number(parts[1], path);
   const long count = parse_count(parts[2], path);
-  if (is_log && !(first * last > 0.0)) {
+  if (is_log && (first == 0.0 || last == 0.0 || (first > 0.0) != (last > 0.0))) {
     refuse_vary(path, in_quotes(text), "ends of one sign, and not 0, for even ratios");
   }
   for (long i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(count - 1);
-    values.push_back(is_log ? first * std::pow(last / first, share)
+    // Neither product nor ratio of the ends need be a number.
+    values.push_back(is_log ? std::copysign(std::pow(std::abs(first), 1 - share) *
+                                                std::pow(std::abs(last), share),
+                                            first)
                             : std::lerp(first, last, share));
   }
   values.back() = last;  // pow() may be off by a rounding

@@ -30,7 +30,11 @@ TimeFunction not_negative_driver(SceneReader& reader, const JsonNode& node, std:
   Driver driver;
   driver.least = 0.0;
   driver.range = allowed;
-  return read_driver(reader, *found, allowed, std::move(driver));
+  TimeFunction value = read_driver(reader, *found, allowed, std::move(driver));
+  if (const double always = value.at(0.0).value; value.is_constant() && always < 0.0) {
+    found->fail(fmt::format("{:g} at all times", always), allowed);
+  }
+  return value;
 }
 
 /// What is left of a spring's stiffness or damping when a law has the function.
@@ -49,6 +53,11 @@ Vector3 difference(const ModelData& data, int a, int b) {
 /// z, in space the unit vector `axis`, which the direction must be perpendicular to.
 Vector3 axis_of(const ModelData& data, int axis, const Vector3& direction, const std::string& name,
                 const std::string& where) {
+  if (!(dot(direction, direction) > 0.0)) {
+    throw UsageError(fmt::format("{}: {}: found a direction between points that start at the same "
+                                 "place, allowed is a direction of length above 0",
+                                 printable(where), name));
+  }
   if (axis < 0) return {0.0, 0.0, 1.0};
   const Point& point = data.points[static_cast<std::size_t>(axis)];
   const Vector3 z = point.position;
