@@ -1,12 +1,15 @@
 // What a small rule with made-up numbers recommends.
 #include "describe/recommendation.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "describe/describe.hpp"
+#include "registry/factory.hpp"
+#include "registry/registry.hpp"
 #include "scene_file/load_scene.hpp"
 #include "support/program.hpp"
 
@@ -245,6 +248,20 @@ TEST(Recommendation, TheProgramPrintsIt) {
     EXPECT_TRUE(d.contains(key)) << key;
   }
   EXPECT_EQ(d["recommendation"].empty(), d["no_recommendation"].is_string());
+}
+
+TEST(Recommendation, NamesNobodyWhoRefusesTheScene) {
+  for (const char* name : {"ladder:4", "truss:1", "tree:7", "grid:2x2", "vehicle:2", "four-bar:3"}) {
+    const auto found = test::run_mbs(fmt::format("describe {} --json", name));
+    ASSERT_EQ(found.status, 0) << found.errors;
+    const Scene scene = load_scene(name);
+    for (const json& one : json::parse(found.output)["recommendation"]) {
+      StepSettings settings{.step = 1e-3, .penalty = 1e9};
+      if (one["scheme"] == "saddle-point") settings.scheme = Scheme::saddle_point;
+      const std::string variant = one["implementation"];
+      EXPECT_NO_THROW(create_simulation(*select_variants({variant})[0].variant, scene.model, settings)) << variant << ", " << name;
+    }
+  }
 }
 
 }  // namespace

@@ -68,6 +68,7 @@ Implementation implementation() {
   sweeps.description = "kernels that eliminate a chain of points from both ends; no other scene";
   sweeps.create = create_printing;
   sweeps.serves = kServes;
+  sweeps.refuses = why_no_chain;
   sweeps.create_batch = create_batch;
   sweeps.batch_lanes = batch_lanes();
   Implementation all;

@@ -7,20 +7,15 @@
 #include "kinds.hpp"
 
 namespace mbs::compiled_chains {
-namespace {
 
-Topology topology_of(const Model& model) {
-  auto topology = find_chain(model);
-  if (topology) return std::move(*topology);
-  throw Unsupported(
-      "the scene is not a chain of free points (masses and distances between neighbours, at most "
-      "two distances from a point to fixed ones): use compiled_ldl/fronts");
+std::string why_no_chain(const Model& model) {
+  if (find_chain(model)) return "";
+  return "the scene is not a chain of free points (masses and distances between neighbours, at most two distances from a "
+         "point to fixed ones): use compiled_ldl/fronts";
 }
 
-}  // namespace
-
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
-  Topology topology = topology_of(model);
+  Topology topology = find_chain(model).value();
   switch (settings.scheme) {
     case Scheme::penalty:
       return create_penalty(model, settings, std::move(topology));
@@ -39,7 +34,7 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
 std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> models,
                                               std::span<const StepSettings> settings) {
   std::vector<Topology> chains;
-  for (const Model* model : models) chains.push_back(topology_of(*model));
+  for (const Model* model : models) chains.push_back(find_chain(*model).value());
   switch (settings.front().scheme) {
     case Scheme::saddle_point:
       throw Unsupported("batches are not for the saddle-point form");

@@ -3,13 +3,16 @@
 
 #include <memory>
 #include <span>
+#include <string>
 
 #include "mbs/batch.hpp"
 #include "mbs/simulation.hpp"
 
 namespace mbs::compiled_chains {
 
-/// Throws Unsupported unless `model` is a chain.
+/// Empty if `model` is a chain, which the others ask for.
+std::string why_no_chain(const Model& model);
+
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings);
 
 /// The same for many at once, one a vector lane; Unsupported in the saddle-point form and the

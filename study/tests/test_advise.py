@@ -282,6 +282,12 @@ def test_on_an_invented_scene_the_advice_is_about_the_best_of_an_exhaustive_sear
         "ratio"] is None
 
 
+def test_an_error_that_is_known_exactly_is_said_before_its_estimate():
+    estimate = {"estimate": 0.0114, "low": 0.0103, "high": 0.0125}
+    assert answer._error(estimate | {"exact": 0.0098}).startswith("0.0098 m, from the exact motion; by half the step 0.0114 m")
+    assert answer._error(estimate | {"exact": None}).startswith("0.0114 m (0.0103")
+
+
 def verified(estimate, p99=1.0, deadline_us=None, others=(), exact=None, step=None, plain=()):
     """Advice on two implementations of a setting whose pilots at 10 and 5 ms were good, and `others`; what
     was run."""

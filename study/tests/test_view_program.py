@@ -68,6 +68,11 @@ def test_a_scene_of_a_short_driver_table_is_shown_as_long_as_it_is_known(tmp_pat
     assert done.returncode == 2 and "a driver's table ends at 0.5 s" in done.stderr
 
 
+def test_a_scene_is_shown_in_the_form_of_the_step_that_it_needs(tmp_path):
+    done = view(tmp_path, "chain:500", "--duration", "0.025", program=PROGRAM)
+    assert done.returncode == 0 and "saddle-point form" in done.stdout, done.stderr
+
+
 @pytest.mark.parametrize("duration", ["1e12", "1e300"])
 def test_a_duration_that_takes_too_many_steps_is_refused(tmp_path, duration):
     done = view(tmp_path, "four-bar:1", "--duration", duration, program=PROGRAM)

@@ -44,6 +44,9 @@ struct Variant {
   /// Its solver takes unsymmetric matrices too, which other formulations than this one give.
   bool unsymmetric = false;
   Serves serves = {};
+  /// Why it cannot simulate `model`, whose terms it serves, as no chain if it is for chains; empty if it can.
+  /// Without numbers, so that a rule may ask for every scene. nullptr: it takes all.
+  std::string (*refuses)(const Model& model) = nullptr;
   /// The operations of Table 2 alone, as this variant's step does them; nullptr: not offered.
   std::unique_ptr<Operations> (*operations)(const Model& model) = nullptr;
   /// Many at once, for `mbs sweep`; nullptr: they run one after the other, as they do where this

@@ -79,7 +79,7 @@ std::string why_not_offered(const std::string& variant, const Model& model,
   const auto found = std::ranges::find(variants, variant, &NamedVariant::name);
   if (found == variants.end()) return "it is not in this build";
   const std::string missing = why_not_served(found->variant->serves, model, settings);
-  return missing.empty() ? "" : "it does not serve " + missing;
+  return missing.empty() ? why_refused(*found->variant, model) : "it does not serve " + missing;
 }
 
 }  // namespace mbs

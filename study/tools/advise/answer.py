@@ -149,13 +149,19 @@ def _spread(value, interval, unit, scale=1.0):
     return f"{number(scale * value)} {unit} ({number(scale * interval['low'])} to {number(scale * interval['high'])})"
 
 
+def _error(error):
+    """The error against the exact motion decides where that is known: it may be met where the estimate is not."""
+    estimate = _spread(error["estimate"], error, "m")
+    return estimate if error["exact"] is None else f"{number(error['exact'])} m, from the exact motion; by half the step {estimate}"
+
+
 def _advice_lines(answer):
     told, second = answer["advice"], answer["runner_up"]
     error, step, times = told["error"], told["step_us"], told["us_per_second"]
     rows = {"implementation": [told["implementation"]], "settings": [told["setting"]], "step": [f"{told['step']:g} s"],
             "penalty factor": [f"{number(told['penalty'], 4)}, automatic"], "tolerance": [f"{number(told['tolerance'])} m"],
             "precision": [told["precision"]],
-            "expected error": [f"{_spread(error['estimate'], error, 'm')}, verified over {told['verified_over']:g} s"],
+            "expected error": [f"{_error(error)}, verified over {told['verified_over']:g} s"],
             "ends as": _ends_as(told),
             "time per step": [f"{_spread(step['median'], step, 'us')} without interruptions, {told['rounds']} "
                               f"round{'s' * (told['rounds'] > 1)}; with them 99th percentile {number(step['p99'])} us"],

@@ -28,8 +28,7 @@ def view(arguments):
     else:
         with tempfile.TemporaryDirectory() as folder:
             csv, outputs = Path(folder) / "trajectory.csv", Path(folder) / "outputs.csv"
-            note = program.simulate(options.scene, options, scene.end, frames, csv,
-                                    outputs if scene.outputs else None, print)
+            note = program.simulate(options.scene, scene, options, frames, csv, outputs if scene.outputs else None, print)
             motion = trajectory.read(csv, scene, frames)
             if scene.outputs:
                 motion.outputs = trajectory.read_outputs(outputs, scene, frames)

@@ -28,18 +28,19 @@ def describe(scene):
         raise StudyError(f"`mbs describe {scene} --json` gave no JSON: {error}") from error
 
 
-def simulate(scene, options, end, frames, csv, outputs, say):
-    """Writes the trajectory `csv` of about `frames` rows, and the scene's outputs at the same times to
+def simulate(place, scene, options, frames, csv, outputs, say):
+    """Writes the trajectory `csv` of `scene`, which is at `place`, in about `frames` rows, and its outputs at the same times to
     `outputs` unless that is None; returns a line on what was run.
-    `options` has step, duration (None: chosen here, up to `end`) and implementation. `say` takes
+    `options` has step, duration (None: chosen here, up to the end of what drives the scene) and implementation. `say` takes
     what to tell the user. Raises StudyError."""
+    how = ["--implementation", options.implementation, "--scheme", scene.scheme]
     for step in (options.step,) if options.step else STEPS:
-        duration = options.duration or min(10.0, STEPS_AT_MOST * step, end)
+        duration = options.duration or min(10.0, STEPS_AT_MOST * step, scene.end)
         if not options.duration:
-            duration = _affordable(scene, options.implementation, step, duration, say)
-        say(f"simulating {duration:g} s in steps of {step:g} s with {options.implementation}")
+            duration = _affordable(place, how, step, duration, say)
+        say(f"simulating {duration:g} s in steps of {step:g} s with {options.implementation}, {scene.scheme} form")
         every = _every(duration / step, frames)
-        code, out, words = _simulate(scene, options.implementation, step, duration,
+        code, out, words = _simulate(place, how, step, duration,
                                      ["--trajectory", csv, "--every", str(every),
                                       *(["--output", outputs] if outputs else [])])
         if code != 1 or options.step:
@@ -48,7 +49,7 @@ def simulate(scene, options, end, frames, csv, outputs, say):
     if code != 0:
         raise StudyError(_failure("simulate", code, words)
                          + ("" if options.step else " (choose a --step)" if code == 1 else ""))
-    return f"{options.implementation}, step {step:g} s"
+    return f"{options.implementation}, {scene.scheme} form, step {step:g} s"
 
 
 def _every(steps, frames):
@@ -60,9 +61,9 @@ def _every(steps, frames):
                 math.ceil(steps / frames))
 
 
-def _affordable(scene, implementation, step, duration, say):
+def _affordable(place, how, step, duration, say):
     """`duration`, or as much of it as a trial says can be computed in SECONDS_AT_MOST."""
-    code, out, _ = _simulate(scene, implementation, step, TRIAL_STEPS * step, ["--json"])
+    code, out, _ = _simulate(place, how, step, TRIAL_STEPS * step, ["--json"])
     if code != 0:
         return duration  # the run itself will say what is wrong
     seconds_a_step = json.loads(out)["step_us"]["median"] * 1e-6
@@ -75,9 +76,8 @@ def _affordable(scene, implementation, step, duration, say):
     return fits
 
 
-def _simulate(scene, implementation, step, duration, more):
-    return _run("simulate", scene, "--implementation", implementation, "--step", repr(step),
-                "--duration", repr(duration), *more)
+def _simulate(place, how, step, duration, more):
+    return _run("simulate", place, *how, "--step", repr(step), "--duration", repr(duration), *more)
 
 
 def _run(command, scene, *more):

@@ -36,6 +36,7 @@ class Scene:
     outputs: list
     facts: str
     end: float = math.inf  # s; driven motion is not known beyond
+    scheme: str = "penalty"  # the form of the step that `mbs describe` takes
 
 
 def from_description(description, name):
@@ -70,7 +71,7 @@ def from_description(description, name):
               for place, (name, kind) in enumerate(points)]
     return Scene(name, dimension, points, start, rods, bodies, springs, torsion_springs,
                  list(elements.get("outputs", [])), _facts(description),
-                 math.inf if end is None else float(end))
+                 math.inf if end is None else float(end), description.get("scheme", {}).get("take", "penalty"))
 
 
 def _pair(index, element):
