@@ -109,17 +109,13 @@ def _gain(what, rows):
     if same.empty:
         return f"{what}: none of {len(rows)} pairs with double is in the same error class."
     best = same.loc[same.high.idxmin()]
-    words = (f"{_speed_up(best)} of {best.implementation}, {best.second}, n = {best.variables:.0f}")
+    ends = (1 / best.high, 1 / best.low) if bounded(best.low, best.high) else (best.low, best.high)
+    words = f"{between(1 / best.ratio, *ends)} of {best.implementation}, {best.second}, n = {best.variables:.0f}"
     if won.empty:
         return (f"{what} is nowhere shown to be {pairs.GAIN:g} times faster than double at the same error class "
                 f"({len(same)} of {len(rows)} pairs are in the same); the best speed-up is {words}.")
     return (f"{what} is at least {pairs.GAIN:g} times faster than double at the same error class in {len(won)} of {len(rows)} "
             f"pairs; the best speed-up is {words}.")
-
-
-def _speed_up(row):
-    low, high = (1 / row.high, 1 / row.low) if bounded(row.low, row.high) else (row.low, row.high)
-    return between(1 / row.ratio, low, high)
 
 
 def reuse_rows(table):

@@ -39,19 +39,15 @@ _C3 = "tuned BLAS saves only 2-3 % of the time with a sparse solver"
 
 def tuned_blas(results):
     """C3. Rule: 1 − tuned ÷ reference at most TUNED_GAIN at every size; one row a sparse variant that was timed on both."""
-    rows = [row for name in paper.sparse(results) if (row := _tuned(results, name))]
+    rows = []
+    for name in paper.sparse(results):
+        usual = results.usual(name)
+        found = over_sizes(results, [name], [f"{name}+reference"], reaching=COVERED) if name != ANCHOR and usual != "reference" else []
+        cases = [(f"n = {one.size:g}", [100 * (1 - value) for value in (one.value, one.high, one.low)], one.record) for one in found]
+        if cases:
+            rows.append(judged(("C3", f"{_C3}: {name}", "2-3 %"), cases, at_most(TUNED_GAIN), f"{name} on {usual} against reference", " %"))
     return rows or [unmeasured(("C3", _C3, "2-3 %"), "No sparse version was timed on the reference BLAS and on another at "
                                f"{COVERED} variables or more.", at_most(TUNED_GAIN), " %")]
-
-
-def _tuned(results, name):
-    if name == ANCHOR or results.usual(name) == "reference":
-        return None
-    found = over_sizes(results, [name], [f"{name}+reference"], reaching=COVERED)
-    if not found:
-        return None
-    cases = [(f"n = {one.size:g}", [100 * (1 - value) for value in (one.value, one.high, one.low)], one.record) for one in found]
-    return judged(("C3", f"{_C3}: {name}", "2-3 %"), cases, at_most(TUNED_GAIN), f"{name} on {results.usual(name)} against reference", " %")
 
 
 def compilers(results):

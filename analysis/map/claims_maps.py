@@ -95,7 +95,7 @@ def _region(results, figure, claim, cells, system):
     return row(head, summed(told), by_place(told) if len(told) > 1 else "", rule,
                f"Winners among the paper's systems: {listed}.") | {
         "ours": f"{len(told.get(CONFIRMED, []))} of {len(cells)} cells", "where": f"{', '.join(map(_place, cells))}: {', '.join(names)}",
-        "record": " ".join(_record(results, cell) for cell in cells)}
+        "record": " ".join(rows.record[rows.implementation == cell.ranking.winner].iloc[0] for cell in cells for rows in [results.rows(cell.scene)])}
 
 
 def _cell(cell, names, shared):
@@ -109,9 +109,3 @@ def _cell(cell, names, shared):
 
 def _place(cell):
     return f"n = {cell.variables:g} and {cell.fill_percent:.0f} %"
-
-
-def _record(results, cell):
-    """One of the winner's in a cell."""
-    rows = results.rows(cell.scene)
-    return rows.record[rows.implementation == cell.ranking.winner].iloc[0]

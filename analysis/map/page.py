@@ -10,6 +10,8 @@ def context(tables, view):
     results = of(tables, view)
     libraries = results.layer("libraries")
     scenes, ledger = tables["scenes"], tables["claims"].to_dict("records")
+    timed = results.timing[results.timing.status == "ok"]
+    ranked = timed[~timed.implementation.str.startswith("null/")]
     return {"by_size": {layer: list(by_outcome(summary.by_size(results, results.layer(layer)), what))
                         for layer, what in (("libraries", "library"), ("all", "of all"))},
             "own": [name for name in results.layer("all") if name not in libraries],
@@ -17,15 +19,11 @@ def context(tables, view):
             "dense_from": summary.dense_from(results), "prices": summary.prices(results, libraries),
             "times": losses.step_times(results), "overhead": losses.overhead(results), "centred": losses.LAST_CENTRED,
             "ledger": ledger, "by_id": by_id(tables["claims"]), "subjects": paper.SUBJECTS, "dense_pairs": paper.dense_pairs(results), "title": paper.TITLE,
-            "pairs": [pair | {"used": _used(results, pair["name"])} for pair in view.registry.listed.get("blas", [])],
+            "pairs": [pair | {"used": sorted(ranked.implementation[ranked.blas == pair["name"]].unique())}
+                      for pair in view.registry.listed.get("blas", [])],
             "verdicts": losses.verdicts(tables["verification"], results.implementations), "losses": losses.losses(results),
             "not_reached": list(scenes[scenes.reason != ""].scene), "entries": view.registry.entries,
             "coverage": view.registry.coverage,
             "controls": judged(tables["controls"]), "twins": tables["controls"].to_dict("records"), "spread": [
                 row | {"of": carry.SOURCES[row["source"]]} for row in tables["spread"].to_dict("records")],
-            "processes": results.timing[results.timing.status == "ok"].record.nunique()}
-
-
-def _used(results, pair):
-    rows = results.timing
-    return sorted(rows[(rows.blas == pair) & (rows.status == "ok") & ~rows.implementation.str.startswith("null/")].implementation.unique())
+            "processes": timed.record.nunique()}

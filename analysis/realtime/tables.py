@@ -15,7 +15,9 @@ def build(records, view):
     order = {name: place for place, name in enumerate(view.registry.variants)}
     found = {role: pandas.DataFrame([_run(one, nulls.get(one.name)) for one in records if one.role == role])
              for role in ("steps", "search")}
-    found = {role: _sorted(table, order) if len(table) else table for role, table in found.items()}
+    found = {role: table.sort_values(["scheme", "step", "implementation", "loops", "run"], kind="stable",
+                                     key=lambda column: column.map(order) if column.name == "implementation" else column)
+             if len(table) else table for role, table in found.items()}
     return {"steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"),
             "judging": _judging([one for one in records if one.role == "judging"]), "tried": found["search"], "largest": _largest(found["search"]), "machine": _machine(nulls.values())}
 
@@ -52,11 +54,6 @@ def _judging(records):
         share, bound = row["judge_us"] / row["mean_us"], BOUNDS[row["variables"] >= LARGE]
         rows.append(row | {"share": share, "bound": bound, "held": share <= bound, "record": " ".join(own.record)})
     return pandas.DataFrame(rows)
-
-
-def _sorted(table, order):
-    return table.sort_values(["scheme", "step", "implementation", "loops", "run"], kind="stable",
-                             key=lambda column: column.map(order) if column.name == "implementation" else column)
 
 
 def _largest(tried):
