@@ -64,7 +64,8 @@ def run(command, seconds=None, memory_mb=None, alone=False):
         raise Signalled(_signals[0]) if own else StudyError("interrupted")
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         begin = time.monotonic()
-        child = subprocess.Popen([*_on_one(alone), *_limited(command, memory_mb)], cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out,
+        on_one = ["taskset", "--cpu-list", str(max(os.sched_getaffinity(0)))] if alone else []  # the last that this process may use
+        child = subprocess.Popen([*on_one, *_limited(command, memory_mb)], cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out,
                                  stderr=err, start_new_session=True, env=os.environ | ONE_THREAD)
         try:
             ended = _ends(child, seconds)
@@ -122,17 +123,10 @@ def _limited(command, memory_mb):
             str(OUTPUT_LIMIT // 512), str(memory_mb * 1024) if memory_mb else "unlimited", *command]
 
 
-def _on_one(alone):
-    """Words before a command that keep it on one processor: the last that this process may use."""
-    return ["taskset", "--cpu-list", str(max(os.sched_getaffinity(0)))] if alone else []
-
-
 def _end_group(child):
     """Its processor time, s."""
-    try:
+    with contextlib.suppress(ProcessLookupError):
         os.killpg(child.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
     _, status, used = os.wait4(child.pid, 0)
     child.returncode = os.waitstatus_to_exitcode(status)  # Popen has not seen it
     return used.ru_utime + used.ru_stime

@@ -62,7 +62,9 @@ class Lab:
                 records.need_same_origin(found[cell], self._asked_of(cell), self.base)
             else:
                 todo.append(cell)
-        self._need({cell.built for cell in todo})
+        programs = {cell.built for cell in todo}
+        self.set.need_programs(sorted(programs - self.known))
+        self.known |= programs
         alone = [cell for cell in todo if cell.timed]
         with ThreadPoolExecutor(cores()) as pool:
             others = [cell for cell in todo if not cell.timed]
@@ -136,10 +138,6 @@ class Lab:
 
     def _show_state(self):
         self.show(f"{len(self.names)} of {len(self.asked)} cells", self.text)
-
-    def _need(self, programs):
-        self.set.need_programs(sorted(programs - self.known))
-        self.known |= programs
 
     @staticmethod
     def _context(cell, context):

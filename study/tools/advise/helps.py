@@ -20,35 +20,29 @@ def what_helps(advice, run):
     least = min(known(other, one.pilots, advice.pilot_error, one.setting.order) for one, other in pilots)
     if advice.pilot_error < least < math.inf:
         advice.helps.append(f"--error {1.1 * question.error * least / advice.pilot_error:.2g}: so much pilots were seen to keep")
+    setting = best.setting
     if question.step and pilot.valid and pilot.estimate > question.error:
-        _shorter_step(advice, best.setting, pilot, run)
+        fewest = math.ceil((1.2 * pilot.estimate / question.error) ** (1 / setting.order))
+        steps = [question.step / parts for parts in (fewest, 2 * fewest, 4 * fewest)]  # the order may not show in steps this long
+        _first_kept(advice, setting, [(f"--step {step:g}", step, question.duration) for step in steps],
+                    f"in such steps {setting.name} keeps the error", run)
     slow = [P99 * one.chosen_us for one in found if one.chosen_us > (question.deadline_us or math.inf)]
     late = [one.late_us for one in advice.candidates if one.late_us] + slow
     if late:
         advice.helps.append(f"--deadline-us {1.2 * min(late):.3g}: at best 99 % of the steps take up to about {min(late):.3g} us")
     else:
-        _shorter_duration(advice, best.setting, question.step or pilot.step, run)
+        step = question.step or pilot.step
+        durations = [float(f"{question.duration / 2**halving:.3g}") for halving in range(1, HALVES + 1)]
+        _first_kept(advice, setting, [(f"--duration {one:g}", step, one) for one in durations if one >= LEAST_STEPS * step],
+                    f"so long {setting.name} at step {step:g} s keeps the error", run)
 
 
-def _shorter_step(advice, setting, pilot, run):
-    question = advice.question
-    fewest = math.ceil((1.2 * pilot.estimate / question.error) ** (1 / setting.order))
-    for parts in (fewest, 2 * fewest, 4 * fewest):  # the order may not show in steps this long
-        step = question.step / parts
-        run.tell(f"what would help: --step {step:g}")
-        if _keeps(advice, setting, step, question.duration, run):
-            advice.helps.append(f"--step {step:g}: in such steps {setting.name} keeps the error")
-            return
-
-
-def _shorter_duration(advice, setting, step, run):
-    for halving in range(1, HALVES + 1):
-        duration = float(f"{advice.question.duration / 2**halving:.3g}")
-        if duration < LEAST_STEPS * step:
-            return
-        run.tell(f"what would help: --duration {duration:g}")
+def _first_kept(advice, setting, tried, words, run):
+    """Adds the first option of those `tried`, [(option, step, duration)], with which a run keeps the error; `words` say why it helps."""
+    for option, step, duration in tried:
+        run.tell(f"what would help: {option}")
         if _keeps(advice, setting, step, duration, run):
-            advice.helps.append(f"--duration {duration:g}: so long {setting.name} at step {step:g} s keeps the error")
+            advice.helps.append(f"{option}: {words}")
             return
 
 
