@@ -77,12 +77,8 @@ def examples(contests, registry):
         if ranked:
             one, ranking = max(ranked, key=lambda pair: pair[0].n)
             used.add(one.family)
-            found.append({"case": f"{one.scene}: {one.n:.0f} variables, {words}", "take": _said(ranking),
+            others, doubt = ranking.equivalent[1:], "" if ranking.settled else " (not decided)"
+            found.append({"case": f"{one.scene}: {one.n:.0f} variables, {words}",
+                          "take": f"{ranking.winner}{doubt}" + (f"; as fast: {', '.join(others)}" if others else ""),
                           "state": f"scene={one.scene}&no={','.join(without)}"})
     return found
-
-
-def _said(ranking):
-    others = [name for name in ranking.equivalent if name != ranking.winner]
-    doubt = "" if ranking.settled else " (not decided)"
-    return f"{ranking.winner}{doubt}" + (f"; as fast: {', '.join(others)}" if others else "")

@@ -44,7 +44,8 @@ def draw(results, look):
         if beyond:
             axes.axvspan(beyond[0] - 0.5, len(sizes) - 0.5, color="#f3f3f3", zorder=-1)
         axes.set_ylabel("time ÷ the least at that size")
-    panels[0].set(xlabel="", ylim=(0.96, LEADERS))
+    panels[0].set(ylim=(0.96, LEADERS))
+    panels[1].set_xlabel("variables n, own fill")
     number_axis(panels[1].yaxis, "×")
     outcomes = {cell.variables: {"decided": "", "equivalent": "as fast", "open": "open"}[cell.outcome]
                 for cell in map_cells(results, list(found)) if cell.fill_asked is None}
@@ -68,6 +69,5 @@ def _side_by_side(axes, found, sizes, look):
         axes.vlines([place for place, _ in known], [one.low for _, one in known], [one.high for _, one in known],
                     color=look.colour(name), linewidth=2.2, alpha=0.6)
     axes.axhline(1, color="#444444", linewidth=0.8)
-    axes.set(xlabel="variables n, own fill", xlim=(-0.5, len(sizes) - 0.5))
-    axes.set_xticks(range(len(sizes)), [f"{size:g}" for size in sizes])
+    axes.set(xlim=(-0.5, len(sizes) - 0.5))
     axes.grid(True, axis="y", which="major")

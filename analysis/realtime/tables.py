@@ -19,7 +19,11 @@ def build(records, view):
                                      key=lambda column: column.map(order) if column.name == "implementation" else column)
              if len(table) else table for role, table in found.items()}
     return {"steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"),
-            "judging": _judging([one for one in records if one.role == "judging"]), "tried": found["search"], "largest": _largest(found["search"]), "machine": _machine(nulls.values())}
+            "judging": _judging([one for one in records if one.role == "judging"]), "tried": found["search"], "largest": _largest(found["search"]),
+            "machine": pandas.DataFrame([{
+                "after": after, "step": float(f"{1e-6 * float(one.options['deadline-us']):g}"), "seconds": float(one.options["seconds"]),
+                "status": one.status, "reason": one.reason, "record": one.name} | {
+                key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for after, one in nulls.items()])}
 
 
 def _run(record, null):
@@ -91,10 +95,3 @@ def _observed(runs, prefix):
 def _counts(values):
     """"1300 and 1300": one a run."""
     return " and ".join(number(value, 6) for value in values)
-
-
-def _machine(nulls):
-    return pandas.DataFrame([{
-        "after": one.options["after"], "step": float(f"{1e-6 * float(one.options['deadline-us']):g}"),
-        "seconds": float(one.options["seconds"]), "status": one.status, "reason": one.reason, "record": one.name} | {
-        key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for one in nulls])

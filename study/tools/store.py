@@ -62,20 +62,16 @@ def faults(kept):
         yield from (f"{path}: is of another {key} than its set" for key in ("commit", "machine") if context.get(key) != usual.get(key))
     yield from _lacking(kept)
     for part in kept.facts["parts"]:
-        yield from _faults_of(kept.folder, part, usual)
+        try:
+            there, tables = schema.records_of(kept.folder, part, usual), kept.folder / part / schema.DIGESTS
+            if not tables.exists() or read_json(tables)["records"] != schema.digest_of(there):
+                yield f"{kept.folder / part}: its tables are not those of its records: run study/figures {kept.folder}"
+        except StudyError as error:
+            yield str(error)
 
 
 def _lacking(kept):
     return [f"{kept.folder} lacks {part}: a stored set has all parts" for part in parts() if part not in kept.facts["parts"]]
-
-
-def _faults_of(folder, part, context):
-    try:
-        there, tables = schema.records_of(folder, part, context), folder / part / schema.DIGESTS
-        if not tables.exists() or read_json(tables)["records"] != schema.digest_of(there):
-            yield f"{folder / part}: its tables are not those of its records: run study/figures {folder}"
-    except StudyError as error:
-        yield str(error)
 
 
 def need_whole(studyset):
