@@ -3,8 +3,7 @@ from collections import Counter
 from dataclasses import dataclass, replace
 
 from analysis.core.timing import LEFT_OUT, processes as rows_of
-from study.core.cell import Cell
-from study.core.contender import twin_of
+from study.core.cell import Cell, twin_of
 from study.core.gate import Asked, agreeing
 from study.core.timing import measure
 

@@ -1,8 +1,7 @@
 # The gate: whose motion agrees with the reference's on a scene.
 from dataclasses import dataclass, replace
 
-from study.core.cell import Cell
-from study.core.contender import by_environment
+from study.core.cell import Cell, by_environment
 
 
 @dataclass(frozen=True, eq=False)

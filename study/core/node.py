@@ -10,8 +10,7 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_object, write_json, write_text
 from analysis.core.records import Record
 from study.core import executor, locks, profile as profiles
-from study.core.cell import LAYOUT, Cell
-from study.core.contender import control, twin_of
+from study.core.cell import LAYOUT, Cell, control, twin_of
 from study.core.executor import program_of
 from study.core.studyset import context_of, start, writable
 

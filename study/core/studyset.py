@@ -12,8 +12,7 @@ from analysis.core.parts import parts
 from analysis.core.registry import Registry
 from analysis.core.view import Folder, facts_of
 from study.core import executor, locks, profile as profiles
-from study.core.cell import Cell
-from study.core.contender import CONTROL, control, on_usual_pairs
+from study.core.cell import CONTROL, Cell, control, on_usual_pairs
 from study.core.executor import need_same, program_of
 
 BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml",  # what is written before set.json ...

@@ -4,8 +4,7 @@
 # is decided from records, so that a run that was interrupted decides alike.
 from analysis.core.errors import StudyError
 from analysis.map.timed import leaders
-from study.core.cell import Cell
-from study.core.contender import Contender, by_environment
+from study.core.cell import Cell, Contender, by_environment
 from study.core.profile import need_keys
 from study.core.timing import measure
 from study.map.timed import NATURAL, Scene, TimedScene

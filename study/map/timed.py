@@ -5,8 +5,7 @@ from dataclasses import dataclass, field
 from analysis.core.timing import LEFT_OUT, differing
 from analysis.map import timed
 from analysis.map.timed import layers, leaders, timed_rows
-from study.core.cell import Cell
-from study.core.contender import CONTROL, Contender, twin_of
+from study.core.cell import CONTROL, Cell, Contender, twin_of
 from study.core.timing import measure
 
 LEAST_SAMPLES, MOST_SAMPLES = 1, 40

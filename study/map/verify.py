@@ -8,8 +8,7 @@ import math
 from dataclasses import dataclass
 
 from study.core import gate
-from study.core.cell import Cell
-from study.core.contender import Contender
+from study.core.cell import Cell, Contender
 
 FAMILY = 5
 SLOW = 4  # of those who take as long as they may, that a process of the gate has time for

@@ -6,8 +6,7 @@
 import random
 from dataclasses import dataclass
 
-from study.core.cell import Cell
-from study.core.contender import by_environment
+from study.core.cell import Cell, by_environment
 from study.scenes import metric
 
 IMPLEMENTATIONS = ("csc_klu/refactor", "csc_cholmod/simplicial", "eigen_dense/llt")

@@ -1,6 +1,5 @@
 # The standard problems: the gate of everyone, runs of the two that are compared; then what modelling costs.
-from study.core.cell import Cell
-from study.core.contender import by_environment
+from study.core.cell import Cell, by_environment
 from study.core.profile import by_share
 from study.scenes import metric, modelling
 from study.scenes.problems import compared_of, read_list

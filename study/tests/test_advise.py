@@ -13,7 +13,7 @@ from analysis.core import records
 from analysis.core.errors import StudyError
 from analysis.core.files import read_json
 from analysis.core.outcomes import FINISHED
-from study.core.contender import Contender
+from study.core.cell import Contender
 from study.core.setting import Setting
 from study.tools.advise import answer, evidence, timing
 from study.tools.advise.advice import Advice, Question, advise as seek

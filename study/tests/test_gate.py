@@ -3,7 +3,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from study.core.contender import Contender
+from study.core.cell import Contender
 from study.core.gate import Asked, verdicts
 
 

@@ -13,7 +13,7 @@ from analysis.core.registry import Registry
 from analysis.core.view import View
 from analysis.map import tables
 from study.core import profile as profiles, studyset
-from study.core.contender import Contender
+from study.core.cell import Contender
 from study.core.lab import Lab
 from study.map import plan, verify
 from study.map.timed import Scene

@@ -12,8 +12,7 @@ from analysis.core import timing
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write
 from study.core import child, locks, profile as profiles
-from study.core.cell import Cell
-from study.core.contender import by_environment, control, on_usual_pairs
+from study.core.cell import Cell, by_environment, control, on_usual_pairs
 from study.core.executor import program_of
 from study.core.front import build as built, set_up
 from study.core.options import Parser, directory, rounds
