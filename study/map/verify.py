@@ -7,7 +7,7 @@
 import math
 from dataclasses import dataclass
 
-from study.core import gate
+from study.core import contest
 from study.core.cell import Cell, Contender
 
 FAMILY = 5
@@ -33,7 +33,7 @@ def fit(lab, scene, contenders):
     pilots = dict(zip(contenders, _pilots(lab, scene, contenders)))
     verdicts, rule, limit = {}, Rule(lab, scene, pilots), lab.settings["limits"]["check"]
     while todo := [one for one in rule.chosen(verdicts) if one not in verdicts]:
-        [said] = gate.verdicts(lab, [gate.Asked(scene.name, todo)], each=limit / SLOW, seconds=limit)
+        [said] = contest.verdicts(lab, [contest.Asked(scene.name, todo)], each=limit / SLOW, seconds=limit)
         verdicts |= {one: found == "agrees" for one, (found, _) in said.items()}
     best = rule.best(verdicts)
     for one, pilot in pilots.items():
