@@ -9,7 +9,7 @@ import markupsafe
 import matplotlib.pyplot as plt
 
 from analysis.core import schema
-from analysis.core.disturbance import disturbance, told
+from analysis.core.controls import disturbance, told
 from analysis.core.files import ROOT, read_json, read_object, write_json, write_text
 from analysis.core.parts import pages, parts
 from analysis.core.style import save
