@@ -4,7 +4,7 @@ from matplotlib.gridspec import GridSpec
 from matplotlib.text import Text
 from matplotlib.ticker import LogLocator
 
-from analysis.accuracy import work_figure
+from analysis.accuracy import figures as accuracy
 from analysis.accuracy.winners import met
 from analysis.core.style import GREY, SPARSE, Look, nothing
 from analysis.core.text import bounded
@@ -61,7 +61,7 @@ def work(known):
     fronts = rows.groupby("loops").front_libraries.sum()
     mine = rows[rows.loops == max(fronts.index[fronts >= FRONT], default=rows.loops.max())]
     won = tables["winners"][(tables["winners"].subject == mine.subject.iloc[0]) & tables["winners"].fill_asked.isna()]
-    figure = work_figure.draw(mine, won, Look(known.registry), "largest of position, m", "")
+    figure = accuracy.work(mine, won, Look(known.registry), "largest of position, m", "")
     front, everyone, ratios, ratios_of_everyone = figure.axes
     for axes in (everyone, ratios_of_everyone):  # own code included
         figure.delaxes(axes)
