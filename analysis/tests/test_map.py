@@ -11,7 +11,7 @@ from analysis.core.files import write_json
 from analysis.core.records import Record
 from analysis.core.style import Look
 from analysis.core.timing import differing
-from analysis.map import figures, losses, sentences, summary, tables, tidy
+from analysis.map import figures, page, sentences, summary, tables, tidy
 from analysis.map.cells import map_cells, table
 from analysis.map.maps import bounds, broken
 from analysis.map.timed import AFTER, Scene, timed_rows
@@ -130,7 +130,7 @@ def test_neighbouring_sizes_with_one_outcome_are_one_line():
 
 
 def test_exclusions_of_one_are_one_line_of_what_was_not_timed():
-    rows = losses.losses(some(cell(A, 10, 1.0) + failed(B, 10, "excluded", "7 times") + failed(B, 22, "excluded", "9 times")
+    rows = page.losses(some(cell(A, 10, 1.0) + failed(B, 10, "excluded", "7 times") + failed(B, 22, "excluded", "9 times")
                               + failed(C, 10, "crashed", "SIGSEGV")))
     assert [(row["implementation"], row["status"], len(row["scenes"])) for row in rows] == [(C, "crashed", 1), (B, "excluded", 2)]
 
