@@ -13,7 +13,7 @@ from analysis.core.style import Look
 from analysis.core.timing import differing
 from analysis.map import figures, page, sentences, summary, tables
 from analysis.map.cells import map_cells, table
-from analysis.map.maps import bounds, broken
+from analysis.map.figures import bounds, broken
 from analysis.map.timed import AFTER, Scene, timed_rows
 from analysis.tests.map_tables import cell, failed, registry, results, scene, view
 

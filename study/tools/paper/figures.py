@@ -11,7 +11,7 @@ from analysis.core.text import bounded
 from analysis.engines import figures as engine_figures
 from analysis.families import figures as families
 from analysis.limit import figures as limit
-from analysis.map import maps, sparse_figure
+from analysis.map import figures as maps
 from analysis.realtime import figures as realtime
 from analysis.stability import figures as stability
 from study.tools.paper.numbers import DENSE, HYBRID, led, profiled, real_mechanisms
@@ -33,7 +33,7 @@ def figures(known):
 
 
 def own_fill(known):
-    figure = sparse_figure.draw(known.results, Look(known.registry))
+    figure = maps.sparse(known.results, Look(known.registry))
     for text in figure.texts:  # which the caption says
         text.set_text("")
     figure.axes[0].set_title("")
@@ -45,7 +45,7 @@ def own_fill(known):
 def size_and_fill(known):
     """The map, its legend below: cells are as wide as paper allows."""
     results = known.results
-    figure = maps.draw(results, Look(known.registry), "", results.layer("libraries"), letters=9, line=2.7)
+    figure = maps.fastest(results, Look(known.registry), "", results.layer("libraries"), letters=9, line=2.7)
     legend = figure.axes[0].get_legend()
     if legend:
         below(figure, legend, 3, 0.02, 7.2)
