@@ -154,8 +154,12 @@ class Rule:
     def chosen(self, verdicts):
         limit = self._factor * self.best(verdicts)
         kept = {one for one, pilot in self.pilots.items() if pilot.alive and pilot.step_us <= limit}
-        if self.scene.fill is not None:
-            kept |= self._families(verdicts, FAMILY * limit)
+        if self.scene.fill is not None:  # the two fastest of each family
+            near = [one for one, pilot in self.pilots.items() if pilot.step_us <= FAMILY * limit and verdicts.get(one, True)]
+            near.sort(key=lambda one: self.pilots[one].step_us)
+            said = self.lab.registry.variants
+            kept |= {one for key in ("dense", "unsymmetric") for value in (True, False)
+                     for one in [one for one in near if said[one.variant].get(key, False) == value][:2]}
         return [one for one in self.pilots if one in kept]
 
     @property
@@ -165,13 +169,6 @@ class Rule:
             return known["filled"]
         [column] = [one for one in self.lab.settings["columns"] if one["variables"] == self.scene.variables]
         return column.get("slower", known["natural"])
-
-    def _families(self, verdicts, limit):
-        alive = [one for one, pilot in self.pilots.items() if pilot.step_us <= limit and verdicts.get(one, True)]
-        alive.sort(key=lambda one: self.pilots[one].step_us)
-        said = self.lab.registry.variants
-        return {one for key in ("dense", "unsymmetric") for value in (True, False)
-                for one in [one for one in alive if said[one.variant].get(key, False) == value][:2]}
 
 
 def alternatives(lab, scene):
