@@ -84,8 +84,7 @@ def _check(options):
         path = Path(name)
         if path.suffix.lower() != ending:
             raise StudyError(f"{flag} is {name!r}: it must end with {ending}")
-        if path.resolve() in inputs or os.path.isdir(path) or not os.path.isdir(path.parent):
-            raise StudyError(f"{flag}: cannot write {name}: "
-                             + ("it is an input" if path.resolve() in inputs else
-                                "it is a directory" if os.path.isdir(path) else
-                                f"there is no directory {path.parent}"))
+        why = ("it is an input" if path.resolve() in inputs else "it is a directory" if os.path.isdir(path) else
+               "" if os.path.isdir(path.parent) else f"there is no directory {path.parent}")
+        if why:
+            raise StudyError(f"{flag}: cannot write {name}: {why}")
