@@ -1,7 +1,7 @@
 # Claims about BLAS, LAPACK and compilers: F2, C3, C5.
 from analysis.core.registry import ANCHOR
 from analysis.map import paper
-from analysis.map.compare import COVERED, over_sizes
+from analysis.map.results import COVERED
 from analysis.map.ledger import at_least, at_most, compared, factor, judged, unmeasured
 
 FIGURE_SIZES = 160    # variables; Figures 2 and 4 end here
@@ -13,7 +13,7 @@ ORDER_OF_MAGNITUDE = 10  # %, of the spread between implementations
 def dense_pairs(results):
     """F2. Rules: starting ÷ best dense on any pair within the band around DENSE_GAIN; the same code on reference BLAS
     and LAPACK ÷ on its best pair above 1. Each at every size."""
-    found = over_sizes(results, [paper.STARTING["dense"]], paper.dense(results), high=FIGURE_SIZES, reaching=COVERED)
+    found = results.over_sizes([paper.STARTING["dense"]], paper.dense(results), high=FIGURE_SIZES, reaching=COVERED)
     return [compared(("F2", "optimised dense versions on a BLAS+LAPACK pair beat the starting one 2-3 times", "2-3×"), found, factor(*DENSE_GAIN),
                      f"{paper.STARTING['dense']} and another dense version were not both timed at {COVERED} variables or more."),
             *_against_reference(results)]
@@ -27,7 +27,7 @@ def _against_reference(results):
     rows = []
     for variant in paper.members(results, "optimised dense"):
         pairs = results.alternatives(variant).groupby("implementation").blas.first()
-        found = over_sizes(results, list(pairs.index[pairs == "reference"]), list(pairs.index[pairs != "reference"]), COVERED, FIGURE_SIZES)
+        found = results.over_sizes(list(pairs.index[pairs == "reference"]), list(pairs.index[pairs != "reference"]), COVERED, FIGURE_SIZES)
         if found:
             rows.append(compared(("F2", f"{_F2}: {variant}", "faster"), found, at_least(1)))
     return rows or [unmeasured(("F2", _F2, "faster"), "No optimised dense version was timed on the reference pair and on another "
@@ -42,7 +42,7 @@ def tuned_blas(results):
     rows = []
     for name in paper.sparse(results):
         usual = results.usual(name)
-        found = over_sizes(results, [name], [f"{name}+reference"], reaching=COVERED) if name != ANCHOR and usual != "reference" else []
+        found = results.over_sizes([name], [f"{name}+reference"], reaching=COVERED) if name != ANCHOR and usual != "reference" else []
         cases = [(f"n = {one.size:g}", [100 * (1 - value) for value in (one.value, one.high, one.low)], one.record) for one in found]
         if cases:
             rows.append(judged(("C3", f"{_C3}: {name}", "2-3 %"), cases, at_most(TUNED_GAIN), f"{name} on {usual} against reference", " %"))

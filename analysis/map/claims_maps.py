@@ -1,7 +1,6 @@
 # Claims about the tangent's fill and the maps: F5, F6, F7.
 from analysis.map import paper
 from analysis.map.cells import map_cells
-from analysis.map.compare import best
 from analysis.map.ledger import (CONFIRMED, INCOMPARABLE, REFUTED, UNDECIDED, UNMEASURED, at_least, by_place, judged, of, row, summed,
                                  unmeasured)
 
@@ -47,7 +46,7 @@ def _over_fill(results, head, system, size):
     samples = _fills(results)
     names, dense = paper.members(results, system), paper.dense(results)
     scenes = samples[samples.variables == size].groupby("scene").fill_percent.first().sort_values()
-    found = [best(results, scene, dense, names) for scene in scenes.index]
+    found = [results.best(scene, dense, names) for scene in scenes.index]
     lost = [f"{fill:.0f}" for one, (scene, fill) in zip(found, scenes.items()) if not one and results.fastest(scene, dense)]
     found = [one for one in found if one]
     if not found or lost:

@@ -1,9 +1,8 @@
 # Claims about the starting versions and the symbolic preprocessing: T1, T2, C2.
 from analysis.core.timing import PHASES, rank, ratio, student
 from analysis.map import paper
-from analysis.map.compare import Versus, over_sizes
 from analysis.map.ledger import Rule, compared, factor, judged, unmeasured
-from analysis.map.results import with_samples
+from analysis.map.results import Versus, with_samples
 
 MAIN_SHARE = 10   # %; smaller shares of Table 1 get no row
 SHARE_BAND = 10   # points around the paper's share that still confirm it
@@ -63,5 +62,5 @@ def _gains(results, operation, slow):
 def starting_sparse(results):
     """C2. Rule: starting ÷ best optimised sparse within the band around the paper's factor."""
     return [compared(("C2", f"the best sparse version beats the starting one {quoted} times ({size} variables)", f"{quoted}×"),
-                     over_sizes(results, [paper.STARTING["sparse"]], paper.sparse(results), size, size), factor(quoted),
+                     results.over_sizes([paper.STARTING["sparse"]], paper.sparse(results), size, size), factor(quoted),
                      f"n = {size} lacks samples of {paper.STARTING['sparse']} or of an optimised one.") for size, quoted in C2_SIZES.items()]

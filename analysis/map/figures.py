@@ -13,7 +13,6 @@ from analysis.core.text import bounded
 from analysis.core.timing import EQUIVALENT
 from analysis.map import paper
 from analysis.map.cells import map_cells
-from analysis.map.compare import versus
 from analysis.map.results import of
 
 OPAQUE, PALE = 0.85, 0.4
@@ -157,7 +156,7 @@ def ratios(results):
         scene = results.natural(size)
         best = results.fastest(scene, names)
         for name in names if best else ():
-            one = versus(results, scene, name, best)
+            one = results.versus(scene, name, best)
             if one or name == best:
                 found.setdefault(name, {})[size] = one
     return found

@@ -58,7 +58,7 @@ def _first_look(runs, scene):
 
 
 def _follow(runs, speed):
-    """{(layer, setting): rows in the order of steps}: all curves, followed from the longest step on. `speed`: of first_look."""
+    """{(layer, setting): rows in the order of steps}: all curves, followed from the longest step on. `speed`: of _first_look."""
     found = {}
     for layer, contenders in runs.layers.items():
         for name in runs.settings:
