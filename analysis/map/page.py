@@ -35,11 +35,8 @@ def context(tables, view):
 def step_times(results):
     """Own fill: a row a size and contender that is ranked, with its spread over processes."""
     rows = []
-    for size in results.sizes:
-        scene = results.natural(size)
-        timed = results.rows(scene)
-        timed = timed[timed.status == "ok"]
-        winner = {layer: results.fastest(scene, results.layer(layer)) for layer in ("libraries", "all")}
+    for size, timed in results.samples(natural_only=True).groupby("variables"):
+        winners = [results.fastest(results.natural(size), results.layer(layer)) for layer in ("libraries", "all")]
         for name in results.implementations:
             mine = timed[timed.implementation == name]
             if len(mine):
@@ -47,7 +44,7 @@ def step_times(results):
                              "high": mine.high_us.max(), "processes": len(mine), "samples": mine["samples"].map(len).sum(),
                              "steps": mine.steps.iloc[0], "passes": mine.passes.iloc[0] / mine.steps.iloc[0],
                              "per_pass": mine.step_us.median() * mine.steps.iloc[0] / mine.passes.iloc[0],
-                             "setup": mine.setup_us.median(), "winner": name in winner.values()})
+                             "setup": mine.setup_us.median(), "winner": name in winners})
     return rows
 
 
