@@ -154,17 +154,9 @@ class Linkage(Motion):
     finest: float = 1.0    # rad of the crank, in which something turns over
     carried: float = 0.0   # m/s, along x, of all feet
 
-    @property
-    def truth(self):
-        return "closed form" if self.driven else "closed form, its time by quadrature"
-
-    @property
-    def accuracy(self):
-        return 0.0 if self.driven else 1e-7
-
-    @property
-    def points(self):
-        return ["B", *(one.name for one in self.followers)]
+    truth = property(lambda self: "closed form" if self.driven else "closed form, its time by quadrature")
+    accuracy = property(lambda self: 0.0 if self.driven else 1e-7)
+    points = property(lambda self: ["B", *(one.name for one in self.followers)])
 
     @property
     def links(self):

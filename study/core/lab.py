@@ -33,17 +33,9 @@ class Lab:
         """The one of a variant; None if it does not take part."""
         return next((one for one in self.contenders if one.name == name), None)
 
-    @property
-    def settings(self):
-        return self.set.profile.parts[self.part]
-
-    @property
-    def registry(self):
-        return self.set.registry
-
-    @property
-    def contenders(self):
-        return self.set.contenders
+    settings = property(lambda self: self.set.profile.parts[self.part])
+    registry = property(lambda self: self.set.registry)
+    contenders = property(lambda self: self.set.contenders)
 
     def one(self, cell):
         return self.run([cell])[0]

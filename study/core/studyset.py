@@ -66,17 +66,9 @@ class StudySet(Folder):
         """Is there when all columns of a part are done and drawn."""
         return self.folder / ".done" / f"{part}.page"
 
-    @property
-    def progress(self):
-        return self.folder / ".progress"
-
-    @property
-    def scratch(self):
-        return self.folder / ".scratch"
-
-    @property
-    def log(self):
-        return self.folder / "run.log"
+    progress = property(lambda self: self.folder / ".progress")
+    scratch = property(lambda self: self.folder / ".scratch")
+    log = property(lambda self: self.folder / "run.log")
 
 
 def context_of(one):
