@@ -14,39 +14,28 @@ def dense_pairs(results):
     """F2. Rules: starting ÷ best dense on any pair within the band around DENSE_GAIN; the same code on reference BLAS
     and LAPACK ÷ on its best pair above 1. Each at every size."""
     found = results.over_sizes([paper.STARTING["dense"]], paper.dense(results), high=FIGURE_SIZES, reaching=COVERED)
-    return [compared(("F2", "optimised dense versions on a BLAS+LAPACK pair beat the starting one 2-3 times", "2-3×"), found, factor(*DENSE_GAIN),
-                     f"{paper.STARTING['dense']} and another dense version were not both timed at {COVERED} variables or more."),
-            *_against_reference(results)]
-
-
-_F2 = "tuned BLAS and LAPACK beat the reference ones in the same dense code"
-
-
-def _against_reference(results):
-    """A row a dense version, over its sizes from COVERED on."""
-    rows = []
-    for variant in paper.members(results, "optimised dense"):
+    first = compared(("F2", "optimised dense versions on a BLAS+LAPACK pair beat the starting one 2-3 times", "2-3×"), found, factor(*DENSE_GAIN),
+                     f"{paper.STARTING['dense']} and another dense version were not both timed at {COVERED} variables or more.")
+    rows, claim = [], "tuned BLAS and LAPACK beat the reference ones in the same dense code"
+    for variant in paper.members(results, "optimised dense"):  # over its sizes from COVERED on
         pairs = results.alternatives(variant).groupby("implementation").blas.first()
         found = results.over_sizes(list(pairs.index[pairs == "reference"]), list(pairs.index[pairs != "reference"]), COVERED, FIGURE_SIZES)
         if found:
-            rows.append(compared(("F2", f"{_F2}: {variant}", "faster"), found, at_least(1)))
-    return rows or [unmeasured(("F2", _F2, "faster"), "No optimised dense version was timed on the reference pair and on another "
-                               f"at {COVERED} to {FIGURE_SIZES} variables.", at_least(1))]
-
-
-_C3 = "tuned BLAS saves only 2-3 % of the time with a sparse solver"
+            rows.append(compared(("F2", f"{claim}: {variant}", "faster"), found, at_least(1)))
+    return [first, *(rows or [unmeasured(("F2", claim, "faster"), "No optimised dense version was timed on the reference pair and on another "
+                                         f"at {COVERED} to {FIGURE_SIZES} variables.", at_least(1))])]
 
 
 def tuned_blas(results):
     """C3. Rule: 1 − tuned ÷ reference at most TUNED_GAIN at every size; one row a sparse variant that was timed on both."""
-    rows = []
+    rows, claim = [], "tuned BLAS saves only 2-3 % of the time with a sparse solver"
     for name in paper.sparse(results):
         usual = results.usual(name)
         found = results.over_sizes([name], [f"{name}+reference"], reaching=COVERED) if name != ANCHOR and usual != "reference" else []
         cases = [(f"n = {one.size:g}", [100 * (1 - value) for value in (one.value, one.high, one.low)], one.record) for one in found]
         if cases:
-            rows.append(judged(("C3", f"{_C3}: {name}", "2-3 %"), cases, at_most(TUNED_GAIN), f"{name} on {usual} against reference", " %"))
-    return rows or [unmeasured(("C3", _C3, "2-3 %"), "No sparse version was timed on the reference BLAS and on another at "
+            rows.append(judged(("C3", f"{claim}: {name}", "2-3 %"), cases, at_most(TUNED_GAIN), f"{name} on {usual} against reference", " %"))
+    return rows or [unmeasured(("C3", claim, "2-3 %"), "No sparse version was timed on the reference BLAS and on another at "
                                f"{COVERED} variables or more.", at_most(TUNED_GAIN), " %")]
 
 

@@ -164,21 +164,14 @@ def search(run, variants, described, duration, errors):
 
 
 def fastest(found, error):
-    """The fastest row of each setting that meets an error, fastest first, as far as they are near the best."""
+    """The fastest row of each setting that meets an error, fastest first, as far as they are near the best. The two next shorter steps of
+    its setting, down to half of its own, must meet it too, or were left out: else it is luck, which half the step cannot show."""
     best = {}
-    for row in _sustained(found, error):
-        known = best.setdefault(row["setting"], row)
-        if row["us_per_second"] < known["us_per_second"]:
-            best[row["setting"]] = row
-    rows = sorted(best.values(), key=lambda row: row["us_per_second"])
-    return [row for row in rows if row["us_per_second"] <= NEAR * rows[0]["us_per_second"]]
-
-
-def _sustained(found, error):
-    """The rows that meet an error, if the two next shorter steps of their setting, down to half of theirs, do too, or were
-    left out: else it is luck, which half the step cannot show."""
-    return [row for at, row in enumerate(found) if row["us_per_second"] and all(
+    rows = [row for at, row in enumerate(found) if row["us_per_second"] and all(
         meets(other, error) for other in found[at:at + 3] if other["setting"] == row["setting"])]
+    for row in sorted(rows, key=lambda row: row["us_per_second"]):
+        best.setdefault(row["setting"], row)
+    return [row for row in best.values() if row["us_per_second"] <= NEAR * min(one["us_per_second"] for one in rows)]
 
 
 def meets(row, error):
