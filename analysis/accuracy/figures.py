@@ -80,20 +80,13 @@ def work(rows, won, look, unit, title):
     return figure
 
 
-def named(rows, front):
-    """[(implementation, setting)] with a colour and a name: those on the front, then those closest to it."""
-    close = meeting(rows, numpy.inf)
-    close = close.loc[[index for index in near(close, CLOSE) if index in close.index]]
-    counts = close.groupby(["implementation", "setting"]).size()
-    on_front = front.groupby(["implementation", "setting"]).size()
-    order = sorted(counts.index, key=lambda key: (-on_front.get(key, 0), -counts[key], key))
-    return order[:MOST]
-
-
 def _series(rows, front, look):
     """{(implementation, setting): (keywords of `plot`, its points in pieces)} of each named series: what lies between two steps that were
-    timed is not known, and has no line."""
-    chosen, found = named(rows, front), {}
+    timed is not known, and has no line. Those on the front are named, then those closest to it."""
+    close = meeting(rows, numpy.inf)
+    close = close.loc[[index for index in near(close, CLOSE) if index in close.index]]
+    counts, on_front = (some.groupby(["implementation", "setting"]).size() for some in (close, front))
+    chosen, found = sorted(counts.index, key=lambda key: (-on_front.get(key, 0), -counts[key], key))[:MOST], {}
     settings = list(dict.fromkeys(setting for _, setting in chosen))
     for name, setting in chosen:
         mine = meeting(rows[(rows.implementation == name) & (rows.setting == setting)], numpy.inf).sort_values("step")

@@ -24,8 +24,11 @@ def context(folder):
     registries = [Folder(one).registry for one in sets]
     about = [_about(name, registries) for name in names]
     contests = [one for part in ("families", "map") for one in sets[folder][part]]
+    settings = yaml.safe_load(SETTINGS.read_text(encoding="utf-8"))["settings"]
     known = {"sets": [data.as_json(one, found, number) for one, found in sets.items()], "names": about, "sizes": data.size_of(contests),
-             "settings": _settings(), "equivalent": timing.EQUIVALENT, "near": NEAR,
+             "settings": {one["name"]: " ".join(f"--{key}" if value is True else f"--{key} {value}"
+                                                for key, value in one.get("options", {}).items()) for one in settings},
+             "equivalent": timing.EQUIVALENT, "near": NEAR,
              "quantiles": [float(stats.t.ppf((1 + timing.CONFIDENCE) / 2, freedom)) for freedom in range(1, MOST)]}
     text = json.dumps(known, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     return {"data": text.replace("<", "\\u003c"), "examples": examples(contests, registries[0])}
@@ -50,12 +53,6 @@ def _about(name, registries):
             return {"name": name, "own": plain in registry.own, "dense": plain in registry.dense, "gpl": registry.gpl(plain),
                     "licence": registry.variants[plain]["licence"], "colour": Look(registry).colour(plain)}
     return {"name": name, "own": False, "dense": False, "gpl": False, "licence": "", "colour": "#777777"}
-
-
-def _settings():
-    """{setting: options of `mbs simulate`}"""
-    return {one["name"]: " ".join(f"--{key}" if value is True else f"--{key} {value}" for key, value in one.get("options", {}).items())
-            for one in yaml.safe_load(SETTINGS.read_text(encoding="utf-8"))["settings"]}
 
 
 ASKED = (  # of the examples: the least fill of the mechanism, %, and who is left out; words
