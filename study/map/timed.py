@@ -52,7 +52,10 @@ class TimedScene:
     def time(self, count):
         """Processes 1 … `count` of all."""
         while self.costs:
-            self.records = self.processes([*self.costs, *self._control()], count, "time")
+            # At natural fill the harness's own control, which does nothing, on the pair of most.
+            pairs = [one.blas for one in self.costs if one.ranked and self.scene.fill is None]
+            control = [Contender(CONTROL.name, CONTROL.variant, max(pairs, key=pairs.count))] if pairs else []
+            self.records = self.processes([*self.costs, *control], count, "time")
             wrong = differing(timed_rows(self.records))
             if not wrong:
                 return
@@ -77,13 +80,6 @@ class TimedScene:
         """{layer: Ranking or None}"""
         scene = timed.Scene(timed_rows(self.records))
         return {layer: scene.rank(names) for layer, names in layers(self.lab.registry).items()}
-
-    def _control(self):
-        """The harness's own, which does nothing: at natural fill, on the pair of most."""
-        if self.scene.fill is not None:
-            return []
-        pairs = [one.blas for one in self.costs if one.ranked]
-        return [Contender(CONTROL.name, CONTROL.variant, max(pairs, key=pairs.count))] if pairs else []
 
     def processes(self, contenders, count, role):
         """Their records. The pilots decide how many samples fill a process, never what a sample is."""

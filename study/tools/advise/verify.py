@@ -81,7 +81,9 @@ def _excess(row, advice, one):
 def _reconsider(one, row, advice):
     """What follows from a whole run that was not good enough: a shorter step for all candidates of its
     setting, their time scaled, or one candidate less."""
-    timing.take_back(advice.candidates)
+    for other in advice.candidates:
+        if other.slower and other.rows:  # what beat it has become slower itself
+            other.slower, other.reason = False, ""
     question, found = advice.question, advice.found[one.setting]
     if row["status"] not in FINISHED or row["estimate"] is None:
         one.drop(f"{row['status']} when verified over {row['duration']:g} s: {row['reason']}")
