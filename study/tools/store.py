@@ -35,7 +35,13 @@ def store(arguments):
     with locks.only_one(RESULTS), locks.only_one(folder):
         need_whole(studyset)
         name = options.name if options.name is not None else f"{studyset.facts['profile']}-{short(studyset.facts['context']['cpu_model'])}"
-        _need_place(name)
+        if not re.fullmatch(r"[A-Za-z0-9][\w.+-]*", name) or name == "local":
+            raise StudyError(f"'{name}' is no name of a set: letters, digits, dots and dashes")
+        if (RESULTS / name).exists():
+            raise StudyError(f"results/{name} is there already: remove it, or choose another NAME")
+        stored = sorted(path.parent.name for path in RESULTS.glob("*/set.json"))
+        if len(stored) >= MOST:
+            raise StudyError(f"results/ holds {MOST} sets already, which is the most: remove one of {', '.join(stored)}")
         pictures = _build(studyset, name)
     _tell(folder, name, pictures)
     return 0
@@ -91,16 +97,6 @@ def need_whole(studyset):
                 raise StudyError(f"{path} belongs to no column that has ended: remove it, and run study/run again")
     for fault in faults(studyset):
         raise StudyError(fault)
-
-
-def _need_place(name):
-    if not re.fullmatch(r"[A-Za-z0-9][\w.+-]*", name) or name == "local":
-        raise StudyError(f"'{name}' is no name of a set: letters, digits, dots and dashes")
-    stored = sorted(path.parent.name for path in RESULTS.glob("*/set.json"))
-    if (RESULTS / name).exists():
-        raise StudyError(f"results/{name} is there already: remove it, or choose another NAME")
-    if len(stored) >= MOST:
-        raise StudyError(f"results/ holds {MOST} sets already, which is the most: remove one of {', '.join(stored)}")
 
 
 def _build(studyset, name):
