@@ -103,16 +103,12 @@ def _cell(axes, x, y, height, cell, look, room):
     axes.add_patch(Rectangle((x, y), 1, height, facecolor="none", edgecolor="white", linewidth=1.0))
     if cell.outcome == "open":
         axes.add_patch(Rectangle((x, y), 1, height, facecolor="none", edgecolor="#555555", linewidth=0, hatch="////"))
-    _text(axes, x + 0.5, y + height / 2, height, cell, room)
-
-
-def _text(axes, x, y, height, cell, room):
     letters, line = room
     name, lines = broken(cell.ranking.winner, letters), int(height / line)
     short = [*broken(cell.ranking.winner.partition("/")[2], letters), _margin(cell)]
     fitting = next((one for one in ([*name, _margin(cell)], short) if len(one) <= lines), [" ".join(short)])
-    axes.text(x, y, "\n".join(fitting), ha="center", va="center", fontsize=min(6.6, 6.5 * height / line), linespacing=1.15, zorder=6,
-              bbox={"boxstyle": "round,pad=0.12", "facecolor": "white", "alpha": 0.82, "linewidth": 0})
+    axes.text(x + 0.5, y + height / 2, "\n".join(fitting), ha="center", va="center", fontsize=min(6.6, 6.5 * height / line), linespacing=1.15,
+              zorder=6, bbox={"boxstyle": "round,pad=0.12", "facecolor": "white", "alpha": 0.82, "linewidth": 0})
 
 
 def broken(name, letters):
@@ -173,7 +169,16 @@ def sparse(results, look):
         return figure
     beyond = [place for place, size in enumerate(sizes) if size > PAPER_END]
     for axes in panels:
-        _side_by_side(axes, found, sizes, look)
+        for number, (name, series) in enumerate(found.items()):  # side by side at their size
+            shift = DODGE * ((number + 0.5) / len(found) - 0.5)
+            places = [sizes.index(size) + shift for size in series]
+            known = [(place, one) for place, one in zip(places, series.values()) if one and bounded(one.low, one.high)]
+            axes.plot(places, [one.value if one else 1.0 for one in series.values()], label=name, **look.line(name) | {"linestyle": "none"})
+            axes.vlines([place for place, _ in known], [one.low for _, one in known], [one.high for _, one in known],
+                        color=look.colour(name), linewidth=2.2, alpha=0.6)
+        axes.axhline(1, color="#444444", linewidth=0.8)
+        axes.set(xlim=(-0.5, len(sizes) - 0.5))
+        axes.grid(True, axis="y", which="major")
         for place in numpy.arange(0.5, len(sizes) - 1):
             axes.axvline(place, color="#e4e4e4", linewidth=0.8, zorder=0)
         if beyond:
@@ -192,17 +197,3 @@ def sparse(results, look):
              "there was not timed (reasons: table of failures)")
     figure.text(figure.subplotpars.left, 0.03, notes, fontsize=7.5, color=GREY, va="top", linespacing=1.35)
     return figure
-
-
-def _side_by_side(axes, found, sizes, look):
-    """Marks and intervals of `ratios` at their places among `sizes`."""
-    for number, (name, series) in enumerate(found.items()):
-        shift = DODGE * ((number + 0.5) / len(found) - 0.5)
-        places = [sizes.index(size) + shift for size in series]
-        known = [(place, one) for place, one in zip(places, series.values()) if one and bounded(one.low, one.high)]
-        axes.plot(places, [one.value if one else 1.0 for one in series.values()], label=name, **look.line(name) | {"linestyle": "none"})
-        axes.vlines([place for place, _ in known], [one.low for _, one in known], [one.high for _, one in known],
-                    color=look.colour(name), linewidth=2.2, alpha=0.6)
-    axes.axhline(1, color="#444444", linewidth=0.8)
-    axes.set(xlim=(-0.5, len(sizes) - 0.5))
-    axes.grid(True, axis="y", which="major")
