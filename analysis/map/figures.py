@@ -145,21 +145,16 @@ def _legend(axes, cells, look, names):
     axes.legend(handles=shown, loc="upper left", bbox_to_anchor=(1.01, 1.01), fontsize=8)
 
 
-def ratios(results):
-    """{name: {size: Versus to the one of least time}}; None for that one itself."""
-    found, names = {}, paper.sparse(results, others=True)
-    for size in results.sizes:
+def sparse(results, look):
+    names, sizes = paper.sparse(results, others=True), results.sizes
+    found = {}  # {name: {size: Versus to the one of least time}}; None for that one itself
+    for size in sizes:
         scene = results.natural(size)
         best = results.fastest(scene, names)
         for name in names if best else ():
             one = results.versus(scene, name, best)
             if one or name == best:
                 found.setdefault(name, {})[size] = one
-    return found
-
-
-def sparse(results, look):
-    found, sizes = ratios(results), results.sizes
     figure, panels = plt.subplots(2, 1, figsize=(max(8.0, 1.1 * len(sizes)), 8.4), sharex=True,
                                   gridspec_kw={"hspace": 0.08, "height_ratios": [1.2, 1]})
     panels[0].set_title("Figure 4: sparse solvers of libraries at the four-bar's own fill")
