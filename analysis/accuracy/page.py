@@ -1,5 +1,5 @@
 # What the page shows: sentences and tables beside the figures.
-from analysis.accuracy import pairs, sentences, work_figure
+from analysis.accuracy import figures, pairs, sentences
 from analysis.accuracy.winners import met
 from analysis.core.text import rows_of, step
 
@@ -8,7 +8,7 @@ def context(tables, view):
     points, winners, table = tables["points"], tables["winners"], tables["pairs"]
     by_subject = dict(list(points[points.fill_asked.isna()].groupby("subject", sort=False)))
     references = rows_of(tables["references"].drop_duplicates("subject"))
-    subjects = [{"about": about, "figure": work_figure.name(about["subject"]),
+    subjects = [{"about": about, "figure": figures.name_of(about["subject"]),
                  "statuses": by_subject[about["subject"]].status.value_counts().to_dict()}
                 for about in references if about["subject"] in by_subject]
     problems = winners[winners.loops.isna()]

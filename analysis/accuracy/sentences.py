@@ -99,27 +99,20 @@ def _cost(row):
 def of_precision(table):
     """What factors in single precision (mixed) gain over double, and what single gains."""
     rows = table[(table.kind == pairs.PRECISION) & table.ratio.notna()]
-    mixed = rows.second.str.contains("mixed")
-    return [text for what, kind in (("Mixed precision", rows[mixed]), ("Single precision", rows[~mixed]))
-            if len(kind) for text in [_gain(what, kind)]]
-
-
-def _gain(what, rows):
-    won, same = pairs.gains(rows), rows[pairs.same_class(rows)]
-    if same.empty:
-        return f"{what}: none of {len(rows)} pairs with double is in the same error class."
-    best = same.loc[same.high.idxmin()]
-    words = (f"{_speed_up(best)} of {best.implementation}, {best.second}, n = {best.variables:.0f}")
-    if won.empty:
-        return (f"{what} is nowhere shown to be {pairs.GAIN:g} times faster than double at the same error class "
-                f"({len(same)} of {len(rows)} pairs are in the same); the best speed-up is {words}.")
-    return (f"{what} is at least {pairs.GAIN:g} times faster than double at the same error class in {len(won)} of {len(rows)} "
-            f"pairs; the best speed-up is {words}.")
-
-
-def _speed_up(row):
-    low, high = (1 / row.high, 1 / row.low) if bounded(row.low, row.high) else (row.low, row.high)
-    return between(1 / row.ratio, low, high)
+    mixed, said = rows.second.str.contains("mixed"), []
+    for what, kind in (("Mixed precision", rows[mixed]), ("Single precision", rows[~mixed])):
+        won, same = pairs.gains(kind), kind[pairs.same_class(kind)]
+        if len(kind) and same.empty:
+            said.append(f"{what}: none of {len(kind)} pairs with double is in the same error class.")
+        elif len(kind):
+            best = same.loc[same.high.idxmin()]
+            ends = (1 / best.high, 1 / best.low) if bounded(best.low, best.high) else (best.low, best.high)
+            words = f"{between(1 / best.ratio, *ends)} of {best.implementation}, {best.second}, n = {best.variables:.0f}"
+            said.append((f"{what} is nowhere shown to be {pairs.GAIN:g} times faster than double at the same error class "
+                         f"({len(same)} of {len(kind)} pairs are in the same)" if won.empty else
+                         f"{what} is at least {pairs.GAIN:g} times faster than double at the same error class in {len(won)} of {len(kind)} "
+                         "pairs") + f"; the best speed-up is {words}.")
+    return said
 
 
 def reuse_rows(table):

@@ -1,10 +1,11 @@
-# Controls: a contender that was timed twice in the same processes (A/A). Nothing differs, so what is decided is decided falsely.
+# Whether times may be believed. Controls: a contender that was timed twice in the same processes (A/A). Nothing differs, so what is
+# decided is decided falsely. Disturbance: in how many timed processes others ran, how much of its time a host took, frequencies.
 import math
 
 import pandas
 
 from analysis.core import timing
-from analysis.core.timing import CONFIDENCE, TWIN
+from analysis.core.timing import CONFIDENCE, TWIN, disturbed
 
 FALSE = 0.01  # a run is no evidence if its share of false decisions would be found by chance so seldom
 
@@ -31,3 +32,21 @@ def judged(table):
     chance = float(stats.binom.sf(false - 1, pairs, 1 - CONFIDENCE)) if pairs else math.nan
     widest = max(table.ratio, key=lambda one: abs(math.log(one))) if pairs else math.nan
     return {"pairs": pairs, "false": false, "widest": widest, "chance": chance, "sound": bool(pairs) and chance >= FALSE}
+
+
+def disturbance(records):
+    """{"processes", "disturbed", "steal", "mhz"} of timed records: how many tell whether others ran, in how many they did; the largest
+    share of the processors that the host took; [least, largest] frequency. None where nothing tells it."""
+    timed = [one for one in records if one.cell.get("timed") and one.done and (one.machine or one.cell["kind"] == "bench")]
+    steal, mhz = ([one.machine[key] for one in timed if one.machine.get(key) is not None] for key in ("steal", "mhz"))
+    return {"processes": len(timed), "disturbed": sum(map(disturbed, timed)), "steal": max(steal, default=None),
+            "mhz": [min(mhz), max(mhz)] if mhz else None}
+
+
+def told(one):
+    """What `disturbance` found, in words; "" where nothing was timed, or nothing is known of it."""
+    if not one or not one["processes"]:
+        return ""
+    return (f"others ran on the processor in {one['disturbed']} of {one['processes']} timed processes"
+            + ("" if one["steal"] is None else f"; the host took up to {100 * one['steal']:.1f} % of its time")
+            + ("" if one["mhz"] is None else f"; {' to '.join(dict.fromkeys(f'{mhz:.0f}' for mhz in one['mhz']))} MHz"))

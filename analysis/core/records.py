@@ -39,17 +39,9 @@ class Record:
     machine: dict = field(default_factory=dict)  # of a timed cell: study/core/machine.py, and "cpu_s", processor time of its process
     digest: str = ""  # of the file's text
 
-    @property
-    def column(self):
-        return self.name.partition("/")[0]
-
-    @property
-    def role(self):
-        return self.cell["role"]
-
-    @property
-    def done(self):
-        return self.status == RUN_ENDED
+    column = property(lambda self: self.name.partition("/")[0])
+    role = property(lambda self: self.cell["role"])
+    done = property(lambda self: self.status == RUN_ENDED)
 
     @cached_property
     def options(self):

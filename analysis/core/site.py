@@ -9,7 +9,7 @@ import markupsafe
 import matplotlib.pyplot as plt
 
 from analysis.core import schema
-from analysis.core.disturbance import disturbance, told
+from analysis.core.controls import disturbance, told
 from analysis.core.files import ROOT, read_json, read_object, write_json, write_text
 from analysis.core.parts import pages, parts
 from analysis.core.style import save
@@ -26,7 +26,13 @@ def write_part(folder, part):
     found = schema.records_of(folder, part, view.context)
     tables = schema.write_tables(folder, part, _module(part, "tables").build(found, view), found)
     drawn = _module(part, "figures").draw(tables, view) if (ROOT / "analysis" / part / "figures.py").exists() else {}
-    figures = _saved(folder / part / "figures", drawn, view)
+    about = f"{view.context.get('cpu_model', '')} · {view.facts['date'][:10]} · {part}, profile {view.facts['profile']}"
+    figures = {}  # {name: its file in base 64}
+    for name, figure in drawn.items():
+        path = folder / part / "figures" / f"{name}.svg"
+        save(figure, path, about)
+        figures[name] = base64.b64encode(path.read_bytes()).decode()
+    plt.close("all")
     known, others = _module(part, "page").context(tables, view), disturbance(found)
     write_text(folder / f"{part}.html", template(ROOT / "analysis" / part / "page.html.j2").render(
         **_frame(folder, part), **known, disturbance=told(others), figures=figures, schema=schema.of_part(part)))
@@ -84,12 +90,3 @@ def template(path):
 def name(text):
     """The name of an implementation or a scene, which a narrow column breaks after / and comma."""
     return markupsafe.Markup(re.sub("([/,])", r"\1<wbr>", str(markupsafe.escape(text))))
-
-
-def _saved(base, figures, view):
-    """Writes NAME.svg of each figure into `base`; {name: the file in base 64}."""
-    about = f"{view.context.get('cpu_model', '')} · {view.facts['date'][:10]} · {view.part}, profile {view.facts['profile']}"
-    for name, figure in figures.items():
-        save(figure, base / f"{name}.svg", about)
-    plt.close("all")
-    return {name: base64.b64encode((base / f"{name}.svg").read_bytes()).decode() for name in figures}

@@ -29,6 +29,10 @@ class Folder:
     def facts(self):
         return facts_of(self.folder)
 
+    @property
+    def context(self):
+        return self.facts["context"]
+
     @cached_property
     def registry(self):
         return Registry(read_object(self.folder / "registry.json", implementations=list))
@@ -46,7 +50,3 @@ class View(Folder):
             return yaml.safe_load(path.read_text(encoding="utf-8"))["parts"][self.part]
         except (OSError, UnicodeDecodeError, yaml.YAMLError, KeyError, TypeError) as error:
             raise StudyError(f"{path} is damaged: {' '.join(str(error).split())[:200]}") from error
-
-    @property
-    def context(self):
-        return self.facts["context"]

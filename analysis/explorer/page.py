@@ -24,8 +24,11 @@ def context(folder):
     registries = [Folder(one).registry for one in sets]
     about = [_about(name, registries) for name in names]
     contests = [one for part in ("families", "map") for one in sets[folder][part]]
+    settings = yaml.safe_load(SETTINGS.read_text(encoding="utf-8"))["settings"]
     known = {"sets": [data.as_json(one, found, number) for one, found in sets.items()], "names": about, "sizes": data.size_of(contests),
-             "settings": _settings(), "equivalent": timing.EQUIVALENT, "near": NEAR,
+             "settings": {one["name"]: " ".join(f"--{key}" if value is True else f"--{key} {value}"
+                                                for key, value in one.get("options", {}).items()) for one in settings},
+             "equivalent": timing.EQUIVALENT, "near": NEAR,
              "quantiles": [float(stats.t.ppf((1 + timing.CONFIDENCE) / 2, freedom)) for freedom in range(1, MOST)]}
     text = json.dumps(known, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     return {"data": text.replace("<", "\\u003c"), "examples": examples(contests, registries[0])}
@@ -52,12 +55,6 @@ def _about(name, registries):
     return {"name": name, "own": False, "dense": False, "gpl": False, "licence": "", "colour": "#777777"}
 
 
-def _settings():
-    """{setting: options of `mbs simulate`}"""
-    return {one["name"]: " ".join(f"--{key}" if value is True else f"--{key} {value}" for key, value in one.get("options", {}).items())
-            for one in yaml.safe_load(SETTINGS.read_text(encoding="utf-8"))["settings"]}
-
-
 ASKED = (  # of the examples: the least fill of the mechanism, %, and who is left out; words
     (0, 30, ("own",), "libraries only"),
     (30, 101, ("own", "gpl"), "a filled tangent, no GPL"),
@@ -77,12 +74,8 @@ def examples(contests, registry):
         if ranked:
             one, ranking = max(ranked, key=lambda pair: pair[0].n)
             used.add(one.family)
-            found.append({"case": f"{one.scene}: {one.n:.0f} variables, {words}", "take": _said(ranking),
+            others, doubt = ranking.equivalent[1:], "" if ranking.settled else " (not decided)"
+            found.append({"case": f"{one.scene}: {one.n:.0f} variables, {words}",
+                          "take": f"{ranking.winner}{doubt}" + (f"; as fast: {', '.join(others)}" if others else ""),
                           "state": f"scene={one.scene}&no={','.join(without)}"})
     return found
-
-
-def _said(ranking):
-    others = [name for name in ranking.equivalent if name != ranking.winner]
-    doubt = "" if ranking.settled else " (not decided)"
-    return f"{ranking.winner}{doubt}" + (f"; as fast: {', '.join(others)}" if others else "")

@@ -100,10 +100,11 @@ def _chain(axis, label, chain, **more):
 
 def extremes():
     """All cells that are extreme in one respect, in the order of the picture."""
-    return [*_sizes_and_settings(), *_masses_and_lengths(), *_constraints(), *_starts(), *_denormals()]
+    return [*_of_chains(), *_constraints(), *_starts()]
 
 
-def _sizes_and_settings():
+def _of_chains():
+    """Sizes and settings, masses and lengths."""
     for loops, steps in SIZES.items():
         yield (_chain("loops", f"N = {loops}", Chain(loops), steps=steps) if loops <= JSON_LOOPS else
                Extreme("loops", f"N = {loops}", f"four-bar:{loops}", Chain(loops), steps=steps))
@@ -111,21 +112,15 @@ def _sizes_and_settings():
         yield _chain("step", f"Δt = 1e{power} s", Chain(LOOPS), step=10.0**power, steps=min(STEPS, round(LONGEST / 10.0**power)))
     for power in range(2, 17, 2):
         yield _chain("penalty", f"α = 1e{power}", Chain(LOOPS), penalty=f"1e{power}")
-
-
-def _masses_and_lengths():
     for power in (-9, -6, -3, 3, 6, 9):
         yield _chain("mass ratio", f"1e{power}", scenes.unlike_masses(LOOPS, 10.0**power))
+    long = lambda length: Chain(LOOPS, length=length, rate=length**-0.5)
     for power in range(-6, 7, 2):  # steps in proportion to sqrt(length), as the motion is ...
-        yield _chain("length", f"{_short(10.0**power)} m", _long(10.0**power), step=STEP * 10.0**(power // 2))
+        yield _chain("length", f"{_short(10.0**power)} m", long(10.0**power), step=STEP * 10.0**(power // 2))
     for length in (1e-2, 1e2):     # ... and two with the usual step
-        yield _chain("length", f"{_short(length)} m, usual step", _long(length))
+        yield _chain("length", f"{_short(length)} m, usual step", long(length))
     for offset in (1e3, 1e6):
         yield _chain("offset", f"{_short(offset)} m", Chain(LOOPS, offset=offset))
-
-
-def _long(length):
-    return Chain(LOOPS, length=length, rate=length**-0.5)
 
 
 def _constraints():
@@ -140,6 +135,7 @@ def _constraints():
 
 
 def _starts():
+    """How it begins; denormal numbers."""
     flat, moving = math.pi / 2, math.sqrt(1 + 2 * Chain(2).k)  # as fast as four-bar:2 gets there
     # At 1 s the first one rests on a line again, and other motions become possible.
     yield _chain("start", "singular, at rest", Flat(1, angle=flat, rate=0.0), steps=600)
@@ -148,10 +144,7 @@ def _starts():
     yield _chain("start", "zero gravity, at rest", Chain(LOOPS, gravity=0.0, rate=0.0))
     yield _chain("start", "hanging at rest", Chain(LOOPS, angle=math.pi, rate=0.0))
     yield _chain("start", "upright at rest", Chain(LOOPS, rate=0.0))
-
-
-def _denormals():
-    tiny, short = 1e-310, 1e-160
+    tiny, short = 1e-310, 1e-160  # denormal numbers
     yield _chain("denormal", f"masses {_short(tiny)} kg", Chain(1, rods=(tiny, tiny), couplers=(tiny,)))
     yield _chain("denormal", f"a rod of {_short(tiny)} kg", Chain(1, rods=(1.0, tiny)))
     yield Extreme("denormal", f"a force of {_short(tiny)} N", "", Chain(1), scenes.with_force(tiny))

@@ -33,8 +33,13 @@ class Side:
 
 
 class Follower:
-    """What a point adds: `links`, (name, ends, length) each, rods of 1 kg; the point that 1 kg is at; further lists of the scene."""
-    links, load = (), None
+    """What a point adds: `joined`, (end, length) of each of its links, rods of 1 kg; the point that 1 kg is at; further lists of the scene."""
+    joined, load = (), None
+
+    @property
+    def links(self):
+        """(name, ends, length) each"""
+        return [(f"{end}-{self.name}", (end, self.name), length) for end, length in self.joined]
 
     def lists(self):
         return {}
@@ -52,6 +57,8 @@ class Dyad(Follower):
     lengths: tuple
     side: Side = Side()
 
+    joined = property(lambda self: zip(self.ends, self.lengths))
+
     def place(self, at, angle):
         (first, second), (r, s) = (at[end] for end in self.ends), self.lengths
         way = second - first
@@ -62,10 +69,6 @@ class Dyad(Follower):
     def clearance(self, at):
         first, second = (at[end] - at[self.name] for end in self.ends)
         return abs((_across(first) * second).sum(axis=0)) / (self.lengths[0] * self.lengths[1])
-
-    @property
-    def links(self):
-        return [(f"{end}-{self.name}", (end, self.name), length) for end, length in zip(self.ends, self.lengths)]
 
 
 @dataclass(frozen=True)
@@ -78,6 +81,7 @@ class Slider(Follower):
     side: Side = Side()
 
     load = property(lambda self: self.name)
+    joined = property(lambda self: [(self.end, self.length)])
 
     def place(self, at, angle):
         (x, y), level = at[self.end], at[self.foot][1]
@@ -85,10 +89,6 @@ class Slider(Follower):
 
     def clearance(self, at):
         return abs(at[self.name][0] - at[self.end][0]) / self.length
-
-    @property
-    def links(self):
-        return [(f"{self.end}-{self.name}", (self.end, self.name), self.length)]
 
     def lists(self):
         return {"masses": [{"point": self.name, "mass": 1.0}],
@@ -103,15 +103,13 @@ class Swing(Follower):
     through: str
     length: float
 
+    joined = property(lambda self: [(self.foot, self.length)])
+
     def place(self, at, angle):
         return at[self.foot] + self.length * _unit(at[self.through] - at[self.foot])
 
     def clearance(self, at):
         return numpy.hypot(*(at[self.through] - at[self.foot])) / self.length
-
-    @property
-    def links(self):
-        return [(f"{self.foot}-{self.name}", (self.foot, self.name), self.length)]
 
     def lists(self):
         return {"constraints": [{"name": "slides", "type": "on_line", "point": self.through, "line": [self.foot, self.name]}]}
@@ -156,17 +154,9 @@ class Linkage(Motion):
     finest: float = 1.0    # rad of the crank, in which something turns over
     carried: float = 0.0   # m/s, along x, of all feet
 
-    @property
-    def truth(self):
-        return "closed form" if self.driven else "closed form, its time by quadrature"
-
-    @property
-    def accuracy(self):
-        return 0.0 if self.driven else 1e-7
-
-    @property
-    def points(self):
-        return ["B", *(one.name for one in self.followers)]
+    truth = property(lambda self: "closed form" if self.driven else "closed form, its time by quadrature")
+    accuracy = property(lambda self: 0.0 if self.driven else 1e-7)
+    points = property(lambda self: ["B", *(one.name for one in self.followers)])
 
     @property
     def links(self):

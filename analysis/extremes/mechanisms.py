@@ -124,13 +124,8 @@ class Standard(Motion):
     """A standard problem with a reference that `mbs` has no part in: of study/scenes/references.py."""
     known: str
 
-    @property
-    def truth(self):
-        return "closed form" if self.known in CLOSED else "equations of its own, integrated"
-
-    @property
-    def accuracy(self):
-        return 0.0 if self.known in CLOSED else 1e-8
+    truth = property(lambda self: "closed form" if self.known in CLOSED else "equations of its own, integrated")
+    accuracy = property(lambda self: 0.0 if self.known in CLOSED else 1e-8)
 
     def solutions(self, times):
         times = numpy.asarray(times, dtype=float)

@@ -1,7 +1,41 @@
-# The tables of the part, a column's records each.
-from analysis.extremes import battery, pivots
+# The tables of the part, a column's records each. Pivots: what KLU's ways of keeping them lose and cost on matrices that change violently.
+import pandas
+
+from analysis.core import timing
+from analysis.extremes import battery
+
+PLAIN = ("refactor", "default")  # strategy and pivots that times are over
 
 
 def build(records, view):
     of = {column: [record for record in records if record.column == column] for column in ("battery", "pivots")}
-    return {"battery": battery.table(of["battery"], view.registry), **pivots.build(of["pivots"])}
+    return {"battery": battery.table(of["battery"], view.registry), **_pivots(of["pivots"])}
+
+
+def _pivots(records):
+    """{"pivots": a row a sequence, strategy and choice of pivots, and a row a process that gave none; "claims": what the
+    program says of its own claims}"""
+    done = [record for record in records if record.done]
+    names = " ".join(record.name for record in done)
+    rows = [row | {"process": record.cell["number"]} for record in done for row in record.output["rows"]]
+    claims = {}
+    for record in done:
+        for claim in record.output.get("claims", []):
+            claims[claim["claim"]] = claims.get(claim["claim"], True) and bool(claim["holds"])
+    lost = [{"status": record.status, "reason": record.reason, "record": record.name} for record in records if not record.done]
+    found = [row | {"status": "ok", "record": names} for row in _over_processes(pandas.DataFrame(rows))]
+    return {"pivots": pandas.DataFrame(found + lost),
+            "claims": pandas.DataFrame([{"claim": claim, "holds": holds, "record": names} for claim, holds in claims.items()])}
+
+
+def _over_processes(rows):
+    for (sequence, form), own in rows.groupby(["sequence", "form"], sort=False) if len(rows) else []:
+        timed = own.assign(environment="own", status="ok", samples=[(time,) for time in own.time_us_median],
+                           implementation=list(zip(own.strategy, own.pivoting)))
+        for (strategy, pivoting), each in own.groupby(["strategy", "pivoting"], sort=False):
+            found = timing.ratio(timed, (strategy, pivoting), PLAIN)
+            first = each.iloc[0]
+            yield {"sequence": sequence, "form": form, "strategy": strategy, "pivoting": pivoting,
+                   "matrices": first.matrices, "error_median": first.error_median, "error_worst": each.error_worst.max(skipna=False),
+                   "repivotings": first.repivotings, "time_us": each.time_us_median.median(), "processes": len(each),
+                   "time_ratio": found.value, "ratio_low": found.low, "ratio_high": found.high}

@@ -53,25 +53,24 @@ def table(scenes, winners, rules=RULES):
     """A row a rule, from the rows of scenes and winners: time of what it chooses over that of the fastest library, on all
     mechanisms that have both. Who was only looked at has a rough time, and the row says on how many."""
     rows = {(row["scene"], row["implementation"]): row for row in scenes}
-    known = [row for row in winners if row["layer"] == "libraries" and row.get("winner")]
-    return pandas.DataFrame([_row(rule, known, rows) for rule in rules])
-
-
-def _row(rule, winners, rows):
-    chosen, losses, rough, records = Counter(), {}, 0, {}
-    for winner in winners:
-        scene = winner["scene"]
-        about = rows[scene, winner["winner"]]
-        name = rule.choose(about["variables"], about["fill"] / 100)
-        row = rows.get((scene, name), {})
-        chosen[name] += 1
-        if row.get("status") == "ok" and row.get("to_rival", 0) > 0:
-            losses[scene] = row["to_rival"]
-        elif row.get("status") == "slower" and (row.get("look_us") or 0) > 0:  # who did not finish the look has none
-            losses[scene] = row["look_us"] / about["look_us"]
-            rough += 1
-        records[scene] = row.get("record", "")
-    where = max(losses, key=losses.get, default="")
-    return {"rule": rule.name, "source": rule.source, "chooses": rule.chooses, "scenes": len(winners), "timed": len(losses), "rough": rough,
+    known, found = [row for row in winners if row["layer"] == "libraries" and row.get("winner")], []
+    for rule in rules:
+        chosen, losses, rough, records = Counter(), {}, 0, {}
+        for winner in known:
+            scene = winner["scene"]
+            about = rows[scene, winner["winner"]]
+            name = rule.choose(about["variables"], about["fill"] / 100)
+            row = rows.get((scene, name), {})
+            chosen[name] += 1
+            if row.get("status") == "ok" and row.get("to_rival", 0) > 0:
+                losses[scene] = row["to_rival"]
+            elif row.get("status") == "slower" and (row.get("look_us") or 0) > 0:  # who did not finish the look has none
+                losses[scene] = row["look_us"] / about["look_us"]
+                rough += 1
+            records[scene] = row.get("record", "")
+        where = max(losses, key=losses.get, default="")
+        found.append({
+            "rule": rule.name, "source": rule.source, "chooses": rule.chooses, "scenes": len(known), "timed": len(losses), "rough": rough,
             "chosen": ", ".join(f"{name} on {count}" for name, count in chosen.most_common()), "worst": losses.get(where), "where": where,
-            "mean": float(numpy.exp(numpy.mean(numpy.log(list(losses.values()))))) if losses else None, "record": records.get(where, "")}
+            "mean": float(numpy.exp(numpy.mean(numpy.log(list(losses.values()))))) if losses else None, "record": records.get(where, "")})
+    return pandas.DataFrame(found)

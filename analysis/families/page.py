@@ -4,6 +4,7 @@ from analysis.core.text import number
 from analysis.families.bounds import bounds
 from analysis.families.rule import missed, summary
 from analysis.families.sentences import where
+from analysis.families.times import features_of
 
 
 def context(tables, view):
@@ -22,7 +23,8 @@ def context(tables, view):
             "formulas": _formulas(tables["steps"]), "judged": summary(held) if len(held) else None, "missed": missed(held).to_dict("records") if len(held) else [],
             "by_family": [(family, summary(rows)) for family, rows in held.groupby("family", sort=False)],
             **{name: tables[name].to_dict("records") for name in ("by_hand", "alone", "defaults", "growth")}, "where": where,
-            "orderings": _wide(tables["orderings"])}
+            "orderings": [(scene, rows.n.iloc[0], {row["ordering"]: row for row in rows.to_dict("records")})
+                          for scene, rows in tables["orderings"].groupby("scene", sort=False)]}
 
 
 def _formulas(steps):
@@ -30,16 +32,6 @@ def _formulas(steps):
     if steps.empty:
         return []
     compared = steps[steps.candidate.astype(bool)]
-    return [(scheme, name, f"passes × ({' + '.join(_product(*row) for row in zip(rows.us, rows.term))})", rows.caution.iloc[0])
+    products = lambda rows: (" ".join([number(us), *features_of(term)[1:]]) for us, term in zip(rows.us, rows.term))  # without passes
+    return [(scheme, name, f"passes × ({' + '.join(products(rows))})", rows.caution.iloc[0])
             for (scheme, name), rows in compared.groupby(["scheme", "implementation"], sort=False)]
-
-
-def _product(us, term):
-    _, *names = [name for name in term.split("*") if name != "1"]  # but passes
-    return " ".join([number(us), *names])
-
-
-def _wide(orderings):
-    """(scene, n, {ordering: row})"""
-    return [(scene, rows.n.iloc[0], {row["ordering"]: row for row in rows.to_dict("records")})
-            for scene, rows in orderings.groupby("scene", sort=False)]

@@ -16,8 +16,10 @@ def answers(tables, view):
     if mine.empty:
         return [{"text": "Not measured: no library was timed that the gate agrees with.", "anchor": ""}]
     real = mine[~mine.family.str.contains("filled")]  # without the four-bar with artificial fill
+    first = real.equivalent.str.split().explode().value_counts()  # of each library, the scenes on which it is in the equivalence set
+    shares = ", ".join(f"{name} on {count}" for name, count in sorted(first.items(), key=lambda one: (-one[1], one[0])))
     found = [{"anchor": "map", "text": f"On {len(real)} mechanisms of {real.family.nunique()} families (n = {number(real.variables.min(), 5)} to "
-              f"{number(real.variables.max(), 5)}), in front among libraries, or as fast to 5 %: {_shares(real)}. Of {int(real.settled.astype(bool).sum())} of the "
+              f"{number(real.variables.max(), 5)}), in front among libraries, or as fast to 5 %: {shares}. Of {int(real.settled.astype(bool).sum())} of the "
               f"{len(real)} this run says who is fastest."}]
     if len(tables["held"]):
         held = summary(tables["held"])
@@ -86,9 +88,3 @@ def files(tables, view):
     """rule.json, which `mbs describe` applies: harness/src/describe/README.md."""
     found = document(tables)
     return {"rule.json": {key: view.context[name] for key, name in (("machine", "cpu_model"), ("commit", "commit"))} | found} if found else {}
-
-
-def _shares(rows):
-    """Libraries with the number of scenes on which each is the winner or in the equivalence set, most first."""
-    counts = rows.equivalent.str.split().explode().value_counts()  # the winner among them
-    return ", ".join(f"{name} on {count}" for name, count in sorted(counts.items(), key=lambda one: (-one[1], one[0])))

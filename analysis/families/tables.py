@@ -31,7 +31,8 @@ def build(records, view):
                        | {"look_us": looks.get(name, {}).get("step_us")}
                        | ratio_to("to_rival", timed, name, rival, cells[name]) for name in sorted(cells.keys() & order, key=order.get)]
             winners += [known | {"layer": layer} | _winner(timed, cells, names) for layer, names in layers.items()]
-        twins += [{"scheme": scheme} | row for _, rows in by_scene([one for one in by_role.get(scheme, []) if _has_twin(one)])
+        twinned = [one for one in by_role.get(scheme, []) if any(name.endswith(TWIN) for name in one.cell["contenders"])]
+        twins += [{"scheme": scheme} | row for _, rows in by_scene(twinned)
                   for row in controls(rows).to_dict("records")]
     mechanisms = [{"family": family_of(scene), "scene": scene, "dimension": record.output.get("dimension")}
                   | {name: value for name, value in record.output.get("features", {}).items() if name in schema["mechanisms"]}
@@ -42,10 +43,6 @@ def build(records, view):
     first = {name: tables[name][tables[name].scheme == SCHEMES[0]].merge(fills, on="scene").to_dict("records") for name in ("scenes", "winners")}
     return tables | {"defaults": defaults.table(first["scenes"], first["winners"]), "growth": growth(tables["scenes"], tables["mechanisms"]),
                      "orderings": orderings(about), "controls": pandas.DataFrame(twins)} | judged(tables, registry)
-
-
-def _has_twin(record):
-    return any(name.endswith(TWIN) for name in record.cell["contenders"])
 
 
 def family_of(scene):

@@ -73,8 +73,7 @@ def over_size(bounds, rows, look, own):
         known = mine[(mine.multiple_low > 0) & (mine.multiple_high < numpy.inf)]
         multiples.fill_between(known.variables, known.multiple_low, known.multiple_high, color=style["color"], alpha=0.15,
                                linewidth=0)
-    times.set_title("N-four-bar, penalty form: the best variant of each library, and all code of our own")
-    times.set_ylabel("time per step, µs")
+    times.set(title="N-four-bar, penalty form: the best variant of each library, and all code of our own", ylabel="time per step, µs")
     multiples.set_ylabel("multiple of the limit code")
     for axes, unit in ((times, ""), (multiples, "×")):
         number_axis(axes.yaxis, unit)
@@ -147,8 +146,8 @@ def ahead(leads):
     axes.yaxis.set_minor_locator(NullLocator())
     line_each(axes, [f"{row.scene.rpartition('/')[2].removesuffix('.json')} ({row.kind}, n = {row.variables:.0f}, "
                      f"{row.dimension:.0f}D)" for row in about.itertuples()], fontsize=8)
-    axes.set_xlabel("time of the fastest library ÷ own time")
     left = asked.scene.nunique() - len(about)
-    axes.set_title("How far ahead of libraries" + (f"; {left} more scenes were not timed" if left else ""))
+    axes.set(xlabel="time of the fastest library ÷ own time",
+             title="How far ahead of libraries" + (f"; {left} more scenes were not timed" if left else ""))
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=8.5)
     return figure

@@ -6,10 +6,12 @@ from analysis.limit.tables import KINDS, NODES
 
 def context(tables, view):
     steps = tables["steps"]
+    own = steps[steps.implementation.isin(view.registry.own) & (steps.variables >= 100)]
     return {"phases": PHASES, "settings": view.settings,
             "held": tables["held"].to_dict("records"), "bounds": tables["bounds"].sort_values("loops").to_dict("records"),
             "sizes": grouped(_timed(steps[steps.form == "penalty"]).sort_values(["loops", "step_us"]), "variables"),
-            "growth": grouped(_own(steps, view), "form"), "scenes": by_scene(tables["scenes"]),
+            # First the form whose passes do not depend on the size.
+            "growth": grouped(_timed(own).sort_values("form", ascending=False, kind="stable"), "form"), "scenes": by_scene(tables["scenes"]),
             "batches": tables["batches"][tables["batches"].status != "unsupported"].sort_values(["variables", "sets"]).to_dict("records"),
             "alone": sorted(set(tables["batches"].implementation[tables["batches"].status == "unsupported"])), "lost": lost(tables),
             "sweeps": tables["sweeps"].to_dict("records"), "nodes": NODES}
@@ -19,19 +21,12 @@ def _timed(rows):
     return rows[(rows.status == "ok") & rows.step_us.notna()]
 
 
-def _own(steps, view):
-    """Own code from 100 variables on, in the form whose passes do not depend on the size first."""
-    rows = _timed(steps).sort_values("form", ascending=False, kind="stable")
-    return rows[rows.implementation.isin(view.registry.own) & (rows.variables >= 100)]
-
-
 def by_scene(scenes):
     """[(scene, kind, n, dimension, rows)], the fastest first; also those that only a first look was taken at."""
     rows = scenes[scenes.status.isin(["ok", "slower"]) & scenes.step_us.notna()].sort_values("step_us")
-    order = {kind: place for place, kind in enumerate(KINDS)}
     found = [(name.removeprefix("harness/scenes/").removesuffix(".json"), group.kind.iloc[0], group.variables.iloc[0],
               group.dimension.iloc[0], group.to_dict("records")) for name, group in rows.groupby("scene", sort=False)]
-    return sorted(found, key=lambda one: (order[one[1]], one[3], one[2]))
+    return sorted(found, key=lambda one: (KINDS.index(one[1]), one[3], one[2]))
 
 
 def lost(tables):

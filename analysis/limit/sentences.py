@@ -34,22 +34,13 @@ def _leads(leads):
 
 def _many(batches, sweeps):
     """Batches and sweeps, one answer."""
-    gains, rates = _gains(batches), _sweeps(sweeps)
-    return [{"text": " ".join([*gains, *rates]), "anchor": "batches" if gains else "sweeps"}] if gains or rates else []
-
-
-def _gains(batches):
-    rows = batches[batches.status == "ok"]
-    said = [f"{span(mine.gain)} times with {sets:.0f} sets (single processes {span([mine.least.min(), mine.most.max()])})"
-            for sets, mine in rows.groupby("sets")]
-    return [f"Simulations side by side gain, over those alone: {'; '.join(said)}."] if said else []
-
-
-def _sweeps(sweeps):
-    rows = sweeps[(sweeps.status == "ok") & (sweeps.jobs == 2)]
-    said = [f"of {row.scene} {number(row.gain)} times as many lanes a second as one job, a million lanes in {number(row.million_s)} s"
-            for row in rows.itertuples()]
-    return [f"Sweeps by two jobs, projected from fewer lanes: {'; '.join(said)}."] if said else []
+    gains = [f"{span(mine.gain)} times with {sets:.0f} sets (single processes {span([mine.least.min(), mine.most.max()])})"
+             for sets, mine in batches[batches.status == "ok"].groupby("sets")]
+    rates = [f"of {row.scene} {number(row.gain)} times as many lanes a second as one job, a million lanes in {number(row.million_s)} s"
+             for row in sweeps[(sweeps.status == "ok") & (sweeps.jobs == 2)].itertuples()]
+    said = [f"{what}: {'; '.join(found)}." for what, found in (("Simulations side by side gain, over those alone", gains),
+                                                               ("Sweeps by two jobs, projected from fewer lanes", rates)) if found]
+    return [{"text": " ".join(said), "anchor": "batches" if gains else "sweeps"}] if said else []
 
 
 def _held(held):

@@ -1,11 +1,10 @@
 # Claims about the tangent's fill and the maps: F5, F6, F7.
 from analysis.map import paper
 from analysis.map.cells import map_cells
-from analysis.map.compare import best
 from analysis.map.ledger import (CONFIRMED, INCOMPARABLE, REFUTED, UNDECIDED, UNMEASURED, at_least, by_place, judged, of, row, summed,
                                  unmeasured)
 
-F5_SIZE = 100
+F5_SIZE = 100        # variables; the nearest size counts that has enough filled scenes
 FILLS_NEEDED = 3     # filled scenes that a size needs for Figure 5
 LOW_FILL = 30        # %, "low fill" ends; a mechanism's own fill, the lowest that its size has, is low at every size
 HIGH_FILL = 50       # %, "high fill" begins
@@ -22,38 +21,25 @@ def standing(results):
 
 def over_fill(results):
     """F5. Rule: best dense, on any pair, ÷ system above 1 at every fill."""
-    size = fill_size(results)
-    rows = []
-    for system in ("CHOLMOD", "WSMP"):
-        head = "F5", f"at 100 variables {system} is faster than the best dense version at every fill", "> 1×"
-        rows.append(_over_fill(results, head, system, size) if size is not None else
-                    unmeasured(head, f"No size has {FILLS_NEEDED} filled scenes.", at_least(1)))
-    return rows
-
-
-def _fills(results):
-    samples = results.samples()
-    return samples[samples.implementation.isin(standing(results))]
-
-
-def fill_size(results):
-    """The size nearest to 100 variables with at least FILLS_NEEDED filled scenes; None without."""
-    samples = _fills(results)
+    samples, dense, rows = results.samples(), paper.dense(results), []
+    samples = samples[samples.implementation.isin(standing(results))]
     filled = samples[samples.fill_asked.notna()].groupby("variables").scene.nunique()
-    return min(filled.index[filled >= FILLS_NEEDED], key=lambda size: abs(size - F5_SIZE), default=None)
-
-
-def _over_fill(results, head, system, size):
-    samples = _fills(results)
-    names, dense = paper.members(results, system), paper.dense(results)
+    size = min(filled.index[filled >= FILLS_NEEDED], key=lambda size: abs(size - F5_SIZE), default=None)
     scenes = samples[samples.variables == size].groupby("scene").fill_percent.first().sort_values()
-    found = [best(results, scene, dense, names) for scene in scenes.index]
-    lost = [f"{fill:.0f}" for one, (scene, fill) in zip(found, scenes.items()) if not one and results.fastest(scene, dense)]
-    found = [one for one in found if one]
-    if not found or lost:
-        text = f"at fills of {', '.join(lost)} %" if lost else "anywhere"
-        return unmeasured(head, f"At n = {size:g} {system}'s stand-ins were not timed against a dense version {text}.", at_least(1))
-    return judged(head, [(f"{one.fill:.0f} %", of(one), one.record) for one in found], at_least(1), f"n = {size:g}, best dense ÷ {', '.join(names)}")
+    for system in ("CHOLMOD", "WSMP"):
+        names = paper.members(results, system)
+        head = "F5", f"at 100 variables {system} is faster than the best dense version at every fill", "> 1×"
+        found = [results.best(scene, dense, names) for scene in scenes.index]
+        lost = [f"{fill:.0f}" for one, (scene, fill) in zip(found, scenes.items()) if not one and results.fastest(scene, dense)]
+        cases = [(f"{one.fill:.0f} %", of(one), one.record) for one in found if one]
+        if size is None:
+            rows.append(unmeasured(head, f"No size has {FILLS_NEEDED} filled scenes.", at_least(1)))
+        elif lost or not cases:
+            text = f"at fills of {', '.join(lost)} %" if lost else "anywhere"
+            rows.append(unmeasured(head, f"At n = {size:g} {system}'s stand-ins were not timed against a dense version {text}.", at_least(1)))
+        else:
+            rows.append(judged(head, cases, at_least(1), f"n = {size:g}, best dense ÷ {', '.join(names)}"))
+    return rows
 
 
 def regions(results):
@@ -95,7 +81,7 @@ def _region(results, figure, claim, cells, system):
     return row(head, summed(told), by_place(told) if len(told) > 1 else "", rule,
                f"Winners among the paper's systems: {listed}.") | {
         "ours": f"{len(told.get(CONFIRMED, []))} of {len(cells)} cells", "where": f"{', '.join(map(_place, cells))}: {', '.join(names)}",
-        "record": " ".join(_record(results, cell) for cell in cells)}
+        "record": " ".join(rows.record[rows.implementation == cell.ranking.winner].iloc[0] for cell in cells for rows in [results.rows(cell.scene)])}
 
 
 def _cell(cell, names, shared):
@@ -109,9 +95,3 @@ def _cell(cell, names, shared):
 
 def _place(cell):
     return f"n = {cell.variables:g} and {cell.fill_percent:.0f} %"
-
-
-def _record(results, cell):
-    """One of the winner's in a cell."""
-    rows = results.rows(cell.scene)
-    return rows.record[rows.implementation == cell.ranking.winner].iloc[0]

@@ -1,7 +1,7 @@
 # Claims about solvers at the mechanism's own fill: F4, C1, C4.
 from analysis.core.text import number
 from analysis.map import paper
-from analysis.map.compare import COVERED, over_sizes
+from analysis.map.results import COVERED
 from analysis.map.ledger import INCOMPARABLE, UNDECIDED, Rule, at_least, compared, factor, judged, of, row, unmeasured
 
 FIGURE4 = 160        # variables; the last of Figure 4
@@ -28,7 +28,7 @@ def _needed(pair):
 
 def _fastest(results, klu, others, low, high):
     span = f"to {high} variables" if low == 0 else f"from {low} to {high} variables"
-    found = over_sizes(results, others, klu, low, high, COVERED)
+    found = results.over_sizes(others, klu, low, high, COVERED)
     return compared(("F4", f"KLU with refactor is the fastest sparse solver, {span}", "fastest"), found, at_least(1),
                     f"KLU and another of the paper's solvers were not both timed at {max(low, COVERED)} variables or more.")
 
@@ -36,7 +36,7 @@ def _fastest(results, klu, others, low, high):
 def _share_of_speed(results, klu, cholmod):
     head = "F4", f"CHOLMOD performs at {CHOLMOD_OF_KLU} % of KLU", f"{CHOLMOD_OF_KLU} %"
     rule = Rule(CHOLMOD_OF_KLU - SPEED_BAND, CHOLMOD_OF_KLU + SPEED_BAND)
-    found = over_sizes(results, klu, cholmod, high=FIGURE4, reaching=COVERED)
+    found = results.over_sizes(klu, cholmod, high=FIGURE4, reaching=COVERED)
     if not found:
         return unmeasured(head, _needed("KLU and CHOLMOD"), rule, " %")
     cases = [(f"n = {one.size:g}", [100 * value for value in of(one)], one.record) for one in found]
@@ -48,7 +48,7 @@ def _behind(results, slow_system, slow, fast_system, fast):
     both = sorted(set(slow) & set(fast))
     if any(results.fastest(results.natural(size), slow) in both for size in results.sizes if size <= FIGURE4):
         return row(head, INCOMPARABLE, f"{', '.join(both)} stands for both, and is {slow_system}'s fastest stand-in.", at_least(1).text("×"))
-    return compared(head, over_sizes(results, slow, fast, high=FIGURE4, reaching=COVERED), at_least(1),
+    return compared(head, results.over_sizes(slow, fast, high=FIGURE4, reaching=COVERED), at_least(1),
                     _needed(f"{slow_system}'s and {fast_system}'s stand-ins"))
 
 
@@ -57,7 +57,7 @@ def pivoting(results):
     of full pivoting at least ERROR_GROWS in some scene."""
     klu, full = paper.SYSTEMS["KLU"][0], paper.FULL_PIVOTING
     return [compared(("C1", "KLU with full pivoting costs 50 % more than with refactor", f"{PIVOTING}×"),
-                     over_sizes(results, [full], [klu], reaching=COVERED), factor(PIVOTING),
+                     results.over_sizes([full], [klu], reaching=COVERED), factor(PIVOTING),
                      f"{full} and {klu} were not both timed at {COVERED} variables or more."), _stale_pivots(results, klu, full)]
 
 
@@ -81,5 +81,5 @@ def _stale_pivots(results, klu, full):
 def sparse_against_dense(results):
     """C4. Rule: best dense, on any pair, ÷ best sparse within the band around the paper's factor."""
     return [compared(("C4", f"sparse beats dense {quoted} times at {size} variables", f"{quoted}×"),
-                     over_sizes(results, paper.dense(results), paper.sparse(results), size, size), factor(quoted),
+                     results.over_sizes(paper.dense(results), paper.sparse(results), size, size), factor(quoted),
                      f"Dense and sparse versions were not both timed at n = {size}.") for size, quoted in C4_SIZES.items()]

@@ -1,9 +1,8 @@
 # Claims about the starting versions and the symbolic preprocessing: T1, T2, C2.
 from analysis.core.timing import PHASES, rank, ratio, student
 from analysis.map import paper
-from analysis.map.compare import Versus, over_sizes
 from analysis.map.ledger import Rule, compared, factor, judged, unmeasured
-from analysis.map.results import with_samples
+from analysis.map.results import Versus, with_samples
 
 MAIN_SHARE = 10   # %; smaller shares of Table 1 get no row
 SHARE_BAND = 10   # points around the paper's share that still confirm it
@@ -13,22 +12,21 @@ C2_SIZES = {22: 2, 1000: 3}  # the paper: "from 2 (small problems) to 3 (1,000 v
 
 def table1(results):
     """T1. Rule: our share within SHARE_BAND points of the paper's."""
-    return [_share(results, kind, size, group, phases, share)
-            for (kind, size), quoted in paper.TABLE1.items()
-            for (group, phases), share in zip(paper.GROUPS.items(), quoted) if share >= MAIN_SHARE]
-
-
-def _share(results, kind, size, group, phases, share):
-    name, rows = paper.STARTING[kind], results.tidy
-    cell = rows[(rows.kind == "phases") & (rows.status == "ok") & (rows.implementation == name) & (rows.variables == size)]
-    head = "T1", f"starting {kind} version, {size} variables: {group} takes {share} % of the time", f"{share} %"
-    rule = Rule(share - SHARE_BAND, share + SHARE_BAND)
-    if len(cell) < PROCESSES:
+    found, profiled = [], results.tidy[(results.tidy.kind == "phases") & (results.tidy.status == "ok")]
+    for (kind, size), quoted in paper.TABLE1.items():
+        name = paper.STARTING[kind]
+        cell = profiled[(profiled.implementation == name) & (profiled.variables == size)]
         what = f"{len(cell)} process{'es' if len(cell) > 1 else ''} of {name} profiled" if len(cell) else f"{name} not profiled"
-        return unmeasured(head, f"{what} at n = {size}; an interval needs {PROCESSES}.", rule, " %")
-    mine, whole = (cell[[f"phase_{phase}" for phase in some]].sum(axis=1) for some in (phases, PHASES))
-    middle, half, *_ = student(100 * mine / whole)
-    return judged(head, [(f"n = {size}", (middle, middle - half, middle + half), " ".join(cell.record))], rule, name, " %")
+        for (group, phases), share in zip(paper.GROUPS.items(), quoted):
+            head = "T1", f"starting {kind} version, {size} variables: {group} takes {share} % of the time", f"{share} %"
+            rule = Rule(share - SHARE_BAND, share + SHARE_BAND)
+            if share >= MAIN_SHARE and len(cell) < PROCESSES:
+                found.append(unmeasured(head, f"{what} at n = {size}; an interval needs {PROCESSES}.", rule, " %"))
+            elif share >= MAIN_SHARE:
+                mine, whole = (cell[[f"phase_{phase}" for phase in some]].sum(axis=1) for some in (phases, PHASES))
+                middle, half, *_ = student(100 * mine / whole)
+                found.append(judged(head, [(f"n = {size}", (middle, middle - half, middle + half), " ".join(cell.record))], rule, name, " %"))
+    return found
 
 
 def table2_claims(results):
@@ -63,5 +61,5 @@ def _gains(results, operation, slow):
 def starting_sparse(results):
     """C2. Rule: starting ÷ best optimised sparse within the band around the paper's factor."""
     return [compared(("C2", f"the best sparse version beats the starting one {quoted} times ({size} variables)", f"{quoted}×"),
-                     over_sizes(results, [paper.STARTING["sparse"]], paper.sparse(results), size, size), factor(quoted),
+                     results.over_sizes([paper.STARTING["sparse"]], paper.sparse(results), size, size), factor(quoted),
                      f"n = {size} lacks samples of {paper.STARTING['sparse']} or of an optimised one.") for size, quoted in C2_SIZES.items()]

@@ -1,11 +1,194 @@
-# All figures of the map.
-from analysis.core.style import Look
-from analysis.map import maps, sparse_figure
+# All figures of the map: of the fastest over size and fill, the paper's Figures 6 and 7, for libraries and for all; Figure 4, sparse
+# solvers of libraries over problem size, as ratios to the one of least time at each size, with intervals.
+import re
+from collections import Counter
+from itertools import groupby
+
+import matplotlib.pyplot as plt
+import numpy
+from matplotlib.patches import Patch, Rectangle
+
+from analysis.core.style import GREY, Look, legend, missing, number_axis
+from analysis.core.text import bounded
+from analysis.core.timing import EQUIVALENT
+from analysis.map import paper
+from analysis.map.cells import map_cells
 from analysis.map.results import of
+
+OPAQUE, PALE = 0.85, 0.4
+BAND = (-19.0, -3.0)  # where cells of own fill stand, in % of the axis above
+NOTHING = {"facecolor": "white", "edgecolor": "#c4c4c4", "hatch": "...", "linewidth": 0}
+OUTCOMES = {"decided": "wins", "equivalent": "as fast in", "open": "may be in"}
+PAPER_END = 160  # variables, right end of the paper's axis
+LEADERS = 1.5    # ratio at which the upper panel ends
+DODGE = 0.6      # width over which the contenders of a size are spread
 
 
 def draw(tables, view):
     results, look = of(tables, view), Look(view.registry)
-    return {"f7_map": maps.draw(results, look, "Figure 7: fastest library over size and fill", results.layer("libraries")),
-            "map_all": maps.draw(results, look, "Fastest of all, code of our own included", results.layer("all")),
-            "f4_sparse_solvers": sparse_figure.draw(results, look)}
+    return {"f7_map": fastest(results, look, "Figure 7: fastest library over size and fill", results.layer("libraries")),
+            "map_all": fastest(results, look, "Fastest of all, code of our own included", results.layer("all")),
+            "f4_sparse_solvers": sparse(results, look)}
+
+
+def fastest(results, look, title, names, letters=13, line=2.1):
+    """The map of some contenders. A cell has `letters` in a line of text, which is `line` % of the axis high."""
+    cells = map_cells(results, names)
+    count = len(columns(cells))
+    figure, axes = plt.subplots(figsize=(max(5.0, 0.9 + 1.02 * count), 7.4))
+    axes.set_title(title)
+    if not any(cell.ranking for cell in cells):
+        missing(axes, "nobody of these was timed")
+        return figure
+    for place, mine in enumerate(columns(cells).values()):
+        _column(axes, place - 0.5, mine, look, (letters, line))
+    axes.axhline(0, color="#444444", linewidth=0.8)
+    axes.set(xlim=(-0.5, count - 0.5), ylim=(BAND[0], 100))
+    axes.set_yticks([sum(BAND) / 2, 0, 20, 40, 60, 80, 100], ["own\nfill", "0", "20", "40", "60", "80", "100"])
+    axes.set_xticks(range(count), [f"{one:g}" for one in columns(cells)])
+    axes.tick_params(axis="x", length=0, labelsize=9.0)
+    axes.tick_params(axis="y", labelsize=9.0)
+    axes.spines["bottom"].set_visible(False)
+    axes.set_xlabel("variables n", fontsize=9.5)
+    axes.set_ylabel("non-zeros of the tangent, % of n²", fontsize=9.5)
+    _legend(axes, cells, look, names)
+    return figure
+
+
+def columns(cells):
+    """{size: its cells by ascending fill}."""
+    return {size: list(mine) for size, mine in groupby(cells, key=lambda cell: cell.variables)}
+
+
+def bounds(fills, own):
+    """Lower edge of each cell of artificial fill and the last one's upper edge, %: neighbours meet half-way, the first
+    begins half-way to the own fill, the last ends half the last gap above. Nothing is claimed of fills beyond."""
+    if not fills:
+        return []
+    places = [own, *fills] if own is not None else fills
+    edges = [(low + high) / 2 for low, high in zip(places, places[1:])]
+    gap = places[-1] - places[-2] if len(places) > 1 else 0.0
+    return [*(edges if own is not None else [fills[0], *edges]), min(100.0, fills[-1] + gap / 2)]
+
+
+def _column(axes, left, cells, look, room):
+    """The cells of a size, and what was not measured."""
+    natural = [cell for cell in cells if cell.fill_asked is None]
+    filled = [cell for cell in cells if cell.fill_asked is not None]
+    own = natural[0].fill_percent if natural else None
+    edges = bounds([cell.fill_percent for cell in filled], own)
+    axes.add_patch(Rectangle((left, 0), 1, 100, **NOTHING))
+    if own is not None:  # below the own fill there is no tangent of this mechanism
+        axes.add_patch(Rectangle((left, 0), 1, own, facecolor="white", linewidth=0))
+        axes.plot([left, left + 1], [own, own], color=GREY, linewidth=1.2, zorder=5)
+        _cell(axes, left, BAND[0], BAND[1] - BAND[0], natural[0], look, room)
+    for cell, low, high in zip(filled, edges, edges[1:]):
+        _cell(axes, left, low, high - low, cell, look, room)
+
+
+def _shown(cell):
+    """Names whose colours a cell has."""
+    return cell.winners if cell.settled else cell.winners[:2]
+
+
+def _cell(axes, x, y, height, cell, look, room):
+    """Nothing where nobody was timed. A winner is opaque; those that are as fast stand in stripes of their colours; open cells are pale and hatched."""
+    shown = _shown(cell)
+    if not shown:
+        return
+    axes.add_patch(Rectangle((x, y), 1, height, facecolor="white", linewidth=0))
+    for place, name in enumerate(shown):
+        axes.add_patch(Rectangle((x + place / len(shown), y), 1 / len(shown), height, linewidth=0,
+                                 facecolor=look.colour(name), alpha=PALE if cell.outcome == "open" else OPAQUE))
+    axes.add_patch(Rectangle((x, y), 1, height, facecolor="none", edgecolor="white", linewidth=1.0))
+    if cell.outcome == "open":
+        axes.add_patch(Rectangle((x, y), 1, height, facecolor="none", edgecolor="#555555", linewidth=0, hatch="////"))
+    letters, line = room
+    name, lines = broken(cell.ranking.winner, letters), int(height / line)
+    short = [*broken(cell.ranking.winner.partition("/")[2], letters), _margin(cell)]
+    fitting = next((one for one in ([*name, _margin(cell)], short) if len(one) <= lines), [" ".join(short)])
+    axes.text(x + 0.5, y + height / 2, "\n".join(fitting), ha="center", va="center", fontsize=min(6.6, 6.5 * height / line), linespacing=1.15,
+              zorder=6, bbox={"boxstyle": "round,pad=0.12", "facecolor": "white", "alpha": 0.82, "linewidth": 0})
+
+
+def broken(name, letters):
+    """A name in lines of at most so many letters: ["csc_ldl/", "uplooking"]."""
+    lines = [""]
+    for piece in re.findall(r"[^_/]+[_/]?", name):
+        if lines[-1] and len(lines[-1] + piece) > letters:
+            lines.append("")
+        lines[-1] += piece
+    return lines
+
+
+def _margin(cell):
+    """"1.32×": how far the second is behind; "= 2 more" that are as fast; "? 3 more" that may be."""
+    if cell.ranking.second is None:
+        return "alone"
+    if cell.decided:
+        value = cell.ranking.margin.value
+        return f"{value:.2f}×" if value < 9.95 else f"{value:.0f}×"
+    return f"{'=' if cell.settled else '?'} {len(cell.winners) - 1} more"
+
+
+def _legend(axes, cells, look, names):
+    counts = {name: Counter(cell.outcome for cell in cells if name in cell.winners) for name in names}
+    drawn = {name for cell in cells for name in _shown(cell)}
+    shown = [Patch(facecolor=look.colour(name), alpha=OPAQUE, label=f"{name}: " + ", ".join(
+        f"{words} {counts[name][outcome]}" for outcome, words in OUTCOMES.items() if counts[name][outcome])) for name in names if name in drawn]
+    more = sum(bool(counts[name]) and name not in drawn for name in names)
+    shown += [Patch(facecolor="none", label=f"{more} more may be the fastest of an open cell")] if more else []
+    shown += [Patch(facecolor="#dddddd", edgecolor="#555555", hatch="////", linewidth=0, label="open: two of those that may be the fastest"),
+              Patch(**NOTHING, label="not measured"), Patch(facecolor="white", edgecolor=GREY, label="white: below the own fill (line)")]
+    shown += [Patch(facecolor="none", label=text) for text in ("1.32×: the second behind the winner", "= 2 more: as fast, within 5 %",
+                                                              "? 2 more: may be as fast")]
+    axes.legend(handles=shown, loc="upper left", bbox_to_anchor=(1.01, 1.01), fontsize=8)
+
+
+def sparse(results, look):
+    names, sizes = paper.sparse(results, others=True), results.sizes
+    found = {}  # {name: {size: Versus to the one of least time}}; None for that one itself
+    for size in sizes:
+        scene = results.natural(size)
+        best = results.fastest(scene, names)
+        for name in names if best else ():
+            one = results.versus(scene, name, best)
+            if one or name == best:
+                found.setdefault(name, {})[size] = one
+    figure, panels = plt.subplots(2, 1, figsize=(max(8.0, 1.1 * len(sizes)), 8.4), sharex=True,
+                                  gridspec_kw={"hspace": 0.08, "height_ratios": [1.2, 1]})
+    panels[0].set_title("Figure 4: sparse solvers of libraries at the four-bar's own fill")
+    if not found:
+        for axes in panels:
+            missing(axes, "no sparse library was timed at its own fill")
+        return figure
+    beyond = [place for place, size in enumerate(sizes) if size > PAPER_END]
+    for axes in panels:
+        for number, (name, series) in enumerate(found.items()):  # side by side at their size
+            shift = DODGE * ((number + 0.5) / len(found) - 0.5)
+            places = [sizes.index(size) + shift for size in series]
+            known = [(place, one) for place, one in zip(places, series.values()) if one and bounded(one.low, one.high)]
+            axes.plot(places, [one.value if one else 1.0 for one in series.values()], label=name, **look.line(name) | {"linestyle": "none"})
+            axes.vlines([place for place, _ in known], [one.low for _, one in known], [one.high for _, one in known],
+                        color=look.colour(name), linewidth=2.2, alpha=0.6)
+        axes.axhline(1, color="#444444", linewidth=0.8)
+        axes.set(xlim=(-0.5, len(sizes) - 0.5))
+        axes.grid(True, axis="y", which="major")
+        for place in numpy.arange(0.5, len(sizes) - 1):
+            axes.axvline(place, color="#e4e4e4", linewidth=0.8, zorder=0)
+        if beyond:
+            axes.axvspan(beyond[0] - 0.5, len(sizes) - 0.5, color="#f3f3f3", zorder=-1)
+        axes.set_ylabel("time ÷ the least at that size")
+    panels[0].set(ylim=(0.96, LEADERS))
+    panels[1].set_xlabel("variables n, own fill")
+    number_axis(panels[1].yaxis, "×")
+    outcomes = {cell.variables: {"decided": "", "equivalent": "as fast", "open": "open"}[cell.outcome]
+                for cell in map_cells(results, list(found)) if cell.fill_asked is None}
+    panels[1].set_xticks(range(len(sizes)), [f"{size:g}\n{outcomes.get(size, '')}" for size in sizes])
+    legend(panels[0], order=list(found).index)
+    notes = (f"above: those within {LEADERS:g} times the least time; bars: 95 % interval over processes, none of a single one; "
+             "grey: beyond the paper's sizes\n"
+             f"open: not shown who of these is fastest; as fast: several are, to {100 * EQUIVALENT - 100:.0f} %; who is not "
+             "there was not timed (reasons: table of failures)")
+    figure.text(figure.subplotpars.left, 0.03, notes, fontsize=7.5, color=GREY, va="top", linespacing=1.35)
+    return figure

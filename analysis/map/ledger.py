@@ -88,7 +88,7 @@ def places(names):
 
 
 def compared(head, found, rule, lacking=""):
-    """A row of compare.Versus of several sizes; without any it says what is `lacking`."""
+    """A row of results.Versus of several sizes; without any it says what is `lacking`."""
     if not found:
         return unmeasured(head, lacking, rule)
     return judged(head, [(f"n = {one.size:g}", of(one), one.record) for one in found], rule,

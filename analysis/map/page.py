@@ -1,31 +1,68 @@
 # What the page of the map says besides its figures.
 from analysis.core.controls import judged
-from analysis.map import carry, losses, paper, summary
+from analysis.map import carry, paper, summary
 from analysis.map.ledger import by_id
-from analysis.map.results import of
+from analysis.map.results import FAILURES, of
 from analysis.map.sentences import by_outcome
+
+LAST_CENTRED = 602  # variables; the harness centres stretches on the singular position up to here
 
 
 def context(tables, view):
     results = of(tables, view)
     libraries = results.layer("libraries")
     scenes, ledger = tables["scenes"], tables["claims"].to_dict("records")
+    timed = results.timing[results.timing.status == "ok"]
+    null = timed.implementation.str.startswith("null/")  # the harness's control
+    ranked, overhead = timed[~null], timed[null].groupby("variables").step_us.median().max()
     return {"by_size": {layer: list(by_outcome(summary.by_size(results, results.layer(layer)), what))
                         for layer, what in (("libraries", "library"), ("all", "of all"))},
             "own": [name for name in results.layer("all") if name not in libraries],
             "settled": {layer: summary.settled(tables["cells"], layer) for layer in ("libraries", "all")},
             "dense_from": summary.dense_from(results), "prices": summary.prices(results, libraries),
-            "times": losses.step_times(results), "overhead": losses.overhead(results), "centred": losses.LAST_CENTRED,
-            "ledger": ledger, "by_id": by_id(tables["claims"]), "subjects": paper.SUBJECTS, "dense_pairs": paper.dense_pairs(results), "title": paper.TITLE,
-            "pairs": [pair | {"used": _used(results, pair["name"])} for pair in view.registry.listed.get("blas", [])],
-            "verdicts": losses.verdicts(tables["verification"], results.implementations), "losses": losses.losses(results),
+            "times": step_times(results), "overhead": overhead, "centred": LAST_CENTRED, "title": paper.TITLE,
+            "ledger": ledger, "by_id": by_id(tables["claims"]), "subjects": paper.SUBJECTS, "dense_pairs": paper.dense_pairs(results),
+            "pairs": [pair | {"used": sorted(ranked.implementation[ranked.blas == pair["name"]].unique())}
+                      for pair in view.registry.listed.get("blas", [])],
+            "verdicts": verdicts(tables["verification"], results.implementations), "losses": losses(results),
             "not_reached": list(scenes[scenes.reason != ""].scene), "entries": view.registry.entries,
             "coverage": view.registry.coverage,
             "controls": judged(tables["controls"]), "twins": tables["controls"].to_dict("records"), "spread": [
                 row | {"of": carry.SOURCES[row["source"]]} for row in tables["spread"].to_dict("records")],
-            "processes": results.timing[results.timing.status == "ok"].record.nunique()}
+            "processes": timed.record.nunique()}
 
 
-def _used(results, pair):
-    rows = results.timing
-    return sorted(rows[(rows.blas == pair) & (rows.status == "ok") & ~rows.implementation.str.startswith("null/")].implementation.unique())
+def step_times(results):
+    """Own fill: a row a size and contender that is ranked, with its spread over processes."""
+    rows = []
+    for size, timed in results.samples(natural_only=True).groupby("variables"):
+        winners = [results.fastest(results.natural(size), results.layer(layer)) for layer in ("libraries", "all")]
+        for name in results.implementations:
+            mine = timed[timed.implementation == name]
+            if len(mine):
+                rows.append({"variables": size, "implementation": name, "median": mine.step_us.median(), "low": mine.low_us.min(),
+                             "high": mine.high_us.max(), "processes": len(mine), "samples": mine["samples"].map(len).sum(),
+                             "steps": mine.steps.iloc[0], "passes": mine.passes.iloc[0] / mine.steps.iloc[0],
+                             "per_pass": mine.step_us.median() * mine.steps.iloc[0] / mine.passes.iloc[0],
+                             "setup": mine.setup_us.median(), "winner": name in winners})
+    return rows
+
+
+def verdicts(table, names):
+    """Per implementation: how many scenes agree, and the scenes of every other verdict."""
+    scenes = table.drop_duplicates(["scene", "implementation"]).groupby(["implementation", "verdict"], sort=False).scene.agg(list)
+    found = {name: scenes[name].to_dict() if name in scenes else {} for name in names}
+    return [{"implementation": name, "of": sum(map(len, mine.values())), "agreed": len(mine.pop("agrees", ())), "others": mine}
+            for name, mine in found.items()]
+
+
+def losses(results):
+    """What was not timed or may not be ranked, grouped: [{"implementation", "status", "reason", "scenes"}]; exclusions of
+    one implementation are one group, as their reasons differ in nothing but the factor."""
+    lost = results.tidy[results.tidy.status.isin([*FAILURES, "excluded", "slower", "unavailable", "dropped"])]
+    lost = lost.drop_duplicates(["kind", "scene", "implementation", "status", "reason"])
+    kind = lost.reason.where(~lost.status.isin(["excluded", "dropped"]), "")
+    rows = [{"implementation": name, "status": status, "reason": reason or "; ".join(dict.fromkeys(group.reason.iloc[[0, -1]])),
+             "scenes": list(dict.fromkeys(group.scene))}
+            for (name, status, reason), group in lost.groupby(["implementation", "status", kind], sort=False)]
+    return sorted(rows, key=lambda row: row["status"] in ("excluded", "unavailable", "dropped"))

@@ -1,4 +1,5 @@
 # What figures, claims and pages ask the tables of a set: who was timed, ratios and rankings of a scene.
+from dataclasses import dataclass
 from functools import cache, cached_property
 
 from analysis.core.registry import NULL, TWIN
@@ -7,6 +8,7 @@ from analysis.map import carry, timed
 from analysis.map.timed import layers
 
 FAILURES = ("disagrees", "crashed", "timeout", "out-of-memory", "unsupported", "diverged", "failed", "refused")
+COVERED = 82  # variables that a run has to reach to speak of the paper's figures of 10 to 160
 
 
 def of(tables, view):
@@ -21,6 +23,19 @@ _last = []
 
 def with_samples(rows):
     return rows.assign(samples=[tuple(map(float, text.split())) for text in rows.samples_us])
+
+
+@dataclass(frozen=True)
+class Versus:
+    """Time of `slow` over that of `fast`, with its interval, and where it was taken."""
+    value: float
+    low: float
+    high: float
+    slow: str
+    fast: str
+    size: float
+    fill: float  # percent
+    record: str
 
 
 class Results:
@@ -112,6 +127,26 @@ class Results:
         """Time of `slow` over that of `fast`; None if they cannot be compared."""
         found = self._paired(scene).ratio(slow, fast)
         return None if found.value != found.value else found
+
+    def versus(self, scene, slow, fast):
+        """Versus of two contenders; None if they cannot be compared."""
+        found = None if None in (slow, fast) or slow == fast else self.ratio(scene, slow, fast)
+        if found is None:
+            return None
+        rows = self.rows(scene)
+        record = next(iter(rows[(rows.implementation == slow) & (rows.status == "ok")].record), "")
+        return Versus(found.value, found.low, found.high, slow, fast, float(rows.variables.iloc[0]),
+                      float(rows.fill_percent.iloc[0]), record)
+
+    def best(self, scene, slow, fast):
+        """Versus of the fastest of the names `slow` and the fastest of the names `fast`."""
+        return self.versus(scene, self.fastest(scene, slow), self.fastest(scene, fast))
+
+    def over_sizes(self, slow, fast, low=0, high=float("inf"), reaching=0):
+        """[Versus] of the best of two groups at natural fill, by size; none if they do not reach so many variables."""
+        found = [self.best(self.natural(size), slow, fast) for size in self.sizes if low <= size <= high]
+        found = [one for one in found if one]
+        return found if found and found[-1].size >= reaching else []
 
     def within(self, scene, slow, fast):
         """carry.within of their ratio."""

@@ -3,7 +3,6 @@ import numpy
 
 from analysis.map import paper
 from analysis.map.cells import map_cells
-from analysis.map.compare import best
 
 
 def by_size(results, names):
@@ -33,7 +32,7 @@ def dense_from(results):
     to the last one (or None)."""
     rows, cells = [], map_cells(results, [*paper.dense(results), *paper.sparse(results, others=True)])
     for size in sorted({cell.variables for cell in cells if cell.fill_asked is not None}):
-        found = [(cell.fill_percent, best(results, cell.scene, paper.dense(results), paper.sparse(results, others=True)))
+        found = [(cell.fill_percent, results.best(cell.scene, paper.dense(results), paper.sparse(results, others=True)))
                  for cell in cells if cell.variables == size and cell.ranking]
         if not found:  # nobody was timed there
             continue

@@ -19,7 +19,8 @@ def layers(registry):
 def timed_rows(records):
     """Rows as `analysis.core.timing.processes` gives them, of the timed scenes among `records` that count."""
     chosen = [one for one in records if one.role.partition("-")[0] in ROLES]
-    return timing.processes([_numbered(one) for one in timing.counted(chosen)])
+    return timing.processes([replace(one, cell=one.cell | {"number": AFTER + one.cell["number"]}) if one.role == "again" else one
+                             for one in timing.counted(chosen)])
 
 
 class Scene:
@@ -51,9 +52,3 @@ def leaders(rankings):
     """Names of those who lead in one of several Rankings, where they are more than one."""
     found = [[name for name, one in ranking.ratios.items() if one.value <= (PERHAPS if one.low <= 1 else LEADING)] for ranking in rankings if ranking]
     return {name for names in found if len(names) > 1 for name in names}
-
-
-def _numbered(record):
-    if record.role != "again":
-        return record
-    return replace(record, cell=record.cell | {"number": AFTER + record.cell["number"]})

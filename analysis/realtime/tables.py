@@ -15,9 +15,15 @@ def build(records, view):
     order = {name: place for place, name in enumerate(view.registry.variants)}
     found = {role: pandas.DataFrame([_run(one, nulls.get(one.name)) for one in records if one.role == role])
              for role in ("steps", "search")}
-    found = {role: _sorted(table, order) if len(table) else table for role, table in found.items()}
+    found = {role: table.sort_values(["scheme", "step", "implementation", "loops", "run"], kind="stable",
+                                     key=lambda column: column.map(order) if column.name == "implementation" else column)
+             if len(table) else table for role, table in found.items()}
     return {"steps": found["steps"].drop(columns=["null_missed", "kept", "reason_not"], errors="ignore"),
-            "judging": _judging([one for one in records if one.role == "judging"]), "tried": found["search"], "largest": _largest(found["search"]), "machine": _machine(nulls.values())}
+            "judging": _judging([one for one in records if one.role == "judging"]), "tried": found["search"], "largest": _largest(found["search"]),
+            "machine": pandas.DataFrame([{
+                "after": after, "step": float(f"{1e-6 * float(one.options['deadline-us']):g}"), "seconds": float(one.options["seconds"]),
+                "status": one.status, "reason": one.reason, "record": one.name} | {
+                key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for after, one in nulls.items()])}
 
 
 def _run(record, null):
@@ -52,11 +58,6 @@ def _judging(records):
         share, bound = row["judge_us"] / row["mean_us"], BOUNDS[row["variables"] >= LARGE]
         rows.append(row | {"share": share, "bound": bound, "held": share <= bound, "record": " ".join(own.record)})
     return pandas.DataFrame(rows)
-
-
-def _sorted(table, order):
-    return table.sort_values(["scheme", "step", "implementation", "loops", "run"], kind="stable",
-                             key=lambda column: column.map(order) if column.name == "implementation" else column)
 
 
 def _largest(tried):
@@ -94,10 +95,3 @@ def _observed(runs, prefix):
 def _counts(values):
     """"1300 and 1300": one a run."""
     return " and ".join(number(value, 6) for value in values)
-
-
-def _machine(nulls):
-    return pandas.DataFrame([{
-        "after": one.options["after"], "step": float(f"{1e-6 * float(one.options['deadline-us']):g}"),
-        "seconds": float(one.options["seconds"]), "status": one.status, "reason": one.reason, "record": one.name} | {
-        key: one.output.get(key) for key in ("readings", "lost", "largest_us")} for one in nulls])

@@ -112,20 +112,16 @@ def convergence_rows(problem, runs):
     return result
 
 
-def _loops(record):
-    """Of a scene that study/scenes/modelling.py wrote."""
-    return int(record.cell["scene"].rpartition("/")[2].partition("-")[0])
-
-
 def modelling_rows(records):
     """One row for each implementation, size and case: error of the whole run, time of a step, and its ratio to the
     case that it is compared with, round by round."""
     by_role = grouped(records)
-    motions = {(record.cell["contenders"][0], _loops(record), case.name): record
+    loops_of = lambda scene: int(scene.rpartition("/")[2].partition("-")[0])  # which study/scenes/modelling.py wrote
+    motions = {(record.cell["contenders"][0], loops_of(record.cell["scene"]), case.name): record
                for case in CASES for record in by_role.get(f"motion.{case.file_name}", [])}
     timed = pandas.concat([timing.processes(by_role.get(f"time.{case.file_name}", [])).assign(case=case.name)
                            for case in CASES])
-    timed["loops"] = [int(scene.rpartition("/")[2].partition("-")[0]) for scene in timed.scene]
+    timed["loops"] = [loops_of(scene) for scene in timed.scene]
     result, cases = [], {case.name: case for case in CASES}
     for (name, loops, case), record in sorted(motions.items(), key=lambda one: one[0][1]):
         status, reason = of_run(record)

@@ -12,7 +12,11 @@ def build(records, view):
     found = {"maps": [], "windows": [], "whole": []}
     for record in records:
         if record.role == "window":
-            found["windows"].append(_window(record))
+            asked, window = record.options, record.output["penalty_window"] if record.done else {}
+            found["windows"].append({
+                "loops": _loops(record), "precision": asked["precision"], "step": float(asked["step"]), "reason": record.reason,
+                "status": "ok" if record.done else record.status, "record": record.name} | {
+                key: window.get(key) for key in ("lower", "lower_from", "upper", "upper_from")})
         elif record.role == "map":
             found["maps"].append(_run(record))
         elif record.role == "whole":
@@ -32,13 +36,6 @@ def _run(record):
             "implementation": record.cell["contenders"][0], "step": step, "penalty_asked": penalty, "penalty": alpha,
             "alpha_dt2_4": alpha and float(f"{alpha * step**2 / 4:.6g}"), "status": status, "reason": reason,
             "record": record.name} | {key: record.output.get(key) for key in FIGURES}
-
-
-def _window(record):
-    asked, window = record.options, record.output["penalty_window"] if record.done else {}
-    return {"loops": _loops(record), "precision": asked["precision"], "step": float(asked["step"]),
-            "status": "ok" if record.done else record.status, "reason": record.reason, "record": record.name} | {
-        key: window.get(key) for key in ("lower", "lower_from", "upper", "upper_from")}
 
 
 def _loops(record):

@@ -8,7 +8,7 @@ import numpy
 import pandas
 import pytest
 
-from analysis.accuracy import figures, page, pairs, points, sentences, tables, winners, work_figure
+from analysis.accuracy import figures, page, pairs, points, sentences, tables, winners
 from analysis.core import schema
 from analysis.core.records import Record
 from analysis.core.style import Look
@@ -194,8 +194,8 @@ def test_the_figures_show_what_won_and_name_few(found):
     assert set(drawn) == {"work-four-bar-10", "regions"}
     libraries, _, below, everyone = drawn["work-four-bar-10"].axes
     named = [text.get_text() for text in below.get_legend().get_texts()]
-    assert named[-3:] == ["front", "others", work_figure.RINGED] and len(named) <= work_figure.MOST + 3
-    rings = [line for line in libraries.get_lines() if line.get_markeredgewidth() == work_figure.RING["markeredgewidth"]]
+    assert named[-3:] == ["front", "others", figures.RINGED] and len(named) <= figures.MOST + 3
+    rings = [line for line in libraries.get_lines() if line.get_markeredgewidth() == figures.RING["markeredgewidth"]]
     won = made["winners"][(made["winners"].layer == "libraries") & made["winners"].fill_asked.isna()]
     assert sorted(rings[0].get_ydata()) == sorted(won.error)
     assert all(name.startswith("lib_") for name in named[:-3]) and named[0] == "lib_a/fast, rattle"

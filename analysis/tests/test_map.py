@@ -11,9 +11,9 @@ from analysis.core.files import write_json
 from analysis.core.records import Record
 from analysis.core.style import Look
 from analysis.core.timing import differing
-from analysis.map import figures, losses, sentences, summary, tables, tidy
+from analysis.map import figures, page, sentences, summary, tables
 from analysis.map.cells import map_cells, table
-from analysis.map.maps import bounds, broken
+from analysis.map.figures import bounds, broken
 from analysis.map.timed import AFTER, Scene, timed_rows
 from analysis.tests.map_tables import cell, failed, registry, results, scene, view
 
@@ -130,7 +130,7 @@ def test_neighbouring_sizes_with_one_outcome_are_one_line():
 
 
 def test_exclusions_of_one_are_one_line_of_what_was_not_timed():
-    rows = losses.losses(some(cell(A, 10, 1.0) + failed(B, 10, "excluded", "7 times") + failed(B, 22, "excluded", "9 times")
+    rows = page.losses(some(cell(A, 10, 1.0) + failed(B, 10, "excluded", "7 times") + failed(B, 22, "excluded", "9 times")
                               + failed(C, 10, "crashed", "SIGSEGV")))
     assert [(row["implementation"], row["status"], len(row["scenes"])) for row in rows] == [(C, "crashed", 1), (B, "excluded", 2)]
 
@@ -196,6 +196,6 @@ def test_without_times_the_answer_says_so():
 
 
 def test_a_scene_is_read_off_its_name():
-    asked = tidy._asked(pandas.Series(["four-bar:24,fill=0.35,seed=2", "four-bar:4"]))
+    asked = tables._asked(pandas.Series(["four-bar:24,fill=0.35,seed=2", "four-bar:4"]))
     assert list(asked["variables"]) == [50, 10] and asked["fill_asked"][0] == 0.35 and math.isnan(asked["fill_asked"][1])
     assert set(tables.build([], view(registry()))) == set(schema.of_part("map"))

@@ -9,7 +9,7 @@ from analysis.core.records import Record
 from analysis.core.statistics import median, power_law_exponent
 from analysis.core.timing import counted, rank, ratio
 from analysis.core import controls, timing
-from analysis.core.disturbance import disturbance, told
+from analysis.core.controls import disturbance, told
 from analysis.map import carry
 from analysis.map.timed import AFTER
 

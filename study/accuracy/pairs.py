@@ -28,8 +28,8 @@ def _groups(runs):
         for kind in (False, True):
             mine = [one for one in group if (one.variant in dense) == kind]
             if kind and 2 * runs.subject.loops + 2 > DENSE:
-                for one in mine:
-                    runs.leave_out(one, "default", STEP, f"a dense step of more than {DENSE} variables takes too long")
+                runs.records += [runs.lab.skip(runs.run_cell(one, "default", STEP), "excluded",
+                                               f"a dense step of more than {DENSE} variables takes too long") for one in mine]
                 continue
             quick = runs.quick(runs.subject.scene, STEP, mine, BEHIND, kind)
             contenders = [one for one in mine if one in quick]  # in the order of the registry

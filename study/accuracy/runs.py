@@ -58,10 +58,6 @@ class Runs:
         self.records.append(record)
         return points.runs([record], self.subject, self.known).to_dict("records")[0]
 
-    def leave_out(self, one, name, step, reason):
-        """The record of a run that is not made."""
-        self.records.append(self.lab.skip(self.run_cell(one, name, step), "excluded", reason))
-
     def _cell(self, one, name, step, scene, role, duration=None, seconds=None):
         words = (*self.settings[name].words(self.subject.base), *self.subject.words(step, duration))
         return Cell("simulate", scene, (one,), words, role, seconds=seconds or CAREFUL * (1 + self.longest),

@@ -3,13 +3,23 @@
 #
 # Artificial fill is stored zeros: it leaves the motion as it is, so that the curves at the mechanism's own fill tell
 # which steps to try. Whoever is ranked has met the error in a run of its own on that very scene.
+#
+# Error over the step: a curve for each setting, of libraries and of code without one, by the implementation that is
+# fastest there with the default setting. The error is the setting's; others are held to it by a run of their own.
+import numpy
+
 from analysis.accuracy import subjects
+from analysis.accuracy.pairs import STEP
 from analysis.accuracy.points import NOT_JUDGED
 from analysis.accuracy.winners import NEAR, meeting, winners
 from analysis.core.outcomes import FINISHED, pareto
-from study.accuracy import curves
 from study.accuracy.runs import Runs
+from study.core import curves
 
+BEHIND = 4.0   # times the fastest with the default setting: who is slower is not tried in others
+BETWEEN = 2 / 3  # of the longer of two steps: half-way on a logarithmic scale, nearly; halvings that just miss a
+SHARE = 0.5      # of the budget that curves may take: errors without times rank nobody
+WORTH = 2.0      # required error would cost a factor of two; tried where the shorter step is so near the fastest
 TRIED = {False: 1.6, True: 3.0}  # by whether fill is artificial: settings up to this times the least time on the curves
 MOST = 5       # of these, for each required error and layer
 JUDGED = 1.5   # times the fastest in the look: they run the motion themselves, and so do
@@ -20,25 +30,65 @@ SPARE = 0.02   # of the tangent's positions: closer to its own fill a larger one
 def run(lab, kind, entry):
     runs = Runs(lab, kind, entry)
     scene = runs.subject.scene
-    speed = curves.first_look(runs, scene)
+    speed = _first_look(runs, scene)
     runs.refer()
     if runs.known is None or not any(speed.values()):
         return
     lab.tell("curves")
-    found = curves.follow(runs, speed)
+    found = _follow(runs, speed)
     if runs.subject.loops:
-        found = curves.between(runs, found)
+        found = _between(runs, found)
     scenes = {scene: speed}
     _measure(runs, scene, speed, found)
     for fill in entry.get("fills", ()):
         if fill > runs.made().fill.min() + SPARE:
             filled = subjects.chain(runs.subject.loops, runs.subject.duration, fill).scene
-            scenes[filled] = curves.first_look(runs, filled)
+            scenes[filled] = _first_look(runs, filled)
             _measure(runs, filled, scenes[filled], found)
     least, most = lab.settings["processes"]
     for number in range(least + 1, most + 1):
         for one in scenes:
             _rounds(runs, one, number, open_only=True)
+
+
+def _first_look(runs, scene):
+    """{layer: [contenders, the fastest with the default setting first]}; who is far behind, or fails, is not in it."""
+    step = STEP if runs.subject.loops else runs.subject.entry.steps[0]
+    return {layer: runs.quick(scene, step, contenders, BEHIND) for layer, contenders in runs.layers.items()}
+
+
+def _follow(runs, speed):
+    """{(layer, setting): rows in the order of steps}: all curves, followed from the longest step on. `speed`: of _first_look."""
+    found = {}
+    for layer, contenders in runs.layers.items():
+        for name in runs.settings:
+            serving = runs.serving(name, [*speed[layer], *(one for one in contenders if one not in speed[layer])])
+            if serving:
+                found[layer, name] = curves.Curve(layer, [(step, runs.run_cell(serving[0], name, step)) for step in runs.subject.steps], 2.0)
+    curves.follow(runs.lab, list(found.values()), runs.row, runs.longest, min(runs.lab.settings["errors"]), SHARE, status="excluded")
+    return {key: curve.rows for key, curve in found.items()}
+
+
+def _between(runs, found):
+    """The same with runs between the two steps that bracket a required error, of curves near the fastest of their layer there."""
+    cells = {}
+    for error in runs.lab.settings["errors"]:
+        for layer in runs.layers:
+            mine = {key: _longest(rows, error) for key, rows in found.items() if key[0] == layer}
+            best = min((row["time"] for row in mine.values() if row), default=numpy.inf)
+            for key, row in mine.items():
+                longer = [one["step"] for one in found[key] if row and one["step"] > 1.001 * row["step"]]
+                if longer and row["time"] <= WORTH * best:
+                    step = float(f"{BETWEEN * min(longer):g}")
+                    cells[key, step] = runs.run_cell(runs.names[row["implementation"]], key[1], step)
+    for (key, _), record in zip(cells, runs.lab.run(list(cells.values()), drop=True)):
+        found[key] = sorted([*found[key], runs.row(record)], key=lambda one: -one["step"])
+    return found
+
+
+def _longest(rows, error):
+    """The row of the longest step that meets an error, or None."""
+    return next((row for row in rows if row["status"] in FINISHED and row["error"] <= error), None)
 
 
 def _measure(runs, scene, speed, found):
@@ -60,7 +110,7 @@ def _wanted(runs, found, filled):
     for layer in runs.layers:
         chosen = []
         for error in runs.lab.settings["errors"]:
-            rows = filter(None, (curves.meeting(rows, error) for key, rows in found.items() if key[0] == layer))
+            rows = filter(None, (_longest(rows, error) for key, rows in found.items() if key[0] == layer))
             rows = sorted(rows, key=lambda row: row["time"])[:MOST]
             chosen += [row for row in rows if row["time"] <= TRIED[filled] * rows[0]["time"]]
         if not filled:

@@ -64,7 +64,8 @@ def run(command, seconds=None, memory_mb=None, alone=False):
         raise Signalled(_signals[0]) if own else StudyError("interrupted")
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         begin = time.monotonic()
-        child = subprocess.Popen([*_on_one(alone), *_limited(command, memory_mb)], cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out,
+        on_one = ["taskset", "--cpu-list", str(max(os.sched_getaffinity(0)))] if alone else []  # the last that this process may use
+        child = subprocess.Popen([*on_one, *_limited(command, memory_mb)], cwd=ROOT, stdin=subprocess.DEVNULL, stdout=out,
                                  stderr=err, start_new_session=True, env=os.environ | ONE_THREAD)
         try:
             ended = _ends(child, seconds)
@@ -72,14 +73,17 @@ def run(command, seconds=None, memory_mb=None, alone=False):
                 os.kill(child.pid, signal.SIGTERM)  # so that it can say in what it was
                 _ends(child, GRACE)
         finally:
-            cpu_s = _end_group(child)
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(child.pid, signal.SIGKILL)
+            _, status, used = os.wait4(child.pid, 0)
+            child.returncode = os.waitstatus_to_exitcode(status)  # Popen has not seen it
         code = child.returncode if ended else None
         if ended and -code in ENDS:  # sent to this process's group, too, before the child had left it: no result
             raise StudyError(f"interrupted: {command[0]} was ended by {signal.Signals(-code).name} from outside; "
                              "the same command goes on from there")
         took = time.monotonic() - begin
         stdout, stderr = _text(out), _text(err, tail=4000)
-    return Ended(*_judge(code, stderr, seconds, memory_mb), code, stdout, stderr, took, cpu_s)
+    return Ended(*_judge(code, stderr, seconds, memory_mb), code, stdout, stderr, took, used.ru_utime + used.ru_stime)
 
 
 def _ends(child, seconds):
@@ -120,22 +124,6 @@ def _limited(command, memory_mb):
     script = '[ "$PPID" = "$1" ] || exit; ulimit -c 0; ulimit -f "$2"; ulimit -v "$3"; shift 3; exec "$@"'
     return ["setpriv", "--pdeathsig", "KILL", "/bin/sh", "-c", script, "sh", str(os.getpid()),
             str(OUTPUT_LIMIT // 512), str(memory_mb * 1024) if memory_mb else "unlimited", *command]
-
-
-def _on_one(alone):
-    """Words before a command that keep it on one processor: the last that this process may use."""
-    return ["taskset", "--cpu-list", str(max(os.sched_getaffinity(0)))] if alone else []
-
-
-def _end_group(child):
-    """Its processor time, s."""
-    try:
-        os.killpg(child.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
-    _, status, used = os.wait4(child.pid, 0)
-    child.returncode = os.waitstatus_to_exitcode(status)  # Popen has not seen it
-    return used.ru_utime + used.ru_stime
 
 
 def _text(file, tail=None):

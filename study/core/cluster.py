@@ -42,7 +42,10 @@ def run(profile, only, chosen, folder, cluster, columns):
         _plan(profile, only, chosen, folder, columns)
         if not (folder / "set.json").exists():
             _workflow(StudySet(folder), cluster, columns, "set.json")
-        studyset = _continued(folder, profile, only, chosen)
+        known = sets.opened(folder)  # of a question that is still the same; that the nodes are its own they see themselves
+        write_json(folder / "set.json", known.facts | sets.kept_facts(known, profile, only, chosen))
+        studyset = StudySet(folder)
+        studyset.clear()
         sets.reopen(studyset, columns)
         sets.need_tables(studyset)
         _workflow(studyset, cluster, columns, "all")
@@ -57,15 +60,6 @@ def _plan(profile, only, chosen, folder, columns):
     (home(folder) / "refused").mkdir(parents=True, exist_ok=True)
     forget(folder)
     write_json(home(folder) / "plan.json", {"profile": profile.name, "only": only, "parts": chosen, "columns": columns, "grace": GRACE})
-
-
-def _continued(folder, profile, only, chosen):
-    """The set, for a question that is still the same; that the nodes are its own they see themselves."""
-    known = sets.opened(folder)
-    write_json(folder / "set.json", known.facts | sets.kept_facts(known, profile, only, chosen))
-    found = StudySet(folder)
-    found.clear()
-    return found
 
 
 def _workflow(studyset, cluster, columns, target):

@@ -1,6 +1,7 @@
 # The executor: runs one cell as a child under its limits and says how it ended.
 import csv
 import json
+import math
 import os
 import re
 import tempfile
@@ -61,10 +62,10 @@ def run(cell, context, scratch=None):
             return record | {"status": "crashed", "reason": f"its output is no JSON: {error}"[:300]}
     if not isinstance(found, dict):
         return record | {"status": "crashed", "reason": "its output is no JSON object"}
-    own = found.pop("context", None)
+    own = found.pop("context", None) or {}
     if own and context:
         need_same(context, own, " ".join(record["command"]))
-    return record | {"output": compact(found), "context": context or brief(own or {})}
+    return record | {"output": compact(found), "context": context or {key: own[key] for key in KEPT if key in own}}
 
 
 def compact(output):
@@ -85,13 +86,8 @@ def compact(output):
 
 
 FINGERPRINT = ("machine", "commit", "dirty", "compiler", "flags", "build_type", "blas", "blas_loaded", "libraries")
-KEPT = (*FINGERPRINT, "cpu_model", "kernel", "num_cpus")
+KEPT = (*FINGERPRINT, "cpu_model", "kernel", "num_cpus")  # by a record, of the context that a program prints
 OF_ALL = ("machine", "commit", "dirty", "cpu_model", "kernel", "num_cpus")  # true of programs other than `mbs`, too
-
-
-def brief(context):
-    """What a record keeps of the context that a program prints."""
-    return {key: context[key] for key in KEPT if key in context}
 
 
 def fingerprint(context):
@@ -132,11 +128,6 @@ def _columns(path, keep):
         rows = csv.reader(file)
         names = next(rows, [])
         chosen = [place for place, name in enumerate(names) if keep in (("outputs",), ("all",)) or name in ("t", *keep)]
-        values = [[_finite(row[place]) for place in chosen] for row in rows]
-    return {names[place]: [row[at] for row in values] for at, place in enumerate(chosen)}
-
-
-def _finite(text):
-    """None for a number that is not finite: JSON has none."""
-    value = float(text)
-    return value if value - value == 0 else None
+        values = [[float(row[place]) for place in chosen] for row in rows]
+    # JSON has no number that is not finite.
+    return {names[place]: [row[at] if math.isfinite(row[at]) else None for row in values] for at, place in enumerate(chosen)}

@@ -1,4 +1,5 @@
 # Runs Snakemake, or what draws pages, in the background and shows the part, the cells done of all and the time left.
+import contextlib
 import os
 import shutil
 import signal
@@ -135,10 +136,8 @@ def _stop(process, ends):
         if process.poll() is not None:
             return
         os.killpg(process.pid, sign)
-        try:
+        with contextlib.suppress(subprocess.TimeoutExpired):
             process.wait(timeout=10)
-        except subprocess.TimeoutExpired:
-            continue
 
 
 def duration(seconds):

@@ -33,17 +33,9 @@ class Lab:
         """The one of a variant; None if it does not take part."""
         return next((one for one in self.contenders if one.name == name), None)
 
-    @property
-    def settings(self):
-        return self.set.profile.parts[self.part]
-
-    @property
-    def registry(self):
-        return self.set.registry
-
-    @property
-    def contenders(self):
-        return self.set.contenders
+    settings = property(lambda self: self.set.profile.parts[self.part])
+    registry = property(lambda self: self.set.registry)
+    contenders = property(lambda self: self.set.contenders)
 
     def one(self, cell):
         return self.run([cell])[0]
@@ -62,7 +54,9 @@ class Lab:
                 records.need_same_origin(found[cell], self._asked_of(cell), self.base)
             else:
                 todo.append(cell)
-        self._need({cell.built for cell in todo})
+        programs = {cell.built for cell in todo}
+        self.set.need_programs(sorted(programs - self.known))
+        self.known |= programs
         alone = [cell for cell in todo if cell.timed]
         with ThreadPoolExecutor(cores()) as pool:
             others = [cell for cell in todo if not cell.timed]
@@ -136,10 +130,6 @@ class Lab:
 
     def _show_state(self):
         self.show(f"{len(self.names)} of {len(self.asked)} cells", self.text)
-
-    def _need(self, programs):
-        self.set.need_programs(sorted(programs - self.known))
-        self.known |= programs
 
     @staticmethod
     def _context(cell, context):

@@ -48,7 +48,10 @@ def _hold(path, held, seconds, tell=lambda text: None):
         raise StudyError(f"cannot open the lock {path}: {error.strerror}") from error
     try:
         end, told = time.monotonic() + seconds, False
-        while not _taken(file):
+        while True:
+            with contextlib.suppress(BlockingIOError):
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
             if time.monotonic() >= end:
                 raise StudyError(held)
             if not told:
@@ -67,11 +70,3 @@ def _opened(path):
         return os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
     except PermissionError:
         return os.open(path, os.O_RDONLY)
-
-
-def _taken(file):
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        return True
-    except BlockingIOError:
-        return False

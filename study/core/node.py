@@ -10,8 +10,7 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_object, write_json, write_text
 from analysis.core.records import Record
 from study.core import executor, locks, profile as profiles
-from study.core.cell import LAYOUT, Cell
-from study.core.contender import control, twin_of
+from study.core.cell import LAYOUT, Cell, control, twin_of
 from study.core.executor import program_of
 from study.core.studyset import context_of, start, writable
 
@@ -76,7 +75,8 @@ def admit(studyset):
         if only.exists() and only.read_text().strip() != name():
             reason = f"it is that of {only.read_text().strip()} alone, whose A/A control failed"
         elif reason:
-            own = _beside(folder, f"{_slug(context['cpu_model'])}-{_kind(context)}")
+            kind = digest(f"{sorted(executor.fingerprint(context).items())} {digest(ROOT / program_of())}")[:6]
+            own = _beside(folder, f"{_slug(context['cpu_model'])}-{kind}")
         elif not (home(folder) / "nodes" / name()).exists() and not only.exists():
             reason = uncontrolled(studyset)
             own, alone = _beside(folder, _slug(name())) if reason else None, True
@@ -141,7 +141,3 @@ def _begin_beside(folder, own, failed):
 
 def _slug(text):
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:40]
-
-
-def _kind(context):
-    return digest(f"{sorted(executor.fingerprint(context).items())} {digest(ROOT / program_of())}")[:6]

@@ -49,7 +49,11 @@ def read(path, name, chosen=None):
         wanted = plan_of(part).SETTINGS
         need_keys(path, part, settings, {"seconds", *wanted})
         for key, kind in {"seconds": float, **wanted}.items():
-            _need_kind(f"{path}: {part}: {key}", settings[key], kind)
+            where, value = f"{path}: {part}: {key}", settings[key]
+            if not isinstance(value, (int, float) if kind is float else kind) or isinstance(value, bool) != (kind is bool):
+                raise StudyError(f"{where} must be of type {kind.__name__}, is {value!r}")
+            if kind in (int, float) and not 0 <= value < float("inf"):
+                raise StudyError(f"{where} must be a number of at least 0, is {value!r}")
     return Profile(name, data["title"], data["blas"], data["dropped"], data["parts"])
 
 
@@ -84,11 +88,3 @@ def need_keys(path, what, data, keys):
     wrong = sorted(map(str, set(data) ^ keys))
     if wrong:
         raise StudyError(f"{path}: {what}: missing or unknown: {', '.join(wrong)}")
-
-
-def _need_kind(where, value, kind):
-    accepted = (int, float) if kind is float else kind
-    if not isinstance(value, accepted) or isinstance(value, bool) != (kind is bool):
-        raise StudyError(f"{where} must be of type {kind.__name__}, is {value!r}")
-    if kind in (int, float) and not 0 <= value < float("inf"):
-        raise StudyError(f"{where} must be a number of at least 0, is {value!r}")

@@ -12,8 +12,7 @@ from analysis.core.parts import parts
 from analysis.core.registry import Registry
 from analysis.core.view import Folder, facts_of
 from study.core import executor, locks, profile as profiles
-from study.core.cell import Cell
-from study.core.contender import CONTROL, control, on_usual_pairs
+from study.core.cell import CONTROL, Cell, control, on_usual_pairs
 from study.core.executor import need_same, program_of
 
 BEGUN = {".lock", "run.log", ".scratch", "registry.json", "profile.yaml",  # what is written before set.json ...
@@ -67,17 +66,9 @@ class StudySet(Folder):
         """Is there when all columns of a part are done and drawn."""
         return self.folder / ".done" / f"{part}.page"
 
-    @property
-    def progress(self):
-        return self.folder / ".progress"
-
-    @property
-    def scratch(self):
-        return self.folder / ".scratch"
-
-    @property
-    def log(self):
-        return self.folder / "run.log"
+    progress = property(lambda self: self.folder / ".progress")
+    scratch = property(lambda self: self.folder / ".scratch")
+    log = property(lambda self: self.folder / "run.log")
 
 
 def context_of(one):

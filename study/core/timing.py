@@ -4,8 +4,7 @@ from dataclasses import replace
 
 from analysis.core.registry import ANCHOR
 from analysis.core.timing import ALONE, LEFT_OUT, disturbed
-from study.core.cell import LAYOUT, Cell
-from study.core.contender import by_environment
+from study.core.cell import LAYOUT, Cell, by_environment
 
 LAYOUTS = 8  # of the program, which processes take in turn: harness/mbs/CMakeLists.txt
 

@@ -27,16 +27,13 @@ def read_list(path=LIST):
     for over, found in values.items():
         if list(found) != sorted(found, reverse=True):
             raise StudyError(f"{path}: values of {over}: the coarsest must be the first")
-    return {engine: _settings(path, engine, entries, values) for engine, entries in listed["engines"].items()}
-
-
-def _settings(path, engine, entries, values):
-    found = []
-    for entry in entries:
-        if set(entry) - {"over", "options"} or entry.get("over") not in values:
-            raise StudyError(f"{path}: {engine}: {entry} must have over (one of {', '.join(values)}), may have options, "
-                             "no more")
-        found.append(EngineSetting(engine, entry["over"], values[entry["over"]], tuple(entry.get("options", {}).items())))
-    if len(set(found)) < len(found):
-        raise StudyError(f"{path}: {engine}: settings must differ")
+    found = {engine: [] for engine in listed["engines"]}
+    for engine, settings in found.items():
+        for entry in listed["engines"][engine]:
+            if set(entry) - {"over", "options"} or entry.get("over") not in values:
+                raise StudyError(f"{path}: {engine}: {entry} must have over (one of {', '.join(values)}), may have options, "
+                                 "no more")
+            settings.append(EngineSetting(engine, entry["over"], values[entry["over"]], tuple(entry.get("options", {}).items())))
+        if len(set(settings)) < len(settings):
+            raise StudyError(f"{path}: {engine}: settings must differ")
     return found

@@ -1,7 +1,6 @@
 # Every implementation at the extremes; is every wrong run told; kept pivots.
 from analysis.extremes import battery as table, cells, judge, trials
-from study.core.cell import Cell
-from study.core.contender import REFERENCE
+from study.core.cell import REFERENCE, Cell
 from study.core.profile import by_share
 
 SETTINGS = {"implementations": dict,  # that differ in kind: for the two forms, for other settings, for trials ...

@@ -5,8 +5,7 @@ from analysis.core.files import ROOT
 from analysis.core.timing import LEFT_OUT, processes as rows_of
 from analysis.limit.tables import LIMIT
 from study.core.cell import Cell
-from study.core.contest import CHECK_S, Form, about, contests, elsewhere, near, usual
-from study.core.gate import Asked, verdicts
+from study.core.contest import CHECK_S, Asked, Form, about, contests, elsewhere, near, usual, verdicts
 from study.core.profile import by_share
 from study.core.setting import Setting
 from study.core.timing import measure

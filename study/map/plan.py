@@ -4,12 +4,10 @@
 # is decided from records, so that a run that was interrupted decides alike.
 from analysis.core.errors import StudyError
 from analysis.map.timed import leaders
-from study.core.cell import Cell
-from study.core.contender import Contender, by_environment
+from study.core.cell import Cell, Contender, by_environment
 from study.core.profile import need_keys
 from study.core.timing import measure
-from study.map.timed import NATURAL, Scene, TimedScene
-from study.map.verify import alternatives, fit
+from study.map.timed import NATURAL, Scene, TimedScene, alternatives, fit
 
 SETTINGS = {"processes": int,      # of a timed scene
             "process": float,      # s of samples in each, about

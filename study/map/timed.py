@@ -1,18 +1,29 @@
-# A scene of the map, the N-four-bar at a size with its own fill or an artificial one, and how it is timed: a few processes of all,
-# without those whose stretch takes another number of passes, and then more of those who lead.
+# A scene of the map, the N-four-bar at a size with its own fill or an artificial one: who is fit to be timed there, and how it is timed.
+#
+# Rough pilots are a few steps from the start. Who is slower than the fastest library by more than the profile's factor is
+# excluded: neither checked nor timed. Only what the gate has not rejected counts as fastest, so that a wrong but fast
+# one excludes nobody, and code of our own never excludes anybody. In filled scenes the two fastest of each family stay
+# within FAMILY times that factor: maps are drawn for families too.
+#
+# A few processes of all are timed, without those whose stretch takes another number of passes, and then more of those who lead.
+import math
 from dataclasses import dataclass, field
 
 from analysis.core.timing import LEFT_OUT, differing
 from analysis.map import timed
 from analysis.map.timed import layers, leaders, timed_rows
-from study.core.cell import Cell
-from study.core.contender import CONTROL, Contender, twin_of
+from study.core import contest
+from study.core.cell import CONTROL, Cell, Contender, twin_of
 from study.core.timing import measure
 
 LEAST_SAMPLES, MOST_SAMPLES = 1, 40
 BUSY = 1.5     # passes a step of a stretch, which crosses the singular position, over those of a pilot, about
 TURN = 0.005   # s, the least that a sample takes
 NATURAL = "natural"  # a scene with the mechanism's own fill
+FAMILY = 5
+SLOW = 4  # of those who take as long as they may, that a process of the gate has time for
+RUNS = 3  # of a pilot; the fastest counts
+WORK = 3200  # variables times steps of a pilot
 
 
 @dataclass(frozen=True)
@@ -41,7 +52,10 @@ class TimedScene:
     def time(self, count):
         """Processes 1 … `count` of all."""
         while self.costs:
-            self.records = self.processes([*self.costs, *self._control()], count, "time")
+            # At natural fill the harness's own control, which does nothing, on the pair of most.
+            pairs = [one.blas for one in self.costs if one.ranked and self.scene.fill is None]
+            control = [Contender(CONTROL.name, CONTROL.variant, max(pairs, key=pairs.count))] if pairs else []
+            self.records = self.processes([*self.costs, *control], count, "time")
             wrong = differing(timed_rows(self.records))
             if not wrong:
                 return
@@ -67,13 +81,6 @@ class TimedScene:
         scene = timed.Scene(timed_rows(self.records))
         return {layer: scene.rank(names) for layer, names in layers(self.lab.registry).items()}
 
-    def _control(self):
-        """The harness's own, which does nothing: at natural fill, on the pair of most."""
-        if self.scene.fill is not None:
-            return []
-        pairs = [one.blas for one in self.costs if one.ranked]
-        return [Contender(CONTROL.name, CONTROL.variant, max(pairs, key=pairs.count))] if pairs else []
-
     def processes(self, contenders, count, role):
         """Their records. The pilots decide how many samples fill a process, never what a sample is."""
         lab, limit = self.lab, self.lab.settings["limits"]["time"]
@@ -82,3 +89,95 @@ class TimedScene:
         samples = min(max(round(lab.settings["process"] / sample), LEAST_SAMPLES), MOST_SAMPLES)
         return measure(lab, self.scene.name, contenders, processes=count, role=role, repetitions=samples,
                        seconds=limit, settings=("--patience", limit / 10))
+
+
+@dataclass(frozen=True)
+class Pilot:
+    record: object
+    step_us: float  # infinite if it failed; the least that is proved if it ran out of time
+    fill: float = math.nan
+
+    @property
+    def alive(self):
+        return math.isfinite(self.step_us)
+
+
+def fit(lab, scene, contenders):
+    """({contender: µs a step of its pilot} of those to be timed, the scene's fill in %); each other one gets a record
+    that says why not."""
+    pilots = dict(zip(contenders, _pilots(lab, scene, contenders)))
+    verdicts, rule, limit = {}, Rule(lab, scene, pilots), lab.settings["limits"]["check"]
+    while todo := [one for one in rule.chosen(verdicts) if one not in verdicts]:
+        [said] = contest.verdicts(lab, [contest.Asked(scene.name, todo)], each=limit / SLOW, seconds=limit)
+        verdicts |= {one: found == "agrees" for one, (found, _) in said.items()}
+    best = rule.best(verdicts)
+    for one, pilot in pilots.items():
+        if pilot.alive and one not in verdicts:
+            late = "at least " if not pilot.record.done else ""
+            lab.skip(Cell("bench", scene.name, (one,), role="excluded"), "excluded",
+                     f"its pilot takes {late}{pilot.step_us / best:.3g} times as long as the fastest library's")
+    fill = next((pilot.fill for pilot in pilots.values() if not math.isnan(pilot.fill)), math.nan)
+    return {one: pilot.step_us for one, pilot in pilots.items() if verdicts.get(one)}, fill
+
+
+def _pilots(lab, scene, contenders):
+    steps = max(2, min(16, WORK // scene.variables))
+    limit = lab.settings["limits"]["pilot"]
+    cells = [Cell("bench", scene.name, (one,), ("--steps", steps, "--start", 0, f"--benchmark_repetitions={RUNS}",
+                                                "--benchmark_min_time=0"), "pilot", seconds=limit) for one in contenders]
+    for record in lab.run(cells):
+        rows = [row for row in record.output.get("rows", {}).values() if not row.get("error_occurred")]
+        if rows:
+            yield Pilot(record, min(rows[0]["cpu_us"]) / steps, rows[0]["fill_percent"])
+        else:  # a warm-up and RUNS stretches were not done within the limit
+            late = record.status == "timeout"
+            yield Pilot(record, 1e6 * limit / (steps * (RUNS + 1)) if late else math.inf)
+
+
+@dataclass(frozen=True)
+class Rule:
+    lab: object
+    scene: object
+    pilots: dict
+
+    def best(self, verdicts):
+        """Least time of the ranked ones that are not rejected; of the libraries, unless there is nobody else."""
+        alive = {one: pilot.step_us for one, pilot in self.pilots.items()
+                 if pilot.alive and one.ranked and verdicts.get(one, True)}
+        return min([time for one, time in alive.items() if one.variant not in self.lab.registry.own]
+                   or alive.values(), default=math.inf)
+
+    def chosen(self, verdicts):
+        limit = self._factor * self.best(verdicts)
+        kept = {one for one, pilot in self.pilots.items() if pilot.alive and pilot.step_us <= limit}
+        if self.scene.fill is not None:  # the two fastest of each family
+            near = [one for one, pilot in self.pilots.items() if pilot.step_us <= FAMILY * limit and verdicts.get(one, True)]
+            near.sort(key=lambda one: self.pilots[one].step_us)
+            said = self.lab.registry.variants
+            kept |= {one for key in ("dense", "unsymmetric") for value in (True, False)
+                     for one in [one for one in near if said[one.variant].get(key, False) == value][:2]}
+        return [one for one in self.pilots if one in kept]
+
+    @property
+    def _factor(self):
+        known = self.lab.settings["slower"]
+        if self.scene.fill is not None:
+            return known["filled"]
+        [column] = [one for one in self.lab.settings["columns"] if one["variables"] == self.scene.variables]
+        return column.get("slower", known["natural"])
+
+
+def alternatives(lab, scene):
+    """Contenders of the profile's other pairs at this size; what is missing gets a record that says why."""
+    found = {}
+    for entry in lab.settings["alternatives"]:
+        usual = [one for one in lab.contenders if one.variant in entry["implementations"]
+                 or one.variant.split("/")[0] in entry["implementations"]]
+        for one in usual if scene.variables in entry["columns"] else []:
+            for pair in entry["blas"]:
+                if pair != one.blas:
+                    found[Contender(f"{one.name}+{pair}", one.variant, pair)] = lab.registry.pairs.get(pair, "unknown pair")
+    for one, reason in found.items():
+        if reason:
+            lab.skip(Cell("bench", scene.name, (one,), role="unavailable"), "unavailable", reason)
+    return [one for one, reason in found.items() if not reason]

@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 
 from analysis.realtime.verdict import judge, needs_null, observed
-from study.core.cell import Cell
-from study.core.contender import Contender
+from study.core.cell import Cell, Contender
 from study.core.profile import by_share
 from study.core.setting import Setting
 

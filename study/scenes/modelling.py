@@ -4,10 +4,9 @@
 # (the stretch of its first second). Contenders take turns within a process, but cases are scenes: they take turns
 # by processes, in an order shuffled anew in each round, and are compared round by round.
 import random
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from study.core.cell import Cell
-from study.core.contender import by_environment
+from study.core.cell import Cell, by_environment
 from study.scenes import metric
 
 IMPLEMENTATIONS = ("csc_klu/refactor", "csc_cholmod/simplicial", "eigen_dense/llt")
@@ -95,23 +94,14 @@ def run(lab):
     for loops in lab.settings["loops"]:
         paths = {name: lab.scene(f"{loops}-{slug(name)}", scene) for name, scene in scenes(loops).items()}
         for case in CASES:
-            motions += [_motion(case, paths[case.scene], one) for one in those]
-            timed += [_timed(case, paths[case.scene], group, lab.settings["samples"]) for group in groups.values()]
+            duration = DURATION if case.steps == STRETCH else EARLY * STEP
+            motions += [Cell("simulate", paths[case.scene], (one,), ("--step", f"{STEP:g}", "--duration", f"{duration:g}", *case.options),
+                             f"motion.{case.file_name}", seconds=120, keep=("outputs",), every=round(duration / STEP) // metric.SAMPLES)
+                        for one in those]
+            words = ("--step", f"{STEP:g}", "--steps", case.steps, *case.options, f"--benchmark_repetitions={lab.settings['samples']}")
+            timed += [Cell("bench", paths[case.scene], group, words, f"time.{case.file_name}", timed=True, seconds=60) for group in groups.values()]
     lab.run(motions)
     for number in range(1, lab.settings["rounds"] + 1):
         lab.tell(f"round {number} of {lab.settings['rounds']}")
-        cells = [cell(number) for cell in timed]
+        cells = [replace(cell, number=number, settings=(*cell.settings, "--seed", number)) for cell in timed]
         lab.run(random.Random(f"{SEED}:{number}").sample(cells, len(cells)), drop=True)
-
-
-def _motion(case, scene, one):
-    duration = DURATION if case.steps == STRETCH else EARLY * STEP
-    return Cell("simulate", scene, (one,), ("--step", f"{STEP:g}", "--duration", f"{duration:g}", *case.options),
-                f"motion.{case.file_name}", seconds=120, keep=("outputs",), every=round(duration / STEP) // metric.SAMPLES)
-
-
-def _timed(case, scene, group, samples):
-    """The cell of a round, by its number."""
-    words = ("--step", f"{STEP:g}", "--steps", case.steps, *case.options, f"--benchmark_repetitions={samples}")
-    return lambda number: Cell("bench", scene, group, (*words, "--seed", number), f"time.{case.file_name}", number,
-                               timed=True, seconds=60)

@@ -17,7 +17,9 @@ AUTOMATIC = "auto"
 def maps(lab):
     steps = [STEP * 2.0**power for power in lab.settings["powers"]]
     scaled = [AUTOMATIC, *(10.0**power for power in lab.settings["decades"])]
-    served = _served(lab)
+    # Who draws which map, where it takes part and serves it.
+    served = {(scheme, precision): one for precision, name in IMPLEMENTATIONS.items() for one in [lab.contender(name)] for scheme in FORMS
+              if one and lab.registry.serves(name, scheme, precision)}
     lab.run([Cell("describe", f"four-bar:{loops}", (), ("--step", f"{step:g}", "--precision", precision), "window")
              for loops in lab.settings["loops"] for precision in dict.fromkeys(one for _, one in served)
              for step in steps])
@@ -39,16 +41,6 @@ def whole(lab):
              for scheme, sizes in lab.settings["whole"].items()
              if one and lab.registry.serves(one.variant, *Setting(scheme).needs) for loops in sizes]
     lab.run(sorted(cells, key=lambda cell: int(cell.scene.partition(":")[2])), drop=True)
-
-
-def _served(lab):
-    """{(scheme, precision): contender}: who draws which map, where it takes part and serves it."""
-    found = {}
-    for precision, name in IMPLEMENTATIONS.items():
-        one = lab.contender(name)
-        found |= {(scheme, precision): one for scheme in FORMS
-                  if one and lab.registry.serves(name, scheme, precision)}
-    return found
 
 
 columns, run = by_share({"maps": (0.7, maps), "whole": (0.3, whole)})

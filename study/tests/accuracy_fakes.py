@@ -3,7 +3,7 @@ from types import SimpleNamespace
 
 from analysis.core.records import Record
 from analysis.core.registry import Registry
-from study.core.contender import Contender
+from study.core.cell import Contender
 
 SPEED = {"lib_a/fast": 10.0, "lib_a/slow": 100.0, "lib_b/even": 10.2, "lib_dense/llt": 40.0, "own/code": 2.0}  # µs a pass
 SERVED = {"lib_a/fast": ["rattle", "tangent"], "lib_b/even": ["saddle-point"], "own/code": ["rattle", "saddle-point"]}

@@ -8,8 +8,7 @@ from analysis.core.records import Record
 from study.accuracy import plan
 from study.accuracy.runs import Runs
 from study.core import executor
-from study.core.cell import Cell
-from study.core.contender import Contender
+from study.core.cell import Cell, Contender
 from study.core.profile import load, names
 from study.core.setting import Setting, read_settings
 from study.tests.accuracy_fakes import SETTINGS, SPEED, Lab, options, view

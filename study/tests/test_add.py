@@ -8,7 +8,7 @@ import pytest
 from analysis.core import records, schema
 from analysis.core.errors import StudyError
 from analysis.core.files import digest, read_json, write_json
-from study.core.contender import CONTROL, Contender
+from study.core.cell import CONTROL, Contender
 from study.core.lab import Lab
 from study.core.studyset import StudySet, context_of, listed
 from study.core.timing import measure as timed

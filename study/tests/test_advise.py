@@ -13,21 +13,19 @@ from analysis.core import records
 from analysis.core.errors import StudyError
 from analysis.core.files import read_json
 from analysis.core.outcomes import FINISHED
-from study.core.contender import Contender
+from study.core.cell import Contender
 from study.core.setting import Setting
 from study.tools.advise import answer, evidence, timing
 from study.tools.advise.advice import Advice, Question, advise as seek
 from study.tools.advise.choice import Next, Pilot, apart, by_order, counts, local_order, most, next_at, next_step, tidy
-from study.tools.advise.exhaustive import fastest, search as exhaustive
-from study.tools.advise.helps import what_helps
 from study.tools.advise.main import duration
 from study.tools.advise.probe import find_speeds, named
 from study.tools.advise.runner import EXACT, HALVED, REPEATS, Runner, advised as advised_line, typed
 from study.tools.advise.search import Found, Search
 from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.truth import Truth
-from study.tools.advise.validate import _compare, _reference
-from study.tools.advise.verify import verify
+from study.tools.advise.validate import _compare, _reference, fastest, search as exhaustive
+from study.tools.advise.verify import verify, what_helps
 from study.tests.conftest import ROOT, study
 
 REAL = {"MBS_PROGRAM": os.environ.get("MBS_PROGRAM", str(ROOT / "build" / "mbs"))}

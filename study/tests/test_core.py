@@ -27,8 +27,7 @@ from analysis.core.text import number
 from analysis.core.view import View, facts_of
 from study import main
 from study.core import child, executor, front, locks, profile, studyset
-from study.core.cell import Cell
-from study.core.contender import Contender, by_environment, on_usual_pairs
+from study.core.cell import Cell, Contender, by_environment, on_usual_pairs
 from study.core.front import duration
 from study.core.lab import BETWEEN, Lab, cores
 from study.core.options import Parser, positive

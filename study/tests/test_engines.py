@@ -11,7 +11,7 @@ from analysis.core.records import Record
 from analysis.engines import andrews
 from analysis.engines.runs import ENGINE, OURS, ROUND, row
 from analysis.engines.subjects import SOLVERS
-from study.core.contender import Contender
+from study.core.cell import Contender
 from study.core.curves import Curve, follow, of_no_use, too_long
 from study.engines import plan, settings
 from study.engines.settings import EngineSetting, read_list

@@ -15,7 +15,7 @@ from analysis.extremes.linkages import Wheel
 from analysis.extremes.mechanisms import LightEnd, TwoDrives, Uneven
 from analysis.extremes.motions import GRAVITY, Chain, Flat
 from study.core import profile as profiles
-from study.core.contender import Contender
+from study.core.cell import Contender
 from study.core.lab import Lab
 from study.core.studyset import StudySet, start
 from study.extremes import plan

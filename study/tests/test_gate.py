@@ -3,8 +3,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from study.core.contender import Contender
-from study.core.gate import Asked, verdicts
+from study.core.cell import Contender
+from study.core.contest import Asked, verdicts
 
 
 @pytest.mark.parametrize("seconds, asked", [(30.0, 1), (29.0, 3)])

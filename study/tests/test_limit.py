@@ -9,7 +9,7 @@ import pytest
 
 from analysis.core.registry import Registry
 from study.core import contest
-from study.core.contender import Contender
+from study.core.cell import Contender
 from study.families import plan as families
 from study.limit import plan
 from study.tests.conftest import ROOT, study

@@ -13,10 +13,10 @@ from analysis.core.registry import Registry
 from analysis.core.view import View
 from analysis.map import tables
 from study.core import profile as profiles, studyset
-from study.core.contender import Contender
+from study.core.cell import Contender
 from study.core.lab import Lab
-from study.map import plan, verify
-from study.map.timed import Scene
+from study.map import plan
+from study.map.timed import Pilot, Rule, Scene
 from study.tests.conftest import FAKE, TEMPORARY
 
 SETTINGS = {"seconds": 100, "processes": 3, "process": 0.1, "again": 2, "slower": {"natural": 1000, "filled": 50},
@@ -146,8 +146,8 @@ KNOWN = Registry({"implementations": [{"folder": name.split("/")[0], "available"
 def rule(fill, **pilots):
     """The rule of exclusion for contenders by folder; `pilots`: µs a step."""
     lab = SimpleNamespace(settings=SETTINGS, registry=KNOWN)
-    found = {Contender(f"{name}/x", f"{name}/x"): verify.Pilot(None, time) for name, time in pilots.items()}
-    return verify.Rule(lab, Scene(10, fill), found)
+    found = {Contender(f"{name}/x", f"{name}/x"): Pilot(None, time) for name, time in pilots.items()}
+    return Rule(lab, Scene(10, fill), found)
 
 
 def chosen(found, verdicts=None):

@@ -9,7 +9,7 @@ import pytest
 
 from analysis.core.errors import StudyError
 from analysis.core.registry import Registry
-from study.core.contender import Contender
+from study.core.cell import Contender
 from study.scenes import mechanics, metric, modelling, plan, problems, references
 from study.scenes.metric import extrapolate, observed_order
 from study.tests.conftest import PROGRAM, ROOT

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 import pytest
 
 from analysis.core.registry import Registry
-from study.core.contender import Contender
+from study.core.cell import Contender
 from study.stability import plan
 
 SETTINGS = {"seconds": 10, "loops": [1, 5], "powers": [0, 1], "decades": [2], "duration": 0.5,

@@ -8,7 +8,7 @@ from analysis.core.records import Record
 from analysis.core.registry import Registry
 from analysis.core.schema import conform, of_part
 from analysis.tuning import page, sentences, tables
-from study.core.contender import Contender
+from study.core.cell import Contender
 from study.tuning import plan
 
 REGISTRY = Registry({"implementations": [{"folder": "one", "available": True, "library": "L", "variants": [

@@ -12,9 +12,9 @@ from analysis.core import schema, timing
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_json, write, write_json
 from study.core import executor, locks, profile as profiles
-from study.core.contender import CONTROL, on_usual_pairs
+from study.core.cell import CONTROL, on_usual_pairs
 from study.core.executor import program_of
-from study.core.gate import Asked, verdicts
+from study.core.contest import Asked, verdicts
 from study.core.front import duration, set_up
 from study.core.options import Parser, directory
 from study.core.setting import Setting

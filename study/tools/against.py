@@ -12,8 +12,7 @@ from analysis.core import timing
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write
 from study.core import child, locks, profile as profiles
-from study.core.cell import Cell
-from study.core.contender import by_environment, control, on_usual_pairs
+from study.core.cell import Cell, by_environment, control, on_usual_pairs
 from study.core.executor import program_of
 from study.core.front import build as built, set_up
 from study.core.options import Parser, directory, rounds
@@ -47,7 +46,10 @@ def against(arguments):
         build = _build(revision, folder / "run.log")
         table = _measure(folder, options, revision, build)
     write(folder / "ratios.csv", lambda partial: table.to_csv(partial, index=False))
-    _tell(table, revision)
+    print(f"\ntime of a step, this tree / {revision} (95 % interval over pairs of processes; below 1: faster now)")
+    for row in table.itertuples():
+        print(f"{row.implementation:28} {row.scene:14} " + (row.reason[:80] if row.reason else (
+            f"{row.old_us:10.3g} -> {row.new_us:10.3g} us  {row.ratio:.3f} ({row.low:.3f} to {row.high:.3f})")))
     print(f"table: {folder / 'ratios.csv'}")
     return 0
 
@@ -138,10 +140,3 @@ def _row(name, scene, found):
     middle = both.groupby("implementation").clock_us.median()
     return row | {"old_us": middle["old"], "new_us": middle["new"], "ratio": ratio.value, "low": ratio.low,
                   "high": ratio.high, "pairs": len(found["old"])}
-
-
-def _tell(table, revision):
-    print(f"\ntime of a step, this tree / {revision} (95 % interval over pairs of processes; below 1: faster now)")
-    for row in table.itertuples():
-        print(f"{row.implementation:28} {row.scene:14} " + (row.reason[:80] if row.reason else (
-            f"{row.old_us:10.3g} -> {row.new_us:10.3g} us  {row.ratio:.3f} ({row.low:.3f} to {row.high:.3f})")))

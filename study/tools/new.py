@@ -40,7 +40,8 @@ def new(arguments):
         raise StudyError(f"implementations/{options.name} exists already: take another name")
     try:
         write(folder, options.name, options.library)
-        add_to_list(options.name)
+        before, after = LIST.read_text(encoding="utf-8").rsplit(")", 1)
+        write_text(LIST, f"{before.rstrip()}\n  {options.name}\n){after}")
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
@@ -61,11 +62,6 @@ bottom, and climb the ladder after each function.""")
 
 def listed():
     return LIST.read_text(encoding="utf-8").split("mbs_registry(")[1].split(")")[0].split()
-
-
-def add_to_list(name):
-    before, after = LIST.read_text(encoding="utf-8").rsplit(")", 1)
-    write_text(LIST, f"{before.rstrip()}\n  {name}\n){after}")
 
 
 def write(folder, name, library):

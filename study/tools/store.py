@@ -35,7 +35,13 @@ def store(arguments):
     with locks.only_one(RESULTS), locks.only_one(folder):
         need_whole(studyset)
         name = options.name if options.name is not None else f"{studyset.facts['profile']}-{short(studyset.facts['context']['cpu_model'])}"
-        _need_place(name)
+        if not re.fullmatch(r"[A-Za-z0-9][\w.+-]*", name) or name == "local":
+            raise StudyError(f"'{name}' is no name of a set: letters, digits, dots and dashes")
+        if (RESULTS / name).exists():
+            raise StudyError(f"results/{name} is there already: remove it, or choose another NAME")
+        stored = sorted(path.parent.name for path in RESULTS.glob("*/set.json"))
+        if len(stored) >= MOST:
+            raise StudyError(f"results/ holds {MOST} sets already, which is the most: remove one of {', '.join(stored)}")
         pictures = _build(studyset, name)
     _tell(folder, name, pictures)
     return 0
@@ -62,20 +68,16 @@ def faults(kept):
         yield from (f"{path}: is of another {key} than its set" for key in ("commit", "machine") if context.get(key) != usual.get(key))
     yield from _lacking(kept)
     for part in kept.facts["parts"]:
-        yield from _faults_of(kept.folder, part, usual)
+        try:
+            there, tables = schema.records_of(kept.folder, part, usual), kept.folder / part / schema.DIGESTS
+            if not tables.exists() or read_json(tables)["records"] != schema.digest_of(there):
+                yield f"{kept.folder / part}: its tables are not those of its records: run study/figures {kept.folder}"
+        except StudyError as error:
+            yield str(error)
 
 
 def _lacking(kept):
     return [f"{kept.folder} lacks {part}: a stored set has all parts" for part in parts() if part not in kept.facts["parts"]]
-
-
-def _faults_of(folder, part, context):
-    try:
-        there, tables = schema.records_of(folder, part, context), folder / part / schema.DIGESTS
-        if not tables.exists() or read_json(tables)["records"] != schema.digest_of(there):
-            yield f"{folder / part}: its tables are not those of its records: run study/figures {folder}"
-    except StudyError as error:
-        yield str(error)
 
 
 def need_whole(studyset):
@@ -95,16 +97,6 @@ def need_whole(studyset):
                 raise StudyError(f"{path} belongs to no column that has ended: remove it, and run study/run again")
     for fault in faults(studyset):
         raise StudyError(fault)
-
-
-def _need_place(name):
-    if not re.fullmatch(r"[A-Za-z0-9][\w.+-]*", name) or name == "local":
-        raise StudyError(f"'{name}' is no name of a set: letters, digits, dots and dashes")
-    stored = sorted(path.parent.name for path in RESULTS.glob("*/set.json"))
-    if (RESULTS / name).exists():
-        raise StudyError(f"results/{name} is there already: remove it, or choose another NAME")
-    if len(stored) >= MOST:
-        raise StudyError(f"results/ holds {MOST} sets already, which is the most: remove one of {', '.join(stored)}")
 
 
 def _build(studyset, name):

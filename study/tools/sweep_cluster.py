@@ -48,7 +48,14 @@ def _make(table, folder, cluster, parts):
     for mark in done:
         mark.unlink(missing_ok=True)
     try:
-        _array(folder, cluster, done)
+        given = subprocess.run([str(cluster / "array"), str(len(done)), str(folder / "part.sh")], cwd=folder, capture_output=True, text=True)
+        if given.returncode:
+            raise StudyError(f"{cluster / 'array'}: {_last(given.stderr, 'failed')}")
+        display = Display()
+        while runs(folder, cluster, given.stdout.strip()):
+            display.show("sweep", f"{sum(mark.exists() for mark in done)} of {len(done)} parts")
+            time.sleep(1)
+        display.end()
     finally:
         end_jobs(folder, cluster)
     for number, mark in enumerate(done, 1):
@@ -59,17 +66,6 @@ def _make(table, folder, cluster, parts):
                             text=True)
     if merged.returncode >= USAGE or merged.returncode < 0:
         raise StudyError(_last(merged.stderr, "mbs merge-sweep does not work"))
-
-
-def _array(folder, cluster, done):
-    given = subprocess.run([str(cluster / "array"), str(len(done)), str(folder / "part.sh")], cwd=folder, capture_output=True, text=True)
-    if given.returncode:
-        raise StudyError(f"{cluster / 'array'}: {_last(given.stderr, 'failed')}")
-    display = Display()
-    while runs(folder, cluster, given.stdout.strip()):
-        display.show("sweep", f"{sum(mark.exists() for mark in done)} of {len(done)} parts")
-        time.sleep(1)
-    display.end()
 
 
 def _text(path):

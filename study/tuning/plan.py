@@ -1,8 +1,7 @@
 # Settings that were tried for a library's variants and not taken, each beside the variant itself.
 from dataclasses import replace
 
-from study.core.contest import CHECK_S, usual
-from study.core.gate import Asked, agreeing
+from study.core.contest import CHECK_S, Asked, agreeing, usual
 from study.core.profile import by_share
 from study.core.timing import measure
 

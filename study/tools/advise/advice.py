@@ -4,12 +4,11 @@ from dataclasses import dataclass, field
 
 from study.tools.advise import timing
 from study.tools.advise.choice import LEAST_STEPS, tidy
-from study.tools.advise.helps import what_helps
 from study.tools.advise.probe import find_speeds
 from study.tools.advise.runner import REPEATS
 from study.tools.advise.search import Search
 from study.tools.advise.settings import fits, serving
-from study.tools.advise.verify import verify
+from study.tools.advise.verify import verify, what_helps
 
 FIRST_STEP = 1e-2  # s; of the first pilot, where the run has enough such steps
 SLOWER = 1.7       # times the time of the most promising, by pilots and probe: who is slower is not timed

@@ -22,7 +22,8 @@ def as_json(advice, run, folder):
               "pilot_duration": advice.pilot_duration, "cut_short": advice.cut_short + _busy(advice.waited),
               "seconds": round(advice.seconds, 2), "waited": round(advice.waited, 3),
               "settings": [_setting(setting, advice) for setting in catalogue()], "left_out": advice.left_out,
-              "candidates": [_candidate(one, met and one is advice.chosen) for one in advice.candidates],
+              "candidates": [{"implementation": one.implementation, "setting": one.setting.name, "step": one.step,
+                              "advised": met and one is advice.chosen, "reason": one.reason} | _times(one) for one in advice.candidates],
               "runs": run.rows, "results": str(folder)}
     return answer | {"runner_up": _runner_up(answer) if met else None}
 
@@ -33,7 +34,9 @@ def _busy(waited):
 
 
 def _times(one):
-    """Time of a step and of a simulated second, with the least and the most of the rounds, us."""
+    """Time of a step and of a simulated second, with the least and the most of the rounds, us; None without any."""
+    if not one.rows:
+        return {"step_us": None, "us_per_second": None, "rounds": 0}
     middle, low, high = one.us_per_second()
     return {"step_us": {"median": middle * one.step, "low": low * one.step, "high": high * one.step,
                         "p99": one.p99_us()},
@@ -64,12 +67,6 @@ def _setting(setting, advice):
     return told | {"step": found.chosen, "reason": found.reason, "pilots": [
         asdict(pilot) | {"order": orders.get(pilot.step), "counts": counts(pilot.step, found.pilots, advice.pilot_error)}
         for pilot in found.pilots]}
-
-
-def _candidate(one, is_advised):
-    told = {"implementation": one.implementation, "setting": one.setting.name, "step": one.step,
-            "advised": is_advised, "reason": one.reason}
-    return told | (_times(one) if one.rows else {"step_us": None, "us_per_second": None, "rounds": 0})
 
 
 def _runner_up(answer):
@@ -135,9 +132,13 @@ def text(answer):
     lines = [f"{asked['scene']} over {asked['duration']:g} s, error at most {number(asked['error'])} m"
              + (f", 99 % of the steps within {asked['deadline_us']:g} us" if asked["deadline_us"] else "")
              + (f", in steps of {asked['step']:g} s" if asked["step"] else "")]
-    lines += _advice_lines(answer) if answer["met"] else _refusal_lines(answer)
-    return "\n".join([*lines, "", *_rows("note", answer["cut_short"]), *_rows("tried", [_tried(answer)]),
-                      *_rows("raw files", [answer["results"]])])
+    lines += _advice_lines(answer) if answer["met"] else [
+        "", f"No setting meets this: {answer['why_not']}.", *_rows("would help", answer["helps"])]
+    runs, settings = answer["runs"], [entry for entry in answer["settings"] if entry["pilots"]]
+    tried = (f"{len(settings)} settings in {sum(run['kind'] == 'pilots' for run in runs)} error pilots, "
+             f"{len({run['implementation'] for run in runs})} implementations, "
+             f"{sum(bool(one['rounds']) for one in answer['candidates'])} candidates timed; {answer['seconds']:.0f} s")
+    return "\n".join([*lines, "", *_rows("note", answer["cut_short"]), *_rows("tried", [tried]), *_rows("raw files", [answer["results"]])])
 
 
 def _rows(name, values):
@@ -183,14 +184,3 @@ def _ends_as(told):
     return [f"{told['status']}: {told['status_reason']}",
             "by the program's own bounds, which know nothing of the error that you asked for; half the step shows "
             f"{number(told['error']['high'])} m at most"]
-
-
-def _refusal_lines(answer):
-    return ["", f"No setting meets this: {answer['why_not']}.", *_rows("would help", answer["helps"])]
-
-
-def _tried(answer):
-    runs, settings = answer["runs"], [entry for entry in answer["settings"] if entry["pilots"]]
-    return (f"{len(settings)} settings in {sum(run['kind'] == 'pilots' for run in runs)} error pilots, "
-            f"{len({run['implementation'] for run in runs})} implementations, "
-            f"{sum(bool(one['rounds']) for one in answer['candidates'])} candidates timed; {answer['seconds']:.0f} s")

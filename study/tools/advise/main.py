@@ -10,7 +10,7 @@ from pathlib import Path
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write_json
 from study.core import locks, profile as profiles
-from study.core.contender import control, on_usual_pairs
+from study.core.cell import control, on_usual_pairs
 from study.core.executor import program_of
 from study.core.options import Parser, directory, positive
 from study.core.studyset import context_of, listed, need_own, select, writable

@@ -120,8 +120,15 @@ class Runner:
 
     def _simulate(self, kind, variant, step, duration, seconds, words, truth=None):
         seen = {"keep": truth.columns, "every": truth.every(step, duration)} if truth else {}
-        return self._timed(Cell("simulate", self.scene, (self.contenders[variant],), (
+        known, began = len(self.lab.names), time.monotonic()
+        record = self.lab.one(Cell("simulate", self.scene, (self.contenders[variant],), (
             "--step", f"{step:g}", "--duration", f"{duration:g}", *words), kind, timed=True, seconds=round(seconds, 3), **seen))
+        if len(self.lab.names) > known:
+            if time.monotonic() - began > 0.9 * record.seconds:
+                self.wall, self.processor = self.wall + record.seconds, self.processor + record.machine.get("cpu_s", 0.0)
+            else:  # read from a file
+                self.began -= record.seconds
+        return record
 
     def _tolerance(self, setting, variant, step):
         """(record of a run of one step, if that must tell the automatic tolerance; what that is loosened to, m, or None)"""
@@ -135,13 +142,3 @@ class Runner:
     def _learn(self, setting, step, found):
         if found.get("tolerance"):
             self.automatic[setting.scheme, step] = found["tolerance"]
-
-    def _timed(self, cell):
-        known, began = len(self.lab.names), time.monotonic()
-        record = self.lab.one(cell)
-        if len(self.lab.names) > known:
-            if time.monotonic() - began > 0.9 * record.seconds:
-                self.wall, self.processor = self.wall + record.seconds, self.processor + record.machine.get("cpu_s", 0.0)
-            else:  # read from a file
-                self.began -= record.seconds
-        return record

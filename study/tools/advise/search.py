@@ -58,7 +58,8 @@ class Search:
             ready = [one for one in self.found.values() if one.open and self._ready(one, best)]
             if not ready:
                 break
-            self._advance(min(ready, key=self._rank))
+            self._advance(min(ready, key=lambda one: self.promise(one) * (
+                1 if self._tells(one) or self._tells(self.parent(one)) else DOUBT)))
         for one in self.found.values():
             if one.open and one.quick_us == math.inf:
                 one.reason = "its steps take far longer than those of other settings"
@@ -66,9 +67,6 @@ class Search:
                 one.reason = (f"promises {self.promise(one) / 1e3:.3g} ms a simulated second at best, the fastest "
                               f"{best / 1e3:.3g}")
         return self.found
-
-    def _rank(self, one):
-        return self.promise(one) * (1 if self._tells(one) or self._tells(self.parent(one)) else DOUBT)
 
     def best(self):
         """Least time of a simulated second among the settings that have a step, us."""

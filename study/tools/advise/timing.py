@@ -93,13 +93,6 @@ def drop_slow(candidates, factor, number):
             one.reason, one.slower = f"{ratio:.2f} times slower after round {number}", True
 
 
-def take_back(candidates):
-    """The timed ones that only were slower: what beat them has become slower itself."""
-    for one in candidates:
-        if one.slower and one.rows:
-            one.slower, one.reason = False, ""
-
-
 def decided(running):
     """Whether the fastest one's slowest round is faster than every other's fastest one."""
     first, *others = sorted(running, key=lambda one: one.us_per_second()[0])

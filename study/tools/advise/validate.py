@@ -1,17 +1,19 @@
-# study/advise --validate: the advice against an exhaustive search, on families of mechanisms and standard problems.
+# study/advise --validate: the advice against an exhaustive search, on families of mechanisms and standard problems: every setting at every
+# step, until it meets the smallest error or costs too much.
 import math
 from argparse import Namespace
 from pathlib import Path
 
 from analysis.core.errors import StudyError
+from analysis.core.outcomes import FINISHED
 from study.core import locks
-from study.core.setting import Setting
+from study.core.setting import Setting, read_settings
 from study.core.studyset import listed, select
 from study.tools.advise import evidence, timing
 from study.tools.advise.advice import SLOWER
-from study.tools.advise.exhaustive import everything, fastest, meets, search
+from study.tools.advise.probe import probe
 from study.tools.advise.runner import EXACT, describe, scene_name
-from study.tools.advise.settings import serving
+from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.truth import FIRST_STEP, Truth
 
 PROBLEMS = "harness/scenes/problems"
@@ -31,6 +33,9 @@ OTHERS, OTHERS_DURATION = "other scenes", 4.0  # kind; s
 SHARES = (1e-2, 1e-3, 1e-4)  # of the scene's length (describe: judged_length): the errors that are asked for
 CERTAIN = 0.1             # of an error: how well the motion must be known
 ROUNDS_AT_MOST = 600.0    # s of timing a question
+LEAST_STEPS, MOST_STEPS, RATIO = 20, 2e5, 2**-0.5  # of a run; of a step to the next longer one
+NEAR = 1.5        # times the fastest setting's time: others may be the fastest with another implementation
+TOO_LONG = 20.0   # s, of a run
 
 
 def validate(options, ask, runner_of, results):
@@ -119,3 +124,55 @@ def _same(one):
 def _columns(prefix, one):
     values = (one.implementation, one.setting.name, one.step, one.us_per_second()[0]) if one else (None,) * 4
     return {f"{prefix}_{key}": value for key, value in zip(("implementation", "setting", "step", "us_per_second"), values)}
+
+
+def everything():
+    """All settings that advice considers, and all of study/settings.yaml whose tolerances suit any scene."""
+    found = catalogue()
+    stored = [Setting(one.scheme, one.changes) for one in read_settings() if not {"penalty", "tolerance"} & set(dict(one.changes))]
+    return found + [one for one in stored if one not in found]
+
+
+def search(run, variants, described, duration, errors):
+    """Rows of every setting at every step by its fastest implementation, and {implementation: us a step}.
+    A setting's steps end where two in succession meet the smallest error or where they cost too much."""
+    longest = duration / LEAST_STEPS
+    _, speeds = probe(variants, described, run, longest / 8, duration)
+    rows, least = [], {}  # least time of a simulated second that meets the smallest error
+    for setting in (one for one in everything() if not fits(one, described)):
+        served = [name for name in speeds if name in serving(setting, variants)]
+        step, ended = longest, 0
+        while served and ended < 2 and step >= duration / MOST_STEPS:
+            at = float(f"{step:.3g}")
+            run.tell(f"search: {run.scene}, {setting.name}, step {at:g} s")
+            row = run("search", setting, served[0], at, duration, 4 * TOO_LONG, checks=EXACT, repeats=1)
+            if row["status"] in ("unsupported", "timeout", "crashed", "out-of-memory"):
+                break
+            timed = meets(row, max(errors)) and run("speed", setting, served[0], at, duration, 8 * TOO_LONG)
+            row |= {"us_per_second": timed["step_us"] / at if timed and timed["step_us"] else None, "pruned": ""}
+            rows.append(row)
+            ended = ended + 1 if meets(row, min(errors)) else 0
+            if ended and row["us_per_second"]:
+                least[setting] = min(least.get(setting, row["us_per_second"]), row["us_per_second"])
+            usual = row["us_per_second"] or (row["step_us_median"] or 0.0) / at
+            if usual > (2 * NEAR * min(least.values()) if least else 1e6 * TOO_LONG / duration):
+                row["pruned"] = "shorter steps are left out: " + (
+                    "far slower than a setting that meets all errors" if least else f"they take more than {TOO_LONG:g} s")
+                break
+            step *= RATIO
+    return rows, speeds
+
+
+def fastest(found, error):
+    """The fastest row of each setting that meets an error, fastest first, as far as they are near the best. The two next shorter steps of
+    its setting, down to half of its own, must meet it too, or were left out: else it is luck, which half the step cannot show."""
+    best = {}
+    rows = [row for at, row in enumerate(found) if row["us_per_second"] and all(
+        meets(other, error) for other in found[at:at + 3] if other["setting"] == row["setting"])]
+    for row in sorted(rows, key=lambda row: row["us_per_second"]):
+        best.setdefault(row["setting"], row)
+    return [row for row in best.values() if row["us_per_second"] <= NEAR * min(one["us_per_second"] for one in rows)]
+
+
+def meets(row, error):
+    return row["status"] in FINISHED and row["exact"] is not None and row["exact"] <= error

@@ -1,13 +1,16 @@
-# The last stage of an advice: the fastest candidate over the whole time, and what follows if it fails.
+# The last stage of an advice: the fastest candidate over the whole time, and what follows if it fails; where nothing meets a question, the
+# options that would help.
 import math
 
 from analysis.core.outcomes import FINISHED
 from study.tools.advise import timing
-from study.tools.advise.choice import apart, by_order, most, tidy
+from study.tools.advise.choice import LEAST_STEPS, Pilot, apart, by_order, enough, known, most, tidy
 from study.tools.advise.runner import HALVED
 
 VERIFICATIONS = 20
 LEAST_SHARE = 0.3  # of the budget that a first verification may take, however little of it is left
+P99 = 1.2   # times the time of a step: its 99th percentile, about, where that was not measured
+HALVES = 6  # of the duration, to find for how long an error can be kept
 
 
 def verify(advice, run):
@@ -78,7 +81,9 @@ def _excess(row, advice, one):
 def _reconsider(one, row, advice):
     """What follows from a whole run that was not good enough: a shorter step for all candidates of its
     setting, their time scaled, or one candidate less."""
-    timing.take_back(advice.candidates)
+    for other in advice.candidates:
+        if other.slower and other.rows:  # what beat it has become slower itself
+            other.slower, other.reason = False, ""
     question, found = advice.question, advice.found[one.setting]
     if row["status"] not in FINISHED or row["estimate"] is None:
         one.drop(f"{row['status']} when verified over {row['duration']:g} s: {row['reason']}")
@@ -106,3 +111,54 @@ def expected_error(advice, one, row):
     if math.isinf(high):
         high = by_order(one.step, estimate, pilots, order)
     return apart(estimate, order), max(estimate, high)
+
+
+def what_helps(advice, run):
+    """Fills `advice.helps`."""
+    question, found = advice.question, advice.found.values()
+    if advice.hurried:
+        advice.helps.append(f"--budget {2 * question.budget:g}: time was short")
+    pilots = [(one, pilot) for one in found for pilot in one.pilots]
+    if not pilots:
+        return
+    best, pilot = min(pilots, key=lambda pair: (not pair[1].valid, pair[1].estimate if pair[1].valid else pair[1].step))
+    least = min(known(other, one.pilots, advice.pilot_error, one.setting.order) for one, other in pilots)
+    if advice.pilot_error < least < math.inf:
+        advice.helps.append(f"--error {1.1 * question.error * least / advice.pilot_error:.2g}: so much pilots were seen to keep")
+    setting = best.setting
+    if question.step and pilot.valid and pilot.estimate > question.error:
+        fewest = math.ceil((1.2 * pilot.estimate / question.error) ** (1 / setting.order))
+        steps = [question.step / parts for parts in (fewest, 2 * fewest, 4 * fewest)]  # the order may not show in steps this long
+        _first_kept(advice, setting, [(f"--step {step:g}", step, question.duration) for step in steps],
+                    f"in such steps {setting.name} keeps the error", run)
+    slow = [P99 * one.chosen_us for one in found if one.chosen_us > (question.deadline_us or math.inf)]
+    late = [one.late_us for one in advice.candidates if one.late_us] + slow
+    if late:
+        advice.helps.append(f"--deadline-us {1.2 * min(late):.3g}: at best 99 % of the steps take up to about {min(late):.3g} us")
+    else:
+        step = question.step or pilot.step
+        durations = [float(f"{question.duration / 2**halving:.3g}") for halving in range(1, HALVES + 1)]
+        _first_kept(advice, setting, [(f"--duration {one:g}", step, one) for one in durations if one >= LEAST_STEPS * step],
+                    f"so long {setting.name} at step {step:g} s keeps the error", run)
+
+
+def _first_kept(advice, setting, tried, words, run):
+    """Adds the first option of those `tried`, [(option, step, duration)], with which a run keeps the error; `words` say why it helps."""
+    for option, step, duration in tried:
+        run.tell(f"what would help: {option}")
+        if _keeps(advice, setting, step, duration, run):
+            advice.helps.append(f"{option}: {words}")
+            return
+
+
+def _keeps(advice, setting, step, duration, run):
+    """Whether a run keeps the error, by half the step, which another one with half of both must show to be right."""
+    pilots, error = [], advice.question.error
+    for at in (step, step / 2):
+        if run.left() <= 0:
+            return False
+        row = run("shorter", setting, advice.serving(setting)[0], at, duration, max(2.0, run.left()), checks=HALVED)
+        pilots.append(Pilot(at, row["status"], row["estimate"]))
+        if not pilots[-1].valid:
+            return False
+    return pilots[0] in enough(pilots, error, setting.order)

@@ -42,8 +42,10 @@ def claims():
         Claim("vector", "Dense kernels gain more than code that works number by number on machines whose widest vectors do more", "limit", "machines", _vector, True),
         Claim("rule", "The rule keeps its bounds on families left out", "families", "price", _rule),
         Claim("automatic", "The automatic penalty factor is ok in every cell of size and step", "stability", "window", _automatic),
-        Claim("below", "At the largest size and the step of 2008 the factor of 2008 lies below the estimated window", "stability", "window", _below),
-        Claim("closed", "At the largest size and the step of 2008 the estimated window of the penalty form is closed", "stability", "window", _closed),
+        Claim("below", "At the largest size and the step of 2008 the factor of 2008 lies below the estimated window", "stability", "window",
+              _of_2008(lambda one: PAPER_PENALTY < one.lower, "the window begins above {factor}; here at {lower}")),
+        Claim("closed", "At the largest size and the step of 2008 the estimated window of the penalty form is closed", "stability", "window",
+              _of_2008(lambda one: one.lower > one.upper, "its lower end is above its upper one; here {lower} and {upper}")),
         Claim("mixed", "Mixed precision is nowhere shown to gain a fifth at the same error class", "accuracy", "error", _mixed),
         Claim("compiled", "The fastest code of our own is shown to be faster than the fastest library on every mechanism", "families", "own", _compiled),
         Claim("batches", "Batches have the gain that was asked of them", "limit", "own", _batches),
@@ -55,10 +57,6 @@ def _counted(good, wanted, text):
     """(whether as many rows are good as is wanted, None without rows; the text with both numbers)"""
     count, total = int(good.sum()), len(good)
     return (wanted(count, total) if total else None), text.format(count=count, total=total)
-
-
-def _none(count, _):
-    return count == 0
 
 
 def _agree(known):
@@ -142,28 +140,21 @@ def _automatic(known):
     return _counted(rows.status == "ok", eq, "all; here {count} of {total}")
 
 
-def _window_of_2008(known):
-    """The row of the largest size at the step of 2008."""
-    rows = known.tables("stability")["windows"]
-    return rows[(rows.precision == "double") & (abs(rows.step - 1.25e-3) < 1e-9) & rows.lower.notna()].nlargest(1, "loops")
-
-
-def _closed(known):
-    rows = _window_of_2008(known)
-    return (bool(rows.lower.iloc[0] > rows.upper.iloc[0]) if len(rows) else None), (
-        f"its lower end is above its upper one; here {number(rows.lower.iloc[0])} and {number(rows.upper.iloc[0])}" if len(rows) else "")
-
-
-def _below(known):
-    rows = _window_of_2008(known)
-    return (bool(PAPER_PENALTY < rows.lower.iloc[0]) if len(rows) else None), (
-        f"the window begins above {number(PAPER_PENALTY)}; here at {number(rows.lower.iloc[0])}" if len(rows) else "")
+def _of_2008(holds, text):
+    """Of the estimated window of the largest size at the step of 2008."""
+    def found(known):
+        rows = known.tables("stability")["windows"]
+        rows = rows[(rows.precision == "double") & (abs(rows.step - 1.25e-3) < 1e-9) & rows.lower.notna()]
+        for one in rows.nlargest(1, "loops").itertuples():
+            return bool(holds(one)), text.format(factor=number(PAPER_PENALTY), lower=number(one.lower), upper=number(one.upper))
+        return None, ""
+    return found
 
 
 def _mixed(known):
     rows = known.tables("accuracy")["pairs"]
     rows = rows[(rows.kind == pairs.PRECISION) & rows.ratio.notna() & rows.second.str.contains("mixed")]
-    return _counted(rows.index.isin(pairs.gains(rows).index), _none, "none; here {count} of {total}")
+    return _counted(rows.index.isin(pairs.gains(rows).index), lambda count, _: count == 0, "none; here {count} of {total}")
 
 
 def _compiled(known):
@@ -184,7 +175,7 @@ def _batches(known):
 def _engines(known):
     rows = known.tables("engines")["equal_error"]
     rows = rows[(rows.side == "library") & rows.ratio.notna()]
-    return _counted(rows.high < 1, _none, "none; here {count} of {total} comparisons")
+    return _counted(rows.high < 1, lambda count, _: count == 0, "none; here {count} of {total} comparisons")
 
 
 def _quiet(known):

@@ -4,14 +4,14 @@ from matplotlib.gridspec import GridSpec
 from matplotlib.text import Text
 from matplotlib.ticker import LogLocator
 
-from analysis.accuracy import work_figure
+from analysis.accuracy import figures as accuracy
 from analysis.accuracy.winners import met
 from analysis.core.style import GREY, SPARSE, Look, nothing
 from analysis.core.text import bounded
 from analysis.engines import figures as engine_figures
 from analysis.families import figures as families
 from analysis.limit import figures as limit
-from analysis.map import maps, sparse_figure
+from analysis.map import figures as maps
 from analysis.realtime import figures as realtime
 from analysis.stability import figures as stability
 from study.tools.paper.numbers import DENSE, HYBRID, led, profiled, real_mechanisms
@@ -32,12 +32,8 @@ def figures(known):
     return {name: fit(draw(known), height, known.context["cpu_model"]) for name, (draw, height) in DRAWN.items()}
 
 
-def held(known):
-    return families.held_figure(known.tables("families")["held"])
-
-
 def own_fill(known):
-    figure = sparse_figure.draw(known.results, Look(known.registry))
+    figure = maps.sparse(known.results, Look(known.registry))
     for text in figure.texts:  # which the caption says
         text.set_text("")
     figure.axes[0].set_title("")
@@ -49,7 +45,7 @@ def own_fill(known):
 def size_and_fill(known):
     """The map, its legend below: cells are as wide as paper allows."""
     results = known.results
-    figure = maps.draw(results, Look(known.registry), "", results.layer("libraries"), letters=9, line=2.7)
+    figure = maps.fastest(results, Look(known.registry), "", results.layer("libraries"), letters=9, line=2.7)
     legend = figure.axes[0].get_legend()
     if legend:
         below(figure, legend, 3, 0.02, 7.2)
@@ -65,7 +61,7 @@ def work(known):
     fronts = rows.groupby("loops").front_libraries.sum()
     mine = rows[rows.loops == max(fronts.index[fronts >= FRONT], default=rows.loops.max())]
     won = tables["winners"][(tables["winners"].subject == mine.subject.iloc[0]) & tables["winners"].fill_asked.isna()]
-    figure = work_figure.draw(mine, won, Look(known.registry), "largest of position, m", "")
+    figure = accuracy.work(mine, won, Look(known.registry), "largest of position, m", "")
     front, everyone, ratios, ratios_of_everyone = figure.axes
     for axes in (everyone, ratios_of_everyone):  # own code included
         figure.delaxes(axes)
@@ -202,5 +198,6 @@ def fit(figure, height=None, machine=""):
 
 
 # name: (what draws it, height in inches; None: as it is)
-DRAWN = {"mechanisms": (mechanisms, 4.5), "held": (held, 2.2), "own_fill": (own_fill, 3.7), "map": (size_and_fill, 5.0), "phases": (phases, None),
-         "work": (work, 3.2), "window": (window, 2.6), "steps": (steps, 2.9), "own": (own, 2.6), "engines": (engines, 4.2)}
+DRAWN = {"mechanisms": (mechanisms, 4.5), "held": (lambda known: families.held_figure(known.tables("families")["held"]), 2.2),
+         "own_fill": (own_fill, 3.7), "map": (size_and_fill, 5.0), "phases": (phases, None), "work": (work, 3.2), "window": (window, 2.6),
+         "steps": (steps, 2.9), "own": (own, 2.6), "engines": (engines, 4.2)}

@@ -41,10 +41,6 @@ class Known(Folder):
         """What the map's tables are asked for."""
         return of(self.tables("map"), self.view("map"))
 
-    @property
-    def context(self):
-        return self.facts["context"]
-
     @cached_property
     def stored(self):
         """The other stored sets, as Known."""

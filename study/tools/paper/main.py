@@ -36,7 +36,8 @@ def paper(arguments):
         print("filled anew: paper/ARTIFACT.md" if artifact.refresh(known, claimed) else "paper/ARTIFACT.md is as it was")
         return 0
     if not options.audit:
-        need_latex()
+        if missing := [name for name in LATEX if shutil.which(name) is None]:
+            raise StudyError(f"{', '.join(missing)} is missing: run study/setup --paper")
         artifact.refresh(known, claimed)
         shutil.rmtree(audit.BUILD, ignore_errors=True)  # which may be of another set
     found = numbers(known)
@@ -50,12 +51,6 @@ def paper(arguments):
         return 0
     write_parts(known, found, claimed)
     return build()
-
-
-def need_latex():
-    missing = [name for name in LATEX if shutil.which(name) is None]
-    if missing:
-        raise StudyError(f"{', '.join(missing)} is missing: run study/setup --paper")
 
 
 def write_parts(known, found, claimed):

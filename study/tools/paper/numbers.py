@@ -205,7 +205,9 @@ def _fill(known):
     for name, variant in (("dense", DENSE), ("hybrid", HYBRID)):
         mine = timed[timed.implementation == variant]
         found[f"assembly_{name}"] = of_rows(lambda rows: percent(phases(rows.iloc[0])["assembly"]), "limit/steps", mine)
-    return found | {"profiled": of_rows(number(timed.variables.max()), "limit/steps", timed), "faster": _hybrid(results, filled)}
+    both = {scene: one for scene in filled.scene for one in [results.ratio(scene, DENSE, HYBRID)] if one}
+    return found | {"profiled": of_rows(number(timed.variables.max()), "limit/steps", timed),
+                    "faster": of_rows(lambda _: span([one.value for one in both.values()]), "map/tidy", filled[filled.scene.isin(both)])}
 
 
 def profiled(known):
@@ -221,13 +223,6 @@ def phases(row):
     """{phase: share of the step}"""
     times = {phase: row[f"{phase}_us"] for phase in timing.PHASES}
     return {phase: one / sum(times.values()) for phase, one in times.items()}
-
-
-def _hybrid(results, filled):
-    """How many times as fast as with a dense assembly, over filled scenes that both were timed on."""
-    found = {scene: one for scene in filled.scene for one in [results.ratio(scene, DENSE, HYBRID)] if one}
-    rows = filled[filled.scene.isin(found)]
-    return of_rows(lambda _: span([one.value for one in found.values()]), "map/tidy", rows)
 
 
 def _claims(known):

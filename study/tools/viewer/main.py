@@ -35,7 +35,11 @@ def view(arguments):
     if not motion.curves:
         print("the trajectory has no energy and constraint columns: the page leaves the curves out")
     up = [int(axis == options.up) for axis in "xyz"] if options.up else upward(options.scene)
-    _write(options, scene, motion, note, up)
+    html = page.render(scene, motion, note, up).encode()
+    png = sheet.draw(scene, motion, up, options.window) if options.png else None
+    for name, content in ((options.output, html), *([(options.png, png)] if png else [])):
+        write(name, lambda partial, content=content: partial.write_bytes(content))
+        print(f"{name}: {len(motion.times)} frames" if name == options.output else name)
     return 0
 
 
@@ -79,17 +83,7 @@ def _check(options):
         path = Path(name)
         if path.suffix.lower() != ending:
             raise StudyError(f"{flag} is {name!r}: it must end with {ending}")
-        if path.resolve() in inputs or os.path.isdir(path) or not os.path.isdir(path.parent):
-            raise StudyError(f"{flag}: cannot write {name}: "
-                             + ("it is an input" if path.resolve() in inputs else
-                                "it is a directory" if os.path.isdir(path) else
-                                f"there is no directory {path.parent}"))
-
-
-def _write(options, scene, motion, note, up):
-    outputs = [(options.output, page.render(scene, motion, note, up).encode())]
-    if options.png:
-        outputs.append((options.png, sheet.draw(scene, motion, up, options.window)))
-    for name, content in outputs:
-        write(name, lambda partial, content=content: partial.write_bytes(content))
-        print(f"{name}: {len(motion.times)} frames" if name == options.output else name)
+        why = ("it is an input" if path.resolve() in inputs else "it is a directory" if os.path.isdir(path) else
+               "" if os.path.isdir(path.parent) else f"there is no directory {path.parent}")
+        if why:
+            raise StudyError(f"{flag}: cannot write {name}: {why}")

@@ -22,18 +22,14 @@ def render(scene, motion, note, up, sheet=False):
     return environment.get_template("page.html.j2").render(
         scene=scene, note=note, has_curves=bool(motion.curves), outputs=motion.outputs, style=_text("page.css"),
         scripts="\n".join(map(_text, SCRIPTS)),
-        data=_json(_data(scene, motion, moving, up) | {"sheet": sheet}),
+        data=json.dumps(_data(scene, motion, moving, up) | {"sheet": sheet}, separators=(",", ":"), allow_nan=False)
+        .replace("<", "\\u003c"),  # no text in it can end the script element
         packed=base64.b64encode(
             motion.positions[:, moving].astype("<f4").tobytes()).decode())
 
 
 def _text(name):
     return (FOLDER / name).read_text(encoding="utf-8")
-
-
-def _json(data):
-    """JSON that no text in it can end the script element of."""
-    return json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
 
 
 def _data(scene, motion, moving, up):

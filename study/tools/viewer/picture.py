@@ -26,17 +26,10 @@ def reach(scene, motion):
     return float(numpy.linalg.norm(high - low)) or 1.0
 
 
-def ways(scene, motion):
-    """For each point the length of its way up to each frame, m (frames, points); 0 if it is no place."""
-    steps = numpy.linalg.norm(numpy.diff(motion.positions, axis=0), axis=2)
-    steps[:, [index for index, (_, kind) in enumerate(scene.points) if kind in NO_PLACES]] = 0
-    return numpy.vstack([numpy.zeros(len(scene.points)), numpy.cumsum(steps, axis=0)])
-
-
 def traces(scene, motion):
     """The point with the longest way and others whose ways look different, TRACES at most."""
-    order = [int(index) for index in numpy.argsort(-ways(scene, motion)[-1], kind="stable")
-             if scene.points[index][1] in ("free", "marker")]
+    lengths = numpy.cumsum(numpy.linalg.norm(numpy.diff(motion.positions, axis=0), axis=2), axis=0)[-1]  # of each point's way
+    order = [int(index) for index in numpy.argsort(-lengths, kind="stable") if scene.points[index][1] in ("free", "marker")]
     apart, chosen = DISTINCT * reach(scene, motion), []
     for index in order[::max(1, len(order) // CANDIDATES)]:
         way = motion.positions[:, index]

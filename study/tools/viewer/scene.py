@@ -34,7 +34,7 @@ class Scene:
     springs: list
     torsion_springs: list
     outputs: list
-    facts: str
+    facts: str  # on its size, what the program says of it
     end: float = math.inf  # s; driven motion is not known beyond
     scheme: str = "penalty"  # the form of the step that `mbs describe` takes
 
@@ -69,20 +69,16 @@ def from_description(description, name):
     used = {point for element in (*rods, *springs, *bodies) for point in element.points}
     points = [(name, HIDDEN if kind == "free" and helpers[place] and place not in used else kind)
               for place, (name, kind) in enumerate(points)]
+    known = {"n = {}": "variables", "m = {}": "constraints", "degrees of freedom: {}": "degrees_of_freedom"}
+    facts = ", ".join(text.format(description[key]) for text, key in known.items() if description.get(key) is not None)
     return Scene(name, dimension, points, start, rods, bodies, springs, torsion_springs,
-                 list(elements.get("outputs", [])), _facts(description),
-                 math.inf if end is None else float(end), description.get("scheme", {}).get("take", "penalty"))
+                 list(elements.get("outputs", [])), facts, math.inf if end is None else float(end),
+                 description.get("scheme", {}).get("take", "penalty"))
 
 
 def _pair(index, element):
     a, b = element["between"]
     return Element(element.get("name", ""), [index[a], index[b]])
-
-
-def _facts(description):
-    """One line on the size of the scene; what the program does not say is left out."""
-    names = {"n = {}": "variables", "m = {}": "constraints", "degrees of freedom: {}": "degrees_of_freedom"}
-    return ", ".join(text.format(description[key]) for text, key in names.items() if description.get(key) is not None)
 
 
 def upward(path):
