@@ -105,6 +105,26 @@ TEST(LocalErrors, OfAMotionThatIsAheadAndThenBehindAreNotBoth) {
   EXPECT_EQ(summary.status, RunStatus::plausible) << summary.reason;
 }
 
+TEST(LocalErrors, OfAPartThatADriverElsewhereDoesNotTouchShowInItsEnergy) {
+  // A mass on a stop, which lasts a few steps of hundreds. Beside it a crank is driven.
+  const Scene scene = scene_of(nlohmann::json::parse(R"({"points": [
+      {"name": "F", "position": [0, -1], "fixed": true}, {"name": "B", "position": [0, 0]},
+      {"name": "K", "position": [3, 0], "fixed": true}, {"name": "X", "position": [4, 0], "fixed": true},
+      {"name": "M", "position": [3.5, 0]}],
+      "masses": [{"point": "B", "mass": 1}],
+      "rods": [{"name": "crank", "between": ["K", "M"], "mass": 1}],
+      "constraints": [{"name": "drive", "type": "angle", "first": ["K", "X"], "second": ["K", "M"],
+                       "value": {"polynomial": [0, 2]}}],
+      "force_laws": [{"name": "stop", "between": ["F", "B"], "by_length": {
+                      "lengths": [0.49, 0.5, 0.51, 0.6], "forces": [-10000, 0, 0, 0]}}]})"),
+                               "test");
+  RunSettings settings = settings_for(scene, Scheme::penalty, 2.5e-3, 10.0);
+  EXPECT_NE(run(scene, test::reference(), settings).status, RunStatus::plausible);
+  settings.duration = 0.3;  // before its first hit
+  const RunSummary sound = run(scene, test::reference(), settings);
+  EXPECT_EQ(sound.status, RunStatus::plausible) << sound.reason;
+}
+
 /// Two rods of 1 m below each other, of 1 kg and of `mass`.
 Scene with_lower_rod(double mass) {
   nlohmann::json scene = nlohmann::json::parse(R"({"points": [

@@ -93,16 +93,12 @@ Judge::Judge(const Scene& scene, const State& initial, double start)
     potential = potential_energy(model, 0.0, moved_q_);
     initial_energy_ = kinetic_energy(model, moved_v_) + potential;
   }
-  double force = 0.0, in_springs = potential;
-  for (std::size_t i = 0; i < initial.q.size(); ++i) {
-    force += std::abs(model.force()[i]);
-    in_springs += model.force()[i] * initial.q[i];
-  }
   const double size = extent(model.points());
-  so_far_.energy_scale = 1e-3 * (force * size + std::max(in_springs, 0.0));
-  double rest = 0.0;  // J, of a speed that is none; at rest without forces all else is rounding
-  for (const double mass : mass_diagonal(model)) rest += mass * std::pow(1e-6 * size, 2) / 2;
-  so_far_.energy_scale = std::max(so_far_.energy_scale, rest);
+  so_far_.energy_scale = least_energy_scale(model, initial.q, potential, size);
+  if (!conservative_) {
+    parts_.emplace(model, initial, start, size);
+    so_far_.parts = parts_->start();
+  }
   length_ = judged_length(model);
   for (const Torsion& torsion : torsions(model, start, initial.q))
     so_far_.twists.push_back(torsion.twist);
@@ -162,11 +158,18 @@ std::string Judge::judge(double t, const State& state) {
 
 void Judge::add_local_error(double local, double speed, double step, long steps) {
   so_far_.local_error += static_cast<double>(steps) * local;
+  PartEnergies::add(step, steps, so_far_.parts);
   if (!conservative_ || !(so_far_.last_kinetic > 0.0)) return;
   const double energy = 1 + so_far_.last_energy_difference / so_far_.last_kinetic;
   so_far_.ahead +=
       static_cast<double>(steps) * step * speed * (std::sqrt(std::max(energy, 0.0)) - 1);
   so_far_.farthest_ahead = std::max(so_far_.farthest_ahead, std::abs(so_far_.ahead));
+}
+
+double Judge::local_error_sum() const {
+  double ahead = so_far_.farthest_ahead;
+  for (const auto& part : so_far_.parts) ahead = std::max(ahead, part.farthest_ahead);
+  return so_far_.local_error + ahead;
 }
 
 void Judge::add_balance(double excess, double work, long steps) {
@@ -221,13 +224,24 @@ std::string Judge::judge_energy(double t, const State& state) {
     return "the state is too large to be judged";
   }
   so_far_.energy_scale = std::max(so_far_.energy_scale, kinetic);
-  if (!conservative_) return "";
+  if (!conservative_) {
+    if (parts_) parts_->judge(t, state, so_far_.parts);
+    if (part_drift() <= bounds_.energy_drift) return "";
+    return fmt::format("energy of a part drifted by {:.2e} of its scale (allowed {:g})",
+                       part_drift(), bounds_.energy_drift);
+  }
   so_far_.last_kinetic = kinetic;
   so_far_.last_energy_difference = difference;
   so_far_.energy_difference = std::max(so_far_.energy_difference, std::abs(difference));
   if (*energy_drift_max() <= bounds_.energy_drift) return "";
   return fmt::format("energy drifted by {:.2e} of its scale (allowed {:g})", *energy_drift_max(),
                      bounds_.energy_drift);
+}
+
+double Judge::part_drift() const {
+  double largest = 0.0;
+  for (const auto& part : so_far_.parts) largest = std::max(largest, part.drift);
+  return largest;
 }
 
 void Judge::spoil() {
@@ -245,6 +259,7 @@ std::string Judge::degradation() const {
   };
   add(so_far_.position_error.value_or(0.0), accurate.position_error, "position error");
   add(energy_drift_max().value_or(0.0), accurate.energy_drift, "energy drift");
+  add(part_drift(), accurate.energy_drift, "energy drift of a part");
   add(so_far_.imbalance.value_or(0.0), accurate.energy_drift,
       "energy off the work of dampers, drivers and forces by");
   add(so_far_.relative_violation, accurate.constraint_violation, "constraint violation");

@@ -7,6 +7,7 @@
 #include "exact/four_bar_exact.hpp"
 #include "mbs/simulation.hpp"
 #include "model_math/even_carriage.hpp"
+#include "run/part_energies.hpp"
 #include "scene/scene.hpp"
 
 namespace mbs {
@@ -60,9 +61,7 @@ class Judge {
   /// the work so far; none without add_balance().
   [[nodiscard]] std::optional<double> imbalance_max() const { return so_far_.imbalance; }
   /// Sum of what add_local_error() got and the farthest that the motion was ahead or behind, m.
-  [[nodiscard]] double local_error_sum() const {
-    return so_far_.local_error + so_far_.farthest_ahead;
-  }
+  [[nodiscard]] double local_error_sum() const;
   /// The velocity of `judged`, the last state, in the frame of feet that are carried along; n, m/s.
   [[nodiscard]] const std::vector<double>& velocity(const State& judged) const {
     return carriage_ ? moved_v_ : judged.v;
@@ -85,6 +84,7 @@ class Judge {
     double ahead = 0.0, farthest_ahead = 0.0;  // m; farthest_ahead: the largest |ahead|
     double excess = 0.0, work = 0.0;           // J
     std::optional<double> imbalance;
+    std::vector<PartEnergies::Figures> parts;  // where the whole does not conserve energy
   };
   [[nodiscard]] const Figures& figures() const { return so_far_; }
   /// Judges on from where another judge of the same run had these.
@@ -112,6 +112,8 @@ class Judge {
 
  private:
   std::string judge_energy(double t, const State& state);
+  /// Largest drift of a part; 0 where the whole conserves energy.
+  [[nodiscard]] double part_drift() const;
   /// Into moved_, in the frame of feet that are carried along.
   void move_with_feet(double t, const State& state);
   /// Whether Eqs. (11) and (18) still mean what they say: across the axis, and less than half a
@@ -124,6 +126,7 @@ class Judge {
   std::vector<double> phi_scale_;
   bool conservative_;
   std::optional<EvenCarriage> carriage_;
+  std::optional<PartEnergies> parts_;      // where the whole does not conserve energy
   std::vector<double> frame_velocity_;     // n, m/s: 0 where feet rest
   std::vector<double> moved_q_, moved_v_;  // n, where they are carried
   double initial_energy_ = 0.0;            // J

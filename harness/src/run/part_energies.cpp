@@ -1,0 +1,213 @@
+// Union of what elements join; a model of each part that no driver touches and that conserves.
+#include "run/part_energies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "model_math/kinematics.hpp"
+
+namespace mbs {
+namespace {
+
+/// Which points are of one part. All driven points are of one, which other fixed points join none.
+class Groups {
+ public:
+  explicit Groups(const Model& model) : model_(model), leader_(model.points().size() + 1) {
+    std::iota(leader_.begin(), leader_.end(), 0);
+    is_driven_.resize(model.points().size(), false);
+    for (const DrivenPoint& driven : model.driven_points()) is_driven_[at(driven.point)] = true;
+    point_at_.resize(at(model.variables()) / dimension());
+    for (std::size_t p = 0; p < model.points().size(); ++p) {
+      const int offset = model.points()[p].offset;
+      if (offset >= 0) point_at_[at(offset) / dimension()] = static_cast<int>(p);
+    }
+    std::vector<bool> is_driven_row(at(model.constraints()), false);
+    for (const DrivenValue& value : model.driven_values())
+      is_driven_row[at(value.constraint)] = true;
+    std::size_t row = 0;
+    const auto quadratic = [&](const auto& c) {
+      join({c.a, c.b, c.c, c.d});
+      if (is_driven_row[row++]) drive({c.a, c.b, c.c, c.d});
+    };
+    for (const auto& c : model.dot_constraints()) quadratic(c);
+    for (const auto& c : model.bilinear_constraints()) quadratic(c);
+    for (const LinearConstraint& c : model.linear_constraints()) {
+      for (const auto& term : c.terms) {
+        join({owner(c.terms.front().coordinate), owner(term.coordinate)});
+        if (is_driven_row[row]) drive({owner(term.coordinate)});
+      }
+      ++row;
+    }
+    for (const MassEntry& entry : model.mass()) join({owner(entry.row), owner(entry.col)});
+    for (const DrivenMass& mass : model.driven_mass()) drive({owner(mass.coordinate)});
+    const auto on_line = [&](const auto& one) { join({one.a, one.b}); };
+    const auto about_axis = [&](const auto& one) { join({one.a, one.b, one.c, one.d, one.axis}); };
+    std::ranges::for_each(model.springs(), on_line);
+    std::ranges::for_each(model.force_laws(), on_line);
+    std::ranges::for_each(model.torsion_springs(), about_axis);
+    std::ranges::for_each(model.torque_laws(), about_axis);
+    for (const Couple& couple : model.couples()) join({couple.a, couple.b, couple.axis});
+  }
+
+  /// Free points of each part that no driver touches.
+  [[nodiscard]] std::vector<std::vector<int>> undriven() {
+    std::vector<std::vector<int>> members(leader_.size());
+    for (const int point : point_at_) members[at(find(point))].push_back(point);
+    members[at(find(driver()))].clear();
+    std::erase_if(members, [](const auto& one) { return one.empty(); });
+    return members;
+  }
+
+ private:
+  static std::size_t at(int index) { return static_cast<std::size_t>(index); }
+  [[nodiscard]] std::size_t dimension() const { return at(model_.dimension()); }
+  [[nodiscard]] int driver() const { return static_cast<int>(leader_.size()) - 1; }
+  [[nodiscard]] int owner(int coordinate) const { return point_at_[at(coordinate) / dimension()]; }
+
+  int find(int point) {
+    while (leader_[at(point)] != point)
+      point = leader_[at(point)] = leader_[at(leader_[at(point)])];
+    return point;
+  }
+  void drive(std::initializer_list<int> points) {
+    for (const int point : points) {
+      if (!model_.points()[at(point)].is_fixed()) leader_[at(find(point))] = find(driver());
+    }
+  }
+  void join(std::initializer_list<int> points) {
+    int first = -1;
+    for (const int point : points) {
+      if (point < 0 || (model_.points()[at(point)].is_fixed() && !is_driven_[at(point)])) continue;
+      const int leader = find(is_driven_[at(point)] ? driver() : point);
+      if (first < 0) first = leader;
+      leader_[at(leader)] = find(first);
+    }
+  }
+
+  const Model& model_;
+  std::vector<int> leader_;  // of points; last: what drivers move
+  std::vector<bool> is_driven_;
+  std::vector<int> point_at_;  // of each free point, in the order of q
+};
+
+/// Of `members` alone, which no element joins to others.
+Model model_of(const Model& whole, const std::vector<int>& members, std::vector<int>& cols) {
+  ModelData data = whole.data();
+  std::vector<int> place(static_cast<std::size_t>(whole.variables()), -1);
+  for (Point& point : data.points) point.offset = -1;
+  cols.clear();
+  for (const int member : members) {
+    const auto m = static_cast<std::size_t>(member);
+    data.points[m].offset = static_cast<int>(cols.size());
+    for (int axis = 0; axis < whole.dimension(); ++axis) {
+      const int col = whole.points()[m].offset + axis;
+      place[static_cast<std::size_t>(col)] = static_cast<int>(cols.size());
+      cols.push_back(col);
+    }
+  }
+  const auto is_other = [&](int point) {
+    return point < 0 || data.points[static_cast<std::size_t>(point)].is_fixed();
+  };
+  const auto on_line = [&](const auto& one) { return is_other(one.a) && is_other(one.b); };
+  const auto about_axis = [&](const auto& one) {
+    return on_line(one) && is_other(one.c) && is_other(one.d) && is_other(one.axis);
+  };
+  std::erase_if(data.springs, on_line);
+  std::erase_if(data.force_laws, on_line);
+  std::erase_if(data.torsion_springs, about_axis);
+  std::erase_if(data.torque_laws, about_axis);
+  std::erase_if(data.couples, [&](const Couple& c) { return on_line(c) && is_other(c.axis); });
+  data.dot_constraints.clear();
+  data.bilinear_constraints.clear();
+  data.linear_constraints.clear();
+  data.driven_points.clear();
+  data.driven_values.clear();
+  data.driven_mass.clear();
+  data.mass.clear();
+  for (MassEntry entry : whole.mass()) {
+    entry.row = place[static_cast<std::size_t>(entry.row)];
+    entry.col = place[static_cast<std::size_t>(entry.col)];
+    if (entry.row < 0) continue;
+    if (entry.row < entry.col) std::swap(entry.row, entry.col);
+    data.mass.push_back(entry);
+  }
+  data.force.clear();
+  data.initial_velocity.clear();
+  for (const int col : cols) {
+    data.force.push_back(whole.force()[static_cast<std::size_t>(col)]);
+    data.initial_velocity.push_back(whole.initial_velocity()[static_cast<std::size_t>(col)]);
+  }
+  return Model(std::move(data));
+}
+
+}  // namespace
+
+double least_energy_scale(const Model& model, const std::vector<double>& q, double potential,
+                          double size) {
+  double force = 0.0, in_springs = potential;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    force += std::abs(model.force()[i]);
+    in_springs += model.force()[i] * q[i];
+  }
+  double rest = 0.0;  // J, of a speed that is none; at rest without forces all else is rounding
+  for (const double mass : mass_diagonal(model)) rest += mass * std::pow(1e-6 * size, 2) / 2;
+  return std::max(1e-3 * (force * size + std::max(in_springs, 0.0)), rest);
+}
+
+PartEnergies::PartEnergies(const Model& model, const State& initial, double start, double size) {
+  for (const std::vector<int>& members : Groups(model).undriven()) {
+    std::vector<int> cols;
+    Model own = model_of(model, members, cols);
+    if (!is_conservative(own)) continue;
+    Part part{std::move(own), std::move(cols), {}, {}};
+    take(initial, part);
+    const double potential = potential_energy(part.model, start, part.q);
+    part.energy = kinetic_energy(part.model, part.v) + potential;
+    start_.push_back({.scale = least_energy_scale(part.model, part.q, potential, size)});
+    parts_.push_back(std::move(part));
+  }
+}
+
+void PartEnergies::take(const State& state, Part& part) {
+  part.q.clear();
+  part.v.clear();
+  for (const int col : part.cols) {
+    part.q.push_back(state.q[static_cast<std::size_t>(col)]);
+    part.v.push_back(state.v[static_cast<std::size_t>(col)]);
+  }
+}
+
+void PartEnergies::judge(double t, const State& state, std::vector<Figures>& figures) {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    Part& part = parts_[i];
+    Figures& found = figures[i];
+    take(state, part);
+    found.kinetic = kinetic_energy(part.model, part.v);
+    found.difference = found.kinetic + potential_energy(part.model, t, part.q) - part.energy;
+    found.scale = std::max(found.scale, found.kinetic);
+    const double drift = std::abs(found.difference) / found.scale;
+    if (!(drift <= found.drift)) found.drift = std::isnan(drift) ? HUGE_VAL : drift;
+    const auto dimension = static_cast<std::size_t>(part.model.dimension());
+    double fastest = 0.0;  // squared
+    for (std::size_t k = 0; k < part.v.size(); k += dimension) {
+      double squared = 0.0;
+      for (std::size_t axis = 0; axis < dimension; ++axis)
+        squared += part.v[k + axis] * part.v[k + axis];
+      fastest = std::max(fastest, squared);
+    }
+    found.speed = std::sqrt(fastest);
+  }
+}
+
+void PartEnergies::add(double step, long steps, std::vector<Figures>& figures) {
+  for (Figures& part : figures) {
+    if (!(part.kinetic > 0.0)) continue;
+    const double energy = std::max(1 + part.difference / part.kinetic, 0.0);
+    part.ahead += static_cast<double>(steps) * step * part.speed * (std::sqrt(energy) - 1);
+    part.farthest_ahead = std::max(part.farthest_ahead, std::abs(part.ahead));
+  }
+}
+
+}  // namespace mbs
