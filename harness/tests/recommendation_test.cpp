@@ -255,7 +255,9 @@ TEST(Recommendation, NamesNobodyWhoRefusesTheScene) {
     const auto found = test::run_mbs(fmt::format("describe {} --json", name));
     ASSERT_EQ(found.status, 0) << found.errors;
     const Scene scene = load_scene(name);
-    for (const json& one : json::parse(found.output)["recommendation"]) {
+    const json description = json::parse(found.output);
+    EXPECT_FALSE(description["recommendation"].empty()) << name;
+    for (const json& one : description["recommendation"]) {
       StepSettings settings{.step = 1e-3, .penalty = 1e9};
       if (one["scheme"] == "saddle-point") settings.scheme = Scheme::saddle_point;
       const std::string variant = one["implementation"];
