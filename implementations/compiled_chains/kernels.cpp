@@ -8,14 +8,23 @@
 
 namespace mbs::compiled_chains {
 
-std::string why_no_chain(const Model& model) {
-  if (find_chain(model)) return "";
-  return "the scene is not a chain of free points (masses and distances between neighbours, at most two distances from a "
-         "point to fixed ones): use compiled_ldl/fronts";
+namespace {
+
+constexpr const char* kNoChain =
+    "the scene is not a chain of free points (masses and distances between neighbours, at most two "
+    "distances from a point to fixed ones): use compiled_ldl/fronts";
+
+Topology topology_of(const Model& model) {
+  if (auto chain = find_chain(model)) return *std::move(chain);
+  throw Unsupported(kNoChain);
 }
 
+}  // namespace
+
+std::string why_no_chain(const Model& model) { return find_chain(model) ? "" : kNoChain; }
+
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
-  Topology topology = find_chain(model).value();
+  Topology topology = topology_of(model);
   switch (settings.scheme) {
     case Scheme::penalty:
       return create_penalty(model, settings, std::move(topology));
@@ -34,7 +43,7 @@ std::unique_ptr<Simulation> create(const Model& model, const StepSettings& setti
 std::unique_ptr<BatchSimulation> create_batch(std::span<const Model* const> models,
                                               std::span<const StepSettings> settings) {
   std::vector<Topology> chains;
-  for (const Model* model : models) chains.push_back(find_chain(*model).value());
+  for (const Model* model : models) chains.push_back(topology_of(*model));
   switch (settings.front().scheme) {
     case Scheme::saddle_point:
       throw Unsupported("batches are not for the saddle-point form");

@@ -10,7 +10,7 @@
 
 namespace mbs::compiled_chains {
 
-/// Empty if `model` is a chain, which the others ask for.
+/// Empty if `model` is a chain; else what the others throw as Unsupported.
 std::string why_no_chain(const Model& model);
 
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings);

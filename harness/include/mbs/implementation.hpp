@@ -44,8 +44,8 @@ struct Variant {
   /// Its solver takes unsymmetric matrices too, which other formulations than this one give.
   bool unsymmetric = false;
   Serves serves = {};
-  /// Why it cannot simulate `model`, whose terms it serves, as no chain if it is for chains; empty if it can.
-  /// Without numbers, so that a rule may ask for every scene. nullptr: it takes all.
+  /// Why create() throws Unsupported for `model`, whose terms it serves, without setting anything
+  /// up; empty if it does not. nullptr: it takes all. Asked where somebody is to be named for a scene.
   std::string (*refuses)(const Model& model) = nullptr;
   /// The operations of Table 2 alone, as this variant's step does them; nullptr: not offered.
   std::unique_ptr<Operations> (*operations)(const Model& model) = nullptr;

@@ -123,8 +123,6 @@ void require_served(const Variant& variant, const Model& model, const StepSettin
   };
   refuse("offer", why_not_served(variant.serves, settings));
   refuse("serve", why_not_served(variant.serves.terms, model));
-  const std::string refused = why_refused(variant, model);
-  if (!refused.empty()) throw Unsupported(refused);
 }
 
 }  // namespace
@@ -194,10 +192,6 @@ std::string why_not_served(const Serves& serves, const StepSettings& s) {
 std::string why_not_served(const Serves& serves, const Model& model, const StepSettings& settings) {
   const std::string setting = why_not_served(serves, settings);
   return setting.empty() ? why_not_served(serves.terms, model) : setting;
-}
-
-std::string why_refused(const Variant& variant, const Model& model) {
-  return variant.refuses == nullptr ? "" : variant.refuses(model);
 }
 
 std::string why_unsuited(const Model& model, const StepSettings& settings) {

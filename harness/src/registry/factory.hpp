@@ -29,14 +29,10 @@ std::string why_not_served(const Serves& serves, const StepSettings& settings);
 /// The first of the settings, else of the terms, that a variant does not serve; empty if none.
 std::string why_not_served(const Serves& serves, const Model& model, const StepSettings& settings);
 
-/// Why `variant` cannot simulate `model` even where it serves all of its terms; empty if it can.
-std::string why_refused(const Variant& variant, const Model& model);
-
 /// Why no implementation can simulate `model` with `settings`; empty if nothing forbids it.
 std::string why_unsuited(const Model& model, const StepSettings& settings);
 
-/// variant.create(). Throws Unsupported with why_unsuited(), why_not_served() or
-/// why_refused().
+/// variant.create(). Throws Unsupported with why_unsuited() or why_not_served().
 std::unique_ptr<Simulation> create_simulation(const Variant& variant, const Model& model,
                                               const StepSettings& settings);
 

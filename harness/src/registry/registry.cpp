@@ -78,8 +78,10 @@ std::string why_not_offered(const std::string& variant, const Model& model,
   const auto variants = all_variants();
   const auto found = std::ranges::find(variants, variant, &NamedVariant::name);
   if (found == variants.end()) return "it is not in this build";
-  const std::string missing = why_not_served(found->variant->serves, model, settings);
-  return missing.empty() ? why_refused(*found->variant, model) : "it does not serve " + missing;
+  const Variant& one = *found->variant;
+  const std::string missing = why_not_served(one.serves, model, settings);
+  if (!missing.empty()) return "it does not serve " + missing;
+  return one.refuses == nullptr ? "" : one.refuses(model);
 }
 
 }  // namespace mbs
