@@ -119,8 +119,7 @@ void Forces<S, D>::add_matrix(F* matrix) const {
   for (int k = 0; k < springs_.one; ++k) {
     const S across = h_ * kept_across_[k];
     add_pair<D>(matrix, springs_.list[k], springs_.free(k), weight_[k] - across,
-                kept_.data() + k * D);
-    add_pair_identity<D>(matrix, springs_.list[k], springs_.free(k), across);
+                kept_.data() + k * D, across);
   }
   for (std::size_t k = 0; k < torsions_.size(); ++k) {
     const S* vectors = kept_torsions_.data() + k * 2 * D;
@@ -186,12 +185,12 @@ void Forces<S, D>::add(const S* q, const S* v, const S& factor, S* y) {
   for (const Couple2& couple : couples_) add_couple(q, factor, y, couple);
 }
 
+/// All is read before anything is written, which the compiler need not prove then.
 template <typename S, int D>
-void Forces<S, D>::add_spring(const S* q, const S* v, const S& factor, S* y, int k) {
+inline void Forces<S, D>::add_spring(const S* q, const S* v, const S& factor, S* y, int k) {
   const Pair& pair = springs_.list[k];
   const Element& spring = spring_[k];
-  S* e = direction_.data() + k * D;
-  S rate[D];
+  S e[D], rate[D], at_a[D], at_b[D];
   for (int i = 0; i < D; ++i) e[i] = q[pair.a + i] - q[pair.b + i];
   for (int i = 0; i < D; ++i) rate[i] = v[pair.a + i] - v[pair.b + i];
   const S length = each(dot<D>(e, e), [](auto x) { return std::sqrt(x); });
@@ -199,11 +198,13 @@ void Forces<S, D>::add_spring(const S* q, const S* v, const S& factor, S* y, int
   for (int i = 0; i < D; ++i) e[i] *= inverse;
   const S force =
       factor * (spring.stiffness * (length - spring.free) + spring.damping * dot<D>(e, rate));
-  across_[k] = larger(S(0.0), spring.stiffness * (S(1.0) - spring.free * inverse));
-  for (int i = 0; i < D; ++i) {
-    y[pair.a + i] -= force * e[i];
-    y[pair.b + i] += force * e[i];
-  }
+  for (int i = 0; i < D; ++i) at_a[i] = y[pair.a + i] - force * e[i];
+  for (int i = 0; i < D; ++i) at_b[i] = y[pair.b + i] + force * e[i];
+  const S across = larger(S(0.0), spring.stiffness * (S(1.0) - spring.free * inverse));
+  for (int i = 0; i < D; ++i) y[pair.a + i] = at_a[i];
+  for (int i = 0; i < D; ++i) y[pair.b + i] = at_b[i];
+  for (int i = 0; i < D; ++i) direction_[k * D + i] = e[i];
+  across_[k] = across;
 }
 
 template <typename S, int D>
