@@ -73,11 +73,11 @@ void Constraints<S, D>::add_gradients(Factor factor, S* y) const {
   for (; k < pairs_.two; ++k, u += D) {
     const Pair& pair = pairs_.list[k];
     const S s = factor(k) * S(2.0);
-    for (int x = 0; x < D; ++x) {
-      const S force = s * u[x];
-      y[pair.a + x] += force;
-      y[pair.b + x] -= force;
-    }
+    S at_a[D], at_b[D];
+    for (int x = 0; x < D; ++x) at_a[x] = y[pair.a + x] + s * u[x];
+    for (int x = 0; x < D; ++x) at_b[x] = y[pair.b + x] - s * u[x];
+    for (int x = 0; x < D; ++x) y[pair.a + x] = at_a[x];
+    for (int x = 0; x < D; ++x) y[pair.b + x] = at_b[x];
   }
   for (; k < pairs_.one; ++k, u += D) {
     const Pair& pair = pairs_.list[k];
@@ -236,21 +236,25 @@ void Constraints<S, D>::add_projection(const S* x, const S* v, const S& f, S* y)
   const S* e = (kPresent ? u_ : earlier_u_).data();
   for (int k = 0; k < pairs_.one; ++k, u += D, e += D) {
     const Pair& pair = pairs_.list[k];
-    S sum = S(0.0), square = S(0.0), force[D];
+    S sum = S(0.0), square = S(0.0), at_a[D], at_b[D];
     for (int i = 0; i < D; ++i) sum += e[i] * (x[pair.a + i] - x[pair.b + i]);
-    sum *= S(4.0) * f;
-    for (int i = 0; i < D; ++i) force[i] = sum * e[i];
     if (v != nullptr) {
       for (int i = 0; i < D; ++i) {
         const S rate = v[pair.a + i] - v[pair.b + i];
         square += rate * rate;
       }
-      square *= S(4.0) * f;
-      for (int i = 0; i < D; ++i) force[i] += square * u[i];
     }
-    for (int i = 0; i < D; ++i) y[pair.a + i] -= force[i];
+    sum *= S(4.0) * f;
+    square *= S(4.0) * f;
+    // All is read before anything is written, which the compiler need not prove then.
+    for (int i = 0; i < D; ++i) {
+      const S force = sum * e[i] + square * u[i];
+      at_a[i] = y[pair.a + i] - force;
+      at_b[i] = y[pair.b + i] + force;
+    }
+    for (int i = 0; i < D; ++i) y[pair.a + i] = at_a[i];
     if (k >= pairs_.two) continue;
-    for (int i = 0; i < D; ++i) y[pair.b + i] += force[i];
+    for (int i = 0; i < D; ++i) y[pair.b + i] = at_b[i];
   }
   const int behind =
       quads_.empty() ? 0 : 2 * D;  // where there are none, there are no vectors either
