@@ -222,6 +222,18 @@ TEST(ReferenceSimulation, KeepsConstraintsAndEnergyOfASpatialMotion) {
   }
 }
 
+/// Its multipliers do not wait for the body, which all of its legs share.
+TEST(ReferenceSimulation, LegsOnOneBodyMoveAlikeInBothForms) {
+  const Scene scene = load_scene("star:60");
+  const StepSettings penalty = refined(scene.model, 1e-3);
+  StepSettings saddle_point = penalty;
+  saddle_point.scheme = Scheme::saddle_point;
+  const State one = state_after(scene, penalty, 0.02), other = state_after(scene, saddle_point, 0.02);
+  EXPECT_LT(largest_difference(one.q, other.q), 1e-12);
+  EXPECT_LT(largest_difference(one.v, other.v), 1e-9);
+  EXPECT_GT(largest_difference(one.q, initial_state(scene.model).q), 1e-4);
+}
+
 TEST(ReferenceSimulation, FreeFallIsExact) {
   const Scene scene = test::free_fall();
   const State start = initial_state(scene.model);

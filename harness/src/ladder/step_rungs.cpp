@@ -119,7 +119,7 @@ double allowed_of_projected(const Maker& make, StepSettings settings, const Stat
   settings.projections = Projections::velocity;
   const auto simulation = make(settings);
   simulation->set_state(state);
-  simulation->step();
+  (void)simulation->step();
   State after;
   simulation->get_state(after);
   return kAllowed * largest_of(after.a);

@@ -106,9 +106,11 @@ class ReferenceSimulation final : public Simulation {
     return is_saddle() && settings_.scheme != Scheme::saddle_point;
   }
   void set_up_matrix();
-  /// place_ for the coordinates in this order; `constraints`: coordinates of each row.
-  [[nodiscard]] std::vector<int> places(const std::vector<int>& coordinates,
-                                        const std::vector<std::vector<int>>& constraints) const;
+  /// place_ for the coordinates in this order. Each multiplier follows as soon as all coordinates
+  /// of one of its `groups` are there.
+  [[nodiscard]] std::vector<int> places(
+      const std::vector<int>& coordinates,
+      const std::vector<std::vector<std::vector<int>>>& groups) const;
   void solve_matrix(Vector& x) const;  // of the unknowns, not of their places
   /// T, or the matrix of (12) or (14), at the present state.
   [[nodiscard]] bool factorize(const std::vector<Row>& rows);
