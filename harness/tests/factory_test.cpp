@@ -82,6 +82,7 @@ std::unique_ptr<Operations> never_operations(const Model& /*model*/) {
 TEST(Factory, RefusesAllThatItMakesBeforeAnythingRuns) {
   const Model& springs = model_of("springs, planar");
   const Variant variant{.name = "plain",
+                        .description = "",
                         .create = never,
                         .operations = never_operations,
                         .create_batch = never_a_batch};
