@@ -156,6 +156,21 @@ double least_energy_scale(const Model& model, const std::vector<double>& q, doub
   return std::max(1e-3 * (force * size + std::max(in_springs, 0.0)), rest);
 }
 
+void EnergyFigures::judge(double kinetic_now, double potential_now) {
+  kinetic = kinetic_now;
+  difference = kinetic + potential_now - reference;
+  scale = std::max(scale, kinetic);
+  // Not std::max, which would drop a NaN.
+  if (!(std::abs(difference) <= farthest))
+    farthest = std::isnan(difference) ? HUGE_VAL : std::abs(difference);
+}
+
+void EnergyFigures::add(double time) {
+  if (!(kinetic > 0.0)) return;
+  ahead += time * speed * (std::sqrt(std::max(1 + difference / kinetic, 0.0)) - 1);
+  farthest_ahead = std::max(farthest_ahead, std::abs(ahead));
+}
+
 PartEnergies::PartEnergies(const Model& model, const State& initial, double start, double size) {
   for (const std::vector<int>& members : Groups(model).undriven()) {
     std::vector<int> cols;
@@ -164,8 +179,8 @@ PartEnergies::PartEnergies(const Model& model, const State& initial, double star
     Part part{std::move(own), std::move(cols), {}, {}};
     take(initial, part);
     const double potential = potential_energy(part.model, start, part.q);
-    part.energy = kinetic_energy(part.model, part.v) + potential;
-    start_.push_back({.scale = least_energy_scale(part.model, part.q, potential, size)});
+    start_.push_back({.reference = kinetic_energy(part.model, part.v) + potential,
+                      .scale = least_energy_scale(part.model, part.q, potential, size)});
     parts_.push_back(std::move(part));
   }
 }
@@ -179,16 +194,11 @@ void PartEnergies::take(const State& state, Part& part) {
   }
 }
 
-void PartEnergies::judge(double t, const State& state, std::vector<Figures>& figures) {
+void PartEnergies::judge(double t, const State& state, std::vector<EnergyFigures>& figures) {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Part& part = parts_[i];
-    Figures& found = figures[i];
     take(state, part);
-    found.kinetic = kinetic_energy(part.model, part.v);
-    found.difference = found.kinetic + potential_energy(part.model, t, part.q) - part.energy;
-    found.scale = std::max(found.scale, found.kinetic);
-    const double drift = std::abs(found.difference) / found.scale;
-    if (!(drift <= found.drift)) found.drift = std::isnan(drift) ? HUGE_VAL : drift;
+    figures[i].judge(kinetic_energy(part.model, part.v), potential_energy(part.model, t, part.q));
     const auto dimension = static_cast<std::size_t>(part.model.dimension());
     double fastest = 0.0;  // squared
     for (std::size_t k = 0; k < part.v.size(); k += dimension) {
@@ -197,16 +207,7 @@ void PartEnergies::judge(double t, const State& state, std::vector<Figures>& fig
         squared += part.v[k + axis] * part.v[k + axis];
       fastest = std::max(fastest, squared);
     }
-    found.speed = std::sqrt(fastest);
-  }
-}
-
-void PartEnergies::add(double step, long steps, std::vector<Figures>& figures) {
-  for (Figures& part : figures) {
-    if (!(part.kinetic > 0.0)) continue;
-    const double energy = std::max(1 + part.difference / part.kinetic, 0.0);
-    part.ahead += static_cast<double>(steps) * step * part.speed * (std::sqrt(energy) - 1);
-    part.farthest_ahead = std::max(part.farthest_ahead, std::abs(part.ahead));
+    figures[i].speed = std::sqrt(fastest);
   }
 }
 
