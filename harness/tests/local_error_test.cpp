@@ -125,6 +125,24 @@ TEST(LocalErrors, OfAPartThatADriverElsewhereDoesNotTouchShowInItsEnergy) {
   EXPECT_EQ(sound.status, RunStatus::plausible) << sound.reason;
 }
 
+TEST(LocalErrors, DampersBringNoEnergy) {
+  // A mass on a stop with a damper, which lasts less than a step.
+  const Scene scene = scene_of(nlohmann::json::parse(R"({"points": [
+      {"name": "F", "position": [0, -1], "fixed": true}, {"name": "B", "position": [0, 0]}],
+      "masses": [{"point": "B", "mass": 1}],
+      "force_laws": [{"name": "stop", "between": ["F", "B"],
+                      "by_length": {"lengths": [0.49, 0.5, 0.51, 0.6], "forces": [-10000, 0, 0, 0]},
+                      "by_rate": {"rates": [-10, 0, 10], "forces": [-0.2, 0, 0.2]}}]})"),
+                               "test");
+  RunSettings settings = settings_for(scene, Scheme::penalty, 5e-3, 10.0);
+  const RunSummary coarse = run(scene, test::reference(), settings);
+  EXPECT_EQ(coarse.status, RunStatus::diverged);
+  EXPECT_NE(coarse.reason.find("energy of a part"), std::string::npos) << coarse.reason;
+  settings.duration = 0.3;  // before its first hit
+  const RunSummary sound = run(scene, test::reference(), settings);
+  EXPECT_EQ(sound.status, RunStatus::plausible) << sound.reason;
+}
+
 /// Two rods of 1 m below each other, of 1 kg and of `mass`.
 Scene with_lower_rod(double mass) {
   nlohmann::json scene = nlohmann::json::parse(R"({"points": [

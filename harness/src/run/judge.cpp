@@ -225,7 +225,7 @@ std::string Judge::judge_energy(double t, const State& state) {
     return fmt::format("energy of a part drifted by {:.2e} of its scale (allowed {:g})",
                        part_drift(), bounds_.energy_drift);
   }
-  so_far_.energy.judge(kinetic, potential);
+  so_far_.energy.judge(kinetic, potential, false);
   if (*energy_drift_max() <= bounds_.energy_drift) return "";
   return fmt::format("energy drifted by {:.2e} of its scale (allowed {:g})", *energy_drift_max(),
                      bounds_.energy_drift);

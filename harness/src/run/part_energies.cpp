@@ -142,6 +142,30 @@ Model model_of(const Model& whole, const std::vector<int>& members, std::vector<
   return Model(std::move(data));
 }
 
+/// Whether what depends on the rate is always against it, the straight ends included.
+bool is_against_rate(const Law& law) {
+  if (!law.factor.is_constant()) return false;
+  const Curve& curve = law.by_rate;
+  double largest = 0.0;
+  for (const double rate : curve.breaks) largest = std::max(largest, std::abs(rate));
+  const double factor = law.factor.at(0.0).value, far = 1e6 * largest;
+  const auto force = [&](double rate) { return factor * curve.at(rate).value; };
+  const double rounding = 1e-9 * (std::abs(force(largest)) + std::abs(force(-largest)));
+  const auto is_against = [&](double rate) { return force(rate) * rate >= 0.0; };
+  return std::abs(force(0.0)) <= rounding && std::ranges::all_of(curve.breaks, is_against) &&
+         is_against(far) && is_against(-far);
+}
+
+/// Whether nothing but dampers changes the energy, which never grows then.
+bool never_gains(const Model& model) {
+  const auto is_damper = [](const auto& spring) { return spring.damping >= 0.0; };
+  const auto is_brake = [](const auto& law) { return is_against_rate(law.law); };
+  return std::ranges::all_of(model.springs(), is_damper) &&
+         std::ranges::all_of(model.torsion_springs(), is_damper) &&
+         std::ranges::all_of(model.force_laws(), is_brake) &&
+         std::ranges::all_of(model.torque_laws(), is_brake) && model.couples().empty();
+}
+
 }  // namespace
 
 double least_energy_scale(const Model& model, const std::vector<double>& q, double potential,
@@ -156,18 +180,23 @@ double least_energy_scale(const Model& model, const std::vector<double>& q, doub
   return std::max(1e-3 * (force * size + std::max(in_springs, 0.0)), rest);
 }
 
-void EnergyFigures::judge(double kinetic_now, double potential_now) {
+void EnergyFigures::judge(double kinetic_now, double potential_now, bool loses) {
   kinetic = kinetic_now;
-  difference = kinetic + potential_now - reference;
   scale = std::max(scale, kinetic);
+  double off = kinetic + potential_now - reference;
+  if (!loses) {
+    excess = off;
+  } else if (off < 0.0) {
+    reference += off;
+    off = 0.0;
+  }
   // Not std::max, which would drop a NaN.
-  if (!(std::abs(difference) <= farthest))
-    farthest = std::isnan(difference) ? HUGE_VAL : std::abs(difference);
+  if (!(std::abs(off) <= farthest)) farthest = std::isnan(off) ? HUGE_VAL : std::abs(off);
 }
 
 void EnergyFigures::add(double time) {
   if (!(kinetic > 0.0)) return;
-  ahead += time * speed * (std::sqrt(std::max(1 + difference / kinetic, 0.0)) - 1);
+  ahead += time * speed * (std::sqrt(std::max(1 + excess / kinetic, 0.0)) - 1);
   farthest_ahead = std::max(farthest_ahead, std::abs(ahead));
 }
 
@@ -175,8 +204,9 @@ PartEnergies::PartEnergies(const Model& model, const State& initial, double star
   for (const std::vector<int>& members : Groups(model).undriven()) {
     std::vector<int> cols;
     Model own = model_of(model, members, cols);
-    if (!is_conservative(own)) continue;
-    Part part{std::move(own), std::move(cols), {}, {}};
+    if (!never_gains(own)) continue;
+    const bool loses = !is_conservative(own);
+    Part part{std::move(own), std::move(cols), loses, {}, {}};
     take(initial, part);
     const double potential = potential_energy(part.model, start, part.q);
     start_.push_back({.reference = kinetic_energy(part.model, part.v) + potential,
@@ -198,7 +228,8 @@ void PartEnergies::judge(double t, const State& state, std::vector<EnergyFigures
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Part& part = parts_[i];
     take(state, part);
-    figures[i].judge(kinetic_energy(part.model, part.v), potential_energy(part.model, t, part.q));
+    figures[i].judge(kinetic_energy(part.model, part.v), potential_energy(part.model, t, part.q),
+                     part.loses);
     const auto dimension = static_cast<std::size_t>(part.model.dimension());
     double fastest = 0.0;  // squared
     for (std::size_t k = 0; k < part.v.size(); k += dimension) {

@@ -16,23 +16,24 @@ double least_energy_scale(const Model& model, const std::vector<double>& q, doub
 
 /// Energy of a scene or of a part of it; the worst so far and what the next state is judged by.
 struct EnergyFigures {
-  double reference = 0.0;                    // J, at the start
-  double scale = 0.0;                        // J, the largest kinetic energy so far, at least
-  double kinetic = 0.0, difference = 0.0;    // J, of the last judged state; from the reference
-  double farthest = 0.0;                     // J, the largest |difference|
-  double speed = 0.0;                        // m/s, of its fastest point then
+  double reference = 0.0;              // J, at the start; with dampers, the least so far
+  double scale = 0.0;                  // J, the largest kinetic energy so far, at least
+  double kinetic = 0.0, excess = 0.0;  // J, of the last judged state; what of it is known as wrong
+  double farthest = 0.0;               // J, the largest that the energy was off the reference
+  double speed = 0.0;                  // m/s, of its fastest point then
   double ahead = 0.0, farthest_ahead = 0.0;  // m; farthest_ahead: the largest |ahead|
 
-  void judge(double kinetic_now, double potential_now);
-  /// The way by which `time` (s) with the present difference of energy is ahead or behind. What
+  /// Of what `loses` energy only a gain is wrong.
+  void judge(double kinetic_now, double potential_now, bool loses);
+  /// The way by which `time` (s) with the present excess of energy is ahead or behind. What
   /// one step is ahead by and another behind is no error of both.
   void add(double time);
-  /// Largest |difference| over the scale.
+  /// The farthest over the scale.
   [[nodiscard]] double drift() const { return scale > 0.0 ? farthest / scale : farthest; }
 };
 
-/// A driver or damper makes the energy of the whole tell nothing. Parts that no row, mass, spring
-/// or law connects with one conserve theirs all the same.
+/// A driver makes the energy of the whole tell nothing. Parts that no row, mass, spring or law
+/// connects with one conserve theirs all the same, or lose some if they have dampers.
 ///
 ///   PartEnergies parts(model, initial, extent);
 ///   auto figures = parts.start();
@@ -50,6 +51,7 @@ class PartEnergies {
   struct Part {
     Model model;  // of its points alone, without constraints
     std::vector<int> cols;
+    bool loses = false;  // by dampers alone
     std::vector<double> q, v;
   };
   static void take(const State& state, Part& part);
