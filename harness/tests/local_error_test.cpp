@@ -74,25 +74,25 @@ TEST(LocalErrors, CountWhatAWrongEnergyIsAheadBy) {
   State moving = initial;
   moving.v[0] += 2.0;
   Judge judge(scene, moving, 0.0);
-  judge.add_local_error(0.0, 1.0, 0.1, 10);
-  EXPECT_EQ(judge.local_error_sum(), 0.0);
+  judge.add_time(1.0, 1.0);
+  EXPECT_EQ(judge.ahead_max(), 0.0);
   State faster = moving;
   for (double& v : faster.v) v *= 1.01;
   judge.judge(0.1, faster);
   double speed = 0.0;
   for (const double v : faster.v) speed = std::hypot(speed, v);
-  judge.add_local_error(0.0, speed, 0.1, 10);
+  judge.add_time(1.0, speed);
   // Ten steps of 0.1 s at the speed of the last, which is to the first as 1.01 to 1.
   const double ahead = speed * (std::sqrt(2 - 1 / 1.0201) - 1);
-  EXPECT_NEAR(judge.local_error_sum(), ahead, 1e-12);
+  EXPECT_NEAR(judge.ahead_max(), ahead, 1e-12);
   // Then five with too little, which take it back behind where it should be; the farthest counts.
   State slower = moving;
   for (double& v : slower.v) v *= 0.99;
   judge.judge(0.2, slower);
-  judge.add_local_error(0.0, speed, 0.1, 5);
-  EXPECT_NEAR(judge.local_error_sum(), ahead, 1e-12);
-  judge.add_local_error(0.0, speed, 0.1, 95);
-  EXPECT_NEAR(judge.local_error_sum(), 10 * speed * (1 - std::sqrt(2 - 1 / 0.9801)) - ahead,
+  judge.add_time(0.5, speed);
+  EXPECT_NEAR(judge.ahead_max(), ahead, 1e-12);
+  judge.add_time(9.5, speed);
+  EXPECT_NEAR(judge.ahead_max(), 10 * speed * (1 - std::sqrt(2 - 1 / 0.9801)) - ahead,
               1e-10);
 }
 
@@ -239,16 +239,20 @@ TEST(LocalErrors, ShiftsOfTheSpeedGoOn) {
   EXPECT_EQ(even.sum(), HUGE_VAL);
 }
 
-TEST(LocalErrors, OfFreedomsThatPassEnergyOnToEachOtherGrow) {
-  // Two rods in space on a ball joint each. Energy is right in all, not in each.
-  const Scene scene = scene_of(nlohmann::json::parse(R"({"dimension": 3, "gravity": [0, 0, -9.81],
+/// Two rods in space on a ball joint each.
+nlohmann::json double_in_space() {
+  return nlohmann::json::parse(R"({"dimension": 3, "gravity": [0, 0, -9.81],
       "points": [{"name": "A", "position": [0, 0, 0], "fixed": true},
                  {"name": "B", "position": [-0.41, -0.08, 0.19]},
                  {"name": "C", "position": [-0.13, -0.19, 0.034]}],
       "rods": [{"name": "upper", "between": ["A", "B"], "mass": 0.3},
                {"name": "lower", "between": ["B", "C"], "mass": 0.8}],
-      "masses": [{"point": "B", "mass": 0.25}, {"point": "C", "mass": 0.7}]})"),
-                               "test");
+      "masses": [{"point": "B", "mass": 0.25}, {"point": "C", "mass": 0.7}]})");
+}
+
+TEST(LocalErrors, OfFreedomsThatPassEnergyOnToEachOtherGrow) {
+  // Energy is right in all, not in each.
+  const Scene scene = scene_of(double_in_space(), "test");
   RunSettings settings = settings_for(scene, Scheme::saddle_point, 1e-3, 4.0);
   const RunSummary coarse = run(scene, test::reference(), settings);
   EXPECT_EQ(coarse.status, RunStatus::degraded);
@@ -259,6 +263,17 @@ TEST(LocalErrors, OfFreedomsThatPassEnergyOnToEachOtherGrow) {
   settings.half_step.reset();
   settings.step = half_of(scene, half_of(scene, settings.step));
   const RunSummary fine = run(scene, test::reference(), settings);
+  EXPECT_EQ(fine.status, RunStatus::plausible) << fine.reason;
+}
+
+TEST(LocalErrors, OfHigherOrdersGrowWhereFreedomsPassEnergyOn) {
+  const Scene scene = scene_of(double_in_space(), "test");
+  const RunSummary coarse =
+      run(scene, test::reference(), settings_for(scene, Scheme::rattle4, 1e-2, 4.0));
+  EXPECT_EQ(coarse.status, RunStatus::degraded);
+  EXPECT_LT(*coarse.energy_drift_max, 1e-3);
+  const RunSummary fine =
+      run(scene, test::reference(), settings_for(scene, Scheme::rattle4, 2.5e-3, 4.0));
   EXPECT_EQ(fine.status, RunStatus::plausible) << fine.reason;
 }
 

@@ -153,18 +153,16 @@ std::string Judge::judge(double t, const State& state) {
   return turned.empty() ? lost : turned;
 }
 
-void Judge::add_local_error(double local, double speed, double step, long steps) {
-  const double time = static_cast<double>(steps) * step;
-  so_far_.local_error += static_cast<double>(steps) * local;
+void Judge::add_time(double time, double speed) {
   for (auto& part : so_far_.parts) part.add(time);
   so_far_.energy.speed = speed;
   if (conservative_) so_far_.energy.add(time);
 }
 
-double Judge::local_error_sum() const {
+double Judge::ahead_max() const {
   double ahead = so_far_.energy.farthest_ahead;
   for (const auto& part : so_far_.parts) ahead = std::max(ahead, part.farthest_ahead);
-  return so_far_.local_error + ahead;
+  return ahead;
 }
 
 void Judge::add_balance(double excess, double work, long steps) {
