@@ -41,8 +41,7 @@ JudgedRun::JudgedRun(const Scene& scene, const Variant& variant, const RunSettin
       judge_(scene, state_, 0.0),
       good_{0, state_, judge_.figures()},
       watch_(scene, state_, judge_.length(), !judge_.knows_exact_motion()),
-      keeps_shifts_(watch_.freedoms() > 1 && !watch_.has_loop()),
-      local_errors_(scene, judge_.length()),
+      local_errors_(scene, judge_.length(), watch_.passes_on()),
       adds_local_errors_(watch_.freedoms() > 0) {}
 
 void JudgedRun::begin(Access access) {
@@ -221,8 +220,7 @@ void JudgedRun::add_local_errors() {
       off_[i] = step * step / 12 * (state_.a[i] - before_.a[i]);
     }
   }
-  const double speed = keeps_shifts_ ? local_errors_.add_shift(off_, v, step, steps)
-                                     : local_errors_.add_lag(off_, v, steps);
+  const double speed = local_errors_.add(off_, v, step, steps);
   judge_.add_time(static_cast<double>(steps) * step, speed);
   fastest_ = std::max(fastest_, speed);
   add_speed_error();

@@ -3,94 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
+#include "model_math/connected_parts.hpp"
 #include "model_math/kinematics.hpp"
 
 namespace mbs {
 namespace {
-
-/// Which points are of one part. All driven points are of one, which other fixed points join none.
-class Groups {
- public:
-  explicit Groups(const Model& model) : model_(model), leader_(model.points().size() + 1) {
-    std::iota(leader_.begin(), leader_.end(), 0);
-    is_driven_.resize(model.points().size(), false);
-    for (const DrivenPoint& driven : model.driven_points()) is_driven_[at(driven.point)] = true;
-    point_at_.resize(at(model.variables()) / dimension());
-    for (std::size_t p = 0; p < model.points().size(); ++p) {
-      const int offset = model.points()[p].offset;
-      if (offset >= 0) point_at_[at(offset) / dimension()] = static_cast<int>(p);
-    }
-    std::vector<bool> is_driven_row(at(model.constraints()), false);
-    for (const DrivenValue& value : model.driven_values())
-      is_driven_row[at(value.constraint)] = true;
-    std::size_t row = 0;
-    const auto quadratic = [&](const auto& c) {
-      join({c.a, c.b, c.c, c.d});
-      if (is_driven_row[row++]) drive({c.a, c.b, c.c, c.d});
-    };
-    for (const auto& c : model.dot_constraints()) quadratic(c);
-    for (const auto& c : model.bilinear_constraints()) quadratic(c);
-    for (const LinearConstraint& c : model.linear_constraints()) {
-      for (const auto& term : c.terms) {
-        join({owner(c.terms.front().coordinate), owner(term.coordinate)});
-        if (is_driven_row[row]) drive({owner(term.coordinate)});
-      }
-      ++row;
-    }
-    for (const MassEntry& entry : model.mass()) join({owner(entry.row), owner(entry.col)});
-    for (const DrivenMass& mass : model.driven_mass()) drive({owner(mass.coordinate)});
-    const auto on_line = [&](const auto& one) { join({one.a, one.b}); };
-    const auto about_axis = [&](const auto& one) { join({one.a, one.b, one.c, one.d, one.axis}); };
-    std::ranges::for_each(model.springs(), on_line);
-    std::ranges::for_each(model.force_laws(), on_line);
-    std::ranges::for_each(model.torsion_springs(), about_axis);
-    std::ranges::for_each(model.torque_laws(), about_axis);
-    for (const Couple& couple : model.couples()) join({couple.a, couple.b, couple.axis});
-  }
-
-  /// Free points of each part that no driver touches.
-  [[nodiscard]] std::vector<std::vector<int>> undriven() {
-    std::vector<std::vector<int>> members(leader_.size());
-    for (const int point : point_at_) members[at(find(point))].push_back(point);
-    members[at(find(driver()))].clear();
-    std::erase_if(members, [](const auto& one) { return one.empty(); });
-    return members;
-  }
-
- private:
-  static std::size_t at(int index) { return static_cast<std::size_t>(index); }
-  [[nodiscard]] std::size_t dimension() const { return at(model_.dimension()); }
-  [[nodiscard]] int driver() const { return static_cast<int>(leader_.size()) - 1; }
-  [[nodiscard]] int owner(int coordinate) const { return point_at_[at(coordinate) / dimension()]; }
-
-  int find(int point) {
-    while (leader_[at(point)] != point)
-      point = leader_[at(point)] = leader_[at(leader_[at(point)])];
-    return point;
-  }
-  void drive(std::initializer_list<int> points) {
-    for (const int point : points) {
-      if (!model_.points()[at(point)].is_fixed()) leader_[at(find(point))] = find(driver());
-    }
-  }
-  void join(std::initializer_list<int> points) {
-    int first = -1;
-    for (const int point : points) {
-      if (point < 0 || (model_.points()[at(point)].is_fixed() && !is_driven_[at(point)])) continue;
-      const int leader = find(is_driven_[at(point)] ? driver() : point);
-      if (first < 0) first = leader;
-      leader_[at(leader)] = find(first);
-    }
-  }
-
-  const Model& model_;
-  std::vector<int> leader_;  // of points; last: what drivers move
-  std::vector<bool> is_driven_;
-  std::vector<int> point_at_;  // of each free point, in the order of q
-};
 
 /// Of `members` alone, which no element joins to others.
 Model model_of(const Model& whole, const std::vector<int>& members, std::vector<int>& cols) {
@@ -201,7 +120,7 @@ void EnergyFigures::add(double time) {
 }
 
 PartEnergies::PartEnergies(const Model& model, const State& initial, double start, double size) {
-  for (const std::vector<int>& members : Groups(model).undriven()) {
+  for (const std::vector<int>& members : ConnectedParts(model).undriven()) {
     std::vector<int> cols;
     Model own = model_of(model, members, cols);
     if (!never_gains(own)) continue;
