@@ -127,13 +127,34 @@ TEST(ClosedParts, LeaveOutWhatHangsOnALoop) {
   }
 }
 
-TEST(BranchWatch, TellsLoopsFromRodsOnFeet) {
-  const auto has_loop = [](const Scene& scene) {
-    return BranchWatch(scene, initial_state(scene.model), 1.0, true).has_loop();
+TEST(ClosedParts, TellWhereFreedomsPassEnergyOn) {
+  const auto passes_on = [](const Scene& scene) {
+    return closed_parts(scene.model, initial_state(scene.model).q, 60).passes_on;
   };
-  EXPECT_TRUE(has_loop(crank_rocker()));
-  EXPECT_FALSE(has_loop(load_scene(MBS_ROOT "/harness/scenes/double_pendulum.json")));
-  EXPECT_FALSE(has_loop(load_scene(MBS_ROOT "/harness/scenes/pendulum.json")));
+  const auto shipped = [](const char* name) {
+    return load_scene(std::string(MBS_ROOT "/harness/scenes/") + name);
+  };
+  using Each = std::vector<bool>;
+  EXPECT_EQ(passes_on(shipped("double_pendulum.json")), Each(4, true));
+  EXPECT_EQ(passes_on(shipped("pendulum.json")), Each(2, false));
+  const Scene loop = crank_rocker();
+  EXPECT_EQ(passes_on(loop), Each(static_cast<std::size_t>(loop.model.variables()), false));
+  // Two rods below each other, which pass it on, beside two that a spring joins and one alone.
+  const Scene three = scene_of(nlohmann::json::parse(R"({"points": [
+      {"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "B", "position": [1, 0]}, {"name": "C", "position": [2, 0]},
+      {"name": "D", "position": [3, 1]}, {"name": "E", "position": [3, 2]},
+      {"name": "F", "position": [1, 1]}],
+      "rods": [{"name": "upper", "between": ["A", "B"], "mass": 1},
+               {"name": "lower", "between": ["B", "C"], "mass": 1},
+               {"name": "left", "between": ["A", "D"], "mass": 1},
+               {"name": "right", "between": ["A", "E"], "mass": 1},
+               {"name": "alone", "between": ["A", "F"], "mass": 1}],
+      "springs": [{"name": "spring", "between": ["D", "E"], "stiffness": 1, "length": 1}]})"),
+                               "test");
+  Each expected(8, true);
+  expected.resize(10, false);
+  EXPECT_EQ(passes_on(three), expected);
 }
 
 TEST(BranchWatch, FindsJumpsOfLoopsThatAreCarriedOrHaveSomethingHanging) {

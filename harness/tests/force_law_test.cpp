@@ -241,7 +241,8 @@ TEST(ForceLaw, OverAnAngleItEndsHalfATurnFromZero) {
     return State{{std::cos(angle), std::sin(angle)}, {0, 0}, {0, 0}, {}, 0.0};
   };
   const Curve line = monotone_curve({-1.0, 1.0}, {-1.0, 1.0});
-  const Scene held = on_torque_law({line, line}), motor = on_torque_law({{}, line});
+  const Curve drives = monotone_curve({-1.0, 1.0}, {1.0, -1.0});  // so that energy may grow
+  const Scene held = on_torque_law({line, drives}), motor = on_torque_law({{}, drives});
   Judge judge(held, turned(0.0), 0.0), lenient(motor, turned(0.0), 0.0);
   for (const double angle : {1.5, 3.1}) EXPECT_EQ(judge.judge(angle, turned(angle)), "");
   const std::string lost = judge.judge(3.2, turned(3.2));

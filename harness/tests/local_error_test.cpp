@@ -74,25 +74,25 @@ TEST(LocalErrors, CountWhatAWrongEnergyIsAheadBy) {
   State moving = initial;
   moving.v[0] += 2.0;
   Judge judge(scene, moving, 0.0);
-  judge.add_local_error(0.0, 1.0, 0.1, 10);
-  EXPECT_EQ(judge.local_error_sum(), 0.0);
+  judge.add_time(1.0, 1.0);
+  EXPECT_EQ(judge.ahead_max(), 0.0);
   State faster = moving;
   for (double& v : faster.v) v *= 1.01;
   judge.judge(0.1, faster);
   double speed = 0.0;
   for (const double v : faster.v) speed = std::hypot(speed, v);
-  judge.add_local_error(0.0, speed, 0.1, 10);
+  judge.add_time(1.0, speed);
   // Ten steps of 0.1 s at the speed of the last, which is to the first as 1.01 to 1.
   const double ahead = speed * (std::sqrt(2 - 1 / 1.0201) - 1);
-  EXPECT_NEAR(judge.local_error_sum(), ahead, 1e-12);
+  EXPECT_NEAR(judge.ahead_max(), ahead, 1e-12);
   // Then five with too little, which take it back behind where it should be; the farthest counts.
   State slower = moving;
   for (double& v : slower.v) v *= 0.99;
   judge.judge(0.2, slower);
-  judge.add_local_error(0.0, speed, 0.1, 5);
-  EXPECT_NEAR(judge.local_error_sum(), ahead, 1e-12);
-  judge.add_local_error(0.0, speed, 0.1, 95);
-  EXPECT_NEAR(judge.local_error_sum(), 10 * speed * (1 - std::sqrt(2 - 1 / 0.9801)) - ahead,
+  judge.add_time(0.5, speed);
+  EXPECT_NEAR(judge.ahead_max(), ahead, 1e-12);
+  judge.add_time(9.5, speed);
+  EXPECT_NEAR(judge.ahead_max(), 10 * speed * (1 - std::sqrt(2 - 1 / 0.9801)) - ahead,
               1e-10);
 }
 
@@ -120,6 +120,24 @@ TEST(LocalErrors, OfAPartThatADriverElsewhereDoesNotTouchShowInItsEnergy) {
                                "test");
   RunSettings settings = settings_for(scene, Scheme::penalty, 2.5e-3, 10.0);
   EXPECT_NE(run(scene, test::reference(), settings).status, RunStatus::plausible);
+  settings.duration = 0.3;  // before its first hit
+  const RunSummary sound = run(scene, test::reference(), settings);
+  EXPECT_EQ(sound.status, RunStatus::plausible) << sound.reason;
+}
+
+TEST(LocalErrors, DampersBringNoEnergy) {
+  // A mass on a stop with a damper, which lasts less than a step.
+  const Scene scene = scene_of(nlohmann::json::parse(R"({"points": [
+      {"name": "F", "position": [0, -1], "fixed": true}, {"name": "B", "position": [0, 0]}],
+      "masses": [{"point": "B", "mass": 1}],
+      "force_laws": [{"name": "stop", "between": ["F", "B"],
+                      "by_length": {"lengths": [0.49, 0.5, 0.51, 0.6], "forces": [-10000, 0, 0, 0]},
+                      "by_rate": {"rates": [-10, 0, 10], "forces": [-0.2, 0, 0.2]}}]})"),
+                               "test");
+  RunSettings settings = settings_for(scene, Scheme::penalty, 5e-3, 10.0);
+  const RunSummary coarse = run(scene, test::reference(), settings);
+  EXPECT_EQ(coarse.status, RunStatus::diverged);
+  EXPECT_NE(coarse.reason.find("energy of a part"), std::string::npos) << coarse.reason;
   settings.duration = 0.3;  // before its first hit
   const RunSummary sound = run(scene, test::reference(), settings);
   EXPECT_EQ(sound.status, RunStatus::plausible) << sound.reason;
@@ -177,16 +195,17 @@ TEST(LocalErrors, AddUpAlongTheWay) {
   const Scene scene = shipped("pendulum.json");
   ASSERT_EQ(scene.model.variables(), 2);
   const std::vector<double> onward{2.0, 0.0}, none{0.0, 0.0};
-  LocalErrors lags(scene, 1.0);
-  lags.add_lag(std::vector{1e-3, 5.0}, onward, 10);  // what is across the way is no lag
+  const std::vector<bool> one{false, false};
+  LocalErrors lags(scene, 1.0, one);
+  lags.add(std::vector{1e-3, 5.0}, onward, 1e-3, 10);  // what is across the way is no lag
   EXPECT_NEAR(lags.sum(), 1e-2, 1e-15);
-  lags.add_lag(std::vector{1e-3, 5.0}, none, 10);
+  lags.add(std::vector{1e-3, 5.0}, none, 1e-3, 10);
   EXPECT_NEAR(lags.sum(), 1e-2, 1e-15);
-  lags.add_lag(std::vector{std::numeric_limits<double>::quiet_NaN(), 0.0}, onward, 1);
+  lags.add(std::vector{std::numeric_limits<double>::quiet_NaN(), 0.0}, onward, 1e-3, 1);
   EXPECT_EQ(lags.sum(), HUGE_VAL);
   // Each of 1000 steps leaves the speed by 1e-6 m/s too high: by 1e-3 m/s at last, half of that on
   // the mean, over 1 s. The walk that it may be besides is 1e-6 sqrt(N).
-  LocalErrors speeds(scene, 1.0), shaken(scene, 1.0), brief(scene, 1.0);
+  LocalErrors speeds(scene, 1.0, one), shaken(scene, 1.0, one), brief(scene, 1.0, one);
   for (int i = 0; i < 100; ++i) {
     speeds.add_speed({{1e-6, 5.0}, {1e-6, 0.0}}, onward, 1e-3, 10, 0.0);
     const double error = i % 2 == 0 ? 1e-6 : -1e-6;
@@ -197,7 +216,7 @@ TEST(LocalErrors, AddUpAlongTheWay) {
   EXPECT_LT(speeds.sum(), 6e-4);
   EXPECT_LT(shaken.sum(), 5e-5);
   EXPECT_EQ(brief.sum(), 0.0);  // a stiff damper turned it round
-  LocalErrors braked(scene, 1.0);  // as if all was taken away before each sample
+  LocalErrors braked(scene, 1.0, one);  // as if all was taken away before each sample
   for (int i = 0; i < 100; ++i) {
     braked.add_speed({{1e-6, 5.0}, {1e-6, 5.0}}, onward, 1e-3, 10, 1e6);
   }
@@ -209,28 +228,33 @@ TEST(LocalErrors, AddUpAlongTheWay) {
 TEST(LocalErrors, ShiftsOfTheSpeedGoOn) {
   const Scene scene = shipped("pendulum.json");
   const std::vector<double> onward{2.0, 0.0}, off{3e-6, 4e-6}, none{0.0, 0.0};
-  LocalErrors even(scene, 1.0), once(scene, 1.0);
-  even.add_shift(off, onward, 1e-3, 1000);
+  const std::vector<bool> more{true, true};
+  LocalErrors even(scene, 1.0, more), once(scene, 1.0, more);
+  even.add(off, onward, 1e-3, 1000);
   // 1000 steps off by 5e-6 m, also across the way, and 1 s with the speed 5e-3 m/s too high.
   EXPECT_NEAR(even.sum(), 5e-3 + 5e-3, 1e-12);
   // What was left in the first of four seconds goes on, as its root mean square.
-  once.add_shift(off, onward, 1e-3, 1000);
-  EXPECT_EQ(once.add_shift(none, onward, 1e-3, 3000), 2.0);
+  once.add(off, onward, 1e-3, 1000);
+  EXPECT_EQ(once.add(none, onward, 1e-3, 3000), 2.0);
   EXPECT_NEAR(once.sum(), 5e-3 + 4 * 5e-3 / 2, 1e-12);
-  even.add_shift(std::vector{std::numeric_limits<double>::quiet_NaN(), 0.0}, onward, 1e-3, 1);
+  even.add(std::vector{std::numeric_limits<double>::quiet_NaN(), 0.0}, onward, 1e-3, 1);
   EXPECT_EQ(even.sum(), HUGE_VAL);
 }
 
-TEST(LocalErrors, OfFreedomsThatPassEnergyOnToEachOtherGrow) {
-  // Two rods in space on a ball joint each. Energy is right in all, not in each.
-  const Scene scene = scene_of(nlohmann::json::parse(R"({"dimension": 3, "gravity": [0, 0, -9.81],
+/// Two rods in space on a ball joint each.
+nlohmann::json double_in_space() {
+  return nlohmann::json::parse(R"({"dimension": 3, "gravity": [0, 0, -9.81],
       "points": [{"name": "A", "position": [0, 0, 0], "fixed": true},
                  {"name": "B", "position": [-0.41, -0.08, 0.19]},
                  {"name": "C", "position": [-0.13, -0.19, 0.034]}],
       "rods": [{"name": "upper", "between": ["A", "B"], "mass": 0.3},
                {"name": "lower", "between": ["B", "C"], "mass": 0.8}],
-      "masses": [{"point": "B", "mass": 0.25}, {"point": "C", "mass": 0.7}]})"),
-                               "test");
+      "masses": [{"point": "B", "mass": 0.25}, {"point": "C", "mass": 0.7}]})");
+}
+
+TEST(LocalErrors, OfFreedomsThatPassEnergyOnToEachOtherGrow) {
+  // Energy is right in all, not in each.
+  const Scene scene = scene_of(double_in_space(), "test");
   RunSettings settings = settings_for(scene, Scheme::saddle_point, 1e-3, 4.0);
   const RunSummary coarse = run(scene, test::reference(), settings);
   EXPECT_EQ(coarse.status, RunStatus::degraded);
@@ -241,6 +265,38 @@ TEST(LocalErrors, OfFreedomsThatPassEnergyOnToEachOtherGrow) {
   settings.half_step.reset();
   settings.step = half_of(scene, half_of(scene, settings.step));
   const RunSummary fine = run(scene, test::reference(), settings);
+  EXPECT_EQ(fine.status, RunStatus::plausible) << fine.reason;
+}
+
+TEST(LocalErrors, OfFreedomsThatPassEnergyOnGrowBesideALoop) {
+  nlohmann::json scene = double_in_space();
+  const auto beside = nlohmann::json::parse(R"({
+      "points": [{"name": "K", "position": [3, 0, 0], "fixed": true},
+                 {"name": "D", "position": [3.9, 0, 0], "fixed": true},
+                 {"name": "E", "position": [3.5, 0, 0.6]}, {"name": "F", "position": [3.9, 0.8, 0]}],
+      "rods": [{"name": "crank", "between": ["K", "E"], "mass": 1},
+               {"name": "coupler", "between": ["E", "F"], "mass": 1},
+               {"name": "rocker", "between": ["D", "F"], "mass": 1}],
+      "constraints": [
+          {"name": "z", "type": "linear", "terms": [{"point": "F", "axis": "z", "coefficient": 1}], "value": 0},
+          {"name": "y", "type": "linear", "terms": [{"point": "E", "axis": "y", "coefficient": 1}], "value": 0}]})");
+  for (const char* list : {"points", "rods"}) {
+    scene[list].insert(scene[list].end(), beside[list].begin(), beside[list].end());
+  }
+  scene["constraints"] = beside["constraints"];
+  const Scene both = scene_of(scene, "test");
+  EXPECT_EQ(run(both, test::reference(), settings_for(both, Scheme::saddle_point, 1e-3, 4.0)).status,
+            RunStatus::degraded);
+}
+
+TEST(LocalErrors, OfHigherOrdersGrowWhereFreedomsPassEnergyOn) {
+  const Scene scene = scene_of(double_in_space(), "test");
+  const RunSummary coarse =
+      run(scene, test::reference(), settings_for(scene, Scheme::rattle4, 1e-2, 4.0));
+  EXPECT_EQ(coarse.status, RunStatus::degraded);
+  EXPECT_LT(*coarse.energy_drift_max, 1e-3);
+  const RunSummary fine =
+      run(scene, test::reference(), settings_for(scene, Scheme::rattle4, 2.5e-3, 4.0));
   EXPECT_EQ(fine.status, RunStatus::plausible) << fine.reason;
 }
 

@@ -270,6 +270,33 @@ TEST(Judge, JudgesEnergyOfConservativeModelsOnly) {
   EXPECT_EQ(lenient.judge(0.2, lost), "the state is not finite");
 }
 
+TEST(Judge, WithDampersAloneEnergyNeverGrows) {
+  const auto scene = [](double c0, double c1) {  // the force of c0 + c1 L' beside the spring
+    Scene result = spring_mass(0.0);
+    ModelData data = result.model.data();
+    Law law;
+    law.by_rate.breaks = {-1.0, 1.0};
+    law.by_rate.pieces.assign(3, {0.0, {c0, c1, 0.0, 0.0}});
+    data.force_laws.push_back({data.springs[0].a, data.springs[0].b, law, "law"});
+    result.model = Model(std::move(data));
+    return result;
+  };
+  const auto judged = [](const Scene& scene, double vx) {  // of 12.5 J
+    Judge judge(scene, at(1.5, 0.0), 0.0);
+    EXPECT_EQ(judge.judge(0.1, at(1.0, 4.0)), "");
+    const std::string lost = judge.judge(0.2, at(1.0, vx));
+    return lost.empty() ? judge.degradation() : lost;
+  };
+  for (const Scene& damped : {spring_mass(5.0), scene(0.0, 5.0)}) {
+    EXPECT_EQ(judged(damped, 3.9), "");
+    EXPECT_TRUE(judged(damped, 4.1).starts_with("energy drift of a part"));
+    EXPECT_TRUE(judged(damped, 5.0).starts_with("energy of a part drifted"));
+  }
+  // What drives, and a force at rest that is no potential, bring energy.
+  for (const Scene& driven : {scene(0.0, -5.0), scene(1.0, 5.0)})
+    EXPECT_EQ(judged(driven, 5.0), "");
+}
+
 TEST(Judge, ASpringAtRestGivesTheEnergyScale) {
   const Scene scene = spring_mass(0.0);
   // At the first step hardly anything moves: the drift is small against what the spring holds.
@@ -298,6 +325,7 @@ Scene on_torsion_spring(double stiffness, double angle) {
   data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
   data.force = data.initial_velocity = {0.0, 0.0};
   data.torsion_springs.push_back({1, 0, 2, 0, -1, stiffness, 1.0, angle, "clock"});
+  data.couples.push_back({2, 0, -1, 1.0, "motor"});  // energy may grow
   return {"torsion", Model(std::move(data)), {}, {}};
 }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "model_math/connected_parts.hpp"
 #include "model_math/jacobian_rank.hpp"
 #include "model_math/kinematics.hpp"
 
@@ -200,6 +201,17 @@ ClosedParts closed_parts(const Model& model, const std::vector<double>& q, int l
   result.freedoms = cols;
   const auto entries = jacobian(model, 0.0, q);
   const auto rank = find_rank(rows, cols, entries);
+  ConnectedParts connected(model);
+  std::vector<int> freedoms(model.points().size() + 1);  // of each part
+  const auto part_of = [&](int col) { return static_cast<std::size_t>(connected.part_of(col)); };
+  for (int col = 0; col < cols; ++col) ++freedoms[part_of(col)];
+  int row = -1;
+  for (const JacobianEntry& entry : entries) {
+    if (rank && entry.row != row && !std::ranges::binary_search(rank->dependent, entry.row))
+      --freedoms[part_of(entry.col)];
+    row = entry.row;
+  }
+  for (int col = 0; col < cols; ++col) result.passes_on.push_back(freedoms[part_of(col)] > 1);
   if (rows == 0 || !rank) return result;
   result.freedoms = cols - rank->rank;
   result.has_redundant_rows = !rank->dependent.empty();
@@ -228,6 +240,10 @@ ClosedParts closed_parts(const Model& model, const std::vector<double>& q, int l
   for (ConstraintBlock& piece : pattern.pieces(loose)) {
     const std::size_t size = piece.rows.size();
     if (size == 0 || size > most || piece.cols.size() != size + 1) continue;
+    for (int col = 0; size > 1 && col < cols; ++col) {
+      if (part_of(col) == part_of(piece.cols.front()))
+        result.passes_on[static_cast<std::size_t>(col)] = false;
+    }
     result.free.push_back(sorted(std::move(piece)));
   }
   return result;

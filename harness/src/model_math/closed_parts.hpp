@@ -30,6 +30,9 @@ struct ClosedParts {
   std::vector<ConstraintBlock> free;
   /// Columns less independent rows.
   int freedoms = 0;
+  /// Of each column: whether the part that it is connected with (ConnectedParts) has more freedoms
+  /// than one and none of `free` that is more than a rod. Those pass energy on to each other.
+  std::vector<bool> passes_on;
   /// Rows were left out because they depend on others.
   bool has_redundant_rows = false;
 };

@@ -59,6 +59,7 @@ BranchWatch::BranchWatch(const Scene& scene, const State& start, double length, 
   if (!wanted) return;
   ClosedParts parts = closed_parts(scene.model, start.q, kLargestPart);
   freedoms_ = parts.freedoms;
+  passes_on_ = std::move(parts.passes_on);
   has_redundant_rows_ = parts.has_redundant_rows;
   std::vector<ConstraintBlock> matrices;
   if (!parts.driven.rows.empty()) {
@@ -67,7 +68,6 @@ BranchWatch::BranchWatch(const Scene& scene, const State& start, double length, 
   const bool is_driven =
       !scene.model.driven_points().empty() || !scene.model.driven_values().empty();
   for (ConstraintBlock& part : parts.free) {
-    if (part.rows.size() > 1) has_loop_ = true;
     add_part(std::move(part), {}, matrices);
     parts_.back().is_carried = is_driven;
   }

@@ -29,8 +29,8 @@ class BranchWatch {
   [[nodiscard]] bool is_needed() const { return !parts_.empty(); }
   /// Of the whole mechanism; 0 if nothing is wanted.
   [[nodiscard]] int freedoms() const { return freedoms_; }
-  /// A part of more than a rod goes along a curve. (Near a change point its acceleration jumps.)
-  [[nodiscard]] bool has_loop() const { return has_loop_; }
+  /// ClosedParts::passes_on; empty if nothing is wanted.
+  [[nodiscard]] const std::vector<bool>& passes_on() const { return passes_on_; }
   /// Looks at the state at time t (s), later than the last one. Returns what happened if the motion
   /// jumped, empty if not.
   std::string look(double t, const State& state);
@@ -81,7 +81,7 @@ class BranchWatch {
   std::vector<double> tangent_;
   bool has_redundant_rows_ = false;
   int freedoms_ = 0;
-  bool has_loop_ = false;
+  std::vector<bool> passes_on_;
   int uncertain_ = 0;                      // looks since the anchor that could not tell
   std::optional<double> step_needed_;      // s
   std::string passage_, doubt_, pending_;  // pending_: a doubt that later looks may settle

@@ -86,15 +86,12 @@ Judge::Judge(const Scene& scene, const State& initial, double start)
       frame_velocity_(carriage_ ? carriage_->velocity() : std::vector<double>(initial.v.size())) {
   const Model& model = scene.model;
   conservative_ = conservative_ || carriage_;
-  double potential = potential_energy(model, start, initial.q);
-  initial_energy_ = kinetic_energy(model, initial.v) + potential;
-  if (carriage_) {
-    move_with_feet(start, initial);
-    potential = potential_energy(model, 0.0, moved_q_);
-    initial_energy_ = kinetic_energy(model, moved_v_) + potential;
-  }
+  if (carriage_) move_with_feet(start, initial);
+  const double potential = carriage_ ? potential_energy(model, 0.0, moved_q_)
+                                     : potential_energy(model, start, initial.q);
   const double size = extent(model.points());
-  so_far_.energy_scale = least_energy_scale(model, initial.q, potential, size);
+  so_far_.energy.reference = kinetic_energy(model, velocity(initial)) + potential;
+  so_far_.energy.scale = least_energy_scale(model, initial.q, potential, size);
   if (!conservative_) {
     parts_.emplace(model, initial, start, size);
     so_far_.parts = parts_->start();
@@ -129,7 +126,7 @@ std::string Judge::judge(double t, const State& state) {
   so_far_.violation = std::max(so_far_.violation, violation);
   so_far_.relative_violation = std::max(so_far_.relative_violation, relative);
   const std::string lost = judge_energy(t, state);
-  if (!std::isfinite(so_far_.energy_difference)) return lost;
+  if (!std::isfinite(so_far_.energy.farthest)) return lost;
   if (exact_) {
     const double error = exact_->position_error(t, state.q);
     so_far_.position_error = std::max(*so_far_.position_error, error);
@@ -156,26 +153,22 @@ std::string Judge::judge(double t, const State& state) {
   return turned.empty() ? lost : turned;
 }
 
-void Judge::add_local_error(double local, double speed, double step, long steps) {
-  so_far_.local_error += static_cast<double>(steps) * local;
-  PartEnergies::add(step, steps, so_far_.parts);
-  if (!conservative_ || !(so_far_.last_kinetic > 0.0)) return;
-  const double energy = 1 + so_far_.last_energy_difference / so_far_.last_kinetic;
-  so_far_.ahead +=
-      static_cast<double>(steps) * step * speed * (std::sqrt(std::max(energy, 0.0)) - 1);
-  so_far_.farthest_ahead = std::max(so_far_.farthest_ahead, std::abs(so_far_.ahead));
+void Judge::add_time(double time, double speed) {
+  for (auto& part : so_far_.parts) part.add(time);
+  so_far_.energy.speed = speed;
+  if (conservative_) so_far_.energy.add(time);
 }
 
-double Judge::local_error_sum() const {
-  double ahead = so_far_.farthest_ahead;
+double Judge::ahead_max() const {
+  double ahead = so_far_.energy.farthest_ahead;
   for (const auto& part : so_far_.parts) ahead = std::max(ahead, part.farthest_ahead);
-  return so_far_.local_error + ahead;
+  return ahead;
 }
 
 void Judge::add_balance(double excess, double work, long steps) {
   so_far_.excess += static_cast<double>(steps) * excess;
   so_far_.work += static_cast<double>(steps) * work;
-  const double share = std::abs(so_far_.excess) / std::max(so_far_.energy_scale, so_far_.work);
+  const double share = std::abs(so_far_.excess) / std::max(so_far_.energy.scale, so_far_.work);
   if (!(share <= so_far_.imbalance.value_or(0.0))) so_far_.imbalance = share;
   if (!so_far_.imbalance) so_far_.imbalance = 0.0;
 }
@@ -215,24 +208,22 @@ std::string Judge::judge_energy(double t, const State& state) {
     conservative_ = false;
   }
   if (carriage_) move_with_feet(t, state);
-  const double kinetic = kinetic_energy(scene_->model, carriage_ ? moved_v_ : state.v);
-  const double potential = carriage_ ? potential_energy(scene_->model, 0.0, moved_q_)
-                                     : potential_energy(scene_->model, t, state.q);
-  const double difference = kinetic + potential - initial_energy_;
-  if (!std::isfinite(kinetic) || !std::isfinite(difference)) {
+  const double kinetic = kinetic_energy(scene_->model, velocity(state));
+  const double potential = !conservative_ ? 0.0
+                           : carriage_    ? potential_energy(scene_->model, 0.0, moved_q_)
+                                          : potential_energy(scene_->model, t, state.q);
+  if (!std::isfinite(kinetic) || !std::isfinite(potential)) {
     spoil();
     return "the state is too large to be judged";
   }
-  so_far_.energy_scale = std::max(so_far_.energy_scale, kinetic);
   if (!conservative_) {
+    so_far_.energy.scale = std::max(so_far_.energy.scale, kinetic);
     if (parts_) parts_->judge(t, state, so_far_.parts);
     if (part_drift() <= bounds_.energy_drift) return "";
     return fmt::format("energy of a part drifted by {:.2e} of its scale (allowed {:g})",
                        part_drift(), bounds_.energy_drift);
   }
-  so_far_.last_kinetic = kinetic;
-  so_far_.last_energy_difference = difference;
-  so_far_.energy_difference = std::max(so_far_.energy_difference, std::abs(difference));
+  so_far_.energy.judge(kinetic, potential, false);
   if (*energy_drift_max() <= bounds_.energy_drift) return "";
   return fmt::format("energy drifted by {:.2e} of its scale (allowed {:g})", *energy_drift_max(),
                      bounds_.energy_drift);
@@ -240,12 +231,12 @@ std::string Judge::judge_energy(double t, const State& state) {
 
 double Judge::part_drift() const {
   double largest = 0.0;
-  for (const auto& part : so_far_.parts) largest = std::max(largest, part.drift);
+  for (const auto& part : so_far_.parts) largest = std::max(largest, part.drift());
   return largest;
 }
 
 void Judge::spoil() {
-  so_far_.violation = so_far_.relative_violation = so_far_.energy_difference =
+  so_far_.violation = so_far_.relative_violation = so_far_.energy.farthest =
       std::numeric_limits<double>::infinity();
   if (exact_) so_far_.position_error = std::numeric_limits<double>::infinity();
 }
@@ -268,8 +259,7 @@ std::string Judge::degradation() const {
 
 std::optional<double> Judge::energy_drift_max() const {
   if (!conservative_) return std::nullopt;
-  return so_far_.energy_scale > 0.0 ? so_far_.energy_difference / so_far_.energy_scale
-                                    : so_far_.energy_difference;
+  return so_far_.energy.drift();
 }
 
 }  // namespace mbs

@@ -49,19 +49,17 @@ class Judge {
   /// Judges the state at time t. Returns the reason if the solution is lost, empty if not.
   std::string judge(double t, const State& state);
 
-  /// Adds what `steps` steps (of `step` s) like the last judged one leave: `local` (m) each, and
-  /// the way by which a speed with that much too much or too little energy is ahead or behind, step
-  /// v drift/2 with v = `speed` (m/s), that of the fastest point. What one step is ahead by and
-  /// another behind is no error of both.
-  void add_local_error(double local, double speed, double step, long steps);
+  /// Adds the way by which `time` (s) with as much too much or too little energy as the last judged
+  /// state has is ahead or behind, of the fastest point, which has `speed` (m/s).
+  void add_time(double time, double speed);
   /// Adds what `steps` steps like the last one leave in the balance of a scene that does not
   /// conserve energy: change of energy less `work`, and the size of that, J each.
   void add_balance(double excess, double work, long steps);
   /// Largest |sum of the excess| over the run, over the larger of the largest kinetic energy and
   /// the work so far; none without add_balance().
   [[nodiscard]] std::optional<double> imbalance_max() const { return so_far_.imbalance; }
-  /// Sum of what add_local_error() got and the farthest that the motion was ahead or behind, m.
-  [[nodiscard]] double local_error_sum() const;
+  /// The farthest that add_time() found the motion ahead or behind, m.
+  [[nodiscard]] double ahead_max() const;
   /// The velocity of `judged`, the last state, in the frame of feet that are carried along; n, m/s.
   [[nodiscard]] const std::vector<double>& velocity(const State& judged) const {
     return carriage_ ? moved_v_ : judged.v;
@@ -73,18 +71,14 @@ class Judge {
   /// The worst so far and what the next state is judged by, without the rest of the judge.
   struct Figures {
     std::vector<double> twists;  // of the torsion springs and torque laws, continued; rad
-    double energy_scale = 0.0;
-    double energy_difference = 0.0;                           // J, the largest size
-    double last_kinetic = 0.0, last_energy_difference = 0.0;  // J, of the last judged state
+    EnergyFigures energy;        // of the whole; its scale alone where that does not conserve it
     std::optional<double> position_error;
     double violation = 0.0;           // m^2, m
     double relative_violation = 0.0;  // as RunBounds
     bool off_branch = false;
-    double local_error = 0.0;                  // m
-    double ahead = 0.0, farthest_ahead = 0.0;  // m; farthest_ahead: the largest |ahead|
-    double excess = 0.0, work = 0.0;           // J
+    double excess = 0.0, work = 0.0;  // J
     std::optional<double> imbalance;
-    std::vector<PartEnergies::Figures> parts;  // where the whole does not conserve energy
+    std::vector<EnergyFigures> parts;  // where the whole does not conserve energy
   };
   [[nodiscard]] const Figures& figures() const { return so_far_; }
   /// Judges on from where another judge of the same run had these.
@@ -129,7 +123,6 @@ class Judge {
   std::optional<PartEnergies> parts_;      // where the whole does not conserve energy
   std::vector<double> frame_velocity_;     // n, m/s: 0 where feet rest
   std::vector<double> moved_q_, moved_v_;  // n, where they are carried
-  double initial_energy_ = 0.0;            // J
   double length_ = 1.0;                    // m
   Figures so_far_;
 };

@@ -41,8 +41,7 @@ JudgedRun::JudgedRun(const Scene& scene, const Variant& variant, const RunSettin
       judge_(scene, state_, 0.0),
       good_{0, state_, judge_.figures()},
       watch_(scene, state_, judge_.length(), !judge_.knows_exact_motion()),
-      keeps_shifts_(watch_.freedoms() > 1 && !watch_.has_loop()),
-      local_errors_(scene, judge_.length()),
+      local_errors_(scene, judge_.length(), watch_.passes_on()),
       adds_local_errors_(watch_.freedoms() > 0) {}
 
 void JudgedRun::begin(Access access) {
@@ -54,7 +53,7 @@ void JudgedRun::begin(Access access) {
     half_.emplace(scene_, variant_, *settings_.half_step, state_, judge_.length());
   }
   if (adds_local_errors_ && has_high_order(settings_.step.scheme)) {
-    local_half_.emplace(scene_, variant_, settings_.step, judge_.length());
+    local_half_.emplace(scene_, variant_, settings_.step);
   }
 }
 
@@ -213,16 +212,16 @@ void JudgedRun::add_local_errors() {
   const long steps = summary_.steps - good_.step;
   const double step = settings_.step.step;
   const std::vector<double>& v = judge_.velocity(state_);
-  off_.resize(v.size(), 0.0);
-  if (!local_half_) {  // the trapezoidal rule
+  off_.resize(v.size());
+  if (local_half_) {
+    off_ = local_half_->error(before_, state_);
+  } else {  // the trapezoidal rule
     for (std::size_t i = 0; i < off_.size(); ++i) {
       off_[i] = step * step / 12 * (state_.a[i] - before_.a[i]);
     }
   }
-  const double speed = keeps_shifts_ ? local_errors_.add_shift(off_, v, step, steps)
-                                     : local_errors_.add_lag(off_, v, steps);
-  judge_.add_local_error(local_half_ ? local_half_->error(before_, state_) : 0.0, speed, step,
-                         steps);
+  const double speed = local_errors_.add(off_, v, step, steps);
+  judge_.add_time(static_cast<double>(steps) * step, speed);
   fastest_ = std::max(fastest_, speed);
   add_speed_error();
 }
@@ -322,7 +321,7 @@ void JudgedRun::take_exception() {
 void JudgedRun::conclude() {
   is_over_ = true;
   if (adds_local_errors_) {
-    summary_.local_error_sum = judge_.local_error_sum() + local_errors_.sum();
+    summary_.local_error_sum = judge_.ahead_max() + local_errors_.sum();
   }
   const double share = static_cast<double>(summary_.steps_at_limit) / static_cast<double>(steps_);
   if (share > RunBounds{}.pass_limit_share) {

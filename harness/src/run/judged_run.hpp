@@ -92,7 +92,6 @@ class JudgedRun {
   Judge judge_;
   LastGood good_;
   BranchWatch watch_;
-  bool keeps_shifts_;                    // freedoms pass energy on to each other
   std::optional<PowerBalance> balance_;  // where energy is not conserved
   long judgements_ = 0, balanced_ = 0;   // balanced_: step
   std::optional<StepAgain> again_;       // of the trapezoidal forms

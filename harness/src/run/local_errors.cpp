@@ -16,38 +16,41 @@ auto entries_of(std::span<const double> x) {
 
 }  // namespace
 
-LocalErrors::LocalErrors(const Scene& scene, double length) : scene_(scene), length_(length) {
-  const auto is_free = [](const Point& point) { return !point.is_fixed(); };
-  points_.resize(static_cast<std::size_t>(std::ranges::count_if(scene.model.points(), is_free)) +
-                 scene.elements.markers.size());
-}
-
-double LocalErrors::add_lag(std::span<const double> off, std::span<const double> v, long steps) {
-  double fastest = 0.0;
-  auto point = points_.begin();
-  const auto add = [&](const Vector3& error, const Vector3& velocity) {
-    Sums& sums = *point++;
-    const double speed = std::sqrt(dot(velocity, velocity));
-    if (speed == 0.0) return;  // a NaN goes on
-    sums.lag += static_cast<double>(steps) * std::abs(dot(error, velocity)) / speed;
-    fastest = std::max(fastest, speed);
+LocalErrors::LocalErrors(const Scene& scene, double length, const std::vector<bool>& passes_on)
+    : scene_(scene), length_(length) {
+  if (passes_on.empty()) return;
+  const auto points = scene.model.points();
+  const auto is_of_such = [&](const Point& point) {
+    return !point.is_fixed() && passes_on[static_cast<std::size_t>(point.offset)];
   };
-  for_each_point(scene_, length_, add, entries_of(off), entries_of(v));
-  return fastest;
+  for (const Point& point : points) {
+    if (!point.is_fixed()) points_.push_back({.passes_on = is_of_such(point)});
+  }
+  for (const Marker& marker : scene.elements.markers) {
+    const auto is_on_such = [&](const Marker::Part& part) {
+      return is_of_such(points[static_cast<std::size_t>(part.point)]);
+    };
+    points_.push_back({.passes_on = std::ranges::any_of(marker.parts, is_on_such)});
+  }
 }
 
-double LocalErrors::add_shift(std::span<const double> off, std::span<const double> v, double step,
-                              long steps) {
-  const double time = static_cast<double>(steps) * step;
+double LocalErrors::add(std::span<const double> off, std::span<const double> v, double step,
+                        long steps) {
+  const double more = static_cast<double>(steps), time = more * step;
   time_ += time;
   double fastest = 0.0;  // squared
   auto point = points_.begin();
   const auto add = [&](const Vector3& error, const Vector3& velocity) {
     Sums& sums = *point++;
-    const double squared = dot(error, error);
-    sums.lag += static_cast<double>(steps) * std::sqrt(squared);  // a NaN goes on
-    sums.shift += time * squared / (step * step);
-    fastest = std::max(fastest, dot(velocity, velocity));
+    const double squared = dot(velocity, velocity);
+    fastest = std::max(fastest, squared);
+    if (sums.passes_on) {  // errors across the way too; a NaN goes on
+      const double whole = dot(error, error);
+      sums.lag += more * std::sqrt(whole);
+      sums.shift += time * whole / (step * step);
+    } else if (squared != 0.0) {
+      sums.lag += more * std::abs(dot(error, velocity)) / std::sqrt(squared);
+    }
   };
   for_each_point(scene_, length_, add, entries_of(off), entries_of(v));
   return std::sqrt(fastest);

@@ -13,8 +13,8 @@ namespace mbs {
 /// away if they leave one freedom. A point is off by the sum of its lags and by the way that a
 /// wrong speed goes:
 ///
-///   lag  = sum of |off . v|/|v|, or of |off|             m
-///   way of shifts = t sqrt(mean of |off/dt|^2)           m
+///   lag  = sum of |off . v|/|v|, or of |off| where freedoms pass energy on to each other   m
+///   way of shifts = t sqrt(mean of |off/dt|^2), there    m
 ///   gain of v^2/2 by the lesser of now . v and later . v, if their signs agree, m^2/s^2
 ///   way  = sum of dt gain/|v|, at most dt |v|            m
 ///
@@ -22,23 +22,22 @@ namespace mbs {
 /// and root mean square r, gain N max(0, |x| - 2 r/sqrt(m)) + r sqrt(N): their mean, as far as that
 /// is no chance, and a random walk. Dampers take gains away as they take energy.
 ///
-///   LocalErrors errors(scene, judged_length(scene.model));
-///   errors.add_lag(off, v, 64);              // 64 steps like this one
+///   LocalErrors errors(scene, judged_length(scene.model), watch.passes_on());
+///   errors.add(off, v, 1.25e-3, 64);         // 64 steps like this one
 ///   errors.add_speed(again.error(before, after), v, 1.25e-3, 512, 0.0);
 ///   double sum = errors.sum();
 class LocalErrors {
  public:
-  /// `scene` must outlive this; unit vectors count as `length` (m) long.
-  LocalErrors(const Scene& scene, double length);
+  /// `scene` must outlive this; unit vectors count as `length` (m) long. `passes_on`: of each
+  /// coordinate, as ClosedParts; nothing is added if it is empty.
+  LocalErrors(const Scene& scene, double length, const std::vector<bool>& passes_on);
 
-  /// `steps` steps that each left the positions `off` (n, m) at the velocity `v` (n, m/s). Returns
-  /// the speed of the fastest point, m/s.
-  double add_lag(std::span<const double> off, std::span<const double> v, long steps);
-  /// The same for steps of `step` (s) of a motion with more freedoms. A rule that leaves `off` in a
-  /// step also shifts the speed by off/step. With one freedom the shift comes back with the motion,
-  /// or energy shows it. Freedoms that pass energy on to each other keep some of it, about its root
-  /// mean square.
-  double add_shift(std::span<const double> off, std::span<const double> v, double step, long steps);
+  /// `steps` steps of `step` (s) that each left the positions `off` (n, m) at the velocity `v` (n,
+  /// m/s). Returns the speed of the fastest point, m/s. A rule that leaves `off` in a step also
+  /// shifts the speed by off/step. With one freedom the shift comes back with the motion, or energy
+  /// shows it. Freedoms that pass energy on to each other keep some of it, about its root mean
+  /// square.
+  double add(std::span<const double> off, std::span<const double> v, double step, long steps);
   /// `steps` steps of `step` (s) that each left the velocity too high by `error` while dampers took
   /// `braked` (1/s) of the kinetic energy.
   void add_speed(const SpeedError& error, std::span<const double> v, double step, long steps,
@@ -49,6 +48,7 @@ class LocalErrors {
 
  private:
   struct Sums {
+    bool passes_on = false;
     double lag = 0.0, way = 0.0;
     double gain = 0.0, gain_squared = 0.0;  // of samples
     double shift = 0.0;                     // sum of dt |off/dt|^2, m^2/s

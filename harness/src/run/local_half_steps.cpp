@@ -5,7 +5,6 @@
 
 #include "registry/factory.hpp"
 #include "run/half_step_run.hpp"
-#include "run/scene_distance.hpp"
 
 namespace mbs {
 namespace {
@@ -20,21 +19,21 @@ StepSettings halved(StepSettings settings) {
 }  // namespace
 
 LocalHalfSteps::LocalHalfSteps(const Scene& scene, const Variant& variant,
-                               const StepSettings& settings, double length)
-    : scene_(scene),
-      simulation_(create_simulation(variant, scene.model, halved(settings))),
-      length_(length),
+                               const StepSettings& settings)
+    : simulation_(create_simulation(variant, scene.model, halved(settings))),
       factor_(richardson_factor(settings.scheme)) {}
 
-double LocalHalfSteps::error(const State& before, const State& after) {
+const std::vector<double>& LocalHalfSteps::error(const State& before, const State& after) {
   simulation_->set_state(before);
+  double factor = factor_;
   for (int i = 0; i < 2; ++i) {
-    if (simulation_->step().status == StepStatus::factorization_failed) {
-      return std::numeric_limits<double>::infinity();
-    }
+    if (simulation_->step().status == StepStatus::factorization_failed)
+      factor = std::numeric_limits<double>::quiet_NaN();
   }
   simulation_->get_state(state_);
-  return factor_ * largest_distance(scene_, length_, after.q, state_.q);
+  error_.resize(state_.q.size());
+  for (std::size_t i = 0; i < error_.size(); ++i) error_[i] = factor * (after.q[i] - state_.q[i]);
+  return error_;
 }
 
 }  // namespace mbs

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "registry/registry.hpp"
 #include "scene/scene.hpp"
@@ -12,20 +13,18 @@ namespace mbs {
 /// leaves 2^p / (2^p - 1) times the difference to two half steps.
 class LocalHalfSteps {
  public:
-  /// `settings` are those of the whole step, unit vectors count as `length` (m) long. `scene` must
-  /// outlive this.
-  LocalHalfSteps(const Scene& scene, const Variant& variant, const StepSettings& settings,
-                 double length);
+  /// `settings` are those of the whole step.
+  LocalHalfSteps(const Scene& scene, const Variant& variant, const StepSettings& settings);
 
-  /// Largest distance of a point, m; `after` is one step after `before`.
-  [[nodiscard]] double error(const State& before, const State& after);
+  /// What the step from `before` to `after` left of q, n, m. Not finite where the half steps could
+  /// not be done.
+  const std::vector<double>& error(const State& before, const State& after);
 
  private:
-  const Scene& scene_;
   std::unique_ptr<Simulation> simulation_;
   State state_;
-  double length_;  // of unit vectors, m
   double factor_;
+  std::vector<double> error_;
 };
 
 }  // namespace mbs

@@ -3,94 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
+#include "model_math/connected_parts.hpp"
 #include "model_math/kinematics.hpp"
 
 namespace mbs {
 namespace {
-
-/// Which points are of one part. All driven points are of one, which other fixed points join none.
-class Groups {
- public:
-  explicit Groups(const Model& model) : model_(model), leader_(model.points().size() + 1) {
-    std::iota(leader_.begin(), leader_.end(), 0);
-    is_driven_.resize(model.points().size(), false);
-    for (const DrivenPoint& driven : model.driven_points()) is_driven_[at(driven.point)] = true;
-    point_at_.resize(at(model.variables()) / dimension());
-    for (std::size_t p = 0; p < model.points().size(); ++p) {
-      const int offset = model.points()[p].offset;
-      if (offset >= 0) point_at_[at(offset) / dimension()] = static_cast<int>(p);
-    }
-    std::vector<bool> is_driven_row(at(model.constraints()), false);
-    for (const DrivenValue& value : model.driven_values())
-      is_driven_row[at(value.constraint)] = true;
-    std::size_t row = 0;
-    const auto quadratic = [&](const auto& c) {
-      join({c.a, c.b, c.c, c.d});
-      if (is_driven_row[row++]) drive({c.a, c.b, c.c, c.d});
-    };
-    for (const auto& c : model.dot_constraints()) quadratic(c);
-    for (const auto& c : model.bilinear_constraints()) quadratic(c);
-    for (const LinearConstraint& c : model.linear_constraints()) {
-      for (const auto& term : c.terms) {
-        join({owner(c.terms.front().coordinate), owner(term.coordinate)});
-        if (is_driven_row[row]) drive({owner(term.coordinate)});
-      }
-      ++row;
-    }
-    for (const MassEntry& entry : model.mass()) join({owner(entry.row), owner(entry.col)});
-    for (const DrivenMass& mass : model.driven_mass()) drive({owner(mass.coordinate)});
-    const auto on_line = [&](const auto& one) { join({one.a, one.b}); };
-    const auto about_axis = [&](const auto& one) { join({one.a, one.b, one.c, one.d, one.axis}); };
-    std::ranges::for_each(model.springs(), on_line);
-    std::ranges::for_each(model.force_laws(), on_line);
-    std::ranges::for_each(model.torsion_springs(), about_axis);
-    std::ranges::for_each(model.torque_laws(), about_axis);
-    for (const Couple& couple : model.couples()) join({couple.a, couple.b, couple.axis});
-  }
-
-  /// Free points of each part that no driver touches.
-  [[nodiscard]] std::vector<std::vector<int>> undriven() {
-    std::vector<std::vector<int>> members(leader_.size());
-    for (const int point : point_at_) members[at(find(point))].push_back(point);
-    members[at(find(driver()))].clear();
-    std::erase_if(members, [](const auto& one) { return one.empty(); });
-    return members;
-  }
-
- private:
-  static std::size_t at(int index) { return static_cast<std::size_t>(index); }
-  [[nodiscard]] std::size_t dimension() const { return at(model_.dimension()); }
-  [[nodiscard]] int driver() const { return static_cast<int>(leader_.size()) - 1; }
-  [[nodiscard]] int owner(int coordinate) const { return point_at_[at(coordinate) / dimension()]; }
-
-  int find(int point) {
-    while (leader_[at(point)] != point)
-      point = leader_[at(point)] = leader_[at(leader_[at(point)])];
-    return point;
-  }
-  void drive(std::initializer_list<int> points) {
-    for (const int point : points) {
-      if (!model_.points()[at(point)].is_fixed()) leader_[at(find(point))] = find(driver());
-    }
-  }
-  void join(std::initializer_list<int> points) {
-    int first = -1;
-    for (const int point : points) {
-      if (point < 0 || (model_.points()[at(point)].is_fixed() && !is_driven_[at(point)])) continue;
-      const int leader = find(is_driven_[at(point)] ? driver() : point);
-      if (first < 0) first = leader;
-      leader_[at(leader)] = find(first);
-    }
-  }
-
-  const Model& model_;
-  std::vector<int> leader_;  // of points; last: what drivers move
-  std::vector<bool> is_driven_;
-  std::vector<int> point_at_;  // of each free point, in the order of q
-};
 
 /// Of `members` alone, which no element joins to others.
 Model model_of(const Model& whole, const std::vector<int>& members, std::vector<int>& cols) {
@@ -142,6 +61,30 @@ Model model_of(const Model& whole, const std::vector<int>& members, std::vector<
   return Model(std::move(data));
 }
 
+/// Whether what depends on the rate is always against it, the straight ends included.
+bool is_against_rate(const Law& law) {
+  if (!law.factor.is_constant()) return false;
+  const Curve& curve = law.by_rate;
+  double largest = 0.0;
+  for (const double rate : curve.breaks) largest = std::max(largest, std::abs(rate));
+  const double factor = law.factor.at(0.0).value, far = 1e6 * largest;
+  const auto force = [&](double rate) { return factor * curve.at(rate).value; };
+  const double rounding = 1e-9 * (std::abs(force(largest)) + std::abs(force(-largest)));
+  const auto is_against = [&](double rate) { return force(rate) * rate >= 0.0; };
+  return std::abs(force(0.0)) <= rounding && std::ranges::all_of(curve.breaks, is_against) &&
+         is_against(far) && is_against(-far);
+}
+
+/// Whether nothing but dampers changes the energy, which never grows then.
+bool never_gains(const Model& model) {
+  const auto is_damper = [](const auto& spring) { return spring.damping >= 0.0; };
+  const auto is_brake = [](const auto& law) { return is_against_rate(law.law); };
+  return std::ranges::all_of(model.springs(), is_damper) &&
+         std::ranges::all_of(model.torsion_springs(), is_damper) &&
+         std::ranges::all_of(model.force_laws(), is_brake) &&
+         std::ranges::all_of(model.torque_laws(), is_brake) && model.couples().empty();
+}
+
 }  // namespace
 
 double least_energy_scale(const Model& model, const std::vector<double>& q, double potential,
@@ -156,16 +99,37 @@ double least_energy_scale(const Model& model, const std::vector<double>& q, doub
   return std::max(1e-3 * (force * size + std::max(in_springs, 0.0)), rest);
 }
 
+void EnergyFigures::judge(double kinetic_now, double potential_now, bool loses) {
+  kinetic = kinetic_now;
+  scale = std::max(scale, kinetic);
+  double off = kinetic + potential_now - reference;
+  if (!loses) {
+    excess = off;
+  } else if (off < 0.0) {
+    reference += off;
+    off = 0.0;
+  }
+  // Not std::max, which would drop a NaN.
+  if (!(std::abs(off) <= farthest)) farthest = std::isnan(off) ? HUGE_VAL : std::abs(off);
+}
+
+void EnergyFigures::add(double time) {
+  if (!(kinetic > 0.0)) return;
+  ahead += time * speed * (std::sqrt(std::max(1 + excess / kinetic, 0.0)) - 1);
+  farthest_ahead = std::max(farthest_ahead, std::abs(ahead));
+}
+
 PartEnergies::PartEnergies(const Model& model, const State& initial, double start, double size) {
-  for (const std::vector<int>& members : Groups(model).undriven()) {
+  for (const std::vector<int>& members : ConnectedParts(model).undriven()) {
     std::vector<int> cols;
     Model own = model_of(model, members, cols);
-    if (!is_conservative(own)) continue;
-    Part part{std::move(own), std::move(cols), {}, {}};
+    if (!never_gains(own)) continue;
+    const bool loses = !is_conservative(own);
+    Part part{std::move(own), std::move(cols), loses, {}, {}};
     take(initial, part);
     const double potential = potential_energy(part.model, start, part.q);
-    part.energy = kinetic_energy(part.model, part.v) + potential;
-    start_.push_back({.scale = least_energy_scale(part.model, part.q, potential, size)});
+    start_.push_back({.reference = kinetic_energy(part.model, part.v) + potential,
+                      .scale = least_energy_scale(part.model, part.q, potential, size)});
     parts_.push_back(std::move(part));
   }
 }
@@ -179,16 +143,12 @@ void PartEnergies::take(const State& state, Part& part) {
   }
 }
 
-void PartEnergies::judge(double t, const State& state, std::vector<Figures>& figures) {
+void PartEnergies::judge(double t, const State& state, std::vector<EnergyFigures>& figures) {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Part& part = parts_[i];
-    Figures& found = figures[i];
     take(state, part);
-    found.kinetic = kinetic_energy(part.model, part.v);
-    found.difference = found.kinetic + potential_energy(part.model, t, part.q) - part.energy;
-    found.scale = std::max(found.scale, found.kinetic);
-    const double drift = std::abs(found.difference) / found.scale;
-    if (!(drift <= found.drift)) found.drift = std::isnan(drift) ? HUGE_VAL : drift;
+    figures[i].judge(kinetic_energy(part.model, part.v), potential_energy(part.model, t, part.q),
+                     part.loses);
     const auto dimension = static_cast<std::size_t>(part.model.dimension());
     double fastest = 0.0;  // squared
     for (std::size_t k = 0; k < part.v.size(); k += dimension) {
@@ -197,16 +157,7 @@ void PartEnergies::judge(double t, const State& state, std::vector<Figures>& fig
         squared += part.v[k + axis] * part.v[k + axis];
       fastest = std::max(fastest, squared);
     }
-    found.speed = std::sqrt(fastest);
-  }
-}
-
-void PartEnergies::add(double step, long steps, std::vector<Figures>& figures) {
-  for (Figures& part : figures) {
-    if (!(part.kinetic > 0.0)) continue;
-    const double energy = std::max(1 + part.difference / part.kinetic, 0.0);
-    part.ahead += static_cast<double>(steps) * step * part.speed * (std::sqrt(energy) - 1);
-    part.farthest_ahead = std::max(part.farthest_ahead, std::abs(part.ahead));
+    figures[i].speed = std::sqrt(fastest);
   }
 }
 
