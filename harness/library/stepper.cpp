@@ -86,7 +86,9 @@ StepSettings chosen_settings(const Scene& scene, StepSettings settings) {
   require_combination(settings);
   if (settings.penalty == 0.0) settings.penalty = automatic_penalty(scene.model, settings);
   if (settings.tolerance == 0.0) settings.tolerance = automatic_tolerance(scene.model, settings);
-  RunSettings first{settings, settings.step};
+  RunSettings first;
+  first.step = settings;
+  first.duration = settings.step;
   require_duration(scene, first);
   return settings;
 }

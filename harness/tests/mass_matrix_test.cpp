@@ -47,7 +47,9 @@ TEST(MassMatrix, MayCoupleAxes) {
   double found = 0.0;
   for (const MassEntry& entry : data.model.mass) {
     if (entry.row == 3 && entry.col == 0) found = entry.value;
-    if (entry.row == 2 && entry.col == 1) EXPECT_EQ(entry.value, -0.5);
+    if (entry.row == 2 && entry.col == 1) {
+      EXPECT_EQ(entry.value, -0.5);
+    }
   }
   EXPECT_EQ(found, 0.5);
 }

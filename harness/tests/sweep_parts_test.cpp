@@ -24,8 +24,8 @@ const std::string kLanes =
 class SweepParts : public ::testing::Test {
  protected:
   /// `before`: what the shell does first.
-  [[nodiscard]] test::ProgramResult sweep(const std::string& arguments, const std::string& output,
-                                          const std::string& variant = "batch/lost_lane",
+  test::ProgramResult sweep(const std::string& arguments, const std::string& output,
+                            const std::string& variant = "batch/lost_lane",
                                           const std::string& before = "") const {
     return test::run_program(MBS_CONTROLS, "sweep --implementation " + variant + " --output '" +
                                                at(output) + "' " + arguments, before);
