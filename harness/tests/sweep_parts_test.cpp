@@ -26,7 +26,7 @@ class SweepParts : public ::testing::Test {
   /// `before`: what the shell does first.
   test::ProgramResult sweep(const std::string& arguments, const std::string& output,
                             const std::string& variant = "batch/lost_lane",
-                                          const std::string& before = "") const {
+                            const std::string& before = "") const {
     return test::run_program(MBS_CONTROLS, "sweep --implementation " + variant + " --output '" +
                                                at(output) + "' " + arguments, before);
   }
