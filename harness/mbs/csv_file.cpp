@@ -2,8 +2,7 @@
 #include "mbs/csv_file.hpp"
 
 #include <fmt/format.h>
-
-#include <iterator>
+#include <fmt/ranges.h>
 
 namespace mbs {
 namespace {
@@ -33,17 +32,10 @@ std::string csv_line(std::span<const std::string> row) {
   return line + '\n';
 }
 
-void CsvFile::write(std::span<const std::string> row) { file_.stream() << csv_line(row); }
+void CsvFile::write(std::span<const std::string> row) { file_.write(csv_line(row)); }
 
 void CsvFile::write(std::span<const double> row) {
-  fmt::memory_buffer text;
-  auto out = std::back_inserter(text);
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    if (i > 0) text.push_back(',');
-    fmt::format_to(out, "{}", row[i]);
-  }
-  text.push_back('\n');
-  file_.stream().write(text.data(), static_cast<std::streamsize>(text.size()));
+  file_.write(fmt::format("{}\n", fmt::join(row, ",")));
 }
 
 }  // namespace mbs

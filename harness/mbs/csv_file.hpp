@@ -1,11 +1,11 @@
-// Tables as CSV, which appear whole or not at all.
+// Tables as CSV, which appear whole or not at all; compressed where the name ends in ".gz".
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
 
-#include "atomic_file.hpp"
+#include "mbs/table_file.hpp"
 
 namespace mbs {
 
@@ -24,7 +24,7 @@ class CsvFile {
   void commit() { file_.commit(); }
 
  private:
-  AtomicFile file_;
+  TableFile file_;
 };
 
 }  // namespace mbs

@@ -98,6 +98,15 @@ TEST_F(SimulateOutput, WritesBothTables) {
   }
 }
 
+TEST_F(SimulateOutput, CompressesWhatEndsInGz) {
+  for (const char* name : {"all.csv", "all.csv.gz"}) {
+    ASSERT_EQ(simulate(scene() + " --duration 1" + to("--trajectory", name)).status, 0);
+  }
+  const std::string plain = test::file_text(folder_.file("all.csv"));
+  EXPECT_EQ(test::run_program("zcat", "'" + folder_.file("all.csv.gz") + "'").output, plain);
+  EXPECT_LT(test::file_text(folder_.file("all.csv.gz")).size(), plain.size() / 2);
+}
+
 TEST_F(SimulateOutput, SaysWhatTheStartNeeded) {
   const auto run = simulate(scene() + " --duration 0.01 --json");
   ASSERT_EQ(run.status, 0) << run.errors;
