@@ -237,14 +237,15 @@ ClosedParts closed_parts(const Model& model, const std::vector<double>& q, int l
     result.driven = sorted(std::move(result.driven));
   }
   pattern.take_off_hanging();
+  std::vector<bool> has_loop(freedoms.size());
   for (ConstraintBlock& piece : pattern.pieces(loose)) {
     const std::size_t size = piece.rows.size();
     if (size == 0 || size > most || piece.cols.size() != size + 1) continue;
-    for (int col = 0; size > 1 && col < cols; ++col) {
-      if (part_of(col) == part_of(piece.cols.front()))
-        result.passes_on[static_cast<std::size_t>(col)] = false;
-    }
+    if (size > 1) has_loop[part_of(piece.cols.front())] = true;
     result.free.push_back(sorted(std::move(piece)));
+  }
+  for (int col = 0; col < cols; ++col) {
+    if (has_loop[part_of(col)]) result.passes_on[static_cast<std::size_t>(col)] = false;
   }
   return result;
 }

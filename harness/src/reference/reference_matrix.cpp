@@ -73,12 +73,7 @@ void ReferenceSimulation::set_up_matrix() {
   for (const DotConstraint& c : model_.dot_constraints()) {
     constraints.push_back(coordinates({c.a, c.b, c.c, c.d}));
     firm.push_back({constraints.back()});
-    if (c.a == c.c && c.b == c.d) {  // a distance, which is never small
-      firm.back().clear();
-      for (const int point : {c.a, c.b}) {
-        if (offset(point) >= 0) firm.back().push_back(coordinates({point}));
-      }
-    }
+    if (c.a == c.c && c.b == c.d) firm.back() = {coordinates({c.a}), coordinates({c.b})};  // distance
   }
   for (const BilinearConstraint& c : model_.bilinear_constraints()) {
     constraints.push_back(coordinates({c.a, c.b, c.c, c.d}));
@@ -161,7 +156,9 @@ std::vector<int> ReferenceSimulation::places(
   for (int i = 0; i < n_; ++i) order.emplace_back(i, 0);
   for (int k = 0; is_saddle() && k < m_; ++k) {
     int after = n_ - 1;
-    for (const auto& group : groups[k]) after = std::min(after, last_of(group));
+    for (const auto& group : groups[k]) {
+      if (!group.empty()) after = std::min(after, last_of(group));
+    }
     order.emplace_back(after, 1 + k);
   }
   std::sort(order.begin(), order.end());

@@ -55,15 +55,6 @@ struct Pair {
   Place aa = {}, bb = {}, ba = {};
 };
 
-/// += s g gᵀ at (a, a) and (b, b), its negative between them; `free`: how many points are.
-template <int D, typename F, typename S>
-void add_pair(F* matrix, const Pair& pair, int free, const S& s, const S* g) {
-  if (free == 0) return;
-  add_square<D>(matrix, pair.aa, s, g);
-  if (free == 1) return;
-  add_square<D>(matrix, pair.bb, s, g);
-  add_outer<D>(matrix, pair.ba, -s, g, g);
-}
 /// += sum, rows and columns of one block; `lower`: its lower triangle.
 template <int D, bool lower, typename F, typename S>
 void add_block(F* matrix, const Place& place, const S (&sum)[D][D]) {
@@ -72,13 +63,16 @@ void add_block(F* matrix, const Place& place, const S (&sum)[D][D]) {
     for (int i = lower ? j : 0; i < D; ++i) column[i] += static_cast<F>(sum[j][i]);
   }
 }
-/// += s g gᵀ + p I likewise, with no entry taken up twice.
-template <int D, typename F, typename S>
-void add_pair(F* matrix, const Pair& pair, int free, const S& s, const S* g, const S& p) {
+
+/// += s g gᵀ + p I (p: none or one number) at (a, a) and (b, b), its negative between them; `free`:
+/// how many points are. No entry is taken up twice.
+template <int D, typename F, typename S, typename... P>
+void add_pair(F* matrix, const Pair& pair, int free, const S& s, const S* g, const P&... p) {
   if (free == 0) return;
   S sum[D][D];
   for (int j = 0; j < D; ++j) {
-    for (int i = 0; i < D; ++i) sum[j][i] = s * g[j] * g[i] + (i == j ? p : S(0.0));
+    for (int i = 0; i < D; ++i) sum[j][i] = s * g[j] * g[i];
+    ((sum[j][j] += p), ...);
   }
   add_block<D, true>(matrix, pair.aa, sum);
   if (free == 1) return;
@@ -88,7 +82,7 @@ void add_pair(F* matrix, const Pair& pair, int free, const S& s, const S* g, con
   }
   add_block<D, false>(matrix, pair.ba, sum);
 }
-/// += p I likewise.
+/// += p I likewise, without g.
 template <int D, typename F, typename S>
 void add_pair_identity(F* matrix, const Pair& pair, int free, const S& p) {
   if (free == 0) return;
