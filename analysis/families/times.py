@@ -11,7 +11,7 @@ OF_A_PASS = {  # by form and whether the implementation's matrices are dense
     ("penalty", False): "1 n jacobian tangent factor flops supernodes",
     ("penalty", True): "1 n jacobian n*n n*n*n",
     ("saddle-point", False): "1 n jacobian saddle_factor saddle_flops",
-    ("saddle-point", True): "1 n jacobian n*m m*m*m n*n*m n*m*m stiff*n*n*n"}
+    ("saddle-point", True): "1 n jacobian n*n n*m m*m m*m*m n*n*m n*m*m stiff*n*n*n"}
 TERMS = {(form, dense): tuple(f"{PASSES[form]}*{term}" for term in terms.split()) for (form, dense), terms in OF_A_PASS.items()}
 ROUNDS = 8  # of weights
 
