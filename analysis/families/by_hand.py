@@ -8,8 +8,8 @@ from itertools import permutations
 import numpy
 import pandas
 
-NUMBERS = {"penalty": ("per_column", "n"), "saddle-point": ("dense", "n")}
-SHOWN = ("per_column", "dense", "n")
+NUMBERS = {"penalty": ("per_column", "n"), "saddle-point": ("dense", "rows")}
+SHOWN = ("per_column", "dense", "n", "rows")
 EVERYWHERE = dict.fromkeys(SHOWN, (-numpy.inf, numpy.inf))  # from, below
 
 

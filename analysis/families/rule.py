@@ -191,6 +191,7 @@ class _Data:
         self.registry, known = registry, tables["mechanisms"].set_index("scene")
         complete = known[known[list(FEATURES)].notna().all(axis=1)]
         self.features, self.record = complete[list(dict.fromkeys((*FEATURES, *ALONE)))].astype(float), complete.record
+        self.features["rows"] = self.features.n + self.features.m  # of the matrix of Eq. (12)
         self.us, self.losses, self.known_by, self.usual = {}, {}, {}, {}
         shapes = {scene: shape(scene) for scene in known.sort_values("n").index}
         for scheme, rows in tables["scenes"][tables["scenes"].scene.isin(complete.index)].groupby("scheme", sort=False):
