@@ -54,6 +54,7 @@ Value as(const char* name, const py::object& given) {
   try {
     return given.cast<Value>();
   } catch (const py::cast_error&) {
+  } catch (const py::reference_cast_error&) {  // None
   } catch (const py::error_already_set&) {  // numpy's own
   }
   throw mbs::Refused(std::string(name) + ": found " + type_name(py::type::of(given)) +
@@ -154,6 +155,14 @@ std::pair<long, long> counts(const py::object& of_steps, const py::object& of_ev
   return {steps, every};
 }
 
+py::array_t<double> table_of(const std::vector<py::ssize_t>& shape) {
+  try {
+    return py::array_t<double>(shape);
+  } catch (const py::error_already_set&) {  // numpy's own
+    throw mbs::Refused("steps: their table does not fit memory; every= keeps fewer rows");
+  }
+}
+
 /// Rows of (t, outputs...) after every `every`-th of `steps` steps, fewer where a step's
 /// factorization fails; and how many steps ended at the pass limit.
 py::tuple run(mbs::Stepper& self, const py::object& of_steps, const py::object& of_every,
@@ -163,7 +172,7 @@ py::tuple run(mbs::Stepper& self, const py::object& of_steps, const py::object& 
   if (!inputs.is_none()) given = as<Array>("inputs", inputs);
   InputRows rows(given, steps, self.input_names().size());
   const auto columns = static_cast<py::ssize_t>(self.output_names().size() + 1);
-  py::array_t<double> table({static_cast<py::ssize_t>(steps / every), columns});
+  py::array_t<double> table = table_of({static_cast<py::ssize_t>(steps / every), columns});
   double* place = table.mutable_data();
   py::ssize_t written = 0;
   long at_limit = 0;
@@ -189,7 +198,7 @@ py::array run_lanes(mbs::BatchStepper& self, const py::object& of_steps,
   const auto [steps, every] = counts(of_steps, of_every);
   const auto columns = static_cast<py::ssize_t>(self.output_names().size() + 1);
   const py::ssize_t rows = steps / every, lanes = self.lanes();
-  py::array_t<double> table({lanes, rows, columns});
+  py::array_t<double> table = table_of({lanes, rows, columns});
   double* first = table.mutable_data();
   {
     const py::gil_scoped_release others_may_run;

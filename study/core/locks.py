@@ -49,9 +49,13 @@ def _hold(path, held, seconds, tell=lambda text: None):
     try:
         end, told = time.monotonic() + seconds, False
         while True:
-            with contextlib.suppress(BlockingIOError):
+            try:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 break
+            except BlockingIOError:
+                pass
+            except OSError as error:  # not every network file system has locks
+                raise StudyError(f"cannot lock {path}: {error.strerror}") from error
             if time.monotonic() >= end:
                 raise StudyError(held)
             if not told:

@@ -1,4 +1,5 @@
 # The common layer: cells and their identity, records and their digests, the lab, schemas, sets, locks, profiles.
+import errno
 import fnmatch
 import json
 import math
@@ -702,6 +703,15 @@ def test_locks_are_held_once_and_waited_for(tmp_path, monkeypatch):
         order.append("first")
     thread.join(timeout=10)
     assert order == ["first", "second"] and told == ["waiting until another study is done"]
+
+
+def test_a_file_system_without_locks_is_not_taken_for_another_study(tmp_path, monkeypatch):
+    def none(file, how):
+        raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(locks.fcntl, "flock", none)
+    with pytest.raises(StudyError, match="cannot lock .*: No locks available"), locks.only_one_study():
+        pass
 
 
 def test_a_busy_machine_is_said_when_a_study_begins(tmp_path, monkeypatch):

@@ -177,6 +177,8 @@ wrong = {
     "found 0 steps": lambda: stepper.step(0), "steps: found float": lambda: stepper.step(1.5),
     "steps: found -1": lambda: stepper.run(-1), "every: found 0": lambda: stepper.run(1, every=0),
     "inputs: found list": lambda: stepper.run(1, inputs=[["x"] * 6]), "input 'wind'": lambda: stepper.run(10, inputs=rows),
+    "steps: their table does not fit memory": lambda: stepper.run(2**62), "duration: found 1e+308": lambda: mbs.simulate(car, 1e308),
+    "moment: found NoneType": lambda: stepper.restore(None),
     "moment: found str": lambda: stepper.restore("x"), "what was saved is of another scene": lambda: four_bar.restore(moment),
     "bodies/body/mass: found nan": lambda: car.__setitem__("bodies/body/mass", nan),
     "found lane 2": lambda: mbs.BatchStepper(two).set(2, "wind", 0.0),

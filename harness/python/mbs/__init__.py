@@ -53,6 +53,8 @@ def simulate_all(scenes, duration, implementation="auto", *, every=1, threads=1,
 def _steps(duration, dt):
     if not isinstance(duration, numbers.Real) or not 0 <= duration < math.inf:
         raise Refused(f"duration: found {duration!r}, allowed is a number of seconds, 0 or more")
+    if duration / dt > 2**53:
+        raise Refused(f"duration: found {duration!r}, allowed are at most 2**53 steps of {dt!r} s")
     return round(duration / dt)
 
 

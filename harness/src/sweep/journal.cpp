@@ -66,7 +66,9 @@ Journal::Journal(const std::string& path, const nlohmann::json& head) : path_(pa
   const int file = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (file < 0) fail(std::strerror(errno));
   file_.reset(::fdopen(file, "w"));
-  if (::flock(file, LOCK_EX | LOCK_NB) != 0) fail("another mbs sweep is writing it");
+  if (::flock(file, LOCK_EX | LOCK_NB) != 0) {
+    fail(errno == EWOULDBLOCK ? "another mbs sweep is writing it" : std::strerror(errno));
+  }
   input_.open(path_, std::ios::binary);  // locked first: nothing is added to what is read
   if (!input_) fail(std::strerror(errno));
   if (read_head()) {
