@@ -44,10 +44,9 @@ void take_probe(ReferenceSimulation& reference, const Model& model, Probe& probe
   probe.jacobian_norm = row_sum_norm(model, probe.before);
 }
 
-ReferenceRun run_reference(const Scene& scene, const StepSettings& settings) {
-  constexpr int kSteps = 800;
+ReferenceRun run_reference(const Scene& scene, const StepSettings& settings, int most) {
   constexpr int kProbes = 5;
-  const int most = std::clamp(400'000 / std::max(scene.model.variables(), 1), 16, kSteps);
+  most = std::clamp(400'000 / std::max(scene.model.variables(), 1), 16, most);
   ReferenceRun result;
   result.stretch = make_stretch(scene, settings.step, most, std::nullopt, settings.scheme);
   const int steps = result.stretch.steps;

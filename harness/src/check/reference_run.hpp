@@ -31,9 +31,9 @@ struct ReferenceRun {
 /// Does the step of `probe.before` by `reference`, a simulation of `model`.
 void take_probe(ReferenceSimulation& reference, const Model& model, Probe& probe);
 
-/// Runs the reference over the stretch of `scene`: 800 steps, fewer from 500 variables up so that
-/// its cost stays bounded, never fewer than 16. Throws UsageError if the reference itself fails,
-/// since then nothing can be checked with these settings.
-ReferenceRun run_reference(const Scene& scene, const StepSettings& settings);
+/// Runs the reference over the stretch of `scene`: `most` steps (16 or more), fewer from 500
+/// variables up so that its cost stays bounded, never fewer than 16. Throws UsageError if the
+/// reference itself fails, since then nothing can be checked with these settings.
+ReferenceRun run_reference(const Scene& scene, const StepSettings& settings, int most = 800);
 
 }  // namespace mbs
