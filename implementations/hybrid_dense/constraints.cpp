@@ -16,18 +16,15 @@ Constraints<D>::Constraints(const Model& model, const Slots& slots) {
       for (int i = 0; i < D; ++i) slot_.push_back(slots.of[point] + i);
     }
   };
-  const auto is_distance = [](const DotConstraint& dot) {
-    return dot.a == dot.c && dot.b == dot.d;
-  };
   for (std::size_t k = 0; k < dots.size(); ++k) {
     const auto& [a, b, c, d, value, name] = dots[k];
-    if (!is_distance(dots[k])) continue;
+    if (!dots[k].is_distance()) continue;
     add_row(static_cast<int>(k), {a, b});
     distances_.push_back({slots.of[a], slots.of[b], value});
   }
   for (std::size_t k = 0; k < dots.size(); ++k) {
     const auto& [a, b, c, d, value, name] = dots[k];
-    if (is_distance(dots[k])) continue;
+    if (dots[k].is_distance()) continue;
     add_row(static_cast<int>(k), {a, b, c, d});
     dots_.push_back({slots.of[a], slots.of[b], slots.of[c], slots.of[d], value});
   }

@@ -40,6 +40,8 @@ struct DotConstraint {
   int a = 0, b = 0, c = 0, d = 0;  ///< indices into Model::points()
   double value = 0.0;              ///< m^2
   std::string name;                ///< for messages
+
+  [[nodiscard]] bool is_distance() const { return a == c && b == d; }
 };
 
 /// Quadratic constraint Phi = (r_a - r_b) . B (r_c - r_d) - value  (m^2) with a constant matrix B.

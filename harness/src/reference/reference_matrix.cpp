@@ -73,7 +73,7 @@ void ReferenceSimulation::set_up_matrix() {
   for (const DotConstraint& c : model_.dot_constraints()) {
     constraints.push_back(coordinates({c.a, c.b, c.c, c.d}));
     firm.push_back({constraints.back()});
-    if (c.a == c.c && c.b == c.d) firm.back() = {coordinates({c.a}), coordinates({c.b})};  // distance
+    if (c.is_distance()) firm.back() = {coordinates({c.a}), coordinates({c.b})};
   }
   for (const BilinearConstraint& c : model_.bilinear_constraints()) {
     constraints.push_back(coordinates({c.a, c.b, c.c, c.d}));

@@ -38,8 +38,6 @@ bool is_precision_served(const Serves& serves, Precision precision) {
   return false;
 }
 
-bool is_distance(const DotConstraint& one) { return one.a == one.c && one.b == one.d; }
-
 /// Collects the terms of a model.
 class Finder {
  public:
@@ -153,7 +151,7 @@ std::vector<std::pair<Term, std::string>> terms_of(const Model& model) {
   Finder finder;
   if (model.dimension() == 3) finder.add(Term::spatial, "dimension 3");
   finder.find(Term::dots, "constraint", model.dot_constraints(),
-              [](const auto& one) { return !is_distance(one); });
+              [](const auto& one) { return !one.is_distance(); });
   finder.find(Term::bilinear, "constraint", model.bilinear_constraints());
   finder.find(Term::linear, "constraint", model.linear_constraints());
   const auto damped = [](const auto& one) { return one.damping != 0.0; };

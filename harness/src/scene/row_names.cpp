@@ -45,7 +45,7 @@ std::string describe_violation(const Model& model, const Violation& violation) {
   if (row < model.dot_constraints().size() && wanted >= 0.0) {
     const DotConstraint& c = model.dot_constraints()[row];
     const double found = violation.value + wanted;
-    if (c.a == c.c && c.b == c.d && found >= 0.0) {
+    if (c.is_distance() && found >= 0.0) {
       const double apart = std::sqrt(found), length = std::sqrt(wanted), off = apart - length;
       constexpr double kShown = 1e-3;  // smaller shares are hard to see, or not shown
       return fmt::format(

@@ -155,7 +155,7 @@ void Constraints<S, D>::add_pairs(std::span<const Model* const> models, const Ro
   std::vector<std::array<int, 2>> points;
   std::vector<int> numbers, order;
   for (int i = 0; i < static_cast<int>(all.size()); ++i) {
-    if (!is_distance(all[i])) continue;
+    if (!all[i].is_distance()) continue;
     points.push_back({all[i].a, all[i].b});
     numbers.push_back(i);
   }
@@ -178,7 +178,7 @@ void Constraints<S, D>::add_quads(std::span<const Model* const> models, const Ro
   const int dot_count = static_cast<int>(dots.size());
   for (int i = 0; i < dot_count; ++i) {
     const DotConstraint& c = dots[i];
-    if (is_distance(c)) continue;
+    if (c.is_distance()) continue;
     quads_.push_back(make_quad({c.a, c.b, c.c, c.d}, rows, program, places));
     matrix_of_quad_.push_back(-1);
     number_.push_back(i);

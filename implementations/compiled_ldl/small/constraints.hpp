@@ -87,7 +87,7 @@ SmallConstraints<N, D>::SmallConstraints(const Model& model, double alpha, doubl
   int number = 0;
   for (const DotConstraint& c : model.dot_constraints()) {
     values.push_back(c.value);
-    if (is_distance(c)) {
+    if (c.is_distance()) {
       Distance distance = {};
       distance.u = {model, c.a, c.b};
       distance.number = number++;
