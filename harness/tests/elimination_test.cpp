@@ -132,19 +132,21 @@ TEST(Elimination, RandomPatternsAsEntryByEntry) {
   }
 }
 
+using Lists = std::vector<std::vector<int>>;
+
 TEST(Elimination, RowsOfConstraintsWaitForTheirVariables) {
   // Variables 0 to 2; row 3 has 0 and 2, row 4 has 1, row 5 none.
   const SymmetricPattern pattern(6, {{3, 0}, {3, 2}, {4, 1}});
-  EXPECT_EQ(rows_behind({2, 1, 0}, pattern, {-1, -1, -1}), (std::vector<int>{5, 2, 1, 4, 0, 3}));
+  EXPECT_EQ(rows_behind({2, 1, 0}, pattern, {{}, {}, {}}), (std::vector<int>{5, 2, 1, 4, 0, 3}));
   const auto pendulum = saddle_point_pattern(load_scene("chain:1").model);  // x, y and its rod
-  expect_counts(pendulum, rows_behind({0, 1}, pendulum, {-1}), 2 + 2 + 1, 4 + 4 + 1, 2, 2, 2);
+  expect_counts(pendulum, rows_behind({0, 1}, pendulum, {{}}), 2 + 2 + 1, 4 + 4 + 1, 2, 2, 2);
 }
 
 TEST(Elimination, ASubstitutionComesRightAfterItsVariable) {
   // Variables 0 to 2; row 3 has 0 and 2 and owns 0, row 4 has 0 and 1 and waits for 2, too.
   const SymmetricPattern pattern(5, {{3, 0}, {3, 2}, {4, 0}, {4, 1}});
-  EXPECT_EQ(rows_behind({0, 1, 2}, pattern, {0, -1}), (std::vector<int>{0, 3, 1, 2, 4}));
-  EXPECT_EQ(rows_behind({0, 1, 2}, pattern, {-1, -1}), (std::vector<int>{0, 1, 4, 2, 3}));
+  EXPECT_EQ(rows_behind({0, 1, 2}, pattern, {{0}, {}}), (std::vector<int>{0, 3, 1, 2, 4}));
+  EXPECT_EQ(rows_behind({0, 1, 2}, pattern, {{}, {}}), (std::vector<int>{0, 1, 4, 2, 3}));
 }
 
 TEST(Elimination, LinearConstraintsOwnWhatNoOtherHas) {
@@ -155,7 +157,31 @@ TEST(Elimination, LinearConstraintsOwnWhatNoOtherHas) {
   data.linear_constraints = {{.terms = {{0, 1.0}, {1, -2.0}}, .value = 1.0, .name = "largest"},
                              {.terms = {{2, 1e-4}, {3, 1.0}}, .value = 1.0, .name = "far below"},
                              {.terms = {{3, 1.0}}, .value = 1.0, .name = "nothing of its own"}};
-  EXPECT_EQ(owned_coordinates(Model(data)), (std::vector<int>{1, -1, -1}));
+  EXPECT_EQ(owned_coordinates(Model(data)), (Lists{{1}, {}, {}}));
+}
+
+TEST(Elimination, ADistanceOwnsAPointThatNoOtherConstraintHas) {
+  ModelData data{.points = {{"A", 0, {1.0, 0.0}}, {"B", 2, {2.0, 0.0}}, {"C", 4, {3.0, 0.0}}},
+                 .force = std::vector<double>(6, 0.0),
+                 .initial_velocity = std::vector<double>(6, 0.0)};
+  for (int i = 0; i < 6; ++i) data.mass.push_back({i, i, 1.0});
+  data.dot_constraints = {{0, 1, 0, 1, 1.0, "AB"}, {1, 2, 1, 2, 1.0, "BC"}};
+  EXPECT_EQ(owned_coordinates(Model(data)), (Lists{{0, 1}, {4, 5}}));
+  data.mass[0].value = data.mass[1].value = 1e4;  // B, which is light, would lean on A
+  EXPECT_EQ(owned_coordinates(Model(data)), (Lists{{}, {4, 5}}));
+  data.linear_constraints = {{.terms = {{5, 1.0}}, .value = 0.0, .name = "C"}};
+  EXPECT_EQ(owned_coordinates(Model(data)), (Lists{{}, {}, {5}}));
+}
+
+TEST(Elimination, ManyBladesOnARotorFillNoMoreThanFew) {
+  const auto per_column = [](const char* name) {
+    const Model model = load_scene(name).model;
+    const SymmetricPattern pattern = saddle_point_pattern(model);
+    return eliminate(pattern, rows_behind(amd_order(tangent_pattern(model)), pattern,
+                                          owned_coordinates(model)))->per_column;
+  };
+  EXPECT_LT(per_column("star:200"), 1.1 * per_column("star:20"));
+  EXPECT_LT(per_column("vehicle:200"), 1.1 * per_column("vehicle:20"));
 }
 
 TEST(Elimination, TooManyAreNotCounted) {

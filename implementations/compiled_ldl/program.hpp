@@ -17,8 +17,10 @@ struct Pattern {
   std::vector<std::vector<int>> cliques;  ///< points that are coupled with each other
   int constant = 0;  ///< cliques before this one couple them by numbers that never change
   std::vector<std::vector<int>> borders;  ///< of each multiplier: its points
-  /// Of each multiplier whose row is a substitution: the point of a coordinate that it can be
-  /// solved for and that no other substitution has. -1 for others; none where the list is empty.
+  /// Of each multiplier that need not wait for all of its points, the one that it comes right
+  /// after: of a substitution the point of a coordinate that it can be solved for and that no other
+  /// substitution has, of another row one that no other row has. -1 for others; none where the list
+  /// is empty.
   std::vector<int> solved = {};
 
   [[nodiscard]] bool is_substitution(int m) const { return !solved.empty() && solved[m] >= 0; }

@@ -1,6 +1,7 @@
 // Patterns and rows of a model.
 #include "scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -43,10 +44,11 @@ class Nodes {
   int count_ = 0;
 };
 
+constexpr double kSmall = 1e-3;
+
 /// Of each linear constraint a coordinate that no other has: that with the largest coefficient,
 /// which is divided by; -1 where all are small beside the largest of the row.
 std::vector<int> solved_coordinates(const Model& model) {
-  constexpr double kSmall = 1e-3;
   std::vector<int> count(model.variables(), 0), solved;
   for (const LinearConstraint& constraint : model.linear_constraints()) {
     for (const auto& term : constraint.terms) ++count[term.coordinate];
@@ -64,6 +66,29 @@ std::vector<int> solved_coordinates(const Model& model) {
     solved.push_back(of_solved > kSmall * largest ? best : -1);
   }
   return solved;
+}
+
+/// Of each border in front of `linear` a point that no other border has, unless it is far heavier
+/// than the border's others, whose blocks its row would drown; -1 where there is none.
+std::vector<int> points_alone(const Model& model, const Nodes& nodes,
+                              const std::vector<std::vector<int>>& borders, std::size_t linear) {
+  std::vector<int> count(nodes.count(), 0), alone;
+  for (const auto& border : borders) {
+    for (const int p : border) ++count[p];
+  }
+  std::vector<double> mass(nodes.count(), 0.0);
+  for (const MassEntry& entry : model.mass()) {
+    if (entry.row == entry.col) mass[nodes.of_coordinate(entry.row)] = entry.value;
+  }
+  for (std::size_t m = 0; m < linear; ++m) {
+    double lightest = HUGE_VAL;
+    for (const int p : borders[m]) lightest = std::min(lightest, mass[p]);
+    alone.push_back(-1);
+    for (const int p : borders[m]) {
+      if (count[p] == 1 && kSmall * mass[p] <= lightest) alone.back() = p;
+    }
+  }
+  return alone;
 }
 
 }  // namespace
@@ -94,7 +119,8 @@ Pattern pattern_of(const Model& model, bool multipliers, bool second_derivatives
     add(Nodes::sorted(std::move(clique)), false);
   }
   if (!multipliers) return pattern;
-  pattern.solved.resize(pattern.borders.size() - model.linear_constraints().size(), -1);
+  pattern.solved = points_alone(model, nodes, pattern.borders,
+                                pattern.borders.size() - model.linear_constraints().size());
   for (const int k : solved_coordinates(model)) {
     pattern.solved.push_back(k < 0 ? -1 : nodes.of_coordinate(k));
   }
@@ -128,8 +154,8 @@ bool has_mass_alike(const Model& model) {
 
 Changing changing_of(const Model& model) {
   const auto& dots = model.dot_constraints();
-  const bool distances =
-      model.bilinear_constraints().empty() && std::all_of(dots.begin(), dots.end(), is_distance);
+  const bool distances = model.bilinear_constraints().empty() &&
+                         std::ranges::all_of(dots, &DotConstraint::is_distance);
   return {distances ? model.dimension() : 2 * model.dimension(),
           model.linear_constraints().empty() && has_mass_alike(model)};
 }

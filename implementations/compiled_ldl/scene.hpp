@@ -26,7 +26,6 @@ inline bool is_rattle(const StepSettings& s) {
 }
 /// What changes of the saddle-point matrix where M is all of its points' block.
 Changing changing_of(const Model& model);
-inline bool is_distance(const DotConstraint& c) { return c.a == c.c && c.b == c.d; }
 /// Compiles that of these settings; `width` as in compile().
 Program program_of(const Model& model, const StepSettings& settings, int width);
 

@@ -16,7 +16,7 @@ SaddleForm::SaddleForm(const Model& model, const StepSettings& settings, Method 
 SaddleForm::SaddleForm(const Model& model, const StepSettings& settings, Method method,
                        std::vector<int> number)
     : Assembly(model, settings, std::move(number), preferred_half(method.factorization)),
-      place_(saddle_places(lowered_, coordinates_.unknowns())),
+      place_(saddle_places(model, coordinates_, lowered_)),
       pattern_(saddle_pattern(model, coordinates_, lowered_, lowered_forces_, place_,
                               preferred_half(method.factorization))),
       schedule_(saddle_contributions(lowered_, lowered_forces_, place_, pattern_)),

@@ -28,12 +28,46 @@ std::vector<int> model_places(const Coordinates& coordinates, const std::vector<
   return result;
 }
 
-/// By unknown: the linear row that is a substitution for it, or -1. A row takes the one with the
+constexpr double kFarBelow = 1e-3;
+
+/// Lets rows that are not linear own the point that no other row has. It must not be far heavier
+/// than the row's others, which lean on it.
+void own_points(const Model& model, const Coordinates& coordinates,
+                const LoweredConstraints& lowered, std::vector<int>& owner) {
+  std::vector<double> mass(owner.size()), lightest(lowered.rows(), HUGE_VAL);
+  for (const MassEntry& e : model.mass()) {
+    if (e.row == e.col) mass[coordinates.number()[e.row]] = e.value;
+  }
+  constexpr int kNone = -1, kMany = -2;
+  std::vector<int> row_with(owner.size(), kNone);
+  for_jacobian(lowered, [&](int row, int column) {
+    int& only = row_with[column];
+    only = only == kNone || only == row ? row : kMany;
+    lightest[row] = std::min(lightest[row], mass[column]);
+  });
+  for (std::size_t p = 0; p < model.points().size(); ++p) {
+    if (model.points()[p].is_fixed()) continue;
+    std::vector<int> columns;
+    for (int axis = 0; axis < model.dimension(); ++axis) {
+      columns.push_back(coordinates.place(static_cast<int>(p), axis));
+    }
+    const int row = row_with[columns[0]];
+    const auto is_alone = [&](int column) { return row_with[column] == row; };
+    if (row < 0 || row >= lowered.linear.first_row || !std::ranges::all_of(columns, is_alone) ||
+        kFarBelow * mass[columns[0]] > lightest[row]) {
+      continue;
+    }
+    for (const int column : columns) owner[column] = row;
+  }
+}
+
+/// By unknown: the row that owns it, or -1. A linear row is a substitution for the one with the
 /// largest coefficient of those that no other linear row has, unless that is far below its largest.
-std::vector<int> owners(const LoweredConstraints& lowered, int unknowns) {
-  constexpr double kFarBelow = 1e-3;
+std::vector<int> owners(const Model& model, const Coordinates& coordinates,
+                        const LoweredConstraints& lowered) {
   const LinearBlock& linear = lowered.linear;
-  std::vector<int> rows_with(unknowns), owner(unknowns, -1);
+  std::vector<int> rows_with(coordinates.unknowns()), owner(coordinates.unknowns(), -1);
+  own_points(model, coordinates, lowered, owner);
   for (int column : linear.column) ++rows_with[column];
   for (int row = 0; row < linear.count; ++row) {
     double largest = 0.0, most = 0.0;
@@ -52,14 +86,19 @@ std::vector<int> owners(const LoweredConstraints& lowered, int unknowns) {
 
 }  // namespace
 
-std::vector<int> saddle_places(const LoweredConstraints& lowered, int unknowns) {
+std::vector<int> saddle_places(const Model& model, const Coordinates& coordinates,
+                               const LoweredConstraints& lowered) {
+  const int unknowns = coordinates.unknowns();
   std::vector<int> all(lowered.rows());  // unknowns up to the last of each row
   for_jacobian(lowered, [&](int row, int column) { all[row] = std::max(all[row], column + 1); });
-  const std::vector<int> owner = owners(lowered, unknowns);
+  const std::vector<int> owner = owners(model, coordinates, lowered);
   std::vector<int> after = all;  // unknowns before each row
   for_jacobian(lowered, [&](int row, int column) {
     if (owner[column] >= 0) after[row] = std::max(after[row], all[owner[column]]);
   });
+  for (const int row : owner) {
+    if (row >= 0) after[row] = 0;
+  }
   for (int column = 0; column < unknowns; ++column) {
     if (owner[column] >= 0) after[owner[column]] = column + 1;
   }

@@ -18,8 +18,10 @@ namespace mbs::csc_cholmod {
 /// epsilon alone, unless it depends on rows before it: rounding does not grow with alpha.
 ///
 /// Example, three unknowns, row 0 with entries for 0 and 1, row 1 for 1 and 2: the order is unknown
-/// 0, unknown 1, row 0, unknown 2, row 1, and the places are {0, 1, 3, 2, 4}.
-std::vector<int> saddle_places(const LoweredConstraints& lowered, int unknowns);
+/// 0, unknown 1, row 0, unknown 2, row 1, and the places are {0, 1, 3, 2, 4}. (But a row that owns
+/// unknowns, see README.md, comes right after the last of these.)
+std::vector<int> saddle_places(const Model& model, const Coordinates& coordinates,
+                               const LoweredConstraints& lowered);
 
 /// Positions of the matrix, in that order.
 HalfPattern saddle_pattern(const Model& model, const Coordinates& coordinates,

@@ -38,7 +38,7 @@ Pattern tangent_pattern(const Pattern& saddle, int n) {
 
 }  // namespace
 
-std::vector<int> interleaved_order(const Pattern& saddle, int n, const std::vector<int>& owned) {
+std::vector<int> interleaved_order(const Pattern& saddle, int n, const std::vector<Owned>& owned) {
   const std::vector<int> coordinates = shallow_order(tangent_pattern(saddle, n));
   std::vector<int> rank(n);
   for (int k = 0; k < n; ++k) rank[coordinates[k]] = k;
@@ -48,18 +48,19 @@ std::vector<int> interleaved_order(const Pattern& saddle, int n, const std::vect
   std::vector<int> last_of, owner(n, -1);  // by row: the last of its coordinates
   for (int multiplier = n; multiplier < saddle.columns(); ++multiplier) {
     const int row = static_cast<int>(last_of.size());
-    if (owned[row] >= 0) owner[owned[row]] = row;
+    std::fill_n(owner.begin() + owned[row].first, owned[row].count, row);
     last_of.push_back(0);
     for (const int i : Coordinates(saddle, n, multiplier)) {
       last_of[row] = std::max(last_of[row], rank[i]);
     }
   }
   for (int multiplier = n; multiplier < saddle.columns(); ++multiplier) {
+    const auto [first, count] = owned[multiplier - n];
     int last = last_of[multiplier - n];
     for (const int i : Coordinates(saddle, n, multiplier)) {
       if (owner[i] >= 0) last = std::max(last, last_of[owner[i]]);
     }
-    if (owned[multiplier - n] >= 0) last = rank[owned[multiplier - n]];
+    if (count > 0) last = *std::max_element(rank.begin() + first, rank.begin() + first + count);
     followers[last].push_back(multiplier);
   }
   std::vector<int> order;

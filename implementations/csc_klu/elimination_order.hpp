@@ -7,16 +7,20 @@
 
 namespace mbs::csc_klu {
 
+/// Coordinates that a row owns: `count` from `first` on.
+struct Owned {
+  int first = 0, count = 0;
+};
+
 /// An order for the matrix of Eq. (12) on `saddle`, n coordinates before its multipliers: that of T
 /// for the coordinates, every multiplier right after the last of its coordinates. So it never is
 /// -eps alone that becomes a pivot, by which 1/eps Phi_q^T Phi_q would come into T_0 as it does in
 /// the penalty form, but -(eps + Phi_q S^-1 Phi_q^T) with the row of the constraint whole.
 ///
 /// Example, one coordinate x and one multiplier: x, then the multiplier.
-/// But a row may own a coordinate (owned[row], or -1) that no other such row has. It is a
-/// substitution for it, and comes right after it. To a row that has an owned coordinate, those of
-/// its owner count as its own.
+/// But a row may own some of its coordinates, and comes right after these. To a row that has an
+/// owned coordinate, those of its owner count as its own.
 [[nodiscard]] std::vector<int> interleaved_order(const Pattern& saddle, int n,
-                                                 const std::vector<int>& owned);
+                                                 const std::vector<Owned>& owned);
 
 }  // namespace mbs::csc_klu

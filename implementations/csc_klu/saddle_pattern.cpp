@@ -32,13 +32,17 @@ void visit_blocks(const JacobianPattern<dim>& jacobian, int n, Visit visit) {
   }
 }
 
-/// By row: of a linear constraint the coordinate with the largest coefficient of those that no
-/// other has, unless that is far below the row's largest; else -1.
+/// By row, what it owns. A linear constraint is a substitution for the coordinate with the largest
+/// coefficient of those that no other linear one has, unless that is far below the row's largest.
+/// Another constraint owns a point that no other has, which the constraint's other points lean on
+/// then, unless it is far heavier than they are.
 template <int dim>
-std::vector<int> owned_coordinates(const JacobianPattern<dim>& jacobian, int n) {
+std::vector<Owned> owned_coordinates(const Model& model, const JacobianPattern<dim>& jacobian) {
   constexpr double kFarBelow = 1e-3;
+  const int n = model.variables();
   const std::size_t rows = jacobian.model_row.size();
-  std::vector<int> rows_with(n, 0), owned(rows, -1);
+  std::vector<int> rows_with(n, 0);
+  std::vector<Owned> owned(rows);
   std::vector<double> enough(rows, 0.0);
   visit_linear(jacobian, n, [&](int multiplier, int coordinate, double coefficient) {
     ++rows_with[coordinate];
@@ -49,7 +53,22 @@ std::vector<int> owned_coordinates(const JacobianPattern<dim>& jacobian, int n) 
     const int row = multiplier - n;
     if (rows_with[coordinate] > 1 || std::abs(coefficient) <= enough[row]) return;
     enough[row] = std::abs(coefficient);
-    owned[row] = coordinate;
+    owned[row] = {coordinate, 1};
+  });
+  std::vector<double> mass(n, 0.0), lightest(rows, HUGE_VAL);  // of the points of a row
+  for (const MassEntry& entry : model.mass()) {
+    if (entry.row == entry.col) mass[entry.row] = entry.value;
+  }
+  visit_blocks(jacobian, n, [&](int multiplier, int coordinate) {
+    lightest[multiplier - n] = std::min(lightest[multiplier - n], mass[coordinate]);
+  });
+  visit_blocks(jacobian, n, [&](int multiplier, int coordinate) {
+    const int* block = &jacobian.block_begin[coordinate / dim];
+    const int* linear = &rows_with[coordinate];
+    const bool alone = block[1] - block[0] == 1 && std::count(linear, linear + dim, 0) == dim;
+    if (alone && kFarBelow * mass[coordinate] <= lightest[multiplier - n]) {
+      owned[multiplier - n] = {coordinate, dim};
+    }
   });
   return owned;
 }
@@ -86,8 +105,7 @@ SaddlePattern<dim>::SaddlePattern(const Model& model, const JacobianPattern<dim>
                                   const std::vector<ElementBlock>& elements,
                                   const std::vector<HessianEntry>& hessians)
     : pattern(saddle_pattern(model, jacobian, elements, hessians)),
-      order(interleaved_order(pattern, model.variables(),
-                              owned_coordinates(jacobian, model.variables()))),
+      order(interleaved_order(pattern, model.variables(), owned_coordinates(model, jacobian))),
       shares(elements, pattern, [](int, int) { return false; }) {
   const int n = model.variables();
   visit_blocks(jacobian, n, [&](int multiplier, int coordinate) {

@@ -9,25 +9,55 @@ namespace mbs::csc_ldl {
 
 namespace {
 
-/// Of each row, a variable that it is a substitution for: of a linear row the one with the largest
-/// coefficient of those that no other linear row has, unless that is far below the row's largest,
-/// as it is divided by; -1 for others.
-std::vector<int> owned_variables(const Model& model) {
-  constexpr double kFarBelow = 1e-3;
+constexpr double kFarBelow = 1e-3;
+
+/// Of each row that is not linear, the variables of a point that no other row has. But the other
+/// points lean on it, so it is not far heavier than they are.
+std::vector<std::vector<int>> owned_points(const Model& model, const Constraints& constraints) {
+  std::vector<double> mass(model.variables()), lightest(constraints.count(), HUGE_VAL);
+  for (const MassEntry& entry : model.mass()) {
+    if (entry.row == entry.col) mass[entry.row] = entry.value;
+  }
+  std::vector<int> row_with(model.variables(), -1);  // or many
+  const int many = constraints.count();
+  constraints.visit_forces([&](int row, int i, int) {
+    row_with[i] = row_with[i] < 0 || row_with[i] == row ? row : many;
+    lightest[row] = std::min(lightest[row], mass[i]);
+  });
+  std::vector<std::vector<int>> owned(many - model.linear_constraints().size());
+  for (const Point& point : model.points()) {
+    if (point.is_fixed()) continue;
+    std::vector<int> variables(model.dimension());
+    std::iota(variables.begin(), variables.end(), point.offset);
+    const int row = row_with[point.offset];
+    const auto is_alone = [&](int i) { return row_with[i] == row; };
+    if (row >= 0 && row < static_cast<int>(owned.size()) &&
+        std::ranges::all_of(variables, is_alone) &&
+        kFarBelow * mass[point.offset] <= lightest[row]) {
+      owned[row] = variables;
+    }
+  }
+  return owned;
+}
+
+/// Of each row, the variables that it comes right after, or none. Of a linear row it is the one
+/// with the largest coefficient of those that no other linear row has, unless that is far below the
+/// row's largest, as it is divided by: the row is a substitution for it.
+std::vector<std::vector<int>> owned_variables(const Model& model, const Constraints& constraints) {
   std::vector<int> rows_with(model.variables(), 0);
   for (const LinearConstraint& linear : model.linear_constraints()) {
     for (const LinearConstraint::Term& term : linear.terms) ++rows_with[term.coordinate];
   }
-  std::vector<int> owned(model.constraints() - model.linear_constraints().size(), -1);
+  std::vector<std::vector<int>> owned = owned_points(model, constraints);
   for (const LinearConstraint& linear : model.linear_constraints()) {
     double largest = 0.0;
     for (const auto& term : linear.terms) largest = std::max(largest, std::abs(term.coefficient));
     double most = kFarBelow * largest;
-    owned.push_back(-1);
+    owned.emplace_back();
     for (const auto& [variable, coefficient] : linear.terms) {
       if (rows_with[variable] > 1 || std::abs(coefficient) <= most) continue;
       most = std::abs(coefficient);
-      owned.back() = variable;
+      owned.back() = {variable};
     }
   }
   return owned;
@@ -48,7 +78,7 @@ Numbering number_unknowns(const Model& model, bool saddle_point, Order kind) {
   problem.variables = n;
   if (saddle_point) {
     problem.rows = constraints.count();
-    problem.owned = owned_variables(model);
+    problem.owned = owned_variables(model, constraints);
   }
   const auto couple = [&](int i, int j) {
     if (i < j) problem.entries.emplace_back(i, j);

@@ -10,11 +10,8 @@ Constraints::Constraints(const Model& model, const Coordinates& at)
       are_driven_(!model.driven_points().empty() || !model.driven_values().empty()) {
   const std::span<const DotConstraint> dots = model.dot_constraints();
   const std::span<const BilinearConstraint> bilinear = model.bilinear_constraints();
-  const auto is_distance = [](const DotConstraint& dot) {
-    return dot.a == dot.c && dot.b == dot.d;
-  };
   const int all_dots = static_cast<int>(dots.size());
-  const int distances = static_cast<int>(std::ranges::count_if(dots, is_distance));
+  const int distances = static_cast<int>(std::ranges::count_if(dots, &DotConstraint::is_distance));
   const int all_bilinear = static_cast<int>(bilinear.size());
   distances_ = Group(distances, 1, at);
   dots_ = Group(all_dots - distances, 2, at);
@@ -25,7 +22,7 @@ Constraints::Constraints(const Model& model, const Coordinates& at)
     int k = 0;
     for (int row = 0; row < all_dots; ++row) {
       const DotConstraint& dot = dots[row];
-      if (is_distance(dot) != wanted) continue;
+      if (dot.is_distance() != wanted) continue;
       group.set_points(k, 0, dot.a, dot.b, at);
       if (!wanted) group.set_points(k, 1, dot.c, dot.d, at);
       model_row_.push_back(row);

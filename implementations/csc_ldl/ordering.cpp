@@ -50,12 +50,12 @@ Waiting waiting(const EliminationProblem& problem, const Lists& adjacent) {
   Waiting result{std::vector<int>(adjacent.size(), 0), Lists(problem.variables)};
   std::vector<int> owner(problem.variables, -1), waits_for;
   for (int row = 0; row < problem.rows; ++row) {
-    if (problem.owned[row] >= 0) owner[problem.owned[row]] = problem.variables + row;
+    for (const int variable : problem.owned[row]) owner[variable] = problem.variables + row;
   }
   for (int row = 0; row < problem.rows; ++row) {
     const int unknown = problem.variables + row;
-    waits_for = {problem.owned[row]};
-    if (problem.owned[row] < 0) {
+    waits_for = problem.owned[row];
+    if (waits_for.empty()) {
       waits_for = adjacent[unknown];
       for (const int variable : adjacent[unknown]) {
         if (owner[variable] < 0) continue;

@@ -8,14 +8,13 @@ namespace mbs::csc_ldl {
 
 /// What of a symmetric matrix decides its order.
 ///
-/// A row of constraints comes after all of its variables. A row that owns a variable is a
-/// substitution for it: it comes after that one alone, and whoever has the variable has the row's
-/// others in its place.
+/// A row of constraints comes after all of its variables. But one that owns some comes after these
+/// alone, and whoever has one of them has the row's others in its place.
 struct EliminationProblem {
   int variables = 0;                         ///< the first unknowns
   int rows = 0;                              ///< the others: rows of constraints
   std::vector<std::pair<int, int>> entries;  ///< off the diagonal, either half, any order, repeats
-  std::vector<int> owned;  ///< by each row: a variable that no other such row has, or -1
+  std::vector<std::vector<int>> owned;  ///< by each row: variables that no other row owns, or none
 };
 
 enum class Order {

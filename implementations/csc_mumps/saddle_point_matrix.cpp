@@ -12,12 +12,46 @@ namespace mbs::csc_mumps {
 
 namespace {
 
-/// Of linear rows the coordinate with the largest coefficient of those that no other linear row
-/// has, unless that is far below the row's largest; of other rows -1.
-std::vector<int> owned_coordinates(const Model& model) {
-  constexpr double kFarBelow = 1e-3;
+constexpr double kFarBelow = 1e-3;
+
+/// The coordinates of a point that no row but this one has, of `rows` of Phi_q up to the linear
+/// ones. It must not be far heavier than the row's other points, which lean on it.
+void own_points(const Model& model, const std::vector<std::vector<RowEntry>>& rows,
+                std::vector<std::vector<int>>& owned) {
+  std::vector<int> rows_with(model.variables(), 0);
+  for (const auto& row : rows) {
+    for (const RowEntry& entry : row) ++rows_with[entry.column];
+  }
+  std::vector<double> mass(model.variables(), 0.0);
+  for (const MassEntry& entry : model.mass()) {
+    if (entry.row == entry.col) mass[entry.row] = entry.value;
+  }
+  std::vector<int> point_of(model.variables());  // by coordinate: its point's first
+  for (const Point& point : model.points()) {
+    if (point.is_fixed()) continue;
+    std::fill_n(point_of.begin() + point.offset, model.dimension(), point.offset);
+  }
+  for (std::size_t k = 0; k < rows.size() - model.linear_constraints().size(); ++k) {
+    double lightest = HUGE_VAL;
+    for (const RowEntry& entry : rows[k]) lightest = std::min(lightest, mass[entry.column]);
+    for (const RowEntry& entry : rows[k]) {
+      const auto first = rows_with.begin() + point_of[entry.column];
+      const bool is_alone = std::count(first, first + model.dimension(), 1) == model.dimension();
+      if (!is_alone || kFarBelow * mass[entry.column] > lightest) continue;
+      owned[k].resize(model.dimension());
+      std::iota(owned[k].begin(), owned[k].end(), point_of[entry.column]);
+    }
+  }
+}
+
+/// By row: the coordinates that it owns. Of a linear row it is the one with the largest coefficient
+/// of those that no other linear row has, unless that is far below the row's largest.
+std::vector<std::vector<int>> owned_coordinates(const Model& model,
+                                                const std::vector<std::vector<RowEntry>>& rows) {
   const auto linears = model.linear_constraints();
-  std::vector<int> rows_with(model.variables(), 0), owned(model.constraints(), -1);
+  std::vector<std::vector<int>> owned(rows.size());
+  own_points(model, rows, owned);
+  std::vector<int> rows_with(model.variables(), 0);
   for (const LinearConstraint& linear : linears) {
     for (const LinearConstraint::Term& term : linear.terms) ++rows_with[term.coordinate];
   }
@@ -29,7 +63,7 @@ std::vector<int> owned_coordinates(const Model& model) {
     for (const LinearConstraint::Term& term : terms) {
       if (rows_with[term.coordinate] > 1 || size(term) <= most) continue;
       most = size(term);
-      owned[owned.size() - linears.size() + k] = term.coordinate;
+      owned[owned.size() - linears.size() + k] = {term.coordinate};
     }
   }
   return owned;
@@ -42,7 +76,7 @@ SaddlePointMatrix::SaddlePointMatrix(const Model& model, const Assembly& assembl
     : assembly_(assembly),
       variables_(model.variables()),
       constraints_(model.constraints()),
-      owned_(owned_coordinates(model)) {
+      owned_(owned_coordinates(model, rows_of(assembly.jacobian_pattern(), constraints_))) {
   std::vector<std::pair<int, int>> entries;
   for (const MassEntry& mass : model.mass()) entries.emplace_back(mass.col, mass.row);
   assembly.forces().visit_couplings(
@@ -78,7 +112,7 @@ std::vector<int> SaddlePointMatrix::elimination_order() const {
     }
   }
   // Of a coordinate its position, of a multiplier that of its last coordinate, or 0; of one that
-  // owns a coordinate the position of that. Whoever has it waits for the owner's others too.
+  // owns some that of the last of these. Whoever has one of them waits for the owner's others too.
   std::vector<int> rank = MultifrontalSolver::minimum_degree(std::move(graph)), last_of;
   for (const auto& row : rows) {
     int last = 0;
@@ -87,13 +121,14 @@ std::vector<int> SaddlePointMatrix::elimination_order() const {
   }
   std::vector<int> owner(variables_, -1);
   for (int k = 0; k < constraints_; ++k) {
-    if (owned_[k] >= 0) owner[owned_[k]] = k;
+    for (const int coordinate : owned_[k]) owner[coordinate] = k;
   }
   for (int k = 0; k < constraints_; ++k) {
-    int last = owned_[k] >= 0 ? rank[owned_[k]] : last_of[k];
+    int last = owned_[k].empty() ? last_of[k] : 0;
+    for (const int coordinate : owned_[k]) last = std::max(last, rank[coordinate]);
     for (const RowEntry& entry : rows[k]) {
       const int other = owner[entry.column];
-      if (other >= 0 && owned_[k] < 0) last = std::max(last, last_of[other]);
+      if (other >= 0 && owned_[k].empty()) last = std::max(last, last_of[other]);
     }
     rank.push_back(last);
   }

@@ -32,7 +32,7 @@ class SaddlePointMatrix {
  private:
   const Assembly& assembly_;
   const int variables_, constraints_;
-  std::vector<int> owned_;         // by row: the coordinate that it is a substitution for, or -1
+  std::vector<std::vector<int>> owned_;  // by row: coordinates that it comes right after, or none
   ColumnPattern inertia_pattern_;  // of T0: the union of those of M and K
   std::vector<double> mass_;       // on it
   std::vector<int> force_places_;  // on it, of the forces' entries

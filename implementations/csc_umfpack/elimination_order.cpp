@@ -4,6 +4,7 @@
 #include <amd.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
 
 #include "mbs/simulation.hpp"
@@ -11,7 +12,7 @@
 namespace mbs::csc_umfpack {
 
 std::vector<int> elimination_order(const SparsityPattern& T, const Lists& rows,
-                                   const std::vector<int>& owned) {
+                                   const Lists& owned) {
   const int n = T.variables();
   std::vector<int> coordinates(n);
   const int status =
@@ -21,12 +22,15 @@ std::vector<int> elimination_order(const SparsityPattern& T, const Lists& rows,
   }
   std::vector<int> places(n);
   for (int k = 0; k < n; ++k) places[coordinates[k]] = k + 1;
+  const auto last_place = [&places](std::span<const int> some) {
+    int last = 0;
+    for (const int coordinate : some) last = std::max(last, places[coordinate]);
+    return last;
+  };
   std::vector<int> owner(n, -1), all;  // all: for every row, the place of its last coordinate, or 0
   for (int row = 0; row < rows.count(); ++row) {
-    if (owned[row] >= 0) owner[owned[row]] = row;
-    int place = 0;
-    for (const int coordinate : rows[row]) place = std::max(place, places[coordinate]);
-    all.push_back(place);
+    for (const int coordinate : owned[row]) owner[coordinate] = row;
+    all.push_back(last_place(rows[row]));
   }
   Lists last;  // for every row, the place after which its multiplier can follow; 0: at once
   for (int row = 0; row < rows.count(); ++row, last.end_list()) {
@@ -34,7 +38,7 @@ std::vector<int> elimination_order(const SparsityPattern& T, const Lists& rows,
     for (const int coordinate : rows[row]) {
       if (owner[coordinate] >= 0) place = std::max(place, all[owner[coordinate]]);
     }
-    last.items.push_back(owned[row] >= 0 ? places[owned[row]] : place);
+    last.items.push_back(owned[row].empty() ? place : last_place(owned[row]));
   }
   const Lists ready = transpose(last, n + 1);
   std::vector<int> order;

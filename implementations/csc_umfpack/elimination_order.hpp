@@ -14,13 +14,12 @@ namespace mbs::csc_umfpack {
 /// A multiplier's pivot is then -(epsilon + Phi_q (...)^-1 Phi_q^T), of the size of its row. Before
 /// its coordinates it would be epsilon alone, whose inverse is the penalty form's alpha.
 ///
-/// But a row may own a coordinate (owned[row], or -1) that no other such row has. It is a
-/// substitution for it and comes right after it; rows with that coordinate wait for the owner's
-/// others.
+/// But a row may own some of its coordinates (owned[row]). It comes right after the last of these;
+/// rows with one of them wait for the owner's others.
 ///
 /// Example: coordinates in the order 1, 0, 2 and rows {0, 1}, {2} give 1, 0, 3, 2, 4; if the first
 /// row owns 1, they give 1, 3, 0, 2, 4.
 std::vector<int> elimination_order(const SparsityPattern& T, const Lists& rows,
-                                   const std::vector<int>& owned);
+                                   const Lists& owned);
 
 }  // namespace mbs::csc_umfpack

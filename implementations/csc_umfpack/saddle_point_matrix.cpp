@@ -15,14 +15,31 @@ Lists element_coordinates(const ForceLayout& forces, int dimension) {
   return sets;
 }
 
-/// By row: the coordinate that it is a substitution for, or -1. Of a linear row it is the one with
-/// the largest coefficient of those that no other linear row has, unless that is far below the
-/// row's largest.
-std::vector<int> owned_coordinates(const JacobianLayout& layout, int variables) {
+/// By row: the coordinates that it owns. Of a linear row it is the one with the largest coefficient
+/// of those that no other linear row has, unless that is far below the row's largest: the row is a
+/// substitution for it. Of another row it is a point that no other row has, unless that is far
+/// heavier than the row's others, which lean on it.
+Lists owned_coordinates(const JacobianLayout& layout, const Lists& rows, const MassMatrix& mass,
+                        int dimension) {
   constexpr double kFarBelow = 1e-3;
-  std::vector<int> rows_with(variables, 0);
+  const Lists rows_of = transpose(rows, mass.pattern().variables());
+  const auto mass_of = [&mass](int i) { return mass.values()[mass.pattern().position(i, i)]; };
+  Lists owned;
+  auto block = layout.blocks.begin();
+  const int block_rows = layout.rows() - static_cast<int>(layout.linears.size());
+  for (int row = 0; row < block_rows; ++row, owned.end_list()) {
+    double lightest = HUGE_VAL;
+    for (const int i : rows[row]) lightest = std::min(lightest, mass_of(i));
+    int found = -1;
+    for (; block != layout.blocks.end() && block->row == row; ++block) {
+      bool is_alone = kFarBelow * mass_of(block->offset) <= lightest;
+      for (int k = 0; k < dimension; ++k) is_alone &= rows_of[block->offset + k].size() == 1;
+      if (is_alone) found = block->offset;
+    }
+    for (int k = 0; found >= 0 && k < dimension; ++k) owned.items.push_back(found + k);
+  }
+  std::vector<int> rows_with(mass.pattern().variables(), 0);
   for (const LinearConstraint::Term& term : layout.terms) ++rows_with[term.coordinate];
-  std::vector<int> owned(layout.rows() - layout.linears.size(), -1);
   for (const JacobianLayout::Linear& linear : layout.linears) {
     double largest = 0.0, most = 0.0;
     int found = -1;
@@ -33,7 +50,8 @@ std::vector<int> owned_coordinates(const JacobianLayout& layout, int variables) 
       most = std::abs(coefficient);
       found = coordinate;
     }
-    owned.push_back(most > kFarBelow * largest ? found : -1);
+    if (most > kFarBelow * largest) owned.items.push_back(found);
+    owned.end_list();
   }
   return owned;
 }
@@ -41,21 +59,21 @@ std::vector<int> owned_coordinates(const JacobianLayout& layout, int variables) 
 }  // namespace
 
 template <int D>
-SaddlePointSchedule<D>::SaddlePointSchedule(const SparsityPattern& mass,
-                                            const JacobianLayout& layout, const ForceLayout& forces)
+SaddlePointSchedule<D>::SaddlePointSchedule(const MassMatrix& mass, const JacobianLayout& layout,
+                                            const ForceLayout& forces)
     : SaddlePointSchedule(mass, layout, forces, row_coordinates(layout, D)) {}
 
 template <int D>
-SaddlePointSchedule<D>::SaddlePointSchedule(const SparsityPattern& mass,
-                                            const JacobianLayout& layout, const ForceLayout& forces,
-                                            const Lists& rows)
-    : pattern(bordered_pattern(union_pattern(mass, element_coordinates(forces, D)), rows)),
+SaddlePointSchedule<D>::SaddlePointSchedule(const MassMatrix& mass, const JacobianLayout& layout,
+                                            const ForceLayout& forces, const Lists& rows)
+    : pattern(
+          bordered_pattern(union_pattern(mass.pattern(), element_coordinates(forces, D)), rows)),
       places(element_places<D>(pattern, forces)) {
   Lists coupled = rows;
   add_element_coordinates(forces, D, coupled);
-  order = elimination_order(union_pattern(mass, coupled), rows,
-                            owned_coordinates(layout, mass.variables()));
-  const int n = mass.variables();
+  order = elimination_order(union_pattern(mass.pattern(), coupled), rows,
+                            owned_coordinates(layout, rows, mass, D));
+  const int n = mass.pattern().variables();
   for (const auto& block : layout.blocks) {
     Block at{pattern.position(block.offset, n + block.row)};
     for (int k = 0; k < D; ++k) at.row[k] = pattern.position(n + block.row, block.offset + k);
@@ -76,7 +94,7 @@ SaddlePointSchedule<D>::SaddlePointSchedule(const SparsityPattern& mass,
 template <int D>
 SaddlePointMatrix<D>::SaddlePointMatrix(const MassMatrix& mass, const JacobianLayout& layout,
                                         const ForceLayout& forces, double epsilon)
-    : schedule_(mass.pattern(), layout, forces), values_(schedule_.pattern.rows.size(), 0.0) {
+    : schedule_(mass, layout, forces), values_(schedule_.pattern.rows.size(), 0.0) {
   const SparsityPattern &M = mass.pattern(), &K = schedule_.pattern;
   const int n = M.variables();
   for (int col = 0; col < n; ++col) {

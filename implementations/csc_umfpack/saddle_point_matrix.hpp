@@ -22,7 +22,7 @@ struct SaddlePointSchedule {
     std::array<int, D> row = {};  ///< of Phi_q
   };
 
-  SaddlePointSchedule(const SparsityPattern& mass, const JacobianLayout& layout,
+  SaddlePointSchedule(const MassMatrix& mass, const JacobianLayout& layout,
                       const ForceLayout& forces);
 
   SparsityPattern pattern;
@@ -32,7 +32,7 @@ struct SaddlePointSchedule {
   std::vector<int> with_elements;  ///< positions that elements add to, each once
 
  private:
-  SaddlePointSchedule(const SparsityPattern& mass, const JacobianLayout& layout,
+  SaddlePointSchedule(const MassMatrix& mass, const JacobianLayout& layout,
                       const ForceLayout& forces, const Lists& rows);
 };
 

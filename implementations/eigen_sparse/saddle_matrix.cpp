@@ -8,12 +8,50 @@
 namespace mbs::eigen_sparse {
 namespace {
 
-/// Of each row the unknown that it is a substitution for, or -1: of a linear row (from `first` on)
-/// the one with the largest coefficient of those that no other linear row has, unless that is far
-/// below the row's largest.
-std::vector<int> owned_unknowns(const RowSparseMatrix& jacobian, int first) {
-  constexpr double kFarBelow = 1e-3;
-  std::vector<int> rows_with(jacobian.cols()), owned(jacobian.rows(), -1);
+constexpr double kFarBelow = 1e-3;
+
+/// The unknowns that each row owns.
+using Owned = std::vector<std::vector<int>>;
+
+/// Lets each row in front of `first` own a point that no other row has. The row's other points lean
+/// on it then, so that it must not be far heavier than they are.
+void own_points(const Model& model, const Coordinates& coordinates, const RowSparseMatrix& jacobian,
+                int first, Owned& owned) {
+  Vector mass = Vector::Zero(jacobian.cols());
+  for (const MassEntry& entry : model.mass()) {
+    if (entry.row == entry.col) mass[coordinates.of_unknown(entry.row)] = entry.value;
+  }
+  std::vector<int> rows_with(jacobian.cols()), row_of(jacobian.cols());
+  std::vector<double> lightest(jacobian.rows(), HUGE_VAL);
+  for (int row = 0; row < jacobian.rows(); ++row) {
+    for (RowSparseMatrix::InnerIterator it(jacobian, row); it; ++it) {
+      ++rows_with[it.col()];
+      row_of[it.col()] = row;
+      lightest[row] = std::min(lightest[row], mass[it.col()]);
+    }
+  }
+  for (int point = 0; point < static_cast<int>(model.points().size()); ++point) {
+    if (!coordinates.is_free(point)) continue;
+    std::vector<int> unknowns;
+    for (int axis = 0; axis < coordinates.dimension(); ++axis) {
+      unknowns.push_back(coordinates.of_point(point, axis));
+    }
+    const int row = row_of[unknowns[0]];
+    const auto is_alone = [&](int unknown) { return rows_with[unknown] == 1; };
+    if (row < first && std::ranges::all_of(unknowns, is_alone) &&
+        kFarBelow * mass[unknowns[0]] <= lightest[row]) {
+      owned[row] = unknowns;
+    }
+  }
+}
+
+/// Of a linear row (from `first` on) it is the one with the largest coefficient of those that no
+/// other linear row has, unless that is far below the row's largest: it is a substitution for it.
+Owned owned_unknowns(const Model& model, const Coordinates& coordinates,
+                     const RowSparseMatrix& jacobian, int first) {
+  std::vector<int> rows_with(jacobian.cols());
+  Owned owned(jacobian.rows());
+  own_points(model, coordinates, jacobian, first, owned);
   for (int k = jacobian.outerIndexPtr()[first]; k < jacobian.nonZeros(); ++k) {
     ++rows_with[jacobian.innerIndexPtr()[k]];
   }
@@ -22,20 +60,20 @@ std::vector<int> owned_unknowns(const RowSparseMatrix& jacobian, int first) {
     for (RowSparseMatrix::InnerIterator it(jacobian, row); it; ++it) {
       if (rows_with[it.col()] > 1 || std::abs(it.value()) <= most) continue;
       most = std::abs(it.value());
-      owned[row] = static_cast<int>(it.col());
+      owned[row] = {static_cast<int>(it.col())};
     }
   }
   return owned;
 }
 
 /// Where the unknowns, then the multipliers are stored. The unknowns keep their order; a multiplier
-/// follows the last one that its row of Phi_q has. But a row that owns an unknown follows that one,
-/// and rows that have it wait for the unknowns of its owner too.
-std::vector<int> interleaved(const RowSparseMatrix& jacobian, const std::vector<int>& owned) {
+/// follows the last one that its row of Phi_q has. But a row that owns unknowns follows the last of
+/// these, and rows that have one of them wait for the unknowns of its owner too.
+std::vector<int> interleaved(const RowSparseMatrix& jacobian, const Owned& owned) {
   const auto unknowns = static_cast<int>(jacobian.cols());
   std::vector<int> last(jacobian.rows()), order(jacobian.rows()), owner(unknowns, -1);
   for (int row = 0; row < jacobian.rows(); ++row) {
-    if (owned[row] >= 0) owner[owned[row]] = row;
+    for (const int unknown : owned[row]) owner[unknown] = row;
     for (RowSparseMatrix::InnerIterator it(jacobian, row); it; ++it) {
       last[row] = std::max(last[row], static_cast<int>(it.col()) + 1);
     }
@@ -45,7 +83,7 @@ std::vector<int> interleaved(const RowSparseMatrix& jacobian, const std::vector<
     for (RowSparseMatrix::InnerIterator it(jacobian, row); it; ++it) {
       if (owner[it.col()] >= 0) in_front[row] = std::max(in_front[row], last[owner[it.col()]]);
     }
-    if (owned[row] >= 0) in_front[row] = owned[row] + 1;
+    if (!owned[row].empty()) in_front[row] = std::ranges::max(owned[row]) + 1;
   }
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
@@ -91,7 +129,8 @@ SaddleMatrix::SaddleMatrix(const Model& model, const Coordinates& coordinates,
     : triangle_(triangle),
       variables_(model.variables()),
       place_(interleaved(constraints.jacobian(),
-                         owned_unknowns(constraints.jacobian(), constraints.quadratic()))) {
+                         owned_unknowns(model, coordinates, constraints.jacobian(),
+                                        constraints.quadratic()))) {
   const RowSparseMatrix& jacobian = constraints.jacobian();
   const SparseMatrix upper_left = stiffness == Stiffness::added
                                       ? stiffness_pattern(model, coordinates)

@@ -5,6 +5,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <span>
 
@@ -58,6 +59,41 @@ std::vector<std::pair<int, int>> pairs_of(const Model& model, PatternOf which) {
     for (const int row : pattern.below(col)) pairs.emplace_back(row, col);
   }
   return pairs;
+}
+
+/// By quadratic constraint: the coordinates of a point that no other has, and no linear one
+/// (`linear_with`, by coordinate), unless it is far heavier than the others of the constraint.
+std::vector<std::vector<int>> owned_points(const Model& model, const std::vector<int>& linear_with,
+                                           double far_below) {
+  const std::vector<double> mass = mass_diagonal(model);
+  std::vector<std::vector<int>> starts, owned;  // starts: of a constraint's free points
+  std::vector<int> with(at(model.variables()), 0);
+  const auto add = [&](const auto& c) {
+    starts.emplace_back();
+    for (const int p : {c.a, c.b, c.c, c.d}) {
+      const int start = model.points()[at(p)].offset;
+      if (start < 0 || std::ranges::find(starts.back(), start) != starts.back().end()) continue;
+      starts.back().push_back(start);
+      ++with[at(start)];
+    }
+  };
+  std::ranges::for_each(model.dot_constraints(), add);
+  std::ranges::for_each(model.bilinear_constraints(), add);
+  for (const std::vector<int>& points : starts) {
+    owned.emplace_back();
+    double lightest = std::numeric_limits<double>::infinity();
+    for (const int start : points) lightest = std::min(lightest, mass[at(start)]);
+    for (const int start : points) {
+      std::vector<int> coordinates(at(model.dimension()));
+      std::iota(coordinates.begin(), coordinates.end(), start);
+      const auto is_free = [&](int i) { return linear_with[at(i)] == 0; };
+      if (with[at(start)] == 1 && std::ranges::all_of(coordinates, is_free) &&
+          far_below * mass[at(start)] <= lightest) {
+        owned.back() = coordinates;
+      }
+    }
+  }
+  return owned;
 }
 
 /// With ones; orderings read no values.
@@ -151,13 +187,13 @@ std::vector<int> colamd_order(const SymmetricPattern& pattern) {
   return order;
 }
 
-std::vector<int> owned_coordinates(const Model& model) {
+std::vector<std::vector<int>> owned_coordinates(const Model& model) {
   constexpr double kFarBelow = 1e-3;
   std::vector<int> rows_with(at(model.variables()), 0);
   for (const LinearConstraint& linear : model.linear_constraints()) {
     for (const LinearConstraint::Term& term : linear.terms) ++rows_with[at(term.coordinate)];
   }
-  std::vector<int> owned(at(model.constraints()) - model.linear_constraints().size(), -1);
+  std::vector<std::vector<int>> owned = owned_points(model, rows_with, kFarBelow);
   for (const LinearConstraint& linear : model.linear_constraints()) {
     double largest = 0.0, most = 0.0;
     int found = -1;
@@ -167,13 +203,14 @@ std::vector<int> owned_coordinates(const Model& model) {
       most = std::abs(coefficient);
       found = coordinate;
     }
-    owned.push_back(most > kFarBelow * largest ? found : -1);
+    owned.emplace_back();
+    if (most > kFarBelow * largest) owned.back() = {found};
   }
   return owned;
 }
 
 std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPattern& pattern,
-                             const std::vector<int>& owned) {
+                             const std::vector<std::vector<int>>& owned) {
   const Index variables = order.size(), size = at(pattern.size());
   std::vector<std::size_t> place(variables);
   for (Index k = 0; k < variables; ++k) place[at(order[k])] = k + 1;
@@ -184,7 +221,7 @@ std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPatte
     return std::span(rows + pattern.start[unknown], rows + pattern.start[unknown + 1]);
   };
   for (Index row = 0; row < last.size(); ++row) {
-    if (owned[row] >= 0) owner[at(owned[row])] = static_cast<int>(row);
+    for (const int i : owned[row]) owner[at(i)] = static_cast<int>(row);
     for (const int i : neighbours(variables + row)) last[row] = std::max(last[row], place[at(i)]);
   }
   std::vector<std::vector<int>> after(variables + 1);  // rows, by the variables before them
@@ -193,7 +230,8 @@ std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPatte
     for (const int i : neighbours(variables + row)) {
       if (owner[at(i)] >= 0) behind = std::max(behind, last[at(owner[at(i)])]);
     }
-    if (owned[row] >= 0) behind = place[at(owned[row])];
+    if (!owned[row].empty()) behind = 0;
+    for (const int i : owned[row]) behind = std::max(behind, place[at(i)]);
     after[behind].push_back(static_cast<int>(variables + row));
   }
   std::vector<int> result = after[0];
@@ -205,7 +243,7 @@ std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPatte
 }
 
 json elimination_json(const SymmetricPattern& tangent, const SymmetricPattern& saddle_point,
-                      const std::vector<int>& owned) {
+                      const std::vector<std::vector<int>>& owned) {
   const std::vector<int> order = amd_order(tangent);
   const auto natural = eliminate(tangent, natural_order(tangent));
   const auto amd = eliminate(tangent, order);

@@ -59,15 +59,16 @@ std::vector<int> colamd_order(const SymmetricPattern& pattern);
 
 /// By constraint: of a linear one the coordinate with the largest coefficient of those that no
 /// other linear one has, unless that is far below its largest. It is a substitution for that
-/// coordinate. -1 for others.
-std::vector<int> owned_coordinates(const Model& model);
+/// coordinate. Of another one those of a point that no other constraint has, unless it is far
+/// heavier than the constraint's others. Empty where there is none.
+std::vector<std::vector<int>> owned_coordinates(const Model& model);
 
 /// `order` of the first unknowns of `pattern`, and each of the others, the rows, right after the
 /// last of those that it is coupled with: so the sparse implementations order the saddle-point
-/// matrix (12). A row that owns an unknown (owned[row], or -1) comes right after that one. Rows
+/// matrix (12). A row that owns unknowns (owned[row]) comes right after the last of these. Rows
 /// that are coupled with an owned one wait for what its owner is coupled with, too.
 std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPattern& pattern,
-                             const std::vector<int>& owned);
+                             const std::vector<std::vector<int>>& owned);
 
 /// Of the patterns of tangent and saddle-point matrix, and owned_coordinates(). Keys: ordering
 /// ("AMD"), whose factor_nonzeros, per_column (non-zeros of L a column), flops, height, widest and
@@ -75,6 +76,6 @@ std::vector<int> rows_behind(const std::vector<int>& order, const SymmetricPatte
 /// same keys each, or null; the last is of the saddle-point matrix.
 nlohmann::json elimination_json(const SymmetricPattern& tangent,
                                 const SymmetricPattern& saddle_point,
-                                const std::vector<int>& owned);
+                                const std::vector<std::vector<int>>& owned);
 
 }  // namespace mbs
