@@ -358,6 +358,17 @@ def test_an_untimed_cell_that_is_alone_takes_its_whole_time_from_the_budget(mbs,
         assert lab.spent == pytest.approx(record.seconds)
 
 
+def test_of_cells_that_end_at_once_each_is_taken_from_the_budget(mbs, tmp_path, monkeypatch):
+    def slow():
+        time.sleep(0.1)
+        return 4
+    monkeypatch.setattr("study.core.lab.cores", slow)
+    mbs('echo "{}"')
+    lab = Lab(Set(tmp_path), "part", "column")
+    seconds = [one.seconds for one in lab.run(cells(8))]
+    assert lab.spent == pytest.approx(max(8 * BETWEEN + sum(seconds) / 4, *seconds))
+
+
 def test_a_skipped_cell_has_a_reason_and_stays(tmp_path):
     lab = Lab(Set(tmp_path), "part", "column")
     assert lab.skip(CELL, "excluded", "too slow").reason == "too slow"
