@@ -593,6 +593,19 @@ def test_a_dry_run_has_the_time_of_a_part_whose_programs_are_there_now(tmp_path,
     assert f"engines    at most {duration(profile.planned({'engines': columns}))}: " in capsys.readouterr().out
 
 
+def test_only_parts_that_are_asked_for_are_run_in_a_set_that_has_others(tmp_path, monkeypatch):
+    ran = []
+    monkeypatch.setattr(tempfile, "tempdir", TEMPORARY.name)
+    write_json(tmp_path / "set.json", FACTS | {"profile": "smoke", "parts": ["map", "limit"]})
+    write_json(tmp_path / "registry.json", REGISTRY.listed)
+    shutil.copyfile(profile.FOLDER / "smoke.yaml", tmp_path / "profile.yaml")
+    monkeypatch.setattr(main, "set_up", lambda log: None)
+    monkeypatch.setattr(main, "start", lambda folder, *_: studyset.StudySet(folder))
+    monkeypatch.setattr(main, "run_workflow", lambda known, columns: ran.extend(columns))
+    main._run_here(profile.load("smoke", ["map"]), [], ["map"], tmp_path, True)
+    assert ran == ["map"]
+
+
 def test_the_time_that_is_planned_has_what_is_around_each_part_that_runs():
     around = profile.planned({"one": {"a": 10.0, "b": 20.0}, "two": {"c": 1.0}, "done": {}}) - 31.0
     assert around == pytest.approx(2 * profile.STARTED + profile.DRAWN * 31.0) and around > 0
