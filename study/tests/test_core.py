@@ -636,6 +636,10 @@ def test_a_further_page_is_drawn_again_only_with_a_part_that_it_is_made_of(tmp_p
         drawn.append(((tmp_path / "explore.html").stat().st_mtime_ns, (tmp_path / "index.html").stat().st_mtime_ns))
     pages, fronts = zip(*drawn)
     assert pages[0] == pages[1] < pages[2] == pages[3] and len(set(fronts)) == 4
+    write_json(tmp_path / ".explore.json", [{"case": "the case", "state": "n=1", "take": "one/a"}])  # of a set with few mechanisms
+    site.write_index(tmp_path, "tuning")
+    front = (tmp_path / "index.html").read_text()
+    assert "the case" in front and "Three questions" not in front
 
 
 REGISTRY = Registry({"implementations": [
