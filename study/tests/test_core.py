@@ -563,6 +563,14 @@ def test_a_column_is_opened_again_only_where_a_record_is_missing(tmp_path):
             check(known)
 
 
+def test_a_stamp_that_is_being_written_is_none(tmp_path):
+    known = studyset.StudySet(tmp_path)
+    records.write(tmp_path / "raw" / "part" / "a" / "one.json", FIELDS)
+    studyset.finish(known, "part", "a", ["a/one.json"])
+    write_text(tmp_path / ".done" / "part" / ".partial-node-1-2-b", '{"b/')  # by another node, or one that was lost
+    studyset.need_records(known)
+
+
 def test_a_column_is_opened_again_where_a_program_was_missing_and_is_there_now(tmp_path, monkeypatch):
     monkeypatch.setattr(studyset, "ROOT", tmp_path)
     known, program = studyset.StudySet(tmp_path / "set"), tmp_path / "build" / "engine"
