@@ -89,7 +89,7 @@ def _run_here(profile, only, chosen, folder, wait):
         set_up(folder / "run.log")
         need_modules()
         studyset = start(folder, profile, only, chosen)
-        columns = columns_of(profile, studyset.facts["parts"])
+        columns = columns_of(profile, chosen)
         reopen(studyset, columns)
         need_tables(studyset)
         print(f"{len(studyset.contenders)} implementations, {len(columns)} parts: at most "

@@ -156,8 +156,9 @@ function fillAnswer(found, state) {
                 ...elsewhere(found, contest, ranking.winner)]);
   }
   if (first && !first.exact)
-    lines.push([!second ? "This is the nearest that was measured." : first.ranking.winner === second.ranking.winner ?
-      "Your case lies between these; on both the same one leads." : "Your case lies between these, where another one leads on each: measure it."]);
+    lines.push([!second ? "This is the nearest that was measured."
+      : (found.asked.family ? "Your case lies between these" : "These two are the nearest that were measured")
+        + (first.ranking.winner === second.ranking.winner ? "; on both the same one leads." : "; another one leads on each: measure yours.")]);
   if (best) lines.push(["Predicted for the case: ", bold(best.name), ` ${short(best.value)} µs a step (${range(best)}).`]);
   const step = first?.exact ? stepOf(first.contest, first.ranking.winner) : best?.value;
   if (state.deadline && step)

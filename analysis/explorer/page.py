@@ -1,4 +1,4 @@
-# What the template of explore.html gets: the data as JSON, and three questions with the answers of this set.
+# What the template of explore.html gets: the data as JSON, and questions with the answers of this set.
 import json
 
 import yaml

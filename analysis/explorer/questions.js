@@ -63,7 +63,7 @@ function distance(one, asked) {
 }
 
 // The answer: {asked, form, names, near: [{contest, ranking, exact}], predicted, features, error, warnings}. `near` is the contest
-// of the case itself, or those on both sides of it.
+// of the case itself, or those on both sides of it in its family, or the two nearest.
 function answer(state) {
   const set = setOf(state), names = chosen(state), asked = caseOf(state);
   const found = {set, asked, names, form: null, near: [], predicted: [], features: null, error: null, warnings: []};

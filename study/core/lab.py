@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import tempfile
+import threading
 from concurrent.futures import ThreadPoolExecutor
 
 from analysis.core import records
@@ -25,7 +26,7 @@ class Lab:
     def __init__(self, studyset, part, column, seconds=float("inf")):
         self.set, self.part, self.column, self.budget = studyset, part, column, seconds
         self.base = studyset.folder / "raw" / part
-        self.names, self.spent = {}, 0.0  # of the cells that are done
+        self.names, self.spent, self.lock = {}, 0.0, threading.Lock()  # of the cells that are done, which may end at once
         self.asked, self.text = set(), ""  # names of all cells that are known of; what is told beside their number
         self.known = set()  # programs that are those of the set's records
 
@@ -138,8 +139,10 @@ class Lab:
 
     def _keep(self, record):
         if record.name not in self.names:
-            self.names[record.name] = None  # in their order
-            self.spent += BETWEEN + record.seconds / (1 if record.cell["timed"] else cores())
+            taken = BETWEEN + record.seconds / (1 if record.cell["timed"] else cores())
+            with self.lock:
+                self.names[record.name] = None  # in their order
+                self.spent += taken
             self._show_state()
         return record
 

@@ -28,21 +28,24 @@ def name():
     return os.environ.get("SLURMD_NODENAME") or socket.gethostname()
 
 
+def refused(folder):
+    """{path of a node that was refused: [why, its own set, the program]}, without what is being written"""
+    return {path: [*path.read_text().splitlines(), "", "", ""][:3] for path in sorted((home(folder) / "refused").glob("[!.]*"))}
+
+
 def refusals(folder):
     """{node: why it is not of the set}"""
-    return {path.name: path.read_text().splitlines()[0] for path in sorted((home(folder) / "refused").glob("*"))}
+    return {path.name: why for path, (why, _, _) in refused(folder).items()}
 
 
 def own_sets(folder):
     """Folders of the sets that such nodes have begun."""
-    named = {path.read_text().splitlines()[1] for path in (home(folder) / "refused").glob("*")}
-    return sorted(Path(one) for one in named if one)
+    return sorted({Path(own) for _, own, _ in refused(folder).values() if own})
 
 
 def forget(folder):
     """Has nodes asked again that were refused for what may be mended, as a full disk, or with another program."""
-    for path in (home(folder) / "refused").glob("*"):
-        _, _, program, *_ = [*path.read_text().splitlines(), "", "", ""]
+    for path, (_, _, program) in refused(folder).items():
         if not program or program != digest(ROOT / program_of()):
             path.unlink()
 

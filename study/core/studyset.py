@@ -249,7 +249,7 @@ def _empty(page):
 
 def need_records(studyset):
     """StudyError naming a record of a finished column that is missing or was changed."""
-    for stamp in sorted((studyset.folder / ".done").glob("*/*")):
+    for stamp in sorted((studyset.folder / ".done").glob("*/[!.]*")):
         missing = _missing(studyset, stamp)
         if missing:
             raise StudyError(f"{missing[0]} is missing: study/run measures it again")

@@ -8,6 +8,7 @@ import pytest
 from analysis.core import records, schema
 from analysis.core.errors import StudyError
 from analysis.core.files import digest, read_json, write_json
+from analysis.core.registry import Registry
 from study.core.cell import CONTROL, Contender
 from study.core.lab import Lab
 from study.core.studyset import StudySet, context_of, listed
@@ -187,7 +188,8 @@ def test_the_newest_of_this_machine_is_the_default_and_without_one_it_says_what_
     older = folder.parent / "local" / "older"
     shutil.copytree(folder, older)
     write_json(older / "set.json", read_json(older / "set.json") | {"date": "2025-01-01 10:00"})
-    assert add.newest(listed()) == folder
+    for known in (listed(), Registry(listed().listed | {"blas": []})):  # with BLAS pairs, and without any that it knows
+        assert add.newest(known) == folder
     monkeypatch.setenv("FAKE_MACHINE", "m2")
     with pytest.raises(StudyError, match="set is of .*study/run --part map makes one.*mbs bench"):
         add.newest(listed())

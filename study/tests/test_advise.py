@@ -355,6 +355,14 @@ def test_the_deadline_is_verified_too():
     assert advice.candidates[0].reason == "99th percentile 12 us when verified: beyond the deadline"
 
 
+def test_what_a_whole_run_was_refused_for_is_told():
+    advice, _ = verified(lambda step: 1e-4, plain={"a": "wrong-branch"})
+    assert answer._refused(advice)[0]["why"].startswith("wrong-branch as it would be advised")
+    for more, why in (({"p99": 12.0, "deadline_us": 10.0}, "99th percentile 12 us over 1 s: beyond the deadline"),
+                      ({"exact": 1e-2}, "error 0.01 m over 1 s"), ({}, "")):
+        assert verified(lambda step: 1e-4, **more)[0].verifications[0]["refused"] == why
+
+
 def test_without_the_automatic_tolerance_none_is_made_up():
     asked = []
 

@@ -12,6 +12,11 @@ from study.tools import against
 CHOICE = ["HEAD~1", "--only", "good_sparse", "--scenes", "four-bar:4", "--rounds", "1", "--wait"]
 
 
+def described(scene):
+    if not scene.startswith("four-bar:"):
+        raise StudyError(f"unknown scene '{scene}'")
+
+
 @pytest.fixture
 def programs(tmp_path, monkeypatch):
     """Paths of the programs of the old revision and of this tree."""
@@ -24,6 +29,7 @@ def programs(tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", TEMPORARY.name)
     monkeypatch.setattr(against, "_resolve", lambda name: "0123456789abcdef")
     monkeypatch.setattr(against, "_build", lambda revision, log: "against/old")
+    monkeypatch.setattr(against, "describe", described)
     program_of = executor.program_of
     for module in (executor, studyset, against):
         monkeypatch.setattr(module, "program_of", lambda name="mbs", build="": str(paths["old"]) if build
@@ -83,6 +89,14 @@ def test_a_variant_that_the_revision_lacks_is_said(programs, tmp_path):
 def test_another_selection_is_refused(programs, tmp_path, more, what):
     compare(tmp_path / "results")
     with pytest.raises(StudyError, match=rf"something else \({what}\)"):
+        compare(tmp_path / "results", *more)
+
+
+@pytest.mark.parametrize("more, words", [(["--only", "nobody"], "unknown implementation 'nobody'"),
+                                         (["--scenes", "four-bar:4", "nosuch"], "unknown scene 'nosuch'")])
+def test_names_that_are_none_are_said_before_the_other_revision_is_built(programs, tmp_path, monkeypatch, more, words):
+    monkeypatch.setattr(against, "_build", lambda *_: pytest.fail("it was built"))
+    with pytest.raises(StudyError, match=words):
         compare(tmp_path / "results", *more)
 
 

@@ -359,6 +359,17 @@ def test_an_untimed_cell_that_is_alone_takes_its_whole_time_from_the_budget(mbs,
         assert lab.spent == pytest.approx(record.seconds)
 
 
+def test_of_cells_that_end_at_once_each_is_taken_from_the_budget(mbs, tmp_path, monkeypatch):
+    def slow():
+        time.sleep(0.1)
+        return 4
+    monkeypatch.setattr("study.core.lab.cores", slow)
+    mbs('echo "{}"')
+    lab = Lab(Set(tmp_path), "part", "column")
+    seconds = [one.seconds for one in lab.run(cells(8))]
+    assert lab.spent == pytest.approx(max(8 * BETWEEN + sum(seconds) / 4, *seconds))
+
+
 def test_a_skipped_cell_has_a_reason_and_stays(tmp_path):
     lab = Lab(Set(tmp_path), "part", "column")
     assert lab.skip(CELL, "excluded", "too slow").reason == "too slow"
@@ -553,6 +564,14 @@ def test_a_column_is_opened_again_only_where_a_record_is_missing(tmp_path):
             check(known)
 
 
+def test_a_stamp_that_is_being_written_is_none(tmp_path):
+    known = studyset.StudySet(tmp_path)
+    records.write(tmp_path / "raw" / "part" / "a" / "one.json", FIELDS)
+    studyset.finish(known, "part", "a", ["a/one.json"])
+    write_text(tmp_path / ".done" / "part" / ".partial-node-1-2-b", '{"b/')  # by another node, or one that was lost
+    studyset.need_records(known)
+
+
 def test_a_column_is_opened_again_where_a_program_was_missing_and_is_there_now(tmp_path, monkeypatch):
     monkeypatch.setattr(studyset, "ROOT", tmp_path)
     known, program = studyset.StudySet(tmp_path / "set"), tmp_path / "build" / "engine"
@@ -581,6 +600,19 @@ def test_a_dry_run_has_the_time_of_a_part_whose_programs_are_there_now(tmp_path,
     write_text(tmp_path / "build" / "study" / "engines" / "engine_ode", "")
     main.dry_run(chosen, ["engines"], known.folder, [], None)
     assert f"engines    at most {duration(profile.planned({'engines': columns}))}: " in capsys.readouterr().out
+
+
+def test_only_parts_that_are_asked_for_are_run_in_a_set_that_has_others(tmp_path, monkeypatch):
+    ran = []
+    monkeypatch.setattr(tempfile, "tempdir", TEMPORARY.name)
+    write_json(tmp_path / "set.json", FACTS | {"profile": "smoke", "parts": ["map", "limit"]})
+    write_json(tmp_path / "registry.json", REGISTRY.listed)
+    shutil.copyfile(profile.FOLDER / "smoke.yaml", tmp_path / "profile.yaml")
+    monkeypatch.setattr(main, "set_up", lambda log: None)
+    monkeypatch.setattr(main, "start", lambda folder, *_: studyset.StudySet(folder))
+    monkeypatch.setattr(main, "run_workflow", lambda known, columns: ran.extend(columns))
+    main._run_here(profile.load("smoke", ["map"]), [], ["map"], tmp_path, True)
+    assert ran == ["map"]
 
 
 def test_the_time_that_is_planned_has_what_is_around_each_part_that_runs():
@@ -613,6 +645,10 @@ def test_a_further_page_is_drawn_again_only_with_a_part_that_it_is_made_of(tmp_p
         drawn.append(((tmp_path / "explore.html").stat().st_mtime_ns, (tmp_path / "index.html").stat().st_mtime_ns))
     pages, fronts = zip(*drawn)
     assert pages[0] == pages[1] < pages[2] == pages[3] and len(set(fronts)) == 4
+    write_json(tmp_path / ".explore.json", [{"case": "the case", "state": "n=1", "take": "one/a"}])  # of a set with few mechanisms
+    site.write_index(tmp_path, "tuning")
+    front = (tmp_path / "index.html").read_text()
+    assert "the case" in front and "Three questions" not in front
 
 
 REGISTRY = Registry({"implementations": [

@@ -234,10 +234,11 @@ def test_the_case_can_be_chosen_and_stands_in_the_address(page):
     put(browser, "family", "ladder", "change")
     put(browser, "n", 150)
     assert browser.value("explorer.shown.near.map((one) => one.contest.family)") == ["ladder", "ladder"]
-    assert not browser.value("explorer.shown.near[0].exact") and "ladder" in said(browser)
+    assert not browser.value("explorer.shown.near[0].exact") and "ladder" in said(browser) and "lies between these" in said(browser)
     assert browser.value("document.querySelector('#copy pre').textContent").startswith("build/mbs bench ladder:38 ")
     put(browser, "family", "", "change")
     put(browser, "fill", 40)
+    assert "lies between" not in said(browser) and "These two are the nearest" in said(browser)  # perhaps both are smaller
     put(browser, "error", 1e-3)
     put(browser, "deadline", 30)
     assert "30 µs" in said(browser) and "0.001 m" in said(browser) and browser.value("!!document.querySelector('#points svg') && !!document.querySelector('#model svg')")

@@ -73,6 +73,15 @@ def test_what_days_and_machines_add_to_a_ratio_is_told():
     assert [*alone] == ["processor"] and agreement.components([agreed({"a": ONE}, {"a": ONE})], ["m1", "m2"]) == {}
 
 
+def test_where_neither_days_nor_machines_add_anything_next_to_nothing_is_told():
+    random, error = numpy.random.default_rng(4), 0.03
+    half = agreement.QUANTILE * error
+    cells = [agreed(*({"a": ONE, "b": Ratio(*numpy.exp([log, log - half, log + half]))}
+                      for log in 1.0 + error * random.standard_normal(4))) for _ in range(300)]
+    found = agreement.components(cells, ["m1", "m1", "m2", "m2"])
+    assert all(percent < 1 and count == 300 for percent, count in found.values()), found
+
+
 @pytest.mark.parametrize("key, value, words", [("blas_loaded", "/usr/lib/x86_64-linux-gnu/atlas/libblas.so", "blas_loaded"),
                                                ("commit", "other", "commit"), ("libraries", "Eigen 9", "libraries"), ("dirty", "true", "tree with changes")])
 def test_other_builds_and_dirty_trees_are_refused(tmp_path, key, value, words):

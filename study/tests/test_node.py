@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from analysis.core.errors import StudyError
-from analysis.core.files import read_object, write_json
+from analysis.core.files import read_object, write_json, write_text
 from study.core import cluster, locks, node
 from study.core.studyset import StudySet
 from study.tests.conftest import FAKE, ROOT, environment, study
@@ -128,6 +128,8 @@ def test_who_is_refused_stays_so_but_for_what_may_be_mended(begun, monkeypatch, 
     monkeypatch.setattr(shutil, "disk_usage", lambda folder: SimpleNamespace(free=0))
     refused(begun, "less than 100 MB free")
     cluster._plan(begun.profile, [], ["map"], begun.folder, {})
+    assert [*node.refusals(begun.folder)] == ["first"] and len(node.own_sets(begun.folder)) == 1
+    write_text(node.home(begun.folder) / "refused" / ".partial-lost-1-2-lost", "")  # of a node that was lost as it wrote
     assert [*node.refusals(begun.folder)] == ["first"] and len(node.own_sets(begun.folder)) == 1
     (tmp_path / "mbs").write_text("built anew")
     monkeypatch.setenv("MBS_PROGRAM", str(tmp_path / "mbs"))

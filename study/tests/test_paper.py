@@ -60,6 +60,12 @@ def test_every_number_has_a_source_and_most_are_measured(found):
     assert all(len(set(one.records)) == len(one.records) for one in found.values())
 
 
+def test_controls_are_those_by_which_the_set_is_judged(known, found):
+    tables = [known.tables(part)["controls"] for part in ("map", "families")]
+    assert f"{sum(map(len, tables))} times a contender" in found["design.controls"].text
+    assert f"{sum(table.decided.sum() for table in tables)} were decided" in found["design.controls"].text
+
+
 @pytest.mark.parametrize("typed", ["KLU takes 1.31 times as long.", "On 19 mechanisms it leads.", r"\caption{At $n=82$ it is fast.}", "10\\,µs a step"])
 def test_a_typed_number_is_found(found, typed):
     assert [one for one in wrong(in_text(typed), found) if "is typed" in one]

@@ -43,6 +43,8 @@ def left(folder):
 
 
 def test_a_set_is_packed_and_read_as_it_was(folder, capsys):
+    for place in (PART, "contexts"):
+        (folder / place / ".partial-node-1-2-maps.csv").write_text("half")
     store.store([str(folder)])
     [name] = left(folder)
     stored = folder.parent / "results" / name
@@ -52,7 +54,7 @@ def test_a_set_is_packed_and_read_as_it_was(folder, capsys):
         assert (stored / PART / f"{table}.csv").read_bytes() == (folder / PART / f"{table}.csv").read_bytes()
     files = {path.relative_to(stored).as_posix() for path in stored.rglob("*") if path.is_file()}
     assert {"set.json", "registry.json", "profile.yaml", f"raw/{PART}.tar.xz", f"{PART}/answers.json"} < files
-    assert not any(name.endswith((".html", ".svg", ".png")) or name.startswith(f"raw/{PART}/") for name in files)
+    assert not any(name.endswith((".html", ".svg", ".png")) or name.startswith(f"raw/{PART}/") or ".partial" in name for name in files)
 
 
 def test_pictures_that_a_text_shows_are_kept(folder, tmp_path, monkeypatch):

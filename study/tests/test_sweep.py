@@ -58,6 +58,8 @@ def test_cells_are_of_values_or_of_one_width():
     (None, [], "no table can be read"), ("", [], "no table can be read"), ("a,b\n1,2\n", [], "found no lanes"),
     (HEAD, [], "found no lanes"), (HEAD + "1,2,ok" + "," * 11 + "\n", ["--of", "B"], "--of: found 'B'"),
     (HEAD + "x,2,ok" + ",0" * 11 + "\n", [], "k has something else"),
+    (HEAD + "1,2,ok" + ",0" * 11 + "\n1,", [], "line 3: found a row that is cut short"),
+    (HEAD + "1,2,ok" + ",0" * 11 + "\n1,2", [], "line 3: .* cut short"),
     (HEAD + "1,2,ok" + ",0" * 11 + "\n", ["--over", "k", "q"], "--over: found 'q', allowed are k, m"),
     (HEAD + "1,2,ok" + ",0" * 11 + "\n", ["--output", "t.pdf"], "ends with .png")])
 def test_what_cannot_be_drawn_is_said(tmp_path, text, options, words):

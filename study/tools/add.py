@@ -6,13 +6,13 @@
 import datetime
 import shutil
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from analysis.core import schema, timing
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_json, write, write_json
 from study.core import executor, locks, profile as profiles
-from study.core.cell import CONTROL, on_usual_pairs
+from study.core.cell import control, on_usual_pairs
 from study.core.executor import program_of
 from study.core.contest import Asked, verdicts
 from study.core.front import duration, set_up
@@ -60,7 +60,7 @@ def add(arguments):
 def newest(known):
     """The newest set with leaders of this machine and build, stored or one's own."""
     found = [one for one in sets_in(RESULTS, RESULTS / "local") if TABLES.keys() & set(one.facts["parts"])]
-    now = context_of(replace(CONTROL, blas=next(name for name, why in known.pairs.items() if not why)))
+    now = context_of(control(known, profiles.load("quick", []).blas))
     for one in found:
         if not executor.differing(one.facts["context"], now, SAME):
             return one.folder

@@ -18,6 +18,7 @@ from study.core.front import build as built, set_up
 from study.core.options import Parser, directory, rounds
 from study.core.studyset import context_of, listed, need_own, select, writable
 from study.tools import shelf
+from study.tools.advise.runner import describe
 
 SECONDS = 120.0  # of a process
 # Google's option makes the programs of older revisions take turns too; later ones do so anyway.
@@ -43,8 +44,12 @@ def against(arguments):
     writable(folder)
     with locks.only_one(folder), locks.only_one_study(options.wait):
         set_up(folder / "run.log")
+        known = listed()
+        names = select(known, options.only)
+        for scene in options.scenes:
+            describe(scene)  # StudyError before the other revision is built for nothing
         build = _build(revision, folder / "run.log")
-        table = _measure(folder, options, revision, build)
+        table = _measure(folder, options, known, names, revision, build)
     write(folder / "ratios.csv", lambda partial: table.to_csv(partial, index=False))
     print(f"\ntime of a step, this tree / {revision} (95 % interval over pairs of processes; below 1: faster now)")
     for row in table.itertuples():
@@ -75,10 +80,10 @@ def _build(revision, log):
     return build
 
 
-def _measure(folder, options, revision, build):
+def _measure(folder, options, known, names, revision, build):
     """The table of ratios."""
-    known, pairs = listed(), profiles.load("quick", []).blas
-    contenders = on_usual_pairs(known, pairs, select(known, options.only))
+    pairs = profiles.load("quick", []).blas
+    contenders = on_usual_pairs(known, pairs, names)
     kept = shelf.open_shelf(folder, "against", context_of(control(known, pairs)), options.only, scenes=options.scenes,
                             old=digest(ROOT / program_of(build=build))[:16])
     lab = shelf.ToolLab(kept, "against", "runs")

@@ -33,6 +33,7 @@ def store(arguments):
     folder = options.set or newest(RESULTS / "local")
     studyset = opened(folder)
     with locks.only_one(RESULTS), locks.only_one(folder):
+        studyset.clear()  # what was killed may have left a half-written table
         need_whole(studyset)
         name = options.name if options.name is not None else f"{studyset.facts['profile']}-{short(studyset.facts['context']['cpu_model'])}"
         if not re.fullmatch(r"[A-Za-z0-9][\w.+-]*", name) or name == "local":

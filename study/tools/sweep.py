@@ -70,6 +70,10 @@ def read(path, of):
         raise StudyError(f"--of: found {result!r}, allowed are {', '.join(results)}")
     if wrong := [name for name in parameters if name not in numbers]:
         raise StudyError(f"{path}: {wrong[0]} has something else than numbers")
+    broken = ~numpy.isfinite(table[parameters]).all(axis=1) | table["status"].isna()
+    if broken.any():
+        raise StudyError(f"{path}, line {broken.argmax() + 2}: found a row that is cut short, allowed are numbers for "
+                         f"{', '.join(parameters)}, and a status")
     table["finished"] = table["status"].isin(FINISHED)
     return table, parameters, result
 

@@ -87,8 +87,7 @@ def _refused(advice):
     and the slowest pilot of each such setting, the fastest first."""
     best, found = advice.chosen.us_per_second()[0], []
     for row in advice.verifications[:-1]:
-        found.append((0.0, row["setting"], row["step"], f"estimate {number(row['estimate'])} m over {row['duration']:g} s, and no "
-                      "margin" if row["status"] in FINISHED else f"{row['status']}: {row['reason']}"))
+        found.append((0.0, row["setting"], row["step"], row["refused"]))
     for one in advice.found.values():
         faster = [pilot for pilot in one.pilots if pilot.step > 1.001 * (one.chosen or 0)
                   and (one.step_us() / pilot.step < best or one is advice.found[advice.chosen.setting])]

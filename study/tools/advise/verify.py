@@ -3,6 +3,7 @@
 import math
 
 from analysis.core.outcomes import FINISHED
+from analysis.core.text import number
 from study.tools.advise import timing
 from study.tools.advise.choice import LEAST_STEPS, Pilot, apart, by_order, enough, known, most, tidy
 from study.tools.advise.runner import HALVED
@@ -31,13 +32,15 @@ def verify(advice, run):
         row = {} | run("verification", one.setting, one.implementation, one.step, duration, 1.5 * seconds + 2, checks=HALVED)
         row |= {"estimate": _at_least(row, advice)}
         advice.verifications.append(row)
-        if not accepted(row, advice, one):
+        row["refused"] = refused(row, advice, one)
+        if row["refused"]:
             _reconsider(one, row, advice)
             continue
         run.tell("the advised line itself")
         advice.outcome = run("outcome", one.setting, one.implementation, one.step, duration, seconds + 2, repeats=1)
         if advice.outcome["status"] not in FINISHED:
-            one.drop(f"{advice.outcome['status']} as it would be advised: {advice.outcome['reason']}")
+            row["refused"] = f"{advice.outcome['status']} as it would be advised: {advice.outcome['reason']}"
+            one.drop(row["refused"])
             continue
         advice.chosen, advice.verified = one, row | {"estimate": max(row["estimate"], row["exact"] or 0.0)}
         if duration < question.duration:
@@ -65,11 +68,16 @@ def _at_least(row, advice):
     return max([row["estimate"], *(pilot.estimate for pilot in found.pilots if pilot.valid and pilot.step < row["step"])])
 
 
-def accepted(row, advice, one):
-    """Whether a whole run is as accurate, and as punctual, as asked."""
+def refused(row, advice, one):
+    """Why a whole run is not as accurate, or not as punctual, as asked; "" if it is both."""
+    if row["status"] not in FINISHED or row["estimate"] is None:
+        return f"{row['status']}: {row['reason']}"
+    if _excess(row, advice, one) > 1:
+        over, exact = f"m over {row['duration']:g} s", row["exact"]
+        return f"estimate {number(row['estimate'])} {over}, and no margin" if exact is None else f"error {number(exact)} {over}"
     deadline = advice.question.deadline_us
-    return (row["status"] in FINISHED and row["estimate"] is not None and _excess(row, advice, one) <= 1
-            and (not deadline or row["step_us_p99"] <= deadline))
+    late = deadline and row["step_us_p99"] > deadline
+    return f"99th percentile {row['step_us_p99']:.3g} us over {row['duration']:g} s: beyond the deadline" if late else ""
 
 
 def _excess(row, advice, one):

@@ -163,10 +163,11 @@ def components(agreed, machines):
             continue  # not told by all
         own = numpy.mean([sum((math.log(ratio.high / ratio.low) / 2 / QUANTILE) ** 2 for ratio in pair) for pair in both])
         logs = pandas.Series([math.log(second.value / first.value) for first, second in both]).groupby(list(machines))
-        day = numpy.fmax(own, logs.var().mean())  # which no machine with one set tells
+        day = logs.var().mean() if logs.size().max() > 1 else own  # which no machine with one set tells
         found["day"] += [day - own] if logs.size().max() > 1 else []
-        found["processor"] += [max(0.0, logs.mean().var() - day * (1 / logs.size()).mean())] if logs.ngroups > 1 else []
-    return {source: (100 * math.sqrt(numpy.mean(some)), len(some)) for source, some in found.items() if some}
+        found["processor"] += [logs.mean().var() - day * (1 / logs.size()).mean()] if logs.ngroups > 1 else []
+    # A cell may tell less than nothing; if it counted as nothing, chance alone would make a mean above that.
+    return {source: (100 * math.sqrt(max(0.0, numpy.mean(some))), len(some)) for source, some in found.items() if some}
 
 
 def mechanisms(sets, agreed=None):

@@ -10,7 +10,6 @@ from scipy.stats import gmean
 
 from analysis.accuracy import sentences as accuracy
 from analysis.core import timing
-from analysis.core.controls import judged
 from analysis.core.files import ROOT
 from analysis.core.text import number, span
 from analysis.families import rule as rules
@@ -108,12 +107,13 @@ def _design(known):
             "tried": of_rows(timed.alternative.nunique(), table, timed), "compared": count(timed, timed, table),
             "slower": count(timed[timed.low > 1], timed, table), "faster": count(timed[timed.high < 1], timed, table),
             "least": of_rows(lambda rows: number(rows.ratio.iloc[0]), table, timed.nsmallest(1, "ratio")),
-            "controls": Number(_controls(known), "map/controls", _records(known.tables("map")["controls"])),
+            "controls": Number(_controls(known), "map/controls, families/controls", tuple(
+                name for part in ("map", "families") for name in _records(known.tables(part)["controls"]))),
             "spread": Number(_spread(known), "map/spread")}
 
 
 def _controls(known):
-    found = judged(known.tables("map")["controls"])
+    found = machine.controls(known)  # of all by which the set is judged
     if not found["pairs"]:
         return "No contender was timed against itself in this set, so how often it decides falsely is not measured."
     return (f"As a control, {found['pairs']} times a contender was timed against itself: {found['false']} were decided, which is false; the ratio "
