@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "environment/blas.hpp"
@@ -142,12 +141,6 @@ StepSettings StepOptions::resolve(const Model& model) const {
   }
   require_combination(result);
   result.penalty = parse_penalty(penalty, model, result);
-  if (!(result.penalty > 0.0) || !std::isfinite(result.penalty)) {
-    throw UsageError(
-        fmt::format("--penalty auto gives {:g} for this scene and step {:g} s: its "
-                    "lengths or masses are out of range; name a number",
-                    result.penalty, result.step));
-  }
   result.tolerance = parse_tolerance(tolerance, model, result);
   return result;
 }

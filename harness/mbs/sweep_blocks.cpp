@@ -62,7 +62,7 @@ std::string SweepBlocks::run(long block) const {
   std::vector<Lane> group;
   long written = block * size_;
   const auto finish_group = [&] {
-    const bool side_by_side = run_lanes(group, variant_, [](double) {});
+    const bool side_by_side = run_lanes(group, variant_);
     outcomes.alone |= group.size() > 1 && !side_by_side;
     for (const Lane& lane : group) {
       rows += rows_.row(grid_.values(written++), lane);

@@ -20,6 +20,8 @@ class TableFile {
   struct Close {
     void operator()(void* file) const;
   };
+  [[noreturn]] void fail() const;
+
   std::string path_;
   AtomicFile file_;
   std::unique_ptr<void, Close> compressed_;  // zlib's

@@ -326,6 +326,16 @@ TEST(Describe, DriversOfFunctionsNeverEnd) {
   EXPECT_TRUE(describe_json(load_scene("four-bar:2"), kSettings)["drivers_end"].is_null());
 }
 
+TEST(Describe, DriversTooFastForTheStepAreDescribed) {
+  const auto d = describe_json(scene_of_text(R"({"points": [
+      {"name": "A", "driven": {"x": {"sine": {"amplitude": 1e-3, "frequency": 1000}}, "y": 0}},
+      {"name": "B", "position": [0, -1]}],
+    "rods": [{"between": ["A", "B"], "mass": 1}]})"),
+                               kSettings);
+  EXPECT_EQ(d["degrees_of_freedom"], 1);
+  EXPECT_GE(d["passes"]["penalty"], 1.0);
+}
+
 TEST(Describe, FreeFlightHasNoConstraints) {
   const Scene scene = test::free_fall();
   const auto d = describe_json(scene, kSettings);

@@ -76,5 +76,11 @@ TEST(JobPool, EndsWhereAProcessIsLost) {
   EXPECT_NE(fault_of_pool(2, [](long block) { if (block == 7) ::_exit(0); }).find("ended in block 7 (exit)"), std::string::npos);
 }
 
+TEST(JobPool, IgnoresWhatTheProgramIgnores) {
+  const auto before = std::signal(SIGHUP, SIG_IGN);  // nohup
+  EXPECT_EQ(fault_of_pool(2, [](long block) { if (block == 7) ::raise(SIGHUP); }), "none");
+  std::signal(SIGHUP, before);
+}
+
 }  // namespace
 }  // namespace mbs

@@ -109,6 +109,32 @@ TEST(Operations, OfEveryVariantThatOffersThemAreRight) {
   if (offered == 0) GTEST_SKIP() << "no available variant offers its operations";
 }
 
+/// Keeps what rows say of errors.
+class ErrorReporter final : public benchmark::BenchmarkReporter {
+ public:
+  bool ReportContext(const Context& /*context*/) override { return true; }
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs) errors.push_back(run.error_message);
+  }
+  std::vector<std::string> errors;
+};
+
+TEST(OperationRows, WhoThrowsCostsTheOthersNothing) {
+  const PlannedScene planned{load_scene("four-bar:1"), {}, {}};
+  Variant variant;
+  variant.operations = [](const Model&) -> std::unique_ptr<Operations> {
+    throw std::runtime_error("a library's own words");
+  };
+  const std::vector<PlannedCell> cells{{"folder/throws/four-bar:1", &planned, &variant}};
+  OperationRows rows;
+  rows.add(cells);
+  ErrorReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  benchmark::ClearRegisteredBenchmarks();
+  EXPECT_TRUE(rows.failed());
+  EXPECT_EQ(reporter.errors, std::vector<std::string>(kOperations.size(), "error: a library's own words"));
+}
+
 TEST(BenchProgram, RefusesOperationsOfWhoOffersNone) {
   const auto run = test::run_mbs("bench four-bar:1 --operations --implementation eigen_dense");
   EXPECT_EQ(run.status, 1);

@@ -162,6 +162,15 @@ TEST(ParsePenalty, TakesNumbersAndAuto) {
             automatic_penalty(model, {.step = kStep}));
 }
 
+TEST(ParsePenalty, RefusesAnAutomaticOneThatIsNoNumber) {
+  ModelData data;  // a rod of 1e-130 m with 1e50 kg at its end
+  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1e-130, 0, 0}}};
+  data.mass = {{0, 0, 1e50}, {1, 1, 1e50}};
+  data.force = data.initial_velocity = {0.0, 0.0};
+  data.dot_constraints.push_back({1, 0, 1, 0, 1e-260, "rod"});
+  EXPECT_THROW(parse_penalty("auto", Model(std::move(data)), {.step = kStep}), UsageError);
+}
+
 TEST(ParsePenalty, RefusesEverythingElse) {
   const Model model(four_bar(2));
   for (const char* text :

@@ -129,6 +129,10 @@ TEST(Warnings, TellOfStepsTooLongForSprings) {
   EXPECT_NE(period_warning(oscillating(0.0), 7e-3).find("shortest period"), std::string::npos);
   EXPECT_EQ(period_warning(oscillating(200.1), 7e-3), "");  // creeps back
   EXPECT_EQ(period_warning(Model(four_bar(2)), 1.0), "");
+  const SceneData driven = parse_scene(R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
+      {"name": "B", "position": [1, 0]}], "masses": [{"point": "B", "mass": 1}],
+    "springs": [{"between": ["A", "B"], "length": 1, "stiffness": {"polynomial": [1e4, 1]}}]})", "test");
+  EXPECT_NEAR(shortest_period(Model(driven.model)), 2 * std::numbers::pi / 100, 1e-15);
   ModelData data;  // a rod of 2 m, 3 kg at its end, on 12 N m/rad
   data.points = {{"A", -1, {0, 0, 0}}, {"X", -1, {1, 0, 0}}, {"B", 0, {0, 2, 0}}};
   data.mass = {{0, 0, 3.0}, {1, 1, 3.0}};

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 
 #include "model_math/kinematics.hpp"
 #include "registry/factory.hpp"
@@ -134,10 +133,8 @@ void OperationRows::prepare(Subject& subject) {
       if (!wrong.empty()) subject.failure = "disagrees: " + wrong;
     }
     subject.operations->set_coordinates(second);
-  } catch (const Unsupported& reason) {
-    subject.failure = fmt::format("unsupported: {}", reason.what());
-  } catch (const std::bad_alloc&) {
-    subject.failure = "out-of-memory: while the operations were set up";
+  } catch (...) {
+    subject.failure = failure_text();
   }
 }
 

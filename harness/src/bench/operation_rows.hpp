@@ -28,8 +28,8 @@ std::string check_operations(Operations& operations, const Model& model,
 /// Registers "folder/variant/scene/<operation>" for each of kOperations: real time, microseconds,
 /// one iteration being one call. The results are checked at two configurations first. A variant
 /// that offers no operations, a scene that is too large, or a wrong result is a row with
-/// error_occurred and "unsupported: ..." or "disagrees: ...". Counters: variables, constraints,
-/// fill_percent.
+/// error_occurred and "unsupported: ..." or "disagrees: ..."; what a variant throws one with a
+/// CellFailure's text. Counters: variables, constraints, fill_percent.
 class OperationRows {
  public:
   /// `cells` and what they point to must outlive the object, and the object the benchmarks' run.

@@ -64,7 +64,9 @@ Passes expected_passes(const Scene& scene, const StepSettings& settings) {
   const Model& model = scene.model;
   const double step = settings.step, apart = kApart * step;
   if (driver_end(model) < 2 * apart) return {};
-  const State start = make_stretch(scene, step, kPassSteps).initial;
+  // Elsewhere a stretch begins at the start, and is refused if drivers are too fast for the step.
+  const State start = scene.four_bar_loops ? make_stretch(scene, step, kPassSteps).initial
+                                           : initial_state(model);
   const State second = later(model, start, apart), third = later(model, start, 2 * apart);
   const std::vector<Rate> jerk = rates(start.a, second.a, third.a, apart);
   const std::vector<Rate> pull = rates(start.lambda, second.lambda, third.lambda, apart);

@@ -20,6 +20,7 @@ namespace {
 struct LawAsSpring {
   explicit LawAsSpring(const Law& law) {
     const double factor = law.factor.at(0.0).value;
+    stiffness = std::max(0.0, factor * law.by_position.at(0.0).slope);  // straight: no breaks
     for (const double x : law.by_position.breaks) {
       stiffness = std::max(stiffness, factor * law.by_position.at(x).slope);
     }

@@ -93,8 +93,14 @@ double automatic_penalty(const Model& model, const StepSettings& settings) {
 }
 
 double parse_penalty(const std::string& text, const Model& model, const StepSettings& settings) {
-  if (text == "auto") return automatic_penalty(model, settings);
   double value = 0.0;
+  if (text == "auto") {
+    value = automatic_penalty(model, settings);
+    if (value > 0.0 && std::isfinite(value)) return value;
+    throw UsageError(fmt::format("--penalty auto gives {:g} for this scene and step {:g} s: its "
+                                 "lengths or masses are out of range; name a number",
+                                 value, settings.step));
+  }
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
       !(value > 0.0)) {

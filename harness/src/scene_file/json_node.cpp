@@ -143,14 +143,17 @@ double JsonNode::number_at_least(double bound, const std::string& allowed) const
   return number();
 }
 
+std::vector<double> JsonNode::numbers() const {
+  std::vector<double> numbers;
+  for (const JsonNode& node : items()) numbers.push_back(node.number());
+  return numbers;
+}
+
 std::vector<double> JsonNode::numbers(int count) const {
-  const auto nodes = items();
-  if (nodes.size() != static_cast<std::size_t>(count)) {
+  if (value_->is_array() && value_->size() != static_cast<std::size_t>(count)) {
     fail(fmt::format("an array of {} numbers", count));
   }
-  std::vector<double> numbers;
-  for (const JsonNode& node : nodes) numbers.push_back(node.number());
-  return numbers;
+  return numbers();
 }
 
 }  // namespace mbs

@@ -49,7 +49,8 @@ class JsonNode {
   [[nodiscard]] double number() const;  ///< magnitude up to kLargestNumber
   [[nodiscard]] double number_above(double bound, const std::string& allowed) const;
   [[nodiscard]] double number_at_least(double bound, const std::string& allowed) const;
-  [[nodiscard]] std::vector<double> numbers(int count) const;  ///< an array of exactly `count`
+  [[nodiscard]] std::vector<double> numbers() const;           ///< an array of them
+  [[nodiscard]] std::vector<double> numbers(int count) const;  ///< of exactly `count`
 
  private:
   const nlohmann::json* value_;

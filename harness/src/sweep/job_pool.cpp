@@ -95,7 +95,9 @@ class Job {
     process_ = ::fork();
     if (process_ < 0) fail_jobs("no process");
     if (process_ == 0) {
-      for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::signal(signal, SIG_DFL);
+      for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        if (::signal(signal, SIG_DFL) == SIG_IGN) ::signal(signal, SIG_IGN);  // nohup
+      }
       ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nothing goes on where the program is killed ...
       if (::getppid() == parent) run();    // ... or was, a moment ago
       ::_exit(0);
@@ -105,7 +107,7 @@ class Job {
   }
   ~Job() {
     if (process_ < 0) return;
-    ::kill(process_, SIGTERM);  // what it would give is not wanted
+    ::kill(process_, SIGKILL);  // what it would give is not wanted
     wait();
   }
   Job(const Job&) = delete;

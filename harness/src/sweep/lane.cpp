@@ -23,14 +23,15 @@ void store(Lane& lane, RunSummary summary, const OutputExtremes& extremes) {
   lane.summary = std::move(summary);
 }
 
-void run_alone(Lane& lane, const Variant& variant, const LaneProgress& progress) {
+/// States are copied out for those who ask only.
+Observer observer(const Scene& scene, OutputExtremes& extremes) {
+  if (scene.elements.outputs.empty()) return {};
+  return [&extremes](long /*step*/, double t, const State& state) { extremes.follow(t, state); };
+}
+
+void run_alone(Lane& lane, const Variant& variant) {
   OutputExtremes extremes(lane.scene);
-  const auto steps = static_cast<double>(count_steps(lane.settings));
-  const auto observe = [&](long step, double t, const State& state) {
-    extremes.follow(t, state);
-    progress(static_cast<double>(step) / steps);
-  };
-  store(lane, run(lane.scene, variant, lane.settings, observe), extremes);
+  store(lane, run(lane.scene, variant, lane.settings, observer(lane.scene, extremes)), extremes);
 }
 
 /// A lane of a batch that is judged.
@@ -43,7 +44,7 @@ class BatchLane {
         index_(index),
         extremes_(lane.scene),
         start_(initial_state(lane.scene.model)),
-        judged_(lane.scene, variant, lane.settings, start_, observer()) {}
+        judged_(lane.scene, variant, lane.settings, start_, observer(lane.scene, extremes_)) {}
 
   void begin() {
     batch_.set_state(index_, start_);
@@ -63,11 +64,6 @@ class BatchLane {
   void finish() { store(lane_, judged_.finish(), extremes_); }
 
  private:
-  /// States are copied out of the batch for those who ask only.
-  Observer observer() {
-    if (lane_.scene.elements.outputs.empty()) return {};
-    return [this](long /*step*/, double t, const State& state) { extremes_.follow(t, state); };
-  }
   /// A batch cannot set one lane back; a simulation of this lane alone can.
   Simulation& again() {
     if (!again_) again_ = create_simulation(variant_, lane_.scene.model, lane_.settings.step);
@@ -94,8 +90,7 @@ class BatchLane {
   JudgedRun judged_;
 };
 
-void run_batch(BatchSimulation& batch, std::span<Lane> lanes, const Variant& variant,
-               const LaneProgress& progress) {
+void run_batch(BatchSimulation& batch, std::span<Lane> lanes, const Variant& variant) {
   std::vector<std::unique_ptr<BatchLane>> running;
   for (Lane& lane : lanes) {
     const int index = static_cast<int>(running.size());
@@ -103,13 +98,10 @@ void run_batch(BatchSimulation& batch, std::span<Lane> lanes, const Variant& var
   }
   for (const auto& lane : running) lane->begin();
   std::vector<StepOutcome> outcomes(lanes.size());
-  const auto all = static_cast<double>(lanes.size());
-  const auto steps = static_cast<double>(count_steps(lanes[0].settings));
   const auto is_over = [](const auto& lane) { return lane->is_over(); };
-  for (long step = 1; !std::ranges::all_of(running, is_over); ++step) {
+  while (!std::ranges::all_of(running, is_over)) {
     batch.step(outcomes);
     for (std::size_t i = 0; i < running.size(); ++i) running[i]->take(outcomes[i]);
-    progress(all * static_cast<double>(step) / steps);
   }
   for (const auto& lane : running) lane->finish();
 }
@@ -127,10 +119,10 @@ std::unique_ptr<BatchSimulation> batch_of(std::span<Lane> lanes, const Variant& 
 }
 
 /// False if the batch as a whole failed, so that no lane has an outcome by it.
-bool run_side_by_side(std::span<Lane> lanes, const Variant& variant, const LaneProgress& progress) {
+bool run_side_by_side(std::span<Lane> lanes, const Variant& variant) {
   try {
     const auto batch = batch_of(lanes, variant);
-    if (batch) run_batch(*batch, lanes, variant, progress);
+    if (batch) run_batch(*batch, lanes, variant);
     return batch != nullptr;
   } catch (const std::bad_alloc&) {
     throw;
@@ -147,11 +139,9 @@ bool fit_one_batch(const Lane& a, const Lane& b) {
          count_steps(a.settings) == count_steps(b.settings);
 }
 
-bool run_lanes(std::span<Lane> lanes, const Variant& variant, const LaneProgress& progress) {
-  if (run_side_by_side(lanes, variant, progress)) return true;
-  for (std::size_t i = 0; i < lanes.size(); ++i) {
-    run_alone(lanes[i], variant, [&](double share) { progress(static_cast<double>(i) + share); });
-  }
+bool run_lanes(std::span<Lane> lanes, const Variant& variant) {
+  if (run_side_by_side(lanes, variant)) return true;
+  for (Lane& lane : lanes) run_alone(lane, variant);
   return false;
 }
 

@@ -1,7 +1,6 @@
 // One parameter set of a sweep and what became of it.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -17,16 +16,13 @@ struct Lane {
   std::vector<Extremes> outputs = {};  ///< empty where the run did not come to its end
 };
 
-/// Called with how many of the lanes are done, in fractions.
-using LaneProgress = std::function<void(double lanes)>;
-
 /// Whether the two may be lanes of one batch.
 bool fit_one_batch(const Lane& a, const Lane& b);
 
 /// Runs lanes of which each fits the first: side by side where `variant` takes them so, else one
 /// after the other. Each has the outcome that run() would give it alone. Settings must be in range,
 /// as require_duration() has it. Returns whether they ran side by side.
-bool run_lanes(std::span<Lane> lanes, const Variant& variant, const LaneProgress& progress);
+bool run_lanes(std::span<Lane> lanes, const Variant& variant);
 
 /// As many as `variant` is best given at once.
 std::size_t lanes_at_once(const Variant& variant);

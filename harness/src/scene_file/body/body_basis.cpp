@@ -201,7 +201,10 @@ class BasisChoice {
     const DraftBody& owner = body();
     const Vector3 local = owner.items[origin_].local + (owner.size / norm(best)) * best;
     add_own(draft_, index_, local, false, std::string(1, name));
-    consider(body().items.size() - 1, kAxesApart);
+    if (consider(body().items.size() - 1, kAxesApart)) return;
+    owner.node.fail(fmt::format("a size of {:.3g} m, which rounding of its local coordinates hides",
+                                owner.size),
+                    "a larger inertia, or a local origin near its centre");
   }
 
   SceneDraft& draft_;

@@ -23,11 +23,10 @@ Inertia read_inertia(SceneReader& reader, const JsonNode& node) {
     inertia.tensor[2][2] = tensor.number_above(0.0, "an inertia in kg m^2 above 0");
     return inertia;
   }
-  const std::size_t count = tensor.items().size();
-  if (count != 3 && count != 6) tensor.fail("[xx, yy, zz] or [xx, yy, zz, xy, xz, yz]");
-  const std::vector<double> J = tensor.numbers(static_cast<int>(count));
+  const std::vector<double> J = tensor.numbers();
+  if (J.size() != 3 && J.size() != 6) tensor.fail("[xx, yy, zz] or [xx, yy, zz, xy, xz, yz]");
   for (std::size_t i = 0; i < 3; ++i) inertia.tensor[i][i] = J[i];
-  if (count == 6) {
+  if (J.size() == 6) {
     inertia.tensor[0][1] = inertia.tensor[1][0] = J[3];
     inertia.tensor[0][2] = inertia.tensor[2][0] = J[4];
     inertia.tensor[1][2] = inertia.tensor[2][1] = J[5];

@@ -22,14 +22,8 @@ struct GivenFunction {
 constexpr std::size_t kMostCoefficients = 32;
 constexpr std::size_t kFewestRows = 4;
 
-std::vector<double> numbers(const JsonNode& node) {
-  std::vector<double> result;
-  for (const JsonNode& item : node.items()) result.push_back(item.number());
-  return result;
-}
-
 TimeFunction read_polynomial(const JsonNode& node) {
-  std::vector<double> coefficients = numbers(node);
+  std::vector<double> coefficients = node.numbers();
   if (coefficients.empty() || coefficients.size() > kMostCoefficients) {
     node.fail(fmt::format("an array of 1 to {} numbers", kMostCoefficients));
   }
@@ -52,7 +46,7 @@ GivenFunction read_sine(const JsonNode& node) {
 GivenFunction read_table(const JsonNode& node) {
   node.allow_keys({"times", "values"});
   const JsonNode times_node = node.get("times"), values_node = node.get("values");
-  std::vector<double> times = numbers(times_node), values = numbers(values_node);
+  std::vector<double> times = times_node.numbers(), values = values_node.numbers();
   if (times.size() < kFewestRows) {
     times_node.fail(fmt::format("at least {} times: fewer make no smooth function", kFewestRows));
   }

@@ -12,17 +12,11 @@ namespace {
 
 constexpr std::size_t kFewestLawRows = 2;
 
-std::vector<double> column(const JsonNode& node) {
-  std::vector<double> result;
-  for (const JsonNode& item : node.items()) result.push_back(item.number());
-  return result;
-}
-
 /// {"lengths": [...], "forces": [...]} and the like.
 Curve read_curve(const JsonNode& node, const std::string& arguments, const std::string& values) {
   node.allow_keys({arguments, values});
   const JsonNode x_node = node.get(arguments), y_node = node.get(values);
-  const std::vector<double> x = column(x_node), y = column(y_node);
+  const std::vector<double> x = x_node.numbers(), y = y_node.numbers();
   if (x.size() < kFewestLawRows) {
     x_node.fail(fmt::format("{} of {}", x.size(), arguments),
                 fmt::format("at least {}", kFewestLawRows));
