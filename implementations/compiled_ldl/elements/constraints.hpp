@@ -224,20 +224,24 @@ void Constraints<S, D>::add_linear(std::span<const Model* const> models, const R
   }
 }
 
-/// Places of Φq in the saddle-point matrix: the multiplier's row in the columns of its points. Only
-/// linear rows may come before some of these (Pattern::solved).
+/// Places of Φq in the saddle-point matrix: the multiplier's row in the columns of its points, or its
+/// column in the rows of those that it comes before (Pattern::solved).
 template <typename S, int D>
 void Constraints<S, D>::find_rows(const Program& program) {
   int k = 0;
+  const auto place_at = [&](int point) {
+    return point < row(k) ? place_of(program, row(k), point)
+                          : Place{program.entry(point, row(k)), 1};
+  };
   for (int i = 0; i < pairs_.count(); ++i, ++k) {
     RowPlace place;
-    if (i < pairs_.one) place.a = place_of(program, row(k), pairs_.list[i].a);
-    if (i < pairs_.two) place.b = place_of(program, row(k), pairs_.list[i].b);
+    if (i < pairs_.one) place.a = place_at(pairs_.list[i].a);
+    if (i < pairs_.two) place.b = place_at(pairs_.list[i].b);
     pair_rows_.push_back(place);
   }
   for (const Quad& quad : quads_) {
     for (int i = 0; i < 4; ++i) {
-      quad_rows_.push_back(i < quad.free ? place_of(program, row(k), quad.points[i].row) : Place{});
+      quad_rows_.push_back(i < quad.free ? place_at(quad.points[i].row) : Place{});
     }
     ++k;
   }
