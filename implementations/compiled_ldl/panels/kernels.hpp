@@ -276,7 +276,7 @@ void Panels<F>::backward(const Run& run, F* y) {
     const F* transposed = factors + P * N;
     const F* g = transposed + (P + 1) * N;
     const int* rows = program_.border_rows.data() + panel.rows;
-    V x0 = load<F, N>(y + panel.first), x1 = V{}, x2 = V{}, x3 = V{};
+    V x0 = load_first<P, N>(y + panel.first), x1 = V{}, x2 = V{}, x3 = V{};
     int k = 0;
     for (; k + 4 <= panel.below; k += 4) {
       x0 -= load<F, N>(g + k * N) * y[rows[k]];

@@ -66,6 +66,25 @@ inline void store_first(F* x, const V& v) {
   }
 }
 
+/// The first P lanes only, zeros behind them. A longer load would wait for what another front has
+/// just stored there.
+template <int P, int N, typename F>
+inline typename Short<F, N>::Type load_first(const F* x) {
+  if constexpr (P == N) {
+    return load<F, N>(x);
+  } else if constexpr (N == 8) {
+    const auto low = load_first<std::min(P, 4), 4>(x);
+    typename Short<F, 4>::Type high{};
+    if constexpr (P > 4) high = load_first<P - 4, 4>(x + 4);
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+  } else {
+    typename Short<F, N>::Type v{};
+#pragma GCC unroll 4
+    for (int i = 0; i < P; ++i) v[i] = x[i];
+    return v;
+  }
+}
+
 /// x w − y² to the last digit, where there are fused multiply-adds (Kahan's two products).
 inline double determinant(double x, double y, double w) {
   const double product = y * y;
