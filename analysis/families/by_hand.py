@@ -8,8 +8,8 @@ from itertools import permutations
 import numpy
 import pandas
 
-NUMBERS = {"penalty": ("per_column", "n"), "saddle-point": ("dense", "rows")}
-SHOWN = ("per_column", "dense", "n", "rows")
+NUMBERS = {"penalty": ("per_column", "dense"), "saddle-point": ("dense", "rows")}
+SHOWN = ("per_column", "dense", "rows")
 EVERYWHERE = dict.fromkeys(SHOWN, (-numpy.inf, numpy.inf))  # from, below
 
 

@@ -14,7 +14,7 @@ import numpy
 import pandas
 
 from analysis.families import by_hand
-from analysis.families.times import FEATURES, PASSES, TERMS, model, predicted
+from analysis.families.times import FEATURES, PASSES, TERMS, as_penalty, model, predicted
 
 CANDIDATES = {"penalty": 3, "saddle-point": 2}  # at most; five in all
 WORTH = 0.01    # of the mean cost, that one more candidate must save
@@ -145,14 +145,15 @@ class _Rule:
 
     def __init__(self, data):
         self.models, self.caution = {}, {}  # µs a step; what they count times
-        for scheme, us in data.us.items():
-            for name in us:
+        for scheme in PASSES:  # the penalty form first
+            for name in (us := data.us.get(scheme, {})):
                 times = us[name].dropna()
                 times = times[[bool(data.usual[scheme][scene]) for scene in times.index]]
                 if len(times) >= FEWEST:
                     dense = bool(data.registry.variants[name].get("dense"))
                     features, weights = data.features.loc[times.index], data.weights(times.index)
-                    self.models[scheme, name] = found = model(TERMS[scheme, dense], features, times, weights**0.5)
+                    known = as_penalty(self.models.get(("penalty", name), {})) if dense and scheme == "saddle-point" else {}
+                    self.models[scheme, name] = found = model(TERMS[scheme, dense], features, times, weights**0.5, known)
                     scatter = numpy.average(numpy.log(times / predicted(found, features)) ** 2, weights=weights) ** 0.5
                     self.caution[scheme, name] = float(numpy.exp(scatter / 2))
         self.candidates = self._compared(data)

@@ -8,7 +8,7 @@ from analysis.families.rule import document, summary
 
 LIMITS = {"per_column": ("the factor has {} or more non-zeros a column", "the factor has less than {} non-zeros a column"),
           "dense": ("a factorization takes {} % or more of a full one's operations", "a factorization takes less than {} % of a full one's operations"),
-          "n": ("n ≥ {}", "n < {}"), "rows": ("n + m ≥ {}", "n + m < {}")}
+          "rows": ("n + m ≥ {}", "n + m < {}")}
 
 
 def answers(tables, view):

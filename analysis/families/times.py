@@ -11,8 +11,10 @@ OF_A_PASS = {  # by form and whether the implementation's matrices are dense
     ("penalty", False): "1 n jacobian tangent factor flops supernodes",
     ("penalty", True): "1 n jacobian n*n n*n*n",
     ("saddle-point", False): "1 n jacobian saddle_factor saddle_flops",
-    ("saddle-point", True): "1 n jacobian n*n n*m m*m m*m*m n*n*m n*m*m stiff*n*n*n"}
+    ("saddle-point", True): "1 n jacobian n*n n*m m*m m*m*m n*n*m n*m*m"}
 TERMS = {(form, dense): tuple(f"{PASSES[form]}*{term}" for term in terms.split()) for (form, dense), terms in OF_A_PASS.items()}
+# Where springs are, dense ones factorize T₀ in the saddle-point form as they do T in the penalty form, of which far more are measured.
+AS_PENALTY = {f"{PASSES['saddle-point']}*stiff*{term}": f"{PASSES['penalty']}*{term}" for term in ("n*n", "n*n*n")}
 ROUNDS = 8  # of weights
 
 
@@ -20,22 +22,28 @@ def features_of(term):
     return [name for name in term.split("*") if name != "1"]
 
 
-FEATURES = tuple(dict.fromkeys(name for terms in TERMS.values() for term in terms for name in features_of(term)))
+FEATURES = tuple(dict.fromkeys(name for terms in (*TERMS.values(), AS_PENALTY) for term in terms for name in features_of(term)))
 
 
-def model(terms, features, times, weights):
-    """{term: µs} of scenes: their features, µs a step and weights."""
+def as_penalty(found):
+    """{term: µs} of a dense one's saddle-point form, from its model of the penalty form."""
+    return {term: found[there] for term, there in AS_PENALTY.items() if there in found}
+
+
+def model(terms, features, times, weights, known):
+    """{term: µs} of scenes: their features, µs a step and weights. known: terms whose µs are given; the others are fitted beside them."""
     from scipy.optimize import nnls
+    given = predicted(known, features) / times.to_numpy(float)
     matrix = _matrix(terms, features) / times.to_numpy(float)[:, None]
     scale = numpy.maximum(matrix.max(axis=0), numpy.finfo(float).tiny)
     matrix, relative = matrix / scale, numpy.ones(len(times))
     for _ in range(ROUNDS):  # w (p − 1)² with w = (log p / (p − 1))² is (log p)²
         root = numpy.sqrt(weights * relative)
-        values, _ = nnls(matrix * root[:, None], root)
-        ratio = numpy.maximum(matrix @ values, 1e-9)
+        values, _ = nnls(matrix * root[:, None], root * (1 - given))
+        ratio = numpy.maximum(matrix @ values + given, 1e-9)
         away = numpy.where(numpy.abs(ratio - 1) > 1e-6, ratio - 1, 1e-6)
         relative = (numpy.log1p(away) / away) ** 2
-    return {term: float(value / size) for term, value, size in zip(terms, values, scale) if value > 0}
+    return {term: float(value / size) for term, value, size in zip(terms, values, scale) if value > 0} | known
 
 
 def predicted(found, features):

@@ -149,8 +149,25 @@ def test_who_scatters_must_be_ahead_by_more():
 def test_a_time_is_the_sum_of_its_terms():
     features = mechanisms()["mechanisms"]
     us = 3.0 * features.n + 0.02 * features.passes * features.flops
-    found = times.model(("n", "passes*flops", "passes*n", "1"), features, us, numpy.ones(len(us)))
-    assert times.predicted(found, features) == pytest.approx(us.to_numpy(), rel=1e-6) and min(found.values()) > 0
+    for known in ({}, {"flops": 0.01}):  # given, and taken off what is fitted
+        found = times.model(("n", "passes*flops", "passes*n", "1"), features, us, numpy.ones(len(us)), known)
+        assert times.predicted(found, features) == pytest.approx(us.to_numpy(), rel=1e-6) and min(found.values()) > 0
+        assert found.items() >= known.items()
+
+
+def test_dense_ones_factorize_in_the_saddle_point_form_as_in_the_penalty_form():
+    assert times.as_penalty({"passes*n": 1.0, "passes*n*n*n": 3.0}) == {"saddle_passes*stiff*n*n*n": 3.0}
+    tables = mechanisms()
+    stiff = tables["mechanisms"].family.isin(["chain", "beam"])
+    tables["mechanisms"] = tables["mechanisms"].assign(stiff=stiff.astype(float), saddle_passes=2.0)
+    penalty = tables["scenes"].merge(tables["mechanisms"][["scene", "stiff", "n"]], on="scene")
+    twice = penalty.assign(scheme="saddle-point", step_us=penalty.step_us + penalty.stiff * 0.001 * penalty.n**3)
+    scenes = pandas.concat([penalty.assign(step_us=penalty.step_us + 0.001 * penalty.n**3), twice], ignore_index=True)
+    scenes["to_rival"] = scenes.step_us / scenes[scenes.implementation != "own/x"].groupby(["scheme", "scene"]).step_us.min().reindex(
+        pandas.MultiIndex.from_frame(scenes[["scheme", "scene"]])).to_numpy()
+    dense = SimpleNamespace(**vars(REGISTRY) | {"variants": {name: one | {"dense": True} for name, one in REGISTRY.variants.items()}})
+    models = rule._Rule(rule._Data(tables | {"scenes": scenes}, dense)).models
+    assert all(models["saddle-point", name]["saddle_passes*stiff*n*n*n"] == models["penalty", name]["passes*n*n*n"] > 0 for name in ("one/a", "one/b"))
 
 
 def test_the_front_page_has_the_rule_by_hand_and_that_of_describe():
