@@ -13,12 +13,12 @@ from study.core import locks, profile as profiles
 from study.core.cell import control, on_usual_pairs
 from study.core.executor import program_of
 from study.core.options import Parser, directory, positive
-from study.core.studyset import context_of, listed, need_own, select, writable
+from study.core.studyset import context_of, describe, listed, need_own, select, writable
 from study.tools.advise.advice import Question, advise as seek
 from study.tools.advise.answer import as_json, text
 from study.tools.advise.choice import LEAST_STEPS, MOST_STEPS
 from study.tools.advise.evidence import BEGUN
-from study.tools.advise.runner import REPEATS, Runner, describe, scene_name
+from study.tools.advise.runner import REPEATS, Runner, scene_name
 from study.tools.advise.settings import catalogue
 from study.tools.advise.validate import questions, validate
 from study.tools.shelf import ToolLab, open_shelf

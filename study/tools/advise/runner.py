@@ -1,13 +1,11 @@
-# One `mbs simulate` of the advice as a cell, and its row; what `mbs describe` says of the scene.
+# One `mbs simulate` of the advice as a cell, and its row.
 import math
 import shlex
 import time
 from pathlib import Path
 
-from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
 from analysis.core.outcomes import FINISHED, of_run
-from study.core import executor
 from study.core.cell import Cell
 from study.tools.advise.choice import Pilot
 
@@ -18,14 +16,6 @@ VALUES, JUDGED = 2e5, 100
 REPEATS = 3  # of a motion whose time matters; each step's least counts, as what interrupts one run spares another
 QUICK = 200  # steps of a run for its time
 OF_TIMES = {"step_us_median": "median", "step_us_p99": "p99", "deadline_misses": "deadline_misses"}
-
-
-def describe(scene):
-    """`mbs describe --json`; StudyError with its own words if there is no such scene."""
-    found = executor.run(Cell("describe", scene).settled(), None)
-    if found["status"] != "done":
-        raise StudyError(found["reason"].partition("mbs: ")[2] or f"{scene}: {found['reason']}")
-    return found["output"]
 
 
 def scene_name(text):

@@ -8,11 +8,11 @@ from analysis.core.errors import StudyError
 from analysis.core.outcomes import FINISHED
 from study.core import locks
 from study.core.setting import Setting, read_settings
-from study.core.studyset import listed, select
+from study.core.studyset import describe, listed, select
 from study.tools.advise import evidence, timing
 from study.tools.advise.advice import SLOWER
 from study.tools.advise.probe import probe
-from study.tools.advise.runner import EXACT, describe, scene_name
+from study.tools.advise.runner import EXACT, scene_name
 from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.truth import FIRST_STEP, Truth
 
