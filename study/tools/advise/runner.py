@@ -1,10 +1,12 @@
 # One `mbs simulate` of the advice as a cell, and its row.
+import json
 import math
+import re
 import shlex
 import time
 from pathlib import Path
 
-from analysis.core.files import ROOT
+from analysis.core.files import ROOT, digest
 from analysis.core.outcomes import FINISHED, of_run
 from study.core.cell import Cell
 from study.tools.advise.choice import Pilot
@@ -24,6 +26,12 @@ def scene_name(text):
         return text
     path = Path(text).resolve()
     return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
+
+
+def folder_of(scene, *more):
+    """The name of a folder: readable, and its own for every scene and whatever else is asked."""
+    stem = re.sub(r"[^A-Za-z0-9]+", "-", Path(scene).name.removesuffix(".json")).strip("-")
+    return f"{stem}-{digest(json.dumps([scene, *more]))[:8]}"
 
 
 def typed(record):
