@@ -2,6 +2,7 @@
 "use strict";
 
 const BOXES = [...KINDS, "penalty", "saddle"], NUMBERS = ["n", "fill", "error", "deadline"];
+const PICTURES = [["svg-map", "map", "map.svg"], ["svg-ranking", "near", "ranking.svg"]];  // button, place of the picture, file
 let state = {...START}, shown = null;
 
 function readAddress() {
@@ -75,7 +76,7 @@ function fillControls() {
 
 function fillMap(found) {
   const marks = [], wins = new Map();
-  for (const contest of found.set.contests.filter((one) => one.form === (found.form ?? FORMS[0]))) {
+  for (const contest of found.set.contests.filter((one) => one.form === found.form)) {
     const ranking = rankContest(contest, found.names);
     if (!ranking) continue;
     const open = !ranking.settled, others = ranking.equivalent.filter((name) => name !== ranking.winner);
@@ -124,6 +125,7 @@ function show() {
   fillPredicted(shown, state);
   fillError(shown, state);
   fillCommands(shown);
+  for (const [button, from] of PICTURES) place(button).disabled = !place(from).querySelector("svg");
   window.explorer = {state, shown, ask: (asked) => answer({...START, machine: DATA.sets[0].name, ...asked})};
 }
 
@@ -206,8 +208,8 @@ for (const kind of ["dragover", "dragleave", "drop"])
     useText(text);
   });
 place("csv").addEventListener("click", () => save("ranking.csv", "text/csv", asCsv()));
-place("svg-map").addEventListener("click", () => save("map.svg", "image/svg+xml", standalone(place("map").querySelector("svg"))));
-place("svg-ranking").addEventListener("click", () => save("ranking.svg", "image/svg+xml", standalone(place("near").querySelector("svg"))));
+for (const [button, from, name] of PICTURES)
+  place(button).addEventListener("click", () => save(name, "image/svg+xml", standalone(place(from).querySelector("svg"))));
 place("question").addEventListener("submit", (event) => event.preventDefault());
 DARK.addEventListener("change", () => show());
 window.addEventListener("hashchange", () => { state = readAddress(); show(); });

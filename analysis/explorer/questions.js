@@ -66,7 +66,7 @@ function distance(one, asked) {
 // of the case itself, or those on both sides of it in its family, or the two nearest.
 function answer(state) {
   const set = setOf(state), names = chosen(state), asked = caseOf(state);
-  const found = {set, asked, names, form: null, near: [], predicted: [], features: null, error: null, warnings: []};
+  const found = {set, asked, names, form: forms(state)[0] ?? null, near: [], predicted: [], features: null, error: null, warnings: []};
   for (const form of forms(state)) {
     const ranked = set.contests.filter((one) => one.form === form && (!asked.family || one.family === asked.family))
       .map((contest) => ({contest, far: contest.scene === asked.scene ? 0 : distance(contest, asked), samples: contest.rows.length}))

@@ -332,6 +332,16 @@ def test_rows_marks_and_files(page):
     assert browser.value("explorer.state.scene") == browser.value("document.querySelectorAll('#map .mark title')[3].textContent.split(': ')[0]")
 
 
+def test_what_is_not_drawn_cannot_be_saved(page):
+    browser = page("no=penalty,saddle")
+    assert browser.value("document.querySelectorAll('#map svg, #near svg').length") == 0
+    for button in ("svg-map", "svg-ranking"):
+        assert browser.value(f"document.getElementById('{button}').disabled")
+        press(browser, button)
+    press(browser, "saddle")
+    assert not browser.value("document.getElementById('svg-map').disabled") and "saddle-point form" in browser.value("document.querySelector('#map figcaption').innerText")
+
+
 def test_a_set_without_contests_has_a_page(browser, folder, tmp_path):
     for name in ("set.json", "registry.json"):
         shutil.copyfile(folder / name, tmp_path / name)
