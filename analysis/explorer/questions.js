@@ -5,6 +5,8 @@
 const DATA = JSON.parse(document.getElementById("data").textContent);
 const FORMS = ["penalty", "saddle-point"], KINDS = ["own", "gpl", "dense"], NEAREST = ["n", "per_column", "flops", "tangent"];
 const SAME = 0.01;  // of the logarithms: a case is that of a mechanism
+const MOST = 1e18;  // a number that is asked for is 0 or from 1 / MOST to MOST, so that products and axes of such ones are finite
+const bounded = (value) => typeof value === "number" && (value === 0 || value >= 1 / MOST && value <= MOST);
 
 // Numbers of names become names; rows of raw times become objects.
 const ABOUT = new Map(DATA.names.map((one) => [one.name, one]));
