@@ -23,8 +23,11 @@ function readAddress() {
   return found;
 }
 
-// Within what its field takes.
-const positive = (key, text) => Number(text) > 0 && bounded(Number(text)) && !(place(key).max && Number(text) > place(key).max) ? Number(text) : null;
+// What its field takes; null for anything else.
+function positive(key, text) {
+  const {min, max} = place(key), value = Number(text);
+  return value > 0 && bounded(value) && value >= min && (!max || value <= max) ? value : null;
+}
 
 function writeAddress() {
   const given = new URLSearchParams(), set = (key, value) => value !== null && value !== "" && String(value) && given.set(key, value);

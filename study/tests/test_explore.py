@@ -263,6 +263,10 @@ def test_the_case_can_be_chosen_and_stands_in_the_address(page):
 def test_damaged_addresses_do_no_harm(page):
     mine = ["5", {"n": 5}, {"n": "5"}, {"n": True}, {"n": 5, "own": 5, "features": "x", "warnings": "x"}, {"n": 5, "own": [None, {"us": "5"}]},
             {"n": 1e300, "features": {"n": 1e300, "flops": 1e300}}]
+    browser = page("n=0.5&fill=150")
+    assert browser.value("[state.n, state.fill]") == [100, None]
+    put(browser, "n", 2e6)
+    assert browser.value("[state.n, document.querySelectorAll('input:invalid').length]") == [100, 1]
     for question in ("n=-3&family=<b>&no=x,own&without=nobody&mine={", "scene=%00&machine=..&n=1e99&error=x", "mine={%22n%22:1e999}",
                      "n=1e120", "n=1.7e308", "n=1e-300&fill=1e-300", "fill=1e300&error=1e300&deadline=1e308",
                      *(f"mine={quote(json.dumps(one))}" for one in mine)):
