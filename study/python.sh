@@ -1,15 +1,14 @@
-# Starts the study's Python with Debian's own interpreter, whatever `python3` on PATH may be.
-system_python() {
-  local here="$1"
-  shift
-  if ! /usr/bin/python3 -c 'import yaml' 2> /dev/null; then
-    if [[ "$1" != run || " $* " == *" --dry-run "* || " $* " == *" --list "* ]]; then
-      echo "study/$1: Debian's /usr/bin/python3 or its package python3-yaml is missing: run study/setup" >&2
-      exit 1
-    fi
-    "$here/setup" --no-build
+#!/bin/bash
+# Starts a command of the study, `python.sh COMMAND …`, with Debian's own interpreter, whatever `python3` on PATH may be.
+set -euo pipefail
+here="$(cd "$(dirname "$0")" && pwd)"
+if ! /usr/bin/python3 -c 'import yaml' 2> /dev/null; then
+  if [[ "$1" != run || " $* " == *" --dry-run "* || " $* " == *" --list "* ]]; then
+    echo "study/$1: Debian's /usr/bin/python3 or its package python3-yaml is missing: run study/setup" >&2
+    exit 1
   fi
-  unset PYTHONHOME VIRTUAL_ENV
-  export PYTHONPATH="$here/.." PYTHONNOUSERSITE=1 MPLBACKEND=Agg
-  exec /usr/bin/python3 -P -m study.main "$@"  # -P: not the study of the folder that it is typed in
-}
+  "$here/setup" --no-build
+fi
+unset PYTHONHOME VIRTUAL_ENV
+export PYTHONPATH="$here/.." PYTHONNOUSERSITE=1 MPLBACKEND=Agg
+exec /usr/bin/python3 -P -m study.main "$@"  # -P: not the study of the folder that it is typed in

@@ -180,7 +180,8 @@ function sceneOf(found) {
   return {scene: near[0]?.contest.scene ?? "scene.json", nearest: true};
 }
 
-const quoted = (word) => /^[\w:.,=/+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
+// A word of a command line, which is no option of it.
+const quoted = (word) => word.startsWith("-") ? quoted(`./${word}`) : /^[\w:.,=/+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
 
 function commandsOf(found, state) {
   const {scene, nearest} = sceneOf(found), ranking = found.near[0]?.ranking, word = quoted(scene), lines = [];

@@ -2,12 +2,13 @@
 "use strict";
 
 const BOXES = [...KINDS, "penalty", "saddle"], NUMBERS = ["n", "fill", "error", "deadline"];
+const PICTURES = [["svg-map", "map", "map.svg"], ["svg-ranking", "near", "ranking.svg"]];  // button, place of the picture, file
 let state = {...START}, shown = null;
 
 function readAddress() {
   const given = new URLSearchParams(location.hash.slice(1)), found = {...START, machine: DATA.sets[0].name};
   const listed = (key) => (given.get(key) ?? "").split(",").filter(Boolean);
-  for (const key of NUMBERS) if (given.has(key)) found[key] = positive(given.get(key)) ?? (key === "n" ? START.n : null);
+  for (const key of NUMBERS) if (given.has(key)) found[key] = positive(key, given.get(key)) ?? (key === "n" ? START.n : null);
   if (DATA.sets.some((one) => one.name === given.get("machine"))) found.machine = given.get("machine");
   const set = setOf(found);
   found.family = [given.get("family"), START.family].find((one) => one !== null && ["", ...familiesOf(set)].includes(one)) ?? "";
@@ -22,7 +23,11 @@ function readAddress() {
   return found;
 }
 
-const positive = (text) => Number(text) > 0 && Number.isFinite(Number(text)) ? Number(text) : null;
+// What its field takes; null for anything else.
+function positive(key, text) {
+  const {min, max} = place(key), value = Number(text);
+  return value > 0 && bounded(value) && value >= min && (!max || value <= max) ? value : null;
+}
 
 function writeAddress() {
   const given = new URLSearchParams(), set = (key, value) => value !== null && value !== "" && String(value) && given.set(key, value);
@@ -75,7 +80,7 @@ function fillControls() {
 
 function fillMap(found) {
   const marks = [], wins = new Map();
-  for (const contest of found.set.contests.filter((one) => one.form === (found.form ?? FORMS[0]))) {
+  for (const contest of found.set.contests.filter((one) => one.form === found.form)) {
     const ranking = rankContest(contest, found.names);
     if (!ranking) continue;
     const open = !ranking.settled, others = ranking.equivalent.filter((name) => name !== ranking.winner);
@@ -103,7 +108,7 @@ function fillCommands(found) {
 }
 
 async function copy(text, button) {
-  const before = button.textContent;
+  const before = button.dataset.name ??= button.textContent;  // which may still be "copied"
   try {
     await navigator.clipboard.writeText(text);
     button.textContent = "copied";
@@ -124,6 +129,7 @@ function show() {
   fillPredicted(shown, state);
   fillError(shown, state);
   fillCommands(shown);
+  for (const [button, from] of PICTURES) place(button).disabled = !place(from).querySelector("svg");
   window.explorer = {state, shown, ask: (asked) => answer({...START, machine: DATA.sets[0].name, ...asked})};
 }
 
@@ -133,9 +139,11 @@ function change(more) {
   show();
 }
 
-function useText(text) {
+// `source`: a text, or the promise of one.
+async function useText(source) {
   try {
-    const mine = readScene(text);
+    const text = await source, mine = readScene(text);
+    place("mine").value = text;
     change({mine, scene: ""});
     place("mine-said").textContent = `${mine.scene}: n = ${mine.n}` + (mine.own.length ? `, ${mine.own.length} measurements, drawn as diamonds` : "");
   } catch (error) {
@@ -143,8 +151,10 @@ function useText(text) {
   }
 }
 
+const textOf = (file) => file.slice(0, MOST_TEXT + 1).text();  // no more than is needed to see that it is too long
+
 const cell = (value) => {
-  const text = String(value ?? "").replace(/^(?=[=+@\t\r]|-(?![\d.]))/, "'");  // which a spreadsheet would take for a formula
+  const text = typeof value === "string" ? value.replace(/^(?=[=+@\t\r-])/, "'") : String(value ?? "");  // a spreadsheet would take it for a formula
   return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 };
 
@@ -175,7 +185,7 @@ place("family").addEventListener("change", (event) =>
   change({...numbers(), family: event.target.value, fill: event.target.value.includes("filled") ? 50 : null, scene: "", mine: null}));
 for (const key of NUMBERS)
   place(key).addEventListener("input", (event) => {
-    const value = positive(event.target.value);
+    const value = positive(key, event.target.value);
     if (key === "n" && !value) return;
     change(["n", "fill"].includes(key) ? {...numbers(), family: caseOf(state).family, [key]: value, scene: "", mine: null} : {[key]: value});
   });
@@ -194,20 +204,19 @@ place("reset").addEventListener("click", () => {
 place("link").addEventListener("click", (event) => copy(location.href, event.target));
 place("use").addEventListener("click", () => useText(place("mine").value));
 place("forget").addEventListener("click", () => { place("mine").value = place("mine-said").textContent = ""; change({mine: null}); });
-place("file").addEventListener("change", async (event) => { if (event.target.files[0]) useText(await event.target.files[0].text()); });
+place("file").addEventListener("change", (event) => { if (event.target.files[0]) useText(textOf(event.target.files[0])); });
 place("mine").addEventListener("paste", () => setTimeout(() => useText(place("mine").value)));
 for (const kind of ["dragover", "dragleave", "drop"])
-  place("drop").addEventListener(kind, async (event) => {
+  place("drop").addEventListener(kind, (event) => {
     event.preventDefault();
     place("drop").classList.toggle("drop", kind === "dragover");
     if (kind !== "drop") return;
-    const text = event.dataTransfer.files[0] ? await event.dataTransfer.files[0].text() : event.dataTransfer.getData("text");
-    place("mine").value = text.slice(0, MOST_TEXT);
-    useText(text);
+    const [file] = event.dataTransfer.files;
+    useText(file ? textOf(file) : event.dataTransfer.getData("text"));
   });
 place("csv").addEventListener("click", () => save("ranking.csv", "text/csv", asCsv()));
-place("svg-map").addEventListener("click", () => save("map.svg", "image/svg+xml", standalone(place("map").querySelector("svg"))));
-place("svg-ranking").addEventListener("click", () => save("ranking.svg", "image/svg+xml", standalone(place("near").querySelector("svg"))));
+for (const [button, from, name] of PICTURES)
+  place(button).addEventListener("click", () => save(name, "image/svg+xml", standalone(place(from).querySelector("svg"))));
 place("question").addEventListener("submit", (event) => event.preventDefault());
 DARK.addEventListener("change", () => show());
 window.addEventListener("hashchange", () => { state = readAddress(); show(); });

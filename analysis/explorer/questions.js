@@ -5,6 +5,8 @@
 const DATA = JSON.parse(document.getElementById("data").textContent);
 const FORMS = ["penalty", "saddle-point"], KINDS = ["own", "gpl", "dense"], NEAREST = ["n", "per_column", "flops", "tangent"];
 const SAME = 0.01;  // of the logarithms: a case is that of a mechanism
+const MOST = 1e18;  // a number that is asked for is 0 or from 1 / MOST to MOST, so that products and axes of such ones are finite
+const bounded = (value) => typeof value === "number" && (value === 0 || value >= 1 / MOST && value <= MOST);
 
 // Numbers of names become names; rows of raw times become objects.
 const ABOUT = new Map(DATA.names.map((one) => [one.name, one]));
@@ -66,7 +68,7 @@ function distance(one, asked) {
 // of the case itself, or those on both sides of it in its family, or the two nearest.
 function answer(state) {
   const set = setOf(state), names = chosen(state), asked = caseOf(state);
-  const found = {set, asked, names, form: null, near: [], predicted: [], features: null, error: null, warnings: []};
+  const found = {set, asked, names, form: forms(state)[0] ?? null, near: [], predicted: [], features: null, error: null, warnings: []};
   for (const form of forms(state)) {
     const ranked = set.contests.filter((one) => one.form === form && (!asked.family || one.family === asked.family))
       .map((contest) => ({contest, far: contest.scene === asked.scene ? 0 : distance(contest, asked), samples: contest.rows.length}))

@@ -1,8 +1,9 @@
 // "My scene": what `mbs describe --json`, `mbs bench` or `mbs bench --benchmark_format=json` printed becomes
-// {scene, n, fill, features, form, machine, own: [{name, us, low, high}], warnings}. Errors are thrown with a line to show.
+// {scene, n, fill, features, form, machine, own: [{name, us}], warnings}. Errors are thrown with a line to show.
 "use strict";
 
-const MOST_TEXT = 4e6, MOST_OWN = 200;
+const MOST_TEXT = 4e6, MOST_OWN = 200, MOST_FEATURES = 100;
+const list = (value) => Array.isArray(value) ? value : [];
 
 function readScene(text) {
   if (text.length > MOST_TEXT) throw new Error("this is too long to be what mbs prints of one scene");
@@ -21,14 +22,15 @@ function readScene(text) {
 }
 
 function readDescribed(found) {
-  const warnings = (found.warnings ?? []).map(String);
+  const warnings = [...list(found.warnings)];
   if (found.singular_start) warnings.push("the scene starts in a singular position");
   return {scene: found.scene, n: found.variables, fill: 100 * (found.tangent?.fill ?? NaN), features: found.features,
           form: found.scheme?.take, machine: "", own: [], warnings};
 }
 
 function readBenchmarks(found) {
-  const runs = found.benchmarks.filter((one) => one.run_type === "iteration" && !one.error_occurred && one.steps > 0 && one.cpu_time > 0);
+  const runs = found.benchmarks.filter((one) => typeof one?.name === "string" && one.run_type === "iteration" && !one.error_occurred
+    && one.steps > 0 && one.cpu_time > 0);
   if (!runs.length) throw new Error("no contender was timed in this output of mbs bench");
   const split = (name) => name.split("/"), scene = split(runs[0].name).slice(2).join("/");
   const times = new Map();
@@ -38,7 +40,7 @@ function readBenchmarks(found) {
   }
   return {scene, n: runs[0].variables, fill: runs[0].fill_percent, features: null, form: formOf(found.context?.command),
           machine: found.context?.cpu_model ?? "", warnings: [],
-          own: [...times].map(([name, us]) => ({name, us: median(us), low: Math.min(...us), high: Math.max(...us)}))};
+          own: [...times].map(([name, us]) => ({name, us: median(us)}))};
 }
 
 const formOf = (command) => /--scheme[= ]saddle-point/.test(command ?? "") ? "saddle-point" : undefined;
@@ -51,21 +53,23 @@ function readTable(text) {
   const own = [];
   for (const line of (next < 0 ? after : after.slice(0, next)).split("\n")) {
     const row = /^([\w.+-]+\/[\w.+-]+)\s+(?:own\s+)?([\d.]+(?:e[+-]?\d+)?)\s+[\d.]/.exec(line);
-    if (row) own.push({name: row[1], us: Number(row[2]), low: NaN, high: NaN});
+    if (row) own.push({name: row[1], us: Number(row[2])});
   }
   if (!own.length) throw new Error("no contender was timed in this output of mbs bench");
   return {scene: head[1], n: Number(head[2]), fill: Number(head[3]), features: null, form: undefined,
-          machine: (/^\w+ build by .*? on (.+), BLAS/m.exec(text) ?? [])[1] ?? "", own, warnings: []};
+          machine: (/^\w+ build by .{1,200}? on (.{1,200}), BLAS/m.exec(text) ?? [])[1] ?? "", own, warnings: []};
 }
 
-// Only numbers and short texts go on, whatever was pasted or stands in the address.
+// Only numbers and short texts go on, whatever was pasted or stands in the address. No character of a text steers a terminal, to
+// which a command with it may be copied, or turns the words around it. Without the numbers by which mechanisms are near, features are of no use.
 function checked(found) {
-  const number = (value) => Number.isFinite(value) && value >= 0 ? value : null, text = (value) => String(value ?? "").slice(0, 300);
-  const features = {};
-  for (const [name, value] of Object.entries(found.features ?? {})) if (/^\w{1,20}$/.test(name) && number(value) !== null) features[name] = value;
-  if (!(found.n > 0)) throw new Error("it does not say how many variables the scene has");
-  return {scene: text(found.scene), n: found.n, fill: number(found.fill), features: features.n > 0 ? features : null,
-          form: found.form === "saddle-point" ? found.form : "penalty", machine: text(found.machine), warnings: (found.warnings ?? []).slice(0, 10).map(text),
-          own: (found.own ?? []).slice(0, MOST_OWN).filter((one) => one.us > 0)
-            .map((one) => ({name: text(one.name), us: one.us, low: number(one.low) ?? one.us, high: number(one.high) ?? one.us}))};
+  const number = (value) => bounded(value) ? value : null;
+  const text = (value) => typeof value === "string" ? value.slice(0, 300).replace(/[\p{Cc}\p{Cf}]/gu, " ") : "";
+  const features = Object.fromEntries(Object.entries(found.features ?? {}).slice(0, MOST_FEATURES)
+    .filter(([name, value]) => /^\w{1,20}$/.test(name) && bounded(value)));
+  if (!number(found.n)) throw new Error("it does not say how many variables the scene has");
+  return {scene: text(found.scene), n: found.n, fill: number(found.fill), features: NEAREST.every((name) => features[name] > 0) ? features : null,
+          form: found.form === "saddle-point" ? found.form : "penalty", machine: text(found.machine),
+          warnings: list(found.warnings).slice(0, 10).map(text),
+          own: list(found.own).slice(0, MOST_OWN).filter((one) => number(one?.us)).map((one) => ({name: text(one.name), us: one.us}))};
 }

@@ -91,6 +91,14 @@ def listed():
     return Registry(found["output"])
 
 
+def describe(scene):
+    """`mbs describe --json`; StudyError with its own words if there is no such scene."""
+    found = executor.run(Cell("describe", scene).settled(), None)
+    if found["status"] != "done":
+        raise StudyError(found["reason"].partition("mbs: ")[2] or f"{scene}: {found['reason']}")
+    return found["output"]
+
+
 def opened(folder):
     """The StudySet in a folder; StudyError if it holds none, or one without parts."""
     if not (folder / "set.json").exists():

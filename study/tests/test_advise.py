@@ -3,6 +3,7 @@ import json
 import math
 import os
 import shlex
+import tempfile
 from types import SimpleNamespace
 
 import numpy
@@ -15,7 +16,7 @@ from analysis.core.files import read_json
 from analysis.core.outcomes import FINISHED
 from study.core.cell import Contender
 from study.core.setting import Setting
-from study.tools.advise import answer, evidence, timing
+from study.tools.advise import answer, evidence, timing, validate
 from study.tools.advise.advice import Advice, Question, advise as seek
 from study.tools.advise.choice import Next, Pilot, apart, by_order, counts, local_order, most, next_at, next_step, tidy
 from study.tools.advise.main import duration
@@ -631,6 +632,23 @@ def test_what_was_too_late_is_named_with_its_time():
     assert timing.ranked([late], 10.0) == []
     advice = asked(deadline_us=10.0, candidates=[late], found={PENALTY: Found(PENALTY, chosen=1e-3)})
     assert answer._why_not(advice).startswith("99 % of the steps are not done within the deadline: 99th percentile 12 us")
+
+
+def test_each_scene_of_a_validation_has_a_folder_of_its_own(tmp_path, monkeypatch):
+    folders = []
+
+    def runner_of(folder, *_):
+        folders.append(folder)
+        raise StudyError("enough")
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))  # of the machine's locks
+    described = {"judged_length": 1.0, "variables": 4, "drivers_end": None}
+    for name, value in (("listed", lambda: None), ("select", lambda *_: []), ("describe", lambda scene: described)):
+        monkeypatch.setattr(validate, name, value)
+    scenes = ("a/bar.json", "b/bar.json", "ladder:9,fill=0.2", "ladder:9,fill=0.4", "ladder:9")
+    for scene in scenes:
+        with pytest.raises(StudyError, match="enough"):
+            validate.validate(SimpleNamespace(scene=[scene], only=[], wait=True), None, runner_of, tmp_path)
+    assert len(set(folders)) == len(scenes) and {folder.parent for folder in folders} == {tmp_path / "scenes"}
 
 
 def question(scene, error, **more):

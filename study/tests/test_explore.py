@@ -3,6 +3,7 @@ import json
 import math
 import random
 import shutil
+from urllib.parse import quote
 
 import pandas
 import pytest
@@ -260,9 +261,18 @@ def test_the_case_can_be_chosen_and_stands_in_the_address(page):
 
 
 def test_damaged_addresses_do_no_harm(page):
-    for question in ("n=-3&family=<b>&no=x,own&without=nobody&mine={", "scene=%00&machine=..&n=1e99&error=x", "mine=%7B%22n%22%3A5%7D"):
+    mine = ["5", {"n": 5}, {"n": "5"}, {"n": True}, {"n": 5, "own": 5, "features": "x", "warnings": "x"}, {"n": 5, "own": [None, {"us": "5"}]},
+            {"n": 1e300, "features": {"n": 1e300, "flops": 1e300}}]
+    browser = page("n=0.5&fill=150")
+    assert browser.value("[state.n, state.fill]") == [100, None]
+    put(browser, "n", 2e6)
+    assert browser.value("[state.n, document.querySelectorAll('input:invalid').length]") == [100, 1]
+    for question in ("n=-3&family=<b>&no=x,own&without=nobody&mine={", "scene=%00&machine=..&n=1e99&error=x", "mine={%22n%22:1e999}",
+                     "n=1e120", "n=1.7e308", "n=1e-300&fill=1e-300", "fill=1e300&error=1e300&deadline=1e308",
+                     *(f"mine={quote(json.dumps(one))}" for one in mine)):
         browser = page(question)
         assert said(browser)
+        assert browser.value("NUMBERS.every((key) => Math.abs(Math.log10(state[key] ?? 1)) <= 18) && (state.mine?.n ?? 5) === 5"), question
 
 
 def test_my_scene_moves_the_pin(page):
@@ -276,10 +286,25 @@ def test_my_scene_moves_the_pin(page):
     assert browser.value("document.querySelector('#copy pre').textContent").startswith(f"build/mbs bench '{DESCRIBED['scene']}' ")
     press(browser, "forget")
     assert browser.value("document.getElementById('pin').dataset.n") == "100"
-    for text, what in (("{", "whole JSON"), ("[1]", "not what"), ("{}", "neither"), ("hello", "not what"), (" ", "nothing")):
+    for text, what in (('{"benchmarks": [null, {"name": 5, "run_type": "iteration", "steps": 1, "cpu_time": 1}]}', "no contender"),
+                       ('{"variables": "5", "features": {"n": 5}}', "how many variables"), ("{", "whole JSON"), ("[1]", "not what"), ("{}", "neither"), ("hello", "not what"), (" ", "nothing")):
         put(browser, "mine", text)
         press(browser, "use")
         assert what in browser.value("document.getElementById('mine-said').innerText")
+
+
+def test_a_hostile_scene_reaches_neither_a_terminal_nor_a_spreadsheet_nor_the_order(page):
+    browser = page()
+    for scene, word in (("--benchmark_out=/etc/passwd", "./--benchmark_out=/etc/passwd"), ("a\u0003\nrm -rf ~\u202e;", "'a  rm -rf ~ ;'")):
+        put(browser, "mine", json.dumps(DESCRIBED | {"scene": scene}))
+        press(browser, "use")
+        assert browser.value("document.querySelector('#copy pre').textContent").startswith(f"build/mbs bench {word} --implementation=")
+    assert browser.value("""[cell("-1+cmd"), cell(-1)]""") == ["'-1+cmd", "-1"]
+    put(browser, "mine", json.dumps(DESCRIBED | {"features": {"n": 50, "flops": 0}}))  # by which nothing is near
+    press(browser, "use")
+    assert browser.value("explorer.shown.near[0].contest.n") == pytest.approx(50, rel=0.5)
+    browser.value("useText(Promise.reject(new Error('a folder')))")
+    assert browser.value("document.getElementById('mine-said').textContent") == "not used: a folder"
 
 
 def test_own_measurements_are_drawn_over_ours(page):
@@ -302,6 +327,9 @@ def test_what_is_copied_chosen_and_pasted(page):
     browser = page("scene=ladder:10")
     browser.value("Object.defineProperty(navigator, 'clipboard', {value: {writeText: async (text) => { window.copied = text; }}})")
     press(browser, "link")
+    press(browser, "link")
+    browser.wait("document.getElementById('link').textContent === 'copied'")
+    browser.wait("document.getElementById('link').textContent.startsWith('copy a link')", 5)
     assert browser.value("copied") == browser.value("location.href") and "scene=ladder" in browser.value("copied")
     lines = browser.value("""[...document.querySelectorAll('#copy .command')].map((one) => {
       one.querySelector('button').click(); return [one.querySelector('pre').textContent, copied]; })""")
@@ -330,6 +358,16 @@ def test_rows_marks_and_files(page):
     assert browser.value("cell('=1+1')") == "'=1+1" and browser.value("cell('a\"b,c')") == '"a""b,c"'
     browser.value("document.querySelectorAll('#map .mark')[3].dispatchEvent(new MouseEvent('click'))")
     assert browser.value("explorer.state.scene") == browser.value("document.querySelectorAll('#map .mark title')[3].textContent.split(': ')[0]")
+
+
+def test_what_is_not_drawn_cannot_be_saved(page):
+    browser = page("no=penalty,saddle")
+    assert browser.value("document.querySelectorAll('#map svg, #near svg').length") == 0
+    for button in ("svg-map", "svg-ranking"):
+        assert browser.value(f"document.getElementById('{button}').disabled")
+        press(browser, button)
+    press(browser, "saddle")
+    assert not browser.value("document.getElementById('svg-map').disabled") and "saddle-point form" in browser.value("document.querySelector('#map figcaption').innerText")
 
 
 def test_a_set_without_contests_has_a_page(browser, folder, tmp_path):

@@ -15,6 +15,7 @@ BUILDS_UPON = {("accuracy", "scenes"),  # standard problems with their reference
                ("families", "limit"),   # looks, gates and times of a scene
                ("tuning", "limit")}     # cells and verdicts of a scene
 TOOLS_UPON = {"merge": {"map"}, "paper": set(parts())}  # which ask for what these parts have found
+SHARED = {"fragments", "merge", "shelf", "store", "sweep_cluster"}  # what tools take from each other
 PATHS = [path for path in subprocess.run(["git", "ls-files", "study/*.py", "analysis/*.py"], cwd=ROOT, capture_output=True,
                                          text=True, check=True).stdout.split("\n")[:-1] if (ROOT / path).exists()]
 
@@ -114,6 +115,11 @@ def test_parts_import_their_twin_and_only_those_that_they_build_upon():
     for first in parts():  # and of a part and its twin only one imports the other
         assert not {("study." + first, "analysis." + first), ("analysis." + first, "study." + first)} <= {
             (layer(name), layer(one)) for name, one in between}, first
+
+
+def test_of_each_other_tools_import_only_what_they_share():
+    between = [(name, one) for name, found in GRAPH.items() for one in found if layer(name) == layer(one) == "study.tools"]
+    assert wrong((name, one) for name, one in between if name.split(".")[2] != one.split(".")[2] and one.split(".")[2] not in SHARED) == []
 
 
 def test_nothing_imports_tools_or_tests():

@@ -61,7 +61,9 @@ def test_cells_are_of_values_or_of_one_width():
     (HEAD + "1,2,ok" + ",0" * 11 + "\n1,", [], "line 3: found a row that is cut short"),
     (HEAD + "1,2,ok" + ",0" * 11 + "\n1,2", [], "line 3: .* cut short"),
     (HEAD + "1,2,ok" + ",0" * 11 + "\n", ["--over", "k", "q"], "--over: found 'q', allowed are k, m"),
-    (HEAD + "1,2,ok" + ",0" * 11 + "\n", ["--output", "t.pdf"], "ends with .png")])
+    (HEAD + "1,2,ok" + ",0" * 11 + "\n", ["--output", "t.pdf"], "ends with .png"),
+    (HEAD + "1,2,ok" + ",0" * 11 + "\n", ["--parts", "4"], "--parts: found 4 without --cluster"),
+    (HEAD + "1,2,ok" + ",0" * 11 + "\n", ["--parts", "0", "--cluster", "slurm", "--", "four-bar:1"], "--parts: found 0, allowed")])
 def test_what_cannot_be_drawn_is_said(tmp_path, text, options, words):
     path = tmp_path / "t.csv"
     if text is not None:

@@ -145,6 +145,8 @@ def test_one_row_is_no_motion(tmp_path):
     (["crank", "--window", "3", "2"], "the first before the last"),
     (["crank", "--duration", "1", "--png", "a.png", "--window", "5", "6"], "from 0 to 1 s"),
     (["crank", "any.csv", "--duration", "1"], "but a TRAJECTORY is given"),
+    (["crank", "any.csv", "--implementation", "csc_klu"], "but a TRAJECTORY is given"),
+    (["crank", "--window", "2", "3"], "--window: found without --png"),
     (["stiff", "--step", "1e-3"], "diverged at t = 0.1 s"),
     ([], "the following arguments are required: scene"),
 ])

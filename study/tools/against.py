@@ -16,9 +16,8 @@ from study.core.cell import Cell, by_environment, control, on_usual_pairs
 from study.core.executor import program_of
 from study.core.front import build as built, set_up
 from study.core.options import Parser, directory, rounds
-from study.core.studyset import context_of, listed, need_own, select, writable
+from study.core.studyset import context_of, describe, listed, need_own, select, writable
 from study.tools import shelf
-from study.tools.advise.runner import describe
 
 SECONDS = 120.0  # of a process
 # Google's option makes the programs of older revisions take turns too; later ones do so anyway.

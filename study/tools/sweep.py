@@ -17,6 +17,7 @@ from study.core.options import Parser
 from study.tools import sweep_cluster
 
 LINES = 2000  # of parallel coordinates, at most, of finished lanes and of failed ones
+PARTS = 16    # of a sweep on a cluster
 CELLS = 40    # of a surface along a parameter, at most
 FAILED = "#c9403a"
 
@@ -30,15 +31,15 @@ def sweep(arguments):
     parser.add_argument("--over", nargs=2, metavar="PARAMETER", help="of the surface (the first two that vary)")
     parser.add_argument("--cluster", metavar="PROFILE", help="make the table first, on a cluster (study/cluster/README.md): "
                         "study/sweep TABLE --cluster slurm --parts K -- SCENE and what mbs sweep takes")
-    parser.add_argument("--parts", type=int, default=16, metavar="K", help="jobs of its array (16)")
+    parser.add_argument("--parts", type=int, metavar="K", help=f"jobs of its array ({PARTS})")
     here = arguments.index("--") if "--" in arguments else len(arguments)
     options, words = parser.parse_args(arguments[:here]), arguments[here + 1:]
     if (options.cluster is None) != (not words):
         raise StudyError("found one of --cluster PROFILE and -- SCENE …, allowed are both or none (see study/sweep --help)")
-    if options.parts < 1:
-        raise StudyError(f"--parts: found {options.parts}, allowed is 1 or more")
+    if options.parts is not None and (options.parts < 1 or not words):
+        raise StudyError(f"--parts: found {options.parts}{'' if words else ' without --cluster'}, allowed is 1 or more, with --cluster")
     if words:
-        sweep_cluster.run(words, options.table, options.parts, cluster.profile_folder(options.cluster))
+        sweep_cluster.run(words, options.table, options.parts or PARTS, cluster.profile_folder(options.cluster))
     table, parameters, result = read(options.table, options.of)
     over = options.over or [name for name in parameters if table[name].nunique() > 1][:2] or parameters[:1]
     if unknown := [name for name in over if name not in parameters]:

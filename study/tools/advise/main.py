@@ -1,11 +1,9 @@
 # study/advise: the command line; one question, its results directory, its answer.
 import json
 import math
-import re
 import sys
 import time
 from dataclasses import asdict
-from pathlib import Path
 
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, write_json
@@ -13,12 +11,12 @@ from study.core import locks, profile as profiles
 from study.core.cell import control, on_usual_pairs
 from study.core.executor import program_of
 from study.core.options import Parser, directory, positive
-from study.core.studyset import context_of, listed, need_own, select, writable
+from study.core.studyset import context_of, describe, listed, need_own, select, writable
 from study.tools.advise.advice import Question, advise as seek
 from study.tools.advise.answer import as_json, text
 from study.tools.advise.choice import LEAST_STEPS, MOST_STEPS
 from study.tools.advise.evidence import BEGUN
-from study.tools.advise.runner import REPEATS, Runner, describe, scene_name
+from study.tools.advise.runner import REPEATS, Runner, folder_of, scene_name
 from study.tools.advise.settings import catalogue
 from study.tools.advise.validate import questions, validate
 from study.tools.shelf import ToolLab, open_shelf
@@ -64,7 +62,7 @@ def ask(options, folder=None):
                         options.deadline_us, options.budget or BUDGET, options.step)
     _need_possible(question)
     inputs = asdict(question) | {"scene": scene, "file": digest(ROOT / scene) if (ROOT / scene).is_file() else "", "repeats": REPEATS}
-    folder = folder or options.results or DEFAULT / _folder(inputs, names)
+    folder = folder or options.results or DEFAULT / folder_of(scene, inputs, names, digest(ROOT / program_of()))
     writable(folder)
     spent = time.monotonic() - began
     with locks.only_one(folder), locks.only_one_study(options.wait, say):
@@ -146,10 +144,3 @@ def duration(scene, asked, described):
     if asked and asked > LONGEST:
         raise StudyError(f"--duration {asked:g}: at most {LONGEST:g} s")
     return asked or min(DURATION, end)
-
-
-def _folder(inputs, names):
-    """One a question, so that an edited scene file asks another one."""
-    text = json.dumps([inputs, names, digest(ROOT / program_of())])
-    stem = re.sub(r"[^A-Za-z0-9]+", "-", Path(inputs["scene"]).stem).strip("-")
-    return f"{stem}-{digest(text)[:8]}"

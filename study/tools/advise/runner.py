@@ -1,13 +1,13 @@
-# One `mbs simulate` of the advice as a cell, and its row; what `mbs describe` says of the scene.
+# One `mbs simulate` of the advice as a cell, and its row.
+import json
 import math
+import re
 import shlex
 import time
 from pathlib import Path
 
-from analysis.core.errors import StudyError
-from analysis.core.files import ROOT
+from analysis.core.files import ROOT, digest
 from analysis.core.outcomes import FINISHED, of_run
-from study.core import executor
 from study.core.cell import Cell
 from study.tools.advise.choice import Pilot
 
@@ -20,20 +20,18 @@ QUICK = 200  # steps of a run for its time
 OF_TIMES = {"step_us_median": "median", "step_us_p99": "p99", "deadline_misses": "deadline_misses"}
 
 
-def describe(scene):
-    """`mbs describe --json`; StudyError with its own words if there is no such scene."""
-    found = executor.run(Cell("describe", scene).settled(), None)
-    if found["status"] != "done":
-        raise StudyError(found["reason"].partition("mbs: ")[2] or f"{scene}: {found['reason']}")
-    return found["output"]
-
-
 def scene_name(text):
     """A scene as programs that run in ROOT find it; a file in the repository without the machine's path."""
     if not Path(text).is_file():
         return text
     path = Path(text).resolve()
     return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
+
+
+def folder_of(scene, *more):
+    """The name of a folder: readable, and its own for every scene and whatever else is asked."""
+    stem = re.sub(r"[^A-Za-z0-9]+", "-", Path(scene).name.removesuffix(".json")).strip("-")
+    return f"{stem}-{digest(json.dumps([scene, *more]))[:8]}"
 
 
 def typed(record):

@@ -2,17 +2,16 @@
 # step, until it meets the smallest error or costs too much.
 import math
 from argparse import Namespace
-from pathlib import Path
 
 from analysis.core.errors import StudyError
 from analysis.core.outcomes import FINISHED
 from study.core import locks
 from study.core.setting import Setting, read_settings
-from study.core.studyset import listed, select
+from study.core.studyset import describe, listed, select
 from study.tools.advise import evidence, timing
 from study.tools.advise.advice import SLOWER
 from study.tools.advise.probe import probe
-from study.tools.advise.runner import EXACT, describe, scene_name
+from study.tools.advise.runner import EXACT, folder_of, scene_name
 from study.tools.advise.settings import catalogue, fits, serving
 from study.tools.advise.truth import FIRST_STEP, Truth
 
@@ -45,7 +44,7 @@ def validate(options, ask, runner_of, results):
     variants = {name: known.variants[name] for name in names}
     with locks.only_one(results):
         for kind, scene, duration in questions(options.scene):
-            folder = results / "scenes" / Path(scene).stem.replace(":", "-")
+            folder = results / "scenes" / folder_of(scene)
             described = describe(scene)
             errors = [float(f"{share * described['judged_length']:.2g}") for share in SHARES]
             with locks.only_one_study(options.wait):

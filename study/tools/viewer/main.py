@@ -60,18 +60,20 @@ def _options(arguments):
                      "small steps or large scenes, what a minute is enough for)")
     own.add_argument("--step", type=positive, metavar="S", help="time step (1.25e-3, or the first "
                      "tenth, hundredth, … of it that does)")
-    own.add_argument("--implementation", default=IMPLEMENTATION,
-                     help=f"folder/variant ({IMPLEMENTATION})")
+    own.add_argument("--implementation", help=f"folder/variant ({IMPLEMENTATION})")
     options = parser.parse_args(arguments)
     _check(options)
+    options.implementation = options.implementation or IMPLEMENTATION
     return options
 
 
 def _check(options):
-    if options.trajectory and (options.duration or options.step):
-        raise StudyError("--duration and --step are for a simulation, but a TRAJECTORY is given")
+    if options.trajectory and (options.duration or options.step or options.implementation):
+        raise StudyError("--duration, --step and --implementation are for a simulation, but a TRAJECTORY is given")
     if options.window and not options.window[0] < options.window[1]:
         raise StudyError("--window must be two times, the first before the last")
+    if options.window and options.png is None:
+        raise StudyError("--window: found without --png, whose sheet it is of: allowed are both or none")
     if options.output is None:
         stem = Path(options.scene).name.removesuffix(".json")
         options.output = re.sub(r"[^\w.=-]+", "-", stem) + ".html"
