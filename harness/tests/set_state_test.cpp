@@ -6,6 +6,7 @@
 
 #include "registry/factory.hpp"
 #include "registry/registry.hpp"
+#include "registry/setting_names.hpp"
 #include "run/settings.hpp"
 #include "run/stretch.hpp"
 #include "scene/scene.hpp"
@@ -20,7 +21,8 @@ class SetState : public ::testing::TestWithParam<NamedVariant> {};
 /// n = 12: no multiple of a register's doubles.
 TEST_P(SetState, IsTheWayBackFromAStepThatWasNotFinite) {
   const Scene scene = load_scene("four-bar:5");
-  for (const Scheme scheme : {Scheme::penalty, Scheme::saddle_point}) {
+  for (const Scheme scheme :
+       {Scheme::penalty, Scheme::saddle_point, Scheme::rattle, Scheme::multistep6}) {
     StepSettings settings;
     settings.scheme = scheme;
     settings.penalty = automatic_penalty(scene.model, settings);
@@ -35,10 +37,15 @@ TEST_P(SetState, IsTheWayBackFromAStepThatWasNotFinite) {
     simulation->set_state(start);
     (void)simulation->step();
     simulation->get_state(first);
-    // Finite, but forces from it are not: factors are sound, what is solved for is not.
-    std::ranges::fill(broken.lambda, 1.7e308);
+    // Finite, but forces from it are not: the first factors are sound, what is solved for is not,
+    // and so no later matrix.
+    std::ranges::fill(is_explicit(scheme) ? broken.v : broken.lambda, 1.7e308);
     simulation->set_state(broken);
-    (void)simulation->step();
+    EXPECT_EQ(simulation->step().status, StepStatus::factorization_failed);
+    // As they are after it: the next step says so at once.
+    const StepOutcome outcome = simulation->step();
+    EXPECT_EQ(outcome.status, StepStatus::factorization_failed);
+    EXPECT_GE(outcome.passes, 1);
     simulation->set_state(start);
     EXPECT_NE(simulation->step().status, StepStatus::factorization_failed);
     simulation->get_state(again);

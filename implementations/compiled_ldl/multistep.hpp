@@ -25,9 +25,7 @@ StepOutcome Stepper<S, F, D>::multistep_step() {
 template <typename S, typename F, int D>
 StepOutcome Stepper<S, F, D>::recur() {
   auto& s = system_;
-  StepOutcome outcome;
-  outcome.factorizations = 1;
-  outcome.status = StepStatus::pass_limit;
+  StepOutcome outcome{StepStatus::pass_limit, 1, 1};
   phases_.enter(Phase::evaluation);
   s.evaluate();
   const S* force = s.force.data();
@@ -49,7 +47,7 @@ StepOutcome Stepper<S, F, D>::recur() {
     outcome.status = StepStatus::factorization_failed;
     return outcome;
   }
-  for (outcome.passes = 1;; ++outcome.passes) {
+  for (;; ++outcome.passes) {
     phases_.enter(Phase::other);
     apply_to_history(S(1.0) / scale);
     if (outcome.passes > 1 && s.largest() <= tolerance_) {

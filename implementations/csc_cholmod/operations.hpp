@@ -36,7 +36,7 @@ class JacobianMatrix {
   std::vector<double> sign_;
 };
 
-/// The step fuses Phi_q^T Phi_q and M into one sum (Assembly::refresh_tangent); here the product
+/// The step fuses Phi_q^T Phi_q and M into one sum (PenaltyForm::refresh_matrix); here the product
 /// and the addition are apart, each into a matrix on the tangent's pattern, in the same order of
 /// unknowns and half, and through the same schedule.
 class CscOperations final : public Operations {

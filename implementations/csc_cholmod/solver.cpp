@@ -27,6 +27,8 @@ constexpr std::size_t kMergedColumns[] = {16, 32};
 constexpr double kSupernodeTime = 0.4;
 constexpr double kOperationTime = 6e-5;
 
+constexpr const char* kNoMemory = "CHOLMOD has no memory for the factor";
+
 /// A quiet cholmod_common for one job at a time.
 struct Common : cholmod_common {
   Common() {
@@ -107,8 +109,14 @@ cholmod_dense view(int n, double* values) {
   return vector;
 }
 
-cholmod_factor* analyze(cholmod_sparse& matrix, Common& common) {
-  cholmod_factor* factor = cholmod_analyze(&matrix, &common);
+struct FreeFactor {
+  cholmod_common* common = nullptr;  ///< outlives the factor
+  void operator()(cholmod_factor* factor) const { cholmod_free_factor(&factor, common); }
+};
+using Factor = std::unique_ptr<cholmod_factor, FreeFactor>;
+
+Factor analyze(cholmod_sparse& matrix, Common& common) {
+  Factor factor(cholmod_analyze(&matrix, &common), {&common});
   if (factor != nullptr) return factor;
   throw std::runtime_error("CHOLMOD cannot analyse this matrix, status " +
                            std::to_string(common.status));
@@ -145,7 +153,7 @@ double expected_time(const cholmod_factor& factor) {
 }
 
 /// A supernodal analysis that merges supernodes up to so many columns, whatever zeros this stores.
-cholmod_factor* analyze_merging(cholmod_sparse& matrix, std::size_t columns, Common& common) {
+Factor analyze_merging(cholmod_sparse& matrix, std::size_t columns, Common& common) {
   std::ranges::fill(common.nrelax, columns);
   return analyze(matrix, common);
 }
@@ -158,9 +166,7 @@ double least_time(const HalfPattern& pattern, int ordering) {
   cholmod_sparse matrix = view(pattern, nullptr);
   double least = std::numeric_limits<double>::infinity();
   for (const std::size_t columns : kMergedColumns) {
-    cholmod_factor* factor = analyze_merging(matrix, columns, common);
-    least = std::min(least, expected_time(*factor));
-    cholmod_free_factor(&factor, &common);
+    least = std::min(least, expected_time(*analyze_merging(matrix, columns, common)));
   }
   return least;
 }
@@ -183,17 +189,17 @@ std::vector<int> fill_reducing_order(const HalfPattern& pattern, Method method) 
   common.method[0].ordering = ordering;
   const std::vector<double> identity = identity_values(pattern);
   cholmod_sparse matrix = view(pattern, identity.data());
-  cholmod_factor* factor = analyze(matrix, common);
+  const Factor factor = analyze(matrix, common);
   std::vector<int> place(pattern.size());  // of what comes k-th in CHOLMOD's order
   std::iota(place.begin(), place.end(), 0);
   if (!supernodal && method.tuning == Tuning::own) {
-    cholmod_factorize(&matrix, factor, &common);  // the pattern of L comes with its values
+    // The pattern of L comes with its values.
+    if (!cholmod_factorize(&matrix, factor.get(), &common)) throw std::runtime_error(kNoMemory);
     place = outside_in_order(pattern.size(), below_diagonal(*factor));
   }
   std::vector<int> number(pattern.size());
   const int* old = static_cast<const int*>(factor->Perm);
   for (int k = 0; k < pattern.size(); ++k) number[old[k]] = place[k];
-  cholmod_free_factor(&factor, &common);
   return number;
 }
 
@@ -216,9 +222,8 @@ struct Solver::Cholmod {
     // Numeric space at once, so that no step pays for it: with to_packed = 0 a simplicial column
     // gets its exact size (by grow2), with 1 only its diagonal, and would move as it grows.
     if (!cholmod_change_factor(CHOLMOD_REAL, supernodal ? 1 : common.final_ll, supernodal, 0, 1,
-                               factor, &common)) {
-      cholmod_free_factor(&factor, &common);
-      throw std::runtime_error("CHOLMOD has no memory for the factor");
+                               factor.get(), &common)) {
+      throw std::runtime_error(kNoMemory);
     }
     find_diagonal();
     split_diagonal(negative);
@@ -226,16 +231,14 @@ struct Solver::Cholmod {
   ~Cholmod() {
     cholmod_free_dense(&y, &common);
     cholmod_free_dense(&e, &common);
-    cholmod_free_factor(&factor, &common);
   }
   Cholmod(const Cholmod&) = delete;
   Cholmod& operator=(const Cholmod&) = delete;
 
   /// Takes larger supernodes where they should be faster.
   void merge_more() {
-    cholmod_factor* larger = analyze_merging(matrix, kMergedColumns[1], common);
-    if (expected_time(*larger) < expected_time(*factor)) std::swap(factor, larger);
-    cholmod_free_factor(&larger, &common);
+    Factor larger = analyze_merging(matrix, kMergedColumns[1], common);
+    if (expected_time(*larger) < expected_time(*factor)) factor = std::move(larger);
   }
 
   void find_diagonal() {
@@ -263,7 +266,7 @@ struct Solver::Cholmod {
 
   Common common;
   cholmod_sparse matrix;
-  cholmod_factor* factor = nullptr;
+  Factor factor;
   std::vector<int> diagonal;  ///< positions of L's or D's positive diagonal in factor->x
   std::vector<int> negative_diagonal;
   cholmod_dense* y = nullptr;  ///< workspace of cholmod_solve2, kept between calls
@@ -280,7 +283,7 @@ bool Solver::factorize() {
   Cholmod& c = *cholmod_;
   std::optional<OneThread> one_thread;
   if (c.factor->is_super) one_thread.emplace();
-  if (!cholmod_factorize(&c.matrix, c.factor, &c.common) || c.common.status != CHOLMOD_OK) {
+  if (!cholmod_factorize(&c.matrix, c.factor.get(), &c.common) || c.common.status != CHOLMOD_OK) {
     return false;
   }
   // LDL' does not stop at a pivot of the wrong sign, and no comparison of CHOLMOD's stops at a NaN.
@@ -302,7 +305,8 @@ void Solver::solve(const double* b, double* x) {
     // reallocate; the space is still there.
     c.y->nrow = c.y->d = c.y->nzmax / n;
   }
-  cholmod_solve2(CHOLMOD_A, c.factor, &right, nullptr, &handle, nullptr, &c.y, &c.e, &c.common);
+  cholmod_solve2(CHOLMOD_A, c.factor.get(), &right, nullptr, &handle, nullptr, &c.y, &c.e,
+                 &c.common);
 }
 
 std::string library_version() {

@@ -48,7 +48,7 @@ class Solver {
          const std::vector<int>& negative = {});
   ~Solver();
 
-  /// Factorizes the current values. False if a pivot has the wrong sign or is not finite.
+  /// Factorizes the current values. False if a pivot is zero, NaN or of the wrong sign.
   [[nodiscard]] bool factorize();
   /// x (n) = the factorized matrix \ b (n). They may be the same.
   void solve(const double* b, double* x);

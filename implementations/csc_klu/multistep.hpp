@@ -8,8 +8,8 @@
 
 namespace mbs::csc_klu {
 
-/// A simulation by Scheme::multistep6; `model` outlives it. Throws Unsupported if the model has
-/// drivers or dampers. Instantiated in multistep.cpp for every solver.
+/// A simulation by Scheme::multistep6 of a `model` without drivers and dampers, which outlives it.
+/// Instantiated in multistep.cpp for every solver.
 template <TangentSolver Solver>
 [[nodiscard]] std::unique_ptr<Simulation> create_multistep(const Model& model,
                                                            const StepSettings& settings);

@@ -8,8 +8,8 @@
 
 namespace mbs::csc_klu {
 
-/// A simulation by Scheme::rattle, rattle4 or rattle6; `model` outlives it. Throws Unsupported if
-/// the model has drivers or dampers. Instantiated in rattle.cpp for every solver.
+/// A simulation by Scheme::rattle, rattle4 or rattle6 of a `model` without drivers and dampers,
+/// which outlives it. Instantiated in rattle.cpp for every solver.
 template <TangentSolver Solver>
 [[nodiscard]] std::unique_ptr<Simulation> create_rattle(const Model& model,
                                                         const StepSettings& settings);

@@ -94,11 +94,14 @@ void MultifrontalSolver::analyse(std::span<const int> orderings) {
 }
 
 bool MultifrontalSolver::factorize_and_solve(std::span<double> x) {
+  const int slack = mumps_->slack();
   mumps_->structure.rhs = x.data();
   while (!mumps_->call(Mumps::kFactorizeAndSolve)) {
-    // Pivots that were put off fill more than the analysis has foreseen.
-    if (!mumps_->ran_out_of_slack() || mumps_->slack() > kMostSlack) return false;
-    mumps_->slack() *= 2;
+    if (!mumps_->ran_out_of_slack() || mumps_->slack() > kMostSlack) {
+      mumps_->slack() = slack;  // a singular matrix puts off all its pivots, the next one few
+      return false;
+    }
+    mumps_->slack() *= 2;  // pivots that were put off fill more than the analysis has foreseen
   }
   return !mumps_->must_be_positive() || mumps_->negative_pivots() == 0;
 }

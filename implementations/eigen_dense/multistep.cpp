@@ -1,6 +1,7 @@
 // The symmetric multistep method of order six: Eq. (17).
 #include "multistep.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "stage_lengths.hpp"
@@ -39,6 +40,7 @@ StepOutcome Multistep::do_step() {
   const bool starting = started_ < kHistory;
   if (!(starting ? start(outcome) : advance(outcome))) {
     outcome.status = StepStatus::factorization_failed;
+    outcome.passes = std::max(outcome.passes, 1);
     return outcome;
   }
   if (starting) ++started_;

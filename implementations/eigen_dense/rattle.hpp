@@ -1,6 +1,7 @@
 // RATTLE of order two, four and six.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "mbs/model.hpp"
@@ -28,6 +29,7 @@ class Rattle final : public mbs::Simulation {
     for (const Scalar h : lengths_) {
       if (stage_.advance(h, outcome)) continue;
       outcome.status = StepStatus::factorization_failed;
+      outcome.passes = std::max(outcome.passes, 1);
       break;
     }
     return outcome;

@@ -14,7 +14,7 @@ namespace mbs::eigen_sparse {
 template <class Solver>
 class RattleSimulation final : public Simulation {
  public:
-  /// Throws Unsupported if the model has drivers or dampers.
+  /// The model has no drivers and no dampers.
   RattleSimulation(const Model& model, const StepSettings& settings);
 
  private:

@@ -1,4 +1,4 @@
-// Stages of RATTLE and its compositions, and the models that they are for.
+// Stages of RATTLE and its compositions.
 #include "rattle_stages.hpp"
 
 #include <cmath>

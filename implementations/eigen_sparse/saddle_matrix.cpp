@@ -56,7 +56,11 @@ Owned owned_unknowns(const Model& model, const Coordinates& coordinates,
     ++rows_with[jacobian.innerIndexPtr()[k]];
   }
   for (int row = first; row < jacobian.rows(); ++row) {
-    double most = kFarBelow * jacobian.row(row).cwiseAbs().toDense().maxCoeff();
+    double largest = 0.0;
+    for (RowSparseMatrix::InnerIterator it(jacobian, row); it; ++it) {
+      largest = std::max(largest, std::abs(it.value()));
+    }
+    double most = kFarBelow * largest;
     for (RowSparseMatrix::InnerIterator it(jacobian, row); it; ++it) {
       if (rows_with[it.col()] > 1 || std::abs(it.value()) <= most) continue;
       most = std::abs(it.value());

@@ -108,8 +108,7 @@ void Forces<D>::evaluate(const double* q, const double* v, double* f) {
       f[line.b + i] -= now.force * e[i];
     }
     // p of the geometric stiffness
-    double p = length > 0.0 || line.law != nullptr ? now.position * inverse : now.stiffness;
-    if (line.law != nullptr && !(length > 0.0)) p = now.stiffness;
+    const double p = length > 0.0 ? now.position * inverse : now.stiffness;
     const double across = quarter * std::max(0.0, p);
     const double along = half * now.damping + quarter * now.stiffness - across;
     for (int i = 0; i < D; ++i) {

@@ -1,6 +1,7 @@
 // What this folder offers: one sparse evaluation and assembly, three dense factorizations.
 #include "mbs/implementation.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -8,6 +9,17 @@
 
 namespace mbs::hybrid_dense {
 namespace {
+
+/// No matrix larger than this is stored; there are two or more of them.
+constexpr double kMatrixLimit = 2.0 * 1024 * 1024 * 1024;  // bytes
+
+void require_size(const Model& model, const StepSettings& settings) {
+  const double n = model.variables(), m = model.constraints();
+  const double rows = settings.scheme == Scheme::saddle_point ? std::max(n, m) : n;
+  if (sizeof(double) * rows * rows <= kMatrixLimit) return;
+  throw Unsupported("a dense matrix of " + std::to_string(static_cast<int>(rows)) +
+                    " rows would exceed 2 GiB");
+}
 
 template <int D, class Solver>
 std::unique_ptr<Simulation> create_in(const Model& model, const StepSettings& settings) {
@@ -19,6 +31,7 @@ std::unique_ptr<Simulation> create_in(const Model& model, const StepSettings& se
 
 template <class Solver>
 std::unique_ptr<Simulation> create(const Model& model, const StepSettings& settings) {
+  require_size(model, settings);
   return model.dimension() == 2 ? create_in<2, Solver>(model, settings)
                                 : create_in<3, Solver>(model, settings);
 }

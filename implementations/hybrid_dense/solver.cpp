@@ -55,7 +55,7 @@ std::string library_versions() {
 bool LltSolver::factorize() {
   copy();
   Columns<Eigen::MatrixXd> L(L_.data(), n_, n_, Eigen::OuterStride<>(rows_));
-  return factorize_halves(L);
+  return factorize_halves(L) && is_positive();
 }
 
 void LltSolver::solve(double* x) const {
@@ -87,7 +87,7 @@ bool PotrfSolver::factorize() {
   const int n = static_cast<int>(n_), rows = static_cast<int>(rows_);
   int info = 0;
   dpotrf_("L", &n, L_.data(), &rows, &info);
-  return info == 0;
+  return info == 0 && is_positive();
 }
 
 void PotrfSolver::multiply(double* x, long count, long stride, PotrfSolver& products) const {

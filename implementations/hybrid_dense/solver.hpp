@@ -47,6 +47,8 @@ class ColumnsSolver {
   [[nodiscard]] long position(long i, long j) const { return j * rows_ + i; }
 
  protected:
+  // Neither Eigen nor every LAPACK stops at a pivot that is a NaN, but all later ones are NaN then.
+  [[nodiscard]] bool is_positive() const { return n_ == 0 || L_[position(n_ - 1, n_ - 1)] > 0.0; }
   // The upper half is never read.
   void copy() {
     for (long j = 0; j < n_; ++j) {

@@ -45,10 +45,7 @@ StepOutcome ReferenceSimulation::multistep() {
     return outcome;
   }
   StepOutcome outcome{StepStatus::pass_limit, 0, 1};
-  if (!factorize(jacobian())) {
-    outcome.status = StepStatus::factorization_failed;
-    return outcome;
-  }
+  if (!factorize(jacobian())) return {StepStatus::factorization_failed, 1, 1};
   const Real square = Real{settings_.step} * settings_.step;
   Vector a = combine(past_a_, kPredicted), w = combine(w_, kW);
   const Vector kicks = combine(past_a_, kA), inertia = mass_times(a), applied = applied_force();

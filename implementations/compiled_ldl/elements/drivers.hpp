@@ -97,13 +97,17 @@ void Drivers<S, D>::drive(double t, S* q, S* v, Constraints<S, D>& constraints, 
   for (std::size_t i = 0; i < point_rows_.size(); ++i) {
     for (int x = 0; x < D; ++x) {
       const int row = point_rows_[i] + x;
-      const auto get = [&](const Model& m) { return m.driven_points()[i].position[x]; };
+      const auto get = [&](const Model& m) -> const TimeFunction& {
+        return m.driven_points()[i].position[x];
+      };
       sample(get, q[row], velocity_[row], acceleration_[row]);
       v[row] = velocity_[row];
     }
   }
   for (Value& value : values_) {
-    const auto get = [&](const Model& m) { return m.driven_values()[value.driven].value; };
+    const auto get = [&](const Model& m) -> const TimeFunction& {
+      return m.driven_values()[value.driven].value;
+    };
     sample(get, constraints.value(value.constraint), value.rate, value.acceleration);
   }
   for (const Mass& mass : mass_) force[mass.row] -= mass.value * acceleration_[mass.point_row];
