@@ -149,10 +149,10 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
                const Observer& observer) {
   require_duration(scene, settings);
   const State start = initial_state(scene.model);
+  std::optional<ScaledEquations> scaled;  // before `judged`, which has simulations of them
   JudgedRun judged(scene, variant, settings, start, observer);
   std::vector<float> times, least;
   double setup_us = 0.0;
-  std::optional<ScaledEquations> scaled;
   try {
     const auto begin = Clock::now();
     if (settings.scale_equations) scaled.emplace(scene.model);
