@@ -92,8 +92,10 @@ int simulate(const SimulateOptions& options) {
   if (options.half_step && options.scale_equations) {
     throw UsageError("--half-step and --scale-equations do not go together");
   }
-  const StepSettings step = options.step.resolve(
-      options.scale_equations ? ScaledEquations(scene.model).model() : scene.model);
+  std::optional<ScaledEquations> scaled;
+  if (options.scale_equations) scaled.emplace(scene.model);
+  const Model& model = scaled ? scaled->model() : scene.model;
+  const StepSettings step = options.step.resolve(model);
   RunSettings settings{step,           options.duration,        options.judge_every,
                        std::nullopt,   options.scale_equations, options.deadline_us,
                        options.repeats};
@@ -104,7 +106,7 @@ int simulate(const SimulateOptions& options) {
   }
   require_duration(scene, settings);
   std::vector<std::string> warnings =
-      setting_warnings(scene.model, settings.step,
+      setting_warnings(model, settings.step,
                        options.step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user);
   add_judging_warning(scene, settings, warnings);
   const RunSummary summary = run_with_files(options, scene, *variant.variant, settings);

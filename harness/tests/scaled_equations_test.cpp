@@ -102,6 +102,25 @@ TEST(ScaledEquations, OutliveAllSimulationsOfARun) {
   EXPECT_EQ(Lasting::bad, 0);
 }
 
+TEST(ScaledEquations, AreStepsOfTheJudgeToo) {
+  static int plain = 0;
+  const Scene scene = load_scene(MBS_ROOT "/harness/scenes/point_mass_pendulum.json");
+  Variant variant = reference();
+  variant.create = [](const Model& model, const StepSettings& settings) {
+    if (!model.dot_constraints().empty()) ++plain;
+    return reference().create(model, settings);
+  };
+  RunSettings settings;
+  settings.duration = 0.1;
+  settings.step.scheme = Scheme::rattle4;
+  settings.scale_equations = true;
+  settings.step.penalty = automatic_penalty(ScaledEquations(scene.model).model(), settings.step);
+  settings.half_step = settings.step;
+  settings.half_step->step /= 2;
+  EXPECT_EQ(run(scene, variant, settings).status, RunStatus::ok);
+  EXPECT_EQ(plain, 0);
+}
+
 TEST(ScaledEquations, AreASettingOfARun) {
   const Scene scene = load_scene("four-bar:3");
   RunSettings settings;

@@ -150,7 +150,7 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
   require_duration(scene, settings);
   const State start = initial_state(scene.model);
   std::optional<ScaledEquations> scaled;  // before `judged`, which has simulations of them
-  JudgedRun judged(scene, variant, settings, start, observer);
+  JudgedRun judged(scene, settings, start, observer);
   std::vector<float> times, least;
   double setup_us = 0.0;
   try {
@@ -164,7 +164,8 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
     simulation->set_state(start);
     setup_us = microseconds(Clock::now() - begin);
     judged.begin({[&](State& state) { simulation->get_state(state); },
-                  [&]() -> Simulation& { return *simulation; }, create});
+                  [&]() -> Simulation& { return *simulation; }, create,
+                  scaled ? &scaled->model() : &scene.model});
     times.reserve(static_cast<std::size_t>(count_steps(settings)));
     step_through(*simulation, judged, times);
     if (settings.repeats > 1 && !times.empty()) {
