@@ -47,12 +47,15 @@ RunSummary run_with_files(const SimulateOptions& options, const Scene& scene,
   RunSummary summary;
   {
     Progress progress(settings.duration, "s");
-    summary = run(scene, variant, settings, [&](long step, double t, const State& state) {
-      const bool wanted = step % options.every == 0;
-      if (trajectory && wanted) trajectory->write(t, state);
-      if (output) output->follow(t, state, wanted);
-      progress.at(t);
-    });
+    Observer observer;  // none where nothing is written: states would be copied out for it
+    if (trajectory || output) {
+      observer = [&](long step, double t, const State& state) {
+        const bool wanted = step % options.every == 0;
+        if (trajectory && wanted) trajectory->write(t, state);
+        if (output) output->follow(t, state, wanted);
+      };
+    }
+    summary = run(scene, variant, settings, observer, [&](double t) { progress.at(t); });
   }
   if (trajectory) trajectory->commit();
   if (output) output->commit();

@@ -98,11 +98,11 @@ void JudgedRun::take(const StepOutcome& outcome) {
       watch_.is_needed() && (step >= next_look_ || step == steps_ ||
                              (step >= last_look_ + kBetween && is_unusual(outcome)));
   State& copy = is_before ? before_ : state_;
-  const bool is_for_others = observer_ || half_;  // what is copied for them anyway is no judging
-  if (is_before || ((is_for_others || is_looked_at) && !is_judged)) {
-    const auto begin = is_for_others ? Clock::time_point() : Clock::now();
+  const bool is_for_judge = is_before || (is_looked_at && !is_judged);
+  if (is_for_judge || ((observer_ || half_) && !is_judged)) {
+    const auto begin = Clock::now();
     access_.get_state(copy);
-    if (!is_for_others) judging_ += Clock::now() - begin;
+    if (is_for_judge) judging_ += Clock::now() - begin;
   }
   const State& present = is_judged ? good_.state : copy;
   if (is_looked_at) look(present);
