@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "check/reference_run.hpp"
 #include "controls/controls.hpp"
 #include "model_math/kinematics.hpp"
 #include "run/settings.hpp"
@@ -477,7 +478,16 @@ TEST(Run, RefusesToGoBeyondADriversEnd) {
 TEST(Stretch, EndsWithTheDrivers) {
   EXPECT_EQ(make_stretch(driven_until(0.5), 1.25e-3, 800).steps, 400);
   EXPECT_EQ(make_stretch(driven_until(0.5), 1.25e-3, 300).steps, 300);
+  EXPECT_EQ(make_stretch(driven_until(0.3), 0.1, 300).steps, 3);  // 0.3 / 0.1 < 3
   EXPECT_THROW(make_stretch(driven_until(0.5), 0.6, 300), UsageError);
+}
+
+TEST(ReferenceRun, ProbesEachStepOfAShortStretch) {
+  StepSettings settings;
+  settings.step = 0.1;
+  const ReferenceRun reference = run_reference(driven_until(0.3), settings);
+  ASSERT_EQ(reference.probes.size(), 3U);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(reference.probes[static_cast<std::size_t>(i)].t, 0.1 * i, 1e-15);
 }
 
 TEST(Run, TellsThatAFactorizationFailed) {
