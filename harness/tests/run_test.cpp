@@ -121,6 +121,14 @@ TEST(Run, CountsTheCopiesThatJudgingNeedsWhoeverElseLooks) {
   }
 }
 
+TEST(Run, AnObserverThatCannotWriteIsNoDivergence) {
+  const Scene scene = load_scene("four-bar:1");
+  const auto observer = [](long step, double, const State&) {
+    if (step == 3) throw UsageError("cannot write");
+  };
+  EXPECT_THROW(run(scene, control("reference"), settings_for(scene, 0.5), observer), UsageError);
+}
+
 TEST(Run, HasNoPositionErrorWithoutAnExactSolution) {
   const Scene scene = test::spatial_pendulum();
   const RunSummary summary = run(scene, control("reference"), settings_for(scene, 0.5));

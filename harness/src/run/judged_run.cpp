@@ -10,6 +10,7 @@
 
 #include "printable.hpp"
 #include "run/rounding.hpp"
+#include "usage_error.hpp"
 
 namespace mbs {
 namespace {
@@ -308,6 +309,8 @@ void JudgedRun::take_exception() {
   } catch (const Unsupported& reason) {
     lose(RunStatus::unsupported, printable(reason.what(), 1000), std::nullopt);
   } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const UsageError&) {
     throw;
   } catch (const std::exception& error) {
     lose(RunStatus::diverged,

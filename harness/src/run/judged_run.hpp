@@ -45,7 +45,8 @@ class JudgedRun {
   void take(const StepOutcome& outcome);
   /// At the end, or lost.
   [[nodiscard]] bool is_over() const { return is_over_; }
-  /// Within a catch block: what the exception says of this run. Passes std::bad_alloc on.
+  /// Within a catch block: what the exception says of this run. Passes std::bad_alloc on, and
+  /// UsageError, which an observer throws that cannot write.
   void take_exception();
 
   /// The outcome, but for the times of steps and set-up.
