@@ -398,11 +398,11 @@ TEST_F(SimulateProgram, WritesWhereALinkLeadsThoughNothingIsThereYet) {
 
 TEST_F(SimulateProgram, RefusesBadOptions) {
   for (const char* option : {"--step", "--duration", "--penalty", "--tolerance"}) {
-    for (const char* value : {"0", "-1", "nan", "inf", "abc", "1e400", "''"}) {
+    for (const char* value : {"0", "-1", "nan", "inf", "abc", "1e400", "0x10", "-0X1p4", "''"}) {
       expect_refusal(std::string("four-bar:2 ") + option + " " + value, option);
     }
   }
-  for (const char* value : {"0", "-1", "1001", "abc", "1.5"}) {
+  for (const char* value : {"0", "-1", "1001", "abc", "1.5", "010", "+0x10"}) {
     expect_refusal(std::string("four-bar:2 --max-passes ") + value, "--max-passes");
   }
   for (const char* value : {"0", "-1", "abc"}) {
