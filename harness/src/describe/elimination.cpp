@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 using Index = std::size_t;
 
-constexpr double kFarBelow = 1e-3;
+constexpr double kMuchLess = 1e-3;
 
 Index at(int index) { return static_cast<Index>(index); }
 
@@ -90,7 +90,7 @@ std::vector<std::vector<int>> owned_points(const Model& model,
       std::iota(coordinates.begin(), coordinates.end(), start);
       const auto is_free = [&](int i) { return linear_with[at(i)] == 0; };
       if (with[at(start)] == 1 && std::ranges::all_of(coordinates, is_free) &&
-          kFarBelow * mass[at(start)] <= lightest) {
+          kMuchLess * mass[at(start)] <= lightest) {
         owned.back() = coordinates;
       }
     }
@@ -205,7 +205,7 @@ std::vector<std::vector<int>> owned_coordinates(const Model& model) {
       found = coordinate;
     }
     owned.emplace_back();
-    if (most > kFarBelow * largest) owned.back() = {found};
+    if (most > kMuchLess * largest) owned.back() = {found};
   }
   return owned;
 }
