@@ -161,7 +161,7 @@ int bench_command(int argc, char** argv) {
   request.settings = [&step](const Model& model) { return step.resolve(model); };
   CLI::App app("Times implementations over a stretch of each scene's motion.", "mbs bench");
   add_options(app, request, step, shown);
-  refuse_empty(app);
+  refuse_misread(app);
   if (asks_for_help(argc, argv)) {
     print_help(app);
     return 0;

@@ -111,6 +111,29 @@ int climb_all(const std::vector<NamedVariant>& variants, double seconds,
   return any_failed ? 1 : 0;
 }
 
+/// Adds the verdicts of all `variants` on `scene`.
+void check_scene(const CheckOptions& options, const Scene& scene,
+                 const std::vector<NamedVariant>& variants, std::vector<Verdict>& verdicts) {
+  const StepSettings settings = options.step.resolve(scene.model);
+  const auto serves = [&](const NamedVariant& one) {
+    return why_not_served(one.variant->serves, scene.model, settings).empty();
+  };
+  ReferenceRun reference;  // not run for nobody: on a large scene it takes minutes
+  if (why_unsuited(scene.model, settings).empty() && std::ranges::any_of(variants, serves)) {
+    reference = run_reference(scene, settings);
+  }
+  for (const std::string& warning : setting_warnings(
+           scene.model, settings,
+           options.step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user)) {
+    fmt::print(stderr, "mbs: warning: {}: {}\n", scene.name, warning);
+  }
+  for (const NamedVariant& variant : variants) {
+    verdicts.push_back(
+        check_implementation(scene, variant, settings, reference, {.seconds = options.time_limit}));
+    print_verdict(verdicts.back());
+  }
+}
+
 int check(const CheckOptions& options) {
   if (!(options.time_limit > 0.0) || !(options.time_limit <= 1e6)) {
     throw UsageError(fmt::format("--time-limit is {:g} s: it must be above 0 and at most 1e6",
@@ -127,25 +150,11 @@ int check(const CheckOptions& options) {
   std::vector<Verdict> verdicts;
   std::vector<Scene> scenes;  // all of them before the first check, so that a bad one loses nothing
   for (const std::string& name : options.scenes) scenes.push_back(load_scene(name));
-  for (const Scene& scene : scenes) {
-    const StepSettings settings = options.step.resolve(scene.model);
-    const auto serves = [&](const NamedVariant& one) {
-      return why_not_served(one.variant->serves, scene.model, settings).empty();
-    };
-    ReferenceRun reference;  // not run for nobody: on a large scene it takes minutes
-    if (why_unsuited(scene.model, settings).empty() && std::ranges::any_of(variants, serves)) {
-      reference = run_reference(scene, settings);
-    }
-    for (const std::string& warning : setting_warnings(
-             scene.model, settings,
-             options.step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user)) {
-      fmt::print(stderr, "mbs: warning: {}: {}\n", scene.name, warning);
-    }
-    for (const NamedVariant& variant : variants) {
-      verdicts.push_back(check_implementation(scene, variant, settings, reference,
-                                              {.seconds = options.time_limit}));
-      print_verdict(verdicts.back());
-    }
+  try {
+    for (const Scene& scene : scenes) check_scene(options, scene, variants, verdicts);
+  } catch (...) {  // of a later scene: what was judged before is no less true
+    if (file && !verdicts.empty()) write_rows(*file, verdicts);
+    throw;
   }
   const auto agreeing = std::ranges::count_if(verdicts, &Verdict::agrees);
   fmt::print("{} of {} agree with the reference\n", agreeing, verdicts.size());

@@ -37,9 +37,9 @@ struct StepOptions {
   [[nodiscard]] StepSettings resolve(const Model& model) const;
 };
 
-/// Makes every option and argument of `command` refuse an empty text, which would count as 0 or as
-/// not given.
-void refuse_empty(CLI::App& command);
+/// Makes every option and argument of `command` refuse what would be read as something else: an
+/// empty text as 0 or as not given, the number 010 as 8, 0x10 as 16.
+void refuse_misread(CLI::App& command);
 
 /// The one variant that the value of --implementation names. Throws UsageError.
 NamedVariant select_variant(const std::string& name);

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstring>
 
 #include "environment/blas.hpp"
@@ -32,7 +33,9 @@ constexpr const char* kExits = "Exit status: 0 done, 1 a result that is not righ
 double parse_tolerance(const std::string& text, const Model& model, const StepSettings& settings) {
   if (text == "auto") return automatic_tolerance(model, settings);
   double value = 0.0;
-  if (!CLI::detail::lexical_cast(text, value) || !(value > 0.0) || !(value < 1e300)) {
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || stop != end || !(value > 0.0) || !(value < 1e300)) {
     throw UsageError(
         fmt::format("--tolerance is '{}': it must be 'auto' or a number above 0 (m)", text));
   }
@@ -116,10 +119,19 @@ void StepOptions::add_to(CLI::App& command) {
   add_blas_option(command);
 }
 
-void refuse_empty(CLI::App& command) {
+void refuse_misread(CLI::App& command) {
   for (CLI::Option* option : command.get_options()) {
-    option->check([](const std::string& text) {
-      return text.empty() ? std::string("the value is empty") : std::string();
+    const std::string type = option->get_type_name();
+    const bool is_whole = type.starts_with("INT") || type.starts_with("UINT");
+    const bool is_number = is_whole || type.starts_with("FLOAT");
+    option->check([is_whole, is_number](const std::string& text) -> std::string {
+      if (text.empty()) return "the value is empty";
+      const bool has_sign = text[0] == '+' || text[0] == '-';
+      const std::string digits = text.substr(has_sign ? 1 : 0);
+      const bool is_hexadecimal = digits.starts_with("0x") || digits.starts_with("0X");
+      const bool is_octal = is_whole && digits.size() > 1 && digits[0] == '0';
+      if (is_number && (is_hexadecimal || is_octal)) return text + " is not a decimal number";
+      return "";
     });
   }
 }
@@ -167,7 +179,7 @@ int run_program(int argc, char** argv) {
   add_limit_command(app, status);
   app.add_subcommand("bench", "time implementations with Google Benchmark (see mbs bench --help)");
   for (CLI::App* command : app.get_subcommands({})) {
-    refuse_empty(*command);
+    refuse_misread(*command);
     command->footer(kExits);
   }
   for (const char* name : {"describe", "check", "reference"}) app.get_subcommand(name)->footer(kScenes);

@@ -47,12 +47,15 @@ RunSummary run_with_files(const SimulateOptions& options, const Scene& scene,
   RunSummary summary;
   {
     Progress progress(settings.duration, "s");
-    summary = run(scene, variant, settings, [&](long step, double t, const State& state) {
-      const bool wanted = step % options.every == 0;
-      if (trajectory && wanted) trajectory->write(t, state);
-      if (output) output->follow(t, state, wanted);
-      progress.at(t);
-    });
+    Observer observer;  // none where nothing is written: states would be copied out for it
+    if (trajectory || output) {
+      observer = [&](long step, double t, const State& state) {
+        const bool wanted = step % options.every == 0;
+        if (trajectory && wanted) trajectory->write(t, state);
+        if (output) output->follow(t, state, wanted);
+      };
+    }
+    summary = run(scene, variant, settings, observer, [&](double t) { progress.at(t); });
   }
   if (trajectory) trajectory->commit();
   if (output) output->commit();
@@ -92,8 +95,10 @@ int simulate(const SimulateOptions& options) {
   if (options.half_step && options.scale_equations) {
     throw UsageError("--half-step and --scale-equations do not go together");
   }
-  const StepSettings step = options.step.resolve(
-      options.scale_equations ? ScaledEquations(scene.model).model() : scene.model);
+  std::optional<ScaledEquations> scaled;
+  if (options.scale_equations) scaled.emplace(scene.model);
+  const Model& model = scaled ? scaled->model() : scene.model;
+  const StepSettings step = options.step.resolve(model);
   RunSettings settings{step,           options.duration,        options.judge_every,
                        std::nullopt,   options.scale_equations, options.deadline_us,
                        options.repeats};
@@ -104,7 +109,7 @@ int simulate(const SimulateOptions& options) {
   }
   require_duration(scene, settings);
   std::vector<std::string> warnings =
-      setting_warnings(scene.model, settings.step,
+      setting_warnings(model, settings.step,
                        options.step.penalty == "auto" ? PenaltyFrom::rule : PenaltyFrom::user);
   add_judging_warning(scene, settings, warnings);
   const RunSummary summary = run_with_files(options, scene, *variant.variant, settings);

@@ -14,13 +14,22 @@
 namespace mbs {
 namespace {
 
-Verdict check_batch(const std::string& name, const std::string& scene_name) {
+Variant batch_named(const std::string& name) {
   const std::vector<Variant> variants = test::batches();
-  const Variant& variant = *std::ranges::find(variants, name, &Variant::name);
-  const Scene scene = load_scene(scene_name);
+  return *std::ranges::find(variants, name, &Variant::name);
+}
+
+StepSettings settings_for(const Scene& scene) {
   StepSettings settings;
   settings.penalty = automatic_penalty(scene.model, settings);
   settings.tolerance = automatic_tolerance(scene.model, settings);
+  return settings;
+}
+
+Verdict check_batch(const std::string& name, const std::string& scene_name) {
+  const Variant variant = batch_named(name);
+  const Scene scene = load_scene(scene_name);
+  const StepSettings settings = settings_for(scene);
   return check_implementation(scene, {"batch/" + name, nullptr, &variant}, settings,
                               run_reference(scene, settings), {.seconds = 400.0});
 }
@@ -71,6 +80,17 @@ TEST(BatchChecks, ABatchThatIsRefusedIsNotChecked) {
   EXPECT_EQ(verdict.verdict, "agrees") << verdict.reason;
   EXPECT_FALSE(check_named(verdict, "batch").passed);
   EXPECT_EQ(check_named(verdict, "batch").detail, "no batches today");
+}
+
+TEST(BatchChecks, NoTimeIsNoDisagreement) {
+  const Scene scene = load_scene("four-bar:2");
+  const StepSettings settings = settings_for(scene);
+  const auto checks = batch_checks(batch_named("sound"), scene.model, settings,
+                                   run_reference(scene, settings, 16), 0.0);
+  ASSERT_EQ(checks.size(), 2U);
+  EXPECT_EQ(checks[0].passed, true);
+  EXPECT_EQ(checks[1].passed, std::nullopt);
+  EXPECT_NE(checks[1].detail.find("a longer --time-limit"), std::string::npos);
 }
 
 }  // namespace

@@ -216,6 +216,16 @@ TEST(Rounding, ShakesLightPartsInThePenaltyForm) {
   const Model model(std::move(light));
   EXPECT_NE(rounding_degradation(model, settings, 10'000, 1.0).find("saddle-point"),
             std::string::npos);
+  ModelData times_four = model.data();  // so that alpha counts sixteen times
+  for (const DotConstraint& c : times_four.dot_constraints) {
+    times_four.bilinear_constraints.push_back(
+        {c.a, c.b, c.c, c.d, {{{4, 0, 0}, {0, 4, 0}, {0, 0, 4}}}, 4 * c.value, c.name});
+  }
+  times_four.dot_constraints.clear();
+  StepSettings softer = settings;
+  softer.penalty /= 16;
+  EXPECT_EQ(rounding_degradation(Model(std::move(times_four)), softer, 10'000, 1.0),
+            rounding_degradation(model, settings, 10'000, 1.0));
   settings.scheme = Scheme::saddle_point;
   EXPECT_EQ(rounding_degradation(model, settings, 10'000, 1.0), "");
 }

@@ -175,6 +175,22 @@ TEST(CheckProgram, SaysSoIfTheReferenceItselfFails) {
   EXPECT_FALSE(fs::exists(file + ".partial"));
 }
 
+TEST(CheckProgram, KeepsWhatWasJudgedBeforeASceneThatIsRefused) {
+  const test::Folder folder;
+  const std::string scene = folder.file("scene.json"), verdicts = folder.file("verdicts.json");
+  std::ofstream(scene) << R"({"masses": [{"point": "B", "mass": 1}],
+    "points": [{"name": "A", "position": [0, 0], "fixed": true}, {"name": "B", "position": [0, 1]}],
+    "constraints": [{"type": "distance", "between": ["A", "B"],
+      "value": {"sine": {"amplitude": 0.001, "offset": 1, "frequency": 100}}}]})";
+  const auto run = test::run_program(MBS_CONTROLS, "check four-bar:1 '" + scene +
+      "' --implementation control/reference --json '" + verdicts + "'");
+  EXPECT_EQ(run.status, 2) << run.output;
+  EXPECT_NE(run.errors.find("too fast for --step"), std::string::npos) << run.errors;
+  const json rows = json::parse(test::file_text(verdicts)).at("rows");
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0].at("scene"), "four-bar:1");
+}
+
 TEST(CheckProgram, ARefusedCheckLeavesOlderVerdictsAlone) {
   const std::string file = test::temporary_path("verdicts.json");
   std::ofstream(file) << "precious";

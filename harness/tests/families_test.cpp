@@ -137,6 +137,7 @@ TEST(Families, RefuseWhatTheyDoNotTake) {
     expect_parts(error_of(std::string("chain:3,") + option),
                  {"found the option \"" + std::string(option), "dimension from 2 to 3, 2 if left"});
   }
+  expect_parts(error_of("flexible:2,nodes=3,nodes=5"), {"the option nodes twice, allowed is once"});
   expect_parts(error_of("chain:20000,dimension=3"), {"60000 variables", "at most 40000"});
   expect_parts(error_of("robot:7"), {"N = 7", "an even number of legs"});
   expect_parts(error_of("chains:3"), {"no such kind of scene", "chain:N[,dimension=D], loop:N",

@@ -162,13 +162,14 @@ int made_again(const Scene& scene, RunSettings settings, long steps) {
   const State start = initial_state(scene.model);
   simulation->set_state(start);
   int made = 0;
-  JudgedRun judged(scene, variant, settings, start, {});
+  JudgedRun judged(scene, settings, start, {});
   judged.begin({[&](State& state) { simulation->get_state(state); },
                 [&]() -> Simulation& { return *simulation; },
                 [&](const StepSettings& step) {
                   ++made;
                   return variant.create(scene.model, step);
-                }});
+                },
+                &scene.model});
   while (!judged.is_over()) judged.take(simulation->step());
   EXPECT_EQ(judged.finish().steps, steps);
   return made;

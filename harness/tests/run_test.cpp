@@ -9,12 +9,14 @@
 #include <memory>
 #include <utility>
 
+#include "check/reference_run.hpp"
 #include "controls/controls.hpp"
 #include "model_math/kinematics.hpp"
 #include "run/settings.hpp"
 #include "run/stretch.hpp"
 #include "scene_file/load_scene.hpp"
 #include "support/sample_models.hpp"
+#include "support/scripted_simulation.hpp"
 #include "usage_error.hpp"
 
 namespace mbs {
@@ -62,6 +64,69 @@ TEST(Run, ReportsASoundRun) {
   ASSERT_TRUE(summary.energy_drift_max);
   EXPECT_LT(*summary.energy_drift_max, 1e-4);
   EXPECT_LT(summary.constraint_violation_max, 1e-6);
+}
+
+/// A point at rest; copying its state out takes a tenth of a millisecond.
+class SlowToCopy final : public Simulation {
+ public:
+  static constexpr std::chrono::microseconds kCopy{100};
+  static inline long copies = 0;
+  using Simulation::Simulation;
+
+ protected:
+  void do_set_state(const State& state) override { state_ = state; }
+  StepOutcome do_step() override { return {StepStatus::converged, 1}; }
+  void do_get_state(State& state) const override {
+    test::wait(kCopy);
+    ++copies;
+    state = state_;
+  }
+
+ private:
+  State state_;
+};
+
+TEST(Run, CountsTheCopiesThatJudgingNeedsWhoeverElseLooks) {
+  ModelData data;
+  data.points = {{"A", -1, {0, 0, 0}}, {"B", 0, {1, 0, 0}}};
+  data.mass = {{0, 0, 1.0}, {1, 1, 1.0}};
+  data.force = data.initial_velocity = {0.0, 0.0};
+  const Scene scene{"at rest", Model(std::move(data)), {}, {}};
+  Variant variant = control("reference");
+  variant.create = [](const Model& model, const StepSettings& settings) -> std::unique_ptr<Simulation> {
+    return std::make_unique<SlowToCopy>(model, settings);
+  };
+  RunSettings settings = settings_for(scene, 0.5);
+  settings.step.tolerance = 1e-15;
+  settings.judge_every = 20;
+  const auto judging = [&](const Observer& observer, const Follower& follower) {  // copies
+    SlowToCopy::copies = 0;
+    const RunSummary summary = run(scene, variant, settings, observer, follower);
+    EXPECT_EQ(summary.status, RunStatus::plausible) << summary.reason;
+    return summary.judge_us * static_cast<double>(summary.steps) / SlowToCopy::kCopy.count();
+  };
+  long followed = 0, observed = 0;
+  const double alone = judging({}, [&](double t) {
+    EXPECT_NEAR(t, 1.25e-3 * static_cast<double>(++followed), 1e-12);
+  });
+  const long needed = SlowToCopy::copies;
+  EXPECT_EQ(followed, 400);
+  EXPECT_LE(needed, 50);
+  const double beside = judging([&](long, double, const State&) { ++observed; }, {});
+  EXPECT_EQ(observed, 401);
+  EXPECT_GE(SlowToCopy::copies, 400);
+  for (const double counted : {alone, beside}) {
+    EXPECT_GE(counted, static_cast<double>(needed));
+    EXPECT_LT(counted, 200.0);
+  }
+}
+
+TEST(Run, AnObserverThatCannotWriteIsNoDivergence) {
+  const Scene scene = load_scene("four-bar:1");
+  const auto observer = [](long step, double, const State&) {
+    if (step == 3) throw UsageError("cannot write");
+  };
+  EXPECT_THROW(run(scene, control("reference"), settings_for(scene, 0.5), observer), UsageError);
 }
 
 TEST(Run, HasNoPositionErrorWithoutAnExactSolution) {
@@ -421,7 +486,16 @@ TEST(Run, RefusesToGoBeyondADriversEnd) {
 TEST(Stretch, EndsWithTheDrivers) {
   EXPECT_EQ(make_stretch(driven_until(0.5), 1.25e-3, 800).steps, 400);
   EXPECT_EQ(make_stretch(driven_until(0.5), 1.25e-3, 300).steps, 300);
+  EXPECT_EQ(make_stretch(driven_until(0.3), 0.1, 300).steps, 3);  // 0.3 / 0.1 < 3
   EXPECT_THROW(make_stretch(driven_until(0.5), 0.6, 300), UsageError);
+}
+
+TEST(ReferenceRun, ProbesEachStepOfAShortStretch) {
+  StepSettings settings;
+  settings.step = 0.1;
+  const ReferenceRun reference = run_reference(driven_until(0.3), settings);
+  ASSERT_EQ(reference.probes.size(), 3U);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(reference.probes[static_cast<std::size_t>(i)].t, 0.1 * i, 1e-15);
 }
 
 TEST(Run, TellsThatAFactorizationFailed) {

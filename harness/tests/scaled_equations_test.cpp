@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "controls/controls.hpp"
+#include "controls/wrapped_reference.hpp"
 #include "run/initial_state.hpp"
 #include "run/run.hpp"
 #include "run/settings.hpp"
@@ -70,6 +72,53 @@ TEST(ScaledEquations, LeaveEveryTermsMotionAndMultipliers) {
       EXPECT_NEAR(state.lambda[k], same.lambda[k], 1e-3 * largest) << k;
     }
   }
+}
+
+/// Looks at its model when it ends, too.
+class Lasting final : public test::WrappedReference {
+ public:
+  static inline int good = 0, bad = 0;
+  Lasting(const Model& model, const StepSettings& settings)
+      : WrappedReference(model, settings), model_(model) {}
+  ~Lasting() override { ++(model_.dimension() == 2 ? good : bad); }
+
+ private:
+  const Model& model_;
+};
+
+TEST(ScaledEquations, OutliveAllSimulationsOfARun) {
+  const Scene scene = load_scene(MBS_ROOT "/harness/scenes/double_pendulum.json");
+  Variant variant = reference();
+  variant.create = [](const Model& model, const StepSettings& settings) -> std::unique_ptr<Simulation> {
+    return std::make_unique<Lasting>(model, settings);
+  };
+  RunSettings settings;
+  settings.duration = 0.25;
+  settings.scale_equations = true;
+  settings.step.penalty = automatic_penalty(ScaledEquations(scene.model).model(), settings.step);
+  settings.step.tolerance = 1e-6;  // so loose that the judge does steps again
+  run(scene, variant, settings);
+  EXPECT_EQ(Lasting::good, 2);
+  EXPECT_EQ(Lasting::bad, 0);
+}
+
+TEST(ScaledEquations, AreStepsOfTheJudgeToo) {
+  static int plain = 0;
+  const Scene scene = load_scene(MBS_ROOT "/harness/scenes/point_mass_pendulum.json");
+  Variant variant = reference();
+  variant.create = [](const Model& model, const StepSettings& settings) {
+    if (!model.dot_constraints().empty()) ++plain;
+    return reference().create(model, settings);
+  };
+  RunSettings settings;
+  settings.duration = 0.1;
+  settings.step.scheme = Scheme::rattle4;
+  settings.scale_equations = true;
+  settings.step.penalty = automatic_penalty(ScaledEquations(scene.model).model(), settings.step);
+  settings.half_step = settings.step;
+  settings.half_step->step /= 2;
+  EXPECT_EQ(run(scene, variant, settings).status, RunStatus::ok);
+  EXPECT_EQ(plain, 0);
 }
 
 TEST(ScaledEquations, AreASettingOfARun) {

@@ -49,6 +49,22 @@ class SimulateProgram : public ::testing::Test {
   std::string variant_;
 };
 
+// A rod of a milligram below one of a kilogram: scaled, the equations are others.
+TEST_F(SimulateProgram, WarnsOfScaledEquationsByThese) {
+  const test::Folder folder;
+  const std::string scene = folder.file("light.json");
+  std::ofstream(scene) << R"({"points": [{"name": "A", "position": [0, 0], "fixed": true},
+    {"name": "B", "position": [0.8, -0.6]}, {"name": "C", "position": [1.6, -1.2]}],
+    "rods": [{"between": ["A", "B"], "mass": 1}, {"between": ["B", "C"], "mass": 1e-6}]})";
+  const std::string arguments = "'" + scene + "' --duration 0.1 --json --scale-equations";
+  const json automatic = json::parse(simulate(arguments).output);
+  EXPECT_EQ(automatic.at("warnings"), json::array());
+  const std::string penalty = automatic.at("penalty").dump();
+  const json same = json::parse(simulate(arguments + " --penalty " + penalty).output);
+  EXPECT_EQ(same.at("penalty"), automatic.at("penalty"));
+  EXPECT_EQ(same.at("warnings"), json::array());
+}
+
 TEST_F(SimulateProgram, WarnsWhereAlmostNothingIsJudged) {
   const std::string arguments = "four-bar:1 --duration 0.5 --judge-every ";
   const auto seldom = simulate(arguments + "100000");
@@ -382,11 +398,11 @@ TEST_F(SimulateProgram, WritesWhereALinkLeadsThoughNothingIsThereYet) {
 
 TEST_F(SimulateProgram, RefusesBadOptions) {
   for (const char* option : {"--step", "--duration", "--penalty", "--tolerance"}) {
-    for (const char* value : {"0", "-1", "nan", "inf", "abc", "1e400", "''"}) {
+    for (const char* value : {"0", "-1", "nan", "inf", "abc", "1e400", "0x10", "-0X1p4", "''"}) {
       expect_refusal(std::string("four-bar:2 ") + option + " " + value, option);
     }
   }
-  for (const char* value : {"0", "-1", "1001", "abc", "1.5"}) {
+  for (const char* value : {"0", "-1", "1001", "abc", "1.5", "010", "+0x10"}) {
     expect_refusal(std::string("four-bar:2 --max-passes ") + value, "--max-passes");
   }
   for (const char* value : {"0", "-1", "abc"}) {

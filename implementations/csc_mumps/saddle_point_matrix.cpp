@@ -75,8 +75,7 @@ SaddlePointMatrix::SaddlePointMatrix(const Model& model, const Assembly& assembl
                                      const StepSettings& settings)
     : assembly_(assembly),
       variables_(model.variables()),
-      constraints_(model.constraints()),
-      owned_(owned_coordinates(model, rows_of(assembly.jacobian_pattern(), constraints_))) {
+      constraints_(model.constraints()) {
   std::vector<std::pair<int, int>> entries;
   for (const MassEntry& mass : model.mass()) entries.emplace_back(mass.col, mass.row);
   assembly.forces().visit_couplings(
@@ -102,8 +101,9 @@ Triplets SaddlePointMatrix::pattern() const {
   return result;
 }
 
-std::vector<int> SaddlePointMatrix::elimination_order() const {
+std::vector<int> SaddlePointMatrix::elimination_order(const Model& model) const {
   const auto rows = rows_of(assembly_.jacobian_pattern(), constraints_);
+  const auto owned = owned_coordinates(model, rows);
   Triplets graph{variables_, {}, {}};
   graph.add(inertia_pattern_);
   for (const auto& row : rows) {
@@ -121,14 +121,14 @@ std::vector<int> SaddlePointMatrix::elimination_order() const {
   }
   std::vector<int> owner(variables_, -1);
   for (int k = 0; k < constraints_; ++k) {
-    for (const int coordinate : owned_[k]) owner[coordinate] = k;
+    for (const int coordinate : owned[k]) owner[coordinate] = k;
   }
   for (int k = 0; k < constraints_; ++k) {
-    int last = owned_[k].empty() ? last_of[k] : 0;
-    for (const int coordinate : owned_[k]) last = std::max(last, rank[coordinate]);
+    int last = owned[k].empty() ? last_of[k] : 0;
+    for (const int coordinate : owned[k]) last = std::max(last, rank[coordinate]);
     for (const RowEntry& entry : rows[k]) {
       const int other = owner[entry.column];
-      if (other >= 0 && owned_[k].empty()) last = std::max(last, last_of[other]);
+      if (other >= 0 && owned[k].empty()) last = std::max(last, last_of[other]);
     }
     rank.push_back(last);
   }

@@ -23,8 +23,8 @@ class SaddlePointMatrix {
   [[nodiscard]] std::span<double> values() { return values_; }
   /// When each variable should be eliminated, from 1: coordinates in an order of minimum degree for
   /// T0 + Phi_q' Phi_q, each multiplier right after the last of its coordinates, or after the one
-  /// that it owns (README.md).
-  [[nodiscard]] std::vector<int> elimination_order() const;
+  /// that it owns (README.md). `model` is that of the constructor.
+  [[nodiscard]] std::vector<int> elimination_order(const Model& model) const;
 
   /// The values, for the Phi_q and forces evaluated last. False if there is a NaN or an infinity.
   [[nodiscard]] bool evaluate();
@@ -32,7 +32,6 @@ class SaddlePointMatrix {
  private:
   const Assembly& assembly_;
   const int variables_, constraints_;
-  std::vector<std::vector<int>> owned_;  // by row: coordinates that it comes right after, or none
   ColumnPattern inertia_pattern_;  // of T0: the union of those of M and K
   std::vector<double> mass_;       // on it
   std::vector<int> force_places_;  // on it, of the forces' entries

@@ -9,7 +9,7 @@ namespace mbs::csc_mumps {
 SaddlePointSimulation::SaddlePointSimulation(const Model& model, const StepSettings& settings)
     : CscMumpsSimulation(model, settings, model.variables() + model.constraints()),
       matrix_(model, assembly_, settings),
-      solver_(matrix_.pattern(), matrix_.values(), matrix_.elimination_order()) {}
+      solver_(matrix_.pattern(), matrix_.values(), matrix_.elimination_order(model)) {}
 
 bool SaddlePointSimulation::solve_newton() {
   phases_.enter(Phase::evaluation);

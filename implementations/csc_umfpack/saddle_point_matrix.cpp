@@ -22,7 +22,7 @@ Lists element_coordinates(const ForceLayout& forces, int dimension) {
 Lists owned_coordinates(const JacobianLayout& layout, const Lists& rows, const MassMatrix& mass,
                         int dimension) {
   constexpr double kFarBelow = 1e-3;
-  const Lists rows_of = transpose(rows, mass.pattern().variables());
+  const Lists rows_of = transpose(rows, mass.pattern().variables());  // linear rows are the last
   const auto mass_of = [&mass](int i) { return mass.values()[mass.pattern().position(i, i)]; };
   Lists owned;
   auto block = layout.blocks.begin();
@@ -38,15 +38,15 @@ Lists owned_coordinates(const JacobianLayout& layout, const Lists& rows, const M
     }
     for (int k = 0; found >= 0 && k < dimension; ++k) owned.items.push_back(found + k);
   }
-  std::vector<int> rows_with(mass.pattern().variables(), 0);
-  for (const LinearConstraint::Term& term : layout.terms) ++rows_with[term.coordinate];
   for (const JacobianLayout::Linear& linear : layout.linears) {
     double largest = 0.0, most = 0.0;
     int found = -1;
     for (int k = linear.first; k < linear.last; ++k) {
       const auto& [coordinate, coefficient] = layout.terms[k];
       largest = std::max(largest, std::abs(coefficient));
-      if (rows_with[coordinate] > 1 || std::abs(coefficient) <= most) continue;
+      const auto with = rows_of[coordinate];
+      const bool is_shared = with.size() > 1 && with[with.size() - 2] >= block_rows;
+      if (is_shared || std::abs(coefficient) <= most) continue;
       most = std::abs(coefficient);
       found = coordinate;
     }

@@ -13,19 +13,19 @@ constexpr double kFarBelow = 1e-3;
 /// The unknowns that each row owns.
 using Owned = std::vector<std::vector<int>>;
 
-/// Lets each row in front of `first` own a point that no other row has. The row's other points lean
-/// on it then, so that it must not be far heavier than they are.
+/// Lets each row in front of `first` own a point that no other row has (`rows_with`: by unknown, how
+/// many have it). The row's other points lean on it then, so that it must not be far heavier than
+/// they are.
 void own_points(const Model& model, const Coordinates& coordinates, const RowSparseMatrix& jacobian,
-                int first, Owned& owned) {
+                int first, const std::vector<int>& rows_with, Owned& owned) {
   Vector mass = Vector::Zero(jacobian.cols());
   for (const MassEntry& entry : model.mass()) {
     if (entry.row == entry.col) mass[coordinates.of_unknown(entry.row)] = entry.value;
   }
-  std::vector<int> rows_with(jacobian.cols()), row_of(jacobian.cols());
+  std::vector<int> row_of(jacobian.cols());
   std::vector<double> lightest(jacobian.rows(), HUGE_VAL);
   for (int row = 0; row < jacobian.rows(); ++row) {
     for (RowSparseMatrix::InnerIterator it(jacobian, row); it; ++it) {
-      ++rows_with[it.col()];
       row_of[it.col()] = row;
       lightest[row] = std::min(lightest[row], mass[it.col()]);
     }
@@ -45,16 +45,17 @@ void own_points(const Model& model, const Coordinates& coordinates, const RowSpa
   }
 }
 
-/// Of a linear row (from `first` on) it is the one with the largest coefficient of those that no
-/// other linear row has, unless that is far below the row's largest: it is a substitution for it.
+/// A linear row (from `first` on) owns the unknown with its largest coefficient of those that no
+/// other linear row has, unless that is far below the row's largest: the row is a substitution for
+/// it.
 Owned owned_unknowns(const Model& model, const Coordinates& coordinates,
                      const RowSparseMatrix& jacobian, int first) {
   std::vector<int> rows_with(jacobian.cols());
   Owned owned(jacobian.rows());
-  own_points(model, coordinates, jacobian, first, owned);
-  for (int k = jacobian.outerIndexPtr()[first]; k < jacobian.nonZeros(); ++k) {
-    ++rows_with[jacobian.innerIndexPtr()[k]];
-  }
+  const int* const begin = jacobian.innerIndexPtr();
+  const int* const linear = begin + jacobian.outerIndexPtr()[first];
+  const auto count = [&rows_with](int unknown) { ++rows_with[unknown]; };
+  std::for_each(linear, begin + jacobian.nonZeros(), count);
   for (int row = first; row < jacobian.rows(); ++row) {
     double largest = 0.0;
     for (RowSparseMatrix::InnerIterator it(jacobian, row); it; ++it) {
@@ -67,6 +68,8 @@ Owned owned_unknowns(const Model& model, const Coordinates& coordinates,
       owned[row] = {static_cast<int>(it.col())};
     }
   }
+  std::for_each(begin, linear, count);
+  own_points(model, coordinates, jacobian, first, rows_with, owned);
   return owned;
 }
 

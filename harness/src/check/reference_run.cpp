@@ -56,7 +56,7 @@ ReferenceRun run_reference(const Scene& scene, const StepSettings& settings, int
   std::vector<State> probed;
   State state = result.stretch.initial;
   for (int i = 0; i < steps; ++i) {
-    if (i == (steps - 1) * static_cast<int>(probed.size()) / (kProbes - 1)) {
+    if (i >= (steps - 1) * static_cast<int>(probed.size()) / (kProbes - 1)) {
       probed.push_back(state);
       result.probes.push_back({result.stretch.start + i * settings.step, state, {}, {}, 0.0});
     }

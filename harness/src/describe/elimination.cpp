@@ -18,6 +18,8 @@ namespace {
 using nlohmann::json;
 using Index = std::size_t;
 
+constexpr double kMuchLess = 1e-3;
+
 Index at(int index) { return static_cast<Index>(index); }
 
 json elimination_json(const std::optional<Elimination>& found) {
@@ -63,8 +65,8 @@ std::vector<std::pair<int, int>> pairs_of(const Model& model, PatternOf which) {
 
 /// By quadratic constraint: the coordinates of a point that no other has, and no linear one
 /// (`linear_with`, by coordinate), unless it is far heavier than the others of the constraint.
-std::vector<std::vector<int>> owned_points(const Model& model, const std::vector<int>& linear_with,
-                                           double far_below) {
+std::vector<std::vector<int>> owned_points(const Model& model,
+                                           const std::vector<int>& linear_with) {
   const std::vector<double> mass = mass_diagonal(model);
   std::vector<std::vector<int>> starts, owned;  // starts: of a constraint's free points
   std::vector<int> with(at(model.variables()), 0);
@@ -88,7 +90,7 @@ std::vector<std::vector<int>> owned_points(const Model& model, const std::vector
       std::iota(coordinates.begin(), coordinates.end(), start);
       const auto is_free = [&](int i) { return linear_with[at(i)] == 0; };
       if (with[at(start)] == 1 && std::ranges::all_of(coordinates, is_free) &&
-          far_below * mass[at(start)] <= lightest) {
+          kMuchLess * mass[at(start)] <= lightest) {
         owned.back() = coordinates;
       }
     }
@@ -188,12 +190,11 @@ std::vector<int> colamd_order(const SymmetricPattern& pattern) {
 }
 
 std::vector<std::vector<int>> owned_coordinates(const Model& model) {
-  constexpr double kFarBelow = 1e-3;
   std::vector<int> rows_with(at(model.variables()), 0);
   for (const LinearConstraint& linear : model.linear_constraints()) {
     for (const LinearConstraint::Term& term : linear.terms) ++rows_with[at(term.coordinate)];
   }
-  std::vector<std::vector<int>> owned = owned_points(model, rows_with, kFarBelow);
+  std::vector<std::vector<int>> owned = owned_points(model, rows_with);
   for (const LinearConstraint& linear : model.linear_constraints()) {
     double largest = 0.0, most = 0.0;
     int found = -1;
@@ -204,7 +205,7 @@ std::vector<std::vector<int>> owned_coordinates(const Model& model) {
       found = coordinate;
     }
     owned.emplace_back();
-    if (most > kFarBelow * largest) owned.back() = {found};
+    if (most > kMuchLess * largest) owned.back() = {found};
   }
   return owned;
 }

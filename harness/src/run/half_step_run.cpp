@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "registry/factory.hpp"
 #include "run/scene_distance.hpp"
 
 namespace mbs {
@@ -15,10 +14,10 @@ double richardson_factor(Scheme scheme) {
   return 1.0 / (1.0 - std::ldexp(1.0, -order));
 }
 
-HalfStepRun::HalfStepRun(const Scene& scene, const Variant& variant, const StepSettings& half,
-                         const State& initial, double length)
+HalfStepRun::HalfStepRun(const Scene& scene, const StepAgain::Create& create,
+                         const StepSettings& half, const State& initial, double length)
     : scene_(scene),
-      simulation_(create_simulation(variant, scene.model, half)),
+      simulation_(create(half)),
       state_(initial),
       length_(length),
       factor_(richardson_factor(half.scheme)) {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "registry/registry.hpp"
+#include "run/step_again.hpp"
 #include "scene/scene.hpp"
 
 namespace mbs {
@@ -18,9 +18,9 @@ double richardson_factor(Scheme scheme);
 /// needed.
 class HalfStepRun {
  public:
-  /// `half` is at half the step of the simulation beside it, unit vectors count as `length` (m)
-  /// long. `scene` must outlive this.
-  HalfStepRun(const Scene& scene, const Variant& variant, const StepSettings& half,
+  /// `create` makes simulations like the one beside it, `half` is at half its step, unit vectors
+  /// count as `length` (m) long. `scene` must outlive this.
+  HalfStepRun(const Scene& scene, const StepAgain::Create& create, const StepSettings& half,
               const State& initial, double length);
 
   /// Two half steps.

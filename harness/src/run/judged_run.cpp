@@ -10,6 +10,7 @@
 
 #include "printable.hpp"
 #include "run/rounding.hpp"
+#include "usage_error.hpp"
 
 namespace mbs {
 namespace {
@@ -26,10 +27,9 @@ bool is_trapezoidal(Scheme scheme) {
 
 }  // namespace
 
-JudgedRun::JudgedRun(const Scene& scene, const Variant& variant, const RunSettings& settings,
-                     State start, Observer observer)
+JudgedRun::JudgedRun(const Scene& scene, const RunSettings& settings, State start,
+                     Observer observer)
     : scene_(scene),
-      variant_(variant),
       settings_(settings),
       observer_(std::move(observer)),
       steps_(count_steps(settings)),
@@ -50,10 +50,10 @@ void JudgedRun::begin(Access access) {
   if (adds_local_errors_ && !judge_.energy_drift_max()) balance_.emplace(scene_);
   if (observer_) observer_(0, 0.0, state_);
   if (settings_.half_step) {
-    half_.emplace(scene_, variant_, *settings_.half_step, state_, judge_.length());
+    half_.emplace(scene_, access_.create, *settings_.half_step, state_, judge_.length());
   }
   if (adds_local_errors_ && has_high_order(settings_.step.scheme)) {
-    local_half_.emplace(scene_, variant_, settings_.step);
+    local_half_.emplace(access_.create, settings_.step);
   }
 }
 
@@ -99,11 +99,11 @@ void JudgedRun::take(const StepOutcome& outcome) {
       watch_.is_needed() && (step >= next_look_ || step == steps_ ||
                              (step >= last_look_ + kBetween && is_unusual(outcome)));
   State& copy = is_before ? before_ : state_;
-  const bool is_for_others = observer_ || half_;  // what is copied for them anyway is no judging
-  if (is_before || ((is_for_others || is_looked_at) && !is_judged)) {
-    const auto begin = is_for_others ? Clock::time_point() : Clock::now();
+  const bool is_for_judge = is_before || (is_looked_at && !is_judged);
+  if (is_for_judge || ((observer_ || half_) && !is_judged)) {
+    const auto begin = Clock::now();
     access_.get_state(copy);
-    if (!is_for_others) judging_ += Clock::now() - begin;
+    if (is_for_judge) judging_ += Clock::now() - begin;
   }
   const State& present = is_judged ? good_.state : copy;
   if (is_looked_at) look(present);
@@ -239,13 +239,13 @@ void JudgedRun::add_speed_error() {
   const double negligible = 0.1 * AccurateBounds{}.local_error * judge_.length() /
                             (static_cast<double>(steps_) * time(steps_));
   if (summary_.steps_at_limit == 0 &&
-      most_left(scene_.model, settings_.step, fastest_) < negligible) {
+      most_left(*access_.model, settings_.step, fastest_) < negligible) {
     done_again_ = step;
     return;
   }
   if (!again_) {  // its set-up is no more judging than that of the run is a step
     const auto begin = Clock::now();
-    again_.emplace(access_.create, scene_.model, settings_.step,
+    again_.emplace(access_.create, *access_.model, settings_.step,
                    static_cast<double>(summary_.passes) / static_cast<double>(step));
     judging_ -= Clock::now() - begin;
   }
@@ -310,6 +310,8 @@ void JudgedRun::take_exception() {
     lose(RunStatus::unsupported, printable(reason.what(), 1000), std::nullopt);
   } catch (const std::bad_alloc&) {
     throw;
+  } catch (const UsageError&) {
+    throw;
   } catch (const std::exception& error) {
     lose(RunStatus::diverged,
          fmt::format("the implementation threw: {}", printable(error.what(), 1000)),
@@ -341,7 +343,7 @@ void JudgedRun::conclude() {
   };
   add(watch_.doubt());
   if (adds_local_errors_) {
-    add(rounding_degradation(scene_.model, settings_.step, steps_, judge_.length()));
+    add(rounding_degradation(*access_.model, settings_.step, steps_, judge_.length()));
   }
   if (!summary_.reason.empty()) {
     summary_.status = RunStatus::degraded;

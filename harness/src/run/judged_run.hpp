@@ -19,7 +19,7 @@ namespace mbs {
 /// Takes what each step gives, looks at the state where the settings ask for it, and arrives at the
 /// typed outcome.
 ///
-///   JudgedRun judged(scene, variant, settings, initial_state(scene.model), observer);
+///   JudgedRun judged(scene, settings, initial_state(scene.model), observer);
 ///   judged.begin(access);
 ///   while (!judged.is_over()) judged.take(simulation.step());
 ///   RunSummary summary = judged.finish();
@@ -32,11 +32,12 @@ class JudgedRun {
     std::function<Simulation&()> again;
     /// Makes simulations like it, with other settings.
     StepAgain::Create create;
+    /// Whose equations it solves: the scene's, or these with their constraints scaled.
+    const Model* model = nullptr;
   };
 
-  /// `scene` and `variant` must outlive this.
-  JudgedRun(const Scene& scene, const Variant& variant, const RunSettings& settings, State start,
-            Observer observer);
+  /// `scene` must outlive this, and so must the model of begin().
+  JudgedRun(const Scene& scene, const RunSettings& settings, State start, Observer observer);
 
   /// The simulation is ready and at the start. Throws Unsupported if what runs beside it is.
   void begin(Access access);
@@ -44,7 +45,8 @@ class JudgedRun {
   void take(const StepOutcome& outcome);
   /// At the end, or lost.
   [[nodiscard]] bool is_over() const { return is_over_; }
-  /// Within a catch block: what the exception says of this run. Passes std::bad_alloc on.
+  /// Within a catch block: what the exception says of this run. Passes std::bad_alloc on, and
+  /// UsageError, which an observer throws that cannot write.
   void take_exception();
 
   /// The outcome, but for the times of steps and set-up.
@@ -78,7 +80,6 @@ class JudgedRun {
   [[nodiscard]] std::string beyond_estimates() const;
 
   const Scene& scene_;
-  const Variant& variant_;
   RunSettings settings_;
   Observer observer_;
   Access access_;

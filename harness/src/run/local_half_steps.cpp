@@ -3,7 +3,6 @@
 
 #include <limits>
 
-#include "registry/factory.hpp"
 #include "run/half_step_run.hpp"
 
 namespace mbs {
@@ -18,9 +17,8 @@ StepSettings halved(StepSettings settings) {
 
 }  // namespace
 
-LocalHalfSteps::LocalHalfSteps(const Scene& scene, const Variant& variant,
-                               const StepSettings& settings)
-    : simulation_(create_simulation(variant, scene.model, halved(settings))),
+LocalHalfSteps::LocalHalfSteps(const StepAgain::Create& create, const StepSettings& settings)
+    : simulation_(create(halved(settings))),
       factor_(richardson_factor(settings.scheme)) {}
 
 const std::vector<double>& LocalHalfSteps::error(const State& before, const State& after) {

@@ -4,8 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "registry/registry.hpp"
-#include "scene/scene.hpp"
+#include "run/step_again.hpp"
 
 namespace mbs {
 
@@ -13,8 +12,8 @@ namespace mbs {
 /// leaves 2^p / (2^p - 1) times the difference to two half steps.
 class LocalHalfSteps {
  public:
-  /// `settings` are those of the whole step.
-  LocalHalfSteps(const Scene& scene, const Variant& variant, const StepSettings& settings);
+  /// `create` makes simulations like the judged one, which has `settings`.
+  LocalHalfSteps(const StepAgain::Create& create, const StepSettings& settings);
 
   /// What the step from `before` to `after` left of q, n, m. Not finite where the half steps could
   /// not be done.

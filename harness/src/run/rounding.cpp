@@ -25,6 +25,14 @@ std::string rounding_degradation(const Model& model, const StepSettings& setting
     double& largest = gradient[static_cast<std::size_t>(entry.row)];
     largest = std::max(largest, std::abs(entry.value));
   }
+  std::vector<double> factor(gradient.size(), 1.0);  // largest entry of B
+  std::size_t row = model.dot_constraints().size();
+  for (const BilinearConstraint& c : model.bilinear_constraints()) {
+    double& largest = factor[row++] = 0.0;
+    for (const auto& line : c.B) {
+      for (const double entry : line) largest = std::max(largest, std::abs(entry));
+    }
+  }
   const std::vector<double> mass = mass_diagonal(model);
   const double walk =
       settings.step * settings.step * std::pow(static_cast<double>(steps), 1.5) / std::sqrt(3.0);
@@ -32,8 +40,10 @@ std::string rounding_degradation(const Model& model, const StepSettings& setting
   double most = 0.0;
   int worst = 0;
   for (const JacobianEntry& entry : entries) {
-    // Of a distance of length L the gradient is 2 L and what Phi is small against L^2.
-    const double size = std::pow(gradient[static_cast<std::size_t>(entry.row)] / 2, 2);
+    // Of a distance of length L times a factor d the gradient is 2 d L and what Phi is small
+    // against d L^2.
+    const auto k = static_cast<std::size_t>(entry.row);
+    const double size = std::pow(gradient[k] / 2, 2) / factor[k];
     const double acceleration =
         round * size * std::abs(entry.value) / mass[static_cast<std::size_t>(entry.col)];
     if (acceleration > most) {

@@ -24,13 +24,15 @@ double microseconds(Clock::duration duration) {
   return std::chrono::duration<double, std::micro>(duration).count();
 }
 
-/// Steps until the end or until the solution is lost.
-void step_through(Simulation& simulation, JudgedRun& judged, std::vector<float>& times) {
+/// Steps of `step` s until the end or until the solution is lost.
+void step_through(Simulation& simulation, JudgedRun& judged, double step, const Follower& follower,
+                  std::vector<float>& times) {
   while (!judged.is_over()) {
     const auto begin = Clock::now();
     const StepOutcome outcome = simulation.step();
     times.push_back(static_cast<float>(microseconds(Clock::now() - begin)));
     judged.take(outcome);
+    if (follower) follower(static_cast<double>(times.size()) * step);
   }
 }
 
@@ -146,13 +148,13 @@ void require_duration(const Scene& scene, const RunSettings& settings) {
 }
 
 RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& settings,
-               const Observer& observer) {
+               const Observer& observer, const Follower& follower) {
   require_duration(scene, settings);
   const State start = initial_state(scene.model);
-  JudgedRun judged(scene, variant, settings, start, observer);
+  std::optional<ScaledEquations> scaled;  // before `judged`, which has simulations of them
+  JudgedRun judged(scene, settings, start, observer);
   std::vector<float> times, least;
   double setup_us = 0.0;
-  std::optional<ScaledEquations> scaled;
   try {
     const auto begin = Clock::now();
     if (settings.scale_equations) scaled.emplace(scene.model);
@@ -164,9 +166,10 @@ RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& se
     simulation->set_state(start);
     setup_us = microseconds(Clock::now() - begin);
     judged.begin({[&](State& state) { simulation->get_state(state); },
-                  [&]() -> Simulation& { return *simulation; }, create});
+                  [&]() -> Simulation& { return *simulation; }, create,
+                  scaled ? &scaled->model() : &scene.model});
     times.reserve(static_cast<std::size_t>(count_steps(settings)));
-    step_through(*simulation, judged, times);
+    step_through(*simulation, judged, settings.step.step, follower, times);
     if (settings.repeats > 1 && !times.empty()) {
       const std::size_t together = timed_together(times);
       least = by_block(times, together);

@@ -64,7 +64,7 @@ struct RunSummary {
   long factorizations = 0;
   long steps_at_limit = 0;
   double setup_us = 0.0;  ///< the factory and the first set_state()
-  double judge_us = 0.0;  ///< mean a step: what copying states out and judging them takes
+  double judge_us = 0.0;  ///< mean a step: what judging and copying states out for it take
   StepTimes step_us;      ///< of the first run
   std::optional<StepTimes> least_us;              ///< each step's least over all runs, with repeats
   std::optional<double> position_error_max;       ///< m
@@ -80,6 +80,8 @@ struct RunSummary {
 
 /// Called after each step, and once before the first with step 0, outside the clocks.
 using Observer = std::function<void(long step, double t, const State& state)>;
+/// Called after each step with its time, outside the clocks: for whom no state is copied out.
+using Follower = std::function<void(double t)>;
 
 /// Number of steps that `duration` takes. Throws UsageError if settings are out of range.
 long count_steps(const RunSettings& settings);
@@ -96,6 +98,6 @@ void require_duration(const Scene& scene, const RunSettings& settings);
 /// Simulates; stops at the first state that the judge refuses. Never throws for a numeric failure;
 /// throws UsageError if settings are out of range or the duration is beyond the model's drivers.
 RunSummary run(const Scene& scene, const Variant& variant, const RunSettings& settings,
-               const Observer& observer = {});
+               const Observer& observer = {}, const Follower& follower = {});
 
 }  // namespace mbs

@@ -27,7 +27,8 @@ Stretch make_stretch(const Scene& scene, double step, int steps, std::optional<d
       throw UsageError(
           fmt::format("--start needs an exact solution: scene '{}' starts at 0", scene.name));
     }
-    const double known = driver_end(scene.model) / step;  // steps; infinite without tables
+    // Steps, but for rounding; infinite without tables.
+    const double known = driver_end(scene.model) / step * (1 + 1e-9);
     if (known < 1.0) {
       throw UsageError(fmt::format("--step is {:g} s: a driver's table ends at {:g} s", step,
                                    driver_end(scene.model)));

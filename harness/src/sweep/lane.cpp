@@ -44,7 +44,7 @@ class BatchLane {
         index_(index),
         extremes_(lane.scene),
         start_(initial_state(lane.scene.model)),
-        judged_(lane.scene, variant, lane.settings, start_, observer(lane.scene, extremes_)) {}
+        judged_(lane.scene, lane.settings, start_, observer(lane.scene, extremes_)) {}
 
   void begin() {
     batch_.set_state(index_, start_);
@@ -53,7 +53,8 @@ class BatchLane {
                      [this]() -> Simulation& { return again(); },
                      [this](const StepSettings& step) {
                        return create_simulation(variant_, lane_.scene.model, step);
-                     }});
+                     },
+                     &lane_.scene.model});
     });
   }
   void take(const StepOutcome& outcome) {

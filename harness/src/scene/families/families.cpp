@@ -93,6 +93,8 @@ std::span<const SceneFamily> scene_families() {
 
 namespace {
 
+constexpr int kNotGiven = 0;  // no parameter may be that
+
 [[noreturn]] void refuse_name(const std::string& scene, const std::string& what) {
   throw UsageError(fmt::format("scene {}: {}", in_quotes(scene), what));
 }
@@ -139,6 +141,9 @@ void read_option(const std::string& scene, const SceneFamily& family, std::strin
   for (std::size_t i = count_sizes(family); i < family.parameters.size(); ++i) {
     const FamilyParameter& one = family.parameters[i];
     if (key != one.name || key.size() == text.size()) continue;
+    if (values[i] != kNotGiven) {
+      refuse_name(scene, fmt::format("found the option {} twice, allowed is once", key));
+    }
     values[i] = parse_whole(scene, text.substr(key.size() + 1), one.name, one.least, one.most);
     return;
   }
@@ -175,11 +180,13 @@ nlohmann::json family_document(const std::string& text) {
   const SceneFamily& family = *find_family(text);
   const std::string_view rest =
       std::string_view(text).substr(std::string_view(family.name).size() + 1);
-  FamilyValues values;
-  for (const FamilyParameter& one : family.parameters) values.push_back(one.otherwise.value_or(0));
+  FamilyValues values(family.parameters.size(), kNotGiven);
   const std::vector<std::string_view> parts = parts_of(rest, ',');
   read_sizes(text, family, parts[0], values);
   for (std::size_t i = 1; i < parts.size(); ++i) read_option(text, family, parts[i], values);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] == kNotGiven) values[i] = *family.parameters[i].otherwise;
+  }
   const long variables = family.size(values).variables;
   if (variables > kMostFamilyVariables) {
     refuse_name(text, fmt::format("found {} variables, allowed are at most {}", variables,
