@@ -115,10 +115,7 @@ TEST(Run, CountsTheCopiesThatJudgingNeedsWhoeverElseLooks) {
   const double beside = judging([&](long, double, const State&) { ++observed; }, {});
   EXPECT_EQ(observed, 401);
   EXPECT_GE(SlowToCopy::copies, 400);
-  for (const double counted : {alone, beside}) {
-    EXPECT_GE(counted, static_cast<double>(needed));
-    EXPECT_LT(counted, 200.0);
-  }
+  for (const double counted : {alone, beside}) EXPECT_GE(counted, static_cast<double>(needed));
 }
 
 TEST(Run, AnObserverThatCannotWriteIsNoDivergence) {
