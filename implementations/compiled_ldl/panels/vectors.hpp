@@ -73,10 +73,9 @@ inline typename Short<F, N>::Type load_first(const F* x) {
   if constexpr (P == N) {
     return load<F, N>(x);
   } else if constexpr (N == 8) {
-    const auto low = load_first<std::min(P, 4), 4>(x);
-    typename Short<F, 4>::Type high{};
-    if constexpr (P > 4) high = load_first<P - 4, 4>(x + 4);
-    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+    static_assert(P > 4);
+    return __builtin_shufflevector(load<F, 4>(x), load_first<P - 4, 4>(x + 4), 0, 1, 2, 3, 4, 5, 6,
+                                   7);
   } else {
     typename Short<F, N>::Type v{};
 #pragma GCC unroll 4
