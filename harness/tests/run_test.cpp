@@ -36,6 +36,13 @@ RunSettings settings_for(const Scene& scene, double duration) {
   return settings;
 }
 
+TEST(Run, HoldsALongMechanismByTheAutomaticPenaltyFactor) {
+  // With beta s_min below 1 rounding grows by a fifth and more in each step.
+  const Scene scene = load_scene("scissors:60");
+  const RunSummary summary = run(scene, control("reference"), settings_for(scene, 0.25));
+  EXPECT_EQ(summary.status, RunStatus::plausible) << summary.reason;
+}
+
 TEST(Run, ReportsASoundRun) {
   const Scene scene = load_scene("four-bar:2");
   long calls = 0;

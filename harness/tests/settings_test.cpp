@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "run/initial_state.hpp"
 #include "scene/scene.hpp"
+#include "scene_file/load_scene.hpp"
 #include "support/dense.hpp"
 #include "support/sample_models.hpp"
 #include "support/scene_support.hpp"
@@ -23,7 +26,8 @@ struct Spectrum {
 Spectrum spectrum_of(const Model& model) {
   const Eigen::MatrixXd Phi_q = test::dense_jacobian(model, model.initial_position());
   const Eigen::MatrixXd lumped = test::dense_mass(model).diagonal().asDiagonal().inverse();
-  const Eigen::VectorXd values = test::eigenvalues(test::dense_constraint_matrix(model, model.initial_position()));
+  const Eigen::VectorXd values =
+      test::eigenvalues(test::dense_constraint_matrix(model, model.initial_position()));
   Eigen::Index first = 0;
   while (values[first] < 1e-12 * values.maxCoeff()) ++first;
   const Eigen::VectorXd rows = (Phi_q * lumped * Phi_q.transpose()).diagonal();
@@ -96,6 +100,24 @@ TEST(AutomaticPenalty, IsAsIfASingularStartWereRegular) {
   const double step = 6.8e-3 / std::sqrt(3 * 9.81),
                lower = 4 / (step * step) * 4e3 / spectrum_of(model).mean;
   EXPECT_NEAR(automatic_penalty(model, {.step = step}), lower, 1e-6 * lower);
+}
+
+TEST(AutomaticPenalty, MakesAStepOfOnePassDampTheSlowestModeOfLongMechanisms) {
+  for (const auto& [name, scheme] :
+       {std::pair{"scissors:60", Scheme::penalty}, {"scissors:300", Scheme::saddle_point}}) {
+    const Model model = load_scene(name).model;
+    const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
+    const double stable = 4 / (kStep * kStep) * 2 / smallest;
+    EXPECT_NEAR(automatic_penalty(model, {.step = kStep, .scheme = scheme}), stable, 1e-6 * stable)
+        << name;
+  }
+}
+
+TEST(AutomaticPenalty, LeavesTheSlowestModeWhereRoundingWouldCostMore) {
+  // A gate so long that no factor does: that of the mean mode stays.
+  const Model model = load_scene("scissors:600").model;
+  const double most = 4 / (kStep * kStep) * 1e7 / mean_constraint_eigenvalue(model);
+  EXPECT_NEAR(automatic_penalty(model, {.step = kStep}), most, 1e-6 * most);
 }
 
 TEST(AutomaticPenalty, IsOneWithoutConstraints) {

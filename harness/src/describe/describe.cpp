@@ -20,6 +20,7 @@
 #include "registry/setting_names.hpp"
 #include "run/driver_end.hpp"
 #include "run/judge.hpp"
+#include "run/rounding.hpp"
 #include "scene/row_names.hpp"
 
 namespace mbs {
@@ -87,6 +88,14 @@ json scheme_json(Scheme scheme, const std::string& reason) {
   return {{"take", name_of(scheme)}, {"reason", reason}};
 }
 
+/// Of a run of usual length.
+std::string rounding_warning(const Model& model, const StepSettings& settings) {
+  constexpr double kDuration = 10.0;  // s
+  const std::string found = rounding_degradation(
+      model, settings, std::lround(kDuration / settings.step), judged_length(model));
+  return found.empty() ? "" : fmt::format("in {:g} s {}", kDuration, found);
+}
+
 /// The window, and what is likely to go wrong with the automatic factor and this step.
 void add_settings(json& result, const Model& model, const Structure& structure,
                   StepSettings settings) {
@@ -100,6 +109,7 @@ void add_settings(json& result, const Model& model, const Structure& structure,
     result["penalty_window"] = penalty_json(window, settings.step);
     settings.penalty = window.automatic;
     warnings.push_back(penalty_warning(window, settings, PenaltyFrom::rule));
+    if (warnings.back().empty()) warnings.push_back(rounding_warning(model, settings));
     const bool is_open = warnings.back().empty();
     result["scheme"] = scheme_json(
         is_open ? Scheme::penalty : Scheme::saddle_point,

@@ -71,6 +71,7 @@ PenaltyWindow penalty_window(const Model& model, const Structure& structure,
   const double per_beta = 4.0 / (step * step);
   window.lower = per_beta * bounds.lower();
   window.upper = per_beta * bounds.upper();
+  window.stable = per_beta / smallest;
   window.automatic = automatic_penalty(model, {.step = step, .precision = settings.precision});
   return window;
 }

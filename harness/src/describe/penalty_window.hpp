@@ -15,6 +15,7 @@ struct PenaltyWindow {
   double lower = 0.0;         ///< alpha; below it the multipliers do not converge
   double upper = 0.0;         ///< alpha; above it errors grow in proportion
   double automatic = 0.0;     ///< what `--penalty auto` takes
+  double stable = 0.0;        ///< alpha; below it a step of one pass makes the slowest mode grow
   double widest = 0.0;        ///< upper / lower at the step where that is most
   double rate = 0.0;          ///< omega, the fastest rate of turning expected, 1/s
   bool slowest_mode = false;  ///< whether the slowest mode sets `lower`, not singular positions

@@ -150,7 +150,8 @@ std::string penalty_warning(const PenaltyWindow& window, const StepSettings& set
   if (from == PenaltyFrom::rule) {
     const bool is_spoiled =
         !window.cancellation && settings.penalty > window.upper * kFarAboveByRule;
-    return is_spoiled ? step_warning(window, settings, from) : "";
+    return is_spoiled || settings.penalty < window.stable ? step_warning(window, settings, from)
+                                                          : "";
   }
   if (settings.penalty < window.lower / kFarBelow) {
     return far("below", window.lower, "least that is sure to hold the constraints");

@@ -46,6 +46,21 @@ namespace {
 
 constexpr double kMeasuredTurn = 6.8e-3;  // rad a step, at which the measured numbers hold
 
+/// beta s of the slowest mode from which a step of one pass damps it; below 1 such a step makes it
+/// grow (automatic_settings.md here).
+constexpr double kStable = 2.0;
+
+double unit_of(const StepSettings& settings) {
+  return settings.precision == Precision::single_precision
+             ? std::numeric_limits<float>::epsilon() / 2
+             : std::numeric_limits<double>::epsilon() / 2;
+}
+
+/// What rounding of Phi moves a Newton step by, m; `stiffness` is beta s of the points that count.
+double rounding_noise(const Model& model, const StepSettings& settings, double stiffness) {
+  return unit_of(settings) * rounding_length(model) * std::sqrt(1 + stiffness);
+}
+
 /// beta = alpha dt^2/4 of the penalty form, kg/m^2.
 double automatic_beta(const Model& model, const StepSettings& settings) {
   // The coarse tolerance of single precision leaves the multipliers one pass a step, which needs
@@ -54,13 +69,18 @@ double automatic_beta(const Model& model, const StepSettings& settings) {
   const double at = single ? 2 * kMeasuredTurn : kMeasuredTurn;
   const double mean = mean_constraint_eigenvalue(model);
   const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
-  const double measured = std::clamp(30 / smallest, 4e3 / mean, 1e7 / mean);
-  const double turn = fastest_turning(model).rate * settings.step;
+  const Turning fastest = fastest_turning(model);
+  double measured = std::clamp(30 / smallest, 4e3 / mean, 1e7 / mean);
+  constexpr double kQuiet = 3e-9;  // of the length
+  const double stable = kStable / smallest, least = least_constraint_diagonal(model);
+  if (rounding_noise(model, settings, stable * least) <= kQuiet * fastest.length)
+    measured = std::max(measured, stable);
+  const double turn = fastest.rate * settings.step;
   if (turn == 0.0) return measured;
   const double ratio = turn / at;
   if (ratio <= 1.0)
     return std::min(measured / (ratio * ratio), std::max(measured, (single ? 6e4 : 4e6) / mean));
-  const double nonlinear = 0.6 / (least_constraint_diagonal(model) * std::pow(turn, 3));
+  const double nonlinear = 0.6 / (least * std::pow(turn, 3));
   return std::max(std::min(measured, nonlinear), measured / 100);
 }
 
@@ -89,7 +109,10 @@ double automatic_penalty(const Model& model, const StepSettings& settings) {
   if (settings.precision != Precision::double_precision) return per_beta * 1e6 / mean;
   const double ratio = fastest_turning(model).rate * settings.step / kMeasuredTurn;
   const double smallest = smallest_constraint_eigenvalue(model, model.initial_position());
-  return per_beta * std::clamp(15 / (smallest * ratio * ratio), 2.5e7 / mean, 1e10 / mean);
+  const double measured = std::clamp(15 / (smallest * ratio * ratio), 2.5e7 / mean, 1e10 / mean);
+  constexpr double kMost = 1e14;  // its inverse is a hundred times what pivots round by
+  const double stable = kStable / smallest;
+  return per_beta * (stable <= kMost / mean ? std::max(measured, stable) : measured);
 }
 
 double parse_penalty(const std::string& text, const Model& model, const StepSettings& settings) {
@@ -120,14 +143,11 @@ double automatic_tolerance(const Model& model, const StepSettings& settings) {
   const double wanted =
       length *
       std::min(is_quadratic ? 1e-8 * std::pow(of_paper, 2) : 1e-9 * std::pow(of_paper, 4), 1e-6);
-  const double largest = largest_coordinate(model), size = rounding_length(model);
   const double stiffness = model.constraints() == 0 ? 0.0
                                                     : settings.penalty * step * step / 4 *
                                                           mean_constraint_eigenvalue(model);
-  const double unit = settings.precision == Precision::single_precision
-                          ? std::numeric_limits<float>::epsilon() / 2
-                          : std::numeric_limits<double>::epsilon() / 2;
-  return std::max({wanted, 10 * unit * size * std::sqrt(1 + stiffness), 10 * unit * largest});
+  return std::max({wanted, 10 * rounding_noise(model, settings, stiffness),
+                   10 * unit_of(settings) * largest_coordinate(model)});
 }
 
 }  // namespace mbs

@@ -12,7 +12,9 @@ namespace mbs {
 ///
 ///   beta_0 = clamp(30 / s_min, 4e3 / s_mean, 1e7 / s_mean)
 ///
-/// and, with x = turn / 6.8e-3 (in single precision turn / 13.6e-3, and 6e4 for 4e6),
+/// (at least 2 / s_min, unless rounding then moves heavy points by more than 3e-9 l in a pass: a
+/// step of one pass is stable from beta s_min = 1 on) and, with x = turn / 6.8e-3 (in single
+/// precision turn / 13.6e-3, and 6e4 for 4e6),
 ///
 ///   beta = min(beta_0 / x^2, max(beta_0, 4e6 / s_mean))          for shorter steps,
 ///   beta = max(min(beta_0, 0.6 / (s_row turn^3)), beta_0 / 100)  for longer ones.
@@ -27,7 +29,8 @@ namespace mbs {
 /// without constraints.
 ///
 /// The saddle-point form: (4 / dt^2) 15 / (s_min x^2), but from 2.5e7 / s_mean, which is eps = 4e-8
-/// s_mean, to 1e10 / s_mean (x = turn / 6.8e-3); with factors in single precision 1e6 instead,
+/// s_mean, to 1e10 / s_mean (x = turn / 6.8e-3), and at least 2 / s_min if that is at most 1e14 /
+/// s_mean; with factors in single precision 1e6 instead,
 /// since eps must be above their rounding. RATTLE: (4 / dt^2) 2e4 / s_mean: a smaller eps does not
 /// survive the poles of the multipliers at singular positions; the multistep method, which does not
 /// pass them anyway, 1e7, so that two passes are enough. For the step, scheme and precision
