@@ -72,5 +72,6 @@ function(mbs_registry)
   configure_file(registry.cpp.in ${CMAKE_CURRENT_BINARY_DIR}/registry.cpp @ONLY)
   # An object library: the harness asks for registry(), so its definition must not depend on link order.
   add_library(mbs_registry OBJECT ${CMAKE_CURRENT_BINARY_DIR}/registry.cpp)
-  target_link_libraries(mbs_registry PUBLIC mbs_harness PRIVATE ${libraries})
+  # Before the harness, which is optimised less: of a template that both have, the linker keeps the first copy.
+  target_link_libraries(mbs_registry PRIVATE ${libraries} PUBLIC mbs_harness)
 endfunction()
