@@ -109,7 +109,7 @@ TEST(Describe, TakesTheSaddlePointFormWhereRoundingOfPenaltyForcesCounts) {
     "points": [{"name": "A", "position": [0, 0], "fixed": true}, {"name": "B", "position": [1, 0]},
                {"name": "C", "position": [2, 0]}],
     "rods": [{"between": ["A", "B"], "mass": 1}, {"between": ["B", "C"], "mass": 1e-9}]})";
-  const auto d = describe_json(parse_scene(text, "test.json"), kSettings);
+  const auto d = describe_json(scene_of_text(text), kSettings);
   EXPECT_EQ(d["scheme"]["take"], "saddle-point");
   EXPECT_NE(d["warnings"].dump().find("may drive C"), std::string::npos) << d["warnings"].dump();
 }
