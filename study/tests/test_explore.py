@@ -101,6 +101,8 @@ def test_what_is_shipped_is_small_and_whole(shipped):
     text = (shipped / "explore.html").read_text(encoding="utf-8")
     assert len(text.encode()) < 3e6
     assert "http://" not in text.replace("http://www.w3.org/", "") and "https://" not in text
+    front = (shipped / "index.html").read_text(encoding="utf-8")
+    assert "<code>study/advise</code>" in front and "`" not in front
 
 
 def test_the_site_is_of_the_commit_that_the_rule_names_or_says_of_which(browser, shipped):
@@ -394,5 +396,7 @@ def test_keys_and_width(page):
         browser.value("new Promise((done) => setTimeout(done, 400))")
         browser.value("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
         assert browser.value(BEYOND) <= 0
+        assert browser.value("""[...document.querySelectorAll('svg text')].filter((one) => { const [box, frame] = [one, one.ownerSVGElement].map(
+          (some) => some.getBoundingClientRect()); return box.left < frame.left || box.right > frame.right; }).map((one) => one.textContent)""") == []
         assert width == 360 or browser.value(HIDDEN) == []
     browser.resize(1200, 760)
