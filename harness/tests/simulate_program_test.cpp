@@ -179,6 +179,9 @@ TEST_F(SimulateProgram, SaysWhichFiguresAreNotKnown) {
   expect(lost, "estimated error max    not known: the run was lost");
   const auto damped = simulate(scenes + "problems/half_car.json' --duration 0.1");
   EXPECT_NE(damped.output.find("  energy off the work by "), std::string::npos) << damped.output;
+  const auto early = simulate(scenes + "problems/a05_governor.json' --duration 2 --step 1");
+  EXPECT_EQ(early.status, 1);
+  expect(early, "energy off the work by not known: the run was lost");
   const auto driven = simulate(scenes + "examples/driven_crank.json' --duration 0.1");
   expect(driven, "energy drift max       not judged: drivers alone set the motion");
   const auto failed = simulate("four-bar:10 --duration 1 --step 1");
