@@ -81,7 +81,8 @@ function answer(state) {
     found.form = form;
     found.near = [first, ...(other ? [other] : [])].map((one) => ({contest: one.contest, exact, ranking: rankContest(one.contest, names)}));
     found.features = featuresOf(asked, set);
-    found.predicted = predicted(set, found.features, form, names);
+    const refused = new Set(found.near.flatMap(({contest}) => contest.lost).filter((one) => one.status === "unsupported").map((one) => one.name));
+    found.predicted = predicted(set, found.features, form, new Set([...names].filter((name) => !refused.has(name))));
     found.warnings = warnings(state, asked, found.features, set.contests.filter((one) => one.form === form));
     break;
   }

@@ -211,6 +211,11 @@ def test_an_example_of_the_front_page_is_what_the_page_says(page, folder):
         assert f": {winner(browser)}" in text
 
 
+def test_who_does_not_take_what_is_near_is_not_predicted(page):
+    predicted = {scene: page(f"scene={scene}").value("explorer.shown.predicted.map((one) => one.name)") for scene in ("chain:10", "ladder:10")}
+    assert set(predicted["chain:10"]) - set(predicted["ladder:10"]) == {"compiled_chains/sweeps"}
+
+
 def test_each_box_takes_somebody_out(page):
     browser = page("scene=four-bar:49")
     everyone = browser.value("explorer.shown.names.size")
