@@ -35,9 +35,9 @@ const setOf = (state) => DATA.sets.find((one) => one.name === state.machine) ?? 
 const familiesOf = (set) => [...new Set(set.contests.map((one) => one.family))];
 const logarithm = (a, b) => Math.log(a / b);
 
-// Names that are left by the boxes.
+// Names that are left by the boxes and take the scene.
 function chosen(state) {
-  const out = (one) => KINDS.some((word) => one[word] && state.no.includes(word)) || state.without.includes(one.name);
+  const out = (one) => KINDS.some((word) => one[word] && state.no.includes(word)) || [...state.without, ...(state.mine?.unable ?? [])].includes(one.name);
   return new Set(DATA.names.filter((one) => !out(one)).map((one) => one.name));
 }
 

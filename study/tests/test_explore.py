@@ -291,6 +291,19 @@ def test_my_scene_moves_the_pin(page):
     assert browser.value("document.images.length") == 0 and DESCRIBED["scene"] in browser.value("document.getElementById('mine-said').innerText")
     assert "non-zeros a column of the factor: 100000 lies outside" in said(browser) and "<b>a step too long</b>" in said(browser)
     assert browser.value("document.querySelector('#copy pre').textContent").startswith(f"build/mbs bench '{DESCRIBED['scene']}' ")
+    ranked = lambda: set(browser.value("explorer.shown.near.flatMap((one) => one.ranking.ratios.map(([name]) => name))"))
+    predicted = lambda: set(browser.value("explorer.shown.predicted.map((one) => one.name)"))
+    assert "compiled_ldl/fronts" in ranked()
+    put(browser, "mine", json.dumps(DESCRIBED | {"recommendation": [{"implementation": "csc_ldl/uplooking"}]}))
+    press(browser, "use")
+    assert ranked() == {"csc_ldl/uplooking"} and "do not take it" in browser.value("document.getElementById('mine-said').innerText")
+    for said_so in (PRINTED.replace("\n\nfour-bar:40", "\ncompiled_ldl/fronts  unsupported: it does not serve laws\n\nfour-bar:40"),
+                    json.dumps({"benchmarks": [{"name": "csc_klu/refactor/x", "run_type": "iteration", "steps": 1, "cpu_time": 1, "variables": 50},
+                                               {"name": "compiled_ldl/fronts/x", "error_occurred": True, "error_message": "unsupported: it does not serve laws"}]})):
+        put(browser, "mine", said_so)
+        press(browser, "use")
+        browser = page(browser.value("location.hash")[1:])
+        assert "compiled_ldl/fronts" not in ranked() | predicted() and "csc_klu/refactor" in ranked()
     press(browser, "forget")
     assert browser.value("document.getElementById('pin').dataset.n") == "100"
     for text, what in (('{"benchmarks": [null, {"name": 5, "run_type": "iteration", "steps": 1, "cpu_time": 1}]}', "no contender"),
