@@ -381,7 +381,8 @@ TEST_F(SimulateProgram, WritesToDevicesWithoutReplacingThem) {
     const auto run = simulate("four-bar:2 --duration 0.1 --trajectory '" + full + "'");
     EXPECT_EQ(run.status, 2);
     EXPECT_EQ(std::ranges::count(run.errors, '\n'), 1) << run.errors;
-    EXPECT_NE(run.errors.find("cannot write '" + full + "': No space left"), std::string::npos) << run.errors;
+    EXPECT_NE(run.errors.find("cannot write '" + full + "': No space left"), std::string::npos)
+        << run.errors;
     EXPECT_TRUE(fs::is_symlink(full));
     fs::remove(full);
   }
@@ -394,7 +395,9 @@ TEST_F(SimulateProgram, WritesToDevicesWithoutReplacingThem) {
 TEST_F(SimulateProgram, WritesWhereALinkLeadsThoughNothingIsThereYet) {
   const test::Folder folder;
   fs::create_symlink("target.csv", folder.file("link.csv"));
-  EXPECT_EQ(simulate("four-bar:2 --duration 0.1 --trajectory '" + folder.file("link.csv") + "'").status, 0);
+  EXPECT_EQ(
+      simulate("four-bar:2 --duration 0.1 --trajectory '" + folder.file("link.csv") + "'").status,
+      0);
   EXPECT_TRUE(fs::is_symlink(folder.file("link.csv")));
   EXPECT_TRUE(fs::is_regular_file(folder.file("target.csv")));
 }
