@@ -82,9 +82,14 @@ def template(path):
     loader = jinja2.FileSystemLoader([path.parent, HERE])
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
-    environment.filters |= {"number": number, "name": name}
+    environment.filters |= {"number": number, "name": name, "code": code}
     environment.globals |= {"between": between, "ends": ends}
     return environment.get_template(path.name)
+
+
+def code(text):
+    """What texts of this repository have between backticks, as pages show it."""
+    return markupsafe.Markup(re.sub("`(.+?)`", r"<code>\1</code>", str(markupsafe.escape(text))))
 
 
 def name(text):

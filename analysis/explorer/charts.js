@@ -82,7 +82,7 @@ const diamond = (x, y) => element("polygon", {class: "own", points: `${x},${y - 
 
 // Marks: {n, fill, colour, inner, open, square, title, onclick}; `here`: {n, fill} of the case.
 function drawMap(marks, here, width, label) {
-  const height = Math.min(440, Math.max(300, width * 0.6)), left = 52, right = width - 14, top = 14, bottom = height - 44;
+  const height = Math.min(440, Math.max(300, width * 0.6)), left = 52, right = width - 22, top = 14, bottom = height - 44;
   const svg = drawing(width, height, label), small = {fill: SOFT, "font-size": 12};
   const spread = (values) => [Math.min(...values) / 1.25, Math.max(...values) * 1.25];
   const x = scale(...spread([...marks.map((one) => one.n), here?.n].filter((one) => one > 0)), left, right);

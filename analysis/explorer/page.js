@@ -145,7 +145,8 @@ async function useText(source) {
     const text = await source, mine = readScene(text);
     place("mine").value = text;
     change({mine, scene: ""});
-    place("mine-said").textContent = `${mine.scene}: n = ${mine.n}` + (mine.own.length ? `, ${mine.own.length} measurements, drawn as diamonds` : "");
+    place("mine-said").textContent = `${mine.scene}: n = ${mine.n}` + (mine.own.length ? `, ${mine.own.length} measurements, drawn as diamonds` : "")
+      + (mine.unable.length ? "; those who do not take it are left out" : "");
   } catch (error) {
     place("mine-said").textContent = `not used: ${error.message}`;
   }

@@ -35,9 +35,9 @@ const setOf = (state) => DATA.sets.find((one) => one.name === state.machine) ?? 
 const familiesOf = (set) => [...new Set(set.contests.map((one) => one.family))];
 const logarithm = (a, b) => Math.log(a / b);
 
-// Names that are left by the boxes.
+// Names that are left by the boxes and take the scene.
 function chosen(state) {
-  const out = (one) => KINDS.some((word) => one[word] && state.no.includes(word)) || state.without.includes(one.name);
+  const out = (one) => KINDS.some((word) => one[word] && state.no.includes(word)) || [...state.without, ...(state.mine?.unable ?? [])].includes(one.name);
   return new Set(DATA.names.filter((one) => !out(one)).map((one) => one.name));
 }
 
@@ -81,7 +81,8 @@ function answer(state) {
     found.form = form;
     found.near = [first, ...(other ? [other] : [])].map((one) => ({contest: one.contest, exact, ranking: rankContest(one.contest, names)}));
     found.features = featuresOf(asked, set);
-    found.predicted = predicted(set, found.features, form, names);
+    const refused = new Set(found.near.flatMap(({contest}) => contest.lost).filter((one) => one.status === "unsupported").map((one) => one.name));
+    found.predicted = predicted(set, found.features, form, new Set([...names].filter((name) => !refused.has(name))));
     found.warnings = warnings(state, asked, found.features, set.contests.filter((one) => one.form === form));
     break;
   }

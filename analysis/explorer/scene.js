@@ -1,5 +1,6 @@
 // "My scene": what `mbs describe --json`, `mbs bench` or `mbs bench --benchmark_format=json` printed becomes
-// {scene, n, fill, features, form, machine, own: [{name, us}], warnings}. Errors are thrown with a line to show.
+// {scene, n, fill, features, form, machine, own: [{name, us}], unable: names of those who do not take it, warnings}. Errors are thrown
+// with a line to show.
 "use strict";
 
 const MOST_TEXT = 4e6, MOST_OWN = 200, MOST_FEATURES = 100;
@@ -24,11 +25,14 @@ function readScene(text) {
 function readDescribed(found) {
   const warnings = [...list(found.warnings)];
   if (found.singular_start) warnings.push("the scene starts in a singular position");
+  const able = list(found.recommendation).map((one) => one?.implementation), names = DATA.names.map((one) => one.name);
   return {scene: found.scene, n: found.variables, fill: 100 * (found.tangent?.fill ?? NaN), features: found.features,
-          form: found.scheme?.take, machine: "", own: [], warnings};
+          form: found.scheme?.take, machine: "", own: [], unable: able.length ? names.filter((name) => !able.includes(name)) : [], warnings};
 }
 
 function readBenchmarks(found) {
+  const unable = found.benchmarks.filter((one) => /^unsupported/.test(one?.error_message) && typeof one.name === "string")
+    .map((one) => one.name.split("/").slice(0, 2).join("/"));
   const runs = found.benchmarks.filter((one) => typeof one?.name === "string" && one.run_type === "iteration" && !one.error_occurred
     && one.steps > 0 && one.cpu_time > 0);
   if (!runs.length) throw new Error("no contender was timed in this output of mbs bench");
@@ -39,7 +43,7 @@ function readBenchmarks(found) {
     times.set(name, [...(times.get(name) ?? []), one.cpu_time / one.steps]);
   }
   return {scene, n: runs[0].variables, fill: runs[0].fill_percent, features: null, form: formOf(found.context?.command),
-          machine: found.context?.cpu_model ?? "", warnings: [],
+          machine: found.context?.cpu_model ?? "", unable, warnings: [],
           own: [...times].map(([name, us]) => ({name, us: median(us)}))};
 }
 
@@ -50,14 +54,15 @@ function readTable(text) {
   const head = /^(\S.*): (\d+) variables, \d+ constraints, tangent filled to ([\d.]+) %/m.exec(text);
   if (!head) throw new Error("this is not what mbs describe --json or mbs bench prints");
   const after = text.slice(head.index + head[0].length), next = after.search(/^\S.*: \d+ variables, /m);
-  const own = [];
+  const own = [], unable = [];
   for (const line of (next < 0 ? after : after.slice(0, next)).split("\n")) {
     const row = /^([\w.+-]+\/[\w.+-]+)\s+(?:own\s+)?([\d.]+(?:e[+-]?\d+)?)\s+[\d.]/.exec(line);
     if (row) own.push({name: row[1], us: Number(row[2])});
+    unable.push(...(/^([\w.+-]+\/[\w.+-]+)\s+unsupported: /.exec(line) ?? []).slice(1));
   }
   if (!own.length) throw new Error("no contender was timed in this output of mbs bench");
   return {scene: head[1], n: Number(head[2]), fill: Number(head[3]), features: null, form: undefined,
-          machine: (/^\w+ build by .{1,200}? on (.{1,200}), BLAS/m.exec(text) ?? [])[1] ?? "", own, warnings: []};
+          machine: (/^\w+ build by .{1,200}? on (.{1,200}), BLAS/m.exec(text) ?? [])[1] ?? "", own, unable, warnings: []};
 }
 
 // Only numbers and short texts go on, whatever was pasted or stands in the address. No character of a text steers a terminal, to
@@ -70,6 +75,6 @@ function checked(found) {
   if (!number(found.n)) throw new Error("it does not say how many variables the scene has");
   return {scene: text(found.scene), n: found.n, fill: number(found.fill), features: NEAREST.every((name) => features[name] > 0) ? features : null,
           form: found.form === "saddle-point" ? found.form : "penalty", machine: text(found.machine),
-          warnings: list(found.warnings).slice(0, 10).map(text),
+          warnings: list(found.warnings).slice(0, 10).map(text), unable: list(found.unable).slice(0, MOST_OWN).map(text),
           own: list(found.own).slice(0, MOST_OWN).filter((one) => number(one?.us)).map((one) => ({name: text(one.name), us: one.us}))};
 }

@@ -147,14 +147,14 @@ TEST(Describe, Text) {
         "terms present         gravity or constant forces (Q), rods (5), quadratic constraints "
         "(5), "
         "fixed points (3)\n",
-        "terms absent          torques, springs and dampers, torsion springs, force laws, "
-        "factors of time, stiffness (K), damping (C)",
+        "terms absent          constant torques, springs and dampers, torsion springs, "
+        "laws of forces and torques, factors of time, stiffness (K), damping (C)",
         "length l              1 m, of the fastest part: ok to an estimated error (--half-step) of "
         "0.01 m, plausible to a sum of local errors of 0.003 m\n",
         "penalty factor        ", "(singular positions) to ", "for step 0.00125 s; automatic ",
         "14 non-zeros, 46.67 % of m n", "28 non-zeros, 77.78 % of n^2",
-        "elimination, AMD      17 non-zeros of L, 2.83 a column, 4 at most; 55 operations, 60.4 % of "
-        "a full L's; tree of height 4; ",
+        "elimination, AMD      17 non-zeros of L, 2.83 a column, 4 at most; 55 operations, 60.4 % "
+        "of a full L's; tree of height 4; ",
         "saddle-point matrix "}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\nnot in\n" << text;
   }

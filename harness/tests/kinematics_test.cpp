@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "model_math/connected_parts.hpp"
+#include "scene/tangent_pattern.hpp"
 #include "support/gtest_name.hpp"
 #include "support/term_models.hpp"
 
@@ -137,6 +140,42 @@ TEST_P(Kinematics, DampersTakeEnergy) {
     EXPECT_LT(power, 0.0);
   } else {
     EXPECT_EQ(power, 0.0);
+  }
+}
+
+/// What is joined by its force alone is in the pattern of the tangent and of one part.
+TEST_P(Kinematics, PatternAndPartsKnowWhatTheForceJoins) {
+  if (!GetParam().model.couples().empty()) GTEST_SKIP() << "couples stay out of the tangent";
+  ModelData data = GetParam().model.data();
+  data.dot_constraints.clear();
+  data.bilinear_constraints.clear();
+  data.linear_constraints.clear();
+  data.driven_values.clear();
+  std::erase_if(data.mass, [](const MassEntry& entry) { return entry.row != entry.col; });
+  const Model model(std::move(data));
+  const Motion at = motion(model, kTime);
+  const auto moves = [&](int moved, int felt) {  // by position or velocity
+    Values above(model.variables()), below(model.variables());
+    double most = 0.0;
+    for (const bool is_rate : {false, true}) {
+      Motion there = at;
+      Values& x = is_rate ? there.v : there.q;
+      x[moved] += kDifference;
+      applied_force(model, kTime, there.q, there.v, above);
+      x[moved] -= 2 * kDifference;
+      applied_force(model, kTime, there.q, there.v, below);
+      most = std::max(most, std::abs(above[felt] - below[felt]) / (2 * kDifference));
+    }
+    return most > 1e-4;
+  };
+  TangentPattern pattern(model, PatternOf::leading_block);
+  ConnectedParts parts(model);
+  for (int col = 0; col < model.variables(); ++col) {
+    for (int row = col + 1; row < model.variables(); ++row) {
+      if (!moves(col, row) || !moves(row, col)) continue;  // an axis moves what does not move it
+      EXPECT_NE(std::ranges::count(pattern.below(col), row), 0) << row << ", " << col;
+      EXPECT_EQ(parts.part_of(row), parts.part_of(col)) << row << ", " << col;
+    }
   }
 }
 

@@ -179,6 +179,9 @@ TEST_F(SimulateProgram, SaysWhichFiguresAreNotKnown) {
   expect(lost, "estimated error max    not known: the run was lost");
   const auto damped = simulate(scenes + "problems/half_car.json' --duration 0.1");
   EXPECT_NE(damped.output.find("  energy off the work by "), std::string::npos) << damped.output;
+  const auto early = simulate(scenes + "problems/a05_governor.json' --duration 2 --step 1");
+  EXPECT_EQ(early.status, 1);
+  expect(early, "energy off the work by not known: the run was lost");
   const auto driven = simulate(scenes + "examples/driven_crank.json' --duration 0.1");
   expect(driven, "energy drift max       not judged: drivers alone set the motion");
   const auto failed = simulate("four-bar:10 --duration 1 --step 1");
@@ -378,7 +381,8 @@ TEST_F(SimulateProgram, WritesToDevicesWithoutReplacingThem) {
     const auto run = simulate("four-bar:2 --duration 0.1 --trajectory '" + full + "'");
     EXPECT_EQ(run.status, 2);
     EXPECT_EQ(std::ranges::count(run.errors, '\n'), 1) << run.errors;
-    EXPECT_NE(run.errors.find("cannot write '" + full + "': No space left"), std::string::npos) << run.errors;
+    EXPECT_NE(run.errors.find("cannot write '" + full + "': No space left"), std::string::npos)
+        << run.errors;
     EXPECT_TRUE(fs::is_symlink(full));
     fs::remove(full);
   }
@@ -391,7 +395,9 @@ TEST_F(SimulateProgram, WritesToDevicesWithoutReplacingThem) {
 TEST_F(SimulateProgram, WritesWhereALinkLeadsThoughNothingIsThereYet) {
   const test::Folder folder;
   fs::create_symlink("target.csv", folder.file("link.csv"));
-  EXPECT_EQ(simulate("four-bar:2 --duration 0.1 --trajectory '" + folder.file("link.csv") + "'").status, 0);
+  EXPECT_EQ(
+      simulate("four-bar:2 --duration 0.1 --trajectory '" + folder.file("link.csv") + "'").status,
+      0);
   EXPECT_TRUE(fs::is_symlink(folder.file("link.csv")));
   EXPECT_TRUE(fs::is_regular_file(folder.file("target.csv")));
 }

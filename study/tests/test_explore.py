@@ -101,6 +101,8 @@ def test_what_is_shipped_is_small_and_whole(shipped):
     text = (shipped / "explore.html").read_text(encoding="utf-8")
     assert len(text.encode()) < 3e6
     assert "http://" not in text.replace("http://www.w3.org/", "") and "https://" not in text
+    front = (shipped / "index.html").read_text(encoding="utf-8")
+    assert "<code>study/advise</code>" in front and "`" not in front
 
 
 def test_the_site_is_of_the_commit_that_the_rule_names_or_says_of_which(browser, shipped):
@@ -209,6 +211,11 @@ def test_an_example_of_the_front_page_is_what_the_page_says(page, folder):
         assert f": {winner(browser)}" in text
 
 
+def test_who_does_not_take_what_is_near_is_not_predicted(page):
+    predicted = {scene: page(f"scene={scene}").value("explorer.shown.predicted.map((one) => one.name)") for scene in ("chain:10", "ladder:10")}
+    assert set(predicted["chain:10"]) - set(predicted["ladder:10"]) == {"compiled_chains/sweeps"}
+
+
 def test_each_box_takes_somebody_out(page):
     browser = page("scene=four-bar:49")
     everyone = browser.value("explorer.shown.names.size")
@@ -284,6 +291,19 @@ def test_my_scene_moves_the_pin(page):
     assert browser.value("document.images.length") == 0 and DESCRIBED["scene"] in browser.value("document.getElementById('mine-said').innerText")
     assert "non-zeros a column of the factor: 100000 lies outside" in said(browser) and "<b>a step too long</b>" in said(browser)
     assert browser.value("document.querySelector('#copy pre').textContent").startswith(f"build/mbs bench '{DESCRIBED['scene']}' ")
+    ranked = lambda: set(browser.value("explorer.shown.near.flatMap((one) => one.ranking.ratios.map(([name]) => name))"))
+    predicted = lambda: set(browser.value("explorer.shown.predicted.map((one) => one.name)"))
+    assert "compiled_ldl/fronts" in ranked()
+    put(browser, "mine", json.dumps(DESCRIBED | {"recommendation": [{"implementation": "csc_ldl/uplooking"}]}))
+    press(browser, "use")
+    assert ranked() == {"csc_ldl/uplooking"} and "do not take it" in browser.value("document.getElementById('mine-said').innerText")
+    for said_so in (PRINTED.replace("\n\nfour-bar:40", "\ncompiled_ldl/fronts  unsupported: it does not serve laws\n\nfour-bar:40"),
+                    json.dumps({"benchmarks": [{"name": "csc_klu/refactor/x", "run_type": "iteration", "steps": 1, "cpu_time": 1, "variables": 50},
+                                               {"name": "compiled_ldl/fronts/x", "error_occurred": True, "error_message": "unsupported: it does not serve laws"}]})):
+        put(browser, "mine", said_so)
+        press(browser, "use")
+        browser = page(browser.value("location.hash")[1:])
+        assert "compiled_ldl/fronts" not in ranked() | predicted() and "csc_klu/refactor" in ranked()
     press(browser, "forget")
     assert browser.value("document.getElementById('pin').dataset.n") == "100"
     for text, what in (('{"benchmarks": [null, {"name": 5, "run_type": "iteration", "steps": 1, "cpu_time": 1}]}', "no contender"),
@@ -394,5 +414,7 @@ def test_keys_and_width(page):
         browser.value("new Promise((done) => setTimeout(done, 400))")
         browser.value("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
         assert browser.value(BEYOND) <= 0
+        assert browser.value("""[...document.querySelectorAll('svg text')].filter((one) => { const [box, frame] = [one, one.ownerSVGElement].map(
+          (some) => some.getBoundingClientRect()); return box.left < frame.left || box.right > frame.right; }).map((one) => one.textContent)""") == []
         assert width == 360 or browser.value(HIDDEN) == []
     browser.resize(1200, 760)

@@ -46,6 +46,16 @@ def test_the_surface_has_medians_and_marks_failures(tmp_path):
     pyplot.close(figure)
 
 
+def test_numbers_are_not_crossed_by_their_axis(tmp_path):
+    from matplotlib import pyplot
+    found, parameters, result = sweep.read(table(tmp_path / "t.csv"), None)
+    figure, axes = pyplot.subplots()
+    sweep.lines(axes, found, [*parameters, result])
+    above = max(line.get_zorder() for line in axes.lines)
+    assert axes.texts and all(one.get_bbox_patch() and one.get_zorder() > above for one in axes.texts)
+    pyplot.close(figure)
+
+
 def test_cells_are_of_values_or_of_one_width():
     assert sweep.edges(numpy.array([1.0, 4, 2])).tolist() == [0.5, 1.5, 3, 5]
     for count, expected in ((10_000, sweep.CELLS), (400, 10), (50, 4)):

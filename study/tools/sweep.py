@@ -108,7 +108,8 @@ def lines(axes, table, columns):
     for place, name in zip(places, columns):
         axes.axvline(place, color="#444444", linewidth=0.8, zorder=3)
         for y, value in ((1.03, high[name]), (-0.06, low[name])):
-            axes.text(place, y, f"{value:.4g}", ha="center", fontsize=8)
+            axes.text(place, y, f"{value:.4g}", ha="center", fontsize=8, zorder=4,
+                      bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})
     axes.spines[:].set_visible(False)
     shown = min(LINES, int(table["finished"].sum()))
     title = "Lanes" if shown == table["finished"].sum() else f"{shown} of the lanes that finished"

@@ -15,10 +15,10 @@ using nlohmann::json;
 
 constexpr std::pair<const char*, const char*> kNames[] = {
     {"gravity", "gravity or constant forces (Q)"},
-    {"couples", "torques"},
+    {"couples", "constant torques"},
     {"springs", "springs and dampers"},
     {"torsion_springs", "torsion springs"},
-    {"laws", "force laws"},
+    {"laws", "laws of forces and torques"},
     {"factors", "factors of time"},
     {"stiffness", "stiffness (K)"},
     {"damping", "damping (C)"},

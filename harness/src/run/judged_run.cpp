@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <utility>
 
@@ -383,6 +384,9 @@ RunSummary JudgedRun::finish() {
   summary_.position_error_max = judge_.position_error_max();
   summary_.energy_drift_max = judge_.energy_drift_max();
   summary_.imbalance_max = judge_.imbalance_max();
+  if (balance_ && !summary_.imbalance_max) {  // lost before the first look
+    summary_.imbalance_max = std::numeric_limits<double>::infinity();
+  }
   summary_.constraint_violation_max = judge_.constraint_violation_max();
   return summary_;
 }

@@ -49,6 +49,8 @@ def simulate(place, scene, options, frames, csv, outputs, say):
     if code != 0:
         raise StudyError(_failure("simulate", code, words)
                          + ("" if options.step else " (choose a --step)" if code == 1 else ""))
+    for line in words:  # warnings, and what is not accurate
+        say(f"  {line}")
     return f"{options.implementation}, {scene.scheme} form, step {step:g} s"
 
 
