@@ -48,7 +48,8 @@ def name_of(subject):
 
 def work(rows, won, look, unit, title):
     """The figure of one subject's points at its own fill. `won`: its rows of winners.csv, which are ringed."""
-    figure, (panels, below) = plt.subplots(2, 2, figsize=(13, 9), sharex="row", sharey="row", constrained_layout=True, height_ratios=[1.7, 1])
+    figure, (panels, below) = plt.subplots(2, 2, figsize=(13, 9), sharex="row", sharey="row", height_ratios=[1.7, 1],
+                                            gridspec_kw={"left": 0.06, "right": 0.99, "top": 0.92, "bottom": 0.05, "wspace": 0.03, "hspace": 0.17})
     for axes, ratios, layer in zip(panels, below, LAYERS):
         mine = rows[rows.library.astype(bool)] if layer == "libraries" else rows
         axes.set_title(TITLES[layer])
