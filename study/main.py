@@ -99,10 +99,9 @@ def _run_here(profile, only, chosen, folder, wait):
 
 def _say_disturbance(folder):
     """What else ran while the parts of a set timed."""
-    from analysis.core.controls import told  # needs pandas
     for part in parts():
         path = folder / part / "answers.json"
-        if said := path.exists() and told(read_object(path).get("disturbance")):
+        if said := path.exists() and read_object(path).get("disturbance"):
             print(f"{part}: {said}")
 
 

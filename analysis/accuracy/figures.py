@@ -48,7 +48,8 @@ def name_of(subject):
 
 def work(rows, won, look, unit, title):
     """The figure of one subject's points at its own fill. `won`: its rows of winners.csv, which are ringed."""
-    figure, (panels, below) = plt.subplots(2, 2, figsize=(13, 9), sharex="row", sharey="row", constrained_layout=True, height_ratios=[1.7, 1])
+    figure, (panels, below) = plt.subplots(2, 2, figsize=(13, 9), sharex="row", sharey="row", height_ratios=[1.7, 1],
+                                            gridspec_kw={"left": 0.06, "right": 0.99, "top": 0.92, "bottom": 0.05, "wspace": 0.03, "hspace": 0.17})
     for axes, ratios, layer in zip(panels, below, LAYERS):
         mine = rows[rows.library.astype(bool)] if layer == "libraries" else rows
         axes.set_title(TITLES[layer])
@@ -83,14 +84,13 @@ def work(rows, won, look, unit, title):
 def _series(rows, front, look):
     """{(implementation, setting): (keywords of `plot`, its points in pieces)} of each named series: what lies between two steps that were
     timed is not known, and has no line. Those on the front are named, then those closest to it."""
-    close = meeting(rows, numpy.inf)
-    close = close.loc[[index for index in near(close, CLOSE) if index in close.index]]
+    timed = meeting(rows, numpy.inf)
+    close, every = timed.loc[near(timed, CLOSE)], dict(list(timed.sort_values("step", kind="stable").groupby(["implementation", "setting"])))
     counts, on_front = (some.groupby(["implementation", "setting"]).size() for some in (close, front))
     chosen, found = sorted(counts.index, key=lambda key: (-on_front.get(key, 0), -counts[key], key))[:MOST], {}
     settings = list(dict.fromkeys(setting for _, setting in chosen))
     for name, setting in chosen:
-        mine = meeting(rows[(rows.implementation == name) & (rows.setting == setting)], numpy.inf).sort_values("step")
-        place = settings.index(setting)
+        mine, place = every[name, setting], settings.index(setting)
         line = look.line(name) | {"color": ALTERNATIVES[place % len(ALTERNATIVES)], "linestyle": DASHES[place % len(DASHES)],
                                   "markerfacecolor": ALTERNATIVES[place % len(ALTERNATIVES)]}
         found[name, setting] = line, [one for _, one in mine.groupby((mine.step / mine.step.shift(1) > GAP).cumsum())]
@@ -98,11 +98,12 @@ def _series(rows, front, look):
 
 
 def _panel(axes, rows, series, front, won):
-    done = rows[rows.status.isin((*FINISHED, NOT_JUDGED)) & rows.time.notna() & rows.error.notna()]
+    done = rows[rows.status.isin((*FINISHED, NOT_JUDGED)) & rows.time.notna() & rows.error.notna()].sort_values("step")
     others = [numpy.empty((0, 2))]  # a line with gaps: hundreds of lines would take seconds
-    for key, mine in done.sort_values("step").groupby(["implementation", "setting"], sort=False):
+    points = done[["time", "error"]].to_numpy()
+    for key, places in done.groupby(["implementation", "setting"], sort=False).indices.items():
         if key not in series:
-            others += [mine[["time", "error"]], [[numpy.nan, numpy.nan]]]
+            others += [points[places], [[numpy.nan, numpy.nan]]]
     for (name, setting), (line, pieces) in series.items():
         axes.plot([], [], **line, label=f"{name}, {setting}")
         for piece in pieces:

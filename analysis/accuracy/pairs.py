@@ -19,6 +19,8 @@ GAIN = 1.2  # the speed-up that is asked of lower precision
 
 def table(scene, made, measured):
     """A row for each pair and implementation of a scene whose settings were both timed."""
+    own = made[(made.step / STEP - 1).abs() < 1e-6].sort_values("duration", kind="stable")
+    runs = {(run["implementation"], run["setting"]): run for run in own.to_dict("records")}  # the longest
     mine = measured.loc[(measured.role == "pair") & (measured.status != "dropped"), measured.columns.intersection([*USED, "layout"])]
     found = []
     for kind, pairs in PAIRS.items():
@@ -27,11 +29,12 @@ def table(scene, made, measured):
             for name, rows in both.groupby("implementation", sort=False):
                 if rows.setting.nunique() == 2:
                     found.append({"scene": scene, "kind": kind, "first": first, "second": second, "implementation": name}
-                                 | _row(rows, made, (first, second)))
+                                 | _row(rows, [runs.get((name, setting)) for setting in (first, second)], (first, second)))
     return pandas.DataFrame(found)
 
 
-def _row(rows, made, both):
+def _row(rows, runs, both):
+    """`runs`: of `both` settings, None where there is none."""
     named = timing.apart(rows.assign(implementation=rows.setting))
     lost = rows[rows.status != "ok"]
     ratio = timing.ratio(named, both[1], both[0])
@@ -39,11 +42,10 @@ def _row(rows, made, both):
     found = {"ratio": ratio.value, "low": ratio.low, "high": ratio.high, "processes": rows.process.nunique(),
              "variables": rows.get("variables", pandas.Series(dtype=float)).max(),
              "reason": why, "record": " ".join(dict.fromkeys(rows.record))}
-    for place, setting in zip(("first", "second"), both):
+    for place, setting, run in zip(("first", "second"), both, runs):
         mine = rows[(rows.setting == setting) & (rows.status == "ok")]
         found[f"{place}_us"] = mine.step_us.median()
-        own = made[(made.implementation == rows.implementation.iloc[0]) & (made.setting == setting) & ((made.step / STEP - 1).abs() < 1e-6)]
-        for run in own.sort_values("duration")[-1:].to_dict("records"):  # the longest of its own
+        if run:
             found |= {f"{place}_{key}": run[key] for key in ("status", "error", "passes", "factorizations", "duration")}
             found[f"{place}_class"] = min((one for one in CLASSES if run["error"] <= one), default=None)
             found["record"] += f" {run['record']}"

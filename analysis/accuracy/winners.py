@@ -31,12 +31,12 @@ def winners(table, measured, errors, libraries):
         for layer in LAYERS:
             mine = of_layer(table, layer, libraries)
             reached, dropped = mine[mine.status.isin(FINISHED)].error.min(), (mine.status == "dropped").any()
-            here = mine[mine.scene == scene]
+            timed = meeting(mine[mine.scene == scene], float("inf")).to_dict("records")
             for required in errors:
                 none = {"implementation": NOT_TIMED if dropped or reached <= required else NOBODY, "candidates": 0,
                         "decided": None, "settled": None, "equivalent": ""}
-                found = meeting(here, required)
-                ended = dropped and not (found.time_from == ROUNDS).any()  # the budget did not reach who may be faster
+                found = [point for point in timed if point["error"] <= required]
+                ended = dropped and not any(point["time_from"] == ROUNDS for point in found)  # the budget did not reach who may be faster
                 rows.append({"scene": scene, "layer": layer, "required": required} | (none if ended else fastest(found, samples) or none))
     return pandas.DataFrame(rows)
 
@@ -47,20 +47,23 @@ def met(rows):
 
 
 def fastest(found, samples):
-    """None if nobody was timed. Each implementation counts with its fastest point: one of the rounds where it has one
+    """Of points, the fastest first; None if nobody was timed. Each implementation counts with its fastest point: one of the rounds where it has one
     there. Ranked are those that have rounds; the others were slower in a look, or the budget did not reach them."""
-    if found.empty:
+    if not found:
         return None
-    in_rounds = found[found.time_from == ROUNDS].drop_duplicates("implementation")
-    ranking = timing.rank(samples, [label(point) for point in in_rounds.to_dict("records")]) if len(in_rounds) else None
-    by_label = {label(point): point for point in found.to_dict("records")}
-    first = by_label[ranking.winner] if ranking else found.iloc[0].to_dict()
+    in_rounds = {}
+    for point in found:
+        if point["time_from"] == ROUNDS:
+            in_rounds.setdefault(point["implementation"], label(point))
+    ranking = timing.rank(samples, in_rounds.values()) if in_rounds else None
+    by_label = {label(point): point for point in found}
+    first = by_label[ranking.winner] if ranking else found[0]
     row = {key: first[key] for key in (*KEY[1:], *COLUMNS)} | {
         "candidates": len(found), "timed": len(in_rounds), "decided": False, "settled": False, "equivalent": ""}
     if ranking:
         names = {one: by_label[one]["implementation"] for one in ranking.ratios}
-        waiting = found[(found.time <= NEAR * first["time"]) & ~found.implementation.isin(in_rounds.implementation)]
-        row |= {"decided": ranking.decided and waiting.empty, "settled": ranking.settled and waiting.empty,
+        waiting = any(point["time"] <= NEAR * first["time"] and point["implementation"] not in in_rounds for point in found)
+        row |= {"decided": ranking.decided and not waiting, "settled": ranking.settled and not waiting,
                 "equivalent": "; ".join(names[one] for one in ranking.equivalent if one != ranking.winner)}
         if ranking.second:
             row |= {"second": by_label[ranking.second]["implementation"], "margin": ranking.margin.value}

@@ -3,6 +3,7 @@
 import math
 
 import pandas
+from scipy import special
 
 from analysis.core import timing
 from analysis.core.timing import CONFIDENCE, TWIN, disturbed
@@ -27,9 +28,8 @@ def controls(timed):
 def judged(table):
     """{"pairs", "false", "widest", "chance", "sound"} of `controls`: how many were decided though nothing differs, the ratio
     furthest from 1, and how likely so many are by chance."""
-    from scipy import stats
     pairs, false = len(table), int(table.decided.sum()) if len(table) else 0
-    chance = float(stats.binom.sf(false - 1, pairs, 1 - CONFIDENCE)) if pairs else math.nan
+    chance = float(special.bdtrc(false - 1, pairs, 1 - CONFIDENCE)) if pairs else math.nan  # scipy.stats takes as long to load as all else
     widest = max(table.ratio, key=lambda one: abs(math.log(one))) if pairs else math.nan
     return {"pairs": pairs, "false": false, "widest": widest, "chance": chance, "sound": bool(pairs) and chance >= FALSE}
 

@@ -23,10 +23,11 @@ def pareto(rows):
     """Index of the rows that nobody beats, the fastest first: every faster run has an error larger by more than
     SAME."""
     found, smallest = [], numpy.inf
-    for row in finished(rows).sort_values(["time", "error"], kind="stable").itertuples():
-        if row.error < (1 - SAME) * smallest:
-            found.append(row.Index)
-            smallest = row.error
+    ordered = finished(rows).sort_values(["time", "error"], kind="stable")
+    for index, error in zip(ordered.index, ordered.error):
+        if error < (1 - SAME) * smallest:
+            found.append(index)
+            smallest = error
     return found
 
 
@@ -34,5 +35,5 @@ def near(rows, factor):
     """Index of the rows that take at most `factor` times as long as the front at their error."""
     done = finished(rows)
     front = done.loc[pareto(rows)]
-    return done.index[[row.time <= factor * front.time[(1 - SAME) * front.error <= row.error].min()
-                       for row in done.itertuples()]]
+    times, errors = front.time.to_numpy(), (1 - SAME) * front.error.to_numpy()
+    return done.index[[time <= factor * times[errors <= error].min() for time, error in zip(done.time, done.error)]]

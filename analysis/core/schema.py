@@ -4,7 +4,6 @@ import math
 from functools import cache
 from pathlib import Path
 
-import pandas
 import yaml
 
 from analysis.core.errors import StudyError
@@ -97,6 +96,7 @@ def read_table(folder, part, name):
         raise StudyError(f"{kept} is missing: study/figures makes the tables again from the records")
     need_unchanged(folder, part)
     columns = of_part(part)[name]
+    import pandas  # who only looks whether tables were changed waits for no half a second
     try:
         frame = pandas.read_csv(path, dtype=str, keep_default_na=False, usecols=columns.__contains__)
     except (OSError, ValueError) as error:

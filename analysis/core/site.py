@@ -33,9 +33,9 @@ def write_part(folder, part):
         save(figure, path, about)
         figures[name] = base64.b64encode(path.read_bytes()).decode()
     plt.close("all")
-    known, others = _module(part, "page").context(tables, view), disturbance(found)
+    known, others = _module(part, "page").context(tables, view), told(disturbance(found))
     write_text(folder / f"{part}.html", template(ROOT / "analysis" / part / "page.html.j2").render(
-        **_frame(folder, part), **known, disturbance=told(others), figures=figures, schema=schema.of_part(part)))
+        **_frame(folder, part), **known, disturbance=others, figures=figures, schema=schema.of_part(part)))
     said = _module(part, "sentences")
     write_json(folder / part / "answers.json", {
         "answers": said.answers(tables, view), "cases": said.cases(tables, view) if hasattr(said, "cases") else [],

@@ -1,5 +1,6 @@
 # One function a statistic; timing.py has those of timed cells.
 import numpy
+from scipy import special
 
 from analysis.core.timing import CONFIDENCE
 
@@ -25,7 +26,6 @@ def power_law_interval(sizes, times):
     exponent = power_law_exponent(sizes, times)
     if numpy.isnan(exponent):
         return exponent, numpy.nan, numpy.nan
-    from scipy import stats
-    error = stats.linregress(numpy.log(sizes), numpy.log(times)).stderr
-    half = stats.t.ppf((1 + CONFIDENCE) / 2, len(sizes) - 2) * error
+    from scipy.stats import linregress
+    half = special.stdtrit(len(sizes) - 2, (1 + CONFIDENCE) / 2) * linregress(numpy.log(sizes), numpy.log(times)).stderr
     return exponent, exponent - half, exponent + half

@@ -143,12 +143,15 @@ class Paired:
         self.beyond = beyond
         self.logs = {}  # {name: {(environment, process): logarithms of samples}}
         good = rows[rows.status == "ok"]
-        # {process: its layout}; in sets without layouts each process stands for itself
-        self.layouts = {number: layout for number, layout in zip(good.process, good.layout)
-                        if str(layout).startswith("layouts/")} if "layout" in good else {}
+        self.layouts = layouts_of(good)
         for name, environment, process, samples in zip(good.implementation, good.environment, good.process, good.samples):
             self.logs.setdefault(name, {})[environment, process] = numpy.log(samples)
         self.lost = set(rows[~rows.status.isin(["ok", "dropped"])].implementation)
+
+
+def layouts_of(rows):
+    """{process: its layout}; in sets without layouts each process stands for itself."""
+    return {number: layout for number, layout in zip(rows.process, rows.layout) if str(layout).startswith("layouts/")} if "layout" in rows else {}
 
 
 def paired(rows):

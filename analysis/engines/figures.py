@@ -1,7 +1,7 @@
 # Error against time for a simulated second: each engine's Pareto front beside ours, a panel a subject.
 import numpy
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator
 
 from analysis.core.outcomes import FINISHED, finished, pareto
 from analysis.core.style import GREY, MARKERS, below, nothing, panels
@@ -36,7 +36,6 @@ def one_figure(tables, subjects, own):
         axes.grid(True)
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_locator(LogLocator(numticks=15))
-            axis.set_minor_formatter(NullFormatter())
     low, high = numpy.log10(grid[0].get_ylim())  # which all share
     grid[0].set_ylim(10**low, 10**(high + HEADROOM * (high - low)))
     figure.supxlabel("computation for a simulated second, s", fontsize=10)

@@ -144,16 +144,18 @@ def names_of(found):
 
 
 def _contest(one, number):
-    keys = list(dict.fromkeys(zip(one.rows.environment, one.rows.process, one.rows.record)))
-    layouts = timing.Paired(one.rows).layouts
+    keys, rows = {}, []  # {a process: its place}
+    for row in one.rows[["implementation", "environment", "process", "record", "samples"]].itertuples(index=False):
+        place = keys.setdefault(row[1:4], len(keys))
+        rows.append([number[row.implementation], place, [_short(value) for value in row.samples]])
+    layouts = timing.layouts_of(one.rows)
     return {"part": one.part, "scene": one.scene, "form": one.form, "family": one.family, "n": one.n, "fill": _short(one.fill),
             "beyond": one.beyond, "able": [number[name] for name in one.able], "failed": [number[name] for name in one.failed],
             "lost": [[number[name], *why] for name, why in one.lost.items()],
             "look": [[number[name], _short(us)] for name, us in one.look.items()],
             "processes": [[environment, int(process), bool(one.part == "map" and process > AFTER), record, layouts.get(process, "")]
                           for environment, process, record in keys],
-            "rows": [[number[row.implementation], keys.index((row.environment, row.process, row.record)), [_short(value) for value in row.samples]]
-                     for row in one.rows.itertuples()]}
+            "rows": rows}
 
 
 def _curve(one, number):

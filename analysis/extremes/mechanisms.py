@@ -1,4 +1,5 @@
 # More mechanisms whose motion is known: with a light part, with speeds that do not agree, and the standard problems.
+import math
 from dataclasses import dataclass
 
 import numpy
@@ -28,12 +29,12 @@ class LightEnd(Motion):
 
     def solutions(self, times):
         def derivative(_, state):
-            a, b, da, db = state
-            sine, cosine = numpy.sin(a - b), numpy.cos(a - b)
-            matrix = [[1 / 3 + self.mass, self.mass / 2 * cosine], [cosine / 2, 1 / 3]]
-            return [da, db, *numpy.linalg.solve(matrix, [
-                -self.mass / 2 * sine * db**2 - GRAVITY * (1 / 2 + self.mass) * numpy.sin(a),
-                sine / 2 * da**2 - GRAVITY / 2 * numpy.sin(b)])]
+            a, b, da, db = state.tolist()  # numbers of Python's own, ten times as fast
+            sine, cosine = math.sin(a - b), math.cos(a - b)
+            (p, q), (r, s) = (1 / 3 + self.mass, self.mass / 2 * cosine), (cosine / 2, 1 / 3)
+            upper = -self.mass / 2 * sine * db**2 - GRAVITY * (1 / 2 + self.mass) * math.sin(a)
+            lower = sine / 2 * da**2 - GRAVITY / 2 * math.sin(b)
+            return [da, db, (s * upper - q * lower) / (p * s - q * r), (p * lower - r * upper) / (p * s - q * r)]
         times = numpy.asarray(times, dtype=float)
         if not len(times):
             return [dict.fromkeys(self.columns, times)]

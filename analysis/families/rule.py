@@ -8,6 +8,7 @@
 # what was fitted on all others, its candidates too. A loss is of times taken in turns, else of the first look, else of the look at the next
 # smaller machine of the shape, after which who had fallen far behind was not asked again. Where there is none of these a loss is not known:
 # such scenes are counted, in no mean, and say nothing of who is worth comparing.
+from collections import Counter
 from itertools import combinations
 
 import numpy
@@ -218,8 +219,8 @@ class _Data:
 
     def weights(self, scenes):
         """Families count alike, whatever their sizes; 1 in all."""
-        families = pandas.Series([self.family[scene] for scene in scenes])
-        return (1 / families.map(families.value_counts()) / families.nunique()).to_numpy()
+        sizes = Counter(self.family[scene] for scene in scenes)
+        return numpy.array([1 / sizes[self.family[scene]] / len(sizes) for scene in scenes])
 
     def costs(self, scheme):
         """Of scenes and libraries: one loss of a fifth is worse than four of a twentieth."""

@@ -66,12 +66,12 @@ def _winner(timed, cells, names):
 
 def growth(scenes, mechanisms):
     """A row for each family, form and implementation with at least LEAST sizes: t ~ n^a, t ~ flops^b."""
-    known = mechanisms.set_index("scene")
+    known = mechanisms.set_index("scene")[["n", "flops"]].astype(float)
     timed = scenes[scenes.status.isin(["ok", "slower"]) & scenes.step_us.notna() & ~scenes.family.str.contains("filled")]
     rows = []
     for (family, scheme, name), group in timed.groupby(["family", "scheme", "implementation"], sort=False):
         group = group[group.scene.isin(known.index)]
-        sizes = known.loc[group.scene, ["n", "flops"]].astype(float)
+        sizes = known.loc[group.scene]
         if sizes.n.nunique() < LEAST:
             continue
         exponent, low, high = power_law_interval(sizes.n.to_numpy(), group.step_us.to_numpy())

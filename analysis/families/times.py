@@ -53,4 +53,4 @@ def predicted(found, features):
 
 def _matrix(terms, features):
     ones = numpy.ones(len(features))
-    return numpy.array([numpy.prod([ones, *(features[name] for name in features_of(term))], axis=0) for term in terms], float).T
+    return numpy.array([numpy.prod([ones, *(features[name].to_numpy() for name in features_of(term))], axis=0) for term in terms], float).T

@@ -2,7 +2,6 @@
 import matplotlib.pyplot as plt
 import numpy
 from matplotlib.patches import Patch
-from matplotlib.ticker import NullLocator
 
 from analysis.core.style import (ALTERNATIVES, GREY, MARKERS, Look, below, legend, line_each, missing, nothing, number_axis, panels,
                                  size_ticks)
@@ -143,7 +142,6 @@ def ahead(leads):
     axes.axvline(1, color=GREY, linewidth=1)
     axes.margins(x=0.1)
     number_axis(axes.xaxis, "×")
-    axes.yaxis.set_minor_locator(NullLocator())
     line_each(axes, [f"{row.scene.rpartition('/')[2].removesuffix('.json')} ({row.kind}, n = {row.variables:.0f}, "
                      f"{row.dimension:.0f}D)" for row in about.itertuples()], fontsize=8)
     left = asked.scene.nunique() - len(about)

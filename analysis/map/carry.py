@@ -99,7 +99,7 @@ def _leaders(paired):
 def _rounds(paired, first, second):
     """(variance of a round's logarithm of the ratio, variance of the median over a process's rounds), means over processes."""
     found = []
-    for key in set(paired.logs[first]) & set(paired.logs[second]):
+    for key in sorted(paired.logs[first].keys() & paired.logs[second].keys()):  # in one order: sums are the same to the last digit
         count = min(len(paired.logs[first][key]), len(paired.logs[second][key]))
         if count > 2:
             one = float(numpy.var(paired.logs[first][key][:count] - paired.logs[second][key][:count], ddof=1))

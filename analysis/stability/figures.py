@@ -3,7 +3,6 @@ import matplotlib.pyplot as plt
 import numpy
 from matplotlib.colors import ListedColormap, LogNorm
 from matplotlib.patches import Patch
-from matplotlib.ticker import NullLocator
 
 from analysis.core.style import GREY, below, panels
 
@@ -72,7 +71,6 @@ def _panel(axes, rows):
     axes.set(xscale="log", yscale="log", xlim=mesh[0][0, [0, -1]], ylim=mesh[1][[0, -1], [-1, 0]])
     ticks = errors.columns[::-1][::2][::-1]
     axes.set_xticks(ticks, [f"{1e3 * step:.3g}" for step in ticks])
-    axes.xaxis.set_minor_locator(NullLocator())
 
 
 def _edges(values):

@@ -8,6 +8,7 @@ import sys
 import threading
 import traceback
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -72,9 +73,18 @@ def draw(studyset, part):
 
 def page(studyset, part):
     from analysis.core import site  # these need modules that take a second to load
-    gc.disable()  # it would go over all records again and again, a quarter of the time
-    site.write_part(studyset.folder, part)
-    gc.enable()
+    with _no_collection():
+        site.write_part(studyset.folder, part)
+
+
+@contextmanager
+def _no_collection():
+    """Garbage is not collected: that would go over all records again and again, a quarter of the time."""
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.enable()
 
 
 def pages(studyset):
@@ -91,7 +101,8 @@ def pages(studyset):
 def index(studyset, part=None):
     """`part`: all that is new since it was made."""
     from analysis.core import site
-    site.write_index(studyset.folder, part)
+    with _no_collection():
+        site.write_index(studyset.folder, part)
 
 
 def end_with(front):

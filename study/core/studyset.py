@@ -10,6 +10,7 @@ from analysis.core.errors import StudyError
 from analysis.core.files import ROOT, digest, read_object, write_json, write_text
 from analysis.core.parts import parts
 from analysis.core.registry import Registry
+from analysis.core.schema import need_unchanged
 from analysis.core.view import Folder, facts_of
 from study.core import executor, locks, profile as profiles
 from study.core.cell import CONTROL, Cell, control, on_usual_pairs
@@ -265,7 +266,6 @@ def need_records(studyset):
 
 def need_tables(studyset):
     """StudyError naming a table that was changed."""
-    from analysis.core.schema import need_unchanged  # needs pandas
     for part in studyset.facts["parts"]:
         need_unchanged(studyset.folder, part)
 

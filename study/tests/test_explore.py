@@ -193,7 +193,8 @@ def _same(one, contest, names):
 def _same_point(asked, answer, curves, names):
     curve = next(one for one in curves if one.scene == answer["curve"])
     form = curve.points.setting.map(lambda setting: "saddle" if setting.startswith("saddle") else "" if setting.startswith(("rattle", "multistep")) else "penalty")
-    row = fastest(meeting(curve.points[curve.points.implementation.isin(names) & ~form.isin(asked["no"])], asked["error"]), curve.rounds)
+    found = meeting(curve.points[curve.points.implementation.isin(names) & ~form.isin(asked["no"])], asked["error"])
+    row = fastest(found.to_dict("records"), curve.rounds)
     assert (row is None) == (answer["point"] is None)
     if row:
         assert (row["implementation"], row["setting"], row["step"]) == tuple(answer["point"][key] for key in ("name", "setting", "step"))

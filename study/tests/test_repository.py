@@ -75,22 +75,16 @@ def test_at_most_three_sets_are_stored_each_of_a_clean_tree():
 
 
 @pytest.mark.parametrize("folder", SETS, ids=lambda folder: folder.name)
-def test_a_stored_set_has_all_parts_of_one_build(folder):
-    facts = read_json(folder / "set.json")
-    assert set(facts["parts"]) == set(parts())
-    for part in parts():
-        found = records.read_part(folder, part)
-        assert found, part
-        for one in found:
-            assert (one.context["commit"], one.context["machine"]) == (
-                facts["context"]["commit"], facts["context"]["machine"]), one.name
+def test_a_stored_set_has_all_parts(folder):
+    assert set(read_json(folder / "set.json")["parts"]) == set(parts())
+    assert [part for part in parts() if not records.archive_of(folder, part).exists()] == []
 
 
 @pytest.mark.slow
 @pytest.mark.xdist_group("stored")
 @pytest.mark.parametrize("folder", SETS, ids=lambda folder: folder.name)
 def test_a_stored_set_is_drawn_again_as_it_was(folder, tmp_path):
-    copy = shutil.copytree(folder, tmp_path / folder.name)
+    copy = shutil.copytree(folder, tmp_path / folder.name)  # whose records are of one machine and commit, or it is not drawn
     done = study("figures", copy, seconds=1500)
     assert done.returncode == 0, done.stderr
     for part in parts():
