@@ -140,7 +140,7 @@ long count_steps(const RunSettings& settings) {
 
 long judge_interval(const Scene& scene, const RunSettings& settings) {
   if (settings.judge_every) return *settings.judge_every;
-  return std::clamp(count_steps(settings) / 32, 1L, scene.four_bar_loops ? 256L : 64L);
+  return std::clamp(count_steps(settings) / 32, 1L, scene.four_bar_loops ? 256L : 128L);
 }
 
 void require_duration(const Scene& scene, const RunSettings& settings) {
