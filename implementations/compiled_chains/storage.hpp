@@ -150,7 +150,7 @@ struct Storage {
     bool forward;  // whether inwards is the direction of the chain
   };
   [[nodiscard]] Slot slot(int block, bool forward, const Topology& topology) const;
-  void clear_lane(int block, int lane);
+  static void clear_lane(auto& item, int lane);
   void set_constants(int block, int lane, const Slot& from, const Units& units);
   void set_state(int block, int lane, const Slot& from, const Units& units, const State& state);
 
@@ -176,22 +176,20 @@ auto Storage<Use, MassOf, Rods, BlockOf>::slot(int block, bool forward,
 
 template <class Use, template <class> class MassOf, class Rods,
           template <class, class> class BlockOf>
-auto Storage<Use, MassOf, Rods, BlockOf>::clear_lane(int block, int lane) -> void {
-  const auto clear = [lane](auto& item) {
-    auto* numbers = reinterpret_cast<V*>(&item);
-    for (std::size_t k = 0; k < sizeof(item) / sizeof(V); ++k) numbers[k][lane] = 0.0;
-  };
-  clear(blocks[block]);
-  clear(values_[block]);
-  values_[block].mass.set(lane, {kImmovable, 0.0, kImmovable}, {});
+auto Storage<Use, MassOf, Rods, BlockOf>::clear_lane(auto& item, int lane) -> void {
+  auto* numbers = reinterpret_cast<V*>(&item);
+  for (std::size_t k = 0; k < sizeof(item) / sizeof(V); ++k) numbers[k][lane] = 0.0;
 }
 
 template <class Use, template <class> class MassOf, class Rods,
           template <class, class> class BlockOf>
 auto Storage<Use, MassOf, Rods, BlockOf>::clear(int chain) -> void {
   for (int k = 0; k <= last; ++k) {
-    clear_lane(k, 2 * chain);
-    clear_lane(k, 2 * chain + 1);
+    for (const int lane : {2 * chain, 2 * chain + 1}) {
+      clear_lane(blocks[k], lane);
+      clear_lane(values_[k], lane);
+      values_[k].mass.set(lane, {kImmovable, 0.0, kImmovable}, {});
+    }
   }
   share();
 }
@@ -261,7 +259,9 @@ auto Storage<Use, MassOf, Rods, BlockOf>::set_state(int chain, const Topology& t
   for (int k = 0; k <= last; ++k) {
     for (const bool forward : {true, false}) {
       const Slot from = slot(k, forward, topology);
-      if (from.here) set_state(k, 2 * chain + (forward ? 0 : 1), from, units, state);
+      const int lane = 2 * chain + (forward ? 0 : 1);
+      clear_lane(blocks[k], lane);  // what is not finite would go on
+      if (from.here) set_state(k, lane, from, units, state);
     }
   }
 }

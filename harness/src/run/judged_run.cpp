@@ -203,11 +203,12 @@ long JudgedRun::first_across(long step) {
   return step;
 }
 
-/// By every second step that is judged: it takes as long as all else.
+/// About every 256 steps, and by one in four of those that are judged: it takes as long as all
+/// else.
 void JudgedRun::balance_energy() {
-  constexpr long kEvery = 2;
+  const long every = std::clamp(256L / interval_, 1L, 4L);
   const long step = summary_.steps;
-  if (!balance_ || (judgements_++ % kEvery != kEvery / 2 && step != steps_)) return;
+  if (!balance_ || (judgements_++ % every != every / 2 && step != steps_)) return;
   const auto [excess, work] = balance_->over(before_, state_, time(step), settings_.step.step);
   judge_.add_balance(excess, work, step - balanced_);
   balanced_ = step;
