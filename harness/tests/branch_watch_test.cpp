@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "controls/controls.hpp"
+#include "model_math/block_jacobian.hpp"
 #include "model_math/closed_parts.hpp"
+#include "model_math/kinematics.hpp"
 #include "run/initial_state.hpp"
 #include "run/judge.hpp"
 #include "run/rounding.hpp"
@@ -34,6 +36,29 @@ TEST(ClosedParts, AreNoneOfAnOpenChain) {
   const ClosedParts parts = closed_parts(scene.model, initial_state(scene.model).q, 60);
   EXPECT_TRUE(parts.free.empty());
   EXPECT_TRUE(parts.blocks.empty());
+}
+
+TEST(BlockJacobian, IsThePieceOfTheJacobianWhereverItIsEvaluated) {
+  for (const char* name : {"examples/driven_crank.json", "problems/spatial_slider_crank.json"}) {
+    const Scene scene = load_scene(std::string(MBS_ROOT "/harness/scenes/") + name);
+    const Model& model = scene.model;
+    ConstraintBlock all;
+    for (int row = 0; row < std::min(model.constraints(), model.variables()); ++row)
+      all.rows.push_back(row);
+    for (int col = 0; col < model.variables(); ++col) all.cols.push_back(col);
+    BlockJacobian block(model, {all});
+    std::vector<double> q = initial_state(model).q;
+    for (const double t : {0.0, 0.3}) {
+      for (double& x : q) x += t;
+      block.evaluate(t, q);
+      SquareMatrix expected = SquareMatrix::Zero(model.variables(), model.variables());
+      for (const JacobianEntry& entry : jacobian(model, t, q)) {
+        if (entry.row < static_cast<int>(all.rows.size()))
+          expected(entry.row, entry.col) = entry.value;
+      }
+      EXPECT_LT((block.matrix(0) - expected).cwiseAbs().maxCoeff(), 1e-14) << name << " " << t;
+    }
+  }
 }
 
 TEST(BranchWatch, FindsAMirroredDyad) {

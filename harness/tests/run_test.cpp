@@ -191,7 +191,7 @@ TEST(Run, FindsTheFirstLostStepHoweverSeldomItJudges) {
   }
 }
 
-TEST(Run, JudgesOneStepIn64OrThirtyTwoTimes) {
+TEST(Run, JudgesOneStepIn64To128OrThirtyTwoTimes) {
   const Scene scene = test::free_fall(), exact = load_scene("four-bar:1");
   RunSettings settings;
   settings.step.step = 1e-3;
@@ -199,7 +199,9 @@ TEST(Run, JudgesOneStepIn64OrThirtyTwoTimes) {
     settings.duration = duration;
     return judge_interval(scene, settings);
   };
-  EXPECT_EQ(interval(20.0), 64);
+  EXPECT_EQ(interval(20.0), 128);
+  EXPECT_EQ(interval(9.6), 75);
+  EXPECT_EQ(interval(8.0), 64);
   EXPECT_EQ(interval(1.6), 50);
   EXPECT_EQ(interval(0.01), 1);
   settings.duration = 20.0;

@@ -44,7 +44,8 @@ class LaneGroup {
   void set_state(int chain, const Topology& topology, const StepSettings& settings,
                  const State& state) {
     const Units units(settings, topology);
-    chain_.set(chain, topology, units, state);
+    chain_.set_constants(chain, topology, units);
+    chain_.set_state(chain, topology, units, state);
     mark(chain, 2.0 * units.length * settings.tolerance, -1);
     steps_ = 0;
   }

@@ -19,10 +19,12 @@ class RattleSteps {
       : units(settings, topology),
         max_passes(settings.max_passes),
         tolerance(2.0 * units.length * settings.tolerance),
-        chain(static_cast<int>(topology.places.size())) {}
+        chain(static_cast<int>(topology.places.size())) {
+    chain.set_constants(0, topology, units);
+  }
 
   void begin(const Topology& topology, const State& state) {
-    chain.set(0, topology, units, state);
+    chain.set_state(0, topology, units, state);
     Stage::template factorize<false>(chain, 1.0);  // if it fails, the first step does too
     find_acceleration();
   }

@@ -130,8 +130,10 @@ struct Storage {
   /// What a sweep has to do with, but for constants.
   [[nodiscard]] std::size_t bytes() const { return blocks.size() * sizeof(B); }
 
-  /// Constants and state of a chain.
-  void set(int chain, const Topology& topology, const Units& units, const State& state);
+  /// Constants of a chain, at rest.
+  void set_constants(int chain, const Topology& topology, const Units& units);
+  /// All that a step begins with but for constants.
+  void set_state(int chain, const Topology& topology, const Units& units, const State& state);
   void get(int chain, const Topology& topology, const Units& units, State& state) const;
   /// A chain at rest for ever, without forces and distances.
   void clear(int chain);
@@ -148,7 +150,7 @@ struct Storage {
     bool forward;  // whether inwards is the direction of the chain
   };
   [[nodiscard]] Slot slot(int block, bool forward, const Topology& topology) const;
-  void clear_lane(int block, int lane);
+  static void clear_lane(auto& item, int lane);
   void set_constants(int block, int lane, const Slot& from, const Units& units);
   void set_state(int block, int lane, const Slot& from, const Units& units, const State& state);
 
@@ -174,22 +176,20 @@ auto Storage<Use, MassOf, Rods, BlockOf>::slot(int block, bool forward,
 
 template <class Use, template <class> class MassOf, class Rods,
           template <class, class> class BlockOf>
-auto Storage<Use, MassOf, Rods, BlockOf>::clear_lane(int block, int lane) -> void {
-  const auto clear = [lane](auto& item) {
-    auto* numbers = reinterpret_cast<V*>(&item);
-    for (std::size_t k = 0; k < sizeof(item) / sizeof(V); ++k) numbers[k][lane] = 0.0;
-  };
-  clear(blocks[block]);
-  clear(values_[block]);
-  values_[block].mass.set(lane, {kImmovable, 0.0, kImmovable}, {});
+auto Storage<Use, MassOf, Rods, BlockOf>::clear_lane(auto& item, int lane) -> void {
+  auto* numbers = reinterpret_cast<V*>(&item);
+  for (std::size_t k = 0; k < sizeof(item) / sizeof(V); ++k) numbers[k][lane] = 0.0;
 }
 
 template <class Use, template <class> class MassOf, class Rods,
           template <class, class> class BlockOf>
 auto Storage<Use, MassOf, Rods, BlockOf>::clear(int chain) -> void {
   for (int k = 0; k <= last; ++k) {
-    clear_lane(k, 2 * chain);
-    clear_lane(k, 2 * chain + 1);
+    for (const int lane : {2 * chain, 2 * chain + 1}) {
+      clear_lane(blocks[k], lane);
+      clear_lane(values_[k], lane);
+      values_[k].mass.set(lane, {kImmovable, 0.0, kImmovable}, {});
+    }
   }
   share();
 }
@@ -239,19 +239,31 @@ auto Storage<Use, MassOf, Rods, BlockOf>::set_state(int block, int lane, const S
 
 template <class Use, template <class> class MassOf, class Rods,
           template <class, class> class BlockOf>
-auto Storage<Use, MassOf, Rods, BlockOf>::set(int chain, const Topology& topology,
-                                              const Units& units, const State& state) -> void {
+auto Storage<Use, MassOf, Rods, BlockOf>::set_constants(int chain, const Topology& topology,
+                                                        const Units& units) -> void {
   clear(chain);
   for (int k = 0; k <= last; ++k) {
     for (const bool forward : {true, false}) {
       const Slot from = slot(k, forward, topology);
-      if (!from.here) continue;
-      const int lane = 2 * chain + (forward ? 0 : 1);
-      set_constants(k, lane, from, units);
-      set_state(k, lane, from, units, state);
+      if (from.here) set_constants(k, 2 * chain + (forward ? 0 : 1), from, units);
     }
   }
   share();
+}
+
+template <class Use, template <class> class MassOf, class Rods,
+          template <class, class> class BlockOf>
+auto Storage<Use, MassOf, Rods, BlockOf>::set_state(int chain, const Topology& topology,
+                                                    const Units& units, const State& state)
+    -> void {
+  for (int k = 0; k <= last; ++k) {
+    for (const bool forward : {true, false}) {
+      const Slot from = slot(k, forward, topology);
+      const int lane = 2 * chain + (forward ? 0 : 1);
+      clear_lane(blocks[k], lane);  // what is not finite would go on
+      if (from.here) set_state(k, lane, from, units, state);
+    }
+  }
 }
 
 template <class Use, template <class> class MassOf, class Rods,
@@ -268,14 +280,16 @@ template <class Use, template <class> class MassOf, class Rods,
           template <class, class> class BlockOf>
 auto Storage<Use, MassOf, Rods, BlockOf>::get(int chain, const Topology& topology,
                                               const Units& units, State& state) const -> void {
+  const double length = 1.0 / units.length, velocity = 1.0 / units.velocity;
+  const double acceleration = 1.0 / units.acceleration, factor = 1.0 / units.multiplier;
   for (int k = 0; k <= last; ++k) {
-    const B& from = blocks[k];  // divided in all lanes at once, which takes as long as in one
-    const V q[2] = {from.x.x / units.length, from.x.y / units.length};
-    const V v[2] = {from.w.x / units.velocity, from.w.y / units.velocity};
-    const V a[2] = {from.u.x / units.acceleration, from.u.y / units.acceleration};
+    const B& from = blocks[k];  // scaled in all lanes at once, which takes as long as in one
+    const V q[2] = {length * from.x.x, length * from.x.y};
+    const V v[2] = {velocity * from.w.x, velocity * from.w.y};
+    const V a[2] = {acceleration * from.u.x, acceleration * from.u.y};
     V rods[kRods];
-    for (int j = 0; j < kRods; ++j) rods[j] = from.rods[j] / units.multiplier;
-    const V link = from.link / units.multiplier;
+    for (int j = 0; j < kRods; ++j) rods[j] = factor * from.rods[j];
+    const V link = factor * from.link;
     for (const bool forward : {true, false}) {
       const Slot to = slot(k, forward, topology);
       if (!to.here) continue;

@@ -38,14 +38,16 @@ class TrapezoidalSimulation final : public Simulation {
         topology_(std::move(topology)),
         units_(settings, topology_),
         tolerance_(2.0 * units_.length * settings.tolerance),
-        chain_(static_cast<int>(topology_.places.size())) {}
+        chain_(static_cast<int>(topology_.places.size())) {
+    chain_.set_constants(0, topology_, units_);
+  }
 
  private:
   using Store = Storage<Pair, MassOf, Rods, Form::template Block>;
   using Project = typename Form::template Project<Store>;
 
   void do_set_state(const State& state) override {
-    chain_.set(0, topology_, units_, state);
+    chain_.set_state(0, topology_, units_, state);
     until_projection_ = settings_.projections_every;
   }
 

@@ -8,11 +8,13 @@ namespace mbs {
 
 BlockJacobian::BlockJacobian(const Model& model, std::vector<ConstraintBlock> blocks)
     : model_(model), known_(model, 0.0), blocks_(std::move(blocks)) {
+  for (const ConstraintBlock& block : blocks_) {
+    const auto size = static_cast<Eigen::Index>(block.cols.size());
+    matrices_.emplace_back(SquareMatrix::Zero(size, size));
+  }
   const auto dots = static_cast<int>(model.dot_constraints().size());
   const int quadratic = dots + static_cast<int>(model.bilinear_constraints().size());
   for (std::size_t m = 0; m < blocks_.size(); ++m) {
-    const auto size = static_cast<Eigen::Index>(blocks_[m].cols.size());
-    constant_.emplace_back(SquareMatrix::Zero(size, size));
     int place = 0;
     for (const int row : blocks_[m].rows) {
       if (row < dots) {
@@ -23,13 +25,12 @@ BlockJacobian::BlockJacobian(const Model& model, std::vector<ConstraintBlock> bl
         for (const auto& term :
              model.linear_constraints()[static_cast<std::size_t>(row - quadratic)].terms) {
           const int col = col_of(m, term.coordinate);
-          if (col >= 0) constant_[m](place, col) = term.coefficient;
+          if (col >= 0) matrices_[m](place, col) = term.coefficient;
         }
       }
       ++place;
     }
   }
-  matrices_ = constant_;
 }
 
 int BlockJacobian::col_of(std::size_t matrix, int coordinate) const {
@@ -42,24 +43,31 @@ template <class Constraint>
 void BlockJacobian::add_quadratic(std::size_t matrix, int row, const Constraint& constraint) {
   Row added;
   added.matrix = matrix;
-  added.row = row;
   added.points = {constraint.a, constraint.b, constraint.c, constraint.d};
-  for (std::size_t k = 0; k < added.points.size(); ++k) {
-    const Point& point = model_.points()[static_cast<std::size_t>(added.points[k])];
-    added.cols[k] = {-1, -1, -1};
-    if (point.is_fixed()) continue;
-    for (int axis = 0; axis < model_.dimension(); ++axis) {
-      added.cols[k][static_cast<std::size_t>(axis)] = col_of(matrix, point.offset + axis);
-    }
-  }
   if constexpr (requires { constraint.B; }) {
     added.is_dot = false;
     added.B = constraint.B;
   }
+  added.is_distance = added.is_dot && constraint.a == constraint.c && constraint.b == constraint.d;
+  added.begin = entries_.size();
+  for (std::size_t k = 0; k < (added.is_distance ? 2 : 4); ++k) {
+    const Point& point = model_.points()[static_cast<std::size_t>(added.points[k])];
+    if (point.is_fixed()) continue;
+    const double sign = k % 2 == 0 ? 1.0 : -1.0;
+    for (int axis = 0; axis < model_.dimension(); ++axis) {
+      const int col = col_of(matrix, point.offset + axis);
+      if (col < 0) continue;
+      const auto place = row * matrices_[matrix].cols() + col;
+      entries_.push_back({static_cast<std::size_t>(place),
+                          static_cast<std::size_t>(axis) + (k < 2 ? 0 : 3),
+                          added.is_distance ? 2 * sign : sign});
+    }
+  }
+  added.end = entries_.size();
   rows_.push_back(added);
 }
 
-Vector3 BlockJacobian::position(int point, std::span<const double> q) const {
+inline Vector3 BlockJacobian::position(int point, std::span<const double> q) const {
   const Point& place = model_.points()[static_cast<std::size_t>(point)];
   if (place.is_fixed()) return known_.position(point);
   const auto offset = static_cast<std::size_t>(place.offset);
@@ -68,21 +76,18 @@ Vector3 BlockJacobian::position(int point, std::span<const double> q) const {
 
 void BlockJacobian::evaluate(double t, std::span<const double> q) {
   if (!model_.driven_points().empty()) known_.set_time(t);
-  for (std::size_t m = 0; m < matrices_.size(); ++m) matrices_[m] = constant_[m];
   for (const Row& row : rows_) {
-    const Vector3 u = position(row.points[0], q) - position(row.points[1], q);
-    const Vector3 w = position(row.points[2], q) - position(row.points[3], q);
+    const auto [a, b, c, d] = row.points;
+    const Vector3 u = position(a, q) - position(b, q);
+    const Vector3 w = row.is_distance ? u : position(c, q) - position(d, q);
     const Vector3 at_ab = row.is_dot ? w : multiply(row.B, w);
     const Vector3 at_cd = row.is_dot ? u : multiply_transposed(row.B, u);
-    SquareMatrix& matrix = matrices_[row.matrix];
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Vector3& gradient = k < 2 ? at_ab : at_cd;
-      const double sign = k % 2 == 0 ? 1.0 : -1.0;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const int col = row.cols[k][axis];
-        if (col >= 0) matrix(row.row, col) += sign * gradient[axis];
-      }
-    }
+    const std::array<double, 6> gradient{at_ab[0], at_ab[1], at_ab[2],
+                                         at_cd[0], at_cd[1], at_cd[2]};
+    const std::span entries(entries_.data() + row.begin, entries_.data() + row.end);
+    double* const matrix = matrices_[row.matrix].data();
+    for (const Entry& entry : entries) matrix[entry.place] = 0.0;
+    for (const Entry& entry : entries) matrix[entry.place] += entry.factor * gradient[entry.axis];
   }
 }
 

@@ -28,20 +28,23 @@ class BlockJacobian {
     return block.rows.size() < block.cols.size();
   }
 
-  /// At q (n, m) and t (s); the rows that are left to the user become 0.
+  /// At q (n, m) and t (s); the rows that are left to the user stay as they are.
   void evaluate(double t, std::span<const double> q);
   /// As many rows as columns.
   [[nodiscard]] SquareMatrix& matrix(std::size_t index) { return matrices_[index]; }
 
  private:
-  /// A quadratic row: where the gradient at its points goes.
+  /// A quadratic row and the entries of `entries_` that it fills.
   struct Row {
-    std::size_t matrix = 0;
-    int row = 0;
-    std::array<int, 4> points{};               ///< a, b, c, d
-    std::array<std::array<int, 3>, 4> cols{};  ///< of each point and axis; -1: not in the block
-    bool is_dot = true;
+    std::size_t matrix = 0, begin = 0, end = 0;
+    std::array<int, 4> points{};  ///< a, b, c, d
+    bool is_dot = true, is_distance = false;
     Matrix3 B{};
+  };
+  /// `factor` times an axis of the gradient at a - b or, 3 ... 5, at c - d is a part of it.
+  struct Entry {
+    std::size_t place = 0, axis = 0;
+    double factor = 0.0;
   };
 
   template <class Constraint>
@@ -52,8 +55,9 @@ class BlockJacobian {
   const Model& model_;
   KnownMotion known_;
   std::vector<ConstraintBlock> blocks_;
-  std::vector<SquareMatrix> constant_, matrices_;  // constant_: linear rows alone
+  std::vector<SquareMatrix> matrices_;
   std::vector<Row> rows_;
+  std::vector<Entry> entries_;
 };
 
 }  // namespace mbs

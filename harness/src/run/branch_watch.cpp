@@ -22,17 +22,16 @@ constexpr double kSame = 1e-5;     // of the length: more than what constraints 
 constexpr int kMostUncertain = 8;  // looks
 constexpr double kApart = 3e-3;    // of the length: less is not yet another assembly
 
-/// The sign of its determinant by elimination with row pivots, which passes over zeros, or 0 where
-/// a pivot is too small. (A determinant of many rows is small wherever it is.) Overwrites it.
-int sign_of(SquareMatrix& matrix) {
-  const auto size = static_cast<std::size_t>(matrix.rows());
-  double* const first = matrix.data();  // in rows; plain loops, since blocks are small
+/// The sign of the determinant of `size` rows by elimination with row pivots, which passes over
+/// zeros, or 0 where a pivot is too small. (A determinant of many rows is small wherever it is.)
+/// Overwrites them.
+int sign_of(double* rows, std::size_t size) {
   int sign = 1;
   for (std::size_t k = 0; k < size; ++k) {
-    double* row = first + k * size;
+    double* row = rows + k * size;
     double* pivots = row;
     for (std::size_t i = k + 1; i < size; ++i) {
-      double* const other = first + i * size;
+      double* const other = rows + i * size;
       if (std::abs(other[k]) > std::abs(pivots[k])) pivots = other;
     }
     const double pivot = pivots[k], most = std::abs(pivot);
@@ -43,7 +42,7 @@ int sign_of(SquareMatrix& matrix) {
     }
     if (pivot < 0.0) sign = -sign;
     for (std::size_t i = k + 1; i < size; ++i) {
-      double* const other = first + i * size;
+      double* const other = rows + i * size;
       if (other[k] == 0.0) continue;
       const double factor = other[k] / pivot;
       for (std::size_t j = k + 1; j < size; ++j) other[j] -= factor * row[j];
@@ -74,7 +73,7 @@ BranchWatch::BranchWatch(const Scene& scene, const State& start, double length, 
   if (!is_needed()) return;
   matrices_.emplace(scene.model, std::move(matrices));
   now_.resize(matrices_->size());
-  eliminated_.resize(now_.size());
+  turned_.resize(now_.size(), 1.0);
   tangent_ = start.v;
   find_tangents(start);
   find_signs(0.0, start);
@@ -118,26 +117,31 @@ void BranchWatch::find_signs(double t, const State& state) {
   matrices_->evaluate(t, state.q);
   for (std::size_t m = 0; m < now_.size(); ++m) {
     const ConstraintBlock& block = matrices_->block(m);
-    SquareMatrix& square = matrices_->matrix(m);
-    const Eigen::Index size = square.rows();
+    double* const square = matrices_->matrix(m).data();
+    const std::size_t size = block.cols.size();
     double least = 0.0;                   // length of a row that has a direction
     if (BlockJacobian::is_open(block)) {  // one freedom: the direction of motion below
       const std::vector<double>& below = is_carried(m) ? tangent_ : state.v;
-      const double sign = is_carried(m) ? 1.0 : turned(block, state);
-      for (Eigen::Index j = 0; j < size; ++j) {
-        const int col = block.cols[static_cast<std::size_t>(j)];
-        square(size - 1, j) = sign * below[static_cast<std::size_t>(col)];
+      if (!is_carried(m)) {
+        turned_[m] = turned(block, state);
+        least = kStill * length_;
       }
-      if (!is_carried(m)) least = kStill * length_;
+      double* const last = square + (size - 1) * size;
+      for (std::size_t j = 0; j < size; ++j) {
+        last[j] = turned_[m] * below[static_cast<std::size_t>(block.cols[j])];
+      }
     }
+    eliminated_.resize(size * size);
     bool has_directions = true;
-    for (Eigen::Index i = 0; i < size; ++i) {
-      const double length = square.row(i).norm();
-      if (!(length > (i == size - 1 ? least : 0.0))) has_directions = false;
-      if (length > 0.0) square.row(i) /= length;
+    for (std::size_t i = 0; i < size; ++i) {
+      const double* const row = square + i * size;
+      double squared = 0.0;
+      for (std::size_t j = 0; j < size; ++j) squared += row[j] * row[j];
+      const double length = std::sqrt(squared), scale = 1.0 / length;
+      if (!(length > (i + 1 == size ? least : 0.0))) has_directions = false;
+      for (std::size_t j = 0; j < size; ++j) eliminated_[i * size + j] = scale * row[j];
     }
-    eliminated_[m] = square;
-    now_[m] = has_directions ? sign_of(eliminated_[m]) : 0;
+    now_[m] = has_directions ? sign_of(eliminated_.data(), size) : 0;
   }
 }
 
@@ -156,7 +160,7 @@ void BranchWatch::moor(double t, const State& state) {
     if (!BlockJacobian::is_open(block)) continue;
     if (is_carried(m)) {
       if (now_[m] == 0) continue;
-      const SquareMatrix& square = matrices_->matrix(m);  // as find_signs() left it
+      const SquareMatrix& square = matrices_->matrix(m);  // with the row of find_signs()
       const Eigen::VectorXd tangent =
           square.partialPivLu()
               .solve(Eigen::VectorXd::Unit(square.rows(), square.rows() - 1))
@@ -166,10 +170,9 @@ void BranchWatch::moor(double t, const State& state) {
       }
       continue;
     }
-    const double sign = turned(block, state);
     for (const int col : block.cols) {
       const auto i = static_cast<std::size_t>(col);
-      tangent_[i] = sign * state.v[i];
+      tangent_[i] = turned_[m] * state.v[i];
     }
   }
   anchor_ = state;

@@ -72,7 +72,8 @@ class BranchWatch {
   std::vector<Part> parts_;
   std::vector<std::size_t> part_of_;  // of each determinant
   std::optional<BlockJacobian> matrices_;
-  std::vector<SquareMatrix> eliminated_;                    // of each, to work in
+  std::vector<double> eliminated_;  // of one, to work in
+  std::vector<double> turned_;      // of each with one freedom, as of find_signs()
   State anchor_;
   double anchor_time_ = 0.0;             // s
   std::vector<int> anchor_signs_, now_;  // as of find_signs()

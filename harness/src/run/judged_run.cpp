@@ -16,7 +16,11 @@
 namespace mbs {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Clock = SampledTime::Clock;
+
+double judged_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 bool has_high_order(Scheme scheme) {
   return scheme == Scheme::rattle4 || scheme == Scheme::rattle6 || scheme == Scheme::multistep6;
@@ -101,10 +105,12 @@ void JudgedRun::take(const StepOutcome& outcome) {
                              (step >= last_look_ + kBetween && is_unusual(outcome)));
   State& copy = is_before ? before_ : state_;
   const bool is_for_judge = is_before || (is_looked_at && !is_judged);
-  if (is_for_judge || ((observer_ || half_) && !is_judged)) {
-    const auto begin = Clock::now();
+  if (is_for_judge) {
+    copying_.begin();
     access_.get_state(copy);
-    if (is_for_judge) judging_ += Clock::now() - begin;
+    copying_.end();
+  } else if ((observer_ || half_) && !is_judged) {
+    access_.get_state(copy);
   }
   const State& present = is_judged ? good_.state : copy;
   if (is_looked_at) look(present);
@@ -115,20 +121,20 @@ void JudgedRun::take(const StepOutcome& outcome) {
 }
 
 void JudgedRun::judge_present() {
-  const auto begin = Clock::now();
+  judging_.begin();
+  aside_ = 0.0;
   const long step = summary_.steps;
   access_.get_state(state_);
   std::string lost = judge_.judge(time(step), state_);
   has_figures_ = true;
-  Clock::duration redone{};  // steps that are done again are no judging
   if (!lost.empty()) {
-    const auto redo = Clock::now();
+    const auto begin = Clock::now();
     if (!locate_loss(lost)) {
       // Where another simulation did the steps again, this state itself is still to be judged.
       lost = judge_.judge(time(step), state_);
       if (!lost.empty()) lose(judge_, lost, step);
     }
-    redone = Clock::now() - redo;
+    aside_ = judged_since(begin);
   }
   if (is_over_) return;
   if (adds_local_errors_) add_local_errors();
@@ -136,12 +142,12 @@ void JudgedRun::judge_present() {
   good_.step = step;
   std::swap(good_.state, state_);
   good_.figures = judge_.figures();
-  judging_ += Clock::now() - begin - redone;
+  judging_.end(aside_);
 }
 
 /// Whether the motion went on as another assembly.
 void JudgedRun::look(const State& present) {
-  const auto begin = Clock::now();
+  looking_.begin();
   const long step = summary_.steps;
   const std::string jump = watch_.look(time(step), present);
   if (!jump.empty()) {
@@ -157,7 +163,7 @@ void JudgedRun::look(const State& present) {
   }
   last_look_ = step;
   next_look_ = step + looked_after(present);
-  judging_ += Clock::now() - begin;
+  looking_.end();
 }
 
 /// Whether the step was harder than most: near a singular position Newton needs more passes.
@@ -167,10 +173,10 @@ bool JudgedRun::is_unusual(const StepOutcome& outcome) const {
              1.5 * static_cast<double>(summary_.passes) + static_cast<double>(summary_.steps);
 }
 
-/// Steps until the next look: as many as leave no time to jump there and back, a quarter of the
-/// judged length by speed and acceleration of the fastest point, and at most 256.
+/// Steps until the next look: as many as leave no time to jump there and back, half the judged
+/// length by speed and acceleration of the fastest point, and at most 256.
 long JudgedRun::looked_after(const State& present) const {
-  constexpr double kWay = 0.25;  // of the length
+  constexpr double kWay = 0.5;  // of the length
   constexpr long kMost = 256;
   const double length = judge_.length();
   double speed = 0.0, acceleration = 0.0;
@@ -198,11 +204,12 @@ long JudgedRun::first_across(long step) {
   return step;
 }
 
-/// By one in four of the steps that are judged: it takes as long as all else.
+/// About every 256 steps, and by one in four of those that are judged: it takes as long as all
+/// else.
 void JudgedRun::balance_energy() {
-  constexpr long kEvery = 4;
+  const long every = std::clamp(256L / interval_, 1L, 4L);
   const long step = summary_.steps;
-  if (!balance_ || (judgements_++ % kEvery != kEvery / 2 && step != steps_)) return;
+  if (!balance_ || (judgements_++ % every != every / 2 && step != steps_)) return;
   const auto [excess, work] = balance_->over(before_, state_, time(step), settings_.step.step);
   judge_.add_balance(excess, work, step - balanced_);
   balanced_ = step;
@@ -244,16 +251,18 @@ void JudgedRun::add_speed_error() {
     done_again_ = step;
     return;
   }
-  if (!again_) {  // its set-up is no more judging than that of the run is a step
-    const auto begin = Clock::now();
+  const auto begin = Clock::now();
+  if (!again_) {
     again_.emplace(access_.create, *access_.model, settings_.step,
                    static_cast<double>(summary_.passes) / static_cast<double>(step));
-    judging_ -= Clock::now() - begin;
   }
+  const auto ready = Clock::now();  // its set-up is no more judging than that of the run is a step
   local_errors_.add_speed(again_->error(before_, state_, negligible), judge_.velocity(state_),
                           settings_.step.step, since,
                           balance_ ? balance_->braked(time(step), state_) : 0.0);
   done_again_ = step;
+  doing_again_ += judged_since(ready);
+  aside_ += judged_since(begin);
 }
 
 /// The solution was found lost, for `reason`. Does the steps since the last good one again and
@@ -375,10 +384,9 @@ std::string JudgedRun::beyond_estimates() const {
 }
 
 RunSummary JudgedRun::finish() {
-  summary_.judge_us = summary_.steps == 0
-                          ? 0.0
-                          : std::chrono::duration<double, std::micro>(judging_).count() /
-                                static_cast<double>(summary_.steps);
+  const double judging =
+      copying_.total() + judging_.total() + looking_.total() + doing_again_;  // s
+  summary_.judge_us = judging * 1e6 / static_cast<double>(std::max(1L, summary_.steps));
   if (half_) summary_.position_error_estimate = half_->position_error_max();
   if (!has_figures_) judge_.spoil();  // those of the start say nothing of the run
   summary_.position_error_max = judge_.position_error_max();

@@ -1,7 +1,6 @@
 // One run as it is judged step by step, whoever does the steps: a simulation, or a lane of a batch.
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
@@ -12,6 +11,7 @@
 #include "run/local_half_steps.hpp"
 #include "run/power_balance.hpp"
 #include "run/run.hpp"
+#include "run/sampled_time.hpp"
 #include "run/step_again.hpp"
 
 namespace mbs {
@@ -105,7 +105,9 @@ class JudgedRun {
   bool adds_local_errors_;    // nothing better tells, and constraints do not fix all
   bool has_figures_ = false;  // of a state beyond the start
   bool is_over_ = false;
-  std::chrono::steady_clock::duration judging_{};
+  SampledTime copying_, judging_, looking_;
+  double doing_again_ = 0.0;  // s, steps of StepAgain
+  double aside_ = 0.0;        // s, of a judgement: what is counted by itself, or is no judging
   RunSummary summary_;
 };
 

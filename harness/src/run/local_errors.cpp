@@ -38,6 +38,7 @@ double LocalErrors::add(std::span<const double> off, std::span<const double> v, 
                         long steps) {
   const double more = static_cast<double>(steps), time = more * step;
   time_ += time;
+  const double shifted = time / (step * step);
   double fastest = 0.0;  // squared
   auto point = points_.begin();
   const auto add = [&](const Vector3& error, const Vector3& velocity) {
@@ -47,7 +48,7 @@ double LocalErrors::add(std::span<const double> off, std::span<const double> v, 
     if (sums.passes_on) {  // errors across the way too; a NaN goes on
       const double whole = dot(error, error);
       sums.lag += more * std::sqrt(whole);
-      sums.shift += time * whole / (step * step);
+      sums.shift += shifted * whole;
     } else if (squared != 0.0) {
       sums.lag += more * std::abs(dot(error, velocity)) / std::sqrt(squared);
     }
@@ -58,7 +59,8 @@ double LocalErrors::add(std::span<const double> off, std::span<const double> v, 
 
 void LocalErrors::add_speed(const SpeedError& error, std::span<const double> v, double step,
                             long steps, double braked) {
-  const double time = static_cast<double>(steps) * step, kept = std::exp(-braked * time);
+  const double time = static_cast<double>(steps) * step;
+  const double kept = braked > 0.0 ? std::exp(-braked * time) : 1.0;
   samples_ = kept * samples_ + 1.0;
   steps_ = kept * steps_ + static_cast<double>(steps);
   auto point = points_.begin();

@@ -140,7 +140,9 @@ long count_steps(const RunSettings& settings) {
 
 long judge_interval(const Scene& scene, const RunSettings& settings) {
   if (settings.judge_every) return *settings.judge_every;
-  return std::clamp(count_steps(settings) / 32, 1L, scene.four_bar_loops ? 256L : 64L);
+  const long steps = count_steps(settings);
+  if (scene.four_bar_loops) return std::clamp(steps / 32, 1L, 256L);
+  return std::max(std::clamp(steps / 32, 1L, 64L), std::min(steps / 128, 128L));
 }
 
 void require_duration(const Scene& scene, const RunSettings& settings) {

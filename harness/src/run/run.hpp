@@ -86,9 +86,10 @@ using Follower = std::function<void(double t)>;
 /// Number of steps that `duration` takes. Throws UsageError if settings are out of range.
 long count_steps(const RunSettings& settings);
 
-/// RunSettings::judge_every, or, if it has none, 64 steps, or 256 where the exact motion judges
-/// alone, which keeps judging a small share of even the fastest steps, but fewer where the run
-/// would not be judged 32 times. 1 or more.
+/// RunSettings::judge_every, or, if it has none, 64 steps, up to 128 in a run that is judged 128
+/// times all the same, or 256 where the exact motion judges alone, which keeps judging a small
+/// share of even the fastest steps, but fewer where the run would not be judged 32 times. 1 or
+/// more.
 long judge_interval(const Scene& scene, const RunSettings& settings);
 
 /// Throws UsageError, like run(), if settings are out of range or do not fit the scene's drivers:
