@@ -6,6 +6,10 @@
 namespace mbs::eigen_dense {
 
 template <typename Scalar>
+LuSolver<Scalar>::LuSolver(Eigen::Index size)
+    : matrix_(Matrix::Identity(size, size)), lu_(matrix_), solution_(Vector::Zero(size)) {}
+
+template <typename Scalar>
 bool LuSolver<Scalar>::factorize() {
   matrix_.template triangularView<Eigen::StrictlyUpper>() = matrix_.transpose();
   lu_.compute(matrix_);

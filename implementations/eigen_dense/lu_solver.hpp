@@ -15,8 +15,7 @@ class LuSolver {
   using Vector = Eigen::VectorX<Scalar>;
   using Matrix = Eigen::MatrixX<Scalar>;
 
-  explicit LuSolver(Eigen::Index size)
-      : matrix_(Matrix::Identity(size, size)), lu_(matrix_), solution_(Vector::Zero(size)) {}
+  explicit LuSolver(Eigen::Index size);
   LuSolver(const LuSolver&) = delete;
   LuSolver& operator=(const LuSolver&) = delete;
 

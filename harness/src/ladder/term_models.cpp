@@ -1,12 +1,12 @@
 // Builds chains of rods and adds terms to them.
 #include "ladder/term_models.hpp"
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <functional>
 #include <memory>
 
 #include "model_math/kinematics.hpp"
+#include "model_math/least_change.hpp"
 #include "model_math/monotone_curve.hpp"
 #include "run/settings.hpp"
 
@@ -137,13 +137,9 @@ class TermBuilder {
     std::vector<double> v(n), rate(m);
     for (int i = 0; i < n; ++i) v[i] = std::cos(1.7 * i);
     constraint_rate(draft, 0.0, draft.initial_position(), v, rate);
-    Eigen::MatrixXd Phi_q = Eigen::MatrixXd::Zero(m, n);
-    for (const JacobianEntry& e : jacobian(draft, 0.0, draft.initial_position())) {
-      Phi_q(e.row, e.col) += e.value;
-    }
-    const Eigen::VectorXd change = Phi_q.completeOrthogonalDecomposition().solve(
-        -Eigen::Map<const Eigen::VectorXd>(rate.data(), m));
-    for (int i = 0; i < n; ++i) v[i] += change[i];
+    const std::vector<double> excess =
+        LeastChange(draft, 0.0, draft.initial_position()).solve(rate);
+    for (int i = 0; i < n; ++i) v[i] -= excess[i];
     data_.initial_velocity = v;
     return Model(data_);
   }

@@ -95,26 +95,26 @@ std::optional<Pose> fit_pose(const std::vector<Sighting>& sightings, int dimensi
 
 std::optional<Twist> fit_twist(const std::vector<Sighting>& sightings, int dimension) {
   Twist twist{middle(sightings, &Sighting::local), middle(sightings, &Sighting::global), {}};
-  const int axes = dimension == 2 ? 1 : 3;  // of the spin: z, or all
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(sightings.size()), axes);
-  Eigen::VectorXd b(A.rows());
-  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(sightings.size()); ++i) {
-    const Sighting& s = sightings[static_cast<std::size_t>(i)];
-    const Vector3 arm = s.is_vector ? s.local : s.local - twist.at;
-    for (int axis = 0; axis < axes; ++axis) {
-      Vector3 unit{};
-      unit[static_cast<std::size_t>(dimension == 2 ? 2 : axis)] = 1.0;
-      A.block<3, 1>(3 * i, axis) = eigen(cross(unit, arm));
-    }
-    b.segment<3>(3 * i) = eigen(s.is_vector ? s.global : s.global - twist.velocity);
+  Eigen::Matrix3d N = Eigen::Matrix3d::Zero();  // the normal equations of the spin
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (const Sighting& s : sightings) {
+    const Eigen::Vector3d arm = eigen(s.is_vector ? s.local : s.local - twist.at);
+    N += arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose();
+    right += arm.cross(eigen(s.is_vector ? s.global : s.global - twist.velocity));
   }
   const bool has_point = std::any_of(sightings.begin(), sightings.end(),
                                      [](const Sighting& s) { return !s.is_vector; });
-  if (!has_point || !A.allFinite() || !b.allFinite()) return std::nullopt;
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
-  if (qr.rank() < axes) return std::nullopt;
-  const Eigen::VectorXd spin = qr.solve(b);
-  twist.spin = dimension == 2 ? Vector3{0.0, 0.0, spin[0]} : vector(spin);
+  if (!has_point || !N.allFinite() || !right.allFinite()) return std::nullopt;
+  if (dimension == 2) {
+    if (!(N(2, 2) > 0.0)) return std::nullopt;
+    twist.spin[2] = right[2] / N(2, 2);
+    return twist;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(N);
+  const Eigen::Vector3d values = principal.eigenvalues();
+  if (!(values[0] > kIndependent * kIndependent * values[2])) return std::nullopt;
+  const Eigen::Matrix3d axes = principal.eigenvectors();
+  twist.spin = vector(axes * (axes.transpose() * right).cwiseQuotient(values));
   return twist;
 }
 
