@@ -59,8 +59,7 @@ def table(engines, ours, rounds, own):
     for subject, theirs in engines.groupby("subject", sort=False):
         timed = samples(rounds[rounds.subject == subject])
         mine, paired = ours[ours.subject == subject], timing.Paired(timed)
-        sides = {side: (every, _timed(every, OURS, timed))
-                 for side in SIDES for every in [of_side(mine, side, own)]}
+        sides = {side: (every, _timed(every, OURS, timed)) for side in SIDES for every in [of_side(mine, side, own)]}
         for name, of_engine in _timed(theirs, ENGINE, timed).groupby("name", sort=False):
             for limit, best in _reached(of_engine):
                 for side, (every, compared) in sides.items():

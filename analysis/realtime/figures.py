@@ -12,8 +12,7 @@ GAP = {"color": GREY, "linewidth": 1.2, "linestyle": (0, (1, 1.5)), "label": "lo
 
 
 def draw(tables, view):
-    return {"steps": distributions(tables["steps"], tables["machine"]),
-            "largest": sizes(tables["largest"])}
+    return {"steps": distributions(tables["steps"], tables["machine"]), "largest": sizes(tables["largest"])}
 
 
 def distributions(table, machine):

@@ -45,8 +45,7 @@ def twin_of(one):
 
 def on_usual_pairs(registry, pairs, names):
     """[Contender] of variants by name; `pairs`: {folder or "all": pair}, as a profile has them."""
-    return [Contender(name, name, usable(registry, pairs.get(name.split("/")[0], pairs["all"])))
-            for name in names]
+    return [Contender(name, name, usable(registry, pairs.get(name.split("/")[0], pairs["all"]))) for name in names]
 
 
 def usable(registry, pair):

@@ -15,8 +15,7 @@ from dataclasses import dataclass
 from analysis.core.errors import StudyError
 from analysis.core.files import ROOT
 
-MEMORY_WORDS = re.compile(r"bad_alloc|(out of|not enough) memory|cannot allocate|std::length_error",
-                          re.I)
+MEMORY_WORDS = re.compile(r"bad_alloc|(out of|not enough) memory|cannot allocate|std::length_error", re.I)
 GRACE = 1.0  # s between being asked to end and being made to
 ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "BLIS_NUM_THREADS",
                                      "MKL_NUM_THREADS")}  # else `mbs` sees to it, and starts a second time for that

@@ -8,7 +8,6 @@ import sys
 import threading
 import traceback
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -73,18 +72,14 @@ def draw(studyset, part):
 
 def page(studyset, part):
     from analysis.core import site  # these need modules that take a second to load
-    with _no_collection():
-        site.write_part(studyset.folder, part)
+    _without_collection(site.write_part, studyset.folder, part)
 
 
-@contextmanager
-def _no_collection():
-    """Garbage is not collected: that would go over all records again and again, a quarter of the time."""
+def _without_collection(make, *what):
+    """Garbage would be looked for in all records again and again, a quarter of the time."""
     gc.disable()
-    try:
-        yield
-    finally:
-        gc.enable()
+    make(*what)
+    gc.enable()
 
 
 def pages(studyset):
@@ -101,8 +96,7 @@ def pages(studyset):
 def index(studyset, part=None):
     """`part`: all that is new since it was made."""
     from analysis.core import site
-    with _no_collection():
-        site.write_index(studyset.folder, part)
+    _without_collection(site.write_index, studyset.folder, part)
 
 
 def end_with(front):

@@ -32,8 +32,7 @@ def grid(times, size, lean=0.5):
     theta = _integrate(derivative, times, start)[:size]
     x, y = below @ numpy.sin(theta), -below @ numpy.cos(theta)
     middle = size // 2 - 1
-    return {"corner.x": size + x[-1], "corner.y": y[-1],
-            "middle.x": size // 2 + x[middle], "middle.y": y[middle]}
+    return {"corner.x": size + x[-1], "corner.y": y[-1], "middle.x": size // 2 + x[middle], "middle.y": y[middle]}
 
 
 def slider_crank(times):
@@ -65,16 +64,14 @@ def _slider_crank(times, pivot, radius, length, masses, first, second, start, to
         ahead = (length**2 - numpy.dot(a, a)) ** 0.5
         d_ahead = -numpy.dot(a, da) / ahead
         dd_ahead = -(numpy.dot(da, da) + numpy.dot(a, dda) + d_ahead**2) / ahead
-        return pin, [numpy.array([at[0] + more, 0, 0])
-                     for at, more in zip(pin, (ahead, d_ahead, dd_ahead))]
+        return pin, [numpy.array([at[0] + more, 0, 0]) for at, more in zip(pin, (ahead, d_ahead, dd_ahead))]
 
     def derivative(_, state):
         angle, rate = state
         (_, da, dda), (_, db, ddb) = joints(angle)
         inertia = (crank * da @ da / 3 + slider * db @ db
                    + rod * ((da + db) @ (da + db) / 4 + (db - da) @ (db - da) / 12))
-        half_change = slider * db @ ddb + rod * ((da + db) @ (dda + ddb) / 4
-                                                 + (db - da) @ (ddb - dda) / 12)
+        half_change = slider * db @ ddb + rod * ((da + db) @ (dda + ddb) / 4 + (db - da) @ (ddb - dda) / 12)
         force = torque + gravity @ (crank * da / 2 + rod * (da + db) / 2 + slider * db)
         return [rate, (force - half_change * rate**2) / inertia]
     angles = _integrate(derivative, times, start)[0]
@@ -92,10 +89,8 @@ def governor(times):
     def about_shaft(down):
         """Moment of inertia and its derivative."""
         cos, sin = numpy.cos(down), numpy.sin(down)
-        inertia = arm * (thin * sin**2 + long * cos**2 + (hinge + cos / 2) ** 2) + ball * (
-            hinge + cos) ** 2
-        change = -2 * sin * (arm * ((long - thin) * cos + (hinge + cos / 2) / 2)
-                             + ball * (hinge + cos))
+        inertia = arm * (thin * sin**2 + long * cos**2 + (hinge + cos / 2) ** 2) + ball * (hinge + cos) ** 2
+        change = -2 * sin * (arm * ((long - thin) * cos + (hinge + cos / 2) / 2) + ball * (hinge + cos))
         return shaft * thin + cube_inertia + 2 * inertia, 2 * change
 
     momentum = about_shaft(numpy.pi / 6)[0] * 2 * numpy.pi
@@ -107,15 +102,13 @@ def governor(times):
         across, above = cos / 2, top - sin / 2 - height  # from the slider to the middle of the arm
         length = (across**2 + above**2) ** 0.5
         by_down, by_height = (-across * sin - above * cos) / 2 / length, -above / length
-        pull = stiffness * (length - free) + damping * (by_down * down_rate
-                                                        + by_height * height_rate)
+        pull = stiffness * (length - free) + damping * (by_down * down_rate + by_height * height_rate)
         spin = momentum / inertia
         return [spin, down_rate,
                 (change * spin**2 / 4 + GRAVITY * cos * (arm / 2 + ball) - pull * by_down)
                 / about_hinge,
                 height_rate, -GRAVITY - 2 * pull * by_height / cube]
-    turned, down, _, height, _ = _integrate(derivative, times, (0, numpy.pi / 6, 0, 0.5, 0),
-                                            method="LSODA")
+    turned, down, _, height, _ = _integrate(derivative, times, (0, numpy.pi / 6, 0, 0.5, 0), method="LSODA")
     out, none = hinge + numpy.cos(down), numpy.zeros(len(times))
     return _columns("xyz", slider=numpy.stack([none, height, none], axis=1),
                     P1=numpy.stack([out * numpy.cos(turned), top - numpy.sin(down),
@@ -147,8 +140,7 @@ def half_car(times):
             wave = 3 * numpy.pi * t + phase
             ground = road + 0.05j * numpy.sin(wave)
             strut = _pull(at[mount] - at[hub], velocity[mount] - velocity[hub], 22000, 1500, 0.45)
-            tyre = _pull(ground - at[hub], 0.15j * numpy.pi * numpy.cos(wave) - velocity[hub],
-                         180000, 200, 0.3)
+            tyre = _pull(ground - at[hub], 0.15j * numpy.pi * numpy.cos(wave) - velocity[hub], 180000, 200, 0.3)
             force[hub] += strut + tyre
             force[mount] -= strut
         matrix = (by.conj().T @ (masses[:, None] * by)).real + inertia
@@ -178,10 +170,8 @@ def tolerance(value):
 
 
 def _integrate(derivative, times, start, method="DOP853"):
-    return solve_ivp(derivative, (0, times[-1]), start, method, times, rtol=TOLERANCE,
-                     atol=TOLERANCE).y
+    return solve_ivp(derivative, (0, times[-1]), start, method, times, rtol=TOLERANCE, atol=TOLERANCE).y
 
 
 def _columns(axes, **places):
-    return {f"{name}.{axis}": at[:, k] for name, at in places.items()
-            for k, axis in enumerate(axes)}
+    return {f"{name}.{axis}": at[:, k] for name, at in places.items() for k, axis in enumerate(axes)}

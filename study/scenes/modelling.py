@@ -53,16 +53,13 @@ def scenes(loops):
     moving = [{"name": f"B{i}", "position": [i, 1], "velocity": [1, 0]} for i in range(loops + 1)]
     rods = [{"between": [f"A{i}", f"B{i}"], "mass": 1} for i in range(loops + 1)]
     rods += [{"between": [f"B{i - 1}", f"B{i}"], "mass": 1} for i in range(1, loops + 1)]
-    plain = {"points": ground + moving, "rods": rods,
-             "outputs": [{"name": "B0", "position": "B0"}]}
+    plain = {"points": ground + moving, "rods": rods, "outputs": [{"name": "B0", "position": "B0"}]}
 
     def held(axis, point, value):
-        return {"type": "linear", "value": value,
-                "terms": [{"point": point, "axis": axis, "coefficient": 1}]}
+        return {"type": "linear", "value": value, "terms": [{"point": point, "axis": axis, "coefficient": 1}]}
 
     def springs(**more):
-        return [{"between": [f"A{i - 1}", f"B{i}"], "length": 1.0} | more
-                for i in range(1, loops + 1)]
+        return [{"between": [f"A{i - 1}", f"B{i}"], "length": 1.0} | more for i in range(1, loops + 1)]
     return {
         PLAIN: plain,
         "unknown grounds": plain | {

@@ -42,14 +42,12 @@ def andrews_end():
           "P": b + 35e-3 * numpy.array([sin(gamma), -cos(gamma)]),
           "S": a + 40e-3 * numpy.array([cos(delta), sin(delta)]),
           "U": a + 40e-3 * numpy.array([sin(epsilon), -cos(epsilon)])}
-    return {f"{name}.{axis}": float(value) for name, place in at.items()
-            for axis, value in zip("xy", place)}
+    return {f"{name}.{axis}": float(value) for name, place in at.items() for axis, value in zip("xy", place)}
 
 
 # What `known` in problems.yaml may name, by where it comes from.
 EXTRAPOLATED = "extrapolated"
-CLOSED = {"pendulum": pendulum, "four_bar_2": lambda t: four_bar(t, 2),
-          "four_bar_40": lambda t: four_bar(t, 40)}
+CLOSED = {"pendulum": pendulum, "four_bar_2": lambda t: four_bar(t, 2), "four_bar_40": lambda t: four_bar(t, 40)}
 INTEGRATED = {"grid_10": lambda t: mechanics.grid(t, 10), "slider_crank": mechanics.slider_crank,
               "spatial_slider_crank": mechanics.spatial_slider_crank,
               "governor": mechanics.governor, "half_car": mechanics.half_car}

@@ -39,8 +39,7 @@ class Next:
 def halvings(pilots):
     """{step: log2(estimate there / estimate at half of it)}, where both runs are valid."""
     valid = {pilot.step: max(pilot.estimate, 1e-300) for pilot in pilots if pilot.valid}
-    return {step: math.log2(valid[step] / valid[half])
-            for step in valid for half in valid if close(half, step / 2)}
+    return {step: math.log2(valid[step] / valid[half]) for step in valid for half in valid if close(half, step / 2)}
 
 
 def close(one, other):
@@ -191,6 +190,5 @@ def tidy(step, duration):
     unit = 10.0 ** math.floor(math.log10(step) - 2)
     most_units = math.floor(step / unit * (1 + 1e-9))
     values = [float(f"{number * unit:.6g}") for number in range(most_units, math.ceil((1 - TIDY) * most_units) - 1, -1)]
-    whole = [value for value in values
-             if abs(duration / value - round(duration / value)) < 1e-9 * duration / value]
+    whole = [value for value in values if abs(duration / value - round(duration / value)) < 1e-9 * duration / value]
     return [*whole, *values][0]

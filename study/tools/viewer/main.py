@@ -53,8 +53,7 @@ def _options(arguments):
     parser.add_argument("--png", metavar="FILE.png", help="write a contact sheet of the motion too")
     parser.add_argument("--window", nargs=2, type=float, metavar="S",
                         help="first and last time of the sheet (all of the motion)")
-    parser.add_argument("--up", choices="xyz", help="axis that points up in 3D (against "
-                        "gravity; y without gravity)")
+    parser.add_argument("--up", choices="xyz", help="axis that points up in 3D (against " "gravity; y without gravity)")
     own = parser.add_argument_group("without TRAJECTORY")
     own.add_argument("--duration", type=positive, metavar="S", help="simulated time (10 or, with "
                      "small steps or large scenes, what a minute is enough for)")

@@ -17,8 +17,7 @@ def render(scene, motion, note, up, sheet=False):
     """The whole page as text; nothing in it refers to anything outside. `sheet`: it draws a contact sheet when it is loaded."""
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(FOLDER), trim_blocks=True,
                                      undefined=jinja2.StrictUndefined, autoescape=True)
-    moving = [index for index in range(len(scene.points))
-              if numpy.ptp(motion.positions[:, index], axis=0).max() > 0]
+    moving = [index for index in range(len(scene.points)) if numpy.ptp(motion.positions[:, index], axis=0).max() > 0]
     return environment.get_template("page.html.j2").render(
         scene=scene, note=note, has_curves=bool(motion.curves), outputs=motion.outputs, style=_text("page.css"),
         scripts="\n".join(map(_text, SCRIPTS)),

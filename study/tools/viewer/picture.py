@@ -109,11 +109,9 @@ def coils(scene, motion):
     length = 0.2 * typical_length(scene, motion)
     found = []
     for first, second in scene.torsion_springs:
-        lines = [pair for pair in (second, first)
-                 if all(scene.points[point][1] != "vector" for point in pair)]
+        lines = [pair for pair in (second, first) if all(scene.points[point][1] != "vector" for point in pair)]
         shared = sorted(set(first) & set(second)) if len(lines) == 2 else []
-        at = (shared[:1] or (lines[0][:1] if lines else []) or vectors.get(second[1])
-              or vectors.get(first[1]))
+        at = (shared[:1] or (lines[0][:1] if lines else []) or vectors.get(second[1]) or vectors.get(first[1]))
         if at:
             found.append({"first": first, "second": second, "at": at, "length": length})
     return found

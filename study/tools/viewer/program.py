@@ -59,8 +59,7 @@ def _every(steps, frames):
     `steps`, so that the last step is written too. More steps than `mbs` takes are for it to refuse."""
     steps = max(1, round(min(steps, STEPS_OF_A_RUN)))
     most = min(frames, steps)
-    return next((steps // rows for rows in range(most, most // 2, -1) if steps % rows == 0),
-                math.ceil(steps / frames))
+    return next((steps // rows for rows in range(most, most // 2, -1) if steps % rows == 0), math.ceil(steps / frames))
 
 
 def _affordable(place, how, step, duration, say):
