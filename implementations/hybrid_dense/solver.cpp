@@ -5,6 +5,8 @@
 extern "C" {
 void ilaver_(int* major, int* minor, int* patch);
 void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
+void dtrsv_(const char* uplo, const char* trans, const char* diag, const int* n, const double* a,
+            const int* lda, double* x, const int* incx);
 void dtrsm_(const char* side, const char* uplo, const char* trans, const char* diag, const int* m,
             const int* n, const double* alpha, const double* a, const int* lda, double* b,
             const int* ldb);
@@ -58,10 +60,15 @@ bool LltSolver::factorize() {
   return factorize_halves(L) && is_positive();
 }
 
-void LltSolver::solve(double* x) const {
+void LltSolver::solve_lower(double* x) const {
   const Columns<const Eigen::MatrixXd> L(L_.data(), n_, n_, Eigen::OuterStride<>(rows_));
   Eigen::Map<Eigen::VectorXd, kAlignment> solution(x, n_);
   L.triangularView<Eigen::Lower>().solveInPlace(solution);
+}
+
+void LltSolver::solve_upper(double* x) const {
+  const Columns<const Eigen::MatrixXd> L(L_.data(), n_, n_, Eigen::OuterStride<>(rows_));
+  Eigen::Map<Eigen::VectorXd, kAlignment> solution(x, n_);
   L.triangularView<Eigen::Lower>().adjoint().solveInPlace(solution);
 }
 
@@ -97,6 +104,16 @@ void PotrfSolver::multiply(double* x, long count, long stride, PotrfSolver& prod
   const double one = 1.0, zero = 0.0;
   dtrsm_("L", "L", "N", "N", &n, &columns, &one, L_.data(), &rows, x, &apart);
   dsyrk_("L", "T", &columns, &n, &one, x, &apart, &zero, products.A_.data(), &below);
+}
+
+void PotrfSolver::solve_lower(double* x) const {
+  const int n = static_cast<int>(n_), rows = static_cast<int>(rows_), one = 1;
+  dtrsv_("L", "N", "N", &n, L_.data(), &rows, x, &one);
+}
+
+void PotrfSolver::solve_upper(double* x) const {
+  const int n = static_cast<int>(n_), rows = static_cast<int>(rows_), one = 1;
+  dtrsv_("L", "T", "N", &n, L_.data(), &rows, x, &one);
 }
 
 void PotrfSolver::solve(double* x, long count, long stride) const {

@@ -68,7 +68,12 @@ class LltSolver : public ColumnsSolver {
   /// x = L^-1 x for `count` vectors, each `stride` behind the one before; then their products with
   /// each other into the lower half of the matrix of `products`.
   void multiply(double* x, long count, long stride, LltSolver& products) const;
-  void solve(double* x) const;
+  void solve_lower(double* x) const;  // x = L^-1 x
+  void solve_upper(double* x) const;  // x = L^-T x
+  void solve(double* x) const {
+    solve_lower(x);
+    solve_upper(x);
+  }
   void solve(double* x, long count, long stride) const;
 };
 
@@ -78,6 +83,8 @@ class PotrfSolver : public ColumnsSolver {
   using ColumnsSolver::ColumnsSolver;
   [[nodiscard]] bool factorize();
   void multiply(double* x, long count, long stride, PotrfSolver& products) const;
+  void solve_lower(double* x) const;
+  void solve_upper(double* x) const;
   void solve(double* x) const { solve(x, 1, rows_); }
   void solve(double* x, long count, long stride) const;
 };

@@ -22,6 +22,31 @@ namespace {
   }
 }
 
+// y = R x. R: `count` rows, rounded up to whole vectors, each of `columns`, which are whole vectors.
+void multiply(const double* R, long count, long columns, const double* x, double* y) {
+  for (long k = 0; k < count; k += kWidth) {
+    const double* rows = R + k * columns;
+    Vec products[kWidth] = {};
+    for (long j = 0; j < columns; j += kWidth) {
+      const Vec factor = load(x + j);
+      for (int r = 0; r < kWidth; ++r) products[r] += load(rows + r * columns + j) * factor;
+    }
+    store(y + k, sums(products));
+  }
+}
+
+// x -= R^T y
+void subtract_rows(const double* R, long count, long columns, const double* y, double* x) {
+  for (long k = 0; k < count; k += kWidth) {
+    const double* rows = R + k * columns;
+    for (long j = 0; j < columns; j += kWidth) {
+      Vec sum = load(x + j);
+      for (int r = 0; r < kWidth; ++r) sum -= broadcast(y[k + r]) * load(rows + r * columns + j);
+      store(x + j, sum);
+    }
+  }
+}
+
 }  // namespace
 
 template <int D, class Solver>
@@ -39,7 +64,7 @@ SaddleSystem<D, Solver>::SaddleSystem(const Model& model, const Slots& slots,
       schedule_(model, {}, {}, forces.tangent_entries(),
                 [this](long i, long j) { return T_0_.position(i, j); }),
       Phi_q_(constraints.entries()),
-      inverse_((forces.in_tangent() ? m_ : total_) * padded(n_)),
+      inverse_((forces.in_tangent() ? padded(m_) : total_) * padded(n_)),
       product_(total_ * padded(m_)),
       z_(total_),
       z_y_(padded(m_)) {
@@ -129,15 +154,32 @@ bool SaddleSystem<D, Solver>::factorize() {
 
 template <int D, class Solver>
 void SaddleSystem<D, Solver>::solve(double* x, double* y) {
-  // Fixed points' entries of right-hand sides mean nothing; Phi_q's products read them.
-  std::copy_n(x, padded(n_), z_.data());
-  T_0_.solve(z_.data());
-  constraints_.multiply(Phi_q_.data(), z_.data(), z_y_.data());
-  for (long k = 0; k < m_; ++k) y[k] = z_y_[k] - y[k];
-  S_.solve(y);
-  for (long k = 0; k < m_; ++k) z_y_[k] = -y[k];
-  constraints_.add_forces(Phi_q_.data(), z_y_.data(), x);
-  T_0_.solve(x);
+  const double* rows = inverse_.data();
+  if (!forces_.in_tangent()) {
+    multiply(rows, n_, padded(n_), x, z_.data());
+    constraints_.multiply(Phi_q_.data(), z_.data(), z_y_.data());
+    solve_schur(y);
+    for (long k = 0; k < m_; ++k) z_y_[k] = -y[k];
+    constraints_.add_forces(Phi_q_.data(), z_y_.data(), x);
+    std::copy_n(x, padded(n_), z_.data());
+    multiply(rows, n_, padded(n_), z_.data(), x);
+    return;
+  }
+  // Rows are Phi_q L^-T where there are products, so that L is needed once, else Phi_q T_0^-1.
+  if constexpr (Solver::kProducts) T_0_.solve_lower(x);
+  multiply(rows, m_, padded(n_), x, z_y_.data());
+  solve_schur(y);
+  if constexpr (!Solver::kProducts) T_0_.solve(x);
+  subtract_rows(rows, m_, padded(n_), z_y_.data(), x);
+  if constexpr (Solver::kProducts) T_0_.solve_upper(x);
+}
+
+// y is r_2, z_y_ is Phi_q T_0^-1 r_1 when they arrive, then both are mu.
+template <int D, class Solver>
+void SaddleSystem<D, Solver>::solve_schur(double* y) {
+  for (long k = 0; k < m_; ++k) z_y_[k] -= y[k];
+  S_.solve(z_y_.data());
+  std::copy_n(z_y_.data(), m_, y);
 }
 
 template class SaddleSystem<2, LltSolver>;

@@ -54,7 +54,7 @@ class PenaltySystem {
 /// This is the factorization L D L^T of the quasi-definite matrix in the order (q, mu), whose
 /// pivots are those of T_0 and then those of -S; no other order is safer, as T_0 holds no
 /// 1/epsilon. Without springs T_0 = M is inverted once; with springs every row of Phi_q is solved
-/// for.
+/// for. Solves with T_0 become products with what there is of its inverse.
 template <int D, class Solver>
 class SaddleSystem {
  public:
@@ -73,6 +73,7 @@ class SaddleSystem {
   void invert();
   void solve_rows();
   void multiply_rows();
+  void solve_schur(double* y);
 
   const Constraints<D>& constraints_;
   const Forces<D>& forces_;
