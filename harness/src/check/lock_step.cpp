@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "run/settings.hpp"
+
 namespace mbs {
 namespace {
 
@@ -33,9 +35,7 @@ double largest_difference(const Values& x, const Values& y) {
 
 LockStepTolerance lock_step_tolerance(const Probe& probe, const StepSettings& settings) {
   constexpr double kSafety = 4.0;
-  const double unit = settings.precision == Precision::single_precision
-                          ? std::numeric_limits<float>::epsilon() / 2
-                          : std::numeric_limits<double>::epsilon() / 2;
+  const double unit = unit_roundoff(settings.precision);
   const double h = settings.step;
   const double size = std::max(largest(probe.after.q), 1e-300);
   const double growth = kSafety * unit * probe.outcome.passes * std::sqrt(probe.condition);

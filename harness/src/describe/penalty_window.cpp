@@ -47,7 +47,7 @@ PenaltyWindow penalty_window(const Model& model, const Structure& structure,
     smallest = smallest_constraint_eigenvalue(model, model.initial_position());
   }
   const double mean = mean_constraint_eigenvalue(model);
-  const double noise = std::numeric_limits<double>::epsilon() / 2 * rounding_length(model);
+  const double noise = unit_roundoff(Precision::double_precision) * rounding_length(model);
   const auto bounds_at = [&](double turned) {
     return Bounds{
         .slowest = single ? kOnePass / (smallest * std::pow(turned, 4))
@@ -56,7 +56,7 @@ PenaltyWindow penalty_window(const Model& model, const Structure& structure,
         .newton = kNonlinear / (row * std::pow(turned, 3)),
         .rounding =
             single
-                ? kRoundedMass / (std::numeric_limits<float>::epsilon() / 2 * mean)
+                ? kRoundedMass / (unit_roundoff(settings.precision) * mean)
                 : std::pow(kCancellation * fastest.length * std::pow(turned, 4) / noise, 2) / mean};
   };
   const Bounds bounds = bounds_at(turn);

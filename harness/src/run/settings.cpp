@@ -28,6 +28,11 @@ double largest_coordinate(const Model& model) {
 
 }  // namespace
 
+double unit_roundoff(Precision precision) {
+  return precision == Precision::single_precision ? std::numeric_limits<float>::epsilon() / 2
+                                                  : std::numeric_limits<double>::epsilon() / 2;
+}
+
 double rounding_length(const Model& model) {
   return std::min(largest_coordinate(model), extent(model.points()));
 }
@@ -50,15 +55,9 @@ constexpr double kMeasuredTurn = 6.8e-3;  // rad a step, at which the measured n
 /// grow (automatic_settings.md here).
 constexpr double kStable = 2.0;
 
-double unit_of(const StepSettings& settings) {
-  return settings.precision == Precision::single_precision
-             ? std::numeric_limits<float>::epsilon() / 2
-             : std::numeric_limits<double>::epsilon() / 2;
-}
-
 /// What rounding of Phi moves a Newton step by, m; `stiffness` is beta s of the points that count.
 double rounding_noise(const Model& model, const StepSettings& settings, double stiffness) {
-  return unit_of(settings) * rounding_length(model) * std::sqrt(1 + stiffness);
+  return unit_roundoff(settings.precision) * rounding_length(model) * std::sqrt(1 + stiffness);
 }
 
 /// beta = alpha dt^2/4 of the penalty form, kg/m^2.
@@ -147,7 +146,7 @@ double automatic_tolerance(const Model& model, const StepSettings& settings) {
                                                     : settings.penalty * step * step / 4 *
                                                           mean_constraint_eigenvalue(model);
   return std::max({wanted, 10 * rounding_noise(model, settings, stiffness),
-                   10 * unit_of(settings) * largest_coordinate(model)});
+                   10 * unit_roundoff(settings.precision) * largest_coordinate(model)});
 }
 
 }  // namespace mbs

@@ -50,6 +50,9 @@ double least_constraint_diagonal(const Model& model);
 /// "auto" or a number > 0, for the step and scheme of `settings`. Throws UsageError.
 double parse_penalty(const std::string& text, const Model& model, const StepSettings& settings);
 
+/// u of the precision that a step is computed in; of mixed precision that of double.
+double unit_roundoff(Precision precision);
+
 /// The lesser of max|q| and the scene's extent, m: constraints see differences of points, so that
 /// this is what their rounding is relative to.
 double rounding_length(const Model& model);
