@@ -109,7 +109,7 @@ TEST(CheckProgram, AgreesOnScenesWithoutConstraints) {
 TEST(CheckProgram, RunsNoReferenceWhereNobodyServesTheScene) {
   const auto run = test::run_mbs("check bodies:2,dimension=3 --penalty 1e300 --implementation minimal_dense");
   EXPECT_EQ(run.status, 1);
-  EXPECT_EQ(run.errors.find("mbs: nothing was checked"), 0U) << run.errors;
+  EXPECT_NE(run.errors.find("mbs: nothing was checked"), std::string::npos) << run.errors;
   EXPECT_NE(run.output.find("unsupported"), std::string::npos) << run.output;
 }
 

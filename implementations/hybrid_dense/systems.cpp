@@ -155,14 +155,15 @@ bool SaddleSystem<D, Solver>::factorize() {
 template <int D, class Solver>
 void SaddleSystem<D, Solver>::solve(double* x, double* y) {
   const double* rows = inverse_.data();
+  std::fill(x + n_, x + padded(n_), 0.0);  // a lost step may have left NaN
   if (!forces_.in_tangent()) {
     multiply(rows, n_, padded(n_), x, z_.data());
     constraints_.multiply(Phi_q_.data(), z_.data(), z_y_.data());
     solve_schur(y);
     for (long k = 0; k < m_; ++k) z_y_[k] = -y[k];
     constraints_.add_forces(Phi_q_.data(), z_y_.data(), x);
-    std::copy_n(x, padded(n_), z_.data());
-    multiply(rows, n_, padded(n_), z_.data(), x);
+    multiply(rows, n_, padded(n_), x, z_.data());
+    std::copy_n(z_.data(), n_, x);
     return;
   }
   // Rows are Phi_q L^-T where there are products, so that L is needed once, else Phi_q T_0^-1.
@@ -178,6 +179,7 @@ void SaddleSystem<D, Solver>::solve(double* x, double* y) {
 template <int D, class Solver>
 void SaddleSystem<D, Solver>::solve_schur(double* y) {
   for (long k = 0; k < m_; ++k) z_y_[k] -= y[k];
+  std::fill(z_y_.data() + m_, z_y_.data() + padded(m_), 0.0);  // as above
   S_.solve(z_y_.data());
   std::copy_n(z_y_.data(), m_, y);
 }
