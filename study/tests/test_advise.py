@@ -575,7 +575,7 @@ def test_estimates_that_count_are_near_the_exact_errors(advised):
 
 
 def test_what_nothing_meets_is_said(tmp_path):
-    done, answer = ask(tmp_path, "--error", "1e-14", "--budget", "30")
+    done, answer = ask(tmp_path, "--error", "1e-14", "--budget", "10")
     assert done.returncode == 1 and not answer["met"] and answer["advice"] is None
     assert "no setting reaches the error" in answer["why_not"] and any("--error" in one for one in answer["helps"])
     done = study("advise", "four-bar:2", "--duration", "0.6", "--only", "csc_klu/refactor", "--error", "1e-2",
