@@ -301,7 +301,7 @@ def test_distances_are_drawn_where_no_rod_is():
     listed["distances"] = [{"name": "same", "between": ["E", "O"]},
                            {"name": "tie", "between": ["C", "P"]}]
     scene = from_description({"dimension": 2, "drivers_end": None, "elements": listed}, "crank")
-    assert [rod.name for rod in scene.rods] == ["crank", "tie"]
+    assert [[scene.points[at][0] for at in rod] for rod in scene.rods] == [["O", "E"], ["C", "P"]]
 
 
 def test_the_scenes_own_outputs_are_in_the_page(tmp_path):

@@ -20,8 +20,7 @@ def view(arguments):
     scene = program.describe(options.scene)
     if not scene.points:
         raise StudyError(f"{options.scene} has no points to show")
-    values = len(scene.points) * scene.dimension
-    frames = max(2, min(FRAMES, VALUES_AT_MOST // values))
+    frames = max(2, min(FRAMES, VALUES_AT_MOST // (len(scene.points) * scene.dimension)))
     if options.trajectory:
         motion = trajectory.read(options.trajectory, scene, frames)
         note = Path(options.trajectory).name
@@ -44,21 +43,18 @@ def view(arguments):
 
 
 def _options(arguments):
-    parser = Parser(prog="study/view", description="Shows the motion of a scene: an HTML page that "
-                    "needs nothing else to play it, and a PNG sheet for documents.")
+    parser = Parser(prog="study/view", description="Shows the motion of a scene: an HTML page that needs nothing else to play it, and a PNG "
+                    "sheet for documents.")
     parser.add_argument("scene", help="four-bar:N, one of mbs list --scenes, or a JSON file")
-    parser.add_argument("trajectory", nargs="?", help="CSV of `mbs simulate --trajectory`; without "
-                        "it, the scene is simulated now")
+    parser.add_argument("trajectory", nargs="?", help="CSV of `mbs simulate --trajectory`; without it, the scene is simulated now")
     parser.add_argument("--output", metavar="FILE.html", help="the page (SCENE.html, here)")
     parser.add_argument("--png", metavar="FILE.png", help="write a contact sheet of the motion too")
-    parser.add_argument("--window", nargs=2, type=float, metavar="S",
-                        help="first and last time of the sheet (all of the motion)")
-    parser.add_argument("--up", choices="xyz", help="axis that points up in 3D (against " "gravity; y without gravity)")
+    parser.add_argument("--window", nargs=2, type=float, metavar="S", help="first and last time of the sheet (all of the motion)")
+    parser.add_argument("--up", choices="xyz", help="axis that points up in 3D (against gravity; y without gravity)")
     own = parser.add_argument_group("without TRAJECTORY")
-    own.add_argument("--duration", type=positive, metavar="S", help="simulated time (10 or, with "
-                     "small steps or large scenes, what a minute is enough for)")
-    own.add_argument("--step", type=positive, metavar="S", help="time step (1.25e-3, or the first "
-                     "tenth, hundredth, … of it that does)")
+    own.add_argument("--duration", type=positive, metavar="S", help="simulated time (10 or, with small steps or large scenes, what a minute "
+                     "is enough for)")
+    own.add_argument("--step", type=positive, metavar="S", help="time step (1.25e-3, or the first tenth, hundredth, … of it that does)")
     own.add_argument("--implementation", help=f"folder/variant ({IMPLEMENTATION})")
     options = parser.parse_args(arguments)
     _check(options)
@@ -74,17 +70,14 @@ def _check(options):
     if options.window and options.png is None:
         raise StudyError("--window: found without --png, whose sheet it is of: allowed are both or none")
     if options.output is None:
-        stem = Path(options.scene).name.removesuffix(".json")
-        options.output = re.sub(r"[^\w.=-]+", "-", stem) + ".html"
+        options.output = re.sub(r"[^\w.=-]+", "-", Path(options.scene).name.removesuffix(".json")) + ".html"
     inputs = [Path(name).resolve() for name in (options.scene, options.trajectory) if name]
-    for flag, name, ending in (("--output", options.output, ".html"),
-                               ("--png", options.png, ".png")):
+    for flag, name, ending in (("--output", options.output, ".html"), ("--png", options.png, ".png")):
         if name is None:
             continue
         path = Path(name)
         if path.suffix.lower() != ending:
             raise StudyError(f"{flag} is {name!r}: it must end with {ending}")
-        why = ("it is an input" if path.resolve() in inputs else "it is a directory" if os.path.isdir(path) else
-               "" if os.path.isdir(path.parent) else f"there is no directory {path.parent}")
-        if why:
+        if why := ("it is an input" if path.resolve() in inputs else "it is a directory" if os.path.isdir(path) else
+                   "" if os.path.isdir(path.parent) else f"there is no directory {path.parent}"):
             raise StudyError(f"{flag}: cannot write {name}: {why}")

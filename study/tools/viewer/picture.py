@@ -30,29 +30,20 @@ def traces(scene, motion):
     """The point with the longest way and others whose ways look different, TRACES at most."""
     lengths = numpy.cumsum(numpy.linalg.norm(numpy.diff(motion.positions, axis=0), axis=2), axis=0)[-1]  # of each point's way
     order = [int(index) for index in numpy.argsort(-lengths, kind="stable") if scene.points[index][1] in ("free", "marker")]
-    apart, chosen = DISTINCT * reach(scene, motion), []
+    apart, chosen = DISTINCT * reach(scene, motion), {}  # {point: its way about its mean}
     for index in order[::max(1, len(order) // CANDIDATES)]:
-        way = motion.positions[:, index]
-        if numpy.ptp(way, axis=0).max() > 0 and all(
-                _apart(way, motion.positions[:, other]) > apart for other in chosen):
-            chosen.append(index)
-    return chosen[:TRACES]
-
-
-def _apart(first, second):
-    """Largest distance of two ways that are laid over each other."""
-    shifted = (first - first.mean(axis=0)) - (second - second.mean(axis=0))
-    return numpy.linalg.norm(shifted, axis=1).max()
+        way = motion.positions[:, index] - motion.positions[:, index].mean(axis=0)
+        if numpy.ptp(motion.positions[:, index], axis=0).max() > 0 and all(
+                numpy.linalg.norm(way - other, axis=1).max() > apart for other in chosen.values()):
+            chosen[index] = way
+    return [*chosen][:TRACES]
 
 
 def typical_length(scene, motion):
     """Median distance of what rods, bodies and springs join, m: the size of symbols goes by it."""
-    start = motion.positions[0]
-    lengths = []
-    for element in (*scene.rods, *scene.springs, *scene.bodies):
-        corners = start[element.points]
-        if len(corners) > 1:
-            lengths.append(float(numpy.linalg.norm(corners - corners[0], axis=1).max()))
+    joined = (*scene.rods, *scene.springs, *(body.points for body in scene.bodies))
+    corners = [motion.positions[0][points] for points in joined if len(points) > 1]
+    lengths = [numpy.linalg.norm(at - at[0], axis=1).max() for at in corners]
     return float(numpy.median(lengths)) if lengths else 0.1 * reach(scene, motion)
 
 
@@ -70,33 +61,22 @@ def _hull(at, points):
         found = ConvexHull(at[places])
     except QhullError:  # flat
         return []
-    triangles = []
-    for corners, outward in zip(found.simplices, found.equations[:, :3]):
-        a, b, c = (int(places[corner]) for corner in corners)
-        turned = numpy.cross(at[b] - at[a], at[c] - at[a]) @ outward < 0
-        triangles.append([a, c, b] if turned else [a, b, c])
-    return triangles
+    triangles = places[found.simplices]
+    a, b, c = at[triangles].swapaxes(0, 1)
+    turned = (numpy.cross(b - a, c - a) * found.equations[:, :3]).sum(axis=1) < 0
+    return numpy.where(turned[:, None], triangles[:, [0, 2, 1]], triangles).tolist()
 
 
 def arrows(scene, motion):
     """Unit vectors of bodies, each drawn at the mean of the points `at` with this `length`, m: at the point that all bodies
     with this vector share (a hinge's axis), else at the body's fixed point if the vector stands still, else amid the body."""
-    owners = {}
-    for body in scene.bodies:
-        for vector in body.vectors:
-            owners.setdefault(vector, []).append(body)
-    length = 0.3 * typical_length(scene, motion)
-    found = []
-    for vector, bodies in owners.items():
+    length, found = 0.3 * typical_length(scene, motion), []
+    for vector in dict.fromkeys(vector for body in scene.bodies for vector in body.vectors):
+        bodies = [body for body in scene.bodies if vector in body.vectors]
         shared = set(bodies[0].points).intersection(*(body.points for body in bodies[1:]))
         fixed = [point for point in bodies[0].points if scene.points[point][1] == "fixed"]
         still = numpy.ptp(motion.positions[:, vector], axis=0).max() < 1e-9
-        if len(bodies) > 1 and shared:
-            at = [min(shared)]
-        elif still and fixed:
-            at = fixed[:1]
-        else:
-            at = bodies[0].points
+        at = [min(shared)] if len(bodies) > 1 and shared else fixed[:1] if still and fixed else bodies[0].points
         if at:
             found.append({"vector": vector, "at": at, "length": length})
     return found
@@ -106,12 +86,11 @@ def coils(scene, motion):
     """Torsion springs, each a spiral from one direction to the other, which are pairs of points, at the mean of the points `at`: at
     the point that both directions share, else where the second begins; of unit vectors, where one of these is drawn."""
     vectors = {arrow["vector"]: arrow["at"] for arrow in arrows(scene, motion)}
-    length = 0.2 * typical_length(scene, motion)
-    found = []
+    length, found = 0.2 * typical_length(scene, motion), []
     for first, second in scene.torsion_springs:
         lines = [pair for pair in (second, first) if all(scene.points[point][1] != "vector" for point in pair)]
         shared = sorted(set(first) & set(second)) if len(lines) == 2 else []
-        at = (shared[:1] or (lines[0][:1] if lines else []) or vectors.get(second[1]) or vectors.get(first[1]))
+        at = shared[:1] or (lines[0][:1] if lines else []) or vectors.get(second[1]) or vectors.get(first[1])
         if at:
             found.append({"first": first, "second": second, "at": at, "length": length})
     return found

@@ -29,34 +29,28 @@ def describe(scene):
 
 
 def simulate(place, scene, options, frames, csv, outputs, say):
-    """Writes the trajectory `csv` of `scene`, which is at `place`, in about `frames` rows, and its outputs at the same times to
-    `outputs` unless that is None; returns a line on what was run.
-    `options` has step, duration (None: chosen here, up to the end of what drives the scene) and implementation. `say` takes
-    what to tell the user. Raises StudyError."""
+    """Writes the trajectory `csv` of `scene`, which is at `place`, in about `frames` rows, and its outputs at the same times to `outputs`
+    unless that is None; returns a line on what was run. `options` has step, duration (None: chosen here, up to the end of what drives the
+    scene) and implementation. `say` takes what to tell the user. Raises StudyError."""
     how = ["--implementation", options.implementation, "--scheme", scene.scheme]
     for step in (options.step,) if options.step else STEPS:
-        duration = options.duration or min(10.0, STEPS_AT_MOST * step, scene.end)
-        if not options.duration:
-            duration = _affordable(place, how, step, duration, say)
+        duration = options.duration or _affordable(place, how, step, min(10.0, STEPS_AT_MOST * step, scene.end), say)
         say(f"simulating {duration:g} s in steps of {step:g} s with {options.implementation}, {scene.scheme} form")
-        every = _every(duration / step, frames)
-        code, out, words = _simulate(place, how, step, duration,
-                                     ["--trajectory", csv, "--every", str(every),
-                                      *(["--output", outputs] if outputs else [])])
+        written = ["--trajectory", csv, "--every", _every(duration / step, frames), *(["--output", outputs] if outputs else [])]
+        code, _, words = _simulate(place, how, step, duration, written)
         if code != 1 or options.step:
             break
-        say(f"  {_last(words)}")
+        say(f"  {words[-1].strip() if words else 'without a word'}")
     if code != 0:
-        raise StudyError(_failure("simulate", code, words)
-                         + ("" if options.step else " (choose a --step)" if code == 1 else ""))
+        raise StudyError(_failure("simulate", code, words) + ("" if options.step else " (choose a --step)" if code == 1 else ""))
     for line in words:  # warnings, and what is not accurate
         say(f"  {line}")
     return f"{options.implementation}, {scene.scheme} form, step {step:g} s"
 
 
 def _every(steps, frames):
-    """Write every so many steps: the fewest that make no more than `frames` rows, better a divisor of
-    `steps`, so that the last step is written too. More steps than `mbs` takes are for it to refuse."""
+    """Write every so many steps: the fewest that make no more than `frames` rows, better a divisor of `steps`, so that the last step is
+    written too. More steps than `mbs` takes are for it to refuse."""
     steps = max(1, round(min(steps, STEPS_OF_A_RUN)))
     most = min(frames, steps)
     return next((steps // rows for rows in range(most, most // 2, -1) if steps % rows == 0), math.ceil(steps / frames))
@@ -72,8 +66,7 @@ def _affordable(place, how, step, duration, say):
     if fits >= duration:
         return duration
     fits = float(f"{max(fits, TRIAL_STEPS * step):.1g}")
-    say(f"{duration:g} s would take about {duration / step * seconds_a_step / 60:.0f} minutes: "
-        f"only {fits:g} s of it (ask for more with --duration)")
+    say(f"{duration:g} s would take about {duration / step * seconds_a_step / 60:.0f} minutes: only {fits:g} s of it (ask for more with --duration)")
     return fits
 
 
@@ -90,10 +83,6 @@ def _run(command, scene, *more):
     return ended.code, ended.stdout, [line for line in ended.stderr.splitlines() if line.strip()]
 
 
-def _last(words):
-    return words[-1].strip() if words else "without a word"
-
-
 def _failure(command, code, words):
     end = f"signal {-code}" if code < 0 else f"status {code}"
-    return _last(words) if words else f"mbs {command} ended with {end}, without a word"
+    return words[-1].strip() if words else f"mbs {command} ended with {end}, without a word"

@@ -2,7 +2,7 @@
 import json
 import math
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from analysis.core.errors import StudyError
@@ -14,17 +14,16 @@ COMMENTS = re.compile(r'("(?:[^"\\]|\\.)*")|//[^\n]*|/\*.*?\*/', re.DOTALL)  # a
 
 
 @dataclass
-class Element:
-    """A rod, a spring (two points) or a body; indices into Scene.points."""
+class Body:
     name: str
-    points: list
-    vectors: list = field(default_factory=list)
+    points: list  # indices into Scene.points
+    vectors: list
 
 
 @dataclass
 class Scene:
-    """Points are (name, kind); `start` has their positions at t = 0, one row each, m. Torsion springs are
-    pairs of directions, each from a point to a point; a distance is drawn like a rod; `outputs` names what the author asked for."""
+    """Points are (name, kind); `start` has their positions at t = 0, one row each, m. Rods and springs are pairs of points, and so is a
+    distance, which is drawn like a rod; torsion springs are pairs of directions, each from a point to a point."""
     name: str
     dimension: int
     points: list
@@ -33,10 +32,10 @@ class Scene:
     bodies: list
     springs: list
     torsion_springs: list
-    outputs: list
-    facts: str  # on its size, what the program says of it
-    end: float = math.inf  # s; driven motion is not known beyond
-    scheme: str = "penalty"  # the form of the step that `mbs describe` takes
+    outputs: list  # names of what the author asked for
+    facts: str     # on its size, what the program says of it
+    end: float     # s; driven motion is not known beyond
+    scheme: str    # the form of the step that `mbs describe` takes
 
 
 def from_description(description, name):
@@ -48,17 +47,13 @@ def from_description(description, name):
         helpers = [bool(point["helper"]) for point in elements["points"]]
         start = [[float(x) for x in point["position"]] for point in elements["points"]]
         index = {name: place for place, (name, _) in enumerate(points)}
-        rods = [_pair(index, rod) for rod in elements["rods"]]
-        joined = {frozenset(rod.points) for rod in rods}
-        rods += [link for link in (_pair(index, item) for item in elements["distances"])
-                 if frozenset(link.points) not in joined]
-        springs = [_pair(index, spring) for spring in elements["springs"] + elements.get("force_laws", [])]
-        bodies = [Element(body["name"], [index[point] for point in body["points"]],
-                          [index[vector] for vector in body.get("vectors", [])])
+        rods = _pairs(index, elements["rods"])
+        rods += [link for link in _pairs(index, elements["distances"]) if link not in rods and link[::-1] not in rods]
+        springs = _pairs(index, elements["springs"] + elements.get("force_laws", []))
+        bodies = [Body(body["name"], [index[point] for point in body["points"]], [index[vector] for vector in body.get("vectors", [])])
                   for body in elements["bodies"]]
         torsion_springs = [tuple([index[name] for name in spring[side]] for side in ("from", "to"))
-                           for kind in ("torsion_springs", "torque_laws")
-                           for spring in elements.get(kind, [])]
+                           for kind in ("torsion_springs", "torque_laws") for spring in elements.get(kind, [])]
     except (KeyError, TypeError, ValueError) as error:
         raise StudyError(f"`mbs describe {name} --json` lacks something to draw ({error!r}): "
                          "is the program older than study/view? Build it again") from error
@@ -66,24 +61,21 @@ def from_description(description, name):
     if dimension not in (2, 3) or unknown or any(len(row) != dimension for row in start):
         raise StudyError(f"`mbs describe {name} --json` gives dimension {dimension} and kinds of "
                          f"points {', '.join(unknown) or 'known'}: its points do not fit")
-    used = {point for element in (*rods, *springs, *bodies) for point in element.points}
+    used = {point for element in (*rods, *springs, *(body.points for body in bodies)) for point in element}
     points = [(name, HIDDEN if kind == "free" and helpers[place] and place not in used else kind)
               for place, (name, kind) in enumerate(points)]
     known = {"n = {}": "variables", "m = {}": "constraints", "degrees of freedom: {}": "degrees_of_freedom"}
     facts = ", ".join(text.format(description[key]) for text, key in known.items() if description.get(key) is not None)
-    return Scene(name, dimension, points, start, rods, bodies, springs, torsion_springs,
-                 list(elements.get("outputs", [])), facts, math.inf if end is None else float(end),
-                 description.get("scheme", {}).get("take", "penalty"))
+    return Scene(name, dimension, points, start, rods, bodies, springs, torsion_springs, list(elements.get("outputs", [])), facts,
+                 math.inf if end is None else float(end), description.get("scheme", {}).get("take", "penalty"))
 
 
-def _pair(index, element):
-    a, b = element["between"]
-    return Element(element.get("name", ""), [index[a], index[b]])
+def _pairs(index, elements):
+    return [[index[first], index[second]] for first, second in (one["between"] for one in elements)]
 
 
 def upward(path):
-    """Of a scene file in space: the unit vector, of those along an axis, that points most against its
-    gravity; y where it has none."""
+    """Of a scene file in space: the unit vector, of those along an axis, that points most against its gravity; y where it has none."""
     try:
         text = COMMENTS.sub(lambda found: found[1] or " ", Path(path).read_text(encoding="utf-8"))
         gravity = [float(x) for x in json.loads(text).get("gravity", [])]
