@@ -86,12 +86,10 @@ def advise(question, settings, described, variants, run):
 def _pilots(advice, settings, run):
     question, start = advice.question, advice.question.first_step
     duration = question.duration
-    while (3e-6 * run.slowdown * min(advice.speeds.values()) * duration / start > question.budget / 40
-           and duration > 100 * start):
+    while 3e-6 * run.slowdown * min(advice.speeds.values()) * duration / start > question.budget / 40 and duration > 100 * start:
         duration /= 2  # a scene this dear gets pilots of a part of the motion
     if duration < question.duration:
-        advice.cut_short.append(f"error pilots cover {duration:g} of {question.duration:g} s, and were held to that "
-                                "share of the error")
+        advice.cut_short.append(f"error pilots cover {duration:g} of {question.duration:g} s, and were held to that share of the error")
     advice.pilot_duration = duration
 
     def pilot(setting, step):
@@ -101,8 +99,7 @@ def _pilots(advice, settings, run):
         if expected > run.left(PILOT_SHARE):
             return None
         run.tell(f"error pilots: {setting.name}, step {step:g} s")
-        found = run.pilot(setting, name, step, duration,
-                          min(question.budget / 10 + 4 * expected, max(1.0, run.left(TIMING_SHARE))))
+        found = run.pilot(setting, name, step, duration, min(question.budget / 10 + 4 * expected, max(1.0, run.left(TIMING_SHARE))))
         return None if found.status == "timeout" else found
 
     def quick(setting, step):
@@ -125,8 +122,7 @@ def _race(advice, run):
     promises = {}  # {(setting, implementation): us a simulated second}
     for setting, found in advice.found.items():
         names = advice.serving(setting) if found.chosen else []
-        promises |= {(setting, name): found.step_us() / found.chosen * advice.speeds[name] / advice.speeds[names[0]]
-                     for name in names}
+        promises |= {(setting, name): found.step_us() / found.chosen * advice.speeds[name] / advice.speeds[names[0]] for name in names}
     if not promises:
         return
     least = min(promises.values())
@@ -134,7 +130,7 @@ def _race(advice, run):
         one = timing.Candidate(setting, name, question.step or tidy(advice.found[setting].chosen, question.duration))
         advice.candidates.append(one)
         if promise > SLOWER * least:
-            one.drop(f"promises {promise / least:.2f} times the least time, by pilots and probe")
+            one.reason = f"promises {promise / least:.2f} times the least time, by pilots and probe"
     length = timing.stretch(question.duration, least, run.left(TIMING_SHARE) / (run.slowdown * REPEATS),
                             LEAST_STEPS * max(one.step for one in advice.candidates if not one.out))
     limit = max(5.0, 1e-5 * run.slowdown * REPEATS * least * length)
@@ -142,6 +138,5 @@ def _race(advice, run):
     def timed(one, number):
         run.tell(f"timing: round {number}, {one.implementation}, {one.setting.name}")
         return run(f"round{number}", one.setting, one.implementation, one.step, length, limit)
-    if not timing.race(advice.candidates, timed, lambda: run.left(TIMING_SHARE), question.deadline_us,
-                       shorter=not question.step):
+    if not timing.race(advice.candidates, timed, lambda: run.left(TIMING_SHARE), question.deadline_us, shorter=not question.step):
         advice.hurry("no time was left for all rounds of timing")

@@ -60,19 +60,18 @@ def sentence(table):
 def page(table):
     asked = table[table.asked]
     ok = held(asked)
-    lines = ["# Is the advice right?", "", f"{sentence(table)}.", "", ABOUT, "", *_rows(
-        ["kind", "mechanisms", "variables", "questions", "as accurate as asked", f"at most {MOST:g} times the best",
-         "slowest, times the best", f"within {LATEST:g} s", "longest answer, s", "others, %", "settings advised"],
-        (_kind(kind, rows, ok.loc[rows.index]) for kind, rows in asked.groupby("kind")))]
-    lines += ["", "## What did not hold", "", *_rows(
-        ["mechanism", "error asked, m", "error, m", "times the best", "answer, s", "advised", "best found"],
-        (_failed(row) for row in asked[~ok.all(axis=1)].itertuples()))]
-    lines += ["", "## Not asked", "", "Two schemes do not agree on the motion to a tenth of the error, so nobody knows what is right.", "",
-              *_rows(["mechanism", "errors, m"], ([scene, ", ".join(map(number, rows.error))]
-                                                  for scene, rows in table[~table.asked].groupby("scene")))]
-    lines += ["", "## Measured", "", *_rows(["commit", "processor", "date", "mechanisms"], (
-        [*key, rows.scene.nunique()] for key, rows in table.groupby(["commit", "processor", "date"])))]
-    return "\n".join(lines) + "\n"
+    shown = {
+        f"# Is the advice right?\n\n{sentence(table)}.\n\n{ABOUT}": (
+            ["kind", "mechanisms", "variables", "questions", "as accurate as asked", f"at most {MOST:g} times the best", "slowest, times the best",
+             f"within {LATEST:g} s", "longest answer, s", "others, %", "settings advised"],
+            [_kind(kind, rows, ok.loc[rows.index]) for kind, rows in asked.groupby("kind")]),
+        "## What did not hold": (["mechanism", "error asked, m", "error, m", "times the best", "answer, s", "advised", "best found"],
+                                 [_failed(row) for row in asked[~ok.all(axis=1)].itertuples()]),
+        "## Not asked\n\nTwo schemes do not agree on the motion to a tenth of the error, so nobody knows what is right.": (
+            ["mechanism", "errors, m"], [[scene, ", ".join(map(number, rows.error))] for scene, rows in table[~table.asked].groupby("scene")]),
+        "## Measured": (["commit", "processor", "date", "mechanisms"],
+                        [[*key, rows.scene.nunique()] for key, rows in table.groupby(["commit", "processor", "date"])])}
+    return "\n\n".join(f"{head}\n\n{_table(*found)}" for head, found in shown.items()) + "\n"
 
 
 def _kind(kind, rows, ok):
@@ -90,7 +89,6 @@ def _failed(row):
             line(row.best_implementation, row.best_setting, row.best_step)]
 
 
-def _rows(names, rows):
-    """A table, or that there is nothing."""
-    found = [f"| {' | '.join(map(str, row))} |" for row in rows]
-    return [f"| {' | '.join(names)} |", "|---" * len(names) + "|", *found] if found else ["Nothing."]
+def _table(names, rows):
+    lines = [f"| {' | '.join(map(str, row))} |" for row in (names, *rows)]
+    return "\n".join([lines[0], "|---" * len(names) + "|", *lines[1:]]) if rows else "Nothing."
